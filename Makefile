@@ -1,0 +1,91 @@
+# Two front doors: `make compare` and `make test`. Both need a Rust toolchain, Python >= 3.11 and make, and set
+# up the rest themselves in .venv. `make help` lists the others.
+
+PYTHON ?= python3
+# Parallel pytest workers, and options passed on to pytest or to the comparison.
+JOBS ?= 2
+PYTEST_ARGS ?=
+COMPARE_ARGS ?=
+
+VENV := .venv
+BIN := $(VENV)/bin
+STAMPS := $(VENV)/.stamps
+UV := VIRTUAL_ENV="$(CURDIR)/$(VENV)" $(BIN)/uv
+# Directories are listed too: their times change when a file is removed.
+RUST_SOURCES := Cargo.toml Cargo.lock $(shell find src)
+STUBS := flockenv/_core.pyi
+
+# Which extras each front door needs, out of pyproject.toml.
+COMPARE_EXTRAS := --extra plot
+TEST_EXTRAS := --extra train --extra plot --extra render --extra test --extra dev
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.NOTPARALLEL:
+.PHONY: help setup build compare test lint format test-rust test-python validate clean
+
+help: ## list the commands
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+compare: build ## set up, then print and plot the paper's leader-count curve
+	$(BIN)/flockenv compare $(COMPARE_ARGS)
+
+test: lint test-rust test-python ## set up, then check style and types and run all tests
+
+setup: $(STAMPS)/test
+
+build: $(STAMPS)/core ## build the simulator and install the package, editable, into .venv
+
+lint: $(STAMPS)/test $(STAMPS)/core ## formatting, clippy, ruff, mypy, stubs
+	cargo fmt --check
+	$(BIN)/ruff format --check
+	cargo clippy --locked --all-targets -- -D warnings
+	PYO3_PYTHON="$(CURDIR)/$(BIN)/python" cargo clippy --locked --all-targets --features python -- -D warnings
+	$(BIN)/ruff check
+	$(BIN)/mypy
+	$(if $(wildcard $(STUBS)),$(BIN)/stubtest flockenv._core --mypy-config-file pyproject.toml)
+
+format: $(STAMPS)/test ## format the Rust and Python sources
+	cargo fmt
+	$(BIN)/ruff check --fix
+	$(BIN)/ruff format
+
+test-rust: ## the physics alone, no Python
+	cargo test --locked
+
+# One thread for each worker's linear algebra, or the workers fight over the cores.
+test-python: $(STAMPS)/test $(STAMPS)/core ## the Python package
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
+
+validate: $(STAMPS)/test $(STAMPS)/core ## the slow tests and the published curves
+	cargo test --locked -- --ignored
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) -m "slow or validation" --timeout 3600 $(PYTEST_ARGS)
+
+clean: ## remove everything that was built or installed here
+	cargo clean
+	rm -rf $(VENV) flockenv/_core.*.so flockenv/_core.*.pyd dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	find . -name __pycache__ -prune -exec rm -rf {} +
+
+# --- setting up -----------------------------------------------------------------------------------------------
+
+$(STAMPS)/venv:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed; name one with `make PYTHON=...`")'
+	@cargo --version > /dev/null || { echo "A Rust toolchain is needed: cargo was not found." >&2; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check uv
+	$(UV) pip install --quiet "maturin>=1.16,<2"
+	@mkdir -p $(@D) && touch $@
+
+$(STAMPS)/compare: pyproject.toml | $(STAMPS)/venv
+	$(UV) pip install -r pyproject.toml $(COMPARE_EXTRAS)
+	@touch $@
+
+# On Linux PyPI's torch links against CUDA even where it only ever uses the processor. The two of its
+# dependencies that it runs without here (a GPU compiler and bindings to it, 1 GB) are left out.
+$(STAMPS)/test: pyproject.toml requirements-excluded.txt | $(STAMPS)/venv
+	$(UV) pip install -r pyproject.toml $(TEST_EXTRAS) --excludes requirements-excluded.txt
+	@touch $@ $(STAMPS)/compare
+
+$(STAMPS)/core: $(RUST_SOURCES) pyproject.toml | $(STAMPS)/compare
+	VIRTUAL_ENV="$(CURDIR)/$(VENV)" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
+	@touch $@

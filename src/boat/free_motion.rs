@@ -1,0 +1,119 @@
+//! Eqs (8) and (9): what a boat does when nothing touches it.
+//!
+//! Eq. (9) is grouped as −c1·α̇³ + (c2·s − c3·α̇)(u·ẋ) + c4·η. The printed grouping contradicts the
+//! paper's own description (a stopped boat does not steer, a moving one prefers a nonzero turning
+//! rate) and steers neither way.
+
+use super::Velocity;
+use crate::geometry::Vec2;
+use crate::parameters::FlockParameters;
+
+/// What acts on a boat during a substep.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drive {
+    /// Preferred speed v0 along the heading in cm/s, negative backwards.
+    pub thrust: f64,
+    /// Rudder s in [−1, 1], positive turns counter-clockwise when moving forward.
+    pub rudder: f64,
+    /// Velocity of the water in cm/s.
+    pub water: Vec2,
+    /// Change of the angular velocity by noise in rad/s, over the whole substep.
+    pub kick: f64,
+}
+
+/// A free velocity and how strongly the substep resists a change of it by contacts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FreeVelocity {
+    /// The velocity that the boat would have without contacts.
+    pub velocity: Velocity,
+    /// Effective linear weight: 1 + dt/2·c0 where drag is implicit.
+    pub linear_weight: f64,
+    /// Effective weight of the angular velocity, to be multiplied with ρ².
+    pub angular_weight: f64,
+}
+
+/// The constants of eqs (8) and (9).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FreeMotion {
+    c0: f64,
+    c1: f64,
+    c2: f64,
+    c3: f64,
+}
+
+impl FreeMotion {
+    /// The constants of checked parameters.
+    pub fn new(parameters: &FlockParameters) -> Self {
+        let p = parameters;
+        Self {
+            c0: p.c0,
+            c1: p.c1,
+            c2: p.c2,
+            c3: p.c3,
+        }
+    }
+
+    /// Linear acceleration, eq. (8), with drag relative to the water.
+    #[inline]
+    pub fn linear_acceleration(&self, velocity: Vec2, axis: Vec2, drive: &Drive) -> Vec2 {
+        (axis * drive.thrust - (velocity - drive.water)) * self.c0
+    }
+
+    /// Angular acceleration, eq. (9) without noise, at a speed through the water along the heading.
+    #[inline]
+    pub fn angular_acceleration(&self, angular: f64, along: f64, rudder: f64) -> f64 {
+        -self.c1 * angular * angular * angular + (self.c2 * rudder - self.c3 * angular) * along
+    }
+
+    /// Explicit Euler over `dt`: accelerations at the given velocity.
+    #[inline]
+    pub fn explicit(&self, velocity: &Velocity, axis: Vec2, drive: &Drive, dt: f64) -> Velocity {
+        let along = axis.dot(&(velocity.linear - drive.water));
+        Velocity {
+            linear: velocity.linear + self.linear_acceleration(velocity.linear, axis, drive) * dt,
+            angular: velocity.angular
+                + self.angular_acceleration(velocity.angular, along, drive.rudder) * dt
+                + drive.kick,
+        }
+    }
+
+    /// Second order over `dt` with drag, heading drive and angular damping centred in the substep:
+    /// Crank–Nicolson, linearised once for the angular velocity. `contact_change` is the change of
+    /// velocity that lasting contacts are expected to make in the substep, so that the heading's
+    /// drive u·ẋ is centred too while a boat leans on something.
+    ///
+    /// The angular rate 3·c1·α̇² + c3·u·ẋ is negative for a backing boat that does not turn yet: the
+    /// weight 1 + dt/2·rate is replaced there by 1/(1 − dt/2·rate), equal to second order and positive
+    /// at any dt.
+    #[inline]
+    pub fn centered(
+        &self,
+        velocity: &Velocity,
+        axis: Vec2,
+        drive: &Drive,
+        contact_change: Vec2,
+        dt: f64,
+    ) -> FreeVelocity {
+        let linear_weight = 1.0 + 0.5 * dt * self.c0;
+        let change = self.linear_acceleration(velocity.linear, axis, drive) * (dt / linear_weight);
+        let middle = velocity.linear + (change + contact_change) * 0.5;
+        let along = axis.dot(&(middle - drive.water));
+
+        let spin = velocity.angular;
+        let half_rate = 0.5 * dt * (3.0 * self.c1 * spin * spin + self.c3 * along);
+        let angular_weight = if half_rate >= 0.0 {
+            1.0 + half_rate
+        } else {
+            1.0 / (1.0 - half_rate)
+        };
+        let torque = self.angular_acceleration(spin, along, drive.rudder) * dt + drive.kick;
+        FreeVelocity {
+            velocity: Velocity {
+                linear: velocity.linear + change,
+                angular: spin + torque / angular_weight,
+            },
+            linear_weight,
+            angular_weight,
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! One place where a hull is near another hull or a wall.
+
+use crate::boat::Velocity;
+use crate::geometry::{Gap, PairFeature};
+
+/// What a boat is near to.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
+pub enum Partner {
+    /// Another boat, always of a larger index.
+    Boat(u32),
+    /// The outer wall.
+    OuterWall,
+    /// The inner wall.
+    InnerWall,
+}
+
+/// A contact or near-contact, as a constraint on the velocities of one or two boats.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact {
+    /// The boat that the normal pushes.
+    pub boat: u32,
+    /// The other side.
+    pub partner: Partner,
+    /// Which part of the hulls: a [`PairFeature`] for two boats, 0 stern or 1 bow at the outer wall, 0
+    /// at the inner wall.
+    pub feature: u8,
+    /// Gap, normal and lever arms at the pose where the contact was found.
+    pub gap: Gap,
+}
+
+/// What identifies a contact from one substep to the next.
+pub type ContactKey = (u32, Partner, u8);
+
+impl Contact {
+    /// A contact of two boats.
+    pub fn of_pair(first: u32, second: u32, feature: PairFeature, gap: Gap) -> Self {
+        Self {
+            boat: first,
+            partner: Partner::Boat(second),
+            feature: feature as u8,
+            gap,
+        }
+    }
+
+    /// What identifies this contact from one substep to the next.
+    pub fn key(&self) -> ContactKey {
+        (self.boat, self.partner, self.feature)
+    }
+
+    /// The other boat, if the partner is one.
+    #[inline]
+    pub fn second(&self) -> Option<usize> {
+        match self.partner {
+            Partner::Boat(boat) => Some(boat as usize),
+            Partner::OuterWall | Partner::InnerWall => None,
+        }
+    }
+
+    /// Rate of change of the gap at given velocities of all boats, in cm/s.
+    #[inline]
+    pub fn gap_rate(&self, velocities: &[Velocity]) -> f64 {
+        let gap = &self.gap;
+        let first = &velocities[self.boat as usize];
+        let rate = gap.normal.dot(&first.linear) + gap.arm_i * first.angular;
+        match self.second() {
+            None => rate,
+            Some(second) => {
+                let second = &velocities[second];
+                rate - gap.normal.dot(&second.linear) - gap.arm_j * second.angular
+            }
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Finds the contacts of a flock: candidate pairs from the neighbour list, walls, exact gaps.
+
+use super::{Contact, Partner};
+use crate::boat::Velocity;
+use crate::geometry::{
+    Gap, Hull, HullPose, NeighborList, PairFeature, inner_wall_gap, outer_wall_gap, pair_gap,
+    pair_gaps,
+};
+use crate::parameters::{FlockParameters, Pool};
+
+/// Geometry of a scene: hulls, walls and the neighbour list.
+#[derive(Debug, Clone)]
+pub struct ContactDetector {
+    hull: Hull,
+    pool: Pool,
+    /// Candidate pairs.
+    pub neighbors: NeighborList,
+    skin: f64,
+}
+
+impl ContactDetector {
+    /// For checked parameters.
+    pub fn new(parameters: &FlockParameters) -> Self {
+        let hull = Hull::new(parameters);
+        // Boats drift by about a radius before the list is built anew.
+        let skin = 0.8 * hull.radius;
+        Self {
+            hull,
+            pool: parameters.pool,
+            neighbors: NeighborList::default(),
+            skin,
+        }
+    }
+
+    /// The hull that all boats share.
+    pub fn hull(&self) -> Hull {
+        self.hull
+    }
+
+    /// Gaps that can close within `dt` at these velocities, with room for what contacts add to them.
+    pub fn margin(&self, velocities: &[Velocity], dt: f64) -> f64 {
+        let h = self.hull.half_length;
+        let fastest = velocities
+            .iter()
+            .map(|v| v.linear.norm_squared().sqrt() + h * v.angular.abs())
+            .fold(0.0, f64::max);
+        3.0 * fastest * dt + 1e-3 * self.hull.radius
+    }
+
+    /// Fills `contacts` with everything nearer than `margin`, ordered along the pool's polar angle.
+    pub fn detect(&mut self, boats: &[HullPose], margin: f64, contacts: &mut Vec<Contact>) {
+        contacts.clear();
+        let distance = 2.0 * self.hull.reach() + margin;
+        self.neighbors
+            .update(boats.iter().map(|boat| boat.center), distance, self.skin);
+        for (boat, partners) in self.neighbors.groups() {
+            self.detect_walls(boat, &boats[boat as usize], margin, contacts);
+            for &partner in partners {
+                let (first, second) = (boat.min(partner), boat.max(partner));
+                let (a, b) = (&boats[first as usize], &boats[second as usize]);
+                pair_gaps(a, b, self.hull, margin, |feature, gap| {
+                    contacts.push(Contact::of_pair(first, second, feature, gap));
+                });
+            }
+        }
+    }
+
+    fn detect_walls(&self, boat: u32, pose: &HullPose, margin: f64, contacts: &mut Vec<Contact>) {
+        let Pool {
+            outer_radius_cm: outer,
+            inner_radius_cm: inner,
+        } = self.pool;
+        let distance = pose.center.norm();
+        if self.pool.has_outer_wall() && distance + self.hull.reach() + margin > outer {
+            let ends = if self.hull.half_length > 0.0 { 2 } else { 1 };
+            for feature in 0..ends {
+                let gap = outer_wall_gap(pose, end_side(feature), self.hull, outer);
+                if gap.gap < margin {
+                    contacts.push(Contact {
+                        boat,
+                        partner: Partner::OuterWall,
+                        feature,
+                        gap,
+                    });
+                }
+            }
+        }
+        if self.pool.has_inner_wall() && distance - self.hull.reach() - margin < inner {
+            let gap = inner_wall_gap(pose, self.hull, inner);
+            if gap.gap < margin {
+                contacts.push(Contact {
+                    boat,
+                    partner: Partner::InnerWall,
+                    feature: 0,
+                    gap,
+                });
+            }
+        }
+    }
+
+    /// The smallest gap between the two sides of a contact at other poses, whichever part it is at.
+    pub fn smallest_gap_at(&self, contact: &Contact, boats: &[HullPose]) -> f64 {
+        let Some(second) = contact.second() else {
+            return self.gap_at(contact, boats).gap;
+        };
+        let mut smallest = f64::INFINITY;
+        let (a, b) = (&boats[contact.boat as usize], &boats[second]);
+        pair_gaps(a, b, self.hull, 0.0, |_, gap| {
+            smallest = smallest.min(gap.gap);
+        });
+        smallest
+    }
+
+    /// The gap of a known contact at other poses.
+    pub fn gap_at(&self, contact: &Contact, boats: &[HullPose]) -> Gap {
+        let first = &boats[contact.boat as usize];
+        match contact.partner {
+            Partner::OuterWall => outer_wall_gap(
+                first,
+                end_side(contact.feature),
+                self.hull,
+                self.pool.outer_radius_cm,
+            ),
+            Partner::InnerWall => inner_wall_gap(first, self.hull, self.pool.inner_radius_cm),
+            Partner::Boat(second) => pair_gap(
+                PairFeature::from_code(contact.feature),
+                first,
+                &boats[second as usize],
+                self.hull,
+            ),
+        }
+    }
+}
+
+fn end_side(feature: u8) -> f64 {
+    if feature == 0 { -1.0 } else { 1.0 }
+}

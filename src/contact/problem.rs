@@ -1,0 +1,91 @@
+//! The contact problem of one substep: the smallest change of velocity, in the metric of effective
+//! inertia, after which no gap closes beyond zero.
+
+use super::Contact;
+use crate::boat::Velocity;
+
+/// One over the effective inertia of a boat in this substep.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InverseInertia {
+    /// Per unit mass; 1 where drag is explicit.
+    pub linear: f64,
+    /// In 1/cm²: 1/ρ² where damping is explicit.
+    pub angular: f64,
+}
+
+/// min Σ (v − v_free)ᵀ M (v − v_free) subject to J·v + bound ≥ 0, with bound = gap/dt. Its dual is the
+/// complementarity problem w = A·λ + b ≥ 0, λ ≥ 0, w·λ = 0 with A = J·M⁻¹·Jᵀ and b = J·v_free + bound.
+#[derive(Debug, Clone, Copy)]
+pub struct ContactProblem<'a> {
+    /// The contacts, one row of J each.
+    pub contacts: &'a [Contact],
+    /// Effective inertia of every boat.
+    pub inertia: &'a [InverseInertia],
+    /// Velocity of every boat without contacts.
+    pub free: &'a [Velocity],
+    /// How fast each gap may close, in cm/s.
+    pub bounds: &'a [f64],
+}
+
+impl ContactProblem<'_> {
+    /// w_k = J_k·v + bound_k: what is left of the gap at the substep's end, over dt.
+    #[inline]
+    pub fn slack(&self, k: usize, velocities: &[Velocity]) -> f64 {
+        self.contacts[k].gap_rate(velocities) + self.bounds[k]
+    }
+
+    /// Changes velocities by an impulse at contact k.
+    #[inline]
+    pub fn apply(&self, k: usize, impulse: f64, velocities: &mut [Velocity]) {
+        let contact = &self.contacts[k];
+        let gap = &contact.gap;
+        let i = contact.boat as usize;
+        let inertia = &self.inertia[i];
+        velocities[i].linear += gap.normal * (impulse * inertia.linear);
+        velocities[i].angular += gap.arm_i * impulse * inertia.angular;
+        if let Some(j) = contact.second() {
+            let inertia = &self.inertia[j];
+            velocities[j].linear -= gap.normal * (impulse * inertia.linear);
+            velocities[j].angular -= gap.arm_j * impulse * inertia.angular;
+        }
+    }
+
+    /// A_kk: how much an impulse at contact k opens its own gap.
+    #[inline]
+    pub fn diagonal(&self, k: usize) -> f64 {
+        let contact = &self.contacts[k];
+        let gap = &contact.gap;
+        let first = &self.inertia[contact.boat as usize];
+        let own = first.linear + gap.arm_i * gap.arm_i * first.angular;
+        match contact.second() {
+            None => own,
+            Some(j) => {
+                let second = &self.inertia[j];
+                own + second.linear + gap.arm_j * gap.arm_j * second.angular
+            }
+        }
+    }
+
+    /// Natural residual max|min(A_kk·λ_k, w_k)| of impulses and the velocities they give, in cm/s: 0
+    /// exactly at a solution.
+    pub fn natural_residual(&self, impulses: &[f64], velocities: &[Velocity]) -> f64 {
+        (0..self.contacts.len())
+            .map(|k| {
+                (self.diagonal(k) * impulses[k])
+                    .min(self.slack(k, velocities))
+                    .abs()
+            })
+            .fold(0.0, f64::max)
+    }
+
+    /// The velocities that impulses give.
+    pub fn velocities(&self, impulses: &[f64], velocities: &mut Vec<Velocity>) {
+        velocities.clear();
+        velocities.extend_from_slice(self.free);
+        for (k, &impulse) in impulses.iter().enumerate() {
+            if impulse != 0.0 {
+                self.apply(k, impulse, velocities);
+            }
+        }
+    }
+}

@@ -1,0 +1,301 @@
+//! From free velocities to velocities that respect the contacts: detection, warm start, solve,
+//! relinearisation, and what to do where the constraints contradict each other.
+
+use super::contact::ContactKey;
+use super::recovery::{DEEP, Recovery};
+use super::solver::ContactSolver;
+use super::{Contact, ContactDetector, ContactProblem, InverseInertia};
+use crate::boat::{Pose, Velocity};
+use crate::geometry::{HullPose, Vec2};
+use crate::parameters::{FlockParameters, Scheme, Solver};
+use crate::statistics::Statistics;
+
+/// A contact that carried an impulse in the last substep, and the impulse in cm/s.
+pub type Load = (ContactKey, f64);
+
+/// Finds and solves the contacts of a flock, substep after substep.
+#[derive(Debug, Clone)]
+pub struct ContactResolver {
+    detector: ContactDetector,
+    solver: ContactSolver,
+    contacts: Vec<Contact>,
+    bounds: Vec<f64>,
+    /// Whether each contact carried an impulse in the substep before.
+    lasting: Vec<bool>,
+    /// Contacts that carried an impulse, in the order of detection.
+    loads: Vec<Load>,
+    recovery: Option<Box<Recovery>>,
+    trial: Vec<HullPose>,
+    relinearizations: usize,
+    gyration_radius: f64,
+    /// Gaps below this (cm, negative) are recovered by displacement.
+    deep: f64,
+}
+
+impl ContactResolver {
+    /// For checked parameters.
+    pub fn new(parameters: &FlockParameters) -> Self {
+        Self {
+            detector: ContactDetector::new(parameters),
+            solver: ContactSolver::new(parameters.solver),
+            contacts: Vec::new(),
+            bounds: Vec::new(),
+            lasting: Vec::new(),
+            loads: Vec::new(),
+            recovery: None,
+            trial: Vec::new(),
+            relinearizations: parameters.relinearizations,
+            gyration_radius: parameters.gyration_radius_cm,
+            // Overlaps that the paper's scheme accepts are none to recover.
+            deep: match parameters.scheme {
+                Scheme::Paper => DEEP.min(-2.0 * parameters.overlap_tolerance_cm),
+                Scheme::Leapfrog | Scheme::Moreau => DEEP,
+            },
+        }
+    }
+
+    /// The contacts found last.
+    pub fn contacts(&self) -> &[Contact] {
+        &self.contacts
+    }
+
+    /// Impulses of the contacts found last, in cm/s.
+    pub fn impulses(&self) -> &[f64] {
+        &self.solver.impulses
+    }
+
+    /// The velocities of the last solve.
+    pub fn velocities(&self) -> &[Velocity] {
+        &self.solver.velocities
+    }
+
+    /// Geometry of the scene.
+    pub fn detector(&mut self) -> &mut ContactDetector {
+        &mut self.detector
+    }
+
+    /// Contacts that carried an impulse in the last substep.
+    pub fn loads(&self) -> &[Load] {
+        &self.loads
+    }
+
+    /// Puts back what [`Self::loads`] gave.
+    pub fn set_loads(&mut self, loads: Vec<Load>) {
+        self.loads = loads;
+    }
+
+    /// Forgets contacts and loads: the poses have been set from outside.
+    pub fn forget(&mut self) {
+        self.contacts.clear();
+        self.solver.impulses.clear();
+        self.loads.clear();
+        self.detector.neighbors.clear();
+    }
+
+    /// Finds the contacts that matter within `dt` at these velocities. Deep overlaps are undone first,
+    /// by moving poses. Returns whether there is any contact.
+    pub fn find(
+        &mut self,
+        poses: &mut [Pose],
+        boats: &mut [HullPose],
+        velocities: &[Velocity],
+        dt: f64,
+        statistics: &mut Statistics,
+    ) -> bool {
+        let margin = self.detector.margin(velocities, dt);
+        self.detector.detect(boats, margin, &mut self.contacts);
+        let smallest = self.contacts.iter().map(|c| c.gap.gap).fold(0.0, f64::min);
+        statistics.worst_overlap_cm = statistics.worst_overlap_cm.max(-smallest);
+        if smallest < self.deep {
+            self.recover(poses, boats, statistics);
+            self.detector.detect(boats, margin, &mut self.contacts);
+        }
+        statistics.contacts += self.contacts.len() as u64;
+        statistics.neighbor_builds = self.detector.neighbors.builds();
+        self.recall_loads();
+        !self.contacts.is_empty()
+    }
+
+    fn recover(&mut self, poses: &mut [Pose], boats: &mut [HullPose], statistics: &mut Statistics) {
+        let recovery = self
+            .recovery
+            .get_or_insert_with(|| Box::new(Recovery::new(poses.len(), self.gyration_radius)));
+        let before = recovery.passes;
+        recovery.run(&mut self.detector, poses, boats, -0.1 * self.deep, 8);
+        statistics.recovery_passes += recovery.passes - before;
+    }
+
+    /// Guesses that contacts which carried an impulse still do.
+    fn recall_loads(&mut self) {
+        let Self {
+            contacts,
+            solver,
+            loads,
+            lasting,
+            ..
+        } = self;
+        solver.impulses.clear();
+        solver.impulses.resize(contacts.len(), 0.0);
+        // Both lists follow the order of detection, unless a load vanished or the order changed.
+        let mut next = 0;
+        for (contact, impulse) in contacts.iter().zip(&mut solver.impulses) {
+            if let Some((key, load)) = loads.get(next)
+                && *key == contact.key()
+            {
+                *impulse = *load;
+                next += 1;
+            }
+        }
+        if next < loads.len() {
+            loads.sort_unstable_by_key(|(key, _)| *key);
+            for (contact, impulse) in contacts.iter().zip(&mut solver.impulses) {
+                let found = loads.binary_search_by_key(&contact.key(), |(key, _)| *key);
+                *impulse = found.map_or(0.0, |place| loads[place].1);
+            }
+        }
+        lasting.clear();
+        lasting.extend(solver.impulses.iter().map(|&impulse| impulse > 0.0));
+        solver.active.clone_from(lasting);
+    }
+
+    /// Whether moving with these velocities for `dt` overlaps anything found last by more than `allowed`.
+    pub fn overlaps_after(
+        &mut self,
+        poses: &[Pose],
+        velocities: &[Velocity],
+        dt: f64,
+        allowed: f64,
+    ) -> bool {
+        self.set_trial(poses, velocities, dt);
+        let Self {
+            contacts,
+            detector,
+            trial,
+            ..
+        } = self;
+        contacts
+            .iter()
+            .any(|contact| detector.smallest_gap_at(contact, trial) < -allowed)
+    }
+
+    fn set_trial(&mut self, poses: &[Pose], velocities: &[Velocity], dt: f64) {
+        let moved = poses
+            .iter()
+            .zip(velocities)
+            .map(|(pose, velocity)| pose.moved(velocity, dt));
+        self.trial.clear();
+        self.trial.extend(moved.map(|pose| HullPose::new(&pose)));
+    }
+
+    /// Solves the contacts found last for free velocities and effective inertia; the result is in
+    /// [`Self::velocities`]. Poses are those at the substep's beginning.
+    pub fn resolve(
+        &mut self,
+        poses: &[Pose],
+        free: &[Velocity],
+        inertia: &[InverseInertia],
+        dt: f64,
+        statistics: &mut Statistics,
+    ) {
+        self.bounds.clear();
+        self.bounds.extend(self.contacts.iter().map(|contact| {
+            let gap = contact.gap.gap;
+            // What recovery could not undo must not push.
+            if gap < self.deep { 0.0 } else { gap / dt }
+        }));
+        self.solver.begin(poses.len(), &self.contacts);
+        if self.solve(free, inertia, statistics) {
+            for _ in 0..self.relinearizations {
+                self.relinearize(poses, dt);
+                if !self.solve(free, inertia, statistics) {
+                    break;
+                }
+            }
+        }
+        self.remember_loads();
+    }
+
+    fn solve(
+        &mut self,
+        free: &[Velocity],
+        inertia: &[InverseInertia],
+        statistics: &mut Statistics,
+    ) -> bool {
+        let Self {
+            contacts,
+            bounds,
+            solver,
+            ..
+        } = self;
+        let report = solver.solve(&ContactProblem {
+            contacts,
+            inertia,
+            free,
+            bounds,
+        });
+        statistics.count(&report);
+        if report.converged {
+            return true;
+        }
+        // Overlaps that cannot all close within the substep contradict each other. Without them, rest
+        // satisfies every constraint, and impulses stay bounded.
+        statistics.unsolved += 1;
+        bounds.iter_mut().for_each(|bound| *bound = bound.max(0.0));
+        let problem = ContactProblem {
+            contacts,
+            inertia,
+            free,
+            bounds,
+        };
+        if !solver.solve(&problem).converged {
+            solver.impulses.fill(0.0);
+            solver.solve_as(Solver::GaussSeidel, &problem);
+        }
+        false
+    }
+
+    /// Sets the bounds so that the gaps at the substep's end, evaluated where the last solve moves the
+    /// boats, open to zero: the normals stay those of the substep's beginning, and so does the factor.
+    fn relinearize(&mut self, poses: &[Pose], dt: f64) {
+        let velocities = std::mem::take(&mut self.solver.velocities);
+        self.set_trial(poses, &velocities, dt);
+        for (k, contact) in self.contacts.iter().enumerate() {
+            if contact.gap.gap >= self.deep {
+                let end_gap = self.detector.gap_at(contact, &self.trial).gap;
+                self.bounds[k] = end_gap / dt - contact.gap_rate(&velocities);
+            }
+        }
+        self.solver.velocities = velocities;
+    }
+
+    fn remember_loads(&mut self) {
+        self.loads.clear();
+        for (contact, &impulse) in self.contacts.iter().zip(&self.solver.impulses) {
+            if impulse > 0.0 {
+                self.loads.push((contact.key(), impulse));
+            }
+        }
+    }
+
+    /// Drops the loads: nothing touched in this substep.
+    pub fn clear_loads(&mut self) {
+        self.loads.clear();
+    }
+
+    /// Adds to each boat the linear acceleration from contacts that carried an impulse both in this
+    /// kick, of length `dt`, and in the one before: what is likely to go on.
+    pub fn add_lasting_acceleration(&self, inertia: &[InverseInertia], dt: f64, sums: &mut [Vec2]) {
+        for (k, contact) in self.contacts.iter().enumerate() {
+            let impulse = self.solver.impulses[k];
+            if !self.lasting[k] || impulse <= 0.0 {
+                continue;
+            }
+            let push = contact.gap.normal * (impulse / dt);
+            let first = contact.boat as usize;
+            sums[first] += push * inertia[first].linear;
+            if let Some(second) = contact.second() {
+                sums[second] -= push * inertia[second].linear;
+            }
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! How the contact problem is solved.
+
+mod block_pivoting;
+mod clarabel;
+mod envelope;
+mod gauss_seidel;
+
+use super::{Contact, ContactProblem, Islands};
+use crate::boat::Velocity;
+use crate::parameters::Solver;
+
+use block_pivoting::BlockPivoting;
+
+/// What a solve did and how well.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SolveReport {
+    /// Whether the residual meets the solver's bound (1e-10 cm/s for block pivoting). It may not if
+    /// the linearised constraints contradict each other.
+    pub converged: bool,
+    /// Natural residual max|min(A_kk·λ_k, w_k)| in cm/s.
+    pub residual: f64,
+    /// Pivoting rounds, sweeps or interior-point iterations, over all islands.
+    pub iterations: u64,
+    /// Rows of Cholesky factors computed.
+    pub factored_rows: u64,
+    /// Numbers held by the Cholesky factors.
+    pub factor_entries: u64,
+    /// Islands with contacts.
+    pub islands: u64,
+}
+
+/// Residual in cm/s that counts as solved.
+pub const EXACT: f64 = 1e-10;
+
+/// A contact solver with its memory of the substep before.
+#[derive(Debug, Clone)]
+pub struct ContactSolver {
+    kind: Solver,
+    islands: Islands,
+    pivoting: BlockPivoting,
+    /// Whether a contact is guessed to carry an impulse; afterwards, whether it does.
+    pub active: Vec<bool>,
+    /// Impulses λ in cm/s (mass 1): a guess for Gauss–Seidel before, the solution after.
+    pub impulses: Vec<f64>,
+    /// Velocities after contact.
+    pub velocities: Vec<Velocity>,
+}
+
+impl ContactSolver {
+    /// A solver of the given kind.
+    pub fn new(kind: Solver) -> Self {
+        Self {
+            kind,
+            islands: Islands::default(),
+            pivoting: BlockPivoting::new(1e-12),
+            active: Vec::new(),
+            impulses: Vec::new(),
+            velocities: Vec::new(),
+        }
+    }
+
+    /// An exact solver in which every contact gives way by `softness`·A_kk·λ_k, so that constraints
+    /// that contradict each other are met as well as they can be.
+    pub fn soft(softness: f64) -> Self {
+        Self {
+            pivoting: BlockPivoting::new(softness),
+            ..Self::new(Solver::BlockPivoting)
+        }
+    }
+
+    /// Takes on a new set of contacts; `active` and `impulses` must hold a guess for each.
+    pub fn begin(&mut self, boats: usize, contacts: &[Contact]) {
+        debug_assert_eq!(self.active.len(), contacts.len());
+        self.islands.find(boats, contacts);
+        self.pivoting.begin(self.islands.len());
+    }
+
+    /// Solves for `impulses` and `velocities`. Solving again with other bounds or free velocities
+    /// reuses the factor as far as the active set is the same.
+    pub fn solve(&mut self, problem: &ContactProblem) -> SolveReport {
+        self.solve_as(self.kind, problem)
+    }
+
+    /// Solves with a solver of another kind.
+    pub fn solve_as(&mut self, kind: Solver, problem: &ContactProblem) -> SolveReport {
+        let mut report = match kind {
+            Solver::BlockPivoting => self.pivoting.solve(
+                problem,
+                &self.islands,
+                &mut self.active,
+                &mut self.impulses,
+                &mut self.velocities,
+            ),
+            Solver::GaussSeidel => {
+                gauss_seidel::solve(problem, &mut self.impulses, &mut self.velocities)
+            }
+            Solver::Clarabel => clarabel::solve(problem, &mut self.impulses, &mut self.velocities),
+        };
+        if kind != Solver::BlockPivoting {
+            self.active
+                .iter_mut()
+                .zip(&self.impulses)
+                .for_each(|(active, &impulse)| *active = impulse > 0.0);
+        }
+        report.islands = self.islands.len() as u64;
+        report
+    }
+}

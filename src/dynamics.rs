@@ -1,0 +1,262 @@
+//! Everything that one substep reads and writes: poses, velocities, what drives them, contacts.
+
+use crate::boat::{Drive, FreeMotion, Pose, Velocity, misalignment, steering_law};
+use crate::contact::{ContactResolver, InverseInertia};
+use crate::geometry::{HullPose, Vec2, turned_left};
+use crate::parameters::{FlockParameters, Noise, Scheme, Target};
+use crate::phase_schedule::{Phase, Ticks, seconds};
+use crate::random_streams::{BrownianPaths, Stream};
+use crate::scheme;
+use crate::statistics::Statistics;
+use rand::RngExt;
+
+/// Where a leader's rudder command comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Steering<'a> {
+    /// The paper's law, eq. (10), at every substep.
+    Law,
+    /// Commands held over the substep, one a leader.
+    Held(&'a [f64]),
+}
+
+/// One substep.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Substep<'a> {
+    /// When it begins.
+    pub start: Ticks,
+    /// How long it lasts.
+    pub length: Ticks,
+    /// What the motors do.
+    pub phase: Phase,
+    /// What the rudders do.
+    pub steering: Steering<'a>,
+}
+
+/// What the leapfrog scheme remembers of the substep before: its second half belongs to the next kick.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LastSubstep {
+    /// Its length; 0 if there was none since the state was set.
+    pub length: Ticks,
+    /// The phase it lay in.
+    pub phase: usize,
+    /// The rudders held in it; `None` for the steering law.
+    pub rudder: Option<Vec<f64>>,
+    /// Linear acceleration of each boat by contacts that are likely to last; empty for none.
+    pub lasting_acceleration: Vec<Vec2>,
+}
+
+/// State and working memory of a flock's motion.
+#[derive(Debug, Clone)]
+pub struct Dynamics {
+    pub(crate) parameters: FlockParameters,
+    pub(crate) motion: FreeMotion,
+    /// Per-boat factor of the motor's speed; empty where all boats are alike.
+    speed_factors: Vec<f64>,
+    pub(crate) poses: Vec<Pose>,
+    pub(crate) velocities: Vec<Velocity>,
+    /// The poses with their direction vectors.
+    pub(crate) boats: Vec<HullPose>,
+    pub(crate) contacts: ContactResolver,
+    /// η of eq. (9); `None` where c4 = 0.
+    noise: Option<BrownianPaths>,
+    /// Change of each boat's angular velocity by noise over the substep.
+    pub(crate) kicks: Vec<f64>,
+    pub(crate) drives: Vec<Drive>,
+    pub(crate) free: Vec<Velocity>,
+    pub(crate) inertia: Vec<InverseInertia>,
+    pub(crate) last: LastSubstep,
+    pub(crate) statistics: Statistics,
+    /// Length of the last kick in s: what impulses are divided by to give forces.
+    pub(crate) kick_s: f64,
+}
+
+impl Dynamics {
+    /// For checked parameters; boats at the origin, to be placed.
+    pub fn new(parameters: &FlockParameters, seed: u64) -> Self {
+        let n = parameters.n_boats;
+        let p = parameters;
+        let density = 1.0 / (p.gyration_radius_cm * p.gyration_radius_cm);
+        Self {
+            motion: FreeMotion::new(p),
+            speed_factors: speed_factors(p, seed),
+            poses: vec![Pose::default(); n],
+            velocities: vec![Velocity::default(); n],
+            boats: vec![HullPose::new(&Pose::default()); n],
+            contacts: ContactResolver::new(p),
+            noise: (p.c4 > 0.0).then(|| noise_paths(p, seed)),
+            kicks: vec![0.0; n],
+            drives: Vec::with_capacity(n),
+            free: Vec::with_capacity(n),
+            inertia: vec![
+                InverseInertia {
+                    linear: 1.0,
+                    angular: density
+                };
+                n
+            ],
+            last: LastSubstep::default(),
+            statistics: Statistics::default(),
+            kick_s: 0.0,
+            parameters: parameters.clone(),
+        }
+    }
+
+    /// Takes one substep with the scheme of the parameters.
+    pub fn step(&mut self, substep: &Substep) {
+        match self.parameters.scheme {
+            Scheme::Leapfrog => scheme::leapfrog(self, substep),
+            Scheme::Moreau => scheme::moreau(self, substep),
+            Scheme::Paper => scheme::paper(self, substep),
+        }
+        self.statistics.substeps += 1;
+    }
+
+    /// Puts boats somewhere else; motion so far is forgotten.
+    pub fn place(&mut self, poses: &[Pose], velocities: &[Velocity]) {
+        self.poses.copy_from_slice(poses);
+        self.velocities.copy_from_slice(velocities);
+        self.last = LastSubstep::default();
+        self.kick_s = 0.0;
+        self.contacts.forget();
+        self.update_boats();
+    }
+
+    /// Works out the direction vectors of the poses.
+    pub fn update_boats(&mut self) {
+        self.boats
+            .iter_mut()
+            .zip(&self.poses)
+            .for_each(|(boat, pose)| *boat = HullPose::new(pose));
+    }
+
+    /// Moves every boat with its velocity for a time.
+    pub(crate) fn drift(&mut self, dt: f64) {
+        for (pose, velocity) in self.poses.iter_mut().zip(&self.velocities) {
+            *pose = pose.moved(velocity, dt);
+        }
+        self.update_boats();
+    }
+
+    /// Preferred speed of a boat in a phase, in cm/s.
+    pub(crate) fn thrust(&self, boat: usize, phase: Phase) -> f64 {
+        let p = &self.parameters;
+        let speed = match phase {
+            Phase::Forward => p.speed_cm_s,
+            Phase::Backward if boat >= p.n_leaders || p.leaders_reverse => -p.reverse_speed_cm_s,
+            Phase::Backward | Phase::DriftAfterForward | Phase::DriftAfterBackward => 0.0,
+        };
+        self.speed_factors
+            .get(boat)
+            .map_or(speed, |factor| speed * factor)
+    }
+
+    /// Rudder of a boat: the command or the law for a leader, the bias for a normal boat.
+    pub(crate) fn rudder(&self, boat: usize, steering: Steering) -> f64 {
+        if boat >= self.parameters.n_leaders {
+            return self.parameters.turning_bias;
+        }
+        match steering {
+            Steering::Held(commands) => commands[boat],
+            Steering::Law => self.law(boat),
+        }
+    }
+
+    /// The paper's rudder command for a boat where it is now, eq. (10).
+    pub fn law(&self, boat: usize) -> f64 {
+        let pose = &self.poses[boat];
+        steering_law(misalignment(
+            pose.position,
+            pose.heading,
+            self.parameters.target,
+        ))
+    }
+
+    /// Changes the direction that leaders steer to.
+    pub fn set_target(&mut self, target: Target) {
+        self.parameters.target = target;
+    }
+
+    /// Fills `drives` for a substep: thrust and rudder of its phase, water, noise kicks.
+    pub(crate) fn fill_drives(&mut self, substep: &Substep) {
+        let current = self.water_current();
+        self.drives.clear();
+        for boat in 0..self.poses.len() {
+            self.drives.push(Drive {
+                thrust: self.thrust(boat, substep.phase),
+                rudder: self.rudder(boat, substep.steering),
+                water: if current == 0.0 {
+                    Vec2::zeros()
+                } else {
+                    self.tangent(boat) * current
+                },
+                kick: self.kicks[boat],
+            });
+        }
+    }
+
+    /// Speed of the water's counter-clockwise current in cm/s: −κ·(mean tangential velocity of the
+    /// boats), capped (Section 4.5).
+    fn water_current(&self) -> f64 {
+        let p = &self.parameters;
+        if p.current_gain == 0.0 {
+            return 0.0;
+        }
+        let sum: f64 = (0..self.poses.len())
+            .map(|boat| self.velocities[boat].linear.dot(&self.tangent(boat)))
+            .sum();
+        let current = -p.current_gain * sum / self.poses.len() as f64;
+        current.clamp(-p.current_cap_cm_s, p.current_cap_cm_s)
+    }
+
+    /// Counter-clockwise unit tangent at a boat; zero at the pool's centre.
+    fn tangent(&self, boat: usize) -> Vec2 {
+        let position = self.poses[boat].position;
+        turned_left(position.try_normalize(0.0).unwrap_or_default())
+    }
+
+    /// Fills `kicks` with the noise of the interval [from, to] (half ticks), which the scheme takes
+    /// at `start`.
+    pub(crate) fn draw_kicks(&mut self, start: Ticks, from: u64, to: u64) {
+        let Some(noise) = &mut self.noise else { return };
+        let scale = match self.parameters.noise {
+            Noise::White => {
+                noise.increments(from, to, &mut self.kicks);
+                self.parameters.c4
+            }
+            Noise::PerStep => {
+                noise.step_draws(start, &mut self.kicks);
+                self.parameters.c4 * seconds(to - from) / 2.0
+            }
+        };
+        self.kicks.iter_mut().for_each(|kick| *kick *= scale);
+    }
+
+    /// Whether every pose and velocity is finite.
+    pub fn is_finite(&self) -> bool {
+        self.poses.iter().all(Pose::is_finite) && self.velocities.iter().all(Velocity::is_finite)
+    }
+}
+
+/// Brownian paths whose cells are what full substeps ask for: leapfrog kicks reach from the middle of
+/// one substep to the middle of the next.
+fn noise_paths(parameters: &FlockParameters, seed: u64) -> BrownianPaths {
+    let dt = crate::phase_schedule::ticks(parameters.dt_s);
+    let shift = if parameters.scheme == Scheme::Leapfrog {
+        dt
+    } else {
+        0
+    };
+    BrownianPaths::new(seed, parameters.n_boats, 2 * dt, shift)
+}
+
+fn speed_factors(parameters: &FlockParameters, seed: u64) -> Vec<f64> {
+    let p = parameters;
+    if p.speed_spread_cm_s == 0.0 {
+        return Vec::new();
+    }
+    let mut rng = Stream::SpeedSpread.rng(seed);
+    let spread = p.speed_spread_cm_s / p.speed_cm_s;
+    (0..p.n_boats)
+        .map(|_| 1.0 + spread * rng.random_range(-1.0..=1.0))
+        .collect()
+}

@@ -1,0 +1,69 @@
+//! What can go wrong, in physical words. Nothing here knows of Python; `python::error` converts.
+
+/// Every error that the simulator reports. No input reaches a panic.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FlockError {
+    /// A parameter, option or argument lies outside what is accepted.
+    #[error("{field} = {value} is not accepted: {accepted}")]
+    Parameter {
+        /// The name users know the field by, unit included.
+        field: &'static str,
+        /// The value as it was given.
+        value: String,
+        /// What would have been accepted.
+        accepted: String,
+    },
+    /// An array has the wrong number of entries.
+    #[error("{field} has shape {found}, expected {expected}")]
+    Shape {
+        /// The name of the array.
+        field: &'static str,
+        /// The shape it has.
+        found: String,
+        /// The shape it should have.
+        expected: String,
+    },
+    /// The pool is too small for the flock: no arrangement without overlap was found.
+    #[error(
+        "n_boats = {requested} boats do not fit the pool: at most {placed} were placed without \
+         overlap; use fewer boats or a larger pool"
+    )]
+    Placement {
+        /// How many boats were asked for.
+        requested: usize,
+        /// How many the best attempt held without overlap.
+        placed: usize,
+    },
+    /// A state given by the user holds overlapping hulls.
+    #[error("{what} overlap by {overlap_cm} cm; move them apart or pass allow_overlap=True")]
+    Overlap {
+        /// Which boats (or boat and wall).
+        what: String,
+        /// By how much, in cm.
+        overlap_cm: f64,
+    },
+    /// Snapshot bytes that this flock cannot continue from.
+    #[error("snapshot not restored: {0}")]
+    Snapshot(String),
+    /// The motion left the range of finite numbers; the flock is as it was before the call.
+    #[error("{0}")]
+    Solver(String),
+}
+
+impl FlockError {
+    /// A [`FlockError::Parameter`] from anything printable.
+    pub fn parameter(
+        field: &'static str,
+        value: impl std::fmt::Display,
+        accepted: impl Into<String>,
+    ) -> Self {
+        Self::Parameter {
+            field,
+            value: value.to_string(),
+            accepted: accepted.into(),
+        }
+    }
+}
+
+/// Shorthand for results with a [`FlockError`].
+pub type Result<T> = std::result::Result<T, FlockError>;

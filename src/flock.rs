@@ -1,0 +1,428 @@
+//! One flock: owns all state; placed, advanced, looked at, put away and brought back.
+
+use crate::boat::{Pose, Velocity};
+use crate::contact::{Contact, Partner};
+use crate::dynamics::{Dynamics, LastSubstep, Steering, Substep};
+use crate::error::{FlockError, Result};
+use crate::geometry::Vec2;
+use crate::order_parameters::OrderParameters;
+use crate::parameters::{FlockParameters, Target};
+use crate::phase_schedule::{PhaseMoment, PhaseSchedule, Ticks, seconds, ticks};
+use crate::placement;
+use crate::snapshot::Snapshot;
+use crate::statistics::Statistics;
+
+/// The latest time a flock may reach: 10⁹ s.
+pub const LATEST: Ticks = 1_000_000_000_000_000_000;
+
+/// A contact with the force it carried.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactForce {
+    /// The contact, its gap taken at the current poses.
+    pub contact: Contact,
+    /// Mean force over the last substep in cm/s² (mass 1), along the normal on `contact.boat`.
+    pub force: f64,
+}
+
+/// A flock of boats in a pool.
+#[derive(Debug, Clone)]
+pub struct Flock {
+    parameters: FlockParameters,
+    schedule: PhaseSchedule,
+    seed: u64,
+    time: Ticks,
+    dynamics: Dynamics,
+}
+
+impl Flock {
+    /// A flock placed at random without overlap, at rest.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for parameters out of range, [`FlockError::Placement`] if the boats
+    /// do not fit.
+    pub fn new(parameters: FlockParameters, seed: u64) -> Result<Self> {
+        parameters.check()?;
+        let poses = placement::place(&parameters, seed)?;
+        let mut flock = Self::unplaced(parameters, seed);
+        flock
+            .dynamics
+            .place(&poses, &vec![Velocity::default(); poses.len()]);
+        Ok(flock)
+    }
+
+    fn unplaced(parameters: FlockParameters, seed: u64) -> Self {
+        Self {
+            schedule: PhaseSchedule::new(&parameters),
+            dynamics: Dynamics::new(&parameters, seed),
+            seed,
+            time: 0,
+            parameters,
+        }
+    }
+
+    /// Starts over with another seed: as a new flock with these parameters, but keeping its memory.
+    ///
+    /// # Errors
+    /// [`FlockError::Placement`]; the flock is unchanged then.
+    pub fn reset(&mut self, seed: u64) -> Result<()> {
+        *self = Self::new(self.parameters.clone(), seed)?;
+        Ok(())
+    }
+
+    /// The parameters.
+    pub fn parameters(&self) -> &FlockParameters {
+        &self.parameters
+    }
+
+    /// The seed of all streams.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Time in s.
+    pub fn time_s(&self) -> f64 {
+        seconds(self.time)
+    }
+
+    /// Time in ticks.
+    pub fn time(&self) -> Ticks {
+        self.time
+    }
+
+    /// The cycle of phases.
+    pub fn schedule(&self) -> &PhaseSchedule {
+        &self.schedule
+    }
+
+    /// Where in the cycle the flock is.
+    pub fn phase(&self) -> PhaseMoment {
+        self.schedule.at(self.time)
+    }
+
+    /// Poses of all boats, leaders first.
+    pub fn poses(&self) -> &[Pose] {
+        &self.dynamics.poses
+    }
+
+    /// Velocities of all boats. With `leapfrog` these are means over the last substep: they belong to
+    /// the time half a substep ago, and the poses moved with exactly them.
+    pub fn velocities(&self) -> &[Velocity] {
+        &self.dynamics.velocities
+    }
+
+    /// What the substeps so far did.
+    pub fn statistics(&self) -> &Statistics {
+        &self.dynamics.statistics
+    }
+
+    /// The paper's rudder command, eq. (10), for a leader where it is now.
+    pub fn steering_law(&self, leader: usize) -> f64 {
+        self.dynamics.law(leader)
+    }
+
+    /// Changes the direction that the steering law heads for.
+    pub fn set_target(&mut self, target: Target) {
+        self.parameters.target = target;
+        self.dynamics.set_target(target);
+    }
+
+    /// Puts the boats somewhere else.
+    ///
+    /// # Errors
+    /// [`FlockError::Shape`] for wrong lengths, [`FlockError::Parameter`] for numbers that are not
+    /// finite or a time out of range, [`FlockError::Overlap`] for overlapping hulls unless allowed. The
+    /// flock is unchanged then.
+    pub fn set_state(
+        &mut self,
+        poses: &[Pose],
+        velocities: &[Velocity],
+        time_s: f64,
+        allow_overlap: bool,
+    ) -> Result<()> {
+        let n = self.parameters.n_boats;
+        for (field, length) in [("pose", poses.len()), ("velocity", velocities.len())] {
+            if length != n {
+                return Err(FlockError::Shape {
+                    field,
+                    found: format!("({length}, 3)"),
+                    expected: format!("({n}, 3)"),
+                });
+            }
+        }
+        if let Some(boat) = poses
+            .iter()
+            .position(|pose| !pose.is_finite() || !is_moderate(pose))
+        {
+            let accepted = "finite numbers, positions within 1e9 cm and headings within 1e6 rad";
+            return Err(FlockError::parameter(
+                "pose",
+                format!("{:?} of boat {boat}", poses[boat]),
+                accepted,
+            ));
+        }
+        if let Some(boat) = velocities.iter().position(|v| !v.is_finite()) {
+            let value = format!("{:?} of boat {boat}", velocities[boat]);
+            return Err(FlockError::parameter("velocity", value, "finite numbers"));
+        }
+        let time = time_from(time_s)?;
+        let mut dynamics = self.dynamics.clone();
+        dynamics.place(poses, velocities);
+        if !allow_overlap {
+            refuse_overlap(&mut dynamics)?;
+        }
+        (self.dynamics, self.time) = (dynamics, time);
+        Ok(())
+    }
+
+    /// Advances by a duration. `rudder` holds one command in [−1, 1] a leader; `None` steers by the
+    /// paper's law at every substep.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] or [`FlockError::Shape`] for a bad duration or rudder,
+    /// [`FlockError::Solver`] if numbers left the finite range. The flock is unchanged then.
+    pub fn advance(&mut self, duration_s: f64, rudder: Option<&[f64]>) -> Result<()> {
+        let end = self.end_of(duration_s)?;
+        self.check_rudder(rudder)?;
+        self.advance_to(end, rudder.map_or(Steering::Law, Steering::Held))
+    }
+
+    fn end_of(&self, duration_s: f64) -> Result<Ticks> {
+        if !(0.0..=seconds(LATEST)).contains(&duration_s) {
+            return Err(FlockError::parameter(
+                "seconds",
+                duration_s,
+                "a finite duration of at least 0 s",
+            ));
+        }
+        let end = self.time + ticks(duration_s);
+        if end > LATEST {
+            return Err(FlockError::parameter(
+                "seconds",
+                duration_s,
+                "an end before time_s = 1e9",
+            ));
+        }
+        Ok(end)
+    }
+
+    /// Checks rudder commands.
+    ///
+    /// # Errors
+    /// [`FlockError::Shape`] or [`FlockError::Parameter`].
+    pub fn check_rudder(&self, rudder: Option<&[f64]>) -> Result<()> {
+        let Some(commands) = rudder else {
+            return Ok(());
+        };
+        let k = self.parameters.n_leaders;
+        if commands.len() != k {
+            return Err(FlockError::Shape {
+                field: "rudder",
+                found: format!("({},)", commands.len()),
+                expected: format!("({k},), one a leader"),
+            });
+        }
+        match commands
+            .iter()
+            .find(|command| !(-1.0..=1.0).contains(*command))
+        {
+            Some(command) => Err(FlockError::parameter(
+                "rudder",
+                command,
+                "numbers in [-1, 1]",
+            )),
+            None => Ok(()),
+        }
+    }
+
+    /// Advances to a time with checked steering. Substeps end on multiples of dt, on phase switches and
+    /// at `end`.
+    ///
+    /// # Errors
+    /// [`FlockError::Solver`] if numbers left the finite range; the flock is unchanged then.
+    pub fn advance_to(&mut self, end: Ticks, steering: Steering) -> Result<()> {
+        let before = (
+            self.dynamics.poses.clone(),
+            self.dynamics.velocities.clone(),
+            self.time,
+        );
+        let dt = ticks(self.parameters.dt_s);
+        while self.time < end {
+            let moment = self.schedule.at(self.time);
+            let grid = (self.time / dt + 1) * dt;
+            let stop = end.min(grid).min(self.time + moment.left);
+            self.dynamics.step(&Substep {
+                start: self.time,
+                length: stop - self.time,
+                phase: moment.phase,
+                steering,
+            });
+            self.time = stop;
+        }
+        if self.dynamics.is_finite() {
+            return Ok(());
+        }
+        let (poses, velocities, time) = before;
+        self.dynamics.place(&poses, &velocities);
+        self.time = time;
+        Err(FlockError::Solver(
+            "the motion left the range of finite numbers; smaller dt_s or milder constants may help"
+                .to_owned(),
+        ))
+    }
+
+    /// Order parameters of the normal boats, or of all.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] if there is no such boat.
+    pub fn order_parameters(&self, include_leaders: bool) -> Result<OrderParameters> {
+        let first = if include_leaders {
+            0
+        } else {
+            self.parameters.n_leaders
+        };
+        OrderParameters::of(&self.poses()[first..], &self.velocities()[first..])
+    }
+
+    /// Contacts and near-contacts of the last substep: gaps now, forces as means over the last kick.
+    pub fn contacts(&self) -> Vec<ContactForce> {
+        let mut resolver = self.dynamics.contacts.clone();
+        let detector = resolver.detector();
+        let resolver = &self.dynamics.contacts;
+        resolver
+            .contacts()
+            .iter()
+            .zip(resolver.impulses())
+            .map(|(contact, &impulse)| {
+                let gap = detector.gap_at(contact, &self.dynamics.boats);
+                let force = if impulse > 0.0 {
+                    impulse / self.dynamics.kick_s
+                } else {
+                    0.0
+                };
+                ContactForce {
+                    contact: Contact { gap, ..*contact },
+                    force,
+                }
+            })
+            .collect()
+    }
+
+    /// The whole state as bytes.
+    pub fn snapshot(&self) -> Vec<u8> {
+        let d = &self.dynamics;
+        let mut contacts = d.contacts.clone();
+        let loads = contacts.loads().to_vec();
+        let neighbors = &contacts.detector().neighbors;
+        let pairs = |vectors: &[Vec2]| vectors.iter().map(|v| [v.x, v.y]).collect::<Vec<_>>();
+        Snapshot {
+            parameters: self.parameters.clone(),
+            seed: self.seed,
+            time: self.time,
+            poses: d.poses.clone(),
+            velocities: d.velocities.clone(),
+            loads,
+            neighbor_reference: (pairs(neighbors.reference()), neighbors.cutoff()),
+            last_substep: (d.last.length, d.last.phase, d.last.rudder.clone()),
+            lasting_acceleration: pairs(&d.last.lasting_acceleration),
+            kick_s: d.kick_s,
+            statistics: d.statistics,
+        }
+        .to_bytes()
+    }
+
+    /// Continues from a snapshot of a flock with the same parameters (the target aside, which the
+    /// snapshot brings along).
+    ///
+    /// # Errors
+    /// [`FlockError::Snapshot`]; the flock is unchanged then.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
+        let restored = Self::from_snapshot(bytes)?;
+        let same = FlockParameters {
+            target: self.parameters.target,
+            ..restored.parameters.clone()
+        };
+        if same != self.parameters {
+            return Err(FlockError::Snapshot(
+                "the snapshot is of a flock with other parameters".to_owned(),
+            ));
+        }
+        *self = restored;
+        Ok(())
+    }
+
+    /// A flock from a snapshot alone.
+    ///
+    /// # Errors
+    /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed snapshot.
+    pub fn from_snapshot(bytes: &[u8]) -> Result<Self> {
+        let snapshot = Snapshot::from_bytes(bytes)?;
+        let vectors = |pairs: Vec<[f64; 2]>| {
+            pairs
+                .into_iter()
+                .map(|[x, y]| Vec2::new(x, y))
+                .collect::<Vec<_>>()
+        };
+        let mut flock = Self::unplaced(snapshot.parameters, snapshot.seed);
+        flock.time = snapshot.time;
+        let d = &mut flock.dynamics;
+        d.place(&snapshot.poses, &snapshot.velocities);
+        d.contacts.set_loads(snapshot.loads);
+        let (reference, cutoff) = snapshot.neighbor_reference;
+        d.contacts
+            .detector()
+            .neighbors
+            .restore(vectors(reference), cutoff);
+        let (length, phase, rudder) = snapshot.last_substep;
+        let lasting_acceleration = vectors(snapshot.lasting_acceleration);
+        d.last = LastSubstep {
+            length,
+            phase,
+            rudder,
+            lasting_acceleration,
+        };
+        d.kick_s = snapshot.kick_s;
+        d.statistics = snapshot.statistics;
+        Ok(flock)
+    }
+}
+
+fn is_moderate(pose: &Pose) -> bool {
+    pose.position.norm() <= 1e9 && pose.heading.abs() <= 1e6
+}
+
+fn time_from(time_s: f64) -> Result<Ticks> {
+    if time_s >= 0.0 && time_s <= seconds(LATEST) {
+        return Ok(ticks(time_s));
+    }
+    Err(FlockError::parameter(
+        "time_s",
+        time_s,
+        "a finite time of at least 0 s, at most 1e9 s",
+    ))
+}
+
+/// Overlap in cm that a given state may have: rounding of poses that are meant to touch.
+const ROUNDING: f64 = 1e-9;
+
+fn refuse_overlap(dynamics: &mut Dynamics) -> Result<()> {
+    let mut contacts = Vec::new();
+    dynamics
+        .contacts
+        .detector()
+        .detect(&dynamics.boats, 0.0, &mut contacts);
+    dynamics.contacts.forget();
+    let deepest = contacts
+        .iter()
+        .min_by(|a, b| a.gap.gap.total_cmp(&b.gap.gap));
+    match deepest {
+        Some(contact) if contact.gap.gap < -ROUNDING => Err(FlockError::Overlap {
+            what: match contact.partner {
+                Partner::Boat(second) => format!("boats {} and {second}", contact.boat),
+                Partner::OuterWall => format!("boat {} and the outer wall", contact.boat),
+                Partner::InnerWall => format!("boat {} and the inner wall", contact.boat),
+            },
+            overlap_cm: -contact.gap.gap,
+        }),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,72 @@
+//! Many flocks stepped in parallel. Each flock's bits are its own: they depend neither on the batch it
+//! is in nor on the number of threads.
+
+use crate::dynamics::Steering;
+use crate::error::Result;
+use crate::flock::Flock;
+use crate::parameters::FlockParameters;
+use crate::phase_schedule::Ticks;
+use rayon::prelude::*;
+
+/// A batch of flocks, which may differ in parameters.
+#[derive(Debug, Clone)]
+pub struct FlockBatch {
+    flocks: Vec<Flock>,
+}
+
+impl FlockBatch {
+    /// One flock for each (parameters, seed).
+    ///
+    /// # Errors
+    /// The first error of making a flock.
+    pub fn new(members: Vec<(FlockParameters, u64)>) -> Result<Self> {
+        let flocks: Result<Vec<Flock>> = members
+            .into_par_iter()
+            .map(|(parameters, seed)| Flock::new(parameters, seed))
+            .collect();
+        Ok(Self { flocks: flocks? })
+    }
+
+    /// How many flocks there are.
+    pub fn len(&self) -> usize {
+        self.flocks.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.flocks.is_empty()
+    }
+
+    /// The flocks.
+    pub fn flocks(&self) -> &[Flock] {
+        &self.flocks
+    }
+
+    /// The flocks, to change.
+    pub fn flocks_mut(&mut self) -> &mut [Flock] {
+        &mut self.flocks
+    }
+
+    /// Advances every flock by so many ticks; `rudders` holds the commands of all flocks' leaders one
+    /// after another, `None` steers by the paper's law.
+    ///
+    /// # Errors
+    /// A bad rudder refuses the whole step before anything moves. A flock whose numbers left the finite
+    /// range is as it was before, and its error is returned after the others have moved.
+    pub fn advance(&mut self, duration: Ticks, rudders: Option<&[f64]>) -> Result<()> {
+        let mut begin = 0;
+        let mut steerings = Vec::with_capacity(self.flocks.len());
+        for flock in &self.flocks {
+            let leaders = flock.parameters().n_leaders;
+            let commands = rudders.map(|all| all.get(begin..begin + leaders).unwrap_or_default());
+            flock.check_rudder(commands)?;
+            steerings.push(commands.map_or(Steering::Law, Steering::Held));
+            begin += leaders;
+        }
+        self.flocks
+            .par_iter_mut()
+            .zip(steerings)
+            .map(|(flock, steering)| flock.advance_to(flock.time() + duration, steering))
+            .collect()
+    }
+}

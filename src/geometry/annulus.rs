@@ -1,0 +1,43 @@
+//! Gaps between a hull and the walls of the pool. Walls are exact circles.
+
+use super::{Gap, Hull, HullPose, Vec2, cross, turned_left};
+
+/// Gap between one end disc of a hull (`side` +1 bow, −1 stern) and the outer wall; the normal points
+/// inward. A boat that lies flat on the wall touches with both ends.
+pub fn outer_wall_gap(boat: &HullPose, side: f64, hull: Hull, outer_radius: f64) -> Gap {
+    let end = boat.end(side, hull.half_length);
+    let distance = end.norm();
+    // At the very centre every direction is as good; the gap is the whole radius there.
+    let normal = if distance > 0.0 {
+        -end / distance
+    } else {
+        -boat.axis
+    };
+    Gap {
+        gap: outer_radius - hull.radius - distance,
+        normal,
+        arm_i: cross(end - boat.center, normal),
+        arm_j: 0.0,
+    }
+}
+
+/// Gap between a hull and the inner wall: distance from the pool's centre to the core − r − R_in;
+/// the normal points outward.
+pub fn inner_wall_gap(boat: &HullPose, hull: Hull, inner_radius: f64) -> Gap {
+    let h = hull.half_length;
+    let along = (-boat.center.dot(&boat.axis)).clamp(-h, h);
+    let nearest = boat.center + boat.axis * along;
+    let distance = nearest.norm();
+    // A core through the pool's centre leaves to the side.
+    let normal = if distance > 0.0 {
+        nearest / distance
+    } else {
+        Vec2::from(turned_left(boat.axis))
+    };
+    Gap {
+        gap: distance - hull.radius - inner_radius,
+        normal,
+        arm_i: cross(nearest - boat.center, normal),
+        arm_j: 0.0,
+    }
+}

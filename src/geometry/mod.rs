@@ -1,0 +1,41 @@
+//! Hulls, walls and the distances between them.
+
+mod annulus;
+mod capsule;
+mod gap;
+mod neighbors;
+
+pub use annulus::{inner_wall_gap, outer_wall_gap};
+pub use capsule::{Hull, HullPose};
+pub use gap::{Gap, PairFeature, crossed_gap, pair_gap, pair_gaps};
+pub use neighbors::NeighborList;
+
+/// A vector in the plane, in cm or cm/s.
+pub type Vec2 = nalgebra::Vector2<f64>;
+
+/// The out-of-plane component of a × b.
+#[inline]
+pub fn cross(a: Vec2, b: Vec2) -> f64 {
+    a.x * b.y - a.y * b.x
+}
+
+/// The vector turned a quarter counter-clockwise.
+#[inline]
+pub fn turned_left(a: Vec2) -> Vec2 {
+    Vec2::new(-a.y, a.x)
+}
+
+/// An angle brought into (−π, π].
+pub fn wrap_angle(angle: f64) -> f64 {
+    use std::f64::consts::{PI, TAU};
+    if angle > -PI && angle <= PI {
+        return angle;
+    }
+    let wrapped = angle - TAU * ((angle - PI) / TAU).ceil();
+    // Rounding may leave the result one ulp outside.
+    if wrapped <= -PI {
+        wrapped + TAU
+    } else {
+        wrapped.min(PI)
+    }
+}

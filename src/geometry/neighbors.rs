@@ -1,0 +1,209 @@
+//! Which pairs of boats may touch soon: a list with a skin, rebuilt when boats have moved by half of
+//! it. The list is a function of the centres it was built from, so a snapshot keeps those.
+
+use super::Vec2;
+
+/// Candidate pairs, in an order that follows the polar angle around the pool: contacts listed in this
+/// order give the contact matrix a narrow envelope.
+#[derive(Debug, Clone, Default)]
+pub struct NeighborList {
+    /// Centres the list was built from; empty before the first build.
+    reference: Vec<Vec2>,
+    /// Boats by polar angle.
+    order: Vec<u32>,
+    /// For each place in `order`, where its partners begin in `partners`.
+    starts: Vec<u32>,
+    /// Partners earlier in `order`.
+    partners: Vec<u32>,
+    /// Centre distance within which the list is complete at the reference.
+    cutoff: f64,
+    /// How often the list was built.
+    builds: u64,
+    grid: Grid,
+}
+
+/// Up to this many boats, testing all pairs beats sorting boats into cells.
+const ALL_PAIRS: usize = 64;
+
+impl NeighborList {
+    /// Centres the list was last built from, for snapshots.
+    pub fn reference(&self) -> &[Vec2] {
+        &self.reference
+    }
+
+    /// How often the list was built.
+    pub fn builds(&self) -> u64 {
+        self.builds
+    }
+
+    /// Forgets the list, so that the next update builds it anew.
+    pub fn clear(&mut self) {
+        self.reference.clear();
+    }
+
+    /// Makes sure that every pair of centres within `distance` is listed, with `skin` to spare when
+    /// the list is built.
+    pub fn update(
+        &mut self,
+        centers: impl ExactSizeIterator<Item = Vec2> + Clone,
+        distance: f64,
+        skin: f64,
+    ) {
+        let spare = 0.5 * (self.cutoff - distance);
+        let complete = self.reference.len() == centers.len()
+            && spare >= 0.0
+            && centers
+                .clone()
+                .zip(&self.reference)
+                .all(|(now, then)| (now - then).norm_squared() <= spare * spare);
+        if !complete {
+            self.reference.clear();
+            self.reference.extend(centers);
+            self.build(distance + skin);
+        }
+    }
+
+    /// Rebuilds the list of a snapshot from its reference centres.
+    pub fn restore(&mut self, reference: Vec<Vec2>, cutoff: f64) {
+        self.reference = reference;
+        if self.reference.is_empty() {
+            return;
+        }
+        self.build(cutoff);
+    }
+
+    /// Centre distance within which the list is complete at the reference.
+    pub fn cutoff(&self) -> f64 {
+        self.cutoff
+    }
+
+    /// Boats by polar angle, each with the candidate partners that come before it in that order.
+    pub fn groups(&self) -> impl Iterator<Item = (u32, &[u32])> {
+        self.order.iter().enumerate().map(|(place, &boat)| {
+            let range = self.starts[place] as usize..self.starts[place + 1] as usize;
+            (boat, &self.partners[range])
+        })
+    }
+
+    fn build(&mut self, cutoff: f64) {
+        self.cutoff = cutoff;
+        self.builds += 1;
+        self.sort_by_angle();
+        self.starts.clear();
+        self.partners.clear();
+        self.starts.push(0);
+        let reach = cutoff * cutoff;
+        if self.reference.len() <= ALL_PAIRS {
+            for place in 0..self.order.len() {
+                let center = self.reference[self.order[place] as usize];
+                for &earlier in &self.order[..place] {
+                    if (center - self.reference[earlier as usize]).norm_squared() < reach {
+                        self.partners.push(earlier);
+                    }
+                }
+                self.starts.push(self.partners.len() as u32);
+            }
+            return;
+        }
+        self.grid.sort(&self.reference, &self.order, cutoff);
+        for place in 0..self.order.len() {
+            let center = self.reference[self.order[place] as usize];
+            let begin = self.partners.len();
+            self.grid.for_each_near(center, |other| {
+                let near = (center - self.reference[self.order[other as usize] as usize])
+                    .norm_squared()
+                    < reach;
+                if (other as usize) < place && near {
+                    self.partners.push(other);
+                }
+            });
+            let group = &mut self.partners[begin..];
+            group.sort_unstable();
+            group
+                .iter_mut()
+                .for_each(|other| *other = self.order[*other as usize]);
+            self.starts.push(self.partners.len() as u32);
+        }
+    }
+
+    fn sort_by_angle(&mut self) {
+        let mut keyed: Vec<(f64, u32)> = self
+            .reference
+            .iter()
+            .enumerate()
+            .map(|(boat, center)| (center.y.atan2(center.x), boat as u32))
+            .collect();
+        keyed.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        self.order.clear();
+        self.order.extend(keyed.iter().map(|&(_, boat)| boat));
+    }
+}
+
+/// Boats sorted into square cells at least a cutoff wide.
+#[derive(Debug, Clone, Default)]
+struct Grid {
+    low: Vec2,
+    cell: f64,
+    columns: usize,
+    rows: usize,
+    starts: Vec<u32>,
+    /// Places (indices into the angular order), cell by cell.
+    places: Vec<u32>,
+}
+
+impl Grid {
+    fn sort(&mut self, centers: &[Vec2], order: &[u32], cutoff: f64) {
+        let (mut low, mut high) = (centers[0], centers[0]);
+        for center in centers {
+            low = low.inf(center);
+            high = high.sup(center);
+        }
+        let extent = high - low;
+        // In open water boats may drift far apart: never more than about four cells a boat.
+        let most = 4.0 * centers.len() as f64;
+        self.cell = cutoff
+            .max((extent.x * extent.y / most).sqrt())
+            .max(extent.x.max(extent.y) / most);
+        self.low = low;
+        self.columns = (extent.x / self.cell) as usize + 1;
+        self.rows = (extent.y / self.cell) as usize + 1;
+
+        self.starts.clear();
+        self.starts.resize(self.columns * self.rows + 1, 0);
+        for center in centers {
+            let (column, row) = self.cell_of(*center);
+            self.starts[row * self.columns + column + 1] += 1;
+        }
+        for cell in 1..self.starts.len() {
+            self.starts[cell] += self.starts[cell - 1];
+        }
+        let mut next = self.starts.clone();
+        self.places.clear();
+        self.places.resize(centers.len(), 0);
+        for (place, &boat) in order.iter().enumerate() {
+            let (column, row) = self.cell_of(centers[boat as usize]);
+            let slot = &mut next[row * self.columns + column];
+            self.places[*slot as usize] = place as u32;
+            *slot += 1;
+        }
+    }
+
+    fn cell_of(&self, center: Vec2) -> (usize, usize) {
+        let scaled = (center - self.low) / self.cell;
+        (
+            (scaled.x as usize).min(self.columns - 1),
+            (scaled.y as usize).min(self.rows - 1),
+        )
+    }
+
+    fn for_each_near(&self, center: Vec2, mut visit: impl FnMut(u32)) {
+        let (column, row) = self.cell_of(center);
+        for near_row in row.saturating_sub(1)..=(row + 1).min(self.rows - 1) {
+            for near_column in column.saturating_sub(1)..=(column + 1).min(self.columns - 1) {
+                let cell = near_row * self.columns + near_column;
+                let range = self.starts[cell] as usize..self.starts[cell + 1] as usize;
+                self.places[range].iter().for_each(|&place| visit(place));
+            }
+        }
+    }
+}

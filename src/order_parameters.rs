@@ -1,0 +1,92 @@
+//! Order parameters of Section 3.2, in the LAP frame.
+
+use crate::boat::{Pose, Velocity};
+use crate::error::{FlockError, Result};
+use crate::geometry::Vec2;
+use crate::lap_frame::{orientation_vector, velocity_vector};
+use crate::parameters::Target;
+use std::f64::consts::FRAC_PI_2;
+
+/// Alignment of a set of boats at one time.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct OrderParameters {
+    /// Ψ_o = |mean o_i| in [0, 1] (eq. 1).
+    pub psi_o: f64,
+    /// φ_o = arg mean o_i in (−π, π]: 0 jammed outward, +π/2 clockwise (eq. 3).
+    pub phi_o: f64,
+    /// C_o: mean of o_i·o_j over unordered pairs in [−1, 1] (eq. 2, where the printed sum counts
+    /// pairs twice); NaN for a single boat.
+    pub c_o: f64,
+    /// Ψ_v = |mean v_i| in cm/s (eq. 4).
+    pub psi_v: f64,
+    /// φ_v = arg mean v_i in (−π, π] (eq. 6).
+    pub phi_v: f64,
+    /// C_v: mean of v_i·v_j over unordered pairs in cm²/s² (eq. 5); NaN for a single boat.
+    pub c_v: f64,
+}
+
+impl OrderParameters {
+    /// Of boats with these poses and velocities (two slices of equal length).
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] if there is no boat.
+    pub fn of(poses: &[Pose], velocities: &[Velocity]) -> Result<Self> {
+        if poses.is_empty() {
+            return Err(FlockError::parameter(
+                "n_boats - n_leaders",
+                0,
+                "order parameters need at least one normal boat; pass include_leaders=True",
+            ));
+        }
+        let orientations = VectorMean::of(poses.iter().map(orientation_vector));
+        let motions = VectorMean::of(
+            poses
+                .iter()
+                .zip(velocities)
+                .map(|(p, v)| velocity_vector(p, v)),
+        );
+        Ok(Self {
+            psi_o: orientations.length,
+            phi_o: orientations.angle,
+            c_o: orientations.pair_mean,
+            psi_v: motions.length,
+            phi_v: motions.angle,
+            c_v: motions.pair_mean,
+        })
+    }
+
+    /// Signed order towards a target, Ψ_o·cos(φ_o − φ_target) in [−1, 1]: the reward.
+    pub fn signed_order(&self, target: Target) -> f64 {
+        self.psi_o * (self.phi_o - target.sign() * FRAC_PI_2).cos()
+    }
+
+    /// m = Ψ_o·sin φ_o: tells order (±1) from jam (0).
+    pub fn rotation(&self) -> f64 {
+        self.psi_o * self.phi_o.sin()
+    }
+}
+
+/// Mean of a set of vectors, and of the dot products of its pairs.
+struct VectorMean {
+    length: f64,
+    angle: f64,
+    pair_mean: f64,
+}
+
+impl VectorMean {
+    fn of(vectors: impl Iterator<Item = Vec2>) -> Self {
+        let (mut count, mut sum, mut squares) = (0.0, Vec2::zeros(), 0.0);
+        for vector in vectors {
+            count += 1.0;
+            sum += vector;
+            squares += vector.norm_squared();
+        }
+        let mean = sum / count;
+        Self {
+            length: mean.norm(),
+            angle: mean.y.atan2(mean.x),
+            // Σ_{i<j} v_i·v_j = (|Σv|² − Σ|v|²)/2; 0/0 for one boat.
+            pair_mean: (sum.norm_squared() - squares) / (count * (count - 1.0)),
+        }
+    }
+}

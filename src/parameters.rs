@@ -1,0 +1,388 @@
+//! Every constant of Tables 1 and 3, the presets, and one check on construction.
+
+use crate::error::{FlockError, Result};
+use crate::names::named_choice;
+
+named_choice! {
+    /// The tangential direction that leaders steer to and rewards are measured in.
+    pub enum Target ("target") {
+        /// Clockwise seen from above: LAP orientation +π/2.
+        Clockwise = "cw",
+        /// Counter-clockwise: LAP orientation −π/2.
+        CounterClockwise = "ccw",
+    }
+}
+
+impl Target {
+    /// +1 for clockwise, −1 for counter-clockwise: the sign of the LAP orientation.
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Clockwise => 1.0,
+            Self::CounterClockwise => -1.0,
+        }
+    }
+}
+
+named_choice! {
+    /// How a time step is taken.
+    pub enum Scheme ("scheme") {
+        /// Velocities at half steps, Crank–Nicolson: second order while contacts persist.
+        Leapfrog = "leapfrog",
+        /// Semi-implicit Euler with the same quadratic programme: first order, the yardstick.
+        Moreau = "moreau",
+        /// Steps 1–6 of the paper's appendix, taken literally.
+        Paper = "paper",
+    }
+}
+
+impl Scheme {
+    /// The longest substep at which the scheme is stable, in s.
+    pub fn longest_dt_s(self) -> f64 {
+        match self {
+            Self::Leapfrog => 1.0,
+            Self::Moreau | Self::Paper => 0.1,
+        }
+    }
+}
+
+named_choice! {
+    /// What η of eq. (9) means.
+    pub enum Noise ("noise") {
+        /// A stochastic differential equation: increment c4·sqrt(dt)·N(0, 1), c4 in rad/s^1.5.
+        White = "white",
+        /// The literal reading: increment c4·dt·N(0, 1), c4 in rad/s². Statistics depend on dt.
+        PerStep = "per-step",
+    }
+}
+
+named_choice! {
+    /// How the contact problem of a substep is solved.
+    pub enum Solver ("solver") {
+        /// Exact: block principal pivoting on a Cholesky factor, island by island.
+        BlockPivoting = "block-pivoting",
+        /// Projected Gauss–Seidel, for comparison.
+        GaussSeidel = "gauss-seidel",
+        /// The interior-point solver clarabel, for comparison (residual 1e-4…1e-7 cm/s).
+        Clarabel = "clarabel",
+    }
+}
+
+named_choice! {
+    /// A named set of parameters.
+    pub enum Preset ("preset") {
+        /// Table 3 with `leapfrog` and white noise: the physics that does not depend on dt.
+        Simulation = "simulation",
+        /// Table 3 with the paper's literal scheme and per-step noise.
+        Paper = "paper",
+    }
+}
+
+/// The water: an annulus, a disc (inner radius 0) or open water (outer radius infinite).
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Pool {
+    /// Radius of the outer wall in cm; infinite: no outer wall.
+    pub outer_radius_cm: f64,
+    /// Radius of the obstacle in the middle in cm; 0: none.
+    pub inner_radius_cm: f64,
+}
+
+impl Pool {
+    /// Table 1 as printed: diameters 180 and 97 cm.
+    pub const TABLE_1: Self = Self {
+        outer_radius_cm: 90.0,
+        inner_radius_cm: 48.5,
+    };
+    /// Section 2.2's "500 boats" of free space: radii 180 and 97 cm.
+    pub const FIVE_HUNDRED_BOATS: Self = Self {
+        outer_radius_cm: 180.0,
+        inner_radius_cm: 97.0,
+    };
+    /// Names of the pools, as users write them.
+    pub const NAMED: [(&'static str, Self); 2] = [
+        ("500-boats", Self::FIVE_HUNDRED_BOATS),
+        ("table-1", Self::TABLE_1),
+    ];
+
+    /// The pool of that name.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] lists the names there are.
+    pub fn named(name: &str) -> Result<Self> {
+        let found = Self::NAMED.iter().find(|(known, _)| *known == name);
+        found.map(|&(_, pool)| pool).ok_or_else(|| {
+            FlockError::parameter(
+                "pool",
+                format!("{name:?}"),
+                "\"500-boats\", \"table-1\" or (outer_radius_cm, inner_radius_cm)",
+            )
+        })
+    }
+
+    /// The name of this pool, if it has one.
+    pub fn name(&self) -> Option<&'static str> {
+        Self::NAMED
+            .iter()
+            .find(|(_, pool)| pool == self)
+            .map(|&(name, _)| name)
+    }
+
+    /// Whether there is an outer wall.
+    pub fn has_outer_wall(&self) -> bool {
+        self.outer_radius_cm.is_finite()
+    }
+
+    /// Whether there is an obstacle in the middle.
+    pub fn has_inner_wall(&self) -> bool {
+        self.inner_radius_cm > 0.0
+    }
+}
+
+/// Everything that defines a scene. Fields are public to read and to build with;
+/// [`FlockParameters::check`] runs once wherever a flock is made from them.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct FlockParameters {
+    /// Number of boats, leaders included (Table 3: n).
+    pub n_boats: usize,
+    /// Number of steerable leaders, boats 0..k−1 (Table 3: k).
+    pub n_leaders: usize,
+    /// The water.
+    pub pool: Pool,
+    /// Radius of the hull's end discs in cm (Table 3: r).
+    pub boat_radius_cm: f64,
+    /// Half-length of the hull's core segment over its radius (Table 3: p).
+    pub boat_shape: f64,
+    /// Radius of gyration in cm (Table 3: ρ; the exact stadium has 4.690).
+    pub gyration_radius_cm: f64,
+    /// Preferred forward speed in cm/s (Table 3: v0 in fw).
+    pub speed_cm_s: f64,
+    /// Preferred backward speed in cm/s, positive (Table 3: −v0 in bw).
+    pub reverse_speed_cm_s: f64,
+    /// Convergence rate of the velocity in 1/s (eq. 8).
+    pub c0: f64,
+    /// Cubic damping of the angular velocity in s (eq. 9).
+    pub c1: f64,
+    /// Gain of the rudder in 1/(cm·s) (eq. 9).
+    pub c2: f64,
+    /// Weathervane stabilisation of forward motion in 1/cm (eq. 9).
+    pub c3: f64,
+    /// Strength of the angular noise, in rad/s^1.5 (`white`) or rad/s² (`per-step`) (eq. 9).
+    pub c4: f64,
+    /// Duration of the forward phase in s.
+    pub fw_s: f64,
+    /// Duration of the drift after the forward phase in s.
+    pub nop1_s: f64,
+    /// Duration of the backward phase in s: the noise level.
+    pub bw_s: f64,
+    /// Duration of the drift after the backward phase in s.
+    pub nop2_s: f64,
+    /// Whether leaders back up in the bw phase (in the experiment their motor ran in fw only).
+    pub leaders_reverse: bool,
+    /// The direction that eq. (10) steers leaders to.
+    pub target: Target,
+    /// How a time step is taken.
+    pub scheme: Scheme,
+    /// What η of eq. (9) means.
+    pub noise: Noise,
+    /// How contacts are solved.
+    pub solver: Solver,
+    /// Longest substep in s (rounded to 1 ns).
+    pub dt_s: f64,
+    /// Overlap that the `paper` scheme accepts without a projection, in cm.
+    pub overlap_tolerance_cm: f64,
+    /// Extra solves a substep with gaps re-evaluated at its end: 0, 1 or 2.
+    pub relinearizations: usize,
+    /// Constant rudder of the normal boats, in [−1, 1]; positive turns counter-clockwise
+    /// (Section 4.5's bias). 0: off.
+    pub turning_bias: f64,
+    /// Half-width of the uniform per-boat spread of the forward speed in cm/s (Table 1: ±5); the
+    /// backward speed scales along. 0: off.
+    pub speed_spread_cm_s: f64,
+    /// κ of the net tangential water current −κ·(mean tangential velocity) (Section 4.5). 0: off.
+    pub current_gain: f64,
+    /// Cap of that current's speed in cm/s.
+    pub current_cap_cm_s: f64,
+}
+
+impl FlockParameters {
+    /// The most boats a flock may have.
+    pub const MOST_BOATS: usize = 1_000_000;
+
+    /// A preset: Table 3 with the scheme and noise that the preset stands for.
+    pub fn preset(preset: Preset) -> Self {
+        let table_3 = Self {
+            n_boats: 20,
+            n_leaders: 0,
+            pool: Pool::FIVE_HUNDRED_BOATS,
+            boat_radius_cm: 5.0,
+            boat_shape: 0.5,
+            gyration_radius_cm: 4.74,
+            speed_cm_s: 15.0,
+            reverse_speed_cm_s: 15.0,
+            c0: 1.0,
+            c1: 1.0,
+            c2: 0.1,
+            c3: 1.0,
+            c4: 0.1,
+            fw_s: 2.0,
+            nop1_s: 1.0,
+            bw_s: 0.3,
+            nop2_s: 1.0,
+            leaders_reverse: true,
+            target: Target::Clockwise,
+            scheme: Scheme::Leapfrog,
+            noise: Noise::White,
+            solver: Solver::BlockPivoting,
+            dt_s: 0.02,
+            overlap_tolerance_cm: 0.01,
+            relinearizations: 0,
+            turning_bias: 0.0,
+            speed_spread_cm_s: 0.0,
+            current_gain: 0.0,
+            current_cap_cm_s: 5.0,
+        };
+        match preset {
+            Preset::Simulation => table_3,
+            Preset::Paper => Self {
+                bw_s: 0.6,
+                scheme: Scheme::Paper,
+                noise: Noise::PerStep,
+                ..table_3
+            },
+        }
+    }
+
+    /// Half-length of the hull's core segment, h = p·r, in cm.
+    pub fn half_length_cm(&self) -> f64 {
+        self.boat_shape * self.boat_radius_cm
+    }
+
+    /// Checks every field; the one gate through which parameters enter a flock.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] names the first field that is out of range.
+    pub fn check(&self) -> Result<()> {
+        self.check_counts()?;
+        self.check_pool()?;
+        for (field, value) in [
+            ("boat_radius_cm", self.boat_radius_cm),
+            ("gyration_radius_cm", self.gyration_radius_cm),
+            ("current_cap_cm_s", self.current_cap_cm_s),
+        ] {
+            check_range(
+                field,
+                value,
+                f64::MIN_POSITIVE,
+                LARGE,
+                "a positive length or speed",
+            )?;
+        }
+        for (field, value) in [
+            ("boat_shape", self.boat_shape),
+            ("speed_cm_s", self.speed_cm_s),
+            ("reverse_speed_cm_s", self.reverse_speed_cm_s),
+            ("c0", self.c0),
+            ("c1", self.c1),
+            ("c2", self.c2),
+            ("c3", self.c3),
+            ("c4", self.c4),
+            ("fw_s", self.fw_s),
+            ("nop1_s", self.nop1_s),
+            ("bw_s", self.bw_s),
+            ("nop2_s", self.nop2_s),
+            ("overlap_tolerance_cm", self.overlap_tolerance_cm),
+        ] {
+            check_range(
+                field,
+                value,
+                0.0,
+                LARGE,
+                "a finite number of at least 0, at most 1e6",
+            )?;
+        }
+        self.check_effects()?;
+        self.check_timing()
+    }
+
+    fn check_counts(&self) -> Result<()> {
+        if self.n_boats == 0 || self.n_boats > Self::MOST_BOATS {
+            let accepted = format!("1 to {}", Self::MOST_BOATS);
+            return Err(FlockError::parameter("n_boats", self.n_boats, accepted));
+        }
+        if self.n_leaders > self.n_boats {
+            let accepted = format!("0 to n_boats = {}", self.n_boats);
+            return Err(FlockError::parameter("n_leaders", self.n_leaders, accepted));
+        }
+        if self.relinearizations > 2 {
+            return Err(FlockError::parameter(
+                "relinearizations",
+                self.relinearizations,
+                "0, 1 or 2",
+            ));
+        }
+        Ok(())
+    }
+
+    fn check_pool(&self) -> Result<()> {
+        let Pool {
+            outer_radius_cm: outer,
+            inner_radius_cm: inner,
+        } = self.pool;
+        let ok = (0.0..=LARGE).contains(&inner)
+            && outer > inner
+            && (outer <= LARGE || outer == f64::INFINITY);
+        if ok {
+            return Ok(());
+        }
+        Err(FlockError::parameter(
+            "pool",
+            format!("({outer}, {inner})"),
+            "(outer_radius_cm, inner_radius_cm) with 0 <= inner < outer; an infinite outer radius is open water",
+        ))
+    }
+
+    fn check_effects(&self) -> Result<()> {
+        check_range(
+            "turning_bias",
+            self.turning_bias,
+            -1.0,
+            1.0,
+            "a rudder in [-1, 1]",
+        )?;
+        let accepted = format!("0 to speed_cm_s = {}", self.speed_cm_s);
+        check_range(
+            "speed_spread_cm_s",
+            self.speed_spread_cm_s,
+            0.0,
+            self.speed_cm_s,
+            &accepted,
+        )?;
+        check_range("current_gain", self.current_gain, 0.0, 1.0, "0 (off) to 1")
+    }
+
+    fn check_timing(&self) -> Result<()> {
+        if self.fw_s + self.nop1_s + self.bw_s + self.nop2_s < 1e-6 {
+            return Err(FlockError::parameter(
+                "fw_s + nop1_s + bw_s + nop2_s",
+                self.fw_s + self.nop1_s + self.bw_s + self.nop2_s,
+                "a cycle of at least 1e-6 s (a single phase may last 0 s)",
+            ));
+        }
+        let longest = self.scheme.longest_dt_s();
+        let accepted = format!(
+            "1e-6 to {longest} s, where scheme {:?} is stable",
+            self.scheme.name()
+        );
+        check_range("dt_s", self.dt_s, 1e-6, longest, &accepted)
+    }
+}
+
+/// Lengths, speeds and rates beyond this (1e6 cm = 10 km) are taken for a mistake.
+const LARGE: f64 = 1e6;
+
+fn check_range(field: &'static str, value: f64, low: f64, high: f64, accepted: &str) -> Result<()> {
+    // A NaN fails both comparisons.
+    if value >= low && value <= high {
+        return Ok(());
+    }
+    Err(FlockError::parameter(field, value, accepted))
+}

@@ -1,0 +1,113 @@
+//! Leapfrog: velocities live in the middle of substeps, poses at their ends. Second order while
+//! contacts persist.
+//!
+//! A kick at time t_n takes the velocity from the middle of the last substep to the middle of the
+//! next; where the two differ in length, phase or rudder, each half of the kick has its own. The first
+//! kick after a state was set is a half one.
+
+use crate::boat::Drive;
+use crate::dynamics::{Dynamics, Steering, Substep};
+use crate::geometry::Vec2;
+use crate::phase_schedule::{Phase, seconds};
+
+/// One kick and one drift.
+pub fn leapfrog(flock: &mut Dynamics, substep: &Substep) {
+    let half_ticks = flock.last.length + substep.length;
+    let kick = 0.5 * seconds(half_ticks);
+    let begin = 2 * substep.start - flock.last.length.min(2 * substep.start);
+    flock.draw_kicks(substep.start, begin, 2 * substep.start + substep.length);
+    flock.fill_drives(substep);
+    blend_drives(flock, substep);
+    centered_velocities(flock, kick);
+
+    let dt = seconds(substep.length);
+    let Dynamics {
+        contacts,
+        poses,
+        boats,
+        free,
+        inertia,
+        statistics,
+        last,
+        ..
+    } = flock;
+    last.lasting_acceleration.clear();
+    if contacts.find(poses, boats, free, dt, statistics) {
+        contacts.resolve(poses, free, inertia, dt, statistics);
+        last.lasting_acceleration.resize(poses.len(), Vec2::zeros());
+        contacts.add_lasting_acceleration(inertia, kick, &mut last.lasting_acceleration);
+        flock
+            .velocities
+            .copy_from_slice(flock.contacts.velocities());
+    } else {
+        contacts.clear_loads();
+        flock.velocities.copy_from_slice(free);
+    }
+    flock.kick_s = kick;
+    flock.drift(dt);
+    remember(flock, substep);
+}
+
+/// Replaces thrust and rudder by their means over the kick where the substep before had others.
+fn blend_drives(flock: &mut Dynamics, substep: &Substep) {
+    let last_phase = Phase::ALL[flock.last.phase];
+    let last_rudder = std::mem::take(&mut flock.last.rudder);
+    let same_steering = match (substep.steering, &last_rudder) {
+        (Steering::Law, None) => true,
+        (Steering::Held(now), Some(then)) => now == then,
+        _ => false,
+    };
+    if flock.last.length > 0 && !(same_steering && last_phase == substep.phase) {
+        let steering = last_rudder.as_deref().map_or(Steering::Law, Steering::Held);
+        let past = flock.last.length as f64 / (flock.last.length + substep.length) as f64;
+        for boat in 0..flock.drives.len() {
+            let (thrust, rudder) = (flock.thrust(boat, last_phase), flock.rudder(boat, steering));
+            let drive = &mut flock.drives[boat];
+            drive.thrust += past * (thrust - drive.thrust);
+            drive.rudder += past * (rudder - drive.rudder);
+        }
+    }
+    flock.last.rudder = last_rudder;
+}
+
+/// Fills `free` and `inertia` over a kick.
+fn centered_velocities(flock: &mut Dynamics, kick: f64) {
+    let gyration = flock.parameters.gyration_radius_cm;
+    let inverse_square = 1.0 / (gyration * gyration);
+    let Dynamics {
+        free,
+        inertia,
+        velocities,
+        boats,
+        drives,
+        motion,
+        last,
+        ..
+    } = flock;
+    free.clear();
+    for (boat, drive) in drives.iter().enumerate() {
+        let drive: &Drive = drive;
+        let change = last
+            .lasting_acceleration
+            .get(boat)
+            .map_or_else(Vec2::zeros, |a| a * kick);
+        let result = motion.centered(&velocities[boat], boats[boat].axis, drive, change, kick);
+        free.push(result.velocity);
+        inertia[boat].linear = 1.0 / result.linear_weight;
+        inertia[boat].angular = inverse_square / result.angular_weight;
+    }
+}
+
+fn remember(flock: &mut Dynamics, substep: &Substep) {
+    let last = &mut flock.last;
+    last.length = substep.length;
+    last.phase = substep.phase.index();
+    match substep.steering {
+        Steering::Law => last.rudder = None,
+        Steering::Held(commands) => {
+            let kept = last.rudder.get_or_insert_default();
+            kept.clear();
+            kept.extend_from_slice(commands);
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! Steps 1–6 of the paper's appendix, taken literally.
+//!
+//! Poses advance with the *old* velocities. If nothing then overlaps by more than the tolerance, the
+//! step stands and velocities gain dt·a (eq. A.3). If something does, the poses are projected to
+//! linearised gaps ≥ 0 (eq. A.4) and *every* boat's velocity becomes displacement/dt (eq. A.5): a step
+//! with a contact loses its accelerations, for all boats at once.
+
+use super::moreau::explicit_velocities;
+use crate::dynamics::{Dynamics, Substep};
+use crate::phase_schedule::seconds;
+
+/// One step of the appendix.
+pub fn paper(flock: &mut Dynamics, substep: &Substep) {
+    let dt = seconds(substep.length);
+    flock.kick_s = dt;
+    flock.draw_kicks(
+        substep.start,
+        2 * substep.start,
+        2 * (substep.start + substep.length),
+    );
+    flock.fill_drives(substep);
+    explicit_velocities(flock, dt);
+    let Dynamics {
+        contacts,
+        poses,
+        boats,
+        velocities,
+        inertia,
+        statistics,
+        parameters,
+        ..
+    } = flock;
+    // The displacement that minimises (A.4) is dt times the velocity nearest to the old one.
+    let near = contacts.find(poses, boats, velocities, dt, statistics);
+    if near && contacts.overlaps_after(poses, velocities, dt, parameters.overlap_tolerance_cm) {
+        contacts.resolve(poses, velocities, inertia, dt, statistics);
+        flock
+            .velocities
+            .copy_from_slice(flock.contacts.velocities());
+        flock.drift(dt);
+        return;
+    }
+    contacts.clear_loads();
+    flock.drift(dt);
+    flock.velocities.copy_from_slice(&flock.free);
+}

@@ -1,0 +1,41 @@
+"""Law: the installed package is this source tree, and importing it needs no optional library."""
+
+import re
+import subprocess
+import sys
+from importlib.resources import files
+from pathlib import Path
+
+import flockenv
+
+REPOSITORY = Path(__file__).parents[2]
+OPTIONAL = (
+    "torch",
+    "stable_baselines3",
+    "matplotlib",
+    "pandas",
+    "scipy",
+    "pyarrow",
+    "pygame",
+    "ray",
+)
+
+
+def test_version_is_the_one_of_cargo_toml():
+    cargo = (REPOSITORY / "Cargo.toml").read_text()
+    assert flockenv.__version__ == re.search(r'^version = "(.+)"$', cargo, re.MULTILINE)[1]
+
+
+def test_package_is_typed():
+    assert files(flockenv).joinpath("py.typed").is_file()
+
+
+def test_import_needs_no_optional_library():
+    blocked = f"import sys; sys.modules.update(dict.fromkeys({OPTIONAL}))"
+    subprocess.run([sys.executable, "-c", f"{blocked}; import flockenv"], check=True)
+
+
+def test_core_is_an_extension_module():
+    from flockenv import _core
+
+    assert _core.__file__.endswith((".so", ".pyd"))

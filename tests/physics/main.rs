@@ -1,0 +1,1 @@
+//! The laws of the physics, one file per law.
