@@ -4,9 +4,9 @@
 use super::contact::ContactKey;
 use super::recovery::{DEEP, Recovery};
 use super::solver::ContactSolver;
-use super::{Contact, ContactDetector, ContactProblem, InverseInertia};
+use super::{Contact, ContactDetector, ContactProblem, InverseInertia, Partner};
 use crate::boat::{Pose, Velocity};
-use crate::geometry::{HullPose, Vec2};
+use crate::geometry::{HullPose, NeighborList, Vec2};
 use crate::parameters::{FlockParameters, Scheme, Solver};
 use crate::statistics::Statistics;
 
@@ -74,6 +74,11 @@ impl ContactResolver {
         &mut self.detector
     }
 
+    /// Candidate pairs of the scene.
+    pub fn neighbors(&self) -> &NeighborList {
+        &self.detector.neighbors
+    }
+
     /// Contacts that carried an impulse in the last substep.
     pub fn loads(&self) -> &[Load] {
         &self.loads
@@ -103,6 +108,7 @@ impl ContactResolver {
         statistics: &mut Statistics,
     ) -> bool {
         let margin = self.detector.margin(velocities, dt);
+        let builds_before = self.detector.neighbors.builds();
         self.detector.detect(boats, margin, &mut self.contacts);
         let smallest = self.contacts.iter().map(|c| c.gap.gap).fold(0.0, f64::min);
         statistics.worst_overlap_cm = statistics.worst_overlap_cm.max(-smallest);
@@ -111,7 +117,7 @@ impl ContactResolver {
             self.detector.detect(boats, margin, &mut self.contacts);
         }
         statistics.contacts += self.contacts.len() as u64;
-        statistics.neighbor_builds = self.detector.neighbors.builds();
+        statistics.neighbor_builds += self.detector.neighbors.builds() - builds_before;
         self.recall_loads();
         !self.contacts.is_empty()
     }
@@ -148,9 +154,12 @@ impl ContactResolver {
         }
         if next < loads.len() {
             loads.sort_unstable_by_key(|(key, _)| *key);
-            for (contact, impulse) in contacts.iter().zip(&mut solver.impulses) {
-                let found = loads.binary_search_by_key(&contact.key(), |(key, _)| *key);
-                *impulse = found.map_or(0.0, |place| loads[place].1);
+            for (k, impulse) in solver.impulses.iter_mut().enumerate() {
+                let found = loads.binary_search_by_key(&contacts[k].key(), |(key, _)| *key);
+                *impulse = found.map_or_else(
+                    |_| inherited_load(loads, contacts, k),
+                    |place| loads[place].1,
+                );
             }
         }
         lasting.clear();
@@ -277,9 +286,10 @@ impl ContactResolver {
         }
     }
 
-    /// Drops the loads: nothing touched in this substep.
+    /// Drops the loads: nothing touched in this substep, and nothing near carried an impulse.
     pub fn clear_loads(&mut self) {
         self.loads.clear();
+        self.solver.impulses.fill(0.0);
     }
 
     /// Adds to each boat the linear acceleration from contacts that carried an impulse both in this
@@ -298,4 +308,21 @@ impl ContactResolver {
             }
         }
     }
+}
+
+/// The load of a contact between the same two boats that is there no more: where an end slides off the
+/// other's end onto its side, the contact changes its name and goes on. `loads` are sorted by key.
+fn inherited_load(loads: &[Load], contacts: &[Contact], k: usize) -> f64 {
+    let Contact { boat, partner, .. } = contacts[k];
+    if !matches!(partner, Partner::Boat(_)) {
+        return 0.0;
+    }
+    let begin = loads.partition_point(|((b, p, _), _)| (*b, *p) < (boat, partner));
+    // A pair has at most two contacts, which are found one after the other.
+    let near = &contacts[k.saturating_sub(1)..(k + 2).min(contacts.len())];
+    loads[begin..]
+        .iter()
+        .take_while(|((b, p, _), _)| (*b, *p) == (boat, partner))
+        .find(|(key, _)| near.iter().all(|contact| contact.key() != *key))
+        .map_or(0.0, |(_, load)| *load)
 }
