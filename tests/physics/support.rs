@@ -3,6 +3,8 @@
 use flockenv::boat::{Pose, Velocity};
 use flockenv::geometry::{Vec2, cross};
 use flockenv::parameters::{Noise, Pool, Preset, Scheme};
+use flockenv::snapshot::Snapshot;
+use flockenv::statistics::Statistics;
 use flockenv::{Flock, FlockParameters};
 
 /// All schemes.
@@ -74,6 +76,35 @@ pub fn flock_of(parameters: &FlockParameters, states: &[([f64; 3], [f64; 3])]) -
         .set_state(&poses, &velocities, 0.0, false)
         .expect("a state without overlap");
     flock
+}
+
+/// A flock in any state, overlapping or not, also where random placement finds no room.
+pub fn crowded(p: &FlockParameters, states: &[([f64; 3], [f64; 3])]) -> Flock {
+    let n_boats = states.len();
+    let p = FlockParameters {
+        n_boats,
+        ..p.clone()
+    };
+    let snapshot = Snapshot {
+        parameters: p,
+        seed: 1,
+        time: 0,
+        poses: states
+            .iter()
+            .map(|([x, y, a], _)| Pose::new(*x, *y, *a))
+            .collect(),
+        velocities: states
+            .iter()
+            .map(|(_, [x, y, w])| Velocity::new(*x, *y, *w))
+            .collect(),
+        loads: Vec::new(),
+        neighbor_reference: (Vec::new(), 0.0),
+        last_substep: (0, 0, None),
+        lasting_acceleration: Vec::new(),
+        kick_s: 0.0,
+        statistics: Statistics::default(),
+    };
+    Flock::from_snapshot(&snapshot.to_bytes()).expect("a finite state")
 }
 
 /// Takes `count` full substeps.

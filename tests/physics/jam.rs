@@ -1,0 +1,109 @@
+//! A jam: engines always forward, boats pressed outward against the wall and each other, for long.
+//! Contacts hold without drift: overlaps do not grow, every solve is exact, nothing heats up.
+//!
+//! On paper: what engines and drag do to the momentum of the whole flock, the walls take up.
+
+use crate::support::{deepest_overlap, driven, kinetic_energy, momentum, take_substeps};
+use flockenv::contact::Partner;
+use flockenv::flock::ContactForce;
+use flockenv::geometry::{Hull, HullPose, Vec2, inner_wall_gap, outer_wall_gap};
+use flockenv::parameters::{Pool, Scheme};
+use flockenv::{Flock, FlockParameters};
+
+fn jam(n_boats: usize, c4: f64, seed: u64) -> Flock {
+    let p = FlockParameters {
+        n_boats,
+        c4,
+        pool: Pool::TABLE_1,
+        dt_s: 0.01,
+        ..driven(Scheme::Leapfrog)
+    };
+    Flock::new(p, seed).expect("room")
+}
+
+/// Runs a jam minute by minute; the deepest overlap of each.
+fn hold(flock: &mut Flock, minutes: usize) -> Vec<f64> {
+    let boats = flock.poses().len() as f64;
+    (0..minutes)
+        .map(|_| {
+            let mut deepest: f64 = 0.0;
+            for _ in 0..60 {
+                flock.advance(1.0, None).expect("finite motion");
+                deepest = deepest.max(deepest_overlap(flock));
+            }
+            // No boat outruns its engine on average; spins are small.
+            assert!(kinetic_energy(flock) < boats * 0.5 * 15.0 * 15.0);
+            deepest
+        })
+        .collect()
+}
+
+fn assert_held(flock: &Flock, overlaps: &[f64]) {
+    let statistics = flock.statistics();
+    assert!(statistics.worst_residual_cm_s <= 1e-10, "{statistics:?}");
+    assert_eq!(statistics.unsolved, 0);
+    assert!(statistics.solves > statistics.substeps / 2);
+    // The linearisation's leftover without relinearisation passes, at dt = 0.01 s.
+    assert!(
+        overlaps.iter().all(|&overlap| overlap <= 1e-2),
+        "{overlaps:?}"
+    );
+    // The first minute packs the flock; from then on nothing creeps.
+    let largest = |part: &[f64]| part.iter().copied().fold(0.0, f64::max);
+    let middle = overlaps.len() / 2;
+    assert!(
+        largest(&overlaps[middle..]) <= largest(&overlaps[..middle]) + 1e-3,
+        "{overlaps:?}"
+    );
+}
+
+#[test]
+fn walls_balance_engines_and_drag() {
+    // Summed over the flock, contacts between boats cancel and Crank–Nicolson reads, with P = Σv before
+    // and after a kick, (P⁺ − P⁻)/dt = c0·v0·Σu − c0·(P⁺ + P⁻)/2 + Σ wall forces, to rounding.
+    let mut flock = jam(50, 0.1, 1);
+    hold(&mut flock, 1);
+    let hull = Hull::new(flock.parameters());
+    for _ in 0..100 {
+        let before = momentum(&flock);
+        let boats: Vec<HullPose> = flock.poses().iter().map(HullPose::new).collect();
+        take_substeps(&mut flock, 1);
+        let after = momentum(&flock);
+        let engines: Vec2 = boats.iter().map(|b| b.axis * 15.0).sum();
+        let mut walls = Vec2::zeros();
+        let mut carrying = 0;
+        for ContactForce { contact, force } in flock.contacts() {
+            let boat = &boats[contact.boat as usize];
+            let side = if contact.feature == 0 { -1.0 } else { 1.0 };
+            walls += force
+                * match contact.partner {
+                    Partner::OuterWall => outer_wall_gap(boat, side, hull, 90.0).normal,
+                    Partner::InnerWall => inner_wall_gap(boat, hull, 48.5).normal,
+                    Partner::Boat(_) => continue,
+                };
+            carrying += usize::from(force > 0.0);
+        }
+        assert!(carrying > 10, "a jam leans on its wall");
+        let left = (after - before) / 0.01 - engines + (after + before) * 0.5 - walls;
+        assert!(left.norm() < 1e-8, "{left}");
+    }
+}
+
+#[test]
+fn jams_hold_for_minutes() {
+    for (n, seed) in [(50, 1), (114, 2)] {
+        let mut flock = jam(n, 0.1, seed);
+        let overlaps = hold(&mut flock, 2);
+        assert_held(&flock, &overlaps);
+    }
+}
+
+#[test]
+#[ignore = "an hour of 50 boats, then of 114: minutes of computing"]
+fn jams_hold_for_hours() {
+    for (n, seed) in [(50, 1), (114, 2)] {
+        let mut flock = jam(n, 0.1, seed);
+        let overlaps = hold(&mut flock, 60);
+        assert_held(&flock, &overlaps);
+    }
+}

@@ -1,0 +1,175 @@
+//! Scenes that no flock should be in, and what becomes of them: hulls that overlap, a pool that is too
+//! small, substeps of a whole second, a full pool at rest.
+//!
+//! On paper: two boats at rest that overlap by g < 0.01 cm come apart at g/dt, each taking half; deeper
+//! overlaps are undone by displacement and leave boats at rest.
+
+use crate::support::{
+    RHO, SCHEMES, VELOCITY_SCHEMES, crowded, deepest_overlap, disc, driven, inert, kinetic_energy,
+    take_substeps,
+};
+use flockenv::boat::{Pose, Velocity};
+use flockenv::parameters::Scheme;
+use flockenv::{Flock, FlockParameters};
+use std::f64::consts::TAU;
+
+#[test]
+fn shallow_overlap_at_rest_opens_in_one_substep() {
+    for scheme in VELOCITY_SCHEMES {
+        let overlap = 0.004;
+        let states = [
+            ([0.0, 0.0, 0.0], [0.0; 3]),
+            ([15.0 - overlap, 0.0, 0.0], [0.0; 3]),
+        ];
+        let mut flock = crowded(&inert(scheme), &states);
+        take_substeps(&mut flock, 1);
+        let speed = 0.5 * overlap / 0.02;
+        assert!((flock.velocities()[1].linear.x - speed).abs() < 1e-10);
+        assert!((flock.velocities()[0].linear.x + speed).abs() < 1e-10);
+        assert!(deepest_overlap(&flock) < 1e-10);
+    }
+}
+
+#[test]
+fn deep_overlap_and_crossed_cores_come_apart_without_speed() {
+    // What is left after the displacement, a thousandth of a centimetre, opens as a shallow overlap:
+    // at most 0.001/dt a contact, half of it each.
+    for scheme in SCHEMES {
+        for states in [
+            vec![([0.0, 0.0, 0.0], [0.0; 3]), ([10.0, 0.0, 0.0], [0.0; 3])],
+            vec![([0.0, 0.0, 0.0], [0.0; 3]), ([0.0, 5.0, 0.1], [0.0; 3])],
+            vec![([0.0, 0.0, 0.0], [0.0; 3]), ([0.5, 0.3, 1.5], [0.0; 3])],
+            vec![([0.0, 0.0, 0.3], [0.0; 3]), ([0.0, 0.0, 0.3], [0.0; 3])],
+            vec![([84.0, 0.0, 0.3], [0.0; 3]), ([88.0, 3.0, 1.0], [0.0; 3])],
+            vec![([0.0, 0.0, 0.0], [0.0; 3]); 3],
+        ] {
+            let p = FlockParameters {
+                pool: disc(90.0),
+                ..inert(scheme)
+            };
+            let mut flock = crowded(&p, &states);
+            let boats = states.len() as f64;
+            for _ in 0..20 {
+                take_substeps(&mut flock, 1);
+                let bound = boats * (0.5 * 0.001_1 / 0.01_f64).powi(2);
+                assert!(
+                    kinetic_energy(&flock) < bound,
+                    "{scheme:?} {}",
+                    kinetic_energy(&flock)
+                );
+                assert!(flock.poses().iter().all(Pose::is_finite));
+            }
+            assert!(deepest_overlap(&flock) <= 0.0101, "{scheme:?} {states:?}");
+            assert!(flock.statistics().recovery_passes > 0);
+        }
+    }
+}
+
+#[test]
+fn too_many_boats_for_the_pool_stay_bounded() {
+    // 140 hulls cover 99.6 % of table-1 and cannot be disjoint: velocities stay bounded by what engines
+    // can give, nothing is NaN, and a status says so.
+    for scheme in SCHEMES {
+        let p = FlockParameters {
+            pool: flockenv::parameters::Pool::TABLE_1,
+            c4: 0.1,
+            ..driven(scheme)
+        };
+        let states: Vec<_> = (0..140)
+            .map(|i| {
+                let (ring, place) = (f64::from(i % 4), f64::from(i / 4));
+                let (polar, radius) = (TAU * place / 35.0, 54.0 + 10.0 * ring);
+                let at = [
+                    radius * polar.cos(),
+                    radius * polar.sin(),
+                    polar * 3.0 + ring,
+                ];
+                (at, [0.0; 3])
+            })
+            .collect();
+        let mut flock = crowded(&p, &states);
+        for _ in 0..8 {
+            take_substeps(&mut flock, 1);
+            for (pose, velocity) in flock.poses().iter().zip(flock.velocities()) {
+                assert!(pose.is_finite() && velocity.is_finite());
+                assert!(velocity.linear.norm() < 60.0, "{scheme:?}: {velocity:?}");
+                assert!(pose.position.norm() < 95.0);
+            }
+        }
+        let statistics = flock.statistics();
+        assert!(statistics.recovery_passes > 0 && statistics.worst_overlap_cm > 0.1);
+    }
+}
+
+#[test]
+fn substeps_of_a_whole_second_are_stable() {
+    for n_boats in [1, 12, 27] {
+        let p = FlockParameters {
+            n_boats,
+            pool: flockenv::parameters::Pool::TABLE_1,
+            dt_s: 1.0,
+            ..FlockParameters::preset(flockenv::parameters::Preset::Simulation)
+        };
+        let mut flock = Flock::new(p, 3).expect("room");
+        for _ in 0..10 {
+            flock.advance(10.0, None).expect("finite motion");
+            // The engine never drives a boat beyond v0, nor any impulse a flock beyond n boats of v0.
+            assert!(
+                kinetic_energy(&flock)
+                    < n_boats as f64 * 0.5 * (15.0_f64.powi(2) + (RHO * 4.0).powi(2))
+            );
+            assert!(flock.poses().iter().all(|p| p.position.norm() < 90.0));
+        }
+    }
+}
+
+#[test]
+fn a_full_pool_with_its_engines_off_never_gains_energy() {
+    // With the water's drag, not at all. Without it (c0 = 0) up to what opening overlaps of the
+    // linearisation takes, Σλ·overlap/dt, but never above the start.
+    for scheme in VELOCITY_SCHEMES {
+        for c0 in [1.0, 0.0] {
+            let p = FlockParameters {
+                n_boats: 114,
+                c0,
+                pool: flockenv::parameters::Pool::TABLE_1,
+                ..inert(scheme)
+            };
+            let mut flock = Flock::new(p, 2).expect("room");
+            let poses = flock.poses().to_vec();
+            let velocities: Vec<_> = (0..114)
+                .map(|i| {
+                    let phase = 2.4 * f64::from(i);
+                    Velocity::new(10.0 * phase.cos(), 10.0 * phase.sin(), phase.sin())
+                })
+                .collect();
+            flock
+                .set_state(&poses, &velocities, 0.0, false)
+                .expect("as placed");
+            let start = kinetic_energy(&flock);
+            let mut before = start;
+            for step in 0..500 {
+                let overlap = deepest_overlap(&flock);
+                take_substeps(&mut flock, 1);
+                let kick = if step == 0 && scheme == Scheme::Leapfrog {
+                    0.01
+                } else {
+                    0.02
+                };
+                let impulses: f64 = flock.contacts().iter().map(|c| c.force * kick).sum();
+                let undone = if c0 == 0.0 {
+                    impulses * overlap / 0.02
+                } else {
+                    0.0
+                };
+                let now = kinetic_energy(&flock);
+                assert!(
+                    now <= before * (1.0 + 1e-12) + undone,
+                    "{scheme:?} {c0}: {before} {now}"
+                );
+                assert!(now <= start);
+                before = now;
+            }
+        }
+    }
+}

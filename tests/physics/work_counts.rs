@@ -1,0 +1,139 @@
+//! What a solve costs, counted: rounds of pivoting, islands, rows factored, contacts, neighbour lists
+//! built. A slowdown shows here without a stopwatch.
+//!
+//! On paper: one boat at rest against a wall has one contact, one island, one factored row and one
+//! round a substep, once the first round has guessed the contact wrong.
+
+use crate::support::{disc, driven, flock_of, inert, take_substeps};
+use flockenv::parameters::{Pool, Preset, Scheme};
+use flockenv::statistics::Statistics;
+use flockenv::{Flock, FlockParameters};
+
+#[test]
+fn one_boat_at_the_wall() {
+    let p = FlockParameters {
+        pool: disc(90.0),
+        ..driven(Scheme::Leapfrog)
+    };
+    let mut flock = flock_of(&p, &[([82.5, 0.0, 0.0], [0.0; 3])]);
+    take_substeps(&mut flock, 100);
+    let statistics = flock.statistics();
+    assert_eq!((statistics.substeps, statistics.solves), (100, 100));
+    assert_eq!((statistics.contacts, statistics.islands), (100, 100));
+    // The first guess, no contact, is wrong: two rounds; then the last substep's guess is right.
+    assert_eq!(statistics.solver_iterations, 101);
+    assert_eq!(statistics.factored_rows, 100);
+    assert_eq!(statistics.most_factor_entries, 1);
+    assert_eq!(statistics.neighbor_builds, 1);
+    assert_eq!((statistics.unsolved, statistics.recovery_passes), (0, 0));
+}
+
+#[test]
+fn a_row_factors_each_contact_once_a_substep() {
+    for k in [2_u64, 6] {
+        let p = FlockParameters {
+            pool: disc(90.0),
+            ..driven(Scheme::Leapfrog)
+        };
+        let states: Vec<_> = (0..k)
+            .map(|i| ([82.5 - 15.0 * i as f64, 0.0, 0.0], [0.0; 3]))
+            .collect();
+        let mut flock = flock_of(&p, &states);
+        take_substeps(&mut flock, 100);
+        let statistics = flock.statistics();
+        assert_eq!(statistics.contacts, 100 * k);
+        assert_eq!(statistics.islands, 100);
+        // Warm starts cost one round; the first substep at most one more a contact.
+        assert!((101..=100 + k).contains(&statistics.solver_iterations));
+        assert_eq!(statistics.factored_rows, 100 * k);
+        // A chain's factor is bidiagonal, in one order or the other.
+        assert_eq!(statistics.most_factor_entries, 2 * k - 1);
+    }
+}
+
+#[test]
+fn contacts_apart_are_islands_of_their_own() {
+    let mut states = Vec::new();
+    for pair in 0..5 {
+        let y = 30.0 * f64::from(pair);
+        states.push(([0.0, y, 0.0], [1.0, 0.0, 0.0]));
+        states.push(([15.0, y, 0.0], [-1.0, 0.0, 0.0]));
+    }
+    let mut flock = flock_of(&inert(Scheme::Moreau), &states);
+    take_substeps(&mut flock, 1);
+    let statistics = flock.statistics();
+    assert_eq!((statistics.islands, statistics.contacts), (5, 5));
+    assert_eq!(
+        (statistics.solver_iterations, statistics.factored_rows),
+        (10, 5)
+    );
+}
+
+#[test]
+fn boats_that_stay_within_their_skin_share_one_neighbour_list() {
+    let p = FlockParameters {
+        pool: disc(90.0),
+        ..inert(Scheme::Leapfrog)
+    };
+    // Drifting together at 1 cm/s: the skin of 0.8 radii is used up every 2 s, at half its width.
+    let states: Vec<_> = (0..4)
+        .map(|i| ([-30.0, 20.0 * f64::from(i) - 30.0, 0.0], [1.0, 0.0, 0.0]))
+        .collect();
+    let mut flock = flock_of(&p, &states);
+    flock.advance(20.0, None).expect("finite motion");
+    let builds = flock.statistics().neighbor_builds;
+    assert!((9..=11).contains(&builds), "{builds}");
+}
+
+/// Twenty seconds of a scene after ten to settle, counted a substep.
+fn counted(n_boats: usize, bw_s: f64) -> (Statistics, f64) {
+    let p = FlockParameters {
+        n_boats,
+        pool: Pool::TABLE_1,
+        dt_s: 0.01,
+        fw_s: 2.0,
+        nop1_s: if bw_s > 0.0 { 1.0 } else { 0.0 },
+        bw_s,
+        nop2_s: if bw_s > 0.0 { 1.0 } else { 0.0 },
+        ..FlockParameters::preset(Preset::Simulation)
+    };
+    let mut flock = Flock::new(p, 6).expect("room");
+    flock.advance(10.0, None).expect("finite motion");
+    let before = *flock.statistics();
+    flock.advance(20.0, None).expect("finite motion");
+    let mut s = *flock.statistics();
+    s.substeps -= before.substeps;
+    s.solves -= before.solves;
+    s.contacts -= before.contacts;
+    s.islands -= before.islands;
+    s.solver_iterations -= before.solver_iterations;
+    s.factored_rows -= before.factored_rows;
+    s.neighbor_builds -= before.neighbor_builds;
+    (s, s.substeps as f64)
+}
+
+#[test]
+fn crowded_scenes_cost_what_they_did() {
+    // Chaotic scenes: their counts move by some per cent with the last bits of sine and cosine. A fifth
+    // more is a slowdown; less than half is a gain that these numbers should follow.
+    for (n, bw, islands, rounds_per_island, rows, contacts, builds) in [
+        (27, 0.0, 6.23, 1.20, 53.9, 51.2, 0.060),
+        (27, 1.0, 6.64, 1.08, 3.37, 8.82, 0.041),
+        (50, 0.0, 6.59, 1.37, 116.0, 104.0, 0.070),
+    ] {
+        let (s, substeps) = counted(n, bw);
+        let found = [
+            s.islands as f64 / substeps,
+            s.solver_iterations as f64 / s.islands as f64,
+            s.factored_rows as f64 / substeps,
+            s.contacts as f64 / substeps,
+            s.neighbor_builds as f64 / substeps,
+        ];
+        let expected = [islands, rounds_per_island, rows, contacts, builds];
+        for (f, e) in found.iter().zip(expected) {
+            assert!((0.5..1.2).contains(&(f / e)), "{n} {bw}: {found:?}");
+        }
+        assert_eq!(s.unsolved, 0);
+        assert!(s.worst_residual_cm_s <= 1e-10);
+    }
+}
