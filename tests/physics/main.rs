@@ -18,6 +18,7 @@ mod overlap;
 mod parameters;
 mod phases;
 mod placement;
+mod published;
 mod pushing;
 mod sliding;
 mod solver;
