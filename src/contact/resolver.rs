@@ -6,12 +6,15 @@ use super::recovery::{DEEP, Recovery};
 use super::solver::ContactSolver;
 use super::{Contact, ContactDetector, ContactProblem, InverseInertia};
 use crate::boat::{Pose, Velocity};
-use crate::geometry::{HullPose, Vec2};
+use crate::geometry::{Gap, HullPose, Vec2};
 use crate::parameters::{FlockParameters, Scheme, Solver};
 use crate::statistics::Statistics;
 
 /// A contact that carried an impulse in the last substep, and the impulse in cm/s.
 pub type Load = (ContactKey, f64);
+
+/// Relinearisation passes after which a substep is taken as it is.
+const MOST_PASSES: u32 = 20;
 
 /// Finds and solves the contacts of a flock, substep after substep.
 #[derive(Debug, Clone)]
@@ -26,7 +29,8 @@ pub struct ContactResolver {
     loads: Vec<Load>,
     recovery: Option<Box<Recovery>>,
     trial: Vec<HullPose>,
-    relinearizations: usize,
+    /// Overlap in cm at a substep's end that relinearisation stops at; `None` without it.
+    allowed_overlap: Option<f64>,
     gyration_radius: f64,
     /// Gaps below this (cm, negative) are recovered by displacement.
     deep: f64,
@@ -44,7 +48,10 @@ impl ContactResolver {
             loads: Vec::new(),
             recovery: None,
             trial: Vec::new(),
-            relinearizations: parameters.relinearizations,
+            allowed_overlap: [None, Some(1e-6), Some(1e-9)]
+                .get(parameters.relinearizations)
+                .copied()
+                .flatten(),
             gyration_radius: parameters.gyration_radius_cm,
             // Overlaps that the paper's scheme accepts are none to recover.
             deep: match parameters.scheme {
@@ -173,9 +180,13 @@ impl ContactResolver {
             trial,
             ..
         } = self;
-        contacts
-            .iter()
-            .any(|contact| detector.smallest_gap_at(contact, trial) < -allowed)
+        contacts.iter().any(|contact| match contact.second() {
+            Some(second) => {
+                let gaps = detector.pair_gaps_at(contact.boat, second, trial);
+                gaps.into_iter().flatten().any(|gap| gap < -allowed)
+            }
+            None => detector.gap_at(contact, trial).gap < -allowed,
+        })
     }
 
     fn set_trial(&mut self, poses: &[Pose], velocities: &[Velocity], dt: f64) {
@@ -199,17 +210,23 @@ impl ContactResolver {
     ) {
         self.bounds.clear();
         self.bounds.extend(self.contacts.iter().map(|contact| {
-            let gap = contact.gap.gap;
+            let Gap { gap, bend, .. } = contact.gap;
+            let spin = free[contact.boat as usize].angular;
             // What recovery could not undo must not push.
-            if gap < self.deep { 0.0 } else { gap / dt }
+            if gap < self.deep {
+                0.0
+            } else {
+                gap / dt + 0.5 * bend * dt * spin * spin
+            }
         }));
         self.solver.begin(poses.len(), &self.contacts);
-        if self.solve(free, inertia, statistics) {
-            for _ in 0..self.relinearizations {
-                self.relinearize(poses, dt);
-                if !self.solve(free, inertia, statistics) {
+        let mut solved = self.solve(free, inertia, statistics);
+        if let Some(allowed) = self.allowed_overlap {
+            for _ in 0..MOST_PASSES {
+                if !solved || self.relinearize(poses, dt) <= allowed {
                     break;
                 }
+                solved = self.solve(free, inertia, statistics);
             }
         }
         self.remember_loads();
@@ -255,17 +272,51 @@ impl ContactResolver {
     }
 
     /// Sets the bounds so that the gaps at the substep's end, evaluated where the last solve moves the
-    /// boats, open to zero: the normals stay those of the substep's beginning, and so does the factor.
-    fn relinearize(&mut self, poses: &[Pose], dt: f64) {
+    /// boats, open to zero: the normals stay those of the substep's beginning, along which forces act,
+    /// and so does the factor. Returns the deepest overlap at the substep's end in cm.
+    fn relinearize(&mut self, poses: &[Pose], dt: f64) -> f64 {
         let velocities = std::mem::take(&mut self.solver.velocities);
         self.set_trial(poses, &velocities, dt);
+        let mut deepest = 0.0_f64;
         for (k, contact) in self.contacts.iter().enumerate() {
             if contact.gap.gap >= self.deep {
-                let end_gap = self.detector.gap_at(contact, &self.trial).gap;
+                let end_gap = self.end_gap(k);
+                deepest = deepest.max(-end_gap);
                 self.bounds[k] = end_gap / dt - contact.gap_rate(&velocities);
             }
         }
         self.solver.velocities = velocities;
+        deepest
+    }
+
+    /// The gap of contact k at the trial poses. Between two hulls the touch may have passed from one
+    /// end to the other without moving: a contact follows it, and the only contact of a pair stands
+    /// for the whole pair.
+    fn end_gap(&self, k: usize) -> f64 {
+        let contact = &self.contacts[k];
+        let own = |detector: &ContactDetector| detector.gap_at(contact, &self.trial).gap;
+        let (Some(second), 0 | 1) = (contact.second(), contact.feature) else {
+            return own(&self.detector);
+        };
+        let is_twin = |other: Option<&Contact>| {
+            other
+                .is_some_and(|other| (other.boat, other.partner) == (contact.boat, contact.partner))
+        };
+        let has_twin = is_twin(self.contacts.get(k + 1))
+            || is_twin(
+                k.checked_sub(1)
+                    .and_then(|before| self.contacts.get(before)),
+            );
+        let gaps = self
+            .detector
+            .pair_gaps_at(contact.boat, second, &self.trial);
+        let end = usize::from(contact.feature);
+        match (gaps[end], gaps[1 - end]) {
+            (Some(same), Some(other)) if !has_twin => same.min(other),
+            (Some(same), _) => same,
+            (None, Some(other)) if !has_twin => other,
+            (None, _) => own(&self.detector),
+        }
     }
 
     fn remember_loads(&mut self) {
