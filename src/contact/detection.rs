@@ -54,7 +54,8 @@ impl ContactDetector {
         self.neighbors
             .update(boats.iter().map(|boat| boat.center), distance, self.skin);
         for (boat, partners) in self.neighbors.groups() {
-            self.detect_walls(boat, &boats[boat as usize], margin, contacts);
+            // Of a boat and a wall only one moves.
+            self.detect_walls(boat, &boats[boat as usize], 0.5 * margin, contacts);
             for &partner in partners {
                 let (first, second) = (boat.min(partner), boat.max(partner));
                 let (a, b) = (&boats[first as usize], &boats[second as usize]);

@@ -15,7 +15,7 @@ const TOLERANCE: f64 = 1e-11;
 const PATIENCE: u32 = 5;
 
 /// The matrix, the factors of all islands, and the state of pivoting, row by row of the matrix.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct BlockPivoting {
     /// Added to the diagonal, relative to it, so that redundant contacts share their load.
     ridge: f64,
@@ -26,7 +26,8 @@ pub struct BlockPivoting {
     active: Vec<bool>,
     impulses: Vec<f64>,
     slacks: Vec<f64>,
-    /// Velocities of all boats and, last, of the walls.
+    /// Velocities of all boats and, last, of the walls: without contacts, and with.
+    free: Vec<Velocity>,
     velocities: Vec<Velocity>,
     wanted: Vec<u32>,
     places: Vec<u32>,
@@ -38,16 +39,7 @@ impl BlockPivoting {
     pub fn new(ridge: f64) -> Self {
         Self {
             ridge,
-            matrix: ContactMatrix::default(),
-            is_built: false,
-            factors: Vec::new(),
-            active: Vec::new(),
-            impulses: Vec::new(),
-            slacks: Vec::new(),
-            velocities: Vec::new(),
-            wanted: Vec::new(),
-            places: Vec::new(),
-            solution: Vec::new(),
+            ..Self::default()
         }
     }
 
@@ -71,16 +63,13 @@ impl BlockPivoting {
     ) -> SolveReport {
         self.load(problem, islands, active);
         let mut report = SolveReport::default();
-        let mut begin = 0;
         for island in 0..islands.len() {
-            let end = begin + islands.contacts(island).len();
-            self.solve_island(problem, island, begin..end, &mut report);
-            begin = end;
+            self.solve_island(island, islands.range(island), &mut report);
         }
-        for row in 0..begin {
-            let contact = self.matrix.contact(row);
-            active[contact] = self.active[row];
-            impulses[contact] = self.impulses[row];
+        let states = self.active.iter().zip(&self.impulses);
+        for (row, (&is_active, &impulse)) in self.matrix.rows().iter().zip(states) {
+            active[row.contact as usize] = is_active;
+            impulses[row.contact as usize] = impulse;
         }
         velocities.clear();
         velocities.extend_from_slice(&self.velocities[..problem.free.len()]);
@@ -93,36 +82,31 @@ impl BlockPivoting {
             self.matrix.build(problem, islands);
             self.is_built = true;
         }
-        self.matrix.set_right(problem);
-        let rows = active.len();
+        self.free.clear();
+        self.free.extend_from_slice(problem.free);
+        self.free.push(Velocity::default());
+        self.velocities.clone_from(&self.free);
+        self.matrix.set_right(problem, &self.free);
+        let rows = self.matrix.rows();
         self.active.clear();
         self.active
-            .extend((0..rows).map(|row| active[self.matrix.contact(row)]));
+            .extend(rows.iter().map(|row| active[row.contact as usize]));
         self.impulses.clear();
-        self.impulses.resize(rows, 0.0);
+        self.impulses.resize(rows.len(), 0.0);
         self.slacks.clear();
-        self.slacks.resize(rows, 0.0);
+        self.slacks.resize(rows.len(), 0.0);
         self.places.clear();
-        self.places.resize(rows, ABSENT);
-        self.velocities.clear();
-        self.velocities.extend_from_slice(problem.free);
-        self.velocities.push(Velocity::default());
+        self.places.resize(rows.len(), ABSENT);
     }
 
-    fn solve_island(
-        &mut self,
-        problem: &ContactProblem,
-        island: usize,
-        rows: Range<usize>,
-        report: &mut SolveReport,
-    ) {
+    fn solve_island(&mut self, island: usize, rows: Range<usize>, report: &mut SolveReport) {
         let most_rounds = 50 + 4 * rows.len();
         let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
         for _ in 0..most_rounds {
             report.iterations += 1;
-            report.factored_rows += self.solve_active(problem, island, rows.clone());
+            report.factored_rows += self.solve_active(island, rows.clone());
             let (mut violations, mut last) = self.count_violations(rows.clone());
-            if violations == 0 && self.refine(problem, island, rows.clone()) {
+            if violations == 0 && self.refine(island, rows.clone()) {
                 (violations, last) = self.count_violations(rows.clone());
             }
             if violations == 0 {
@@ -141,12 +125,12 @@ impl BlockPivoting {
             }
         }
         report.factor_entries += self.factors[island].len() as u64;
-        self.drop_negative(problem, rows.clone());
+        self.drop_negative(rows.clone());
         report.residual = self.worst_residual(rows, report.residual);
     }
 
     /// Impulses that close exactly the active gaps, and the slacks of all; returns factored rows.
-    fn solve_active(&mut self, problem: &ContactProblem, island: usize, rows: Range<usize>) -> u64 {
+    fn solve_active(&mut self, island: usize, rows: Range<usize>) -> u64 {
         self.wanted.clear();
         self.wanted.extend(
             rows.clone()
@@ -155,19 +139,18 @@ impl BlockPivoting {
         );
         let factor = &mut self.factors[island];
         let computed = factor.update(&self.matrix, &self.wanted, self.ridge, &mut self.places);
-        let right = self.matrix.right();
+        let right = |&row: &u32| -self.matrix.rows()[row as usize].right;
         self.solution.clear();
-        self.solution
-            .extend(self.wanted.iter().map(|&row| -right[row as usize]));
+        self.solution.extend(self.wanted.iter().map(right));
         factor.solve(&mut self.solution);
         self.impulses[rows.clone()].fill(0.0);
-        self.add_solution(problem, rows.clone());
+        self.add_solution(rows);
         computed
     }
 
     /// The ridge and rounding leave a remainder at the active contacts; another solve removes it. A
     /// softened problem is meant to give way. Returns whether there was anything to do.
-    fn refine(&mut self, problem: &ContactProblem, island: usize, rows: Range<usize>) -> bool {
+    fn refine(&mut self, island: usize, rows: Range<usize>) -> bool {
         let slack = |&row: &u32| self.slacks[row as usize];
         let worst = self
             .wanted
@@ -182,35 +165,45 @@ impl BlockPivoting {
         self.solution
             .extend(self.wanted.iter().map(slack).map(|slack| -slack));
         self.factors[island].solve(&mut self.solution);
-        self.add_solution(problem, rows);
+        self.add_solution(rows);
         true
     }
 
     /// Adds the solution to the impulses of the active rows, and brings slacks up to date.
-    fn add_solution(&mut self, problem: &ContactProblem, rows: Range<usize>) {
+    fn add_solution(&mut self, rows: Range<usize>) {
         for (&row, value) in self.wanted.iter().zip(&self.solution) {
             self.impulses[row as usize] += value;
         }
-        self.update_slacks(problem, rows);
+        self.update_slacks(rows);
     }
 
-    fn update_slacks(&mut self, problem: &ContactProblem, rows: Range<usize>) {
+    fn update_slacks(&mut self, rows: Range<usize>) {
         let Self {
             matrix,
             impulses,
+            free,
             velocities,
             slacks,
             ..
         } = self;
-        matrix.move_bodies(rows.clone(), impulses, problem.free, velocities);
-        matrix.slacks(rows, problem, velocities, slacks);
+        let (impulses, slacks) = (&impulses[rows.clone()], &mut slacks[rows.clone()]);
+        let rows = &matrix.rows()[rows];
+        rows.iter().for_each(|row| row.release(free, velocities));
+        for (row, &impulse) in rows.iter().zip(impulses) {
+            if impulse != 0.0 {
+                row.apply(impulse, velocities);
+            }
+        }
+        rows.iter()
+            .zip(slacks)
+            .for_each(|(row, slack)| *slack = row.slack(velocities));
     }
 
     /// Whether a contact pulls, or overlaps although it carries nothing.
     #[inline]
     fn is_violated(&self, row: usize) -> bool {
         if self.active[row] {
-            self.impulses[row] * self.matrix.diagonal()[row] < -TOLERANCE
+            self.impulses[row] * self.matrix.rows()[row].diagonal < -TOLERANCE
         } else {
             self.slacks[row] < -TOLERANCE
         }
@@ -218,15 +211,18 @@ impl BlockPivoting {
 
     /// How many contacts are violated, and the last of them.
     fn count_violations(&self, rows: Range<usize>) -> (usize, usize) {
-        let mut last = rows.start;
-        let violated = rows
-            .filter(|&row| self.is_violated(row))
-            .inspect(|&row| last = row);
-        (violated.count(), last)
+        let (mut count, mut last) = (0, rows.start);
+        for row in rows {
+            if self.is_violated(row) {
+                count += 1;
+                last = row;
+            }
+        }
+        (count, last)
     }
 
     /// Drops impulses that are negative by rounding.
-    fn drop_negative(&mut self, problem: &ContactProblem, rows: Range<usize>) {
+    fn drop_negative(&mut self, rows: Range<usize>) {
         let mut dropped = false;
         for row in rows.clone() {
             if self.impulses[row] < 0.0 {
@@ -236,7 +232,7 @@ impl BlockPivoting {
             }
         }
         if dropped {
-            self.update_slacks(problem, rows);
+            self.update_slacks(rows);
         }
     }
 
@@ -248,7 +244,7 @@ impl BlockPivoting {
             self.ridge
         };
         rows.fold(worst, |worst, row| {
-            let load = self.matrix.diagonal()[row] * self.impulses[row];
+            let load = self.matrix.rows()[row].diagonal * self.impulses[row];
             let residual = load.min(self.slacks[row] + softness * load).abs();
             if residual > worst || residual.is_nan() {
                 residual

@@ -92,7 +92,7 @@ impl EnvelopeFactor {
         self.members.push(row);
         self.first.push(first as u32);
         self.ends.push(self.values.len() as u32);
-        let diagonal = matrix.diagonal()[row as usize];
+        let diagonal = matrix.rows()[row as usize].diagonal;
         self.eliminate(place, diagonal * (1.0 + ridge), 0.5 * ridge * diagonal);
     }
 
@@ -141,21 +141,8 @@ impl EnvelopeFactor {
     }
 }
 
-/// Four running sums: the compiler may not reorder floating-point additions by itself.
+/// Rows are short (a boat touches few others): a plain running sum beats unrolled lanes.
 #[inline]
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    let (a_chunks, b_chunks) = (a.chunks_exact(4), b.chunks_exact(4));
-    let tail: f64 = a_chunks
-        .remainder()
-        .iter()
-        .zip(b_chunks.remainder())
-        .map(|(x, y)| x * y)
-        .sum();
-    for (x, y) in a_chunks.zip(b_chunks) {
-        for lane in 0..4 {
-            sums[lane] += x[lane] * y[lane];
-        }
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + tail
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

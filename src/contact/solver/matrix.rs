@@ -3,91 +3,93 @@
 use crate::boat::Velocity;
 use crate::contact::{ContactProblem, Islands};
 use crate::geometry::Vec2;
-use std::ops::Range;
 
 const NONE: u32 = u32::MAX;
 
-/// One row of J and of J·M⁻¹. A wall is body number n, at rest and immovable, so that all rows look
-/// alike.
+/// One row of J, of J·M⁻¹ and of A. A wall is body number n, at rest and immovable, so that all rows
+/// look alike.
 #[derive(Debug, Clone, Copy)]
-struct Row {
+pub struct Row {
+    /// The contact it belongs to.
+    pub contact: u32,
     bodies: [u32; 2],
     normal: Vec2,
     arms: [f64; 2],
     /// Inverse mass of each body, and arm over its moment of inertia.
     linear: [f64; 2],
     angular: [f64; 2],
+    /// A_kk.
+    pub diagonal: f64,
+    /// b_k = J_k·v_free + bound_k.
+    pub right: f64,
+    /// bound_k.
+    bound: f64,
+    /// The row before on either body.
+    before: [u32; 2],
+    /// Where its couplings begin and end.
+    couplings: [u32; 2],
 }
 
-/// A in rows of couplings to earlier contacts, with the right-hand side b.
+/// A in rows of couplings to earlier rows, with the right-hand side b.
 #[derive(Debug, Clone, Default)]
 pub struct ContactMatrix {
-    /// The contact that each row belongs to.
-    contacts: Vec<u32>,
     rows: Vec<Row>,
-    diagonal: Vec<f64>,
-    /// b = J·v_free + bound.
-    right: Vec<f64>,
-    starts: Vec<u32>,
     couplings: Vec<(u32, f64)>,
-    /// The last row on each body so far, and for each row the one before it on either body.
+    /// The last row on each body so far.
     last: Vec<u32>,
-    before: Vec<[u32; 2]>,
 }
 
 impl ContactMatrix {
     /// Lays out A for the contacts of a problem.
     pub fn build(&mut self, problem: &ContactProblem, islands: &Islands) {
-        let bodies = problem.free.len();
-        self.contacts.clear();
         self.rows.clear();
-        self.diagonal.clear();
         self.couplings.clear();
-        self.before.clear();
-        self.starts.clear();
-        self.starts.push(0);
         self.last.clear();
-        self.last.resize(bodies + 1, NONE);
-        for island in 0..islands.len() {
-            for &k in islands.contacts(island) {
-                self.push(problem, k, bodies);
-            }
+        self.last.resize(problem.free.len(), NONE);
+        for &k in islands.all_contacts() {
+            self.push(problem, k);
         }
     }
 
-    fn push(&mut self, problem: &ContactProblem, k: u32, wall: usize) {
+    fn push(&mut self, problem: &ContactProblem, k: u32) {
         let contact = &problem.contacts[k as usize];
         let gap = &contact.gap;
-        let (first, second) = (contact.boat as usize, contact.second());
-        let inertia = [Some(first), second].map(|body| body.map(|body| problem.inertia[body]));
-        let arms = [gap.arm_i, gap.arm_j];
-        let linear = inertia.map(|inertia| inertia.map_or(0.0, |inertia| inertia.linear));
-        let angular = [0, 1].map(|side| inertia[side].map_or(0.0, |i| i.angular * arms[side]));
-        let row = Row {
-            bodies: [first as u32, second.unwrap_or(wall) as u32],
-            normal: gap.normal,
-            arms,
-            linear,
-            angular,
-        };
+        let first = contact.boat as usize;
+        let own = &problem.inertia[first];
         let number = self.rows.len() as u32;
-        let mut before = [NONE; 2];
-        let sides = if second.is_some() { 2 } else { 1 };
-        for (side, before) in before.iter_mut().enumerate().take(sides) {
-            *before = std::mem::replace(&mut self.last[row.bodies[side] as usize], number);
-            self.couple(&row, side, *before);
+        let begin = self.couplings.len() as u32;
+        let mut row = Row {
+            contact: k,
+            bodies: [contact.boat, problem.free.len() as u32],
+            normal: gap.normal,
+            arms: [gap.arm_i, 0.0],
+            linear: [own.linear, 0.0],
+            angular: [own.angular * gap.arm_i, 0.0],
+            diagonal: own.linear + own.angular * gap.arm_i * gap.arm_i,
+            right: 0.0,
+            bound: 0.0,
+            before: [std::mem::replace(&mut self.last[first], number), NONE],
+            couplings: [begin; 2],
+        };
+        self.couple(&row, 0);
+        if let Some(second) = contact.second() {
+            let other = &problem.inertia[second];
+            row.bodies[1] = second as u32;
+            row.arms[1] = gap.arm_j;
+            row.linear[1] = other.linear;
+            row.angular[1] = other.angular * gap.arm_j;
+            row.diagonal += other.linear + other.angular * gap.arm_j * gap.arm_j;
+            row.before[1] = std::mem::replace(&mut self.last[second], number);
+            self.couple(&row, 1);
         }
-        self.diagonal
-            .push(linear[0] + linear[1] + arms[0] * angular[0] + arms[1] * angular[1]);
-        self.contacts.push(k);
+        row.couplings[1] = self.couplings.len() as u32;
         self.rows.push(row);
-        self.before.push(before);
-        self.starts.push(self.couplings.len() as u32);
     }
 
-    /// Couplings of a new row through one of its bodies, to the rows from `last` back.
-    fn couple(&mut self, row: &Row, side: usize, mut last: u32) {
+    /// Couplings of a new row to earlier ones, through one of its bodies.
+    fn couple(&mut self, row: &Row, side: usize) {
         let body = row.bodies[side];
+        let mut last = row.before[side];
         while let Some(other) = self.rows.get(last as usize) {
             let other_side = usize::from(other.bodies[0] != body);
             let coupling = row.normal.dot(&other.normal) * row.linear[side]
@@ -98,86 +100,57 @@ impl ContactMatrix {
                 -coupling
             };
             self.couplings.push((last, signed));
-            last = self.before[last as usize][other_side];
+            last = other.before[other_side];
         }
     }
 
-    /// Works out b for free velocities and bounds.
-    pub fn set_right(&mut self, problem: &ContactProblem) {
-        self.right.clear();
-        let slacks = self
-            .contacts
-            .iter()
-            .map(|&k| problem.slack(k as usize, problem.free));
-        self.right.extend(slacks);
+    /// Takes on bounds and works out b.
+    pub fn set_right(&mut self, problem: &ContactProblem, free: &[Velocity]) {
+        for row in &mut self.rows {
+            row.bound = problem.bounds[row.contact as usize];
+            row.right = row.slack(free);
+        }
     }
 
-    /// The contact that a row belongs to.
-    pub fn contact(&self, row: usize) -> usize {
-        self.contacts[row] as usize
-    }
-
-    /// A_kk of every row.
-    pub fn diagonal(&self) -> &[f64] {
-        &self.diagonal
-    }
-
-    /// b of every row.
-    pub fn right(&self) -> &[f64] {
-        &self.right
+    /// All rows, island by island.
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
     }
 
     /// Off-diagonal entries to earlier rows, one for every shared body.
     pub fn couplings(&self, row: usize) -> &[(u32, f64)] {
-        &self.couplings[self.starts[row] as usize..self.starts[row + 1] as usize]
+        let [begin, end] = self.rows[row].couplings;
+        &self.couplings[begin as usize..end as usize]
+    }
+}
+
+impl Row {
+    /// w_k = J_k·v + bound_k for velocities of all boats and, last, of the walls.
+    #[inline]
+    pub fn slack(&self, velocities: &[Velocity]) -> f64 {
+        let [first, second] = self.bodies.map(|body| &velocities[body as usize]);
+        self.normal.dot(&(first.linear - second.linear)) + self.arms[0] * first.angular
+            - self.arms[1] * second.angular
+            + self.bound
     }
 
-    /// Velocities, the wall's last, that impulses give to the bodies of a range of rows.
-    pub fn move_bodies(
-        &self,
-        rows: Range<usize>,
-        impulses: &[f64],
-        free: &[Velocity],
-        velocities: &mut [Velocity],
-    ) {
-        for row in &self.rows[rows.clone()] {
-            for body in row.bodies {
-                if let Some(velocity) = free.get(body as usize) {
-                    velocities[body as usize] = *velocity;
-                }
-            }
-        }
-        for (row, &impulse) in self.rows[rows.clone()].iter().zip(&impulses[rows]) {
-            if impulse != 0.0 {
-                let first = &mut velocities[row.bodies[0] as usize];
-                first.linear += row.normal * (impulse * row.linear[0]);
-                first.angular += impulse * row.angular[0];
-                let second = &mut velocities[row.bodies[1] as usize];
-                second.linear -= row.normal * (impulse * row.linear[1]);
-                second.angular -= impulse * row.angular[1];
-            }
+    /// Gives the row's bodies their free velocities back.
+    #[inline]
+    pub fn release(&self, free: &[Velocity], velocities: &mut [Velocity]) {
+        for body in self.bodies {
+            velocities[body as usize] = free[body as usize];
         }
     }
 
-    /// w = A·λ + b of a range of rows, through velocities and their free counterparts.
-    pub fn slacks(
-        &self,
-        rows: Range<usize>,
-        problem: &ContactProblem,
-        velocities: &[Velocity],
-        slacks: &mut [f64],
-    ) {
-        let contacts = &self.contacts[rows.clone()];
-        for ((row, slack), &k) in self.rows[rows.clone()]
-            .iter()
-            .zip(&mut slacks[rows])
-            .zip(contacts)
-        {
-            let first = &velocities[row.bodies[0] as usize];
-            let second = &velocities[row.bodies[1] as usize];
-            *slack = row.normal.dot(&(first.linear - second.linear)) + row.arms[0] * first.angular
-                - row.arms[1] * second.angular
-                + problem.bounds[k as usize];
-        }
+    /// Changes velocities by an impulse.
+    #[inline]
+    pub fn apply(&self, impulse: f64, velocities: &mut [Velocity]) {
+        let [first, second] = self.bodies;
+        let velocity = &mut velocities[first as usize];
+        velocity.linear += self.normal * (impulse * self.linear[0]);
+        velocity.angular += impulse * self.angular[0];
+        let velocity = &mut velocities[second as usize];
+        velocity.linear -= self.normal * (impulse * self.linear[1]);
+        velocity.angular -= impulse * self.angular[1];
     }
 }
