@@ -1,7 +1,7 @@
 //! From free velocities to velocities that respect the contacts: detection, warm start, solve,
 //! relinearisation, and what to do where the constraints contradict each other.
 
-use super::contact::ContactKey;
+use super::loads::{Load, Loads};
 use super::recovery::{DEEP, Recovery};
 use super::solver::ContactSolver;
 use super::{Contact, ContactDetector, ContactProblem, InverseInertia};
@@ -9,9 +9,6 @@ use crate::boat::{Pose, Velocity};
 use crate::geometry::{Gap, HullPose, Vec2};
 use crate::parameters::{FlockParameters, Scheme, Solver};
 use crate::statistics::Statistics;
-
-/// A contact that carried an impulse in the last substep, and the impulse in cm/s.
-pub type Load = (ContactKey, f64);
 
 /// Relinearisation passes after which a substep is taken as it is.
 const MOST_PASSES: u32 = 20;
@@ -26,7 +23,7 @@ pub struct ContactResolver {
     /// Whether each contact carried an impulse in the substep before.
     lasting: Vec<bool>,
     /// Contacts that carried an impulse, in the order of detection.
-    loads: Vec<Load>,
+    loads: Loads,
     recovery: Option<Box<Recovery>>,
     trial: Vec<HullPose>,
     /// Overlap in cm at a substep's end that relinearisation stops at; `None` without it.
@@ -45,7 +42,7 @@ impl ContactResolver {
             contacts: Vec::new(),
             bounds: Vec::new(),
             lasting: Vec::new(),
-            loads: Vec::new(),
+            loads: Loads::default(),
             recovery: None,
             trial: Vec::new(),
             allowed_overlap: [None, Some(1e-6), Some(1e-9)]
@@ -83,12 +80,12 @@ impl ContactResolver {
 
     /// Contacts that carried an impulse in the last substep.
     pub fn loads(&self) -> &[Load] {
-        &self.loads
+        self.loads.as_slice()
     }
 
     /// Puts back what [`Self::loads`] gave.
     pub fn set_loads(&mut self, loads: Vec<Load>) {
-        self.loads = loads;
+        self.loads.replace(loads.into_iter());
     }
 
     /// Forgets contacts and loads: the poses have been set from outside.
@@ -119,7 +116,7 @@ impl ContactResolver {
         }
         statistics.contacts += self.contacts.len() as u64;
         statistics.neighbor_builds = self.detector.neighbors.builds();
-        self.recall_loads();
+        self.recall_loads(poses.len());
         !self.contacts.is_empty()
     }
 
@@ -133,36 +130,18 @@ impl ContactResolver {
     }
 
     /// Guesses that contacts which carried an impulse still do.
-    fn recall_loads(&mut self) {
-        let Self {
-            contacts,
-            solver,
-            loads,
-            lasting,
-            ..
-        } = self;
-        solver.impulses.clear();
-        solver.impulses.resize(contacts.len(), 0.0);
-        // Both lists follow the order of detection, unless a load vanished or the order changed.
-        let mut next = 0;
-        for (contact, impulse) in contacts.iter().zip(&mut solver.impulses) {
-            if let Some((key, load)) = loads.get(next)
-                && *key == contact.key()
-            {
-                *impulse = *load;
-                next += 1;
-            }
-        }
-        if next < loads.len() {
-            loads.sort_unstable_by_key(|(key, _)| *key);
-            for (contact, impulse) in contacts.iter().zip(&mut solver.impulses) {
-                let found = loads.binary_search_by_key(&contact.key(), |(key, _)| *key);
-                *impulse = found.map_or(0.0, |place| loads[place].1);
-            }
-        }
-        lasting.clear();
-        lasting.extend(solver.impulses.iter().map(|&impulse| impulse > 0.0));
-        solver.active.clone_from(lasting);
+    fn recall_loads(&mut self, boats: usize) {
+        self.loads.index(boats);
+        self.solver.impulses.clear();
+        self.solver.impulses.extend(
+            self.contacts
+                .iter()
+                .map(|contact| self.loads.recall(contact.key())),
+        );
+        self.lasting.clear();
+        self.lasting
+            .extend(self.solver.impulses.iter().map(|&impulse| impulse > 0.0));
+        self.solver.active.clone_from(&self.lasting);
     }
 
     /// Whether moving with these velocities for `dt` overlaps anything found last by more than `allowed`.
@@ -229,7 +208,9 @@ impl ContactResolver {
                 solved = self.solve(free, inertia, statistics);
             }
         }
-        self.remember_loads();
+        let impulses = self.solver.impulses.iter().copied();
+        self.loads
+            .replace(self.contacts.iter().map(Contact::key).zip(impulses));
     }
 
     fn solve(
@@ -316,15 +297,6 @@ impl ContactResolver {
             (Some(same), _) => same,
             (None, Some(other)) if !has_twin => other,
             (None, _) => own(&self.detector),
-        }
-    }
-
-    fn remember_loads(&mut self) {
-        self.loads.clear();
-        for (contact, &impulse) in self.contacts.iter().zip(&self.solver.impulses) {
-            if impulse > 0.0 {
-                self.loads.push((contact.key(), impulse));
-            }
         }
     }
 
