@@ -1,7 +1,7 @@
 //! Everything that one substep reads and writes: poses, velocities, what drives them, contacts.
 
 use crate::boat::{Drive, FreeMotion, Pose, Velocity, misalignment, steering_law};
-use crate::contact::{ContactResolver, InverseInertia};
+use crate::contact::{ContactResolver, InverseInertia, Load};
 use crate::geometry::{HullPose, Vec2, turned_left};
 use crate::parameters::{FlockParameters, Noise, Scheme, Target};
 use crate::phase_schedule::{Phase, Ticks, seconds};
@@ -43,6 +43,25 @@ pub struct LastSubstep {
     pub rudder: Option<Vec<f64>>,
     /// Linear acceleration of each boat by contacts that are likely to last; empty for none.
     pub lasting_acceleration: Vec<Vec2>,
+}
+
+/// All that decides how the motion goes on, apart from parameters, seed and time.
+#[derive(Debug, Clone)]
+pub struct Checkpoint {
+    /// Poses of all boats.
+    pub poses: Vec<Pose>,
+    /// Velocities of all boats.
+    pub velocities: Vec<Velocity>,
+    /// What leapfrog remembers.
+    pub last: LastSubstep,
+    /// Contacts that carried an impulse in the last substep.
+    pub loads: Vec<Load>,
+    /// Centres that the neighbour list was built from, and within which distance.
+    pub neighbor_reference: (Vec<Vec2>, f64),
+    /// Length of the last kick in s.
+    pub kick_s: f64,
+    /// Running totals.
+    pub statistics: Statistics,
 }
 
 /// State and working memory of a flock's motion.
@@ -119,6 +138,34 @@ impl Dynamics {
         self.kick_s = 0.0;
         self.contacts.forget();
         self.update_boats();
+    }
+
+    /// The motion as it is, to return to.
+    pub fn checkpoint(&self) -> Checkpoint {
+        let neighbors = self.contacts.neighbors();
+        Checkpoint {
+            poses: self.poses.clone(),
+            velocities: self.velocities.clone(),
+            last: self.last.clone(),
+            loads: self.contacts.loads().to_vec(),
+            neighbor_reference: (neighbors.reference().to_vec(), neighbors.cutoff()),
+            kick_s: self.kick_s,
+            statistics: self.statistics,
+        }
+    }
+
+    /// Goes on from a checkpoint, bit for bit.
+    pub fn return_to(&mut self, checkpoint: Checkpoint) {
+        self.place(&checkpoint.poses, &checkpoint.velocities);
+        self.last = checkpoint.last;
+        self.contacts.set_loads(checkpoint.loads);
+        let (reference, cutoff) = checkpoint.neighbor_reference;
+        self.contacts
+            .detector()
+            .neighbors
+            .restore(reference, cutoff);
+        self.kick_s = checkpoint.kick_s;
+        self.statistics = checkpoint.statistics;
     }
 
     /// Works out the direction vectors of the poses.

@@ -2,7 +2,7 @@
 
 use crate::boat::{Pose, Velocity};
 use crate::contact::{Contact, Partner};
-use crate::dynamics::{Dynamics, LastSubstep, Steering, Substep};
+use crate::dynamics::{Checkpoint, Dynamics, LastSubstep, Steering, Substep};
 use crate::error::{FlockError, Result};
 use crate::geometry::Vec2;
 use crate::order_parameters::OrderParameters;
@@ -240,11 +240,7 @@ impl Flock {
     /// # Errors
     /// [`FlockError::Solver`] if numbers left the finite range; the flock is unchanged then.
     pub fn advance_to(&mut self, end: Ticks, steering: Steering) -> Result<()> {
-        let before = (
-            self.dynamics.poses.clone(),
-            self.dynamics.velocities.clone(),
-            self.time,
-        );
+        let before = (self.dynamics.checkpoint(), self.time);
         let dt = ticks(self.parameters.dt_s);
         while self.time < end {
             let moment = self.schedule.at(self.time);
@@ -261,9 +257,8 @@ impl Flock {
         if self.dynamics.is_finite() {
             return Ok(());
         }
-        let (poses, velocities, time) = before;
-        self.dynamics.place(&poses, &velocities);
-        self.time = time;
+        self.dynamics.return_to(before.0);
+        self.time = before.1;
         Err(FlockError::Solver(
             "the motion left the range of finite numbers; smaller dt_s or milder constants may help"
                 .to_owned(),
@@ -309,23 +304,21 @@ impl Flock {
 
     /// The whole state as bytes.
     pub fn snapshot(&self) -> Vec<u8> {
-        let d = &self.dynamics;
-        let mut contacts = d.contacts.clone();
-        let loads = contacts.loads().to_vec();
-        let neighbors = &contacts.detector().neighbors;
+        let state = self.dynamics.checkpoint();
         let pairs = |vectors: &[Vec2]| vectors.iter().map(|v| [v.x, v.y]).collect::<Vec<_>>();
+        let (reference, cutoff) = &state.neighbor_reference;
         Snapshot {
             parameters: self.parameters.clone(),
             seed: self.seed,
             time: self.time,
-            poses: d.poses.clone(),
-            velocities: d.velocities.clone(),
-            loads,
-            neighbor_reference: (pairs(neighbors.reference()), neighbors.cutoff()),
-            last_substep: (d.last.length, d.last.phase, d.last.rudder.clone()),
-            lasting_acceleration: pairs(&d.last.lasting_acceleration),
-            kick_s: d.kick_s,
-            statistics: d.statistics,
+            neighbor_reference: (pairs(reference), *cutoff),
+            last_substep: (state.last.length, state.last.phase, state.last.rudder),
+            lasting_acceleration: pairs(&state.last.lasting_acceleration),
+            poses: state.poses,
+            velocities: state.velocities,
+            loads: state.loads,
+            kick_s: state.kick_s,
+            statistics: state.statistics,
         }
         .to_bytes()
     }
@@ -364,24 +357,22 @@ impl Flock {
         };
         let mut flock = Self::unplaced(snapshot.parameters, snapshot.seed);
         flock.time = snapshot.time;
-        let d = &mut flock.dynamics;
-        d.place(&snapshot.poses, &snapshot.velocities);
-        d.contacts.set_loads(snapshot.loads);
         let (reference, cutoff) = snapshot.neighbor_reference;
-        d.contacts
-            .detector()
-            .neighbors
-            .restore(vectors(reference), cutoff);
         let (length, phase, rudder) = snapshot.last_substep;
-        let lasting_acceleration = vectors(snapshot.lasting_acceleration);
-        d.last = LastSubstep {
-            length,
-            phase,
-            rudder,
-            lasting_acceleration,
-        };
-        d.kick_s = snapshot.kick_s;
-        d.statistics = snapshot.statistics;
+        flock.dynamics.return_to(Checkpoint {
+            poses: snapshot.poses,
+            velocities: snapshot.velocities,
+            last: LastSubstep {
+                length,
+                phase,
+                rudder,
+                lasting_acceleration: vectors(snapshot.lasting_acceleration),
+            },
+            loads: snapshot.loads,
+            neighbor_reference: (vectors(reference), cutoff),
+            kick_s: snapshot.kick_s,
+            statistics: snapshot.statistics,
+        });
         Ok(flock)
     }
 }

@@ -2,7 +2,7 @@
 //! is in nor on the number of threads.
 
 use crate::dynamics::Steering;
-use crate::error::Result;
+use crate::error::{FlockError, Result};
 use crate::flock::Flock;
 use crate::parameters::FlockParameters;
 use crate::phase_schedule::Ticks;
@@ -54,6 +54,7 @@ impl FlockBatch {
     /// A bad rudder refuses the whole step before anything moves. A flock whose numbers left the finite
     /// range is as it was before, and its error is returned after the others have moved.
     pub fn advance(&mut self, duration: Ticks, rudders: Option<&[f64]>) -> Result<()> {
+        self.check_rudder_count(rudders)?;
         let mut begin = 0;
         let mut steerings = Vec::with_capacity(self.flocks.len());
         for flock in &self.flocks {
@@ -67,6 +68,21 @@ impl FlockBatch {
             .par_iter_mut()
             .zip(steerings)
             .map(|(flock, steering)| flock.advance_to(flock.time() + duration, steering))
+            // A vector first: collecting into a result would stop at the first error.
+            .collect::<Vec<Result<()>>>()
+            .into_iter()
             .collect()
+    }
+
+    fn check_rudder_count(&self, rudders: Option<&[f64]>) -> Result<()> {
+        let leaders: usize = self.flocks.iter().map(|f| f.parameters().n_leaders).sum();
+        match rudders {
+            Some(commands) if commands.len() != leaders => Err(FlockError::Shape {
+                field: "rudder",
+                found: format!("({},)", commands.len()),
+                expected: format!("({leaders},), one a leader of every flock"),
+            }),
+            _ => Ok(()),
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! Which contacts carried an impulse in the last substep: the guess for the next one.
 
+use super::Contact;
 use super::contact::ContactKey;
 
 /// A contact that carried an impulse, and the impulse in cm/s.
@@ -45,15 +46,25 @@ impl Loads {
         }
     }
 
-    /// The impulse that a contact carried; 0 if it carried none.
-    pub fn recall(&self, key: ContactKey) -> f64 {
-        let mut place = self.of_boat[key.0 as usize];
+    /// The impulse that contact k carried; 0 if it carried none. Where an end slides off the other
+    /// hull's end onto its side, a contact changes its name and goes on: it inherits the load of a
+    /// contact between the same boats that is there no more.
+    pub fn recall(&self, contacts: &[Contact], k: usize) -> f64 {
+        let contact = &contacts[k];
+        // A pair has at most two contacts, which are found one after the other.
+        let near = &contacts[k.saturating_sub(1)..(k + 2).min(contacts.len())];
+        let mut inherited = 0.0;
+        let mut place = self.of_boat[contact.boat as usize];
         while let Some(&(known, impulse)) = self.loads.get(place as usize) {
-            if known == key {
+            if known == contact.key() {
                 return impulse;
+            }
+            let same_boats = contact.second().is_some() && known.1 == contact.partner;
+            if same_boats && near.iter().all(|other| other.key() != known) {
+                inherited = impulse;
             }
             place = self.before[place as usize];
         }
-        0.0
+        inherited
     }
 }

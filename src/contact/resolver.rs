@@ -6,7 +6,7 @@ use super::recovery::{DEEP, Recovery};
 use super::solver::ContactSolver;
 use super::{Contact, ContactDetector, ContactProblem, InverseInertia};
 use crate::boat::{Pose, Velocity};
-use crate::geometry::{Gap, HullPose, Vec2};
+use crate::geometry::{Gap, HullPose, NeighborList, Vec2};
 use crate::parameters::{FlockParameters, Scheme, Solver};
 use crate::statistics::Statistics;
 
@@ -78,6 +78,11 @@ impl ContactResolver {
         &mut self.detector
     }
 
+    /// Candidate pairs of the scene.
+    pub fn neighbors(&self) -> &NeighborList {
+        &self.detector.neighbors
+    }
+
     /// Contacts that carried an impulse in the last substep.
     pub fn loads(&self) -> &[Load] {
         self.loads.as_slice()
@@ -107,6 +112,7 @@ impl ContactResolver {
         statistics: &mut Statistics,
     ) -> bool {
         let margin = self.detector.margin(velocities, dt);
+        let builds_before = self.detector.neighbors.builds();
         self.detector.detect(boats, margin, &mut self.contacts);
         let smallest = self.contacts.iter().map(|c| c.gap.gap).fold(0.0, f64::min);
         statistics.worst_overlap_cm = statistics.worst_overlap_cm.max(-smallest);
@@ -115,7 +121,7 @@ impl ContactResolver {
             self.detector.detect(boats, margin, &mut self.contacts);
         }
         statistics.contacts += self.contacts.len() as u64;
-        statistics.neighbor_builds = self.detector.neighbors.builds();
+        statistics.neighbor_builds += self.detector.neighbors.builds() - builds_before;
         self.recall_loads(poses.len());
         !self.contacts.is_empty()
     }
@@ -133,11 +139,8 @@ impl ContactResolver {
     fn recall_loads(&mut self, boats: usize) {
         self.loads.index(boats);
         self.solver.impulses.clear();
-        self.solver.impulses.extend(
-            self.contacts
-                .iter()
-                .map(|contact| self.loads.recall(contact.key())),
-        );
+        let recalled = (0..self.contacts.len()).map(|k| self.loads.recall(&self.contacts, k));
+        self.solver.impulses.extend(recalled);
         self.lasting.clear();
         self.lasting
             .extend(self.solver.impulses.iter().map(|&impulse| impulse > 0.0));
@@ -300,9 +303,10 @@ impl ContactResolver {
         }
     }
 
-    /// Drops the loads: nothing touched in this substep.
+    /// Drops the loads: nothing touched in this substep, and nothing near carried an impulse.
     pub fn clear_loads(&mut self) {
         self.loads.clear();
+        self.solver.impulses.fill(0.0);
     }
 
     /// Adds to each boat the linear acceleration from contacts that carried an impulse both in this

@@ -9,6 +9,10 @@ use super::moreau::explicit_velocities;
 use crate::dynamics::{Dynamics, Substep};
 use crate::phase_schedule::seconds;
 
+/// Overlap (cm) that no tolerance tells from touching: what a solver's residual of 1e-10 cm/s leaves in
+/// a substep, with room for a row of boats.
+const ROUNDING: f64 = 1e-10;
+
 /// One step of the appendix.
 pub fn paper(flock: &mut Dynamics, substep: &Substep) {
     let dt = seconds(substep.length);
@@ -32,7 +36,8 @@ pub fn paper(flock: &mut Dynamics, substep: &Substep) {
     } = flock;
     // The displacement that minimises (A.4) is dt times the velocity nearest to the old one.
     let near = contacts.find(poses, boats, velocities, dt, statistics);
-    if near && contacts.overlaps_after(poses, velocities, dt, parameters.overlap_tolerance_cm) {
+    let allowed = parameters.overlap_tolerance_cm.max(ROUNDING);
+    if near && contacts.overlaps_after(poses, velocities, dt, allowed) {
         contacts.resolve(poses, velocities, inertia, dt, statistics);
         flock
             .velocities

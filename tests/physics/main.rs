@@ -1,1 +1,13 @@
-//! The laws of the physics, one file per law.
+//! The laws of the physics, one file a law: each opens with the law it checks and starts with a case
+//! whose answer is known on paper. Slow tests are ignored by default: `cargo test -- --ignored`.
+
+mod support;
+
+mod conservation;
+mod determinism;
+mod free_motion;
+mod geometry;
+mod impact;
+mod pushing;
+mod steady_turning;
+mod symmetry;

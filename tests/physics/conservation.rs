@@ -1,0 +1,180 @@
+//! Contacts act between two bodies along one line: in open water momentum and angular momentum are
+//! conserved. They are plastic: no impact adds energy.
+//!
+//! On paper: two boats that meet head on with opposite speeds stop, with nothing left of either.
+
+use crate::support::{
+    OPEN_WATER, R, SCHEMES, VELOCITY_SCHEMES, angular_momentum, core_distance, deepest_overlap,
+    disc, flock_of, inert, kinetic_energy, momentum, take_substeps,
+};
+use flockenv::boat::{Pose, Velocity};
+use flockenv::contact::Partner;
+use flockenv::parameters::{Pool, Scheme};
+use flockenv::{Flock, FlockParameters};
+use proptest::prelude::*;
+
+#[test]
+fn opposite_momenta_cancel() {
+    for scheme in SCHEMES {
+        let states = [
+            ([0.0, 0.0, 0.0], [9.0, 0.0, 0.0]),
+            ([15.0, 0.0, 0.0], [-9.0, 0.0, 0.0]),
+        ];
+        let mut flock = flock_of(&inert(scheme), &states);
+        take_substeps(&mut flock, 10);
+        assert!(momentum(&flock).norm() < 1e-12);
+        assert!(kinetic_energy(&flock) < 1e-20);
+    }
+}
+
+/// A flock placed at random with random velocities up to `speed` in each component.
+fn scattered(p: &FlockParameters, n_boats: usize, seed: u64, speed: f64) -> Flock {
+    let p = FlockParameters {
+        n_boats,
+        ..p.clone()
+    };
+    let mut flock = Flock::new(p, seed).expect("the pool holds the flock");
+    let poses = flock.poses().to_vec();
+    // A fixed recipe in place of a generator: irrational steps around the circle.
+    let velocities: Vec<Velocity> = (0..n_boats)
+        .map(|i| {
+            let phase = 2.399_963 * (i as f64 + seed as f64 * 0.618);
+            let pace = speed * (0.3 + 0.7 * (0.755 * i as f64).fract());
+            Velocity::new(pace * phase.cos(), pace * phase.sin(), (3.0 * phase).sin())
+        })
+        .collect();
+    flock
+        .set_state(&poses, &velocities, 0.0, false)
+        .expect("as placed");
+    flock
+}
+
+/// Boats in open water drawn together towards the middle, so that they collide there.
+fn imploding(scheme: Scheme, n_boats: usize, seed: u64) -> Flock {
+    let p = FlockParameters {
+        pool: OPEN_WATER,
+        ..inert(scheme)
+    };
+    let mut flock = scattered(&p, n_boats, seed, 3.0);
+    let poses = flock.poses().to_vec();
+    let velocities: Vec<Velocity> = flock
+        .velocities()
+        .iter()
+        .zip(&poses)
+        .map(|(v, p)| Velocity {
+            linear: v.linear - p.position * 0.5,
+            ..*v
+        })
+        .collect();
+    flock
+        .set_state(&poses, &velocities, 0.0, false)
+        .expect("as placed");
+    flock
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    #[test]
+    fn momentum_and_angular_momentum_are_conserved(seed in 0_u64..1000, n in 2_usize..24) {
+        for scheme in SCHEMES {
+            let mut flock = imploding(scheme, n, seed);
+            let (before, spin_before) = (momentum(&flock), angular_momentum(&flock));
+            take_substeps(&mut flock, 250);
+            prop_assert!(flock.statistics().solves > 0 || n < 4);
+            // Rounding: some 1e4 impulses of order 100 cm/s, and lever arms of 100 cm.
+            prop_assert!((momentum(&flock) - before).norm() < 1e-9);
+            // The pushing of poses out of deep overlaps moves boats without momentum.
+            if flock.statistics().recovery_passes == 0 {
+                prop_assert!((angular_momentum(&flock) - spin_before).abs() < 1e-7);
+            }
+        }
+    }
+
+    #[test]
+    fn no_impact_adds_energy(seed in 0_u64..1000, n in 2_usize..28) {
+        // Without drag, so that nothing hides a gain. Where hulls overlap by rounding or by what the
+        // linearisation leaves, gaps g < 0 have to open, and a flank that turns by dt·ω on the inner
+        // wall has to lift off by (R_in + r)·(dt·ω)²/2: with v⁺ = v⁻ + M⁻¹·Jᵀ·λ the energy changes by
+        // λ·J·v⁺ − λ·A·λ/2 ≤ Σλ·(−g + lift)/dt, and by nothing more.
+        for scheme in VELOCITY_SCHEMES {
+            let p = FlockParameters { pool: Pool::TABLE_1, ..inert(scheme) };
+            let mut flock = scattered(&p, n, seed, 12.0);
+            let start = kinetic_energy(&flock);
+            let mut before = start;
+            for step in 0..150 {
+                let spins = flock.velocities().iter().map(|v| v.angular.abs());
+                let turn = 0.02 * spins.fold(0.0, f64::max);
+                let lift = 0.5 * (p.pool.inner_radius_cm + R + 1e-2) * turn * turn;
+                let overlap = deepest_overlap(&flock);
+                take_substeps(&mut flock, 1);
+                let kick = if step == 0 && scheme == Scheme::Leapfrog { 0.01 } else { 0.02 };
+                let contacts = flock.contacts();
+                let impulses: f64 = contacts.iter().map(|c| c.force * kick).sum();
+                let lifting = contacts.iter().filter(|c| c.contact.partner == Partner::InnerWall);
+                let lifting: f64 = lifting.map(|c| c.force * kick).sum();
+                let now = kinetic_energy(&flock);
+                let most = before * (1.0 + 1e-13) + (impulses * overlap + lifting * lift) / 0.02;
+                prop_assert!(now <= most, "{scheme:?}: {before} to {now}, at most {most}");
+                prop_assert!(now <= start * (1.0 + 1e-13));
+                before = now;
+            }
+        }
+    }
+
+    #[test]
+    fn hulls_stay_apart(seed in 0_u64..1000, n in 2_usize..28) {
+        // Overlap after a substep is what the linearisation leaves: at most |d²gap/dt²|·dt²/2. A core
+        // end moves at 60 cm/s at the very most here, past something of radius 10 cm or more.
+        for scheme in VELOCITY_SCHEMES {
+            let p = FlockParameters { pool: Pool::TABLE_1, ..inert(scheme) };
+            let mut flock = scattered(&p, n, seed, 12.0);
+            for _ in 0..30 {
+                take_substeps(&mut flock, 5);
+                let bound = 0.5 * 60.0_f64.powi(2) / (2.0 * R) * 0.02_f64.powi(2);
+                prop_assert!(deepest_overlap(&flock) < bound);
+                for (i, a) in flock.poses().iter().enumerate() {
+                    for b in &flock.poses()[..i] {
+                        prop_assert!(core_distance(a, b, 2.5) > 2.0 * R - bound);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_lone_boat_keeps_its_energy_along_a_round_wall_but_for_the_chords() {
+    // A disc that slides inside a circle of radius Q turns by δ = v·dt/Q a substep. The first chord
+    // leaves the circle by Q·δ²/2; from then on the wall turns an outward δ·v/2 into an inward one on
+    // each chord, which costs nothing. So v² shrinks by 1 − δ² + δ²/4 once, and by O(δ⁴) a substep.
+    for scheme in VELOCITY_SCHEMES {
+        let p = FlockParameters {
+            pool: disc(90.0),
+            boat_shape: 0.0,
+            ..inert(scheme)
+        };
+        let mut flock = flock_of(&p, &[([85.0, 0.0, 0.0], [0.0, 10.0, 0.0])]);
+        take_substeps(&mut flock, 500);
+        let delta: f64 = 10.0 * 0.02 / 85.0;
+        let expected = 50.0 * (1.0 - 0.75 * delta * delta);
+        let kept = kinetic_energy(&flock);
+        let slack = 50.0 * 500.0 * delta.powi(4);
+        assert!((kept - expected).abs() < slack, "{kept} {expected}");
+        assert!(kept < 50.0);
+        let at = flock.poses()[0].position.norm();
+        assert!((at - 85.0).abs() < 85.0 * delta * delta);
+    }
+}
+
+#[test]
+fn poses_reported_are_finite_and_inside() {
+    let p = FlockParameters {
+        pool: Pool::TABLE_1,
+        ..inert(Scheme::Leapfrog)
+    };
+    let mut flock = scattered(&p, 27, 5, 15.0);
+    take_substeps(&mut flock, 500);
+    let inside = |p: &Pose| (48.5..90.0).contains(&p.position.norm());
+    assert!(flock.poses().iter().all(|p| p.is_finite() && inside(p)));
+}

@@ -1,0 +1,206 @@
+//! The same seed gives the same bits: at any thread count, in any batch size, through a snapshot, on
+//! and off the grid of substeps.
+//!
+//! On paper: nothing, zero bits of difference.
+
+use crate::support::{NOISES, SCHEMES, bits};
+use flockenv::parameters::{Noise, Pool, Preset, Scheme, Solver, Target};
+use flockenv::phase_schedule::ticks;
+use flockenv::{Flock, FlockBatch, FlockParameters};
+
+/// A crowded scene with leaders, noise and contacts; phases switch off the grid of dt.
+fn busy(scheme: Scheme, noise: Noise) -> FlockParameters {
+    FlockParameters {
+        n_boats: 27,
+        n_leaders: 3,
+        pool: Pool::TABLE_1,
+        scheme,
+        noise,
+        fw_s: 0.713,
+        nop1_s: 0.2,
+        bw_s: 0.305,
+        nop2_s: 0.1,
+        ..FlockParameters::preset(Preset::Simulation)
+    }
+}
+
+fn all_kinds() -> impl Iterator<Item = FlockParameters> {
+    SCHEMES
+        .into_iter()
+        .flat_map(|scheme| NOISES.into_iter().map(move |noise| busy(scheme, noise)))
+}
+
+fn advanced(flock: &mut Flock, durations: &[f64]) -> Vec<u64> {
+    for &duration in durations {
+        flock.advance(duration, None).expect("finite motion");
+    }
+    bits(flock)
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bits_and_another_seed_others() {
+    for p in all_kinds() {
+        let run = |seed| advanced(&mut Flock::new(p.clone(), seed).expect("room"), &[3.0]);
+        assert_eq!(run(7), run(7));
+        assert_ne!(run(7), run(8));
+    }
+}
+
+#[test]
+fn a_run_cut_on_the_grid_is_the_same_run() {
+    for p in all_kinds() {
+        let whole = advanced(&mut Flock::new(p.clone(), 3).expect("room"), &[4.0]);
+        for cuts in [
+            &[1.0, 3.0][..],
+            &[0.02, 3.98],
+            &[0.0, 1.5, 0.0, 2.5],
+            &[0.7, 0.02, 0.6, 1.18, 1.5],
+        ] {
+            let cut = advanced(&mut Flock::new(p.clone(), 3).expect("room"), cuts);
+            assert_eq!(cut, whole, "{:?} {:?} {cuts:?}", p.scheme, p.noise);
+        }
+    }
+}
+
+#[test]
+fn a_run_cut_at_its_own_phase_switches_is_the_same_run() {
+    for p in all_kinds() {
+        let whole = advanced(&mut Flock::new(p.clone(), 3).expect("room"), &[1.318]);
+        let cut = advanced(
+            &mut Flock::new(p.clone(), 3).expect("room"),
+            &[0.713, 0.2, 0.305, 0.1],
+        );
+        assert_eq!(cut, whole, "{:?} {:?}", p.scheme, p.noise);
+    }
+}
+
+#[test]
+fn held_rudders_cut_on_the_grid_are_the_same_run() {
+    for p in all_kinds() {
+        let run = |cuts: &[f64]| {
+            let mut flock = Flock::new(p.clone(), 4).expect("room");
+            for &duration in cuts {
+                flock
+                    .advance(duration, Some(&[0.5, -1.0, 0.0]))
+                    .expect("finite motion");
+            }
+            bits(&flock)
+        };
+        assert_eq!(run(&[2.0]), run(&[0.5, 0.1, 1.4]));
+    }
+}
+
+#[test]
+fn a_snapshot_continues_with_the_same_bits() {
+    for p in all_kinds() {
+        for solver in Solver::ALL.iter().copied() {
+            let p = FlockParameters {
+                solver,
+                ..p.clone()
+            };
+            let mut flock = Flock::new(p.clone(), 11).expect("room");
+            // On a phase switch, on the grid, and neither: in the middle of a substep.
+            for stop in [0.713, 0.987, 0.123_456_789] {
+                flock.advance(stop, None).expect("finite motion");
+                flock.set_target(Target::CounterClockwise);
+                let bytes = flock.snapshot();
+                let mut other = Flock::new(p.clone(), 99).expect("room");
+                other.advance(0.5, None).expect("finite motion");
+                other.restore(&bytes).expect("a snapshot of such a flock");
+                let mut third = Flock::from_snapshot(&bytes).expect("a snapshot");
+                let mut went_on = flock.clone();
+                let expected = advanced(&mut went_on, &[0.41, 0.333_333]);
+                assert_eq!(advanced(&mut other, &[0.41, 0.333_333]), expected);
+                assert_eq!(advanced(&mut third, &[0.41, 0.333_333]), expected);
+                assert!(went_on.snapshot() == other.snapshot(), "{:?}", p.scheme);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_snapshot_restored_is_the_snapshot() {
+    for p in all_kinds() {
+        let mut flock = Flock::new(p, 2).expect("room");
+        flock.advance(1.0, None).expect("finite motion");
+        let bytes = flock.snapshot();
+        let again = Flock::from_snapshot(&bytes).expect("a snapshot").snapshot();
+        assert!(again == bytes);
+    }
+}
+
+fn batch_bits(members: &[(FlockParameters, u64)], threads: usize) -> Vec<Vec<u64>> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .expect("threads");
+    pool.install(|| {
+        let mut batch = FlockBatch::new(members.to_vec()).expect("room");
+        for _ in 0..8 {
+            batch.advance(ticks(0.11), None).expect("finite motion");
+        }
+        batch.flocks().iter().map(bits).collect()
+    })
+}
+
+#[test]
+fn neither_threads_nor_batch_size_matter() {
+    let members: Vec<(FlockParameters, u64)> = all_kinds().zip(20..).collect();
+    let alone: Vec<Vec<u64>> = members
+        .iter()
+        .map(|(p, seed)| {
+            let mut flock = Flock::new(p.clone(), *seed).expect("room");
+            advanced(&mut flock, &[0.11; 8])
+        })
+        .collect();
+    for threads in [1, 2, 5] {
+        assert_eq!(batch_bits(&members, threads), alone);
+        for size in [1, 2, 4] {
+            let parts: Vec<Vec<u64>> = members
+                .chunks(size)
+                .flat_map(|part| batch_bits(part, threads))
+                .collect();
+            assert_eq!(parts, alone, "{threads} threads, batches of {size}");
+        }
+    }
+}
+
+#[test]
+fn a_batch_hands_each_flock_its_own_rudders() {
+    let mut p = busy(Scheme::Leapfrog, Noise::White);
+    p.n_leaders = 2;
+    let leaderless = FlockParameters {
+        n_leaders: 0,
+        ..p.clone()
+    };
+    let rudders = [0.1, 0.2, -0.3, -0.4];
+    let mut batch = FlockBatch::new(vec![
+        (p.clone(), 1),
+        (leaderless.clone(), 2),
+        (p.clone(), 3),
+    ])
+    .expect("room");
+    batch
+        .advance(ticks(1.0), Some(&rudders))
+        .expect("four leaders");
+    for (flock, (p, seed, commands)) in batch.flocks().iter().zip([
+        (&p, 1, &rudders[..2]),
+        (&leaderless, 2, &[]),
+        (&p, 3, &rudders[2..]),
+    ]) {
+        let mut alone = Flock::new(p.clone(), seed).expect("room");
+        alone.advance(1.0, Some(commands)).expect("finite motion");
+        assert_eq!(bits(flock), bits(&alone));
+    }
+}
+
+#[test]
+fn a_reset_flock_is_a_new_flock() {
+    let p = busy(Scheme::Leapfrog, Noise::White);
+    let mut flock = Flock::new(p.clone(), 1).expect("room");
+    flock.advance(2.0, None).expect("finite motion");
+    flock.reset(5).expect("room");
+    let mut fresh = Flock::new(p, 5).expect("room");
+    assert!(flock.snapshot() == fresh.snapshot());
+    assert_eq!(advanced(&mut flock, &[1.0]), advanced(&mut fresh, &[1.0]));
+}

@@ -1,0 +1,197 @@
+//! Gaps: the least gap found between two hulls is the distance of their core segments minus 2r, and
+//! every gap changes as its normal and lever arms say.
+//!
+//! On paper: boats nose to tail, side by side, crossed and at right angles.
+
+use crate::support::{H, R, core_distance};
+use flockenv::boat::Pose;
+use flockenv::geometry::{
+    Gap, Hull, HullPose, PairFeature, Vec2, inner_wall_gap, outer_wall_gap, pair_gap, pair_gaps,
+};
+use proptest::prelude::*;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+const HULL: Hull = Hull {
+    radius: R,
+    half_length: H,
+};
+
+fn gaps(a: &Pose, b: &Pose, margin: f64) -> Vec<(PairFeature, Gap)> {
+    let mut found = Vec::new();
+    pair_gaps(
+        &HullPose::new(a),
+        &HullPose::new(b),
+        HULL,
+        margin,
+        |f, g| {
+            found.push((f, g));
+        },
+    );
+    found
+}
+
+fn near(a: f64, b: f64) -> bool {
+    (a - b).abs() < 1e-12
+}
+
+#[test]
+fn gaps_known_on_paper() {
+    let a = Pose::new(0.0, 0.0, 0.0);
+    // Nose to tail, 1 cm apart: one contact along x without lever arms.
+    let found = gaps(&a, &Pose::new(16.0, 0.0, 0.0), 2.0);
+    assert_eq!(found.len(), 1);
+    let gap = found[0].1;
+    assert!(near(gap.gap, 1.0) && near(gap.normal.x, -1.0));
+    assert!(near(gap.arm_i, 0.0) && near(gap.arm_j, 0.0));
+    // Side by side and shifted by 1 cm: two contacts, at the ends of the stretch they share.
+    for turn in [0.0, PI] {
+        let found = gaps(&a, &Pose::new(1.0, 10.5, turn), 1.0);
+        assert_eq!(found.len(), 2, "{turn}");
+        let mut arms: Vec<f64> = found.iter().map(|(_, g)| g.arm_i).collect();
+        arms.sort_by(f64::total_cmp);
+        // Normal (0, −1): arm −x of the touch, at x = −1.5 and 2.5.
+        assert!(near(arms[0], -2.5) && near(arms[1], 1.5), "{arms:?}");
+        assert!(
+            found
+                .iter()
+                .all(|(_, g)| near(g.gap, 0.5) && near(g.normal.y, -1.0))
+        );
+    }
+    // Tip into side at offset 2.
+    let found = gaps(&a, &Pose::new(2.0, 12.0, FRAC_PI_2), 1.0);
+    assert_eq!(found.len(), 1);
+    assert!(near(found[0].1.gap, -0.5) && near(found[0].1.arm_i, -2.0));
+    // Crossed at right angles through the middle: out by 2.5 + 10.
+    let found = gaps(&a, &Pose::new(0.0, 0.0, FRAC_PI_2), 1.0);
+    assert_eq!(found.len(), 1);
+    assert_eq!(found[0].0, PairFeature::Crossed);
+    assert!(near(found[0].1.gap, -12.5));
+}
+
+#[test]
+fn wall_gaps_known_on_paper() {
+    let boat = HullPose::new(&Pose::new(80.0, 0.0, FRAC_PI_2));
+    for side in [-1.0, 1.0] {
+        let gap = outer_wall_gap(&boat, side, HULL, 90.0);
+        let distance = 80_f64.hypot(2.5);
+        assert!(near(gap.gap, 85.0 - distance));
+        assert!(near(gap.normal.x, -80.0 / distance));
+        // side·h·(ŷ × n) = side·h·80/distance.
+        assert!(near(gap.arm_i, side * 2.5 * 80.0 / distance));
+    }
+    // Tangential on the obstacle: touched in the middle of the side, without a lever arm.
+    let gap = inner_wall_gap(&boat, HULL, 48.5);
+    assert!(near(gap.gap, 80.0 - 53.5) && near(gap.arm_i, 0.0) && near(gap.normal.x, 1.0));
+    // Radial: touched at the stern.
+    let boat = HullPose::new(&Pose::new(60.0, 0.0, 0.0));
+    assert!(near(inner_wall_gap(&boat, HULL, 48.5).gap, 4.0));
+}
+
+fn pose() -> impl Strategy<Value = Pose> {
+    (-16.0..16.0_f64, -16.0..16.0_f64, -4.0..4.0_f64).prop_map(|(x, y, a)| Pose::new(x, y, a))
+}
+
+fn displaced(pose: &Pose, direction: usize, step: f64) -> Pose {
+    let mut moved = *pose;
+    match direction {
+        0 => moved.position.x += step,
+        1 => moved.position.y += step,
+        _ => moved.heading += step,
+    }
+    moved
+}
+
+/// d(gap)/d(direction) as the gap's normal and arms have it.
+fn slope(gap: &Gap, first: bool, direction: usize) -> f64 {
+    let (sign, arm) = if first {
+        (1.0, gap.arm_i)
+    } else {
+        (-1.0, gap.arm_j)
+    };
+    sign * [gap.normal.x, gap.normal.y, arm][direction]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn the_least_gap_is_the_distance_of_the_cores(a in pose(), b in pose()) {
+        let distance = core_distance(&a, &b, H);
+        let found = gaps(&a, &b, 100.0);
+        prop_assert!(!found.is_empty() && found.len() <= 2);
+        let least = found.iter().map(|(_, g)| g.gap).fold(f64::INFINITY, f64::min);
+        if distance == 0.0 {
+            prop_assert!(found[0].0 == PairFeature::Crossed && least <= -2.0 * R);
+        } else {
+            prop_assert!((least - (distance - 2.0 * R)).abs() < 1e-9, "{least} {distance}");
+        }
+        for (_, gap) in &found {
+            prop_assert!((gap.normal.norm() - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn gaps_do_not_depend_on_who_comes_first(a in pose(), b in pose()) {
+        let order = |mut gaps: Vec<(PairFeature, Gap)>| {
+            gaps.sort_by(|x, y| x.1.gap.total_cmp(&y.1.gap));
+            gaps
+        };
+        let (forth, back) = (order(gaps(&a, &b, 3.0)), order(gaps(&b, &a, 3.0)));
+        prop_assert_eq!(forth.len(), back.len());
+        for ((_, f), (_, g)) in forth.iter().zip(&back) {
+            prop_assert!((f.gap - g.gap).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_gap_changes_as_its_normal_and_arms_say(a in pose(), b in pose()) {
+        let step = 1e-5;
+        for (feature, gap) in gaps(&a, &b, 20.0) {
+            // Curvature is at most 1/distance a unit of displacement squared; near crossing there is none.
+            if feature == PairFeature::Crossed || gap.gap < -9.0 {
+                continue;
+            }
+            for direction in 0..3 {
+                let at = |s: f64| {
+                    let (moved, b) = (HullPose::new(&displaced(&a, direction, s)), HullPose::new(&b));
+                    pair_gap(feature, &moved, &b, HULL).gap
+                };
+                let measured = (at(step) - at(-step)) / (2.0 * step);
+                // A kink (an end passing the other's end) may lie within the step: slopes change by
+                // no more than curvature·step there too.
+                prop_assert!((measured - slope(&gap, true, direction)).abs() < 1e-3);
+                let at = |s: f64| {
+                    let (a, moved) = (HullPose::new(&a), HullPose::new(&displaced(&b, direction, s)));
+                    pair_gap(feature, &a, &moved, HULL).gap
+                };
+                let measured = (at(step) - at(-step)) / (2.0 * step);
+                prop_assert!((measured - slope(&gap, false, direction)).abs() < 1e-3);
+            }
+        }
+    }
+
+    #[test]
+    fn wall_gaps_change_as_their_normals_and_arms_say(
+        radius in 20.0..80.0_f64, polar in -4.0..4.0_f64, heading in -4.0..4.0_f64,
+    ) {
+        let at = Vec2::new(radius * polar.cos(), radius * polar.sin());
+        let pose = Pose::new(at.x, at.y, heading);
+        let walls = |pose: &Pose| {
+            let boat = HullPose::new(pose);
+            [
+                outer_wall_gap(&boat, 1.0, HULL, 90.0),
+                outer_wall_gap(&boat, -1.0, HULL, 90.0),
+                inner_wall_gap(&boat, HULL, 10.0),
+            ]
+        };
+        let step = 1e-5;
+        for (wall, gap) in walls(&pose).iter().enumerate() {
+            for direction in 0..3 {
+                let ahead = walls(&displaced(&pose, direction, step))[wall].gap;
+                let behind = walls(&displaced(&pose, direction, -step))[wall].gap;
+                let measured = (ahead - behind) / (2.0 * step);
+                prop_assert!((measured - slope(gap, true, direction)).abs() < 1e-4);
+            }
+        }
+    }
+}

@@ -1,0 +1,227 @@
+//! Small scenes to check laws on, what is measured of them, and a Runge–Kutta reference.
+
+use flockenv::boat::{Pose, Velocity};
+use flockenv::geometry::{Vec2, cross};
+use flockenv::parameters::{Noise, Pool, Preset, Scheme};
+use flockenv::{Flock, FlockParameters};
+
+/// All schemes.
+pub const SCHEMES: [Scheme; 3] = [Scheme::Leapfrog, Scheme::Moreau, Scheme::Paper];
+/// The schemes that solve contacts on velocities.
+pub const VELOCITY_SCHEMES: [Scheme; 2] = [Scheme::Leapfrog, Scheme::Moreau];
+/// Both meanings of η.
+pub const NOISES: [Noise; 2] = [Noise::White, Noise::PerStep];
+/// No walls at all.
+pub const OPEN_WATER: Pool = Pool {
+    outer_radius_cm: f64::INFINITY,
+    inner_radius_cm: 0.0,
+};
+
+/// Half-length h of the default hull's core, its radius r and its radius of gyration ρ, in cm.
+pub const H: f64 = 2.5;
+pub const R: f64 = 5.0;
+pub const RHO: f64 = 4.74;
+
+/// A disc of water without an obstacle.
+pub fn disc(outer_radius_cm: f64) -> Pool {
+    Pool {
+        outer_radius_cm,
+        inner_radius_cm: 0.0,
+    }
+}
+
+/// Table 3 without noise, engines always forward, open water.
+pub fn driven(scheme: Scheme) -> FlockParameters {
+    FlockParameters {
+        pool: OPEN_WATER,
+        n_boats: 1,
+        c4: 0.0,
+        fw_s: 1.0,
+        nop1_s: 0.0,
+        bw_s: 0.0,
+        nop2_s: 0.0,
+        scheme,
+        ..FlockParameters::preset(Preset::Simulation)
+    }
+}
+
+/// No forces but those of contacts, open water.
+pub fn inert(scheme: Scheme) -> FlockParameters {
+    FlockParameters {
+        speed_cm_s: 0.0,
+        reverse_speed_cm_s: 0.0,
+        c0: 0.0,
+        c1: 0.0,
+        c2: 0.0,
+        c3: 0.0,
+        overlap_tolerance_cm: 0.0,
+        ..driven(scheme)
+    }
+}
+
+/// A flock of boats with these poses [cm, cm, rad] and velocities [cm/s, cm/s, rad/s].
+pub fn flock_of(parameters: &FlockParameters, states: &[([f64; 3], [f64; 3])]) -> Flock {
+    let parameters = FlockParameters {
+        n_boats: states.len(),
+        ..parameters.clone()
+    };
+    let mut flock = Flock::new(parameters, 1).expect("the pool holds the flock");
+    let (poses, velocities): (Vec<_>, Vec<_>) = states
+        .iter()
+        .map(|([x, y, a], [u, v, w])| (Pose::new(*x, *y, *a), Velocity::new(*u, *v, *w)))
+        .unzip();
+    flock
+        .set_state(&poses, &velocities, 0.0, false)
+        .expect("a state without overlap");
+    flock
+}
+
+/// Takes `count` full substeps.
+pub fn take_substeps(flock: &mut Flock, count: usize) {
+    let dt = flock.parameters().dt_s;
+    flock
+        .advance(dt * count as f64, None)
+        .expect("finite motion");
+}
+
+/// ½·Σ(|v|² + ρ²ω²).
+pub fn kinetic_energy(flock: &Flock) -> f64 {
+    let rho = flock.parameters().gyration_radius_cm;
+    0.5 * flock
+        .velocities()
+        .iter()
+        .map(|v| v.linear.norm_squared() + (rho * v.angular).powi(2))
+        .sum::<f64>()
+}
+
+/// Σv.
+pub fn momentum(flock: &Flock) -> Vec2 {
+    flock.velocities().iter().map(|v| v.linear).sum()
+}
+
+/// Σ(x × v + ρ²ω), about the origin.
+pub fn angular_momentum(flock: &Flock) -> f64 {
+    let rho = flock.parameters().gyration_radius_cm;
+    flock
+        .poses()
+        .iter()
+        .zip(flock.velocities())
+        .map(|(p, v)| cross(p.position, v.linear) + rho * rho * v.angular)
+        .sum()
+}
+
+/// The largest difference of two sets of poses, headings weighted with ρ, in cm.
+pub fn farthest_apart(a: &[Pose], b: &[Pose]) -> f64 {
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| {
+            (a.position - b.position)
+                .norm()
+                .max(RHO * (a.heading - b.heading).abs())
+        })
+        .fold(0.0, f64::max)
+}
+
+/// The bits of all poses and velocities: equal only if every number is.
+pub fn bits(flock: &Flock) -> Vec<u64> {
+    let poses = flock
+        .poses()
+        .iter()
+        .flat_map(|p| [p.position.x, p.position.y, p.heading]);
+    let velocities = flock
+        .velocities()
+        .iter()
+        .flat_map(|v| [v.linear.x, v.linear.y, v.angular]);
+    poses.chain(velocities).map(f64::to_bits).collect()
+}
+
+/// Distance between two core segments, straight from the definition: zero if they cross, else the
+/// least of the four distances from an end to the other segment.
+pub fn core_distance(a: &Pose, b: &Pose, half_length: f64) -> f64 {
+    let ends = |p: &Pose| {
+        let axis = Vec2::new(p.heading.cos(), p.heading.sin()) * half_length;
+        (p.position - axis, p.position + axis)
+    };
+    let ((a0, a1), (b0, b1)) = (ends(a), ends(b));
+    let side = |p: Vec2, q: Vec2, x: Vec2| cross(q - p, x - p);
+    let crosses =
+        side(a0, a1, b0) * side(a0, a1, b1) < 0.0 && side(b0, b1, a0) * side(b0, b1, a1) < 0.0;
+    if crosses {
+        return 0.0;
+    }
+    let to_segment = |x: Vec2, p: Vec2, q: Vec2| {
+        let along = q - p;
+        let length = along.norm_squared();
+        let t = if length > 0.0 {
+            ((x - p).dot(&along) / length).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        (x - p - along * t).norm()
+    };
+    to_segment(a0, b0, b1)
+        .min(to_segment(a1, b0, b1))
+        .min(to_segment(b0, a0, a1))
+        .min(to_segment(b1, a0, a1))
+}
+
+/// The deepest overlap of a flock's hulls with each other and with the walls, in cm; 0 for none.
+pub fn deepest_overlap(flock: &Flock) -> f64 {
+    let p = flock.parameters();
+    let (h, r) = (p.half_length_cm(), p.boat_radius_cm);
+    let center = |pose: &Pose| Pose::new(0.0, 0.0, pose.heading);
+    let mut least = f64::INFINITY;
+    for (i, a) in flock.poses().iter().enumerate() {
+        for b in &flock.poses()[..i] {
+            if (a.position - b.position).norm() < 2.0 * (h + r) {
+                least = least.min(core_distance(a, b, h) - 2.0 * r);
+            }
+        }
+        let axis = Vec2::new(a.heading.cos(), a.heading.sin()) * h;
+        for end in [a.position - axis, a.position + axis] {
+            least = least.min(p.pool.outer_radius_cm - r - end.norm());
+        }
+        if p.pool.has_inner_wall() {
+            // A point is a core of half-length 0; the hull is moved so that the obstacle is at 0.
+            let point = Pose::new(-a.position.x, -a.position.y, 0.0);
+            let t = point.position.dot(&axis) / (h * h).max(f64::MIN_POSITIVE);
+            let nearest = center(a).position + axis * t.clamp(-1.0, 1.0);
+            least = least.min((point.position - nearest).norm() - r - p.pool.inner_radius_cm);
+        }
+    }
+    (-least).max(0.0)
+}
+
+/// Classical Runge–Kutta of order 4 over `steps` steps; `rate(state, time)`.
+pub fn runge_kutta<const N: usize>(
+    start: [f64; N],
+    (from, to): (f64, f64),
+    steps: usize,
+    rate: impl Fn(&[f64; N], f64) -> [f64; N],
+) -> [f64; N] {
+    let dt = (to - from) / steps as f64;
+    let shifted = |y: &[f64; N], k: &[f64; N], f: f64| std::array::from_fn(|i| y[i] + f * k[i]);
+    (0..steps).fold(start, |y, step| {
+        let t = from + step as f64 * dt;
+        let k1 = rate(&y, t);
+        let k2 = rate(&shifted(&y, &k1, 0.5 * dt), t + 0.5 * dt);
+        let k3 = rate(&shifted(&y, &k2, 0.5 * dt), t + 0.5 * dt);
+        let k4 = rate(&shifted(&y, &k3, dt), t + dt);
+        std::array::from_fn(|i| y[i] + dt / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]))
+    })
+}
+
+/// The root of a function that changes sign in an interval, by bisection to rounding.
+pub fn root(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let rising = f(high) > 0.0;
+    assert!(f(low) * f(high) <= 0.0, "no sign change");
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if (f(middle) > 0.0) == rising {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    0.5 * (low + high)
+}
