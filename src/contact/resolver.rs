@@ -103,6 +103,7 @@ impl ContactResolver {
         statistics: &mut Statistics,
     ) -> bool {
         let margin = self.detector.margin(velocities, dt);
+        let builds = self.detector.neighbors.builds();
         self.detector.detect(boats, margin, &mut self.contacts);
         let smallest = self.contacts.iter().map(|c| c.gap.gap).fold(0.0, f64::min);
         statistics.worst_overlap_cm = statistics.worst_overlap_cm.max(-smallest);
@@ -111,7 +112,7 @@ impl ContactResolver {
             self.detector.detect(boats, margin, &mut self.contacts);
         }
         statistics.contacts += self.contacts.len() as u64;
-        statistics.neighbor_builds = self.detector.neighbors.builds();
+        statistics.neighbor_builds += self.detector.neighbors.builds() - builds;
         self.recall_loads();
         !self.contacts.is_empty()
     }
