@@ -2,6 +2,24 @@
 
 from importlib.metadata import version
 
-__all__ = ["__version__"]
+from flockenv._core import Flock
+from flockenv.contacts import Contacts
+from flockenv.errors import FlockError, ParameterError, SolverError
+from flockenv.order_parameters import OrderParameters, OrderSeries
+from flockenv.parameters import FlockParameters
+from flockenv.statistics import Statistics
+
+__all__ = [
+    "Contacts",
+    "Flock",
+    "FlockError",
+    "FlockParameters",
+    "OrderParameters",
+    "OrderSeries",
+    "ParameterError",
+    "SolverError",
+    "Statistics",
+    "__version__",
+]
 
 __version__ = version("flockenv")
