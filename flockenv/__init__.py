@@ -7,6 +7,7 @@ from flockenv.contacts import Contacts
 from flockenv.errors import FlockError, ParameterError, SolverError
 from flockenv.order_parameters import OrderParameters, OrderSeries
 from flockenv.parameters import FlockParameters
+from flockenv.recording import Recording, simulate
 from flockenv.statistics import Statistics
 
 __all__ = [
@@ -17,9 +18,11 @@ __all__ = [
     "OrderParameters",
     "OrderSeries",
     "ParameterError",
+    "Recording",
     "SolverError",
     "Statistics",
     "__version__",
+    "simulate",
 ]
 
 __version__ = version("flockenv")

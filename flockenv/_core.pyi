@@ -12,8 +12,10 @@ __all__ = [
     "Flock",
     "__version__",
     "checked_fields",
+    "phase_names",
     "preset_fields",
     "preset_names",
+    "record",
 ]
 
 __version__: str
@@ -21,6 +23,14 @@ __version__: str
 def preset_names() -> list[str]: ...
 def preset_fields(name: str) -> dict[str, Any]: ...
 def checked_fields(parameters: Any) -> dict[str, Any]: ...
+def phase_names() -> list[str]: ...
+def record(
+    parameters: FlockParameters,
+    seed: int,
+    duration_s: float,
+    sample_hz: float,
+    single_precision: bool,
+) -> dict[str, Any]: ...
 
 @final
 class Flock:

@@ -1,7 +1,6 @@
 """Order parameters of Section 3.2, in the LAP frame. The core computes them."""
 
 from dataclasses import dataclass, fields
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,8 +63,6 @@ class OrderSeries:
         names = [each.name for each in fields(self)]
         pairs = ((getattr(self, name), getattr(other, name)) for name in names)
         return all(np.array_equal(mine, theirs, equal_nan=True) for mine, theirs in pairs)
-
-    __hash__: Any = None
 
     def __getitem__(self, index: int) -> OrderParameters:
         return OrderParameters(*(float(getattr(self, each.name)[index]) for each in fields(self)))

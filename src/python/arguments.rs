@@ -32,6 +32,10 @@ named_arguments! {
     Seconds(f64) = real("seconds");
     /// A point in time, in s.
     TimeS(f64) = real("time_s");
+    /// How long a run lasts, in s.
+    DurationS(f64) = real("duration_s");
+    /// Samples a second.
+    SampleHz(f64) = real("sample_hz");
 }
 
 /// A whole number that fits 64 bits, from anything with `__index__` but a bool.

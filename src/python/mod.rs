@@ -4,6 +4,7 @@ pub mod arguments;
 pub mod error;
 pub mod flock;
 pub mod parameters;
+pub mod recording;
 pub mod results;
 
 use pyo3::prelude::*;
@@ -16,6 +17,8 @@ mod _core {
     use super::flock::PyFlock;
     #[pymodule_export]
     use super::parameters::{checked_fields, preset_fields, preset_names};
+    #[pymodule_export]
+    use super::recording::{phase_names, record};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -19,10 +19,7 @@ macro_rules! fields {
             type Error = PyErr;
 
             fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-                Ok(Self { $($name: {
-                    let value = object.getattr(stringify!($name))?;
-                    Field::read(&value, stringify!($name))?
-                },)+ })
+                Ok(Self { $($name: read_attribute(&object, stringify!($name))?,)+ })
             }
         }
 
@@ -43,6 +40,12 @@ fields! {
     c0 c1 c2 c3 c4 fw_s nop1_s bw_s nop2_s leaders_reverse target scheme noise solver dt_s
     overlap_tolerance_cm relinearizations turning_bias speed_spread_cm_s current_gain
     current_cap_cm_s
+}
+
+fn read_attribute<T: Field>(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<T> {
+    let value = object.getattr_opt(name)?;
+    let value = value.ok_or_else(|| wrong_type(object, "parameters", "FlockParameters"))?;
+    Field::read(&value, name)
 }
 
 /// The parameters as a `flockenv.FlockParameters`.

@@ -27,6 +27,27 @@ pub fn order_parameters<'py>(
     class.call1((psi_o, phi_o, c_o, psi_v, phi_v, c_v))
 }
 
+/// A `flockenv.OrderSeries` of order parameters one after another.
+pub fn order_series<'py>(
+    py: Python<'py>,
+    series: &[OrderParameters],
+) -> PyResult<Bound<'py, PyAny>> {
+    let class = py
+        .import("flockenv.order_parameters")?
+        .getattr("OrderSeries")?;
+    let column = |value: fn(&OrderParameters) -> f64| {
+        PyArray1::from_vec(py, series.iter().map(value).collect())
+    };
+    class.call1((
+        column(|order| order.psi_o),
+        column(|order| order.phi_o),
+        column(|order| order.c_o),
+        column(|order| order.psi_v),
+        column(|order| order.phi_v),
+        column(|order| order.c_v),
+    ))
+}
+
 /// A `flockenv.Contacts`; walls are numbered −1 (outer) and −2 (inner).
 pub fn contacts<'py>(py: Python<'py>, contacts: &[ContactForce]) -> PyResult<Bound<'py, PyAny>> {
     let class = py.import("flockenv.contacts")?.getattr("Contacts")?;
