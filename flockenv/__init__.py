@@ -2,6 +2,27 @@
 
 from importlib.metadata import version
 
-__all__ = ["__version__"]
+from flockenv._core import Flock
+from flockenv.contacts import Contacts
+from flockenv.errors import FlockError, ParameterError, SolverError
+from flockenv.order_parameters import OrderParameters, OrderSeries
+from flockenv.parameters import FlockParameters
+from flockenv.recording import Recording, simulate
+from flockenv.statistics import Statistics
+
+__all__ = [
+    "Contacts",
+    "Flock",
+    "FlockError",
+    "FlockParameters",
+    "OrderParameters",
+    "OrderSeries",
+    "ParameterError",
+    "Recording",
+    "SolverError",
+    "Statistics",
+    "__version__",
+    "simulate",
+]
 
 __version__ = version("flockenv")

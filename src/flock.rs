@@ -186,7 +186,11 @@ impl Flock {
         self.advance_to(end, rudder.map_or(Steering::Law, Steering::Held))
     }
 
-    fn end_of(&self, duration_s: f64) -> Result<Ticks> {
+    /// When a duration from now on ends.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for a bad duration.
+    pub fn end_of(&self, duration_s: f64) -> Result<Ticks> {
         if !(0.0..=seconds(LATEST)).contains(&duration_s) {
             return Err(FlockError::parameter(
                 "seconds",
@@ -263,6 +267,24 @@ impl Flock {
             "the motion left the range of finite numbers; smaller dt_s or milder constants may help"
                 .to_owned(),
         ))
+    }
+
+    /// Advances towards a time, but no further than about so many substeps times boats, and returns
+    /// whether it is reached. It stops on the substep grid, where stopping changes nothing.
+    ///
+    /// # Errors
+    /// As for [`Self::advance_to`].
+    pub fn advance_towards(
+        &mut self,
+        end: Ticks,
+        steering: Steering,
+        boat_substeps: u64,
+    ) -> Result<bool> {
+        let dt = ticks(self.parameters.dt_s);
+        let substeps = (boat_substeps / self.parameters.n_boats as u64).max(1);
+        let stop = end.min((self.time / dt + substeps) * dt);
+        self.advance_to(stop, steering)?;
+        Ok(stop == end)
     }
 
     /// Order parameters of the normal boats, or of all.

@@ -33,6 +33,7 @@ pub mod parameters;
 pub mod phase_schedule;
 pub mod placement;
 pub mod random_streams;
+pub mod recording;
 pub mod scheme;
 pub mod snapshot;
 pub mod statistics;

@@ -206,8 +206,8 @@ pub struct FlockParameters {
 }
 
 impl FlockParameters {
-    /// The most boats a flock may have.
-    pub const MOST_BOATS: usize = 1_000_000;
+    /// The most boats a flock may have: placing them takes some ten seconds.
+    pub const MOST_BOATS: usize = 100_000;
 
     /// A preset: Table 3 with the scheme and noise that the preset stands for.
     pub fn preset(preset: Preset) -> Self {

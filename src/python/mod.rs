@@ -1,10 +1,24 @@
-//! The Python module `flockenv._core`: call, convert, return.
+//! The Python module `flockenv._core`: call, convert, return. The only place that names pyo3 and numpy.
+
+pub mod arguments;
+pub mod error;
+pub mod flock;
+pub mod parameters;
+pub mod recording;
+pub mod results;
 
 use pyo3::prelude::*;
 
 #[pymodule]
 mod _core {
     use super::*;
+
+    #[pymodule_export]
+    use super::flock::PyFlock;
+    #[pymodule_export]
+    use super::parameters::{checked_fields, preset_fields, preset_names};
+    #[pymodule_export]
+    use super::recording::{phase_names, record};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

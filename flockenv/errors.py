@@ -1,0 +1,18 @@
+"""What can go wrong: the exceptions that users meet."""
+
+__all__ = ["FlockError", "ParameterError", "SolverError"]
+
+
+class FlockError(Exception):
+    """Base of every error that flockenv raises by itself."""
+
+
+class ParameterError(FlockError, ValueError):
+    """A parameter, argument, array, state, snapshot or file is not acceptable.
+
+    The message names it, shows the value and says what would be accepted. Nothing has changed.
+    """
+
+
+class SolverError(FlockError, RuntimeError):
+    """The motion left the range of finite numbers; the flock is where it was before the call."""
