@@ -16,6 +16,8 @@ __all__ = [
     "preset_fields",
     "preset_names",
     "record",
+    "rotation",
+    "signed_order",
 ]
 
 __version__: str
@@ -31,6 +33,12 @@ def record(
     sample_hz: float,
     single_precision: bool,
 ) -> dict[str, Any]: ...
+def rotation(
+    psi_o: NDArray[np.float64], phi_o: NDArray[np.float64]
+) -> NDArray[np.float64]: ...
+def signed_order(
+    psi_o: NDArray[np.float64], phi_o: NDArray[np.float64], target: str
+) -> NDArray[np.float64]: ...
 
 @final
 class Flock:

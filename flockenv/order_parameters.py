@@ -5,6 +5,8 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
+from flockenv import _core
+
 __all__ = ["OrderParameters", "OrderSeries"]
 
 
@@ -53,6 +55,20 @@ class OrderSeries:
     psi_v: NDArray[np.float64]
     phi_v: NDArray[np.float64]
     c_v: NDArray[np.float64]
+
+    def signed_order(self, target: str) -> NDArray[np.float64]:
+        """Ψ_o·cos(φ_o - φ_target) in [-1, 1], shape (t,), for target "cw" or "ccw".
+
+        Raises
+        ------
+        ParameterError
+            For an unknown target.
+        """
+        return _core.signed_order(self.psi_o, self.phi_o, target)
+
+    def rotation(self) -> NDArray[np.float64]:
+        """Ψ_o·sin φ_o in [-1, 1], shape (t,): ±1 for rotation in order, 0 for a jam."""
+        return _core.rotation(self.psi_o, self.phi_o)
 
     def __len__(self) -> int:
         return len(self.psi_o)

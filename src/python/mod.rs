@@ -3,6 +3,7 @@
 pub mod arguments;
 pub mod error;
 pub mod flock;
+pub mod order;
 pub mod parameters;
 pub mod recording;
 pub mod results;
@@ -15,6 +16,8 @@ mod _core {
 
     #[pymodule_export]
     use super::flock::PyFlock;
+    #[pymodule_export]
+    use super::order::{rotation, signed_order};
     #[pymodule_export]
     use super::parameters::{checked_fields, preset_fields, preset_names};
     #[pymodule_export]
