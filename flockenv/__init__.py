@@ -2,24 +2,37 @@
 
 from importlib.metadata import version
 
+from flockenv import policies
 from flockenv._core import Flock
 from flockenv.contacts import Contacts
-from flockenv.errors import FlockError, ParameterError, SolverError
+from flockenv.errors import EpisodeError, FlockError, ParameterError, SolverError
 from flockenv.order_parameters import OrderParameters, OrderSeries
+from flockenv.parallel_env import LeadersParallelEnv, parallel_env
 from flockenv.parameters import FlockParameters
+from flockenv.registration import register
+from flockenv.single_env import LeadersEnv
 from flockenv.statistics import Statistics
+from flockenv.vector_env import LeadersVectorEnv
 
 __all__ = [
     "Contacts",
+    "EpisodeError",
     "Flock",
     "FlockError",
     "FlockParameters",
+    "LeadersEnv",
+    "LeadersParallelEnv",
+    "LeadersVectorEnv",
     "OrderParameters",
     "OrderSeries",
     "ParameterError",
     "SolverError",
     "Statistics",
     "__version__",
+    "parallel_env",
+    "policies",
 ]
 
 __version__ = version("flockenv")
+
+register()

@@ -30,6 +30,7 @@ pub mod geometry;
 pub mod lap_frame;
 mod names;
 pub mod observation;
+pub mod observed_law;
 pub mod order_parameters;
 mod parallel;
 pub mod parameters;

@@ -10,6 +10,12 @@ static FIRST_PROCESS: OnceLock<u32> = OnceLock::new();
 /// Threads of a forked child, and the child they live in.
 static FORKED: Mutex<Option<(u32, &'static ThreadPool)>> = Mutex::new(None);
 
+/// Notes that rayon's own threads live in this process, in case other code starts them.
+#[cfg(feature = "python")]
+pub fn note_process() {
+    FIRST_PROCESS.get_or_init(id);
+}
+
 /// Maps items in order. One item, or one thread, is worked on at once where it is: waking a pool takes
 /// about as long as a control step.
 pub fn map<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync + Send) -> Vec<R> {

@@ -45,10 +45,14 @@ impl Scale {
             Self::Radial => radial(parameters),
             Self::Length => (1.0 / (6.0 * parameters.boat_radius_cm), 0.0),
             Self::Speed => (1.0 / speed_scale_cm_s(parameters), 0.0),
-            Self::AngularVelocity | Self::TimeLeft => (0.5, 0.0),
+            Self::AngularVelocity => (1.0 / ANGULAR_VELOCITY_SCALE, 0.0),
+            Self::TimeLeft => (0.5, 0.0),
         }
     }
 }
+
+/// The angular velocity that others are divided by, in rad/s.
+pub const ANGULAR_VELOCITY_SCALE: f64 = 2.0;
 
 /// The speed that velocities are divided by: the faster of the two preferred speeds, 15 cm/s where
 /// both are 0.

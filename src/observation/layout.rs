@@ -115,6 +115,13 @@ impl ObservationLayout {
         None
     }
 
+    /// Where an entry of a block stands, if the block is on; the first neighbour's for `Neighbors`.
+    pub fn place(&self, block: Block, name: &str) -> Option<usize> {
+        let entries = Self::entries_of(block);
+        let place = entries.iter().position(|entry| entry.name == name)?;
+        self.offset(block).map(|offset| offset + place)
+    }
+
     /// How many numbers a leader observes.
     pub fn size(&self) -> usize {
         Block::ALL
