@@ -2,19 +2,28 @@
 
 from importlib.metadata import version
 
+from flockenv import policies
 from flockenv._core import Flock
 from flockenv.contacts import Contacts
-from flockenv.errors import FlockError, ParameterError, SolverError
+from flockenv.errors import EpisodeError, FlockError, ParameterError, SolverError
 from flockenv.order_parameters import OrderParameters, OrderSeries
+from flockenv.parallel_env import LeadersParallelEnv, parallel_env
 from flockenv.parameters import FlockParameters
 from flockenv.recording import Recording, simulate
+from flockenv.registration import register
+from flockenv.single_env import LeadersEnv
 from flockenv.statistics import Statistics
+from flockenv.vector_env import LeadersVectorEnv
 
 __all__ = [
     "Contacts",
+    "EpisodeError",
     "Flock",
     "FlockError",
     "FlockParameters",
+    "LeadersEnv",
+    "LeadersParallelEnv",
+    "LeadersVectorEnv",
     "OrderParameters",
     "OrderSeries",
     "ParameterError",
@@ -23,6 +32,10 @@ __all__ = [
     "Statistics",
     "__version__",
     "simulate",
+    "parallel_env",
+    "policies",
 ]
 
 __version__ = version("flockenv")
+
+register()

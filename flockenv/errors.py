@@ -1,6 +1,6 @@
 """What can go wrong: the exceptions that users meet."""
 
-__all__ = ["FlockError", "ParameterError", "SolverError"]
+__all__ = ["EpisodeError", "FlockError", "ParameterError", "SolverError"]
 
 
 class FlockError(Exception):
@@ -12,6 +12,10 @@ class ParameterError(FlockError, ValueError):
 
     The message names it, shows the value and says what would be accepted. Nothing has changed.
     """
+
+
+class EpisodeError(FlockError, RuntimeError):
+    """An environment was stepped before a reset or after the end of its episode."""
 
 
 class SolverError(FlockError, RuntimeError):

@@ -45,6 +45,9 @@ pub enum FlockError {
     /// Snapshot bytes that this flock cannot continue from.
     #[error("snapshot not restored: {0}")]
     Snapshot(String),
+    /// An environment was used out of turn: stepped before a reset or after the end.
+    #[error("{0}")]
+    Episode(String),
     /// The motion left the range of finite numbers; the flock is as it was before the call.
     #[error("{0}")]
     Solver(String),

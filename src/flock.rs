@@ -4,7 +4,7 @@ use crate::boat::{Pose, Velocity};
 use crate::contact::{Contact, Partner};
 use crate::dynamics::{Checkpoint, Dynamics, LastSubstep, Steering, Substep};
 use crate::error::{FlockError, Result};
-use crate::geometry::Vec2;
+use crate::geometry::{HullPose, Vec2};
 use crate::order_parameters::OrderParameters;
 use crate::parameters::{FlockParameters, Target};
 use crate::phase_schedule::{PhaseMoment, PhaseSchedule, Ticks, seconds, ticks};
@@ -69,6 +69,15 @@ impl Flock {
         Ok(())
     }
 
+    /// Starts over with other parameters and another seed.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] or [`FlockError::Placement`]; the flock is unchanged then.
+    pub fn reset_with(&mut self, parameters: FlockParameters, seed: u64) -> Result<()> {
+        *self = Self::new(parameters, seed)?;
+        Ok(())
+    }
+
     /// The parameters.
     pub fn parameters(&self) -> &FlockParameters {
         &self.parameters
@@ -102,6 +111,11 @@ impl Flock {
     /// Poses of all boats, leaders first.
     pub fn poses(&self) -> &[Pose] {
         &self.dynamics.poses
+    }
+
+    /// Poses of all boats with their direction vectors.
+    pub fn hulls(&self) -> &[HullPose] {
+        &self.dynamics.boats
     }
 
     /// Velocities of all boats. With `leapfrog` these are means over the last substep: they belong to

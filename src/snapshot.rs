@@ -1,13 +1,12 @@
-//! Snapshots: a flock's whole state as bytes, to continue from bit for bit.
-//!
-//! Layout: 8 bytes magic with the format version, 8 bytes checksum (FNV-1a, little-endian), then the
-//! state in postcard encoding. Reading checks all three and then the state itself.
+//! Snapshots: a flock's whole state as sealed bytes, to continue from bit for bit. Reading checks the
+//! seal and then the state itself.
 
 use crate::boat::{Pose, Velocity};
 use crate::contact::Load;
 use crate::error::{FlockError, Result};
 use crate::parameters::FlockParameters;
 use crate::phase_schedule::Ticks;
+use crate::sealed_bytes::{seal, unseal};
 use crate::statistics::Statistics;
 
 const MAGIC: [u8; 8] = *b"flockst1";
@@ -42,15 +41,7 @@ pub struct Snapshot {
 impl Snapshot {
     /// The snapshot as bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
-        let mut bytes = MAGIC.to_vec();
-        bytes.extend_from_slice(&[0; 8]);
-        // Writing to a Vec fails only out of memory, where the allocator ends the process first.
-        let mut bytes = postcard::to_extend(self, bytes).unwrap_or_default();
-        let sum = checksum(bytes.get(16..).unwrap_or_default());
-        if let Some(place) = bytes.get_mut(8..16) {
-            place.copy_from_slice(&sum.to_le_bytes());
-        }
-        bytes
+        seal(MAGIC, self)
     }
 
     /// Reads a snapshot.
@@ -58,23 +49,7 @@ impl Snapshot {
     /// # Errors
     /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed snapshot of this version.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        let refuse = |why: &str| Err(FlockError::Snapshot(why.to_owned()));
-        let Some((magic, rest)) = bytes.split_at_checked(8) else {
-            return refuse("the bytes are too short to be a snapshot");
-        };
-        if magic != MAGIC {
-            return refuse("the bytes are no flockenv snapshot of format 1");
-        }
-        let Some((sum, body)) = rest.split_at_checked(8) else {
-            return refuse("the snapshot is cut off");
-        };
-        if sum != checksum(body).to_le_bytes() {
-            return refuse("the snapshot is damaged or cut off (checksum differs)");
-        }
-        match postcard::from_bytes::<Self>(body) {
-            Ok(snapshot) => snapshot.checked(),
-            Err(error) => refuse(&format!("the snapshot's content is not readable: {error}")),
-        }
+        unseal::<Self>(MAGIC, bytes)?.checked()
     }
 
     /// A state that a flock can hold: right sizes, everything finite, indices in range.
@@ -116,11 +91,4 @@ impl Snapshot {
             "the snapshot holds a state that no flock can have".to_owned(),
         ))
     }
-}
-
-/// FNV-1a over the bytes: enough to tell damage, no protection against intent.
-fn checksum(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |sum, &byte| {
-        (sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    })
 }

@@ -3,6 +3,7 @@
 use crate::error::FlockError;
 use pyo3::PyErr;
 
+pyo3::import_exception!(flockenv.errors, EpisodeError);
 pyo3::import_exception!(flockenv.errors, ParameterError);
 pyo3::import_exception!(flockenv.errors, SolverError);
 
@@ -15,6 +16,7 @@ impl From<FlockError> for PyErr {
             | FlockError::Overlap { .. }
             | FlockError::Placement { .. }
             | FlockError::Snapshot(_) => ParameterError::new_err(message),
+            FlockError::Episode(_) => EpisodeError::new_err(message),
             FlockError::Solver(_) => SolverError::new_err(message),
         }
     }

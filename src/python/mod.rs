@@ -1,9 +1,12 @@
 //! The Python module `flockenv._core`: call, convert, return. The only place that names pyo3 and numpy.
 
 pub mod arguments;
+pub mod env_batch;
+pub mod env_settings;
 pub mod error;
 pub mod flock;
 pub mod order;
+pub mod observation;
 pub mod parameters;
 pub mod recording;
 pub mod results;
@@ -15,9 +18,16 @@ mod _core {
     use super::*;
 
     #[pymodule_export]
+    use super::env_batch::PyEnvBatch;
+    #[pymodule_export]
+    use super::env_settings::{env_defaults, reward_terms};
+    #[pymodule_export]
     use super::flock::PyFlock;
     #[pymodule_export]
     use super::order::{rotation, signed_order};
+    use super::observation::{
+        PyObservedLaw, observation_table, observation_version, observe, state_table,
+    };
     #[pymodule_export]
     use super::parameters::{checked_fields, preset_fields, preset_names};
     #[pymodule_export]
@@ -25,6 +35,7 @@ mod _core {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        crate::parallel::note_process();
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }
