@@ -31,9 +31,9 @@ __all__ = [
     "SolverError",
     "Statistics",
     "__version__",
-    "simulate",
     "parallel_env",
     "policies",
+    "simulate",
 ]
 
 __version__ = version("flockenv")

@@ -14,19 +14,18 @@ __all__ = [
     "ObservedLaw",
     "__version__",
     "checked_fields",
-    "phase_names",
-    "preset_fields",
-    "preset_names",
-    "record",
-    "rotation",
-    "signed_order",
+    "critical_bw_s",
     "env_defaults",
     "observation_table",
     "observation_version",
     "observe",
+    "phase_names",
     "preset_fields",
     "preset_names",
+    "record",
     "reward_terms",
+    "rotation",
+    "signed_order",
     "state_table",
 ]
 
@@ -35,6 +34,7 @@ __version__: str
 def preset_names() -> list[str]: ...
 def preset_fields(name: str) -> dict[str, Any]: ...
 def checked_fields(parameters: Any) -> dict[str, Any]: ...
+def critical_bw_s(preset: str, pool: str | tuple[float, float]) -> float | None: ...
 def phase_names() -> list[str]: ...
 def record(
     parameters: FlockParameters,
@@ -43,9 +43,7 @@ def record(
     sample_hz: float,
     single_precision: bool,
 ) -> dict[str, Any]: ...
-def rotation(
-    psi_o: NDArray[np.float64], phi_o: NDArray[np.float64]
-) -> NDArray[np.float64]: ...
+def rotation(psi_o: NDArray[np.float64], phi_o: NDArray[np.float64]) -> NDArray[np.float64]: ...
 def signed_order(
     psi_o: NDArray[np.float64], phi_o: NDArray[np.float64], target: str
 ) -> NDArray[np.float64]: ...

@@ -156,6 +156,27 @@ class FlockParameters:
         """
         return cls(**_core.preset_fields(name))
 
+    @classmethod
+    def critical_bw_s(cls, preset: str, pool: str | tuple[float, float]) -> float:
+        """Critical noise of 27 boats: where leaderless order is lost.
+
+        The length of the backward phase, in s, at which mean Ψ_o of leaderless runs falls through
+        the middle between its ordered and its disordered level; measured by
+        ``baselines/critical_noise.py`` for every preset in both named pools.
+
+        Raises
+        ------
+        ParameterError
+            For an unknown preset or pool, and for a pool in which it has not been measured.
+        """
+        bw_s = _core.critical_bw_s(preset, pool)
+        if bw_s is None:
+            raise ParameterError(
+                f"pool = {pool!r}: the critical noise is known for '500-boats' and 'table-1'; "
+                "measure it with baselines/critical_noise.py and pass bw_s"
+            )
+        return bw_s
+
     def replace(self, **changes: Any) -> Self:
         """Return these parameters with some fields changed; see the class for the errors."""
         return type(self)(**{**self.to_dict(), **changes})

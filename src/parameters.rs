@@ -77,6 +77,24 @@ named_choice! {
     }
 }
 
+impl Preset {
+    /// Critical noise of 27 boats of this preset in a named pool: the length of the backward phase, in
+    /// s, at which mean Ψ_o of leaderless runs falls through the middle between its ordered and its
+    /// disordered level. `None` for a pool in which it has not been measured.
+    ///
+    /// Source: `baselines/critical_noise.py` (8 seeds of 60 minutes every 0.05 s; runs in
+    /// `docs/results/critical_noise.csv`), rounded to 0.01 s.
+    pub fn critical_bw_s(self, pool: &Pool) -> Option<f64> {
+        match (self, pool.name()?) {
+            (Self::Simulation, "500-boats") => Some(0.27),
+            (Self::Simulation, "table-1") => Some(0.43),
+            (Self::Paper, "500-boats") => Some(0.58),
+            (Self::Paper, "table-1") => Some(0.63),
+            _ => None,
+        }
+    }
+}
+
 /// The water: an annulus, a disc (inner radius 0) or open water (outer radius infinite).
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Pool {

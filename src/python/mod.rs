@@ -5,8 +5,8 @@ pub mod env_batch;
 pub mod env_settings;
 pub mod error;
 pub mod flock;
-pub mod order;
 pub mod observation;
+pub mod order;
 pub mod parameters;
 pub mod recording;
 pub mod results;
@@ -24,12 +24,13 @@ mod _core {
     #[pymodule_export]
     use super::flock::PyFlock;
     #[pymodule_export]
-    use super::order::{rotation, signed_order};
     use super::observation::{
         PyObservedLaw, observation_table, observation_version, observe, state_table,
     };
     #[pymodule_export]
-    use super::parameters::{checked_fields, preset_fields, preset_names};
+    use super::order::{rotation, signed_order};
+    #[pymodule_export]
+    use super::parameters::{checked_fields, critical_bw_s, preset_fields, preset_names};
     #[pymodule_export]
     use super::recording::{phase_names, record};
 

@@ -85,6 +85,14 @@ pub fn checked_fields<'py>(
     to_dict(py, &parameters)
 }
 
+/// The critical noise of a preset in a pool, or `None` where it has not been measured.
+#[pyfunction]
+pub fn critical_bw_s(preset: &str, pool: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    Ok(preset
+        .parse::<Preset>()?
+        .critical_bw_s(&Pool::read(pool, "pool")?))
+}
+
 impl Field for usize {
     fn read(value: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Self> {
         // Saturates on 32-bit targets, far beyond what any count may be.
