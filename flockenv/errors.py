@@ -19,4 +19,7 @@ class EpisodeError(FlockError, RuntimeError):
 
 
 class SolverError(FlockError, RuntimeError):
-    """The motion left the range of finite numbers; the flock is where it was before the call."""
+    """The motion left the range of 1e9 (cm, cm/s, rad, rad/s).
+
+    The flock is where it was before the call.
+    """

@@ -207,7 +207,7 @@ def simulate(
     TypeError
         For arguments of the wrong type.
     SolverError
-        If numbers left the finite range.
+        If the motion left its range of 1e9 (cm, cm/s, rad, rad/s).
     """
     if policy not in (None, "law"):
         raise ParameterError(f"policy = {policy!r} is not accepted: None or 'law'")

@@ -278,9 +278,10 @@ impl Dynamics {
         self.kicks.iter_mut().for_each(|kick| *kick *= scale);
     }
 
-    /// Whether every pose and velocity is finite.
-    pub fn is_finite(&self) -> bool {
-        self.poses.iter().all(Pose::is_finite) && self.velocities.iter().all(Velocity::is_finite)
+    /// Whether every pose and velocity is one that a flock may hold.
+    pub fn is_in_range(&self) -> bool {
+        self.poses.iter().all(Pose::is_in_range)
+            && self.velocities.iter().all(Velocity::is_in_range)
     }
 }
 

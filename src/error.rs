@@ -48,7 +48,7 @@ pub enum FlockError {
     /// An environment was used out of turn: stepped before a reset or after the end.
     #[error("{0}")]
     Episode(String),
-    /// The motion left the range of finite numbers; the flock is as it was before the call.
+    /// The motion left the range that states may have; the flock is as it was before the call.
     #[error("{0}")]
     Solver(String),
 }

@@ -144,7 +144,7 @@ impl Flock {
     ///
     /// # Errors
     /// [`FlockError::Shape`] for wrong lengths, [`FlockError::Parameter`] for numbers that are not
-    /// finite or a time out of range, [`FlockError::Overlap`] for overlapping hulls unless allowed. The
+    /// finite or out of range, [`FlockError::Overlap`] for overlapping hulls unless allowed. The
     /// flock is unchanged then.
     pub fn set_state(
         &mut self,
@@ -163,20 +163,16 @@ impl Flock {
                 });
             }
         }
-        if let Some(boat) = poses
-            .iter()
-            .position(|pose| !pose.is_finite() || !is_moderate(pose))
-        {
-            let accepted = "finite numbers, positions within 1e9 cm and headings within 1e6 rad";
-            return Err(FlockError::parameter(
-                "pose",
-                format!("{:?} of boat {boat}", poses[boat]),
-                accepted,
-            ));
+        let accepted = "finite numbers within -1e9 to 1e9";
+        if let Some(boat) = poses.iter().position(|pose| !pose.is_in_range()) {
+            let Pose { position, heading } = poses[boat];
+            let value = format!("[{}, {}, {heading}] of boat {boat}", position.x, position.y);
+            return Err(FlockError::parameter("pose", value, accepted));
         }
-        if let Some(boat) = velocities.iter().position(|v| !v.is_finite()) {
-            let value = format!("{:?} of boat {boat}", velocities[boat]);
-            return Err(FlockError::parameter("velocity", value, "finite numbers"));
+        if let Some(boat) = velocities.iter().position(|v| !v.is_in_range()) {
+            let Velocity { linear, angular } = velocities[boat];
+            let value = format!("[{}, {}, {angular}] of boat {boat}", linear.x, linear.y);
+            return Err(FlockError::parameter("velocity", value, accepted));
         }
         let time = time_from(time_s)?;
         let mut dynamics = self.dynamics.clone();
@@ -193,7 +189,7 @@ impl Flock {
     ///
     /// # Errors
     /// [`FlockError::Parameter`] or [`FlockError::Shape`] for a bad duration or rudder,
-    /// [`FlockError::Solver`] if numbers left the finite range. The flock is unchanged then.
+    /// [`FlockError::Solver`] if numbers left their range. The flock is unchanged then.
     pub fn advance(&mut self, duration_s: f64, rudder: Option<&[f64]>) -> Result<()> {
         let end = self.end_of(duration_s)?;
         self.check_rudder(rudder)?;
@@ -256,7 +252,7 @@ impl Flock {
     /// at `end`.
     ///
     /// # Errors
-    /// [`FlockError::Solver`] if numbers left the finite range; the flock is unchanged then.
+    /// [`FlockError::Solver`] if numbers left their range; the flock is unchanged then.
     pub fn advance_to(&mut self, end: Ticks, steering: Steering) -> Result<()> {
         let before = (self.dynamics.checkpoint(), self.time);
         let dt = ticks(self.parameters.dt_s);
@@ -272,13 +268,14 @@ impl Flock {
             });
             self.time = stop;
         }
-        if self.dynamics.is_finite() {
+        if self.dynamics.is_in_range() {
             return Ok(());
         }
         self.dynamics.return_to(before.0);
         self.time = before.1;
         Err(FlockError::Solver(
-            "the motion left the range of finite numbers; smaller dt_s or milder constants may help"
+            "the motion left the range of 1e9 cm, cm/s, rad and rad/s; smaller dt_s or milder constants \
+             may help"
                 .to_owned(),
         ))
     }
@@ -411,10 +408,6 @@ impl Flock {
         });
         Ok(flock)
     }
-}
-
-fn is_moderate(pose: &Pose) -> bool {
-    pose.position.norm() <= 1e9 && pose.heading.abs() <= 1e6
 }
 
 fn time_from(time_s: f64) -> Result<Ticks> {

@@ -77,8 +77,8 @@ impl Snapshot {
             .iter()
             .chain(&self.neighbor_reference.0)
             .flatten();
-        let finite = self.poses.iter().all(Pose::is_finite)
-            && self.velocities.iter().all(Velocity::is_finite)
+        let finite = self.poses.iter().all(Pose::is_in_range)
+            && self.velocities.iter().all(Velocity::is_in_range)
             && self.loads.iter().all(|(_, impulse)| impulse.is_finite())
             && rudder.iter().flatten().all(|s| s.abs() <= 1.0)
             && plain

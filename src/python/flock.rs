@@ -173,7 +173,7 @@ impl PyFlock {
     /// ParameterError
     ///     For a duration or rudder out of range or of a wrong shape; the flock is unchanged then.
     /// SolverError
-    ///     If numbers left the finite range; poses, velocities and time are those before the call.
+    ///     If the motion left its range of 1e9 (cm, cm/s, rad, rad/s); poses, velocities and time are those before the call.
     #[pyo3(signature = (seconds, rudder=None))]
     fn advance(
         &mut self,
