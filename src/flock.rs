@@ -256,6 +256,7 @@ impl Flock {
     pub fn advance_to(&mut self, end: Ticks, steering: Steering) -> Result<()> {
         let before = (self.dynamics.checkpoint(), self.time);
         let dt = ticks(self.parameters.dt_s);
+        let unsolved = self.dynamics.statistics.unsolved;
         while self.time < end {
             let moment = self.schedule.at(self.time);
             let grid = (self.time / dt + 1) * dt;
@@ -267,6 +268,10 @@ impl Flock {
                 steering,
             });
             self.time = stop;
+            // Contacts of numbers that are not finite take long to give up: no more of them.
+            if self.dynamics.statistics.unsolved > unsolved && !self.dynamics.is_finite() {
+                break;
+            }
         }
         if self.dynamics.is_in_range() {
             return Ok(());

@@ -39,6 +39,7 @@ impl NeighborList {
     /// Forgets the list, so that the next update builds it anew.
     pub fn clear(&mut self) {
         self.reference.clear();
+        self.cutoff = 0.0;
     }
 
     /// Makes sure that every pair of centres within `distance` is listed, with `skin` to spare when

@@ -3,13 +3,17 @@
 
 mod support;
 
+mod bad_input;
 mod conservation;
 mod determinism;
 mod free_motion;
 mod geometry;
 mod impact;
+mod noise;
 mod order_parameters;
+mod parameters;
 mod phases;
+mod placement;
 mod pushing;
 mod sliding;
 mod steady_turning;

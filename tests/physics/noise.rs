@@ -1,0 +1,323 @@
+//! Noise, two conventions. `white`: increments c4·sqrt(dt)·N(0, 1), so that a free boat's spin is
+//! c4·W(t), with variance c4²·t whatever dt. `per-step`: increments c4·dt·N(0, 1), variance c4²·t·dt.
+//! White noise is one path per (seed, boat), read wherever time is cut.
+//!
+//! On paper: c1 = c2 = c3 = 0, then α̇(t) = c4·W(t) exactly. A boat under way damps its spin at
+//! k = c3·v0: variance c4²/(2k) for good.
+
+use crate::support::{NOISES, SCHEMES, driven, flock_of, inert};
+use flockenv::parameters::{Noise, Scheme};
+use flockenv::random_streams::BrownianPaths;
+use flockenv::{Flock, FlockParameters};
+
+/// Boats far apart, all at rest or all moving along.
+fn spread_out(p: &FlockParameters, boats: usize, speed: f64, seed: u64) -> Flock {
+    let p = FlockParameters {
+        n_boats: boats,
+        ..p.clone()
+    };
+    let mut flock = Flock::new(p, seed).expect("open water");
+    let (poses, velocities): (Vec<_>, Vec<_>) = (0..boats)
+        .map(|i| {
+            let (row, column) = ((i / 50) as f64, (i % 50) as f64);
+            (
+                flockenv::boat::Pose::new(60.0 * column, 60.0 * row, 0.0),
+                flockenv::boat::Velocity::new(speed, 0.0, 0.0),
+            )
+        })
+        .unzip();
+    flock
+        .set_state(&poses, &velocities, 0.0, false)
+        .expect("far apart");
+    flock
+}
+
+fn moments(values: &[f64]) -> (f64, f64, f64) {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n;
+    let fourth = values.iter().map(|v| (v - mean).powi(4)).sum::<f64>() / n;
+    (mean, variance, fourth / variance.powi(2))
+}
+
+fn spins(flock: &Flock) -> Vec<f64> {
+    flock.velocities().iter().map(|v| v.angular).collect()
+}
+
+const BOATS: usize = 2000;
+/// Five standard deviations of the sample variance of 2000 normal draws, sqrt(2/2000) each.
+const FIVE_SIGMA: f64 = 5.0 * 0.031_6;
+
+#[test]
+fn white_noise_has_the_variance_c4_squared_t_at_any_dt() {
+    for scheme in SCHEMES {
+        for dt_s in [0.1, 0.02, 0.005] {
+            let p = FlockParameters {
+                c4: 0.3,
+                dt_s,
+                noise: Noise::White,
+                ..inert(scheme)
+            };
+            let mut flock = spread_out(&p, BOATS, 0.0, 5);
+            flock.advance(2.0, None).expect("finite motion");
+            // Leapfrog's velocities belong to the middle of the last substep.
+            let time = match scheme {
+                Scheme::Leapfrog => 2.0 - 0.5 * dt_s,
+                _ => 2.0,
+            };
+            let (mean, variance, kurtosis) = moments(&spins(&flock));
+            let expected = 0.09 * time;
+            assert!(
+                (variance / expected - 1.0).abs() < FIVE_SIGMA,
+                "{scheme:?} {dt_s}: {variance}"
+            );
+            assert!(mean.abs() < 5.0 * (expected / BOATS as f64).sqrt());
+            // The sample kurtosis of a normal law is 3 ± sqrt(24/n).
+            assert!((kurtosis - 3.0).abs() < 5.0 * (24.0 / BOATS as f64).sqrt());
+        }
+    }
+}
+
+#[test]
+fn per_step_noise_has_a_variance_in_proportion_to_dt() {
+    for scheme in SCHEMES {
+        for dt_s in [0.1, 0.02, 0.005] {
+            let p = FlockParameters {
+                c4: 0.3,
+                dt_s,
+                noise: Noise::PerStep,
+                ..inert(scheme)
+            };
+            let mut flock = spread_out(&p, BOATS, 0.0, 6);
+            flock.advance(2.0, None).expect("finite motion");
+            let substeps = 2.0 / dt_s;
+            // Leapfrog's first kick lasts half a substep.
+            let kicks = match scheme {
+                Scheme::Leapfrog => substeps - 0.75,
+                _ => substeps,
+            };
+            let expected = 0.09 * dt_s * dt_s * kicks;
+            let (_, variance, _) = moments(&spins(&flock));
+            assert!(
+                (variance / expected - 1.0).abs() < FIVE_SIGMA,
+                "{scheme:?} {dt_s}: {variance}"
+            );
+        }
+    }
+}
+
+#[test]
+fn boats_and_times_are_independent() {
+    for noise in NOISES {
+        let p = FlockParameters {
+            c4: 1.0,
+            noise,
+            ..inert(Scheme::Moreau)
+        };
+        let mut flock = spread_out(&p, BOATS, 0.0, 9);
+        let mut last = spins(&flock);
+        let mut steps: Vec<Vec<f64>> = Vec::new();
+        for _ in 0..4 {
+            flock.advance(0.02, None).expect("finite motion");
+            let now = spins(&flock);
+            steps.push(now.iter().zip(&last).map(|(a, b)| a - b).collect());
+            last = now;
+        }
+        let correlation = |a: &[f64], b: &[f64]| {
+            let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
+            dot(a, b) / (dot(a, a) * dot(b, b)).sqrt()
+        };
+        let bound = 5.0 / (BOATS as f64).sqrt();
+        for i in 0..4 {
+            for j in 0..i {
+                assert!(correlation(&steps[i], &steps[j]).abs() < bound);
+            }
+            for lag in [1, 2, 50] {
+                assert!(correlation(&steps[i][lag..], &steps[i][..BOATS - lag]).abs() < bound);
+            }
+        }
+    }
+}
+
+#[test]
+fn no_noise_is_no_noise() {
+    for scheme in SCHEMES {
+        let p = FlockParameters {
+            c4: 0.0,
+            ..inert(scheme)
+        };
+        let mut flock = spread_out(&p, 10, 1.0, 5);
+        flock.advance(3.0, None).expect("finite motion");
+        assert!(spins(&flock).iter().all(|&w| w == 0.0));
+    }
+}
+
+#[test]
+fn two_control_rates_meet_the_same_path() {
+    // Control steps of 0.05 and 0.07 s cut substeps of 0.02 s; at common times whose last substep is a
+    // whole one, spins agree to rounding.
+    for scheme in SCHEMES {
+        let p = FlockParameters {
+            c4: 0.3,
+            noise: Noise::White,
+            ..inert(scheme)
+        };
+        let spins_at = |control: f64, end: f64| {
+            let mut flock = spread_out(&p, 50, 0.0, 12);
+            let steps = (end / control).round() as usize;
+            for _ in 0..steps {
+                flock.advance(control, None).expect("finite motion");
+            }
+            spins(&flock)
+        };
+        for (control, end) in [(0.05, 0.7), (0.07, 0.7), (0.02, 0.7), (0.007, 1.4)] {
+            // 0.7 s is a multiple of both; the substep before it begins at 0.68 or at a cut of its own.
+            let (cut, whole) = (spins_at(control, end), spins_at(0.1, end));
+            let same_last = scheme != Scheme::Leapfrog || control != 0.007;
+            for (a, b) in cut.iter().zip(&whole) {
+                let error = (a - b).abs();
+                if same_last {
+                    assert!(error < 1e-14, "{scheme:?} {control}: {error:e}");
+                } else {
+                    // The last substep is 0.007 s, so the middles differ by 0.0065 s of noise.
+                    assert!(error < 6.0 * 0.3 * 0.0065_f64.sqrt());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn two_policies_meet_the_same_path() {
+    // What a leader does changes nothing in the noise of a boat it does not touch.
+    for scheme in SCHEMES {
+        for noise in NOISES {
+            let p = FlockParameters {
+                n_leaders: 1,
+                c4: 0.5,
+                noise,
+                ..driven(scheme)
+            };
+            let states = [([0.0; 3], [0.0; 3]), ([0.0, 500.0, 0.0], [0.0; 3])];
+            let run = |rudder: f64| {
+                let mut flock = flock_of(&p, &states);
+                flock.advance(3.0, Some(&[rudder])).expect("finite motion");
+                flock.poses().to_vec()
+            };
+            let (left, right) = (run(1.0), run(-1.0));
+            assert_ne!(left[0], right[0]);
+            assert_eq!(left[1], right[1], "{scheme:?} {noise:?}");
+        }
+    }
+}
+
+/// W(to) − W(from) for 300 boats, times in half ticks.
+fn increments(paths: &mut BrownianPaths, from: u64, to: u64) -> Vec<f64> {
+    let mut found = vec![f64::NAN; 300];
+    paths.increments(from, to, &mut found);
+    found
+}
+
+#[test]
+fn increments_over_parts_add_up_to_the_whole() {
+    // Cells of 0.02 s, half a cell shifted as for leapfrog; cuts in a cell, across cells, odd ones.
+    let cell = 40_000_000;
+    for (shift, cell) in [(0, cell), (cell / 2, cell), (0, 1_999_999_999), (7, 2000)] {
+        let mut paths = BrownianPaths::new(3, 300, cell, shift);
+        let ends = [
+            0,
+            1,
+            cell / 3,
+            cell / 2,
+            cell - 1,
+            cell,
+            cell + 1,
+            5 * cell + 17,
+            9 * cell,
+        ];
+        for (i, &from) in ends.iter().enumerate() {
+            for (j, &to) in ends.iter().enumerate().skip(i + 1) {
+                let whole = increments(&mut paths, from, to);
+                for &middle in &ends[i + 1..j] {
+                    let first = increments(&mut paths, from, middle);
+                    let second = increments(&mut paths, middle, to);
+                    let scale = ((cell as f64) * 0.5e-9).sqrt();
+                    for ((w, a), b) in whole.iter().zip(&first).zip(&second) {
+                        assert!((w - a - b).abs() < 1e-13 * scale.max(1e-3));
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn increments_over_parts_of_a_cell_have_their_own_variance() {
+    // 300 boats in 60 cells: 18 000 draws, of variance ± sqrt(2/18000) = 1.05 %.
+    let cell: u64 = 40_000_000;
+    let mut paths = BrownianPaths::new(8, 300, cell, 0);
+    for (from, to) in [
+        (0, cell),
+        (0, cell / 2),
+        (cell / 3, cell / 3 + 1_000_000),
+        (cell / 4, 3 * cell / 4),
+        (cell - 12_345, cell),
+        (cell - 1_000_000, cell + 3_000_000),
+    ] {
+        let draws: Vec<f64> = (0..60)
+            .flat_map(|k| increments(&mut paths, 2 * k * cell + from, 2 * k * cell + to))
+            .collect();
+        let expected = (to - from) as f64 * 0.5e-9;
+        let (_, variance, kurtosis) = moments(&draws);
+        assert!(
+            (variance / expected - 1.0).abs() < 5.0 * 0.010_5,
+            "{from} {to}: {variance}"
+        );
+        assert!((kurtosis - 3.0).abs() < 5.0 * (24.0_f64 / 18_000.0).sqrt());
+    }
+}
+
+#[test]
+fn an_increment_does_not_depend_on_the_number_of_boats() {
+    let mut few = BrownianPaths::new(4, 3, 40_000_000, 0);
+    let mut many = BrownianPaths::new(4, 300, 40_000_000, 0);
+    let mut found = [0.0; 3];
+    few.increments(5_000_000, 90_000_000, &mut found);
+    assert_eq!(found[..], increments(&mut many, 5_000_000, 90_000_000)[..3]);
+}
+
+#[test]
+fn leapfrog_has_the_exact_stationary_spin_and_moreau_to_first_order() {
+    // Under way at v0 the spin is an Ornstein–Uhlenbeck process of rate k = c3·v0 = 15/s. Crank–Nicolson
+    // keeps its variance c4²/(2k) at any dt; Euler has c4²/(2k·(1 − k·dt/2)).
+    for (scheme, dt_s, factor) in [
+        (Scheme::Leapfrog, 0.08, 1.0),
+        (Scheme::Leapfrog, 0.04, 1.0),
+        (Scheme::Moreau, 0.08, 2.5),
+        (Scheme::Moreau, 0.04, 1.0 / 0.7),
+        (Scheme::Moreau, 0.01, 1.0 / 0.925),
+    ] {
+        let p = FlockParameters {
+            c1: 0.0,
+            c4: 0.01,
+            dt_s,
+            noise: Noise::White,
+            ..driven(scheme)
+        };
+        let mut flock = spread_out(&p, 1000, 15.0, 21);
+        let mut draws = Vec::new();
+        // 0.8 s between samples: exp(−12) of correlation.
+        for _ in 0..20 {
+            flock.advance(0.8, None).expect("finite motion");
+            draws.extend(spins(&flock));
+        }
+        let expected = 0.01_f64.powi(2) / 30.0 * factor;
+        let (_, variance, _) = moments(&draws);
+        // 20 000 draws: 1 % a standard deviation.
+        assert!(
+            (variance / expected - 1.0).abs() < 0.05,
+            "{scheme:?} {dt_s}: {}",
+            variance / expected
+        );
+    }
+}

@@ -1,0 +1,156 @@
+//! Parameters out of range are refused by name, at the one gate through which they enter a flock.
+//!
+//! On paper: Tables 1 and 3 are accepted, each of their fields out of range is refused by its name.
+
+use flockenv::parameters::{Noise, Pool, Preset, Scheme, Solver, Target};
+use flockenv::{Flock, FlockError, FlockParameters};
+
+fn table_3() -> FlockParameters {
+    FlockParameters::preset(Preset::Simulation)
+}
+
+fn refused_field(result: Result<(), FlockError>) -> String {
+    match result {
+        Err(FlockError::Parameter { field, .. } | FlockError::Shape { field, .. }) => {
+            field.to_owned()
+        }
+        other => panic!("accepted or another error: {other:?}"),
+    }
+}
+
+#[test]
+fn presets_are_the_tables() {
+    for preset in Preset::ALL.iter().copied() {
+        let p = FlockParameters::preset(preset);
+        assert_eq!(p.check(), Ok(()));
+        assert_eq!((p.boat_radius_cm, p.half_length_cm()), (5.0, 2.5));
+        assert_eq!(p.gyration_radius_cm, 4.74);
+        assert_eq!((p.speed_cm_s, p.reverse_speed_cm_s), (15.0, 15.0));
+        assert_eq!([p.c0, p.c1, p.c2, p.c3, p.c4], [1.0, 1.0, 0.1, 1.0, 0.1]);
+        assert_eq!([p.fw_s, p.nop1_s, p.nop2_s], [2.0, 1.0, 1.0]);
+        assert_eq!((p.n_boats, p.n_leaders), (20, 0));
+        assert_eq!(p.pool.name(), Some("500-boats"));
+        assert!(p.leaders_reverse);
+    }
+    let (simulation, paper) = (table_3(), FlockParameters::preset(Preset::Paper));
+    assert_eq!((simulation.bw_s, paper.bw_s), (0.3, 0.6));
+    assert_eq!(
+        (simulation.scheme, simulation.noise),
+        (Scheme::Leapfrog, Noise::White)
+    );
+    assert_eq!((paper.scheme, paper.noise), (Scheme::Paper, Noise::PerStep));
+    let radii = |name| Pool::named(name).map(|p| (p.outer_radius_cm, p.inner_radius_cm));
+    assert_eq!(radii("table-1"), Ok((90.0, 48.5)));
+    assert_eq!(radii("500-boats"), Ok((180.0, 97.0)));
+}
+
+type Change = fn(&mut FlockParameters, f64);
+
+const NUMBERS: [(&str, Change); 20] = [
+    ("boat_radius_cm", |p, x| p.boat_radius_cm = x),
+    ("boat_shape", |p, x| p.boat_shape = x),
+    ("gyration_radius_cm", |p, x| p.gyration_radius_cm = x),
+    ("speed_cm_s", |p, x| p.speed_cm_s = x),
+    ("reverse_speed_cm_s", |p, x| p.reverse_speed_cm_s = x),
+    ("c0", |p, x| p.c0 = x),
+    ("c1", |p, x| p.c1 = x),
+    ("c2", |p, x| p.c2 = x),
+    ("c3", |p, x| p.c3 = x),
+    ("c4", |p, x| p.c4 = x),
+    ("fw_s", |p, x| p.fw_s = x),
+    ("nop1_s", |p, x| p.nop1_s = x),
+    ("bw_s", |p, x| p.bw_s = x),
+    ("nop2_s", |p, x| p.nop2_s = x),
+    ("dt_s", |p, x| p.dt_s = x),
+    ("overlap_tolerance_cm", |p, x| p.overlap_tolerance_cm = x),
+    ("turning_bias", |p, x| p.turning_bias = x),
+    ("speed_spread_cm_s", |p, x| p.speed_spread_cm_s = x),
+    ("current_gain", |p, x| p.current_gain = x),
+    ("current_cap_cm_s", |p, x| p.current_cap_cm_s = x),
+];
+
+#[test]
+fn every_number_out_of_range_is_refused_by_name() {
+    for (field, change) in NUMBERS {
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -2.0, 1e300] {
+            let mut p = table_3();
+            change(&mut p, value);
+            assert_eq!(refused_field(p.check()), field, "{value}");
+            // The same at the gate.
+            assert!(Flock::new(p, 1).is_err());
+        }
+    }
+    for (field, change) in [NUMBERS[0], NUMBERS[2], NUMBERS[14]] {
+        let mut p = table_3();
+        change(&mut p, 0.0);
+        assert_eq!(refused_field(p.check()), field, "zero");
+    }
+}
+
+#[test]
+fn counts_pools_and_times_out_of_range_are_refused() {
+    let check = |change: fn(&mut FlockParameters)| {
+        let mut p = table_3();
+        change(&mut p);
+        refused_field(p.check())
+    };
+    assert_eq!(check(|p| p.n_boats = 0), "n_boats");
+    assert_eq!(check(|p| p.n_boats = usize::MAX), "n_boats");
+    assert_eq!(check(|p| p.n_leaders = 21), "n_leaders");
+    assert_eq!(check(|p| p.relinearizations = 3), "relinearizations");
+    for (outer_radius_cm, inner_radius_cm) in [
+        (90.0, 90.0),
+        (48.5, 90.0),
+        (0.0, 0.0),
+        (-1.0, 0.0),
+        (90.0, -1.0),
+        (f64::NAN, 0.0),
+        (90.0, f64::NAN),
+        (f64::INFINITY, f64::INFINITY),
+        (f64::NEG_INFINITY, 0.0),
+    ] {
+        let pool = Pool {
+            outer_radius_cm,
+            inner_radius_cm,
+        };
+        let p = FlockParameters { pool, ..table_3() };
+        assert_eq!(refused_field(p.check()), "pool", "{pool:?}");
+    }
+    // One phase may last no time, the cycle may not.
+    let no_cycle =
+        |p: &mut FlockParameters| (p.fw_s, p.nop1_s, p.bw_s, p.nop2_s) = (0.0, 0.0, 0.0, 0.0);
+    assert!(check(no_cycle).contains("fw_s"));
+    // Each scheme has its longest substep.
+    for (scheme, good, bad) in [
+        (Scheme::Leapfrog, 1.0, 1.001),
+        (Scheme::Moreau, 0.1, 0.101),
+        (Scheme::Paper, 0.1, 0.101),
+    ] {
+        let with = |dt_s| FlockParameters {
+            scheme,
+            dt_s,
+            ..table_3()
+        };
+        assert_eq!(with(good).check(), Ok(()));
+        assert_eq!(refused_field(with(bad).check()), "dt_s");
+        assert_eq!(refused_field(with(-0.01).check()), "dt_s");
+    }
+}
+
+#[test]
+fn names_are_parsed_and_unknown_ones_refused_with_what_there_is() {
+    for scheme in Scheme::ALL.iter().copied() {
+        assert_eq!(scheme.name().parse(), Ok(scheme));
+    }
+    let message = |error: FlockError| error.to_string();
+    let scheme = "euler".parse::<Scheme>().map_err(message);
+    assert!(scheme.is_err_and(|m| m.contains("scheme") && m.contains("leapfrog")));
+    let noise = "pink".parse::<Noise>().map_err(message);
+    assert!(noise.is_err_and(|m| m.contains("noise") && m.contains("per-step")));
+    let solver = "".parse::<Solver>().map_err(message);
+    assert!(solver.is_err_and(|m| m.contains("solver") && m.contains("block-pivoting")));
+    let target = "CW".parse::<Target>().map_err(message);
+    assert!(target.is_err_and(|m| m.contains("target") && m.contains("ccw")));
+    let pool = Pool::named("bathtub").map_err(message);
+    assert!(pool.is_err_and(|m| m.contains("pool") && m.contains("table-1")));
+}

@@ -1,0 +1,133 @@
+//! Initial condition: random, non-overlapping, at rest, seeded. Where the boats do not fit, an error
+//! says how many did.
+//!
+//! On paper: no two cores nearer than 2r, every core end within R_out − r and beyond R_in + r.
+
+use crate::support::{OPEN_WATER, deepest_overlap};
+use flockenv::boat::Velocity;
+use flockenv::lap_frame::orientation;
+use flockenv::parameters::{Pool, Preset};
+use flockenv::{Flock, FlockError, FlockParameters};
+
+fn placed(n_boats: usize, pool: Pool, seed: u64) -> Result<Flock, FlockError> {
+    let p = FlockParameters {
+        n_boats,
+        pool,
+        ..FlockParameters::preset(Preset::Simulation)
+    };
+    Flock::new(p, seed)
+}
+
+#[test]
+fn flocks_are_placed_apart_and_at_rest() {
+    let no_obstacle = Pool {
+        inner_radius_cm: 0.0,
+        ..Pool::TABLE_1
+    };
+    for (n, pool) in [
+        (1, Pool::TABLE_1),
+        (27, Pool::TABLE_1),
+        (80, Pool::TABLE_1),
+        (114, Pool::TABLE_1),
+        (20, Pool::FIVE_HUNDRED_BOATS),
+        (350, Pool::FIVE_HUNDRED_BOATS),
+        (100, no_obstacle),
+        (200, OPEN_WATER),
+    ] {
+        for seed in 0..3 {
+            let flock = placed(n, pool, seed).expect("room");
+            assert_eq!(flock.poses().len(), n);
+            assert_eq!(deepest_overlap(&flock), 0.0, "{n} {seed}");
+            assert!(flock.velocities().iter().all(|v| *v == Velocity::default()));
+            assert_eq!(flock.time(), 0);
+        }
+    }
+}
+
+#[test]
+fn placement_follows_the_seed() {
+    let poses = |seed| {
+        placed(40, Pool::TABLE_1, seed)
+            .expect("room")
+            .poses()
+            .to_vec()
+    };
+    assert_eq!(poses(3), poses(3));
+    assert_ne!(poses(3), poses(4));
+    // Large seeds are seeds of their own.
+    assert_ne!(poses(1), poses(1 + (1 << 32)));
+    assert_ne!(poses(u64::MAX), poses(u64::MAX >> 1));
+}
+
+#[test]
+fn placement_is_even_around_the_pool_and_in_heading() {
+    let (mut places, mut headings, mut count) = ((0.0, 0.0), (0.0, 0.0), 0.0);
+    for seed in 0..200 {
+        for pose in placed(20, Pool::FIVE_HUNDRED_BOATS, seed)
+            .expect("room")
+            .poses()
+        {
+            let (sin, cos) = pose.position.y.atan2(pose.position.x).sin_cos();
+            places = (places.0 + cos, places.1 + sin);
+            let (sin, cos) = orientation(pose).sin_cos();
+            headings = (headings.0 + cos, headings.1 + sin);
+            count += 1.0;
+        }
+    }
+    // Each component of a mean of 4000 unit vectors scatters by sqrt(1/8000) = 0.0112.
+    for mean in [places.0, places.1, headings.0, headings.1] {
+        assert!((mean / count).abs() < 5.0 * 0.0112, "{}", mean / count);
+    }
+}
+
+#[test]
+fn too_many_boats_are_an_error_that_says_how_many_fitted() {
+    // A disc of radius 40 cm has the area of 39 hulls. 36 of them would cover 92 %, which no packing
+    // of stadiums against a round wall reaches; 38 and 100 are refused without trying hard.
+    let pool = Pool {
+        outer_radius_cm: 40.0,
+        inner_radius_cm: 0.0,
+    };
+    for n in [36, 38, 100] {
+        match placed(n, pool, 1) {
+            Err(FlockError::Placement { requested, placed }) => {
+                assert_eq!(requested, n);
+                // Plain dropping alone covers a third of the water.
+                assert!((13..n).contains(&placed), "{n}: {placed}");
+            }
+            other => panic!("{n}: {other:?}"),
+        }
+    }
+}
+
+#[test]
+fn a_pool_that_holds_no_boat_says_so() {
+    for (outer_radius_cm, inner_radius_cm) in [(7.0, 0.0), (50.0, 41.0), (4.0, 0.0)] {
+        let pool = Pool {
+            outer_radius_cm,
+            inner_radius_cm,
+        };
+        let result = placed(1, pool, 1);
+        let expected = FlockError::Placement {
+            requested: 1,
+            placed: 0,
+        };
+        assert_eq!(result.err(), Some(expected), "{pool:?}");
+    }
+}
+
+#[test]
+fn a_failed_reset_leaves_the_flock_as_it_was() {
+    // Found by trying: the pool is as tight as placement manages for some seeds only, or for all.
+    let mut flock = placed(114, Pool::TABLE_1, 0).expect("room");
+    flock.advance(0.5, None).expect("finite motion");
+    let before = flock.snapshot();
+    for seed in 1..6 {
+        if flock.reset(seed).is_err() {
+            assert!(flock.snapshot() == before);
+        } else {
+            assert_eq!(flock.seed(), seed);
+            break;
+        }
+    }
+}
