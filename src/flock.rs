@@ -268,8 +268,8 @@ impl Flock {
                 steering,
             });
             self.time = stop;
-            // Contacts of numbers that are not finite take long to give up: no more of them.
-            if self.dynamics.statistics.unsolved > unsolved && !self.dynamics.is_finite() {
+            // Contacts of numbers out of range take long to give up: no more of them.
+            if self.dynamics.statistics.unsolved > unsolved && !self.dynamics.is_in_range() {
                 break;
             }
         }
