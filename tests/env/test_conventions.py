@@ -62,7 +62,7 @@ def test_next_step_autoreset():
     assert not truncations.any()
     assert infos == {}
     assert (observations != last).any()
-    # The second episode begins as after an explicit reset, and the ignored action has moved nothing.
+    # The second episode begins as after a reset, and the ignored action has moved nothing.
     again = vector_env()
     again.reset(seed=0)
     np.testing.assert_array_equal(observations, again.reset()[0])

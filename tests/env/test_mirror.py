@@ -1,4 +1,4 @@
-"""Law: with mirror_to_target both directions are one task, as the physics' mirror symmetry has it."""
+"""Law: with mirror_to_target both directions are one task, by the physics' mirror symmetry."""
 
 import numpy as np
 import pytest

@@ -49,7 +49,7 @@ def action(env, step):
 def equal(first, second):
     if isinstance(first, dict):
         return first.keys() == second.keys() and all(equal(first[k], second[k]) for k in first)
-    return np.array_equal(first, second, equal_nan=getattr(first, "dtype", None) != object)
+    return np.array_equal(first, second)
 
 
 @pytest.mark.parametrize("variant", VARIANTS.values(), ids=VARIANTS.keys())
