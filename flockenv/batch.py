@@ -28,7 +28,6 @@ class LeaderBatch:
         self.leaders = tuple(leaders)
         self.observation_size: int = self.core.observation_size
         self.state_space = state_space(options.parameters.n_boats)
-        self._seeded = np.zeros(self.num_flocks, np.bool_)
 
     def reset(
         self,
@@ -43,11 +42,10 @@ class LeaderBatch:
         requests: list[dict[str, Any] | None] = [None] * self.num_flocks
         for flock in np.flatnonzero(chosen).tolist():
             seed = seeds[flock]
-            if seed is None and not self._seeded[flock]:
+            if seed is None and not self.core.is_seeded(flock):
                 seed = new_seed()
             requests[flock] = {**per_flock[flock], "seed": seed}
         self.core.reset(requests)
-        self._seeded |= chosen
 
     def _per_flock(self, options: Mapping[str, Any]) -> list[dict[str, Any]]:
         """Options for each flock: lists have one entry a flock, anything else holds for all."""

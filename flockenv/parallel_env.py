@@ -92,12 +92,13 @@ class LeadersParallelEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float3
         Returns
         -------
         observations, infos : dict
-            By agent; observations have shape (observation size,), float32.
+            By agent; observations have shape (observation size,), float32, infos are empty. What
+            was drawn for the episode is told by `episode`.
         """
         self._batch.reset([seed], options, lambda: drawn_seed(self._random))
         self.agents = self.possible_agents[:]
-        info = self._batch.begin_info(0)
-        return self._by_agent(self._batch.core.observe()), {a: dict(info) for a in self.agents}
+        # Empty: TorchRL expects every later info to look like those of the reset.
+        return self.observe(), {agent: {} for agent in self.agents}
 
     def step(
         self, actions: Mapping[str, ArrayLike]
@@ -176,6 +177,10 @@ class LeadersParallelEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float3
     def state(self) -> NDArray[np.float32]:
         """Return the global state for centralised critics, shape (state size,), float32."""
         return self._batch.core.state(0)
+
+    def episode(self) -> dict[str, Any]:
+        """Return target, noise level, seed and step of the episode."""
+        return self._batch.core.episode(0)
 
     @property
     def flock(self) -> _core.Flock:

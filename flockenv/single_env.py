@@ -145,6 +145,10 @@ class LeadersEnv(gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
         """Return the global state, shape (state size,), float32."""
         return self._batch.core.state(0)
 
+    def episode(self) -> dict[str, Any]:
+        """Return target, noise level, seed and step of the episode."""
+        return self._batch.core.episode(0)
+
     @property
     def flock(self) -> _core.Flock:
         """A copy of the flock as it is now."""

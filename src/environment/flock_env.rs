@@ -13,6 +13,7 @@ pub struct StoredEnv {
     run: Option<StoredRun>,
     finished: Option<EpisodeSummary>,
     final_observation: Vec<f32>,
+    final_state: Vec<f32>,
 }
 
 /// A flock with its episodes.
@@ -25,6 +26,7 @@ pub struct FlockEnv {
     run: Option<Run>,
     finished: Option<EpisodeSummary>,
     final_observation: Vec<f32>,
+    final_state: Vec<f32>,
 }
 
 impl FlockEnv {
@@ -37,6 +39,7 @@ impl FlockEnv {
             run: None,
             finished: None,
             final_observation: Vec::new(),
+            final_state: Vec::new(),
             parameters,
         }
     }
@@ -51,6 +54,11 @@ impl FlockEnv {
         self.run.as_ref()
     }
 
+    /// Whether a reset has ever given a seed.
+    pub fn is_seeded(&self) -> bool {
+        self.seeds.is_some()
+    }
+
     /// Summary of the last episode that reached its end.
     pub fn finished(&self) -> Option<&EpisodeSummary> {
         self.finished.as_ref()
@@ -59,6 +67,11 @@ impl FlockEnv {
     /// The last observations of the last episode that ended under [`Autoreset::SameStep`].
     pub fn final_observation(&self) -> &[f32] {
         &self.final_observation
+    }
+
+    /// The global state at the end of that episode.
+    pub fn final_state(&self) -> &[f32] {
+        &self.final_state
     }
 
     /// The next episode, begun but not entered yet.
@@ -129,9 +142,17 @@ impl FlockEnv {
         if settings.autoreset == Autoreset::SameStep {
             self.final_observation.clear();
             self.final_observation.extend_from_slice(observations);
+            self.keep_final_state();
             self.go_on(settings, observations)?;
         }
         Ok(true)
+    }
+
+    fn keep_final_state(&mut self) {
+        let mut state = std::mem::take(&mut self.final_state);
+        state.resize(self.state_size(), 0.0);
+        self.observe_state(&mut state);
+        self.final_state = state;
     }
 
     fn go_on(&mut self, settings: &EnvSettings, observations: &mut [f32]) -> Result<()> {
@@ -177,6 +198,7 @@ impl FlockEnv {
             run: self.run.as_ref().map(Run::stored),
             finished: self.finished,
             final_observation: self.final_observation.clone(),
+            final_state: self.final_state.clone(),
         }
     }
 
@@ -190,8 +212,11 @@ impl FlockEnv {
             .run
             .map(|run| Run::restored(settings, &self.parameters, run))
             .transpose()?;
-        let kept = stored.final_observation;
-        if !(kept.is_empty() || kept.len() == whole) || (run.is_some() && stored.seeds.is_none()) {
+        let whole_or_none = |kept: &[f32], whole| kept.is_empty() || kept.len() == whole;
+        if !whole_or_none(&stored.final_observation, whole)
+            || !whole_or_none(&stored.final_state, self.state_size())
+            || (run.is_some() && stored.seeds.is_none())
+        {
             return Err(FlockError::Snapshot(
                 "the state is of another environment".to_owned(),
             ));
@@ -200,7 +225,8 @@ impl FlockEnv {
         restored.seeds = stored.seeds;
         restored.run = run;
         restored.finished = stored.finished;
-        restored.final_observation = kept;
+        restored.final_observation = stored.final_observation;
+        restored.final_state = stored.final_state;
         Ok(restored)
     }
 }

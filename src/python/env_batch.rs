@@ -134,6 +134,14 @@ impl PyEnvBatch {
         PyArray1::from_slice(py, numbers).reshape([numbers.len() / size, size])
     }
 
+    fn final_state<'py>(
+        &self,
+        py: Python<'py>,
+        flock: usize,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        Ok(PyArray1::from_slice(py, self.env(flock)?.final_state()))
+    }
+
     fn state_size(&self, flock: usize) -> PyResult<usize> {
         Ok(self.env(flock)?.state_size())
     }
@@ -186,6 +194,11 @@ impl PyEnvBatch {
             rudders.extend_from_slice(self.run(flock)?.rudders());
         }
         Ok(PyArray1::from_vec(py, rudders))
+    }
+
+    /// Whether a flock has ever been given a seed.
+    fn is_seeded(&self, flock: usize) -> PyResult<bool> {
+        Ok(self.env(flock)?.is_seeded())
     }
 
     /// Whether a flock has an episode under way.
