@@ -2,14 +2,13 @@
 
 use crate::boat::{Pose, Velocity};
 use crate::contact::{Contact, Partner};
-use crate::dynamics::{Checkpoint, Dynamics, LastSubstep, Steering, Substep};
+use crate::dynamics::{Dynamics, Steering, Substep};
 use crate::error::{FlockError, Result};
-use crate::geometry::{HullPose, Vec2};
+use crate::geometry::HullPose;
 use crate::order_parameters::OrderParameters;
 use crate::parameters::{FlockParameters, Target};
 use crate::phase_schedule::{PhaseMoment, PhaseSchedule, Ticks, seconds, ticks};
 use crate::placement;
-use crate::snapshot::Snapshot;
 use crate::statistics::Statistics;
 
 /// The latest time a flock may reach: 10⁹ s.
@@ -27,11 +26,11 @@ pub struct ContactForce {
 /// A flock of boats in a pool.
 #[derive(Debug, Clone)]
 pub struct Flock {
-    parameters: FlockParameters,
+    pub(crate) parameters: FlockParameters,
     schedule: PhaseSchedule,
-    seed: u64,
-    time: Ticks,
-    dynamics: Dynamics,
+    pub(crate) seed: u64,
+    pub(crate) time: Ticks,
+    pub(crate) dynamics: Dynamics,
 }
 
 impl Flock {
@@ -50,7 +49,7 @@ impl Flock {
         Ok(flock)
     }
 
-    fn unplaced(parameters: FlockParameters, seed: u64) -> Self {
+    pub(crate) fn unplaced(parameters: FlockParameters, seed: u64) -> Self {
         Self {
             schedule: PhaseSchedule::new(&parameters),
             dynamics: Dynamics::new(&parameters, seed),
@@ -338,80 +337,6 @@ impl Flock {
                 }
             })
             .collect()
-    }
-
-    /// The whole state as bytes.
-    pub fn snapshot(&self) -> Vec<u8> {
-        let state = self.dynamics.checkpoint();
-        let pairs = |vectors: &[Vec2]| vectors.iter().map(|v| [v.x, v.y]).collect::<Vec<_>>();
-        let (reference, cutoff) = &state.neighbor_reference;
-        Snapshot {
-            parameters: self.parameters.clone(),
-            seed: self.seed,
-            time: self.time,
-            neighbor_reference: (pairs(reference), *cutoff),
-            last_substep: (state.last.length, state.last.phase, state.last.rudder),
-            lasting_acceleration: pairs(&state.last.lasting_acceleration),
-            poses: state.poses,
-            velocities: state.velocities,
-            loads: state.loads,
-            kick_s: state.kick_s,
-            statistics: state.statistics,
-        }
-        .to_bytes()
-    }
-
-    /// Continues from a snapshot of a flock with the same parameters (the target aside, which the
-    /// snapshot brings along).
-    ///
-    /// # Errors
-    /// [`FlockError::Snapshot`]; the flock is unchanged then.
-    pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
-        let restored = Self::from_snapshot(bytes)?;
-        let same = FlockParameters {
-            target: self.parameters.target,
-            ..restored.parameters.clone()
-        };
-        if same != self.parameters {
-            return Err(FlockError::Snapshot(
-                "the snapshot is of a flock with other parameters".to_owned(),
-            ));
-        }
-        *self = restored;
-        Ok(())
-    }
-
-    /// A flock from a snapshot alone.
-    ///
-    /// # Errors
-    /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed snapshot.
-    pub fn from_snapshot(bytes: &[u8]) -> Result<Self> {
-        let snapshot = Snapshot::from_bytes(bytes)?;
-        let vectors = |pairs: Vec<[f64; 2]>| {
-            pairs
-                .into_iter()
-                .map(|[x, y]| Vec2::new(x, y))
-                .collect::<Vec<_>>()
-        };
-        let mut flock = Self::unplaced(snapshot.parameters, snapshot.seed);
-        flock.time = snapshot.time;
-        let (reference, cutoff) = snapshot.neighbor_reference;
-        let (length, phase, rudder) = snapshot.last_substep;
-        flock.dynamics.return_to(Checkpoint {
-            poses: snapshot.poses,
-            velocities: snapshot.velocities,
-            last: LastSubstep {
-                length,
-                phase,
-                rudder,
-                lasting_acceleration: vectors(snapshot.lasting_acceleration),
-            },
-            loads: snapshot.loads,
-            neighbor_reference: (vectors(reference), cutoff),
-            kick_s: snapshot.kick_s,
-            statistics: snapshot.statistics,
-        });
-        Ok(flock)
     }
 }
 

@@ -36,6 +36,7 @@ mod parallel;
 pub mod parameters;
 pub mod phase_schedule;
 pub mod placement;
+pub mod pool;
 pub mod random_streams;
 pub mod recording;
 pub mod scheme;

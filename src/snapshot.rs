@@ -3,7 +3,10 @@
 
 use crate::boat::{Pose, Velocity};
 use crate::contact::Load;
+use crate::dynamics::{Checkpoint, LastSubstep};
 use crate::error::{FlockError, Result};
+use crate::flock::{Flock, LATEST};
+use crate::geometry::Vec2;
 use crate::parameters::FlockParameters;
 use crate::phase_schedule::Ticks;
 use crate::sealed_bytes::{seal, unseal};
@@ -84,11 +87,87 @@ impl Snapshot {
             && plain
                 .chain([&self.kick_s, &self.neighbor_reference.1])
                 .all(|value| value.is_finite());
-        if sizes && finite && self.time <= crate::flock::LATEST {
+        if sizes && finite && self.time <= LATEST {
             return Ok(self);
         }
         Err(FlockError::Snapshot(
             "the snapshot holds a state that no flock can have".to_owned(),
         ))
+    }
+}
+
+impl Flock {
+    /// The whole state as bytes.
+    pub fn snapshot(&self) -> Vec<u8> {
+        let state = self.dynamics.checkpoint();
+        let pairs = |vectors: &[Vec2]| vectors.iter().map(|v| [v.x, v.y]).collect::<Vec<_>>();
+        let (reference, cutoff) = &state.neighbor_reference;
+        Snapshot {
+            parameters: self.parameters.clone(),
+            seed: self.seed,
+            time: self.time,
+            neighbor_reference: (pairs(reference), *cutoff),
+            last_substep: (state.last.length, state.last.phase, state.last.rudder),
+            lasting_acceleration: pairs(&state.last.lasting_acceleration),
+            poses: state.poses,
+            velocities: state.velocities,
+            loads: state.loads,
+            kick_s: state.kick_s,
+            statistics: state.statistics,
+        }
+        .to_bytes()
+    }
+
+    /// Continues from a snapshot of a flock with the same parameters (the target aside, which the
+    /// snapshot brings along).
+    ///
+    /// # Errors
+    /// [`FlockError::Snapshot`]; the flock is unchanged then.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
+        let restored = Self::from_snapshot(bytes)?;
+        let same = FlockParameters {
+            target: self.parameters.target,
+            ..restored.parameters.clone()
+        };
+        if same != self.parameters {
+            return Err(FlockError::Snapshot(
+                "the snapshot is of a flock with other parameters".to_owned(),
+            ));
+        }
+        *self = restored;
+        Ok(())
+    }
+
+    /// A flock from a snapshot alone.
+    ///
+    /// # Errors
+    /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed snapshot.
+    pub fn from_snapshot(bytes: &[u8]) -> Result<Self> {
+        let snapshot = Snapshot::from_bytes(bytes)?;
+        let vectors = |pairs: Vec<[f64; 2]>| {
+            pairs
+                .into_iter()
+                .map(|[x, y]| Vec2::new(x, y))
+                .collect::<Vec<_>>()
+        };
+        let mut flock = Self::unplaced(snapshot.parameters, snapshot.seed);
+        flock.time = snapshot.time;
+        let (reference, cutoff) = snapshot.neighbor_reference;
+        let (length, phase, rudder) = snapshot.last_substep;
+        flock.dynamics.return_to(Checkpoint {
+            poses: snapshot.poses,
+            velocities: snapshot.velocities,
+            last: LastSubstep {
+                length,
+                phase,
+                rudder,
+                lasting_acceleration: vectors(snapshot.lasting_acceleration),
+            },
+            loads: snapshot.loads,
+            neighbor_reference: (vectors(reference), cutoff),
+            kick_s: snapshot.kick_s,
+            statistics: snapshot.statistics,
+        });
+        Ok(flock)
     }
 }
