@@ -2,7 +2,7 @@
 
 use crate::boat::{Pose, Velocity};
 use crate::contact::{Contact, Partner};
-use crate::dynamics::{Dynamics, Steering, Substep};
+use crate::dynamics::{Checkpoint, Dynamics, Steering, Substep};
 use crate::error::{FlockError, Result};
 use crate::geometry::HullPose;
 use crate::order_parameters::OrderParameters;
@@ -31,6 +31,8 @@ pub struct Flock {
     pub(crate) seed: u64,
     pub(crate) time: Ticks,
     pub(crate) dynamics: Dynamics,
+    /// The motion before the last advance, to return to if it fails.
+    before: Box<Checkpoint>,
 }
 
 impl Flock {
@@ -53,6 +55,7 @@ impl Flock {
         Self {
             schedule: PhaseSchedule::new(&parameters),
             dynamics: Dynamics::new(&parameters, seed),
+            before: Box::default(),
             seed,
             time: 0,
             parameters,
@@ -253,7 +256,8 @@ impl Flock {
     /// # Errors
     /// [`FlockError::Solver`] if numbers left their range; the flock is unchanged then.
     pub fn advance_to(&mut self, end: Ticks, steering: Steering) -> Result<()> {
-        let before = (self.dynamics.checkpoint(), self.time);
+        self.dynamics.save(&mut self.before);
+        let begin = self.time;
         let dt = ticks(self.parameters.dt_s);
         let unsolved = self.dynamics.statistics.unsolved;
         while self.time < end {
@@ -275,8 +279,8 @@ impl Flock {
         if self.dynamics.is_in_range() {
             return Ok(());
         }
-        self.dynamics.return_to(before.0);
-        self.time = before.1;
+        self.dynamics.return_to(&self.before);
+        self.time = begin;
         Err(FlockError::Solver(
             "the motion left the range of 1e9 cm, cm/s, rad and rad/s; smaller dt_s or milder constants \
              may help"

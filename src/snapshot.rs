@@ -154,7 +154,7 @@ impl Flock {
         flock.time = snapshot.time;
         let (reference, cutoff) = snapshot.neighbor_reference;
         let (length, phase, rudder) = snapshot.last_substep;
-        flock.dynamics.return_to(Checkpoint {
+        flock.dynamics.return_to(&Checkpoint {
             poses: snapshot.poses,
             velocities: snapshot.velocities,
             last: LastSubstep {

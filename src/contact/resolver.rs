@@ -89,8 +89,8 @@ impl ContactResolver {
     }
 
     /// Puts back what [`Self::loads`] gave.
-    pub fn set_loads(&mut self, loads: Vec<Load>) {
-        self.loads.replace(loads.into_iter());
+    pub fn set_loads(&mut self, loads: &[Load]) {
+        self.loads.replace(loads.iter().copied());
     }
 
     /// Forgets contacts and loads: the poses have been set from outside.
