@@ -260,7 +260,6 @@ def test_headers_that_claim_the_world_are_refused(tmp_path, shape, compression):
         Recording.load(tmp_path / "run.npz")
 
 
-@settings(deadline=None)
 @given(st.sampled_from([False, True]), st.floats(0, 1, exclude_max=True))
 def test_cut_off_files_are_refused(compressed, fraction):
     blob = saved(compressed=compressed)
@@ -268,7 +267,7 @@ def test_cut_off_files_are_refused(compressed, fraction):
         load(blob[: int(fraction * len(blob))])
 
 
-@settings(deadline=None, max_examples=300)
+@settings(max_examples=300)
 @given(st.sampled_from([False, True]), st.floats(0, 1, exclude_max=True), st.integers(0, 7))
 def test_flipped_bits_give_the_same_recording_or_a_named_error(compressed, fraction, bit):
     blob = bytearray(saved(compressed=compressed))
