@@ -9,8 +9,9 @@ from flockenv.errors import EpisodeError, FlockError, ParameterError, SolverErro
 from flockenv.order_parameters import OrderParameters, OrderSeries
 from flockenv.parallel_env import LeadersParallelEnv, parallel_env
 from flockenv.parameters import FlockParameters
-from flockenv.recording import Recording, simulate
+from flockenv.recording import Recording
 from flockenv.registration import register
+from flockenv.simulation import simulate
 from flockenv.single_env import LeadersEnv
 from flockenv.statistics import Statistics
 from flockenv.vector_env import LeadersVectorEnv

@@ -3,7 +3,7 @@
 import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import gymnasium
 import numpy as np
@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from flockenv.extras import require
 from flockenv.parameters import FlockParameters
 from flockenv.policies import SteeringLaw
-from flockenv.recording import simulate
+from flockenv.simulation import LeaderPolicy, simulate
 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["NO_LEADERS", "POLICIES", "QUANTITIES", "LeaderPolicy", "compare_leaders"]
+__all__ = ["NO_LEADERS", "POLICIES", "QUANTITIES", "compare_leaders"]
 
 NO_LEADERS = "no leaders"
 """Name under which runs without leaders are listed."""
@@ -26,13 +26,6 @@ QUANTITIES = ("psi_o", "signed_order")
 """What is compared: mean Ψ_o and mean signed order of the normal boats."""
 
 _CONTROL_HZ = 10.0
-
-
-class LeaderPolicy(Protocol):
-    """Anything with the ``predict`` of a stable-baselines3 policy."""
-
-    def predict(self, observation: Any, state: Any = None, episode_start: Any = None) -> Any:
-        """Return actions for observations, and the next state of a recurrent policy."""
 
 
 POLICIES: Mapping[str, Callable[[], LeaderPolicy]] = {"steering law": SteeringLaw}

@@ -1,11 +1,11 @@
-"""Runs, sampled at a fixed rate: made, saved and loaded."""
+"""Runs, sampled at a fixed rate: saved and loaded."""
 
 import os
 from dataclasses import dataclass, fields
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv.array_file import read_arrays, write_arrays
@@ -13,13 +13,13 @@ from flockenv.errors import ParameterError
 from flockenv.order_parameters import OrderSeries
 from flockenv.parameters import FlockParameters
 
-__all__ = ["Recording", "simulate"]
+__all__ = ["PHASES", "PRECISIONS", "Recording"]
 
 _FORMAT = "flockenv recording 1"
-_PHASES = np.array(_core.phase_names())
+PHASES = np.array(_core.phase_names())
 _ORDER = tuple(each.name for each in fields(OrderSeries))
 _ARRAYS = ("time_s", "phase", "in_analysis_window", "pose", "velocity")
-_PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
+PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -66,20 +66,20 @@ class Recording:
     def __post_init__(self) -> None:
         times = np.shape(self.time_s)[:1]
         state = (*times, self.parameters.n_boats, 3)
-        _check("time_s", self.time_s, times, _PRECISIONS[:1])
-        _check("phase", self.phase, times, (_PHASES.dtype,))
+        _check("time_s", self.time_s, times, PRECISIONS[:1])
+        _check("phase", self.phase, times, (PHASES.dtype,))
         _check("in_analysis_window", self.in_analysis_window, times, (np.dtype(np.bool_),))
-        _check("pose", self.pose, state, _PRECISIONS)
+        _check("pose", self.pose, state, PRECISIONS)
         _check("velocity", self.velocity, state, (self.pose.dtype,))
-        if not np.isin(self.phase, _PHASES).all():
-            raise ParameterError(f"phase holds other names than {', '.join(_PHASES)}")
+        if not np.isin(self.phase, PHASES).all():
+            raise ParameterError(f"phase holds other names than {', '.join(PHASES)}")
         if times == (0,) or not (np.diff(self.time_s) > 0).all() or self.time_s[0] < 0:
             raise ParameterError("time_s must hold at least one time, from 0 on, and increase")
         normal_boats = self.parameters.n_boats - self.parameters.n_leaders
         for name in _ORDER:
             values = getattr(self.order, name)
             undefined = normal_boats == 0 or (normal_boats == 1 and name in ("c_o", "c_v"))
-            _check(f"order.{name}", values, times, _PRECISIONS[:1], all_nan=undefined)
+            _check(f"order.{name}", values, times, PRECISIONS[:1], all_nan=undefined)
         seed: Any = self.seed
         if not isinstance(seed, int) or not 0 <= seed < 2**64:
             raise ParameterError(f"seed = {seed!r} is not accepted: an int from 0 to 2^64 - 1")
@@ -161,66 +161,6 @@ class Recording:
             seed=int(arrays["seed"]),
             version=version,
         )
-
-
-def simulate(
-    parameters: FlockParameters,
-    seed: int,
-    duration_s: float,
-    sample_hz: float = 10.0,
-    policy: str | None = None,
-    *,
-    dtype: DTypeLike = np.float64,
-) -> Recording:
-    """Run a flock from its random start and record it: a pure function of its arguments.
-
-    Without a policy of its own the run is one call into the core, without the interpreter lock.
-
-    Parameters
-    ----------
-    parameters
-        The scene.
-    seed
-        Seed of all random streams, 0 to 2^64 - 1.
-    duration_s
-        Length of the run in s, from 0 s (one sample: the start) to 1e9 s. The run ends with the
-        last sample.
-    sample_hz
-        Samples a second, taken at 0, 1/sample_hz, 2/sample_hz … Substeps end on samples: rates of
-        which 1/dt_s is no multiple change the course of the run within its numerical error.
-    policy
-        How leaders steer: None or "law" for the steering law, eq. (10), at every substep.
-    dtype
-        float64, or float32 for half the size, which rounds the pose and velocity that are kept but
-        not the run.
-
-    Returns
-    -------
-    Recording
-        floor(duration_s · sample_hz) + 1 samples.
-
-    Raises
-    ------
-    ParameterError
-        For arguments out of range, boats that do not fit the pool, and a recording of more than
-        16 GiB; nothing is run then.
-    TypeError
-        For arguments of the wrong type.
-    SolverError
-        If the motion left its range of 1e9 (cm, cm/s, rad, rad/s).
-    """
-    if policy not in (None, "law"):
-        raise ParameterError(f"policy = {policy!r} is not accepted: None or 'law'")
-    columns = _core.record(parameters, seed, duration_s, sample_hz, _precision(dtype) == np.float32)
-    columns["phase"] = _PHASES[columns["phase"]]
-    return Recording(**columns, parameters=parameters, seed=int(seed), version=_core.__version__)
-
-
-def _precision(dtype: DTypeLike) -> np.dtype[Any]:
-    precision = np.dtype(dtype)
-    if precision not in _PRECISIONS:
-        raise ParameterError(f"dtype = {precision} is not accepted: float64 or float32")
-    return precision
 
 
 def _check(

@@ -83,14 +83,14 @@ impl Preset {
     /// s, at which mean Ψ_o of leaderless runs falls through the middle between its ordered and its
     /// disordered level. `None` for a pool in which it has not been measured.
     ///
-    /// Source: `baselines/critical_noise.py` (8 seeds of 60 minutes every 0.05 s; runs in
+    /// Source: `baselines/critical_noise.py` (8 seeds of 30 minutes every 0.05 s; runs in
     /// `docs/results/critical_noise.csv`), rounded to 0.01 s.
     pub fn critical_bw_s(self, pool: &Pool) -> Option<f64> {
         match (self, pool.name()?) {
-            (Self::Simulation, "500-boats") => Some(0.27),
-            (Self::Simulation, "table-1") => Some(0.43),
-            (Self::Paper, "500-boats") => Some(0.58),
-            (Self::Paper, "table-1") => Some(0.63),
+            (Self::Simulation, "500-boats") => Some(0.31),
+            (Self::Simulation, "table-1") => Some(0.45),
+            (Self::Paper, "500-boats") => Some(0.57),
+            (Self::Paper, "table-1") => Some(0.64),
             _ => None,
         }
     }

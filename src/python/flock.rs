@@ -93,6 +93,12 @@ impl PyFlock {
         self.0.time_s()
     }
 
+    /// Whether the flock is in the second half of fw or the first half of nop1 now.
+    #[getter]
+    fn in_analysis_window(&self) -> bool {
+        self.0.schedule().in_analysis_window(self.0.time())
+    }
+
     /// Phase that holds from now on: "fw", "nop1", "bw" or "nop2".
     #[getter]
     fn phase(&self) -> &'static str {
