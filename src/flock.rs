@@ -316,7 +316,7 @@ impl Flock {
         } else {
             self.parameters.n_leaders
         };
-        OrderParameters::of(&self.poses()[first..], &self.velocities()[first..])
+        OrderParameters::of_hulls(&self.hulls()[first..], &self.velocities()[first..])
     }
 
     /// Contacts and near-contacts of the last substep: gaps now, forces as means over the last kick.

@@ -128,11 +128,11 @@ impl Camera {
     }
 
     fn develop(&mut self, leaders: usize) {
-        let seen = self.seen();
-        let order = OrderParameters::of(&seen.poses[leaders..], &seen.velocities[leaders..]).ok();
         let mut hulls = std::mem::take(&mut self.hulls);
+        let seen = self.seen();
         hulls.clear();
-        hulls.extend(self.seen().poses.iter().map(HullPose::new));
+        hulls.extend(seen.poses.iter().map(HullPose::new));
+        let order = OrderParameters::of_hulls(&hulls[leaders..], &seen.velocities[leaders..]).ok();
         (self.hulls, self.order) = (hulls, order);
     }
 

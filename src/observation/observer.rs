@@ -150,12 +150,19 @@ impl Observer {
         let mut farthest = f64::INFINITY;
         for (boat, hull) in view.hulls.iter().enumerate() {
             let square = (hull.center - center).norm_squared();
-            if boat == leader || (self.nearest.len() == wanted && square >= farthest) {
+            if square >= farthest || boat == leader {
                 continue;
             }
-            let place = self.nearest.partition_point(|&(other, _)| other <= square);
-            self.nearest.truncate(wanted - 1);
-            self.nearest.insert(place, (square, boat as u32));
+            if self.nearest.len() < wanted {
+                self.nearest.push((square, boat as u32));
+            }
+            // From the back, where most newcomers belong.
+            let mut place = self.nearest.len() - 1;
+            while place > 0 && self.nearest[place - 1].0 > square {
+                self.nearest[place] = self.nearest[place - 1];
+                place -= 1;
+            }
+            self.nearest[place] = (square, boat as u32);
             if self.nearest.len() == wanted {
                 farthest = self.nearest[wanted - 1].0;
             }
