@@ -2,6 +2,41 @@
 
 from importlib.metadata import version
 
-__all__ = ["__version__"]
+from flockenv import policies
+from flockenv._core import Flock
+from flockenv.contacts import Contacts
+from flockenv.errors import EpisodeError, FlockError, ParameterError, SolverError
+from flockenv.order_parameters import OrderParameters, OrderSeries
+from flockenv.parallel_env import LeadersParallelEnv, parallel_env
+from flockenv.parameters import FlockParameters
+from flockenv.recording import Recording
+from flockenv.registration import register
+from flockenv.simulation import simulate
+from flockenv.single_env import LeadersEnv
+from flockenv.statistics import Statistics
+from flockenv.vector_env import LeadersVectorEnv
+
+__all__ = [
+    "Contacts",
+    "EpisodeError",
+    "Flock",
+    "FlockError",
+    "FlockParameters",
+    "LeadersEnv",
+    "LeadersParallelEnv",
+    "LeadersVectorEnv",
+    "OrderParameters",
+    "OrderSeries",
+    "ParameterError",
+    "Recording",
+    "SolverError",
+    "Statistics",
+    "__version__",
+    "parallel_env",
+    "policies",
+    "simulate",
+]
 
 __version__ = version("flockenv")
+
+register()

@@ -33,7 +33,7 @@ pub struct Substep<'a> {
 }
 
 /// What the leapfrog scheme remembers of the substep before: its second half belongs to the next kick.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, PartialEq, Default)]
 pub struct LastSubstep {
     /// Its length; 0 if there was none since the state was set.
     pub length: Ticks,
@@ -45,8 +45,25 @@ pub struct LastSubstep {
     pub lasting_acceleration: Vec<Vec2>,
 }
 
+impl Clone for LastSubstep {
+    fn clone(&self) -> Self {
+        let mut copy = Self::default();
+        copy.clone_from(self);
+        copy
+    }
+
+    // A flock is saved before every advance: without allocations.
+    fn clone_from(&mut self, source: &Self) {
+        self.length = source.length;
+        self.phase = source.phase;
+        self.rudder.clone_from(&source.rudder);
+        self.lasting_acceleration
+            .clone_from(&source.lasting_acceleration);
+    }
+}
+
 /// All that decides how the motion goes on, apart from parameters, seed and time.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Checkpoint {
     /// Poses of all boats.
     pub poses: Vec<Pose>,
@@ -142,28 +159,38 @@ impl Dynamics {
 
     /// The motion as it is, to return to.
     pub fn checkpoint(&self) -> Checkpoint {
+        let mut checkpoint = Checkpoint::default();
+        self.save(&mut checkpoint);
+        checkpoint
+    }
+
+    /// Writes the motion as it is over a checkpoint, whose memory is used again.
+    pub fn save(&self, into: &mut Checkpoint) {
+        into.poses.clone_from(&self.poses);
+        into.velocities.clone_from(&self.velocities);
+        into.last.clone_from(&self.last);
+        into.loads.clear();
+        into.loads.extend_from_slice(self.contacts.loads());
         let neighbors = self.contacts.neighbors();
-        Checkpoint {
-            poses: self.poses.clone(),
-            velocities: self.velocities.clone(),
-            last: self.last.clone(),
-            loads: self.contacts.loads().to_vec(),
-            neighbor_reference: (neighbors.reference().to_vec(), neighbors.cutoff()),
-            kick_s: self.kick_s,
-            statistics: self.statistics,
-        }
+        into.neighbor_reference.0.clear();
+        into.neighbor_reference
+            .0
+            .extend_from_slice(neighbors.reference());
+        into.neighbor_reference.1 = neighbors.cutoff();
+        into.kick_s = self.kick_s;
+        into.statistics = self.statistics;
     }
 
     /// Goes on from a checkpoint, bit for bit.
-    pub fn return_to(&mut self, checkpoint: Checkpoint) {
+    pub fn return_to(&mut self, checkpoint: &Checkpoint) {
         self.place(&checkpoint.poses, &checkpoint.velocities);
-        self.last = checkpoint.last;
-        self.contacts.set_loads(checkpoint.loads);
-        let (reference, cutoff) = checkpoint.neighbor_reference;
+        self.last.clone_from(&checkpoint.last);
+        self.contacts.set_loads(&checkpoint.loads);
+        let (reference, cutoff) = &checkpoint.neighbor_reference;
         self.contacts
             .detector()
             .neighbors
-            .restore(reference, cutoff);
+            .restore(reference, *cutoff);
         self.kick_s = checkpoint.kick_s;
         self.statistics = checkpoint.statistics;
     }
@@ -278,9 +305,10 @@ impl Dynamics {
         self.kicks.iter_mut().for_each(|kick| *kick *= scale);
     }
 
-    /// Whether every pose and velocity is finite.
-    pub fn is_finite(&self) -> bool {
-        self.poses.iter().all(Pose::is_finite) && self.velocities.iter().all(Velocity::is_finite)
+    /// Whether every pose and velocity is one that a flock may hold.
+    pub fn is_in_range(&self) -> bool {
+        self.poses.iter().all(Pose::is_in_range)
+            && self.velocities.iter().all(Velocity::is_in_range)
     }
 }
 

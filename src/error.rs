@@ -45,7 +45,10 @@ pub enum FlockError {
     /// Snapshot bytes that this flock cannot continue from.
     #[error("snapshot not restored: {0}")]
     Snapshot(String),
-    /// The motion left the range of finite numbers; the flock is as it was before the call.
+    /// An environment was used out of turn: stepped before a reset or after the end.
+    #[error("{0}")]
+    Episode(String),
+    /// The motion left the range that states may have; the flock is as it was before the call.
     #[error("{0}")]
     Solver(String),
 }

@@ -2,14 +2,13 @@
 
 use crate::boat::{Pose, Velocity};
 use crate::contact::{Contact, Partner};
-use crate::dynamics::{Checkpoint, Dynamics, LastSubstep, Steering, Substep};
+use crate::dynamics::{Checkpoint, Dynamics, Steering, Substep};
 use crate::error::{FlockError, Result};
-use crate::geometry::Vec2;
+use crate::geometry::HullPose;
 use crate::order_parameters::OrderParameters;
 use crate::parameters::{FlockParameters, Target};
 use crate::phase_schedule::{PhaseMoment, PhaseSchedule, Ticks, seconds, ticks};
 use crate::placement;
-use crate::snapshot::Snapshot;
 use crate::statistics::Statistics;
 
 /// The latest time a flock may reach: 10⁹ s.
@@ -27,11 +26,13 @@ pub struct ContactForce {
 /// A flock of boats in a pool.
 #[derive(Debug, Clone)]
 pub struct Flock {
-    parameters: FlockParameters,
+    pub(crate) parameters: FlockParameters,
     schedule: PhaseSchedule,
-    seed: u64,
-    time: Ticks,
-    dynamics: Dynamics,
+    pub(crate) seed: u64,
+    pub(crate) time: Ticks,
+    pub(crate) dynamics: Dynamics,
+    /// The motion before the last advance, to return to if it fails.
+    before: Box<Checkpoint>,
 }
 
 impl Flock {
@@ -50,10 +51,11 @@ impl Flock {
         Ok(flock)
     }
 
-    fn unplaced(parameters: FlockParameters, seed: u64) -> Self {
+    pub(crate) fn unplaced(parameters: FlockParameters, seed: u64) -> Self {
         Self {
             schedule: PhaseSchedule::new(&parameters),
             dynamics: Dynamics::new(&parameters, seed),
+            before: Box::default(),
             seed,
             time: 0,
             parameters,
@@ -66,6 +68,15 @@ impl Flock {
     /// [`FlockError::Placement`]; the flock is unchanged then.
     pub fn reset(&mut self, seed: u64) -> Result<()> {
         *self = Self::new(self.parameters.clone(), seed)?;
+        Ok(())
+    }
+
+    /// Starts over with other parameters and another seed.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] or [`FlockError::Placement`]; the flock is unchanged then.
+    pub fn reset_with(&mut self, parameters: FlockParameters, seed: u64) -> Result<()> {
+        *self = Self::new(parameters, seed)?;
         Ok(())
     }
 
@@ -104,6 +115,11 @@ impl Flock {
         &self.dynamics.poses
     }
 
+    /// Poses of all boats with their direction vectors.
+    pub fn hulls(&self) -> &[HullPose] {
+        &self.dynamics.boats
+    }
+
     /// Velocities of all boats. With `leapfrog` these are means over the last substep: they belong to
     /// the time half a substep ago, and the poses moved with exactly them.
     pub fn velocities(&self) -> &[Velocity] {
@@ -130,7 +146,7 @@ impl Flock {
     ///
     /// # Errors
     /// [`FlockError::Shape`] for wrong lengths, [`FlockError::Parameter`] for numbers that are not
-    /// finite or a time out of range, [`FlockError::Overlap`] for overlapping hulls unless allowed. The
+    /// finite or out of range, [`FlockError::Overlap`] for overlapping hulls unless allowed. The
     /// flock is unchanged then.
     pub fn set_state(
         &mut self,
@@ -149,20 +165,16 @@ impl Flock {
                 });
             }
         }
-        if let Some(boat) = poses
-            .iter()
-            .position(|pose| !pose.is_finite() || !is_moderate(pose))
-        {
-            let accepted = "finite numbers, positions within 1e9 cm and headings within 1e6 rad";
-            return Err(FlockError::parameter(
-                "pose",
-                format!("{:?} of boat {boat}", poses[boat]),
-                accepted,
-            ));
+        let accepted = "finite numbers within -1e9 to 1e9";
+        if let Some(boat) = poses.iter().position(|pose| !pose.is_in_range()) {
+            let Pose { position, heading } = poses[boat];
+            let value = format!("[{}, {}, {heading}] of boat {boat}", position.x, position.y);
+            return Err(FlockError::parameter("pose", value, accepted));
         }
-        if let Some(boat) = velocities.iter().position(|v| !v.is_finite()) {
-            let value = format!("{:?} of boat {boat}", velocities[boat]);
-            return Err(FlockError::parameter("velocity", value, "finite numbers"));
+        if let Some(boat) = velocities.iter().position(|v| !v.is_in_range()) {
+            let Velocity { linear, angular } = velocities[boat];
+            let value = format!("[{}, {}, {angular}] of boat {boat}", linear.x, linear.y);
+            return Err(FlockError::parameter("velocity", value, accepted));
         }
         let time = time_from(time_s)?;
         let mut dynamics = self.dynamics.clone();
@@ -179,14 +191,18 @@ impl Flock {
     ///
     /// # Errors
     /// [`FlockError::Parameter`] or [`FlockError::Shape`] for a bad duration or rudder,
-    /// [`FlockError::Solver`] if numbers left the finite range. The flock is unchanged then.
+    /// [`FlockError::Solver`] if numbers left their range. The flock is unchanged then.
     pub fn advance(&mut self, duration_s: f64, rudder: Option<&[f64]>) -> Result<()> {
         let end = self.end_of(duration_s)?;
         self.check_rudder(rudder)?;
         self.advance_to(end, rudder.map_or(Steering::Law, Steering::Held))
     }
 
-    fn end_of(&self, duration_s: f64) -> Result<Ticks> {
+    /// When a duration from now on ends.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for a bad duration.
+    pub fn end_of(&self, duration_s: f64) -> Result<Ticks> {
         if !(0.0..=seconds(LATEST)).contains(&duration_s) {
             return Err(FlockError::parameter(
                 "seconds",
@@ -238,9 +254,10 @@ impl Flock {
     /// at `end`.
     ///
     /// # Errors
-    /// [`FlockError::Solver`] if numbers left the finite range; the flock is unchanged then.
+    /// [`FlockError::Solver`] if numbers left their range; the flock is unchanged then.
     pub fn advance_to(&mut self, end: Ticks, steering: Steering) -> Result<()> {
-        let before = (self.dynamics.checkpoint(), self.time);
+        self.dynamics.save(&mut self.before);
+        let begin = self.time;
         let dt = ticks(self.parameters.dt_s);
         let unsolved = self.dynamics.statistics.unsolved;
         while self.time < end {
@@ -254,20 +271,39 @@ impl Flock {
                 steering,
             });
             self.time = stop;
-            // Contacts of numbers that are not finite take long to give up: no more of them.
-            if self.dynamics.statistics.unsolved > unsolved && !self.dynamics.is_finite() {
+            // Contacts of numbers out of range take long to give up: no more of them.
+            if self.dynamics.statistics.unsolved > unsolved && !self.dynamics.is_in_range() {
                 break;
             }
         }
-        if self.dynamics.is_finite() {
+        if self.dynamics.is_in_range() {
             return Ok(());
         }
-        self.dynamics.return_to(before.0);
-        self.time = before.1;
+        self.dynamics.return_to(&self.before);
+        self.time = begin;
         Err(FlockError::Solver(
-            "the motion left the range of finite numbers; smaller dt_s or milder constants may help"
+            "the motion left the range of 1e9 cm, cm/s, rad and rad/s; smaller dt_s or milder constants \
+             may help"
                 .to_owned(),
         ))
+    }
+
+    /// Advances towards a time, but no further than about so many substeps times boats, and returns
+    /// whether it is reached. It stops on the substep grid, where stopping changes nothing.
+    ///
+    /// # Errors
+    /// As for [`Self::advance_to`].
+    pub fn advance_towards(
+        &mut self,
+        end: Ticks,
+        steering: Steering,
+        boat_substeps: u64,
+    ) -> Result<bool> {
+        let dt = ticks(self.parameters.dt_s);
+        let substeps = (boat_substeps / self.parameters.n_boats as u64).max(1);
+        let stop = end.min((self.time / dt + substeps) * dt);
+        self.advance_to(stop, steering)?;
+        Ok(stop == end)
     }
 
     /// Order parameters of the normal boats, or of all.
@@ -280,7 +316,7 @@ impl Flock {
         } else {
             self.parameters.n_leaders
         };
-        OrderParameters::of(&self.poses()[first..], &self.velocities()[first..])
+        OrderParameters::of_hulls(&self.hulls()[first..], &self.velocities()[first..])
     }
 
     /// Contacts and near-contacts of the last substep: gaps now, forces as means over the last kick.
@@ -306,84 +342,6 @@ impl Flock {
             })
             .collect()
     }
-
-    /// The whole state as bytes.
-    pub fn snapshot(&self) -> Vec<u8> {
-        let state = self.dynamics.checkpoint();
-        let pairs = |vectors: &[Vec2]| vectors.iter().map(|v| [v.x, v.y]).collect::<Vec<_>>();
-        let (reference, cutoff) = &state.neighbor_reference;
-        Snapshot {
-            parameters: self.parameters.clone(),
-            seed: self.seed,
-            time: self.time,
-            neighbor_reference: (pairs(reference), *cutoff),
-            last_substep: (state.last.length, state.last.phase, state.last.rudder),
-            lasting_acceleration: pairs(&state.last.lasting_acceleration),
-            poses: state.poses,
-            velocities: state.velocities,
-            loads: state.loads,
-            kick_s: state.kick_s,
-            statistics: state.statistics,
-        }
-        .to_bytes()
-    }
-
-    /// Continues from a snapshot of a flock with the same parameters (the target aside, which the
-    /// snapshot brings along).
-    ///
-    /// # Errors
-    /// [`FlockError::Snapshot`]; the flock is unchanged then.
-    pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
-        let restored = Self::from_snapshot(bytes)?;
-        let same = FlockParameters {
-            target: self.parameters.target,
-            ..restored.parameters.clone()
-        };
-        if same != self.parameters {
-            return Err(FlockError::Snapshot(
-                "the snapshot is of a flock with other parameters".to_owned(),
-            ));
-        }
-        *self = restored;
-        Ok(())
-    }
-
-    /// A flock from a snapshot alone.
-    ///
-    /// # Errors
-    /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed snapshot.
-    pub fn from_snapshot(bytes: &[u8]) -> Result<Self> {
-        let snapshot = Snapshot::from_bytes(bytes)?;
-        let vectors = |pairs: Vec<[f64; 2]>| {
-            pairs
-                .into_iter()
-                .map(|[x, y]| Vec2::new(x, y))
-                .collect::<Vec<_>>()
-        };
-        let mut flock = Self::unplaced(snapshot.parameters, snapshot.seed);
-        flock.time = snapshot.time;
-        let (reference, cutoff) = snapshot.neighbor_reference;
-        let (length, phase, rudder) = snapshot.last_substep;
-        flock.dynamics.return_to(Checkpoint {
-            poses: snapshot.poses,
-            velocities: snapshot.velocities,
-            last: LastSubstep {
-                length,
-                phase,
-                rudder,
-                lasting_acceleration: vectors(snapshot.lasting_acceleration),
-            },
-            loads: snapshot.loads,
-            neighbor_reference: (vectors(reference), cutoff),
-            kick_s: snapshot.kick_s,
-            statistics: snapshot.statistics,
-        });
-        Ok(flock)
-    }
-}
-
-fn is_moderate(pose: &Pose) -> bool {
-    pose.position.norm() <= 1e9 && pose.heading.abs() <= 1e6
 }
 
 fn time_from(time_s: f64) -> Result<Ticks> {

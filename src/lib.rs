@@ -22,18 +22,25 @@
 pub mod boat;
 pub mod contact;
 pub mod dynamics;
+pub mod environment;
 pub mod error;
 pub mod flock;
 pub mod flock_batch;
 pub mod geometry;
 pub mod lap_frame;
 mod names;
+pub mod observation;
+pub mod observed_law;
 pub mod order_parameters;
+mod parallel;
 pub mod parameters;
 pub mod phase_schedule;
 pub mod placement;
+pub mod pool;
 pub mod random_streams;
+pub mod recording;
 pub mod scheme;
+mod sealed_bytes;
 pub mod snapshot;
 pub mod statistics;
 

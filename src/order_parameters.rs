@@ -2,8 +2,8 @@
 
 use crate::boat::{Pose, Velocity};
 use crate::error::{FlockError, Result};
-use crate::geometry::Vec2;
-use crate::lap_frame::{orientation_vector, velocity_vector};
+use crate::geometry::{HullPose, Vec2};
+use crate::lap_frame::LapFrame;
 use crate::parameters::Target;
 use std::f64::consts::FRAC_PI_2;
 
@@ -31,20 +31,29 @@ impl OrderParameters {
     /// # Errors
     /// [`FlockError::Parameter`] if there is no boat.
     pub fn of(poses: &[Pose], velocities: &[Velocity]) -> Result<Self> {
-        if poses.is_empty() {
+        let hulls: Vec<HullPose> = poses.iter().map(HullPose::new).collect();
+        Self::of_hulls(&hulls, velocities)
+    }
+
+    /// The same for poses whose direction vectors are worked out already.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] if there is no boat.
+    pub fn of_hulls(hulls: &[HullPose], velocities: &[Velocity]) -> Result<Self> {
+        if hulls.is_empty() {
             return Err(FlockError::parameter(
                 "n_boats - n_leaders",
                 0,
                 "order parameters need at least one normal boat; pass include_leaders=True",
             ));
         }
-        let orientations = VectorMean::of(poses.iter().map(orientation_vector));
-        let motions = VectorMean::of(
-            poses
-                .iter()
-                .zip(velocities)
-                .map(|(p, v)| velocity_vector(p, v)),
-        );
+        let (mut orientations, mut motions) = (VectorSum::default(), VectorSum::default());
+        for (hull, velocity) in hulls.iter().zip(velocities) {
+            let frame = LapFrame::at(hull.center);
+            orientations.add(frame.components(hull.axis));
+            motions.add(frame.components(velocity.linear));
+        }
+        let (orientations, motions) = (orientations.mean(), motions.mean());
         Ok(Self {
             psi_o: orientations.length,
             phi_o: orientations.angle,
@@ -73,20 +82,27 @@ struct VectorMean {
     pair_mean: f64,
 }
 
-impl VectorMean {
-    fn of(vectors: impl Iterator<Item = Vec2>) -> Self {
-        let (mut count, mut sum, mut squares) = (0.0, Vec2::zeros(), 0.0);
-        for vector in vectors {
-            count += 1.0;
-            sum += vector;
-            squares += vector.norm_squared();
-        }
-        let mean = sum / count;
-        Self {
+#[derive(Default)]
+struct VectorSum {
+    count: f64,
+    sum: Vec2,
+    squares: f64,
+}
+
+impl VectorSum {
+    fn add(&mut self, vector: Vec2) {
+        self.count += 1.0;
+        self.sum += vector;
+        self.squares += vector.norm_squared();
+    }
+
+    fn mean(&self) -> VectorMean {
+        let mean = self.sum / self.count;
+        VectorMean {
             length: mean.norm(),
             angle: mean.y.atan2(mean.x),
             // Σ_{i<j} v_i·v_j = (|Σv|² − Σ|v|²)/2; 0/0 for one boat.
-            pair_mean: (sum.norm_squared() - squares) / (count * (count - 1.0)),
+            pair_mean: (self.sum.norm_squared() - self.squares) / (self.count * (self.count - 1.0)),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::error::{FlockError, Result};
 use crate::names::named_choice;
+pub use crate::pool::Pool;
 
 named_choice! {
     /// The tangential direction that leaders steer to and rewards are measured in.
@@ -77,63 +78,21 @@ named_choice! {
     }
 }
 
-/// The water: an annulus, a disc (inner radius 0) or open water (outer radius infinite).
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Pool {
-    /// Radius of the outer wall in cm; infinite: no outer wall.
-    pub outer_radius_cm: f64,
-    /// Radius of the obstacle in the middle in cm; 0: none.
-    pub inner_radius_cm: f64,
-}
-
-impl Pool {
-    /// Table 1 as printed: diameters 180 and 97 cm.
-    pub const TABLE_1: Self = Self {
-        outer_radius_cm: 90.0,
-        inner_radius_cm: 48.5,
-    };
-    /// Section 2.2's "500 boats" of free space: radii 180 and 97 cm.
-    pub const FIVE_HUNDRED_BOATS: Self = Self {
-        outer_radius_cm: 180.0,
-        inner_radius_cm: 97.0,
-    };
-    /// Names of the pools, as users write them.
-    pub const NAMED: [(&'static str, Self); 2] = [
-        ("500-boats", Self::FIVE_HUNDRED_BOATS),
-        ("table-1", Self::TABLE_1),
-    ];
-
-    /// The pool of that name.
+impl Preset {
+    /// Critical noise of 27 boats of this preset in a named pool: the length of the backward phase, in
+    /// s, at which mean Ψ_o of leaderless runs falls through the middle between its ordered and its
+    /// disordered level. `None` for a pool in which it has not been measured.
     ///
-    /// # Errors
-    /// [`FlockError::Parameter`] lists the names there are.
-    pub fn named(name: &str) -> Result<Self> {
-        let found = Self::NAMED.iter().find(|(known, _)| *known == name);
-        found.map(|&(_, pool)| pool).ok_or_else(|| {
-            FlockError::parameter(
-                "pool",
-                format!("{name:?}"),
-                "\"500-boats\", \"table-1\" or (outer_radius_cm, inner_radius_cm)",
-            )
-        })
-    }
-
-    /// The name of this pool, if it has one.
-    pub fn name(&self) -> Option<&'static str> {
-        Self::NAMED
-            .iter()
-            .find(|(_, pool)| pool == self)
-            .map(|&(name, _)| name)
-    }
-
-    /// Whether there is an outer wall.
-    pub fn has_outer_wall(&self) -> bool {
-        self.outer_radius_cm.is_finite()
-    }
-
-    /// Whether there is an obstacle in the middle.
-    pub fn has_inner_wall(&self) -> bool {
-        self.inner_radius_cm > 0.0
+    /// Source: `baselines/critical_noise.py` (8 seeds of 30 minutes every 0.05 s; runs in
+    /// `docs/results/critical_noise.csv`), rounded to 0.01 s.
+    pub fn critical_bw_s(self, pool: &Pool) -> Option<f64> {
+        match (self, pool.name()?) {
+            (Self::Simulation, "500-boats") => Some(0.31),
+            (Self::Simulation, "table-1") => Some(0.45),
+            (Self::Paper, "500-boats") => Some(0.57),
+            (Self::Paper, "table-1") => Some(0.64),
+            _ => None,
+        }
     }
 }
 
@@ -189,7 +148,9 @@ pub struct FlockParameters {
     pub dt_s: f64,
     /// Overlap that the `paper` scheme accepts without a projection, in cm.
     pub overlap_tolerance_cm: f64,
-    /// Extra solves a substep with gaps re-evaluated at its end: 0, 1 or 2.
+    /// How well gaps hold at the end of a substep, where they are curved functions of the motion:
+    /// 0 linearised once (overlaps ≤ 1e-2 cm at dt = 0.01 s); 1 and 2 re-evaluate and solve again, with
+    /// the same factor, until overlaps are ≤ 1e-6 and ≤ 1e-9 cm.
     pub relinearizations: usize,
     /// Constant rudder of the normal boats, in [−1, 1]; positive turns counter-clockwise
     /// (Section 4.5's bias). 0: off.
@@ -204,8 +165,8 @@ pub struct FlockParameters {
 }
 
 impl FlockParameters {
-    /// The most boats a flock may have.
-    pub const MOST_BOATS: usize = 1_000_000;
+    /// The most boats a flock may have: placing them takes some ten seconds.
+    pub const MOST_BOATS: usize = 100_000;
 
     /// A preset: Table 3 with the scheme and noise that the preset stands for.
     pub fn preset(preset: Preset) -> Self {

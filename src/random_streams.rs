@@ -27,6 +27,10 @@ pub enum Stream {
     Sensing,
     /// Per-boat differences of speed.
     SpeedSpread,
+    /// What an episode draws besides: target and noise level.
+    Episode,
+    /// Seeds of an environment's episodes after the first.
+    EpisodeSeeds,
 }
 
 impl Stream {
@@ -37,6 +41,8 @@ impl Stream {
             Self::NoiseTail => b"noise-tail",
             Self::Sensing => b"sensing",
             Self::SpeedSpread => b"speed-spread",
+            Self::Episode => b"episode",
+            Self::EpisodeSeeds => b"episode-seeds",
         }
     }
 

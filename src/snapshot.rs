@@ -1,13 +1,15 @@
-//! Snapshots: a flock's whole state as bytes, to continue from bit for bit.
-//!
-//! Layout: 8 bytes magic with the format version, 8 bytes checksum (FNV-1a, little-endian), then the
-//! state in postcard encoding. Reading checks all three and then the state itself.
+//! Snapshots: a flock's whole state as sealed bytes, to continue from bit for bit. Reading checks the
+//! seal and then the state itself.
 
 use crate::boat::{Pose, Velocity};
 use crate::contact::Load;
+use crate::dynamics::{Checkpoint, LastSubstep};
 use crate::error::{FlockError, Result};
+use crate::flock::{Flock, LATEST};
+use crate::geometry::Vec2;
 use crate::parameters::FlockParameters;
 use crate::phase_schedule::Ticks;
+use crate::sealed_bytes::{seal, unseal};
 use crate::statistics::Statistics;
 
 const MAGIC: [u8; 8] = *b"flockst1";
@@ -42,15 +44,7 @@ pub struct Snapshot {
 impl Snapshot {
     /// The snapshot as bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
-        let mut bytes = MAGIC.to_vec();
-        bytes.extend_from_slice(&[0; 8]);
-        // Writing to a Vec fails only out of memory, where the allocator ends the process first.
-        let mut bytes = postcard::to_extend(self, bytes).unwrap_or_default();
-        let sum = checksum(bytes.get(16..).unwrap_or_default());
-        if let Some(place) = bytes.get_mut(8..16) {
-            place.copy_from_slice(&sum.to_le_bytes());
-        }
-        bytes
+        seal(MAGIC, self)
     }
 
     /// Reads a snapshot.
@@ -58,23 +52,7 @@ impl Snapshot {
     /// # Errors
     /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed snapshot of this version.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        let refuse = |why: &str| Err(FlockError::Snapshot(why.to_owned()));
-        let Some((magic, rest)) = bytes.split_at_checked(8) else {
-            return refuse("the bytes are too short to be a snapshot");
-        };
-        if magic != MAGIC {
-            return refuse("the bytes are no flockenv snapshot of format 1");
-        }
-        let Some((sum, body)) = rest.split_at_checked(8) else {
-            return refuse("the snapshot is cut off");
-        };
-        if sum != checksum(body).to_le_bytes() {
-            return refuse("the snapshot is damaged or cut off (checksum differs)");
-        }
-        match postcard::from_bytes::<Self>(body) {
-            Ok(snapshot) => snapshot.checked(),
-            Err(error) => refuse(&format!("the snapshot's content is not readable: {error}")),
-        }
+        unseal::<Self>(MAGIC, bytes)?.checked()
     }
 
     /// A state that a flock can hold: right sizes, everything finite, indices in range.
@@ -102,14 +80,14 @@ impl Snapshot {
             .iter()
             .chain(&self.neighbor_reference.0)
             .flatten();
-        let finite = self.poses.iter().all(Pose::is_finite)
-            && self.velocities.iter().all(Velocity::is_finite)
+        let finite = self.poses.iter().all(Pose::is_in_range)
+            && self.velocities.iter().all(Velocity::is_in_range)
             && self.loads.iter().all(|(_, impulse)| impulse.is_finite())
             && rudder.iter().flatten().all(|s| s.abs() <= 1.0)
             && plain
                 .chain([&self.kick_s, &self.neighbor_reference.1])
                 .all(|value| value.is_finite());
-        if sizes && finite && self.time <= crate::flock::LATEST {
+        if sizes && finite && self.time <= LATEST {
             return Ok(self);
         }
         Err(FlockError::Snapshot(
@@ -118,9 +96,78 @@ impl Snapshot {
     }
 }
 
-/// FNV-1a over the bytes: enough to tell damage, no protection against intent.
-fn checksum(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |sum, &byte| {
-        (sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    })
+impl Flock {
+    /// The whole state as bytes.
+    pub fn snapshot(&self) -> Vec<u8> {
+        let state = self.dynamics.checkpoint();
+        let pairs = |vectors: &[Vec2]| vectors.iter().map(|v| [v.x, v.y]).collect::<Vec<_>>();
+        let (reference, cutoff) = &state.neighbor_reference;
+        Snapshot {
+            parameters: self.parameters.clone(),
+            seed: self.seed,
+            time: self.time,
+            neighbor_reference: (pairs(reference), *cutoff),
+            last_substep: (state.last.length, state.last.phase, state.last.rudder),
+            lasting_acceleration: pairs(&state.last.lasting_acceleration),
+            poses: state.poses,
+            velocities: state.velocities,
+            loads: state.loads,
+            kick_s: state.kick_s,
+            statistics: state.statistics,
+        }
+        .to_bytes()
+    }
+
+    /// Continues from a snapshot of a flock with the same parameters (the target aside, which the
+    /// snapshot brings along).
+    ///
+    /// # Errors
+    /// [`FlockError::Snapshot`]; the flock is unchanged then.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
+        let restored = Self::from_snapshot(bytes)?;
+        let same = FlockParameters {
+            target: self.parameters.target,
+            ..restored.parameters.clone()
+        };
+        if same != self.parameters {
+            return Err(FlockError::Snapshot(
+                "the snapshot is of a flock with other parameters".to_owned(),
+            ));
+        }
+        *self = restored;
+        Ok(())
+    }
+
+    /// A flock from a snapshot alone.
+    ///
+    /// # Errors
+    /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed snapshot.
+    pub fn from_snapshot(bytes: &[u8]) -> Result<Self> {
+        let snapshot = Snapshot::from_bytes(bytes)?;
+        let vectors = |pairs: Vec<[f64; 2]>| {
+            pairs
+                .into_iter()
+                .map(|[x, y]| Vec2::new(x, y))
+                .collect::<Vec<_>>()
+        };
+        let mut flock = Self::unplaced(snapshot.parameters, snapshot.seed);
+        flock.time = snapshot.time;
+        let (reference, cutoff) = snapshot.neighbor_reference;
+        let (length, phase, rudder) = snapshot.last_substep;
+        flock.dynamics.return_to(&Checkpoint {
+            poses: snapshot.poses,
+            velocities: snapshot.velocities,
+            last: LastSubstep {
+                length,
+                phase,
+                rudder,
+                lasting_acceleration: vectors(snapshot.lasting_acceleration),
+            },
+            loads: snapshot.loads,
+            neighbor_reference: (vectors(reference), cutoff),
+            kick_s: snapshot.kick_s,
+            statistics: snapshot.statistics,
+        });
+        Ok(flock)
+    }
 }

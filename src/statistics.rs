@@ -2,7 +2,7 @@
 
 use crate::contact::solver::SolveReport;
 
-/// Running totals since the flock was made, reset or restored.
+/// Running totals since the flock was made or reset; a snapshot carries them along.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Statistics {
     /// Substeps taken.
@@ -24,7 +24,7 @@ pub struct Statistics {
     pub unsolved: u64,
     /// Passes that moved deeply overlapping hulls apart.
     pub recovery_passes: u64,
-    /// Times the neighbour list was built.
+    /// Times a substep had to build the neighbour list anew.
     pub neighbor_builds: u64,
     /// Largest natural residual of a solve in cm/s.
     pub worst_residual_cm_s: f64,

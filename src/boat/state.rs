@@ -2,6 +2,10 @@
 
 use crate::geometry::Vec2;
 
+/// The largest position (cm), heading (rad), velocity (cm/s) or angular velocity (rad/s) that a state
+/// may hold: squares and products of such numbers are far from overflowing.
+pub const LARGEST: f64 = 1e9;
+
 /// Position and heading of a boat.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Pose {
@@ -34,6 +38,11 @@ impl Pose {
     pub fn is_finite(&self) -> bool {
         self.position.x.is_finite() && self.position.y.is_finite() && self.heading.is_finite()
     }
+
+    /// Whether a flock may hold this pose: nothing beyond [`LARGEST`].
+    pub fn is_in_range(&self) -> bool {
+        self.position.amax() <= LARGEST && self.heading.abs() <= LARGEST && self.is_finite()
+    }
 }
 
 /// Linear and angular velocity of a boat.
@@ -58,6 +67,11 @@ impl Velocity {
     /// Whether all three numbers are finite.
     pub fn is_finite(&self) -> bool {
         self.linear.x.is_finite() && self.linear.y.is_finite() && self.angular.is_finite()
+    }
+
+    /// Whether a flock may hold this velocity: nothing beyond [`LARGEST`].
+    pub fn is_in_range(&self) -> bool {
+        self.linear.amax() <= LARGEST && self.angular.abs() <= LARGEST && self.is_finite()
     }
 }
 

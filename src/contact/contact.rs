@@ -23,8 +23,8 @@ pub struct Contact {
     pub boat: u32,
     /// The other side.
     pub partner: Partner,
-    /// Which part of the hulls: a [`PairFeature`] for two boats, 0 stern or 1 bow at the outer wall, 0
-    /// at the inner wall.
+    /// Where on `boat`: 0 towards its stern, 1 towards its bow (at the inner wall always 0); 2 where
+    /// the cores of two hulls cross.
     pub feature: u8,
     /// Gap, normal and lever arms at the pose where the contact was found.
     pub gap: Gap,

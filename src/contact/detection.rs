@@ -54,7 +54,8 @@ impl ContactDetector {
         self.neighbors
             .update(boats.iter().map(|boat| boat.center), distance, self.skin);
         for (boat, partners) in self.neighbors.groups() {
-            self.detect_walls(boat, &boats[boat as usize], margin, contacts);
+            // Of a boat and a wall only one moves.
+            self.detect_walls(boat, &boats[boat as usize], 0.5 * margin, contacts);
             for &partner in partners {
                 let (first, second) = (boat.min(partner), boat.max(partner));
                 let (a, b) = (&boats[first as usize], &boats[second as usize]);
@@ -98,17 +99,23 @@ impl ContactDetector {
         }
     }
 
-    /// The smallest gap between the two sides of a contact at other poses, whichever part it is at.
-    pub fn smallest_gap_at(&self, contact: &Contact, boats: &[HullPose]) -> f64 {
-        let Some(second) = contact.second() else {
-            return self.gap_at(contact, boats).gap;
-        };
-        let mut smallest = f64::INFINITY;
-        let (a, b) = (&boats[contact.boat as usize], &boats[second]);
-        pair_gaps(a, b, self.hull, 0.0, |_, gap| {
-            smallest = smallest.min(gap.gap);
-        });
-        smallest
+    /// The gaps of the two ends of a pair's first hull at other poses, where they face the second.
+    /// Crossed cores count for both.
+    pub fn pair_gaps_at(&self, first: u32, second: usize, boats: &[HullPose]) -> [Option<f64>; 2] {
+        let mut gaps = [None; 2];
+        let (a, b) = (&boats[first as usize], &boats[second]);
+        pair_gaps(
+            a,
+            b,
+            self.hull,
+            2.0 * self.hull.reach(),
+            |feature, gap| match feature {
+                PairFeature::Stern => gaps[0] = Some(gap.gap),
+                PairFeature::Bow => gaps[1] = Some(gap.gap),
+                PairFeature::Crossed => gaps = [Some(gap.gap); 2],
+            },
+        );
+        gaps
     }
 
     /// The gap of a known contact at other poses.

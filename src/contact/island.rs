@@ -1,14 +1,15 @@
 //! Islands: boats joined by contacts. Each is a contact problem of its own.
 
 use super::Contact;
+use std::ops::Range;
 
 /// Contacts grouped by island, each group in the order of detection.
 #[derive(Debug, Clone, Default)]
 pub struct Islands {
     /// Union-find over boats.
     parent: Vec<u32>,
-    /// Island of each root boat.
-    island_of_root: Vec<u32>,
+    /// Island of each boat that was asked for.
+    island_of_boat: Vec<u32>,
     /// Where each island begins in `members`.
     starts: Vec<u32>,
     /// Contact indices, island by island.
@@ -28,18 +29,14 @@ impl Islands {
                 self.parent[a.max(b) as usize] = a.min(b);
             }
         }
-        self.island_of_root.clear();
-        self.island_of_root.resize(boats, NONE);
+        // First the sizes, then the members: a counting sort by island.
+        self.island_of_boat.clear();
+        self.island_of_boat.resize(boats, NONE);
         self.starts.clear();
         self.starts.push(0);
-        // First the sizes, then the members: a counting sort by island.
         for contact in contacts {
-            let root = self.root(contact.boat) as usize;
-            if self.island_of_root[root] == NONE {
-                self.island_of_root[root] = self.starts.len() as u32 - 1;
-                self.starts.push(0);
-            }
-            self.starts[self.island_of_root[root] as usize + 1] += 1;
+            let island = self.island_of(contact.boat);
+            self.starts[island + 1] += 1;
         }
         for island in 1..self.starts.len() {
             self.starts[island] += self.starts[island - 1];
@@ -47,14 +44,28 @@ impl Islands {
         self.members.clear();
         self.members.resize(contacts.len(), 0);
         for (k, contact) in contacts.iter().enumerate() {
-            let root = self.root(contact.boat) as usize;
-            let next = &mut self.starts[self.island_of_root[root] as usize];
+            let next = &mut self.starts[self.island_of_boat[contact.boat as usize] as usize];
             self.members[*next as usize] = k as u32;
             *next += 1;
         }
         // Filling moved every start to its island's end.
         self.starts.rotate_right(1);
         self.starts[0] = 0;
+    }
+
+    /// The island of a boat that has a contact, numbered in the order of detection.
+    fn island_of(&mut self, boat: u32) -> usize {
+        let known = self.island_of_boat[boat as usize];
+        if known != NONE {
+            return known as usize;
+        }
+        let root = self.root(boat) as usize;
+        if self.island_of_boat[root] == NONE {
+            self.island_of_boat[root] = self.starts.len() as u32 - 1;
+            self.starts.push(0);
+        }
+        self.island_of_boat[boat as usize] = self.island_of_boat[root];
+        self.island_of_boat[root] as usize
     }
 
     /// How many islands have contacts.
@@ -67,9 +78,19 @@ impl Islands {
         self.len() == 0
     }
 
+    /// Contact indices, island by island.
+    pub fn all_contacts(&self) -> &[u32] {
+        &self.members
+    }
+
+    /// Where the contacts of an island stand in [`Self::all_contacts`].
+    pub fn range(&self, island: usize) -> Range<usize> {
+        self.starts[island] as usize..self.starts[island + 1] as usize
+    }
+
     /// The contacts of an island.
     pub fn contacts(&self, island: usize) -> &[u32] {
-        &self.members[self.starts[island] as usize..self.starts[island + 1] as usize]
+        &self.members[self.range(island)]
     }
 
     fn root(&mut self, boat: u32) -> u32 {

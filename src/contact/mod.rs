@@ -10,6 +10,7 @@
 mod contact;
 mod detection;
 mod island;
+mod loads;
 mod problem;
 mod recovery;
 mod resolver;
@@ -18,6 +19,7 @@ pub mod solver;
 pub use contact::{Contact, ContactKey, Partner};
 pub use detection::ContactDetector;
 pub use island::Islands;
+pub use loads::Load;
 pub use problem::{ContactProblem, InverseInertia};
 pub use recovery::push_apart;
-pub use resolver::{ContactResolver, Load};
+pub use resolver::ContactResolver;

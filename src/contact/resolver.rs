@@ -1,17 +1,17 @@
 //! From free velocities to velocities that respect the contacts: detection, warm start, solve,
 //! relinearisation, and what to do where the constraints contradict each other.
 
-use super::contact::ContactKey;
+use super::loads::{Load, Loads};
 use super::recovery::{DEEP, Recovery};
 use super::solver::ContactSolver;
-use super::{Contact, ContactDetector, ContactProblem, InverseInertia, Partner};
+use super::{Contact, ContactDetector, ContactProblem, InverseInertia};
 use crate::boat::{Pose, Velocity};
-use crate::geometry::{HullPose, NeighborList, Vec2};
+use crate::geometry::{Gap, HullPose, NeighborList, Vec2};
 use crate::parameters::{FlockParameters, Scheme, Solver};
 use crate::statistics::Statistics;
 
-/// A contact that carried an impulse in the last substep, and the impulse in cm/s.
-pub type Load = (ContactKey, f64);
+/// Relinearisation passes after which a substep is taken as it is.
+const MOST_PASSES: u32 = 20;
 
 /// Finds and solves the contacts of a flock, substep after substep.
 #[derive(Debug, Clone)]
@@ -23,10 +23,11 @@ pub struct ContactResolver {
     /// Whether each contact carried an impulse in the substep before.
     lasting: Vec<bool>,
     /// Contacts that carried an impulse, in the order of detection.
-    loads: Vec<Load>,
+    loads: Loads,
     recovery: Option<Box<Recovery>>,
     trial: Vec<HullPose>,
-    relinearizations: usize,
+    /// Overlap in cm at a substep's end that relinearisation stops at; `None` without it.
+    allowed_overlap: Option<f64>,
     gyration_radius: f64,
     /// Gaps below this (cm, negative) are recovered by displacement.
     deep: f64,
@@ -41,10 +42,13 @@ impl ContactResolver {
             contacts: Vec::new(),
             bounds: Vec::new(),
             lasting: Vec::new(),
-            loads: Vec::new(),
+            loads: Loads::default(),
             recovery: None,
             trial: Vec::new(),
-            relinearizations: parameters.relinearizations,
+            allowed_overlap: [None, Some(1e-6), Some(1e-9)]
+                .get(parameters.relinearizations)
+                .copied()
+                .flatten(),
             gyration_radius: parameters.gyration_radius_cm,
             // Overlaps that the paper's scheme accepts are none to recover.
             deep: match parameters.scheme {
@@ -81,12 +85,12 @@ impl ContactResolver {
 
     /// Contacts that carried an impulse in the last substep.
     pub fn loads(&self) -> &[Load] {
-        &self.loads
+        self.loads.as_slice()
     }
 
     /// Puts back what [`Self::loads`] gave.
-    pub fn set_loads(&mut self, loads: Vec<Load>) {
-        self.loads = loads;
+    pub fn set_loads(&mut self, loads: &[Load]) {
+        self.loads.replace(loads.iter().copied());
     }
 
     /// Forgets contacts and loads: the poses have been set from outside.
@@ -118,7 +122,7 @@ impl ContactResolver {
         }
         statistics.contacts += self.contacts.len() as u64;
         statistics.neighbor_builds += self.detector.neighbors.builds() - builds_before;
-        self.recall_loads();
+        self.recall_loads(poses.len());
         !self.contacts.is_empty()
     }
 
@@ -132,39 +136,15 @@ impl ContactResolver {
     }
 
     /// Guesses that contacts which carried an impulse still do.
-    fn recall_loads(&mut self) {
-        let Self {
-            contacts,
-            solver,
-            loads,
-            lasting,
-            ..
-        } = self;
-        solver.impulses.clear();
-        solver.impulses.resize(contacts.len(), 0.0);
-        // Both lists follow the order of detection, unless a load vanished or the order changed.
-        let mut next = 0;
-        for (contact, impulse) in contacts.iter().zip(&mut solver.impulses) {
-            if let Some((key, load)) = loads.get(next)
-                && *key == contact.key()
-            {
-                *impulse = *load;
-                next += 1;
-            }
-        }
-        if next < loads.len() {
-            loads.sort_unstable_by_key(|(key, _)| *key);
-            for (k, impulse) in solver.impulses.iter_mut().enumerate() {
-                let found = loads.binary_search_by_key(&contacts[k].key(), |(key, _)| *key);
-                *impulse = found.map_or_else(
-                    |_| inherited_load(loads, contacts, k),
-                    |place| loads[place].1,
-                );
-            }
-        }
-        lasting.clear();
-        lasting.extend(solver.impulses.iter().map(|&impulse| impulse > 0.0));
-        solver.active.clone_from(lasting);
+    fn recall_loads(&mut self, boats: usize) {
+        self.loads.index(boats);
+        self.solver.impulses.clear();
+        let recalled = (0..self.contacts.len()).map(|k| self.loads.recall(&self.contacts, k));
+        self.solver.impulses.extend(recalled);
+        self.lasting.clear();
+        self.lasting
+            .extend(self.solver.impulses.iter().map(|&impulse| impulse > 0.0));
+        self.solver.active.clone_from(&self.lasting);
     }
 
     /// Whether moving with these velocities for `dt` overlaps anything found last by more than `allowed`.
@@ -182,9 +162,13 @@ impl ContactResolver {
             trial,
             ..
         } = self;
-        contacts
-            .iter()
-            .any(|contact| detector.smallest_gap_at(contact, trial) < -allowed)
+        contacts.iter().any(|contact| match contact.second() {
+            Some(second) => {
+                let gaps = detector.pair_gaps_at(contact.boat, second, trial);
+                gaps.into_iter().flatten().any(|gap| gap < -allowed)
+            }
+            None => detector.gap_at(contact, trial).gap < -allowed,
+        })
     }
 
     fn set_trial(&mut self, poses: &[Pose], velocities: &[Velocity], dt: f64) {
@@ -208,20 +192,28 @@ impl ContactResolver {
     ) {
         self.bounds.clear();
         self.bounds.extend(self.contacts.iter().map(|contact| {
-            let gap = contact.gap.gap;
+            let Gap { gap, bend, .. } = contact.gap;
+            let spin = free[contact.boat as usize].angular;
             // What recovery could not undo must not push.
-            if gap < self.deep { 0.0 } else { gap / dt }
+            if gap < self.deep {
+                0.0
+            } else {
+                gap / dt + 0.5 * bend * dt * spin * spin
+            }
         }));
         self.solver.begin(poses.len(), &self.contacts);
-        if self.solve(free, inertia, statistics) {
-            for _ in 0..self.relinearizations {
-                self.relinearize(poses, dt);
-                if !self.solve(free, inertia, statistics) {
+        let mut solved = self.solve(free, inertia, statistics);
+        if let Some(allowed) = self.allowed_overlap {
+            for _ in 0..MOST_PASSES {
+                if !solved || self.relinearize(poses, dt) <= allowed {
                     break;
                 }
+                solved = self.solve(free, inertia, statistics);
             }
         }
-        self.remember_loads();
+        let impulses = self.solver.impulses.iter().copied();
+        self.loads
+            .replace(self.contacts.iter().map(Contact::key).zip(impulses));
     }
 
     fn solve(
@@ -264,25 +256,50 @@ impl ContactResolver {
     }
 
     /// Sets the bounds so that the gaps at the substep's end, evaluated where the last solve moves the
-    /// boats, open to zero: the normals stay those of the substep's beginning, and so does the factor.
-    fn relinearize(&mut self, poses: &[Pose], dt: f64) {
+    /// boats, open to zero: the normals stay those of the substep's beginning, along which forces act,
+    /// and so does the factor. Returns the deepest overlap at the substep's end in cm.
+    fn relinearize(&mut self, poses: &[Pose], dt: f64) -> f64 {
         let velocities = std::mem::take(&mut self.solver.velocities);
         self.set_trial(poses, &velocities, dt);
+        let mut deepest = 0.0_f64;
         for (k, contact) in self.contacts.iter().enumerate() {
             if contact.gap.gap >= self.deep {
-                let end_gap = self.detector.gap_at(contact, &self.trial).gap;
+                let end_gap = self.end_gap(k);
+                deepest = deepest.max(-end_gap);
                 self.bounds[k] = end_gap / dt - contact.gap_rate(&velocities);
             }
         }
         self.solver.velocities = velocities;
+        deepest
     }
 
-    fn remember_loads(&mut self) {
-        self.loads.clear();
-        for (contact, &impulse) in self.contacts.iter().zip(&self.solver.impulses) {
-            if impulse > 0.0 {
-                self.loads.push((contact.key(), impulse));
-            }
+    /// The gap of contact k at the trial poses. Between two hulls the touch may have passed from one
+    /// end to the other without moving: a contact follows it, and the only contact of a pair stands
+    /// for the whole pair.
+    fn end_gap(&self, k: usize) -> f64 {
+        let contact = &self.contacts[k];
+        let own = |detector: &ContactDetector| detector.gap_at(contact, &self.trial).gap;
+        let (Some(second), 0 | 1) = (contact.second(), contact.feature) else {
+            return own(&self.detector);
+        };
+        let is_twin = |other: Option<&Contact>| {
+            other
+                .is_some_and(|other| (other.boat, other.partner) == (contact.boat, contact.partner))
+        };
+        let has_twin = is_twin(self.contacts.get(k + 1))
+            || is_twin(
+                k.checked_sub(1)
+                    .and_then(|before| self.contacts.get(before)),
+            );
+        let gaps = self
+            .detector
+            .pair_gaps_at(contact.boat, second, &self.trial);
+        let end = usize::from(contact.feature);
+        match (gaps[end], gaps[1 - end]) {
+            (Some(same), Some(other)) if !has_twin => same.min(other),
+            (Some(same), _) => same,
+            (None, Some(other)) if !has_twin => other,
+            (None, _) => own(&self.detector),
         }
     }
 
@@ -308,21 +325,4 @@ impl ContactResolver {
             }
         }
     }
-}
-
-/// The load of a contact between the same two boats that is there no more: where an end slides off the
-/// other's end onto its side, the contact changes its name and goes on. `loads` are sorted by key.
-fn inherited_load(loads: &[Load], contacts: &[Contact], k: usize) -> f64 {
-    let Contact { boat, partner, .. } = contacts[k];
-    if !matches!(partner, Partner::Boat(_)) {
-        return 0.0;
-    }
-    let begin = loads.partition_point(|((b, p, _), _)| (*b, *p) < (boat, partner));
-    // A pair has at most two contacts, which are found one after the other.
-    let near = &contacts[k.saturating_sub(1)..(k + 2).min(contacts.len())];
-    loads[begin..]
-        .iter()
-        .take_while(|((b, p, _), _)| (*b, *p) == (boat, partner))
-        .find(|(key, _)| near.iter().all(|contact| contact.key() != *key))
-        .map_or(0.0, |(_, load)| *load)
 }

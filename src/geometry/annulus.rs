@@ -1,6 +1,6 @@
 //! Gaps between a hull and the walls of the pool. Walls are exact circles.
 
-use super::{Gap, Hull, HullPose, Vec2, cross, turned_left};
+use super::{Gap, Hull, HullPose, cross, turned_left};
 
 /// Gap between one end disc of a hull (`side` +1 bow, −1 stern) and the outer wall; the normal points
 /// inward. A boat that lies flat on the wall touches with both ends.
@@ -18,11 +18,13 @@ pub fn outer_wall_gap(boat: &HullPose, side: f64, hull: Hull, outer_radius: f64)
         normal,
         arm_i: cross(end - boat.center, normal),
         arm_j: 0.0,
+        bend: 0.0,
     }
 }
 
 /// Gap between a hull and the inner wall: distance from the pool's centre to the core − r − R_in;
-/// the normal points outward.
+/// the normal points outward. Where the hull's flank lies on the convex wall, turning it either way
+/// brings it into the wall.
 pub fn inner_wall_gap(boat: &HullPose, hull: Hull, inner_radius: f64) -> Gap {
     let h = hull.half_length;
     let along = (-boat.center.dot(&boat.axis)).clamp(-h, h);
@@ -32,12 +34,13 @@ pub fn inner_wall_gap(boat: &HullPose, hull: Hull, inner_radius: f64) -> Gap {
     let normal = if distance > 0.0 {
         nearest / distance
     } else {
-        Vec2::from(turned_left(boat.axis))
+        turned_left(boat.axis)
     };
     Gap {
         gap: distance - hull.radius - inner_radius,
         normal,
         arm_i: cross(nearest - boat.center, normal),
         arm_j: 0.0,
+        bend: if along.abs() < h { -distance } else { 0.0 },
     }
 }

@@ -2,9 +2,9 @@
 //! linear constraint on velocities.
 //!
 //! Two hulls overlap exactly if a core segment's end comes closer than 2r to the other core, or if
-//! the cores cross. So the features of a pair are its four ends; the two of them that lie towards the
-//! same end of the first core describe the same touch, and the nearer of those is kept. That leaves
-//! at most two contacts a pair, both of them when hulls lie nearly parallel.
+//! the cores cross. The four ends fall into two groups, those towards the stern and those towards the
+//! bow of the first hull; the ends of a group describe the same touch, and the nearer of them counts.
+//! That leaves at most two contacts a pair, both of them when hulls lie nearly parallel.
 
 use super::{Hull, HullPose, Vec2, cross, turned_left};
 
@@ -20,36 +20,29 @@ pub struct Gap {
     pub arm_i: f64,
     /// Lever arm of the normal about the second body's centre in cm; 0 for a wall.
     pub arm_j: f64,
+    /// Second derivative of the gap by the first body's heading in cm/rad², where it matters: a flank
+    /// on the inner wall; 0 elsewhere.
+    pub bend: f64,
 }
 
-/// Which part of two hulls a gap is measured between.
+/// Where on the first hull of a pair a contact is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum PairFeature {
-    /// The first hull's stern against the second hull.
-    SternOfFirst = 0,
-    /// The first hull's bow against the second hull.
-    BowOfFirst = 1,
-    /// The second hull's stern against the first hull.
-    SternOfSecond = 2,
-    /// The second hull's bow against the first hull.
-    BowOfSecond = 3,
+    /// Towards the first hull's stern.
+    Stern = 0,
+    /// Towards the first hull's bow.
+    Bow = 1,
     /// The cores cross; the gap is how far they must be moved apart.
-    Crossed = 4,
+    Crossed = 2,
 }
 
 impl PairFeature {
-    const ENDS_OF_FIRST: [(Self, f64); 2] = [(Self::SternOfFirst, -1.0), (Self::BowOfFirst, 1.0)];
-    const ENDS_OF_SECOND: [(Self, f64); 2] =
-        [(Self::SternOfSecond, -1.0), (Self::BowOfSecond, 1.0)];
-
-    /// The feature of a code 0 to 4; any other code counts as crossed.
+    /// The feature of a code; any code beyond the two ends counts as crossed.
     pub fn from_code(code: u8) -> Self {
         match code {
-            0 => Self::SternOfFirst,
-            1 => Self::BowOfFirst,
-            2 => Self::SternOfSecond,
-            3 => Self::BowOfSecond,
+            0 => Self::Stern,
+            1 => Self::Bow,
             _ => Self::Crossed,
         }
     }
@@ -101,30 +94,43 @@ impl Pair<'_> {
             normal,
             arm_i: cross(p - self.a.center, normal),
             arm_j: cross(q - self.b.center, normal),
+            bend: 0.0,
         }
     }
 
-    /// The gap at an end of hull a. Where end meets end, both hulls' features would describe it:
-    /// `None` unless this one is asked for with `mutual`.
-    fn end_of_a(&self, side: f64, mutual: bool) -> Option<(Vec2, Vec2)> {
+    /// Nearest points for an end of hull a. Where end meets end, both hulls' ends describe it: with
+    /// `once`, only the first hull's does, and only if neither end could slide nearer.
+    fn end_of_a(&self, side: f64, once: bool) -> Option<(Vec2, Vec2)> {
         let h = self.hull.half_length;
         let p = self.a.end(side, h);
         let onto = self.project(p, self.b);
         let q = self.b.center + self.b.axis * onto.nearest;
-        if mutual && onto.beyond && (q - self.a.center).dot(&self.a.axis) * side < h {
+        if once && onto.beyond && (q - self.a.center).dot(&self.a.axis) * side < h {
             return None;
         }
         Some((p, q))
     }
 
-    /// The gap at an end of hull b, only where it faces the side of hull a if `strict`.
-    fn end_of_b(&self, side: f64, strict: bool) -> Option<(Vec2, Vec2)> {
+    /// Nearest points for an end of hull b, if it faces the side of hull a.
+    fn end_of_b(&self, side: f64) -> Option<(Vec2, Vec2)> {
         let q = self.b.end(side, self.hull.half_length);
         let onto = self.project(q, self.a);
-        if strict && onto.beyond {
-            return None;
+        (!onto.beyond).then(|| (self.a.center + self.a.axis * onto.nearest, q))
+    }
+
+    /// The nearest points of the group of ends on one side of hull a.
+    fn nearest_towards(&self, side: f64) -> Option<(Vec2, Vec2)> {
+        let follows = if self.a.axis.dot(&self.b.axis) >= 0.0 {
+            side
+        } else {
+            -side
+        };
+        let (at_a, at_b) = (self.end_of_a(side, true), self.end_of_b(follows));
+        match (at_a, at_b) {
+            (Some(a), Some(b)) if (b.0 - b.1).norm_squared() < (a.0 - a.1).norm_squared() => at_b,
+            (Some(_), _) => at_a,
+            (None, _) => at_b,
         }
-        Some((self.a.center + self.a.axis * onto.nearest, q))
     }
 
     fn cores_cross(&self) -> bool {
@@ -158,24 +164,8 @@ pub fn pair_gaps(
         found(PairFeature::Crossed, crossed_gap(a, b, hull));
         return;
     }
-    let ends_of_b_follow = a.axis.dot(&b.axis) >= 0.0;
-    for (end, (feature_a, side_a)) in PairFeature::ENDS_OF_FIRST.into_iter().enumerate() {
-        if h == 0.0 && end == 1 {
-            break;
-        }
-        let (feature_b, side_b) =
-            PairFeature::ENDS_OF_SECOND[if ends_of_b_follow { end } else { 1 - end }];
-        let at_a = pair
-            .end_of_a(side_a, true)
-            .map(|points| (feature_a, points));
-        let at_b = pair
-            .end_of_b(side_b, true)
-            .map(|points| (feature_b, points));
-        let nearer = [at_a, at_b].into_iter().flatten().min_by(|(_, x), (_, y)| {
-            let [x, y] = [x, y].map(|(p, q)| (p - q).norm_squared());
-            x.total_cmp(&y)
-        });
-        let Some((feature, (p, q))) = nearer else {
+    for (feature, side) in [(PairFeature::Stern, -1.0), (PairFeature::Bow, 1.0)] {
+        let Some((p, q)) = pair.nearest_towards(side) else {
             continue;
         };
         let farthest = 2.0 * hull.radius + margin;
@@ -189,19 +179,24 @@ pub fn pair_gaps(
                 return;
             }
         }
+        if h == 0.0 {
+            return;
+        }
     }
 }
 
-/// The gap of one known feature at other poses, for passes that re-evaluate gaps.
+/// The gap of a known contact at other poses of its hulls.
 pub fn pair_gap(feature: PairFeature, a: &HullPose, b: &HullPose, hull: Hull) -> Gap {
     let pair = Pair { a, b, hull };
-    let points = match feature {
-        PairFeature::SternOfFirst => pair.end_of_a(-1.0, false),
-        PairFeature::BowOfFirst => pair.end_of_a(1.0, false),
-        PairFeature::SternOfSecond => pair.end_of_b(-1.0, false),
-        PairFeature::BowOfSecond => pair.end_of_b(1.0, false),
-        PairFeature::Crossed => None,
+    let side = match feature {
+        PairFeature::Stern => -1.0,
+        PairFeature::Bow => 1.0,
+        PairFeature::Crossed => return crossed_gap(a, b, hull),
     };
+    // Where no end of the group faces the other hull any more, its own end still has a distance.
+    let points = pair
+        .nearest_towards(side)
+        .or_else(|| pair.end_of_a(side, false));
     points
         .and_then(|(p, q)| pair.between(p, q))
         .unwrap_or_else(|| crossed_gap(a, b, hull))

@@ -65,8 +65,9 @@ impl NeighborList {
     }
 
     /// Rebuilds the list of a snapshot from its reference centres.
-    pub fn restore(&mut self, reference: Vec<Vec2>, cutoff: f64) {
-        self.reference = reference;
+    pub fn restore(&mut self, reference: &[Vec2], cutoff: f64) {
+        self.reference.clear();
+        self.reference.extend_from_slice(reference);
         if self.reference.is_empty() {
             return;
         }

@@ -1,4 +1,15 @@
-//! The Python module `flockenv._core`: call, convert, return.
+//! The Python module `flockenv._core`: call, convert, return. The only place that names pyo3 and numpy.
+
+pub mod arguments;
+pub mod env_batch;
+pub mod env_settings;
+pub mod error;
+pub mod flock;
+pub mod observation;
+pub mod order;
+pub mod parameters;
+pub mod recording;
+pub mod results;
 
 use pyo3::prelude::*;
 
@@ -6,8 +17,26 @@ use pyo3::prelude::*;
 mod _core {
     use super::*;
 
+    #[pymodule_export]
+    use super::env_batch::PyEnvBatch;
+    #[pymodule_export]
+    use super::env_settings::{env_defaults, reward_terms};
+    #[pymodule_export]
+    use super::flock::PyFlock;
+    #[pymodule_export]
+    use super::observation::{
+        PyObservedLaw, observation_table, observation_version, observe, state_table,
+    };
+    #[pymodule_export]
+    use super::order::{rotation, signed_order};
+    #[pymodule_export]
+    use super::parameters::{checked_fields, critical_bw_s, preset_fields, preset_names};
+    #[pymodule_export]
+    use super::recording::{phase_names, record};
+
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        crate::parallel::note_process();
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -8,6 +8,7 @@ use crate::support::{
     disc, flock_of, inert, kinetic_energy, momentum, take_substeps,
 };
 use flockenv::boat::{Pose, Velocity};
+use flockenv::contact::Partner;
 use flockenv::parameters::{Pool, Scheme};
 use flockenv::{Flock, FlockParameters};
 use proptest::prelude::*;
@@ -93,20 +94,27 @@ proptest! {
     #[test]
     fn no_impact_adds_energy(seed in 0_u64..1000, n in 2_usize..28) {
         // Without drag, so that nothing hides a gain. Where hulls overlap by rounding or by what the
-        // linearisation leaves, gaps g < 0 have to open: with v⁺ = v⁻ + M⁻¹·Jᵀ·λ the energy changes by
-        // λ·J·v⁺ − λ·A·λ/2 ≤ Σλ·(−g)/dt, and by nothing more.
+        // linearisation leaves, gaps g < 0 have to open, and a flank that turns by dt·ω on the inner
+        // wall has to lift off by (R_in + r)·(dt·ω)²/2: with v⁺ = v⁻ + M⁻¹·Jᵀ·λ the energy changes by
+        // λ·J·v⁺ − λ·A·λ/2 ≤ Σλ·(−g + lift)/dt, and by nothing more.
         for scheme in VELOCITY_SCHEMES {
             let p = FlockParameters { pool: Pool::TABLE_1, ..inert(scheme) };
             let mut flock = scattered(&p, n, seed, 12.0);
             let start = kinetic_energy(&flock);
             let mut before = start;
             for step in 0..150 {
+                let spins = flock.velocities().iter().map(|v| v.angular.abs());
+                let turn = 0.02 * spins.fold(0.0, f64::max);
+                let lift = 0.5 * (p.pool.inner_radius_cm + R + 1e-2) * turn * turn;
                 let overlap = deepest_overlap(&flock);
                 take_substeps(&mut flock, 1);
                 let kick = if step == 0 && scheme == Scheme::Leapfrog { 0.01 } else { 0.02 };
-                let impulses: f64 = flock.contacts().iter().map(|c| c.force * kick).sum();
+                let contacts = flock.contacts();
+                let impulses: f64 = contacts.iter().map(|c| c.force * kick).sum();
+                let lifting = contacts.iter().filter(|c| c.contact.partner == Partner::InnerWall);
+                let lifting: f64 = lifting.map(|c| c.force * kick).sum();
                 let now = kinetic_energy(&flock);
-                let most = before * (1.0 + 1e-13) + impulses * overlap / 0.02;
+                let most = before * (1.0 + 1e-13) + (impulses * overlap + lifting * lift) / 0.02;
                 prop_assert!(now <= most, "{scheme:?}: {before} to {now}, at most {most}");
                 prop_assert!(now <= start * (1.0 + 1e-13));
                 before = now;

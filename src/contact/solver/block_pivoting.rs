@@ -2,34 +2,36 @@
 //! from the contacts that carried an impulse before, with Murty's single pivots as the fallback that
 //! guarantees an end.
 
-use super::envelope::{BoatLinks, EnvelopeFactor};
+use super::envelope::{ABSENT, EnvelopeFactor};
+use super::matrix::ContactMatrix;
 use super::{EXACT, SolveReport};
 use crate::boat::Velocity;
 use crate::contact::{ContactProblem, Islands};
+use std::ops::Range;
 
 /// Signs are judged with this tolerance in cm/s, well below [`EXACT`].
 const TOLERANCE: f64 = 1e-11;
 /// Rounds without fewer violations before single pivots take over.
 const PATIENCE: u32 = 5;
 
-/// Factors of all islands and scratch space.
-#[derive(Debug, Clone)]
+/// The matrix, the factors of all islands, and the state of pivoting, row by row of the matrix.
+#[derive(Debug, Clone, Default)]
 pub struct BlockPivoting {
     /// Added to the diagonal, relative to it, so that redundant contacts share their load.
     ridge: f64,
+    matrix: ContactMatrix,
+    /// Whether the matrix is that of the contacts at hand.
+    is_built: bool,
     factors: Vec<EnvelopeFactor>,
-    links: BoatLinks,
-    solution: Vec<f64>,
+    active: Vec<bool>,
+    impulses: Vec<f64>,
     slacks: Vec<f64>,
-}
-
-/// What the pivoting of one island works on.
-struct IslandState<'a> {
-    problem: &'a ContactProblem<'a>,
-    contacts: &'a [u32],
-    active: &'a mut [bool],
-    impulses: &'a mut [f64],
-    velocities: &'a mut [Velocity],
+    /// Velocities of all boats and, last, of the walls: without contacts, and with.
+    free: Vec<Velocity>,
+    velocities: Vec<Velocity>,
+    wanted: Vec<u32>,
+    places: Vec<u32>,
+    solution: Vec<f64>,
 }
 
 impl BlockPivoting {
@@ -37,15 +39,13 @@ impl BlockPivoting {
     pub fn new(ridge: f64) -> Self {
         Self {
             ridge,
-            factors: Vec::new(),
-            links: BoatLinks::default(),
-            solution: Vec::new(),
-            slacks: Vec::new(),
+            ..Self::default()
         }
     }
 
     /// Forgets the factors; so many islands come next.
     pub fn begin(&mut self, islands: usize) {
+        self.is_built = false;
         self.factors.iter_mut().for_each(EnvelopeFactor::clear);
         if self.factors.len() < islands {
             self.factors.resize_with(islands, EnvelopeFactor::default);
@@ -61,35 +61,54 @@ impl BlockPivoting {
         impulses: &mut [f64],
         velocities: &mut Vec<Velocity>,
     ) -> SolveReport {
-        velocities.clear();
-        velocities.extend_from_slice(problem.free);
-        self.links.reset(problem.free.len());
-        let mut report = SolveReport {
-            converged: true,
-            ..SolveReport::default()
-        };
+        self.load(problem, islands, active);
+        let mut report = SolveReport::default();
         for island in 0..islands.len() {
-            let contacts = islands.contacts(island);
-            let mut state = IslandState {
-                problem,
-                contacts,
-                active: &mut *active,
-                impulses: &mut *impulses,
-                velocities: &mut *velocities,
-            };
-            self.solve_island(island, &mut state, &mut report);
+            self.solve_island(island, islands.range(island), &mut report);
         }
+        let states = self.active.iter().zip(&self.impulses);
+        for (row, (&is_active, &impulse)) in self.matrix.rows().iter().zip(states) {
+            active[row.contact as usize] = is_active;
+            impulses[row.contact as usize] = impulse;
+        }
+        velocities.clear();
+        velocities.extend_from_slice(&self.velocities[..problem.free.len()]);
         report.converged = report.residual <= EXACT.max(self.ridge);
         report
     }
 
-    fn solve_island(&mut self, island: usize, state: &mut IslandState, report: &mut SolveReport) {
-        let most_rounds = 50 + 4 * state.contacts.len();
+    fn load(&mut self, problem: &ContactProblem, islands: &Islands, active: &[bool]) {
+        if !self.is_built {
+            self.matrix.build(problem, islands);
+            self.is_built = true;
+        }
+        self.free.clear();
+        self.free.extend_from_slice(problem.free);
+        self.free.push(Velocity::default());
+        self.velocities.clone_from(&self.free);
+        self.matrix.set_right(problem, &self.free);
+        let rows = self.matrix.rows();
+        self.active.clear();
+        self.active
+            .extend(rows.iter().map(|row| active[row.contact as usize]));
+        self.impulses.clear();
+        self.impulses.resize(rows.len(), 0.0);
+        self.slacks.clear();
+        self.slacks.resize(rows.len(), 0.0);
+        self.places.clear();
+        self.places.resize(rows.len(), ABSENT);
+    }
+
+    fn solve_island(&mut self, island: usize, rows: Range<usize>, report: &mut SolveReport) {
+        let most_rounds = 50 + 4 * rows.len();
         let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
         for _ in 0..most_rounds {
             report.iterations += 1;
-            report.factored_rows += self.solve_active(island, state);
-            let (violations, last) = self.count_violations(state);
+            report.factored_rows += self.solve_active(island, rows.clone());
+            let (mut violations, mut last) = self.count_violations(rows.clone());
+            if violations == 0 && self.refine(island, rows.clone()) {
+                (violations, last) = self.count_violations(rows.clone());
+            }
             if violations == 0 {
                 break;
             }
@@ -98,160 +117,140 @@ impl BlockPivoting {
             } else if patience > 0 {
                 patience -= 1;
             } else {
-                let k = state.contacts[last] as usize;
-                state.active[k] = !state.active[k];
+                self.active[last] = !self.active[last];
                 continue;
             }
-            for (place, &k) in state.contacts.iter().enumerate() {
-                let k = k as usize;
-                if state.is_violated(k, self.slacks[place]) {
-                    state.active[k] = !state.active[k];
-                }
+            for row in rows.clone() {
+                self.active[row] ^= self.is_violated(row);
             }
         }
         report.factor_entries += self.factors[island].len() as u64;
-        report.residual = report.residual.max(self.finish(state));
+        self.drop_negative(rows.clone());
+        report.residual = self.worst_residual(rows, report.residual);
     }
 
     /// Impulses that close exactly the active gaps, and the slacks of all; returns factored rows.
-    fn solve_active(&mut self, island: usize, state: &mut IslandState) -> u64 {
-        let problem = state.problem;
-        let members = state
-            .contacts
-            .iter()
-            .copied()
-            .filter(|&k| state.active[k as usize]);
+    fn solve_active(&mut self, island: usize, rows: Range<usize>) -> u64 {
+        self.wanted.clear();
+        self.wanted.extend(
+            rows.clone()
+                .filter(|&row| self.active[row])
+                .map(|row| row as u32),
+        );
         let factor = &mut self.factors[island];
-        let rows = factor.update(problem, members.clone(), self.ridge, &mut self.links);
+        let computed = factor.update(&self.matrix, &self.wanted, self.ridge, &mut self.places);
+        let right = |&row: &u32| -self.matrix.rows()[row as usize].right;
         self.solution.clear();
-        self.solution
-            .extend(members.map(|k| -problem.slack(k as usize, problem.free)));
+        self.solution.extend(self.wanted.iter().map(right));
         factor.solve(&mut self.solution);
-        state.set_impulses(&self.solution);
-        state.update_slacks(&mut self.slacks);
-        // The ridge and rounding leave a remainder at the active contacts; one more solve removes it.
-        // A softened problem is meant to give way.
-        let worst = state.worst_active_slack(&self.slacks);
-        if worst > TOLERANCE && self.ridge < TOLERANCE {
-            let mut correction: Vec<f64> = state.active_slacks(&self.slacks).map(|w| -w).collect();
-            factor.solve(&mut correction);
-            self.solution
-                .iter_mut()
-                .zip(&correction)
-                .for_each(|(x, dx)| *x += dx);
-            state.set_impulses(&self.solution);
-            state.update_slacks(&mut self.slacks);
-        }
-        rows
+        self.impulses[rows.clone()].fill(0.0);
+        self.add_solution(rows);
+        computed
     }
 
-    /// How many contacts pull, or overlap although they carry nothing; and the last of them.
-    fn count_violations(&self, state: &IslandState) -> (usize, usize) {
-        let mut count = 0;
-        let mut last = 0;
-        for (place, &k) in state.contacts.iter().enumerate() {
-            if state.is_violated(k as usize, self.slacks[place]) {
+    /// The ridge and rounding leave a remainder at the active contacts; another solve removes it. A
+    /// softened problem is meant to give way. Returns whether there was anything to do.
+    fn refine(&mut self, island: usize, rows: Range<usize>) -> bool {
+        let slack = |&row: &u32| self.slacks[row as usize];
+        let worst = self
+            .wanted
+            .iter()
+            .map(slack)
+            .map(f64::abs)
+            .fold(0.0, f64::max);
+        if worst <= 0.5 * EXACT || self.ridge > TOLERANCE {
+            return false;
+        }
+        self.solution.clear();
+        self.solution
+            .extend(self.wanted.iter().map(slack).map(|slack| -slack));
+        self.factors[island].solve(&mut self.solution);
+        self.add_solution(rows);
+        true
+    }
+
+    /// Adds the solution to the impulses of the active rows, and brings slacks up to date.
+    fn add_solution(&mut self, rows: Range<usize>) {
+        for (&row, value) in self.wanted.iter().zip(&self.solution) {
+            self.impulses[row as usize] += value;
+        }
+        self.update_slacks(rows);
+    }
+
+    fn update_slacks(&mut self, rows: Range<usize>) {
+        let Self {
+            matrix,
+            impulses,
+            free,
+            velocities,
+            slacks,
+            ..
+        } = self;
+        let (impulses, slacks) = (&impulses[rows.clone()], &mut slacks[rows.clone()]);
+        let rows = &matrix.rows()[rows];
+        rows.iter().for_each(|row| row.release(free, velocities));
+        for (row, &impulse) in rows.iter().zip(impulses) {
+            if impulse != 0.0 {
+                row.apply(impulse, velocities);
+            }
+        }
+        rows.iter()
+            .zip(slacks)
+            .for_each(|(row, slack)| *slack = row.slack(velocities));
+    }
+
+    /// Whether a contact pulls, or overlaps although it carries nothing.
+    #[inline]
+    fn is_violated(&self, row: usize) -> bool {
+        if self.active[row] {
+            self.impulses[row] * self.matrix.rows()[row].diagonal < -TOLERANCE
+        } else {
+            self.slacks[row] < -TOLERANCE
+        }
+    }
+
+    /// How many contacts are violated, and the last of them.
+    fn count_violations(&self, rows: Range<usize>) -> (usize, usize) {
+        let (mut count, mut last) = (0, rows.start);
+        for row in rows {
+            if self.is_violated(row) {
                 count += 1;
-                last = place;
+                last = row;
             }
         }
         (count, last)
     }
 
-    /// Drops impulses that are negative by rounding, and returns the island's natural residual.
-    fn finish(&mut self, state: &mut IslandState) -> f64 {
+    /// Drops impulses that are negative by rounding.
+    fn drop_negative(&mut self, rows: Range<usize>) {
         let mut dropped = false;
-        for &k in state.contacts {
-            let k = k as usize;
-            if state.impulses[k] < 0.0 {
-                state.impulses[k] = 0.0;
-                state.active[k] = false;
+        for row in rows.clone() {
+            if self.impulses[row] < 0.0 {
+                self.impulses[row] = 0.0;
+                self.active[row] = false;
                 dropped = true;
             }
         }
         if dropped {
-            state.apply_impulses();
-            state.update_slacks(&mut self.slacks);
+            self.update_slacks(rows);
         }
+    }
+
+    /// The larger of an island's natural residual and the worst so far; NaN if anything is.
+    fn worst_residual(&self, rows: Range<usize>, worst: f64) -> f64 {
         let softness = if self.ridge < TOLERANCE {
             0.0
         } else {
             self.ridge
         };
-        let residual = |(&k, &slack): (&u32, &f64)| {
-            let load = state.problem.diagonal(k as usize) * state.impulses[k as usize];
-            load.min(slack + softness * load).abs()
-        };
-        // A NaN must not be lost in a maximum.
-        state
-            .contacts
-            .iter()
-            .zip(&self.slacks)
-            .map(residual)
-            .fold(0.0, |worst, value| {
-                if value > worst || value.is_nan() {
-                    value
-                } else {
-                    worst
-                }
-            })
-    }
-}
-
-impl IslandState<'_> {
-    fn is_violated(&self, k: usize, slack: f64) -> bool {
-        if self.active[k] {
-            self.impulses[k] * self.problem.diagonal(k) < -TOLERANCE
-        } else {
-            slack < -TOLERANCE
-        }
-    }
-
-    fn set_impulses(&mut self, solution: &[f64]) {
-        let mut values = solution.iter();
-        for &k in self.contacts {
-            let k = k as usize;
-            let value = if self.active[k] { values.next() } else { None };
-            self.impulses[k] = value.copied().unwrap_or(0.0);
-        }
-        self.apply_impulses();
-    }
-
-    /// Velocities of the island's boats from its impulses.
-    fn apply_impulses(&mut self) {
-        for &k in self.contacts {
-            let contact = &self.problem.contacts[k as usize];
-            let first = contact.boat as usize;
-            self.velocities[first] = self.problem.free[first];
-            if let Some(second) = contact.second() {
-                self.velocities[second] = self.problem.free[second];
+        rows.fold(worst, |worst, row| {
+            let load = self.matrix.rows()[row].diagonal * self.impulses[row];
+            let residual = load.min(self.slacks[row] + softness * load).abs();
+            if residual > worst || residual.is_nan() {
+                residual
+            } else {
+                worst
             }
-        }
-        for &k in self.contacts {
-            let impulse = self.impulses[k as usize];
-            if impulse != 0.0 {
-                self.problem.apply(k as usize, impulse, self.velocities);
-            }
-        }
-    }
-
-    fn update_slacks(&self, slacks: &mut Vec<f64>) {
-        slacks.clear();
-        slacks.extend(
-            self.contacts
-                .iter()
-                .map(|&k| self.problem.slack(k as usize, self.velocities)),
-        );
-    }
-
-    fn active_slacks<'s>(&'s self, slacks: &'s [f64]) -> impl Iterator<Item = f64> + 's {
-        let pairs = self.contacts.iter().zip(slacks);
-        pairs
-            .filter(|(k, _)| self.active[**k as usize])
-            .map(|(_, &slack)| slack)
-    }
-
-    fn worst_active_slack(&self, slacks: &[f64]) -> f64 {
-        self.active_slacks(slacks).map(f64::abs).fold(0.0, f64::max)
+        })
     }
 }

@@ -4,6 +4,7 @@ mod block_pivoting;
 mod clarabel;
 mod envelope;
 mod gauss_seidel;
+mod matrix;
 
 use super::{Contact, ContactProblem, Islands};
 use crate::boat::Velocity;
@@ -52,7 +53,7 @@ impl ContactSolver {
         Self {
             kind,
             islands: Islands::default(),
-            pivoting: BlockPivoting::new(1e-12),
+            pivoting: BlockPivoting::new(1e-13),
             active: Vec::new(),
             impulses: Vec::new(),
             velocities: Vec::new(),

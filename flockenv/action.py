@@ -1,0 +1,43 @@
+"""Action spaces: one rudder a leader, continuous or a choice of levels."""
+
+from typing import Any
+
+import gymnasium
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from flockenv.errors import ParameterError
+
+__all__ = ["flat_actions", "joint_action_space", "leader_action_space"]
+
+
+def leader_action_space(levels: int | None) -> gymnasium.Space[Any]:
+    """Return one leader's space: a rudder in [-1, 1], or the number of a level."""
+    if levels is None:
+        return gymnasium.spaces.Box(-1.0, 1.0, (1,), np.float32)
+    return gymnasium.spaces.Discrete(levels)
+
+
+def joint_action_space(levels: int | None, leaders: int) -> gymnasium.Space[Any]:
+    """Return the space of all leaders' rudders."""
+    if levels is None:
+        return gymnasium.spaces.Box(-1.0, 1.0, (leaders,), np.float32)
+    return gymnasium.spaces.MultiDiscrete([levels] * leaders)
+
+
+def flat_actions(actions: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
+    """Return actions of the given shape as the core takes them: one number a leader, in order.
+
+    Raises
+    ------
+    ParameterError
+        For another shape.
+    TypeError
+        For anything that is not made of real numbers.
+    """
+    array = np.asarray(actions)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"actions must be real numbers, not of dtype {array.dtype}")
+    if array.shape != shape:
+        raise ParameterError(f"actions have shape {array.shape}, expected {shape}")
+    return array.astype(np.float64).reshape(-1)

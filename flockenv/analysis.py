@@ -1,0 +1,122 @@
+"""Statistics of finished runs: means with intervals, and the straight line of figure 12."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flockenv.extras import require
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["Line", "fit_line", "mean_interval", "summarise"]
+
+CONFIDENCE = 0.95
+"""Level of every interval."""
+
+_RESAMPLES = 9999
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A straight line fitted by least squares, and the F-test of figure 12.
+
+    Attributes
+    ----------
+    slope, intercept : float
+        In units of y over x, and of y.
+    f : float
+        F statistic with 1 and n - 2 degrees of freedom, against no linear dependence.
+    p : float
+        Probability of such an F or a larger one if y did not depend on x.
+    n : int
+        Number of points.
+    """
+
+    slope: float
+    intercept: float
+    f: float
+    p: float
+    n: int
+
+    def __str__(self) -> str:
+        return (
+            f"{self.intercept:.3f} + {self.slope:.4f} k (F = {self.f:.2f}, p = {self.p:.2g}, "
+            f"{self.n} runs)"
+        )
+
+
+def fit_line(x: Iterable[float], y: Iterable[float]) -> Line:
+    """Fit y = intercept + slope x, one point a run.
+
+    Raises
+    ------
+    ValueError
+        For fewer than three points or a single x.
+    """
+    stats = require("scipy.stats", "plot")
+    x, y = np.asarray(list(x), float), np.asarray(list(y), float)
+    if len(x) < 3 or np.ptp(x) == 0.0:
+        raise ValueError("a line needs at least three points at two different x")
+    fit = stats.linregress(x, y)
+    unexplained = 1.0 - fit.rvalue**2
+    f = fit.rvalue**2 / unexplained * (len(x) - 2) if unexplained > 0 else np.inf
+    return Line(float(fit.slope), float(fit.intercept), float(f), float(fit.pvalue), len(x))
+
+
+def mean_interval(values: Iterable[float], seed: int = 0) -> tuple[float, float, float]:
+    """Mean of independent runs with its bootstrap interval at level `CONFIDENCE`.
+
+    Returns
+    -------
+    tuple of float
+        Mean, lower and upper end (BCa bootstrap, 9999 resamples; NaN ends for a single value).
+    """
+    stats = require("scipy.stats", "plot")
+    data = np.asarray(list(values), float)
+    mean = float(data.mean())
+    if len(data) < 2:
+        return mean, float("nan"), float("nan")
+    if np.ptp(data) == 0.0:
+        return mean, mean, mean
+    result = stats.bootstrap(
+        (data,),
+        np.mean,
+        confidence_level=CONFIDENCE,
+        n_resamples=_RESAMPLES,
+        rng=np.random.default_rng(seed),
+    )
+    low, high = result.confidence_interval
+    return mean, float(low), float(high)
+
+
+def summarise(runs: "pd.DataFrame", by: list[str], quantities: list[str]) -> "pd.DataFrame":
+    """Means and intervals of quantities in groups of runs.
+
+    Parameters
+    ----------
+    runs
+        One row a run.
+    by
+        Columns that form the groups.
+    quantities
+        Columns to average.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a group: ``runs`` (their number) and, for each quantity, ``<q>``, ``<q>_low`` and
+        ``<q>_high``.
+    """
+    pandas = require("pandas", "plot")
+    rows = []
+    for key, group in runs.groupby(by, sort=False):
+        row = dict(zip(by, key, strict=True)) | {"runs": len(group)}
+        for quantity in quantities:
+            mean, low, high = mean_interval(group[quantity])
+            row |= {quantity: mean, f"{quantity}_low": low, f"{quantity}_high": high}
+        rows.append(row)
+    means: pd.DataFrame = pandas.DataFrame(rows)
+    return means

@@ -1,0 +1,29 @@
+"""Optional packages, imported where they are used, with an error that says what to install."""
+
+import importlib
+from typing import Any
+
+from flockenv.errors import FlockError
+
+__all__ = ["MissingExtraError", "require"]
+
+
+class MissingExtraError(FlockError, ImportError):
+    """An optional package is not installed; the message names the extra that brings it."""
+
+
+def require(module: str, extra: str) -> Any:
+    """Import a module of an optional extra.
+
+    Raises
+    ------
+    MissingExtraError
+        If it is not installed.
+    """
+    try:
+        return importlib.import_module(module)
+    except ModuleNotFoundError as error:
+        package = module.partition(".")[0]
+        raise MissingExtraError(
+            f"{package} is not installed: pip install 'flockenv[{extra}]'"
+        ) from error

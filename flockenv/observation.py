@@ -1,0 +1,121 @@
+"""What leaders observe: spaces, tables, and a flock observed without an environment."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any, NamedTuple
+
+import gymnasium
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from flockenv import _core
+
+__all__ = [
+    "BLOCKS",
+    "OBSERVATION_VERSION",
+    "Entry",
+    "observation_entries",
+    "observation_space",
+    "observation_table",
+    "observe",
+    "state_entries",
+    "state_space",
+]
+
+#: Version of the observation: of its entries, their order, scales and bounds.
+OBSERVATION_VERSION: int = _core.observation_version()
+
+#: The blocks with their defaults: on or off, and how many neighbours.
+BLOCKS: dict[str, Any] = _core.env_defaults()["observation"]
+
+
+class Entry(NamedTuple):
+    """One number of an observation or of the global state."""
+
+    block: str
+    place: int
+    name: str
+    unit: str
+    scale: str
+    low: float
+    high: float
+    mirrored: bool
+    meaning: str
+
+
+def observation_entries(blocks: Mapping[str, Any] | None = None) -> list[Entry]:
+    """Return every entry of an observation, in order.
+
+    Parameters
+    ----------
+    blocks
+        Blocks that differ from `BLOCKS`.
+    """
+    return [Entry(*row) for row in _core.observation_table(dict(blocks or {}))]
+
+
+def state_entries(n_boats: int) -> list[Entry]:
+    """Return every entry of the global state of so many boats, in order."""
+    return [Entry(*row) for row in _core.state_table(n_boats)]
+
+
+def _box(entries: Iterable[Entry], repeats: int) -> gymnasium.spaces.Box[np.float32]:
+    bounds = np.array([(entry.low, entry.high) for entry in entries], np.float32)
+    low, high = np.tile(bounds, (repeats, 1)).T
+    return gymnasium.spaces.Box(low.copy(), high.copy(), dtype=np.float32)
+
+
+def observation_space(
+    blocks: Mapping[str, Any], leaders: int = 1
+) -> gymnasium.spaces.Box[np.float32]:
+    """Return the space of one leader's observation, or of several one after another."""
+    return _box(observation_entries(blocks), leaders)
+
+
+def state_space(n_boats: int) -> gymnasium.spaces.Box[np.float32]:
+    """Return the space of the global state."""
+    return _box(state_entries(n_boats), 1)
+
+
+def observe(
+    flock: _core.Flock,
+    observation: Mapping[str, Any] | None = None,
+    *,
+    mirror_to_target: bool = False,
+    rudder: ArrayLike | None = None,
+) -> NDArray[np.float32]:
+    """Return what the leaders of a flock observe now.
+
+    Parameters
+    ----------
+    flock
+        The flock; its own target is the one observed.
+    observation
+        Blocks that differ from the default layout.
+    mirror_to_target
+        Whether the view is reflected where the target is counter-clockwise.
+    rudder
+        The rudders as they stand, shape (k,) in [-1, 1], positive counter-clockwise;
+        0 if not given.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (k, observation size), float32.
+
+    Raises
+    ------
+    ParameterError
+        For unknown blocks, and where a block needs normal boats that are not there.
+    """
+    return _core.observe(flock, dict(observation or {}), mirror_to_target, rudder)
+
+
+def observation_table(entries: Iterable[Entry]) -> str:
+    """Return entries as a Markdown table; those that repeat for each neighbour or boat once."""
+    lines = ["| block | entry | unit | 1 stands for | bounds | meaning |", "| --- " * 6 + "|"]
+    for entry in entries:
+        if entry.place == 0:
+            bounds = f"[{entry.low:g}, {entry.high:g}]"
+            cells = (entry.block, f"`{entry.name}`", entry.unit or "-", entry.scale, bounds)
+            lines.append(f"| {' | '.join(cells)} | {entry.meaning} |")
+    return "\n".join(lines)

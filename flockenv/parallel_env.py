@@ -1,0 +1,212 @@
+"""`LeadersParallelEnv`: each leader an agent, behind PettingZoo's parallel interface."""
+
+import copy
+from collections.abc import Mapping
+from typing import Any, Self
+
+import gymnasium
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from pettingzoo import ParallelEnv
+
+from flockenv import _core
+from flockenv.action import flat_actions, leader_action_space
+from flockenv.batch import LeaderBatch, drawn_seed
+from flockenv.errors import EpisodeError, ParameterError
+from flockenv.observation import observation_space
+from flockenv.options import EnvOptions, check_render_mode
+
+__all__ = ["LeadersParallelEnv", "parallel_env"]
+
+Observations = dict[str, NDArray[np.float32]]
+Infos = dict[str, dict[str, Any]]
+
+
+class LeadersParallelEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float32] | int]):
+    """Each leader an agent; all act at once. The task is that of `LeadersEnv`.
+
+    Agents are ``leader_0`` to ``leader_{k-1}``, boats 0 to k - 1 of the flock. Each observes its
+    own surroundings and gets its own reward (the terms about the normal boats are the same for
+    all). All agents live until the time limit truncates the episode; ``agents`` is empty from then
+    on.
+
+    Parameters
+    ----------
+    render_mode
+        None.
+    **options
+        Those of `LeadersEnv`.
+
+    Raises
+    ------
+    ParameterError
+        For unknown options and values out of range.
+    """
+
+    metadata: dict[str, Any] = {  # noqa: RUF012 - PettingZoo's own declaration
+        "name": "leaders_v0",
+        "render_modes": [],
+        "is_parallelizable": True,
+    }
+
+    def __init__(self, *, render_mode: str | None = None, **options: Any) -> None:
+        check_render_mode(render_mode)
+        self.render_mode = render_mode
+        parsed = EnvOptions.parse(options)
+        self.parameters = parsed.parameters
+        leaders = parsed.parameters.n_leaders
+        self._batch = LeaderBatch(parsed, [leaders], "disabled")
+        self.possible_agents = [f"leader_{leader}" for leader in range(leaders)]
+        self.agents: list[str] = []
+        settings = self._batch.settings
+        self.observation_spaces = {
+            agent: observation_space(settings["observation"]) for agent in self.possible_agents
+        }
+        self.action_spaces = {
+            agent: leader_action_space(settings["rudder_levels"]) for agent in self.possible_agents
+        }
+        self.state_space = self._batch.state_space
+        self._random = np.random.default_rng()
+
+    def observation_space(self, agent: str) -> gymnasium.spaces.Space[NDArray[np.float32]]:
+        """Return the observation space of an agent, always the same object."""
+        return self.observation_spaces[agent]
+
+    def action_space(self, agent: str) -> gymnasium.spaces.Space[Any]:
+        """Return the action space of an agent, always the same object."""
+        return self.action_spaces[agent]
+
+    def reset(
+        self, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observations, Infos]:
+        """Begin an episode.
+
+        Parameters
+        ----------
+        seed
+            Fixes the start, the noise and what is drawn for the episode, and those of the episodes
+            that follow without a seed. None goes on to the next episode.
+        options
+            ``target``, ``bw_s``, ``state`` and ``snapshot`` as in `LeadersEnv.reset`.
+
+        Returns
+        -------
+        observations, infos : dict
+            By agent; observations have shape (observation size,), float32, infos are empty. What
+            was drawn for the episode is told by `episode`.
+        """
+        self._batch.reset([seed], options, lambda: drawn_seed(self._random))
+        self.agents = self.possible_agents[:]
+        # Empty: TorchRL expects every later info to look like those of the reset.
+        return self.observe(), {agent: {} for agent in self.agents}
+
+    def step(
+        self, actions: Mapping[str, ArrayLike]
+    ) -> tuple[Observations, dict[str, float], dict[str, bool], dict[str, bool], Infos]:
+        """Take one control step.
+
+        Parameters
+        ----------
+        actions
+            One an agent: a rudder of shape (1,), clipped to [-1, 1], or the number of a level.
+
+        Returns
+        -------
+        observations, rewards, terminations, truncations, infos : dict
+            By agent. Each info has the agent's ``"reward_terms"``, and at the end the episode's
+            ``"episode_summary"``.
+
+        Raises
+        ------
+        ParameterError
+            For NaN, wrong shapes, missing agents and agents that are not there; nothing has moved.
+        EpisodeError
+            Before the first reset and after the end.
+        """
+        flat = self._flat(actions)
+        rows, rewards, truncated = self._batch.core.step(flat)
+        agents, over = self.agents, bool(truncated[0])
+        infos = self._infos(over)
+        if over:
+            self.agents = []
+        return (
+            dict(zip(agents, rows, strict=True)),
+            dict(zip(agents, rewards.tolist(), strict=True)),
+            dict.fromkeys(agents, False),
+            dict.fromkeys(agents, over),
+            infos,
+        )
+
+    def _flat(self, actions: Mapping[str, ArrayLike]) -> NDArray[np.float64]:
+        if not self.agents:
+            raise EpisodeError("step was called before a reset or after the episode's end")
+        if actions.keys() != set(self.agents):
+            wrong = sorted(set(self.agents).symmetric_difference(actions), key=str)
+            raise ParameterError(
+                f"actions are for other agents than {', '.join(self.agents)}: see {wrong}"
+            )
+        values = [np.asarray(actions[agent]) for agent in self.agents]
+        levels = self._batch.settings["rudder_levels"]
+        shape = (1,) if levels is None else ()
+        for agent, value in zip(self.agents, values, strict=True):
+            if value.shape != shape:
+                raise ParameterError(
+                    f"the action of {agent} has shape {value.shape}, expected {shape}"
+                )
+        return flat_actions(np.stack(values), (len(values), *shape))
+
+    def _infos(self, over: bool) -> Infos:
+        terms = self._batch.reward_terms()
+        names, rows = tuple(terms), np.stack(list(terms.values()), axis=1).tolist()
+        infos: Infos = {
+            agent: {"reward_terms": dict(zip(names, row, strict=True))}
+            for agent, row in zip(self.agents, rows, strict=True)
+        }
+        if over:
+            for info in infos.values():
+                info.update(self._batch.end_info(0))
+        return infos
+
+    def _by_agent(self, rows: NDArray[np.float32]) -> Observations:
+        return dict(zip(self.possible_agents, rows, strict=True))
+
+    def observe(self) -> Observations:
+        """Return the observations as they are now, by agent."""
+        return self._by_agent(self._batch.core.observe())
+
+    def state(self) -> NDArray[np.float32]:
+        """Return the global state for centralised critics, shape (state size,), float32."""
+        return self._batch.core.state(0)
+
+    def episode(self) -> dict[str, Any]:
+        """Return target, noise level, seed and step of the episode."""
+        return self._batch.core.episode(0)
+
+    @property
+    def flock(self) -> _core.Flock:
+        """A copy of the flock as it is now."""
+        return self._batch.core.flock(0)
+
+    def get_state(self) -> bytes:
+        """Return everything that the future depends on, as bytes."""
+        return self._batch.core.to_bytes()
+
+    def set_state(self, state: bytes) -> None:
+        """Continue from `get_state` of an environment with the same options, bit for bit."""
+        self._batch.core.restore(state)
+        self.agents = self.possible_agents[:] if self._batch.core.is_running(0) else []
+
+    def clone(self) -> Self:
+        """Return an independent copy that goes on exactly as this one."""
+        return copy.deepcopy(self)
+
+    def render(self) -> None:
+        """Draw nothing: `render_mode` is None."""
+
+    def close(self) -> None:
+        """Nothing is held open."""
+
+
+def parallel_env(*, render_mode: str | None = None, **options: Any) -> LeadersParallelEnv:
+    """Return a `LeadersParallelEnv`; see there."""
+    return LeadersParallelEnv(render_mode=render_mode, **options)

@@ -1,0 +1,175 @@
+"""Policies that need no learning. Their formulas live in the Rust core."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from flockenv import _core
+
+__all__ = ["DampedLaw", "ObservedPolicy", "SignCorrectedLaw", "SteeringLaw"]
+
+
+class ObservedPolicy:
+    """A closed-form law evaluated from observations, with the interface of an SB3 policy.
+
+    Parameters
+    ----------
+    observation
+        Blocks of the observation that differ from the default layout, as in the environments'
+        option of that name.
+    mirror_to_target
+        The environments' option of that name.
+
+    Raises
+    ------
+    ParameterError
+        If a block that the law reads is switched off.
+    """
+
+    _law: str
+
+    def __init__(
+        self,
+        gains: Mapping[str, float],
+        observation: Mapping[str, Any] | None,
+        mirror_to_target: bool,
+    ) -> None:
+        self.gains = dict(gains)
+        self.observation = dict(observation or {})
+        self.mirror_to_target = mirror_to_target
+        self._core = _core.ObservedLaw(self._law, self.gains, self.observation, mirror_to_target)
+
+    def predict(
+        self,
+        observation: ArrayLike | Mapping[Any, ArrayLike],
+        state: Any = None,
+        episode_start: Any = None,
+        deterministic: bool = True,
+    ) -> tuple[Any, Any]:
+        """Return rudders for observations.
+
+        Parameters
+        ----------
+        observation
+            Shape (..., m * observation size): m leaders' observations one after another in the
+            last axis, as the environments give them; or a dictionary of such arrays by agent.
+        state, episode_start, deterministic
+            Not used: the law has no memory and no choice.
+
+        Returns
+        -------
+        action : numpy.ndarray or dict
+            Shape (..., m), float32: as the action spaces of the environments are.
+        state
+            As it was given.
+
+        Raises
+        ------
+        ParameterError
+            If the last axis is no multiple of the layout's size.
+        """
+        if isinstance(observation, Mapping):
+            return {agent: self._rudders(each) for agent, each in observation.items()}, state
+        return self._rudders(observation), state
+
+    def _rudders(self, observation: ArrayLike) -> NDArray[np.float32]:
+        array = np.ascontiguousarray(observation, np.float32)
+        width = array.shape[-1] if array.ndim else 0
+        rudders = self._core.rudders(array.reshape(-1, width) if width else array.reshape(1, -1))
+        return rudders.reshape(*array.shape[:-1], -1)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _rebuilt, (type(self), self.gains, self.observation, self.mirror_to_target)
+
+    def __repr__(self) -> str:
+        gains = ", ".join(f"{name}={value:g}" for name, value in self.gains.items())
+        return f"{type(self).__name__}({gains})"
+
+
+def _rebuilt(
+    kind: type[ObservedPolicy],
+    gains: dict[str, float],
+    observation: dict[str, Any],
+    mirror_to_target: bool,
+) -> ObservedPolicy:
+    return kind(**gains, observation=observation, mirror_to_target=mirror_to_target)  # type: ignore[arg-type]
+
+
+class SteeringLaw(ObservedPolicy):
+    """The paper's law, eq. (10): s = clamp(6·wrap(β - α)/π, -1, 1).
+
+    β is the tangential heading of the target direction at the leader's own place. The law is
+    evaluated once a control step, from the observation; `Flock.advance` without rudders does so at
+    every substep, from the pose.
+
+    Parameters
+    ----------
+    observation, mirror_to_target
+        Layout of the observations; see `ObservedPolicy`.
+    """
+
+    _law = "steering"
+
+    def __init__(
+        self, *, observation: Mapping[str, Any] | None = None, mirror_to_target: bool = False
+    ) -> None:
+        super().__init__({}, observation, mirror_to_target)
+
+
+class SignCorrectedLaw(ObservedPolicy):
+    """s = sign(u·x˙)·clamp(gain·wrap(β - α), -1, 1): a rudder works in reverse when backing.
+
+    Parameters
+    ----------
+    gain
+        Rudder per rad of misalignment; 6/π in eq. (10).
+    observation, mirror_to_target
+        Layout of the observations; see `ObservedPolicy`.
+    """
+
+    _law = "sign_corrected"
+
+    def __init__(
+        self,
+        gain: float = 6.0 / math.pi,
+        *,
+        observation: Mapping[str, Any] | None = None,
+        mirror_to_target: bool = False,
+    ) -> None:
+        super().__init__({"gain": gain}, observation, mirror_to_target)
+
+
+class DampedLaw(ObservedPolicy):
+    """As `SignCorrectedLaw`, and when backing counters the turning that makes boats spin.
+
+    Forward: s = clamp(gain·wrap(β - α), -1, 1). Backward:
+    s = clamp(-backward_gain·wrap(β - α) + damping·α˙, -1, 1).
+
+    Parameters
+    ----------
+    gain
+        Rudder per rad of misalignment while moving forward.
+    backward_gain
+        Rudder per rad of misalignment while moving backward.
+    damping
+        Rudder per rad/s of angular velocity while moving backward.
+    observation, mirror_to_target
+        Layout of the observations; see `ObservedPolicy`.
+    """
+
+    _law = "damped"
+
+    def __init__(
+        self,
+        gain: float = 6.0 / math.pi,
+        backward_gain: float = 6.0 / math.pi,
+        damping: float = 10.0,
+        *,
+        observation: Mapping[str, Any] | None = None,
+        mirror_to_target: bool = False,
+    ) -> None:
+        gains = {"gain": gain, "backward_gain": backward_gain, "damping": damping}
+        super().__init__(gains, observation, mirror_to_target)

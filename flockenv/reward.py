@@ -1,0 +1,14 @@
+"""Terms of the reward. Their values come from the Rust core; weights are options."""
+
+from flockenv import _core
+
+__all__ = ["TERMS", "terms_table"]
+
+#: Name of each term and what it is; every term is larger for better.
+TERMS: dict[str, str] = dict(_core.reward_terms())
+
+
+def terms_table() -> str:
+    """Return the terms as a Markdown table."""
+    lines = ["| term | meaning |", "| --- | --- |"]
+    return "\n".join(lines + [f"| `{name}` | {meaning} |" for name, meaning in TERMS.items()])

@@ -1,0 +1,250 @@
+"""`LeaderVecEnv`: stable-baselines3's vector interface, one slot a leader.
+
+Needs the extra ``train``: ``pip install flockenv[train]``.
+"""
+
+import copy
+from collections.abc import Sequence
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from stable_baselines3.common.vec_env import VecEnv
+
+from flockenv.action import flat_actions, leader_action_space
+from flockenv.batch import LeaderBatch, drawn_seed
+from flockenv.errors import EpisodeError, ParameterError
+from flockenv.observation import observation_space
+from flockenv.options import EnvOptions, check_render_mode
+from flockenv.parameters import FlockParameters
+
+__all__ = ["LeaderSlot", "LeaderVecEnv"]
+
+
+class LeaderSlot:
+    """What stands for one environment in a `LeaderVecEnv`: one leader of one flock.
+
+    ``get_attr``, ``set_attr`` and ``env_method`` of the vector environment reach these objects;
+    attributes that are set on them stay with them.
+    """
+
+    def __init__(self, env: "LeaderVecEnv", flock_index: int, leader_index: int) -> None:
+        self._env = env
+        self.flock_index = flock_index
+        self.leader_index = leader_index
+        self.observation_space = env.observation_space
+        self.action_space = env.action_space
+        self.render_mode = env.render_mode
+        self.spec = None
+
+    @property
+    def parameters(self) -> FlockParameters:
+        """Parameters of the slot's flock; an episode may have its own target and bw_s."""
+        return self._env._batch.core.parameters(self.flock_index)
+
+    def episode(self) -> dict[str, Any]:
+        """Return target, noise level, seed and step of the slot's flock."""
+        return self._env._batch.core.episode(self.flock_index)
+
+    def state(self) -> NDArray[np.float32]:
+        """Return the global state of the slot's flock, shape (state size,)."""
+        return self._env._batch.core.state(self.flock_index)
+
+
+class LeaderVecEnv(VecEnv):
+    """Many flocks, each leader a slot of its own: one policy is shared by all leaders.
+
+    The task, its observation, reward and options are those of `LeadersEnv`. Slots are leaders,
+    flock after flock. Flocks are stepped in parallel in Rust; arrays that are returned are never
+    written to again. A flock's slots end their episodes together; it is then reset at once, and
+    their infos have ``"TimeLimit.truncated"`` (always True), ``"terminal_observation"``,
+    ``"terminal_state"`` and the ``"episode_summary"``. For episode returns in SB3's logs wrap it
+    in ``VecMonitor``.
+
+    Parameters
+    ----------
+    num_flocks
+        Number of flocks.
+    n_leaders
+        Leaders of each flock; a list is dealt out to the flocks in turn, so that one policy can
+        learn all of them.
+    render_mode
+        None.
+    **options
+        Those of `LeadersEnv`.
+
+    Raises
+    ------
+    ParameterError
+        For unknown options and values out of range.
+
+    Notes
+    -----
+    ``seed(s)`` makes the next reset seed flock i with s + i, as in `LeadersVectorEnv`.
+    """
+
+    def __init__(
+        self,
+        num_flocks: int = 1,
+        *,
+        n_leaders: int | Sequence[int] | None = None,
+        render_mode: str | None = None,
+        **options: Any,
+    ) -> None:
+        check_render_mode(render_mode)
+        if num_flocks < 1:
+            raise ParameterError(f"num_flocks = {num_flocks!r} is not accepted: at least 1")
+        dealt = list(n_leaders) if isinstance(n_leaders, Sequence) else n_leaders
+        if isinstance(dealt, list) and not dealt:
+            raise ParameterError("n_leaders = [] is not accepted: a number or a list of numbers")
+        most = max(dealt) if isinstance(dealt, list) else dealt
+        parsed = EnvOptions.parse(options if most is None else {**options, "n_leaders": most})
+        counts = dealt if isinstance(dealt, list) else [parsed.parameters.n_leaders]
+        leaders = [counts[flock % len(counts)] for flock in range(num_flocks)]
+        self._batch = LeaderBatch(parsed, leaders, "same_step")
+        settings = self._batch.settings
+        self.num_flocks = num_flocks
+        self.render_mode = render_mode
+        self.observation_space = observation_space(settings["observation"])
+        self.action_space = leader_action_space(settings["rudder_levels"])
+        self.state_space = self._batch.state_space
+        self.slots = [
+            LeaderSlot(self, flock, leader)
+            for flock, k in enumerate(leaders)
+            for leader in range(k)
+        ]
+        #: Flock of each slot.
+        self.flock_of_slot = np.repeat(np.arange(num_flocks), leaders)
+        self._random = np.random.default_rng()
+        self._actions: NDArray[np.float64] | None = None
+        super().__init__(len(self.slots), self.observation_space, self.action_space)
+        self._actions_shape = (self.num_envs, *(self.action_space.shape or ()))
+
+    def seed(self, seed: int | None = None) -> Sequence[int | None]:
+        """Seed the flocks at the next reset: flock i with ``seed + i``; None draws one."""
+        first = drawn_seed(self._random) if seed is None else seed
+        self._seeds = [first + flock for flock in self.flock_of_slot.tolist()]
+        return self._seeds
+
+    def reset(self) -> NDArray[np.float32]:
+        """Begin episodes in all flocks, with the seeds and options set for this reset.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (slots, observation size), float32.
+        """
+        first = np.searchsorted(self.flock_of_slot, np.arange(self.num_flocks))
+        seeds = [self._seeds[slot] for slot in first.tolist()]
+        options = [self._options[slot] for slot in first.tolist()]
+        names = {name for each in options for name in each}
+        if any(each.keys() != names for each in options):
+            raise ParameterError("set_options: the flocks' options have to name the same things")
+        listed = {name: [each[name] for each in options] for name in names}
+        self._batch.reset(seeds, listed, lambda: drawn_seed(self._random))
+        self._reset_seeds()
+        self._reset_options()
+        begin = [self._batch.begin_info(flock) for flock in range(self.num_flocks)]
+        self.reset_infos = [dict(begin[flock]) for flock in self.flock_of_slot]
+        return self._batch.core.observe()
+
+    def step_async(self, actions: NDArray[Any]) -> None:
+        """Take note of actions, shape (slots, 1) rudders or (slots,) numbers of levels."""
+        self._actions = flat_actions(actions, self._actions_shape)
+
+    def step_wait(
+        self,
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_], list[dict[str, Any]]]:
+        """Take the control step.
+
+        Returns
+        -------
+        observations, rewards, dones, infos
+            Shapes (slots, observation size), (slots,), (slots,) and a dictionary a slot. Where an
+            episode has ended, the observation is the first of the next one.
+
+        Raises
+        ------
+        ParameterError
+            For NaN actions; nothing has moved then.
+        EpisodeError
+            Before the first reset.
+        """
+        if self._actions is None:
+            raise EpisodeError("step_wait was called without step_async")
+        flat, self._actions = self._actions, None
+        observations, rewards, truncated = self._batch.core.step(flat)
+        infos: list[dict[str, Any]] = [{} for _ in self.slots]
+        if truncated.any():
+            self._tell_ends(truncated, infos)
+            dones = truncated[self.flock_of_slot]
+        else:
+            dones = np.zeros(self.num_envs, np.bool_)
+        return observations, rewards.astype(np.float32), dones, infos
+
+    def _tell_ends(self, truncated: NDArray[np.bool_], infos: list[dict[str, Any]]) -> None:
+        for flock in np.flatnonzero(truncated).tolist():
+            last = self._batch.core.final_observation(flock)
+            first = int(np.searchsorted(self.flock_of_slot, flock))
+            for leader, row in enumerate(last):
+                slot = first + leader
+                infos[slot] = self._batch.end_info(flock)
+                infos[slot]["TimeLimit.truncated"] = True
+                infos[slot]["terminal_observation"] = row.copy()
+                infos[slot]["terminal_state"] = self._batch.core.final_state(flock)
+                self.reset_infos[slot] = self._batch.begin_info(flock)
+
+    def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
+        """Return an attribute of each slot's `LeaderSlot`."""
+        if not hasattr(self, "slots"):
+            raise AttributeError(attr_name)
+        return [getattr(self.slots[slot], attr_name) for slot in self._get_indices(indices)]
+
+    def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
+        """Set an attribute of each slot's `LeaderSlot`."""
+        for slot in self._get_indices(indices):
+            setattr(self.slots[slot], attr_name, value)
+
+    def env_method(
+        self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any
+    ) -> list[Any]:
+        """Call a method of each slot's `LeaderSlot`."""
+        methods = self.get_attr(method_name, indices)
+        return [method(*method_args, **method_kwargs) for method in methods]
+
+    def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
+        """Return False for each slot: there are no wrappers around single slots."""
+        return [False for _ in self._get_indices(indices)]
+
+    def state(self) -> NDArray[np.float32]:
+        """Return the global state of each slot's flock, shape (slots, state size)."""
+        flocks = [self._batch.core.state(flock) for flock in range(self.num_flocks)]
+        return np.stack(flocks)[self.flock_of_slot]
+
+    def reward_terms(self) -> dict[str, NDArray[np.float64]]:
+        """Return each term of the last step's reward, shape (slots,)."""
+        return self._batch.reward_terms()
+
+    def order_parameters(self) -> NDArray[np.float64]:
+        """Return order parameters now, shape (flocks, 6); see `LeadersVectorEnv`."""
+        return self._batch.core.order_parameters()
+
+    def get_state(self) -> bytes:
+        """Return everything that the future depends on, as bytes."""
+        return self._batch.core.to_bytes()
+
+    def set_state(self, state: bytes) -> NDArray[np.float32]:
+        """Continue from `get_state` of the same options, bit for bit; return the observations."""
+        self._batch.core.restore(state)
+        return self._batch.core.observe()
+
+    def clone(self) -> Self:
+        """Return an independent copy that goes on exactly as this one."""
+        return copy.deepcopy(self)
+
+    def get_images(self) -> Sequence[NDArray[np.uint8] | None]:
+        """Return nothing to see: `render_mode` is None."""
+        return [None for _ in self.slots]
+
+    def close(self) -> None:
+        """Nothing is held open."""

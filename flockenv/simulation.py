@@ -1,0 +1,171 @@
+"""`simulate`: a seeded run from a random start, recorded."""
+
+import math
+from collections.abc import Iterator
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import DTypeLike
+
+from flockenv import _core
+from flockenv.errors import ParameterError
+from flockenv.observation import observe
+from flockenv.order_parameters import OrderSeries
+from flockenv.parameters import FlockParameters
+from flockenv.recording import PHASES, PRECISIONS, Recording
+
+__all__ = ["LeaderPolicy", "simulate"]
+
+_TICKS_A_SECOND = 1e9
+
+
+class LeaderPolicy(Protocol):
+    """Anything with the ``predict`` of a stable-baselines3 policy."""
+
+    def predict(self, observation: Any, state: Any = None, episode_start: Any = None) -> Any:
+        """Return actions for observations, and the next state of a recurrent policy."""
+
+
+def simulate(
+    parameters: FlockParameters,
+    seed: int,
+    duration_s: float,
+    sample_hz: float = 10.0,
+    policy: LeaderPolicy | str | None = None,
+    *,
+    control_hz: float = 10.0,
+    dtype: DTypeLike = np.float64,
+) -> Recording:
+    """Run a flock from its random start and record it: a pure function of its arguments.
+
+    Without a policy of its own the run is one call into the core, without the interpreter lock.
+
+    Parameters
+    ----------
+    parameters
+        The scene.
+    seed
+        Seed of all random streams, 0 to 2^64 - 1.
+    duration_s
+        Length of the run in s, from 0 s (one sample: the start) to 1e9 s. The run ends with the
+        last sample.
+    sample_hz
+        Samples a second, taken at 0, 1/sample_hz, 2/sample_hz … Substeps end on samples: rates of
+        which 1/dt_s is no multiple change the course of the run within its numerical error.
+    policy
+        How leaders steer: None or "law" for the steering law, eq. (10), at every substep; or an
+        object whose ``predict`` maps observations (k, size) to rudders (k,), clipped to [-1, 1].
+        It observes the default layout, or that of its attributes ``observation`` and
+        ``mirror_to_target``.
+    control_hz
+        Control steps a second of a policy.
+    dtype
+        float64, or float32 for half the size, which rounds the pose and velocity that are kept but
+        not the run.
+
+    Returns
+    -------
+    Recording
+        floor(duration_s · sample_hz) + 1 samples.
+
+    Raises
+    ------
+    ParameterError
+        For arguments out of range, boats that do not fit the pool, rudders that are NaN, and a
+        recording of more than 16 GiB; nothing is returned then.
+    TypeError
+        For arguments of the wrong type.
+    SolverError
+        If the motion left its range of 1e9 (cm, cm/s, rad, rad/s).
+    """
+    precision = _precision(dtype)
+    if policy is None or policy == "law":
+        columns = _core.record(parameters, seed, duration_s, sample_hz, precision == np.float32)
+        columns["phase"] = PHASES[columns["phase"]]
+    elif hasattr(policy, "predict"):
+        _check_rates(duration_s, sample_hz, control_hz)
+        columns = _steered(parameters, seed, duration_s, sample_hz, policy, control_hz, precision)
+    else:
+        raise ParameterError(
+            f"policy = {policy!r} is not accepted: None, 'law' or an object with predict"
+        )
+    return Recording(**columns, parameters=parameters, seed=int(seed), version=_core.__version__)
+
+
+def _check_rates(duration_s: float, sample_hz: float, control_hz: float) -> None:
+    for name, rate in (("sample_hz", sample_hz), ("control_hz", control_hz)):
+        if not 0.0 < rate <= 1e6:
+            raise ParameterError(
+                f"{name} = {rate!r} is not accepted: a positive rate of at most 1e6"
+            )
+    if not 0.0 <= duration_s * max(sample_hz, control_hz) <= 1e8:
+        raise ParameterError(
+            f"duration_s = {duration_s!r} is not accepted: from 0 s to 1e8 samples or control steps"
+        )
+
+
+def _steered(
+    parameters: FlockParameters,
+    seed: int,
+    duration_s: float,
+    sample_hz: float,
+    policy: LeaderPolicy,
+    control_hz: float,
+    precision: np.dtype[Any],
+) -> dict[str, Any]:
+    flock = _core.Flock(parameters, seed)
+    mirrored = getattr(policy, "mirror_to_target", False)
+    sign = -1.0 if mirrored and parameters.target == "ccw" else 1.0
+    layout = getattr(policy, "observation", None)
+    rudder, state = np.zeros(parameters.n_leaders), None
+    samples = []
+    now = 0
+    for tick, is_sample, is_control in _events(duration_s, sample_hz, control_hz):
+        flock.advance((tick - now) / _TICKS_A_SECOND, rudder)
+        now = tick
+        if is_sample:
+            samples.append(_sample(flock, precision))
+        if is_control and parameters.n_leaders > 0:
+            seen = observe(flock, layout, mirror_to_target=mirrored, rudder=rudder)
+            actions, state = policy.predict(seen, state)
+            rudder = sign * np.clip(np.asarray(actions, np.float64).reshape(-1), -1.0, 1.0)
+    columns = {name: np.array([each[name] for each in samples]) for name in samples[0]}
+    columns["phase"] = columns["phase"].astype(PHASES.dtype)
+    orders = columns.pop("order").T
+    return {**columns, "order": OrderSeries(*orders)}
+
+
+def _events(
+    duration_s: float, sample_hz: float, control_hz: float
+) -> Iterator[tuple[int, bool, bool]]:
+    """Yield times, in ticks, at which something is sampled or steered, in order."""
+    last = math.floor(duration_s * sample_hz * (1 + 1e-12)) / sample_hz
+
+    def ticks(rate: float) -> set[int]:
+        count = math.floor(last * rate * (1 + 1e-12)) + 1
+        return {round(place / rate * _TICKS_A_SECOND) for place in range(count)}
+
+    sampled, steered = ticks(sample_hz), ticks(control_hz)
+    for tick in sorted(sampled | steered):
+        yield tick, tick in sampled, tick in steered
+
+
+def _sample(flock: _core.Flock, precision: np.dtype[Any]) -> dict[str, Any]:
+    has_normal_boats = flock.parameters.n_leaders < flock.parameters.n_boats
+    order = flock.order_parameters() if has_normal_boats else None
+    names = OrderSeries.__dataclass_fields__
+    return {
+        "time_s": flock.time_s,
+        "phase": flock.phase,
+        "in_analysis_window": flock.in_analysis_window,
+        "pose": flock.pose.astype(precision),
+        "velocity": flock.velocity.astype(precision),
+        "order": [getattr(order, name) if order else math.nan for name in names],
+    }
+
+
+def _precision(dtype: DTypeLike) -> np.dtype[Any]:
+    precision: np.dtype[Any] = np.dtype(dtype)
+    if precision not in PRECISIONS:
+        raise ParameterError(f"dtype = {precision} is not accepted: float64 or float32")
+    return precision

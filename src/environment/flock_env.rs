@@ -1,0 +1,232 @@
+//! One flock as an environment: an episode after another, each seeded.
+
+use super::run::StoredRun;
+use super::{Autoreset, EnvSettings, EpisodeSeeds, EpisodeSummary, ResetRequest, Run, Servo};
+use crate::error::{FlockError, Result};
+use crate::observation::StateObserver;
+use crate::parameters::FlockParameters;
+
+/// What is stored of an environment.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub struct StoredEnv {
+    seeds: Option<EpisodeSeeds>,
+    run: Option<StoredRun>,
+    finished: Option<EpisodeSummary>,
+    final_observation: Vec<f32>,
+    final_state: Vec<f32>,
+}
+
+/// A flock with its episodes.
+#[derive(Debug, Clone)]
+pub struct FlockEnv {
+    parameters: FlockParameters,
+    servo: Servo,
+    state_observer: StateObserver,
+    seeds: Option<EpisodeSeeds>,
+    run: Option<Run>,
+    finished: Option<EpisodeSummary>,
+    final_observation: Vec<f32>,
+    final_state: Vec<f32>,
+}
+
+impl FlockEnv {
+    /// For checked settings and parameters; to be reset before it can be stepped.
+    pub fn new(settings: &EnvSettings, parameters: FlockParameters) -> Self {
+        Self {
+            servo: settings.rudder.servo(settings.episode.period_s()),
+            state_observer: StateObserver::new(&parameters, settings.observation.mirror_to_target),
+            seeds: None,
+            run: None,
+            finished: None,
+            final_observation: Vec::new(),
+            final_state: Vec::new(),
+            parameters,
+        }
+    }
+
+    /// The parameters; an episode may have its own bw_s and target.
+    pub fn parameters(&self) -> &FlockParameters {
+        &self.parameters
+    }
+
+    /// The episode under way, or that has ended last; `None` before the first reset.
+    pub fn run(&self) -> Option<&Run> {
+        self.run.as_ref()
+    }
+
+    /// Whether a reset has ever given a seed.
+    pub fn is_seeded(&self) -> bool {
+        self.seeds.is_some()
+    }
+
+    /// Summary of the last episode that reached its end.
+    pub fn finished(&self) -> Option<&EpisodeSummary> {
+        self.finished.as_ref()
+    }
+
+    /// The last observations of the last episode that ended under [`Autoreset::SameStep`].
+    pub fn final_observation(&self) -> &[f32] {
+        &self.final_observation
+    }
+
+    /// The global state at the end of that episode.
+    pub fn final_state(&self) -> &[f32] {
+        &self.final_state
+    }
+
+    /// The next episode, begun but not entered yet.
+    ///
+    /// # Errors
+    /// [`FlockError::Episode`] without any seed yet, and errors of the request.
+    pub fn prepare(
+        &self,
+        settings: &EnvSettings,
+        request: &ResetRequest,
+    ) -> Result<(EpisodeSeeds, Run)> {
+        let Some(mut seeds) = request.seed.map(EpisodeSeeds::new).or(self.seeds) else {
+            let message = "the first reset of an environment needs a seed";
+            return Err(FlockError::Episode(message.to_owned()));
+        };
+        let flock_seed = seeds.next_seed();
+        let (episode, flock) = request.begin(settings, &self.parameters, flock_seed)?;
+        Ok((seeds, Run::new(settings, episode, flock)))
+    }
+
+    /// Enters a prepared episode.
+    pub fn enter(&mut self, (seeds, run): (EpisodeSeeds, Run)) {
+        (self.seeds, self.run) = (Some(seeds), Some(run));
+    }
+
+    /// Whether a step is due, be it one that only starts the next episode.
+    ///
+    /// # Errors
+    /// [`FlockError::Episode`] if the environment has to be reset first.
+    pub fn check_ready(&self, autoreset: Autoreset) -> Result<()> {
+        let message = match &self.run {
+            None => "step was called before the first reset",
+            Some(run) if run.has_ended() && autoreset == Autoreset::Disabled => {
+                "step was called after the episode's end; call reset first"
+            }
+            Some(_) => return Ok(()),
+        };
+        Err(FlockError::Episode(message.to_owned()))
+    }
+
+    /// One control step with checked actions, or the start of the next episode where one is due. Writes
+    /// observations and rewards of the leaders and tells whether the episode was truncated.
+    ///
+    /// # Errors
+    /// [`FlockError::Solver`], [`FlockError::Placement`]; the episode is over then.
+    pub fn step(
+        &mut self,
+        settings: &EnvSettings,
+        actions: &[f64],
+        observations: &mut [f32],
+        rewards: &mut [f64],
+    ) -> Result<bool> {
+        rewards.fill(0.0);
+        self.check_ready(settings.autoreset)?;
+        if self.run.as_ref().is_some_and(Run::has_ended) {
+            self.go_on(settings, observations)?;
+            return Ok(false);
+        }
+        let Some(run) = &mut self.run else {
+            return Ok(false);
+        };
+        run.step(settings, &self.servo, actions, rewards)?;
+        run.observe_and_count(observations);
+        if !run.has_ended() {
+            return Ok(false);
+        }
+        self.finished = Some(run.summary());
+        if settings.autoreset == Autoreset::SameStep {
+            self.final_observation.clear();
+            self.final_observation.extend_from_slice(observations);
+            self.keep_final_state();
+            self.go_on(settings, observations)?;
+        }
+        Ok(true)
+    }
+
+    fn keep_final_state(&mut self) {
+        let mut state = std::mem::take(&mut self.final_state);
+        state.resize(self.state_size(), 0.0);
+        self.observe_state(&mut state);
+        self.final_state = state;
+    }
+
+    fn go_on(&mut self, settings: &EnvSettings, observations: &mut [f32]) -> Result<()> {
+        self.enter(self.prepare(settings, &ResetRequest::default())?);
+        self.begin_observing(observations);
+        Ok(())
+    }
+
+    /// Writes the first observations of an episode.
+    pub fn begin_observing(&mut self, out: &mut [f32]) {
+        if let Some(run) = &mut self.run {
+            run.observe_and_count(out);
+        }
+    }
+
+    /// Writes the observations as they are now, zeros before the first reset.
+    pub fn observe(&mut self, out: &mut [f32]) {
+        match &mut self.run {
+            Some(run) => {
+                run.observe(out);
+            }
+            None => out.fill(0.0),
+        }
+    }
+
+    /// How many numbers the global state has.
+    pub fn state_size(&self) -> usize {
+        self.state_observer.size()
+    }
+
+    /// Writes the global state, zeros before the first reset.
+    pub fn observe_state(&self, out: &mut [f32]) {
+        match &self.run {
+            Some(run) => run.observe_state(&self.state_observer, out),
+            None => out.fill(0.0),
+        }
+    }
+
+    /// The environment, to be stored.
+    pub fn stored(&self) -> StoredEnv {
+        StoredEnv {
+            seeds: self.seeds,
+            run: self.run.as_ref().map(Run::stored),
+            finished: self.finished,
+            final_observation: self.final_observation.clone(),
+            final_state: self.final_state.clone(),
+        }
+    }
+
+    /// The environment as it was stored.
+    ///
+    /// # Errors
+    /// [`FlockError::Snapshot`] if the state does not belong to such an environment.
+    pub fn restored(&self, settings: &EnvSettings, stored: StoredEnv) -> Result<Self> {
+        let whole = self.parameters.n_leaders * settings.observation.size();
+        let run = stored
+            .run
+            .map(|run| Run::restored(settings, &self.parameters, run))
+            .transpose()?;
+        let whole_or_none = |kept: &[f32], whole| kept.is_empty() || kept.len() == whole;
+        if !whole_or_none(&stored.final_observation, whole)
+            || !whole_or_none(&stored.final_state, self.state_size())
+            || (run.is_some() && stored.seeds.is_none())
+        {
+            return Err(FlockError::Snapshot(
+                "the state is of another environment".to_owned(),
+            ));
+        }
+        let mut restored = Self::new(settings, self.parameters.clone());
+        restored.seeds = stored.seeds;
+        restored.run = run;
+        restored.finished = stored.finished;
+        restored.final_observation = stored.final_observation;
+        restored.final_state = stored.final_state;
+        Ok(restored)
+    }
+}

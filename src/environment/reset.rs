@@ -1,0 +1,100 @@
+//! What a reset may ask for, and the flock that an episode begins with.
+
+use super::{EnvSettings, Episode, TargetChoice};
+use crate::boat::{Pose, Velocity};
+use crate::error::{FlockError, Result};
+use crate::flock::Flock;
+use crate::parameters::FlockParameters;
+
+/// Where an episode begins.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Start {
+    /// Placed at random from the episode's seed, at rest.
+    #[default]
+    Random,
+    /// A given state.
+    State {
+        /// Poses of all boats.
+        poses: Vec<Pose>,
+        /// Velocities of all boats.
+        velocities: Vec<Velocity>,
+        /// The flock's time in s.
+        time_s: f64,
+        /// Whether hulls may overlap.
+        allow_overlap: bool,
+    },
+    /// A flock's snapshot; its noise level and its noise come along.
+    Snapshot(Vec<u8>),
+}
+
+/// What a reset asks for.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ResetRequest {
+    /// A new seed of the environment; `None` goes on to its next episode.
+    pub seed: Option<u64>,
+    /// Target of this episode; `None`: as the settings say.
+    pub target: Option<TargetChoice>,
+    /// Length of the backward phase in this episode in s; `None`: as the settings say.
+    pub bw_s: Option<f64>,
+    /// Where it begins.
+    pub start: Start,
+}
+
+impl ResetRequest {
+    /// The episode and the flock that the request describes.
+    ///
+    /// # Errors
+    /// [`FlockError`] for a request that cannot be met.
+    pub fn begin(
+        &self,
+        settings: &EnvSettings,
+        parameters: &FlockParameters,
+        flock_seed: u64,
+    ) -> Result<(Episode, Flock)> {
+        let mut plan = settings.episode;
+        // The length belongs to the environment, whatever the target of this episode.
+        plan.episode_s = Some(plan.duration_s());
+        plan.target = self.target.unwrap_or(plan.target);
+        let mut episode = Episode::new(&plan, flock_seed, parameters.bw_s);
+        episode.bw_s = self.bw_s.unwrap_or(episode.bw_s);
+        let mut flock = match &self.start {
+            Start::Snapshot(bytes) => flock_from(bytes, parameters)?,
+            Start::Random | Start::State { .. } => {
+                let own = FlockParameters {
+                    bw_s: episode.bw_s,
+                    ..parameters.clone()
+                };
+                Flock::new(own, flock_seed)?
+            }
+        };
+        if let Start::State {
+            poses,
+            velocities,
+            time_s,
+            allow_overlap,
+        } = &self.start
+        {
+            flock.set_state(poses, velocities, *time_s, *allow_overlap)?;
+        }
+        episode.bw_s = flock.parameters().bw_s;
+        flock.set_target(episode.target());
+        Ok((episode, flock))
+    }
+}
+
+/// A flock from a snapshot, if it is one of an environment with these parameters.
+pub(super) fn flock_from(bytes: &[u8], parameters: &FlockParameters) -> Result<Flock> {
+    let flock = Flock::from_snapshot(bytes)?;
+    let same = FlockParameters {
+        target: parameters.target,
+        bw_s: parameters.bw_s,
+        ..flock.parameters().clone()
+    };
+    if same == *parameters {
+        return Ok(flock);
+    }
+    Err(FlockError::Snapshot(
+        "the snapshot is of a flock with other parameters than the environment's, target and bw_s aside"
+            .to_owned(),
+    ))
+}

@@ -1,0 +1,82 @@
+//! Sums over an episode, and the summary told at its end.
+
+use super::{Episode, RewardTerms, TERMS};
+use crate::order_parameters::OrderParameters;
+use crate::parameters::Target;
+
+/// Sums over the control steps of an episode.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct Totals {
+    terms: RewardTerms,
+    reward: f64,
+    window_steps: u32,
+    signed_order: f64,
+    psi_o: f64,
+    clipped: u64,
+    observed: u64,
+}
+
+impl Totals {
+    /// Adds a leader's terms and reward in one step, as its share of the leaders' mean.
+    pub fn add_reward(&mut self, share: f64, terms: &RewardTerms, reward: f64) {
+        self.reward += share * reward;
+        for (sum, term) in self.terms.iter_mut().zip(terms) {
+            *sum += share * term;
+        }
+    }
+
+    /// Adds a step inside the analysis window.
+    pub fn add_window(&mut self, order: &OrderParameters, target: Target) {
+        self.window_steps += 1;
+        self.signed_order += order.signed_order(target);
+        self.psi_o += order.psi_o;
+    }
+
+    /// Counts numbers observed, and those clipped among them.
+    pub fn count_clipped(&mut self, clipped: u32, observed: usize) {
+        self.clipped += u64::from(clipped);
+        self.observed += observed as u64;
+    }
+
+    /// The summary of an episode with these totals.
+    pub fn summary(&self, episode: &Episode) -> EpisodeSummary {
+        let steps = f64::from(episode.step);
+        let mut terms = [0.0; TERMS];
+        for (mean, sum) in terms.iter_mut().zip(&self.terms) {
+            *mean = sum / steps;
+        }
+        let window = f64::from(self.window_steps);
+        EpisodeSummary {
+            flock_seed: episode.flock_seed,
+            bw_s: episode.bw_s,
+            steps: episode.step,
+            total_reward: self.reward,
+            terms,
+            signed_order: self.signed_order / window,
+            psi_o: self.psi_o / window,
+            clip_rate: self.clipped as f64 / self.observed as f64,
+        }
+    }
+}
+
+/// What is told about an episode.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct EpisodeSummary {
+    /// Seed of its flock.
+    pub flock_seed: u64,
+    /// Its noise level: length of the backward phase in s.
+    pub bw_s: f64,
+    /// Control steps taken.
+    pub steps: u32,
+    /// Sum of the rewards, mean over leaders.
+    pub total_reward: f64,
+    /// Each reward term, mean over steps and leaders; NaN before the first step.
+    pub terms: RewardTerms,
+    /// Signed order, mean over the control steps in the analysis window after the first tenth of the
+    /// episode; NaN where there is none.
+    pub signed_order: f64,
+    /// Ψ_o, mean over the same steps.
+    pub psi_o: f64,
+    /// Part of the observed numbers that were clipped at their bounds.
+    pub clip_rate: f64,
+}

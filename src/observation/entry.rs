@@ -1,0 +1,201 @@
+//! Every number that can be observed: names, units, scales and bounds as data. The observer applies
+//! this table, and the documentation prints it.
+
+use crate::geometry::Hull;
+use crate::parameters::FlockParameters;
+
+/// The physical value that an observed 1.0 stands for (and, for the radius, what 0.0 stands for).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// The number itself.
+    Plain,
+    /// −1 where the centre of a boat touching the inner wall (or the pool's centre) is, +1 where that
+    /// of a boat touching the outer wall is. Open water: ±1 are 0 and 40 boat radii off the inner wall.
+    Radial,
+    /// Six boat radii.
+    Length,
+    /// The faster of the two preferred speeds; 15 cm/s where both are 0.
+    Speed,
+    /// 2 rad/s.
+    AngularVelocity,
+    /// 2 s.
+    TimeLeft,
+    /// 1 s.
+    Second,
+}
+
+impl Scale {
+    /// In words, for documentation.
+    pub fn description(self) -> &'static str {
+        match self {
+            Self::Plain => "1",
+            Self::Radial => "-1 at the inner, +1 at the outer wall",
+            Self::Length => "6 boat radii",
+            Self::Speed => "preferred speed",
+            Self::AngularVelocity => "2 rad/s",
+            Self::TimeLeft => "2 s",
+            Self::Second => "1 s",
+        }
+    }
+
+    /// (gain, offset) with observed = gain·physical + offset.
+    pub(super) fn affine(self, parameters: &FlockParameters) -> (f64, f64) {
+        match self {
+            Self::Plain | Self::Second => (1.0, 0.0),
+            Self::Radial => radial(parameters),
+            Self::Length => (1.0 / (6.0 * parameters.boat_radius_cm), 0.0),
+            Self::Speed => (1.0 / speed_scale_cm_s(parameters), 0.0),
+            Self::AngularVelocity => (1.0 / ANGULAR_VELOCITY_SCALE, 0.0),
+            Self::TimeLeft => (0.5, 0.0),
+        }
+    }
+}
+
+/// The angular velocity that others are divided by, in rad/s.
+pub const ANGULAR_VELOCITY_SCALE: f64 = 2.0;
+
+/// The speed that velocities are divided by: the faster of the two preferred speeds, 15 cm/s where
+/// both are 0.
+pub fn speed_scale_cm_s(parameters: &FlockParameters) -> f64 {
+    let fastest = parameters.speed_cm_s.max(parameters.reverse_speed_cm_s);
+    if fastest > 0.0 { fastest } else { 15.0 }
+}
+
+fn radial(parameters: &FlockParameters) -> (f64, f64) {
+    let (pool, radius) = (parameters.pool, Hull::new(parameters).radius);
+    let inner = if pool.has_inner_wall() {
+        pool.inner_radius_cm + radius
+    } else {
+        0.0
+    };
+    let outer = if pool.has_outer_wall() {
+        pool.outer_radius_cm - radius
+    } else {
+        inner + 40.0 * radius
+    };
+    let half = (0.5 * (outer - inner)).max(f64::MIN_POSITIVE.sqrt());
+    (1.0 / half, -0.5 * (outer + inner) / half)
+}
+
+/// One number of an observation or of the global state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Entry {
+    /// Its name; entries of a neighbour or boat share names with those of the others.
+    pub name: &'static str,
+    /// Unit of the physical value.
+    pub unit: &'static str,
+    /// What it is, with its sign.
+    pub meaning: &'static str,
+    /// How the physical value becomes the observed one.
+    pub scale: Scale,
+    /// Lower bound of the observed value.
+    pub low: f64,
+    /// Upper bound of the observed value.
+    pub high: f64,
+    /// Whether `mirror_to_target` changes its sign.
+    pub mirrored: bool,
+}
+
+impl Entry {
+    const fn new(
+        name: &'static str,
+        unit: &'static str,
+        scale: Scale,
+        bounds: (f64, f64),
+        meaning: &'static str,
+    ) -> Self {
+        let (low, high) = bounds;
+        Self {
+            name,
+            unit,
+            meaning,
+            scale,
+            low,
+            high,
+            mirrored: false,
+        }
+    }
+
+    const fn odd(self) -> Self {
+        Self {
+            mirrored: true,
+            ..self
+        }
+    }
+}
+
+const UNIT: (f64, f64) = (-1.0, 1.0);
+const FLAG: (f64, f64) = (0.0, 1.0);
+const TWICE: (f64, f64) = (-2.0, 2.0);
+
+/// The leader itself.
+#[rustfmt::skip]
+pub const OWN: [Entry; 8] = [
+    Entry::new("radial_position", "cm", Scale::Radial, (-1.1, 1.1), "distance from the pool's centre"),
+    Entry::new("cos_orientation", "", Scale::Plain, UNIT, "cosine of the LAP orientation: 1 heads at the outer wall"),
+    Entry::new("sin_orientation", "", Scale::Plain, UNIT, "sine of the LAP orientation: 1 heads clockwise").odd(),
+    Entry::new("outward_velocity", "cm/s", Scale::Speed, TWICE, "velocity away from the pool's centre"),
+    Entry::new("clockwise_velocity", "cm/s", Scale::Speed, TWICE, "tangential velocity, positive clockwise").odd(),
+    Entry::new("forward_velocity", "cm/s", Scale::Speed, TWICE, "velocity along the heading; a rudder works in reverse where it is negative"),
+    Entry::new("clockwise_spin", "rad/s", Scale::AngularVelocity, TWICE, "angular velocity, positive clockwise").odd(),
+    Entry::new("rudder", "", Scale::Plain, UNIT, "the rudder as it stands, positive turns counter-clockwise when moving forward").odd(),
+];
+
+/// Where in the cycle the flock is.
+#[rustfmt::skip]
+pub const PHASE: [Entry; 6] = [
+    Entry::new("fw", "", Scale::Plain, FLAG, "1 in the forward phase"),
+    Entry::new("nop1", "", Scale::Plain, FLAG, "1 in the drift after it"),
+    Entry::new("bw", "", Scale::Plain, FLAG, "1 in the backward phase"),
+    Entry::new("nop2", "", Scale::Plain, FLAG, "1 in the drift after that"),
+    Entry::new("time_left", "s", Scale::TimeLeft, (0.0, 2.0), "time until the phase ends"),
+    Entry::new("bw_duration", "s", Scale::Second, (0.0, 4.0), "length of the backward phase: the noise level"),
+];
+
+/// The direction to lead in.
+#[rustfmt::skip]
+pub const TARGET: [Entry; 1] = [
+    Entry::new("target", "", Scale::Plain, UNIT, "+1 clockwise, -1 counter-clockwise").odd(),
+];
+
+/// One neighbour; all zero where there are fewer boats than places.
+#[rustfmt::skip]
+pub const NEIGHBOR: [Entry; 8] = [
+    Entry::new("present", "", Scale::Plain, FLAG, "1 where there is such a neighbour"),
+    Entry::new("outward_distance", "cm", Scale::Length, (-4.0, 4.0), "its centre, seen from the leader along the leader's outward axis"),
+    Entry::new("clockwise_distance", "cm", Scale::Length, (-4.0, 4.0), "the same along the leader's clockwise axis").odd(),
+    Entry::new("cos_relative_heading", "", Scale::Plain, UNIT, "cosine of the angle between the headings"),
+    Entry::new("sin_relative_heading", "", Scale::Plain, UNIT, "its sine: positive where the neighbour heads clockwise of the leader").odd(),
+    Entry::new("outward_velocity", "cm/s", Scale::Speed, TWICE, "its velocity along the leader's outward axis"),
+    Entry::new("clockwise_velocity", "cm/s", Scale::Speed, TWICE, "its velocity along the leader's clockwise axis").odd(),
+    Entry::new("is_leader", "", Scale::Plain, FLAG, "1 for a leader"),
+];
+
+/// Order parameters of the normal boats, as vectors in LAP axes.
+#[rustfmt::skip]
+pub const ORDER: [Entry; 4] = [
+    Entry::new("mean_cos_orientation", "", Scale::Plain, UNIT, "mean orientation, outward part: psi_o*cos(phi_o)"),
+    Entry::new("mean_sin_orientation", "", Scale::Plain, UNIT, "mean orientation, clockwise part: psi_o*sin(phi_o)").odd(),
+    Entry::new("mean_outward_velocity", "cm/s", Scale::Speed, TWICE, "mean velocity, outward part: psi_v*cos(phi_v)"),
+    Entry::new("mean_clockwise_velocity", "cm/s", Scale::Speed, TWICE, "mean velocity, clockwise part: psi_v*sin(phi_v)").odd(),
+];
+
+/// One boat of the global state.
+#[rustfmt::skip]
+pub const BOAT: [Entry; 10] = [
+    Entry::new("radial_position", "cm", Scale::Radial, (-1.1, 1.1), "distance from the pool's centre"),
+    Entry::new("cos_polar_angle", "", Scale::Plain, UNIT, "cosine of its polar angle, counter-clockwise from x"),
+    Entry::new("sin_polar_angle", "", Scale::Plain, UNIT, "its sine").odd(),
+    Entry::new("cos_orientation", "", Scale::Plain, UNIT, "cosine of the LAP orientation"),
+    Entry::new("sin_orientation", "", Scale::Plain, UNIT, "its sine: 1 heads clockwise").odd(),
+    Entry::new("outward_velocity", "cm/s", Scale::Speed, TWICE, "velocity away from the pool's centre"),
+    Entry::new("clockwise_velocity", "cm/s", Scale::Speed, TWICE, "tangential velocity, positive clockwise").odd(),
+    Entry::new("clockwise_spin", "rad/s", Scale::AngularVelocity, TWICE, "angular velocity, positive clockwise").odd(),
+    Entry::new("rudder", "", Scale::Plain, UNIT, "a leader's rudder as it stands; 0 for a normal boat").odd(),
+    Entry::new("is_leader", "", Scale::Plain, FLAG, "1 for a leader"),
+];
+
+/// The rest of the global state besides the boats, the phase and the target.
+#[rustfmt::skip]
+pub const CLOCK: [Entry; 1] =
+    [Entry::new("episode_elapsed", "", Scale::Plain, FLAG, "part of the episode that is over")];

@@ -1,0 +1,63 @@
+//! The water that boats move in.
+
+use crate::error::{FlockError, Result};
+
+/// The water: an annulus, a disc (inner radius 0) or open water (outer radius infinite).
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Pool {
+    /// Radius of the outer wall in cm; infinite: no outer wall.
+    pub outer_radius_cm: f64,
+    /// Radius of the obstacle in the middle in cm; 0: none.
+    pub inner_radius_cm: f64,
+}
+
+impl Pool {
+    /// Table 1 as printed: diameters 180 and 97 cm.
+    pub const TABLE_1: Self = Self {
+        outer_radius_cm: 90.0,
+        inner_radius_cm: 48.5,
+    };
+    /// Section 2.2's "500 boats" of free space: radii 180 and 97 cm.
+    pub const FIVE_HUNDRED_BOATS: Self = Self {
+        outer_radius_cm: 180.0,
+        inner_radius_cm: 97.0,
+    };
+    /// Names of the pools, as users write them.
+    pub const NAMED: [(&'static str, Self); 2] = [
+        ("500-boats", Self::FIVE_HUNDRED_BOATS),
+        ("table-1", Self::TABLE_1),
+    ];
+
+    /// The pool of that name.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] lists the names there are.
+    pub fn named(name: &str) -> Result<Self> {
+        let found = Self::NAMED.iter().find(|(known, _)| *known == name);
+        found.map(|&(_, pool)| pool).ok_or_else(|| {
+            FlockError::parameter(
+                "pool",
+                format!("{name:?}"),
+                "\"500-boats\", \"table-1\" or (outer_radius_cm, inner_radius_cm)",
+            )
+        })
+    }
+
+    /// The name of this pool, if it has one.
+    pub fn name(&self) -> Option<&'static str> {
+        Self::NAMED
+            .iter()
+            .find(|(_, pool)| pool == self)
+            .map(|&(name, _)| name)
+    }
+
+    /// Whether there is an outer wall.
+    pub fn has_outer_wall(&self) -> bool {
+        self.outer_radius_cm.is_finite()
+    }
+
+    /// Whether there is an obstacle in the middle.
+    pub fn has_inner_wall(&self) -> bool {
+        self.inner_radius_cm > 0.0
+    }
+}

@@ -1,0 +1,317 @@
+//! `flockenv.Flock`.
+
+use super::arguments::{Seconds, Seed, TimeS, floats, text};
+use super::parameters::to_python;
+use super::results;
+use crate::boat::{Pose, Velocity};
+use crate::dynamics::Steering;
+use crate::flock::Flock;
+use crate::parameters::FlockParameters;
+use crate::phase_schedule::{Ticks, seconds};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyType};
+
+/// A flock of boats in a pool.
+///
+/// Boats are placed at random without overlap, at rest; leaders are boats 0 to k - 1. The same
+/// parameters and seed give the same bits on one machine, through snapshots, pickles and copies too.
+/// The interpreter lock is released while the flock moves.
+///
+/// Parameters
+/// ----------
+/// parameters : FlockParameters
+///     The scene.
+/// seed : int
+///     Seed of all random streams, 0 to 2^64 - 1.
+///
+/// Raises
+/// ------
+/// ParameterError
+///     If the boats do not fit the pool, and for a seed out of range.
+#[pyclass(name = "Flock", module = "flockenv")]
+pub struct PyFlock(pub Flock);
+
+#[pymethods]
+impl PyFlock {
+    #[new]
+    fn new(py: Python<'_>, parameters: FlockParameters, seed: Seed) -> PyResult<Self> {
+        Ok(Self(py.detach(|| Flock::new(parameters, seed.0))?))
+    }
+
+    /// The flock of a snapshot.
+    ///
+    /// Raises
+    /// ------
+    /// ParameterError
+    ///     For bytes that are no whole, unharmed snapshot.
+    #[classmethod]
+    fn from_snapshot(_class: &Bound<'_, PyType>, snapshot: &Bound<'_, PyBytes>) -> PyResult<Self> {
+        Ok(Self(Flock::from_snapshot(snapshot.as_bytes())?))
+    }
+
+    /// Start over with another seed, as a new flock with these parameters.
+    ///
+    /// Raises
+    /// ------
+    /// ParameterError
+    ///     If the boats do not fit the pool; the flock is unchanged then.
+    fn reset(&mut self, py: Python<'_>, seed: Seed) -> PyResult<()> {
+        Ok(py.detach(|| self.0.reset(seed.0))?)
+    }
+
+    /// The parameters, with the target that holds now.
+    #[getter]
+    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        to_python(py, self.0.parameters())
+    }
+
+    /// Seed of all random streams.
+    #[getter]
+    fn seed(&self) -> u64 {
+        self.0.seed()
+    }
+
+    /// Poses, a copy: (n, 3) [x cm, y cm, heading rad counter-clockwise from x, not wrapped].
+    #[getter]
+    fn pose<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let rows = self.0.poses().iter();
+        rows_of_three(py, rows.map(|p| [p.position.x, p.position.y, p.heading]))
+    }
+
+    /// Velocities, a copy: (n, 3) [cm/s, cm/s, rad/s]. With the leapfrog scheme these are means over
+    /// the last substep.
+    #[getter]
+    fn velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let rows = self.0.velocities().iter();
+        rows_of_three(py, rows.map(|v| [v.linear.x, v.linear.y, v.angular]))
+    }
+
+    /// Time in s.
+    #[getter]
+    fn time_s(&self) -> f64 {
+        self.0.time_s()
+    }
+
+    /// Whether the flock is in the second half of fw or the first half of nop1 now.
+    #[getter]
+    fn in_analysis_window(&self) -> bool {
+        self.0.schedule().in_analysis_window(self.0.time())
+    }
+
+    /// Phase that holds from now on: "fw", "nop1", "bw" or "nop2".
+    #[getter]
+    fn phase(&self) -> &'static str {
+        self.0.phase().phase.name()
+    }
+
+    /// What the substeps since the flock was made did: a `Statistics`.
+    #[getter]
+    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        results::statistics(py, self.0.statistics())
+    }
+
+    /// Put the boats somewhere else.
+    ///
+    /// Parameters
+    /// ----------
+    /// pose : array_like, shape (n, 3)
+    ///     [x cm, y cm, heading rad].
+    /// velocity : array_like, shape (n, 3)
+    ///     [cm/s, cm/s, rad/s].
+    /// time_s : float
+    ///     Time in s, 0 to 1e9.
+    /// allow_overlap : bool
+    ///     Accept hulls that overlap each other or a wall; they are moved apart in the next substeps.
+    ///
+    /// Raises
+    /// ------
+    /// ParameterError
+    ///     For wrong shapes, numbers that are not finite, and overlaps; the flock is unchanged then.
+    /// TypeError
+    ///     For arrays that are not of real numbers.
+    #[pyo3(
+        signature = (pose, velocity, time_s=TimeS(0.0), *, allow_overlap=false),
+        text_signature = "($self, pose, velocity, time_s=0.0, *, allow_overlap=False)"
+    )]
+    fn set_state(
+        &mut self,
+        pose: &Bound<'_, PyAny>,
+        velocity: &Bound<'_, PyAny>,
+        time_s: TimeS,
+        allow_overlap: bool,
+    ) -> PyResult<()> {
+        let shape = [self.0.parameters().n_boats, 3];
+        let pose = floats(pose, "pose", &shape)?;
+        let velocity = floats(velocity, "velocity", &shape)?;
+        let poses: Vec<_> = rows(&pose).map(|[x, y, a]| Pose::new(x, y, a)).collect();
+        let velocities: Vec<_> = rows(&velocity)
+            .map(|[x, y, w]| Velocity::new(x, y, w))
+            .collect();
+        Ok(self
+            .0
+            .set_state(&poses, &velocities, time_s.0, allow_overlap)?)
+    }
+
+    /// Change the direction that the steering law heads for, "cw" or "ccw".
+    ///
+    /// Raises
+    /// ------
+    /// ParameterError
+    ///     For another name.
+    fn set_target(&mut self, target: &Bound<'_, PyAny>) -> PyResult<()> {
+        self.0.set_target(text(target, "target")?.parse()?);
+        Ok(())
+    }
+
+    /// Advance by a duration. Substeps end on multiples of dt_s, on phase switches and at the end.
+    ///
+    /// Parameters
+    /// ----------
+    /// seconds : float
+    ///     Duration in s, at least 0.
+    /// rudder : array_like, shape (k,), optional
+    ///     Commands of the leaders in [-1, 1], held; positive turns a boat that moves forward
+    ///     counter-clockwise. None: the steering law, eq. (10), at every substep.
+    ///
+    /// Raises
+    /// ------
+    /// ParameterError
+    ///     For a duration or rudder out of range or of a wrong shape; the flock is unchanged then.
+    /// SolverError
+    ///     If the motion left its range of 1e9 (cm, cm/s, rad, rad/s); poses, velocities and time are those before the call.
+    #[pyo3(signature = (seconds, rudder=None))]
+    fn advance(
+        &mut self,
+        py: Python<'_>,
+        seconds: Seconds,
+        rudder: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let flock = &mut self.0;
+        let leaders = [flock.parameters().n_leaders];
+        let rudder = rudder.map(|rudder| floats(rudder, "rudder", &leaders));
+        let rudder = rudder.transpose()?;
+        flock.check_rudder(rudder.as_deref())?;
+        let end = flock.end_of(seconds.0)?;
+        let steering = rudder.as_deref().map_or(Steering::Law, Steering::Held);
+        advance_interruptibly(py, flock, end, steering)
+    }
+
+    /// Rudder commands of the steering law, eq. (10), for where the leaders are now: (k,).
+    fn steering_law<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let leaders = 0..self.0.parameters().n_leaders;
+        PyArray1::from_iter(py, leaders.map(|leader| self.0.steering_law(leader)))
+    }
+
+    /// Order parameters of the normal boats, or of all boats, now: an `OrderParameters`.
+    ///
+    /// Raises
+    /// ------
+    /// ParameterError
+    ///     If there is no such boat.
+    #[pyo3(signature = (include_leaders=false))]
+    fn order_parameters<'py>(
+        &self,
+        py: Python<'py>,
+        include_leaders: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        results::order_parameters(py, &self.0.order_parameters(include_leaders)?)
+    }
+
+    /// Contacts and near-contacts of the last substep: a `Contacts`. None after a state was set or
+    /// restored, until the next substep.
+    fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        results::contacts(py, &self.0.contacts())
+    }
+
+    /// The whole state as bytes; continuing from them is bit-identical on the same machine.
+    fn snapshot<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &self.0.snapshot())
+    }
+
+    /// Continue from a snapshot of a flock with the same parameters, the target aside.
+    ///
+    /// Raises
+    /// ------
+    /// ParameterError
+    ///     For bytes that are no whole, unharmed snapshot, or one of a flock with other parameters;
+    ///     the flock is unchanged then.
+    fn restore(&mut self, snapshot: &Bound<'_, PyBytes>) -> PyResult<()> {
+        Ok(self.0.restore(snapshot.as_bytes())?)
+    }
+
+    fn __copy__(&self) -> Self {
+        Self(self.0.clone())
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
+        Self(self.0.clone())
+    }
+
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        let snapshot = slf.try_borrow()?.snapshot(slf.py());
+        Ok((slf.get_type().getattr("from_snapshot")?, (snapshot,)))
+    }
+
+    fn __repr__(&self) -> String {
+        let p = self.0.parameters();
+        format!(
+            "<flockenv.Flock of {} boats, {} of them leaders, seed {}, time {} s>",
+            p.n_boats,
+            p.n_leaders,
+            self.0.seed(),
+            self.0.time_s()
+        )
+    }
+}
+
+/// Work between two looks at Python's signals: about 30 ms.
+pub const BOAT_SUBSTEPS_A_PIECE: u64 = 200_000;
+
+/// Advances without the interpreter lock, letting Ctrl-C in between pieces that end on the substep
+/// grid; whatever stops it leaves the flock as it was before.
+fn advance_interruptibly(
+    py: Python<'_>,
+    flock: &mut Flock,
+    end: Ticks,
+    steering: Steering,
+) -> PyResult<()> {
+    let p = flock.parameters();
+    let boat_substeps = seconds(end - flock.time()) / p.dt_s * p.n_boats as f64;
+    if boat_substeps <= BOAT_SUBSTEPS_A_PIECE as f64 {
+        return Ok(py.detach(|| flock.advance_to(end, steering))?);
+    }
+    let before = flock.clone();
+    let outcome = advance_in_pieces(py, flock, end, steering);
+    if outcome.is_err() {
+        *flock = before;
+    }
+    outcome
+}
+
+fn advance_in_pieces(
+    py: Python<'_>,
+    flock: &mut Flock,
+    end: Ticks,
+    steering: Steering,
+) -> PyResult<()> {
+    while !py.detach(|| flock.advance_towards(end, steering, BOAT_SUBSTEPS_A_PIECE))? {
+        py.check_signals()?;
+    }
+    Ok(())
+}
+
+fn rows(numbers: &[f64]) -> impl Iterator<Item = [f64; 3]> {
+    numbers.chunks_exact(3).map(|row| [row[0], row[1], row[2]])
+}
+
+fn rows_of_three(
+    py: Python<'_>,
+    rows: impl Iterator<Item = [f64; 3]>,
+) -> PyResult<Bound<'_, PyArray2<f64>>> {
+    let numbers: Vec<f64> = rows.flatten().collect();
+    let count = numbers.len() / 3;
+    PyArray1::from_vec(py, numbers).reshape([count, 3])
+}

@@ -1,0 +1,175 @@
+//! Observations outside environments: the table, a flock observed, laws evaluated.
+
+use super::arguments::{floats, real, text};
+use super::env_settings::layout_from;
+use super::flock::PyFlock;
+use crate::error::FlockError;
+use crate::observation::{BOAT, Entry, FlockView, OBSERVATION_VERSION, Observer, state_entries};
+use crate::observed_law::{Law, ObservedLaw};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Version of the observation.
+#[pyfunction]
+pub fn observation_version() -> u32 {
+    OBSERVATION_VERSION
+}
+
+/// (block, count in block, name, unit, scale, low, high, mirrored, meaning).
+type Row = (
+    &'static str,
+    usize,
+    &'static str,
+    &'static str,
+    &'static str,
+    f64,
+    f64,
+    bool,
+    &'static str,
+);
+
+fn row(block: &'static str, count: usize, entry: Entry) -> Row {
+    (
+        block,
+        count,
+        entry.name,
+        entry.unit,
+        entry.scale.description(),
+        entry.low,
+        entry.high,
+        entry.mirrored,
+        entry.meaning,
+    )
+}
+
+/// Every entry of an observation with these blocks, in order.
+#[pyfunction]
+pub fn observation_table(blocks: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
+    let entries = layout_from(blocks, false)?.entries();
+    Ok(entries
+        .into_iter()
+        .map(|(block, count, entry)| row(block.name(), count, entry))
+        .collect())
+}
+
+/// Every entry of the global state of so many boats, in order.
+#[pyfunction]
+pub fn state_table(n_boats: usize) -> Vec<Row> {
+    let entries = state_entries(n_boats).into_iter().enumerate();
+    let boats = n_boats * BOAT.len();
+    entries
+        .map(|(place, entry)| {
+            if place < boats {
+                row("boat", place / BOAT.len(), entry)
+            } else {
+                row("clock", 0, entry)
+            }
+        })
+        .collect()
+}
+
+/// What the leaders of a flock observe now: (k, size) float32. `rudder`: as the rudders stand.
+#[pyfunction]
+#[pyo3(signature = (flock, blocks, mirror_to_target=false, rudder=None))]
+pub fn observe<'py>(
+    py: Python<'py>,
+    flock: &PyFlock,
+    blocks: &Bound<'py, PyAny>,
+    mirror_to_target: bool,
+    rudder: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyArray2<f32>>> {
+    let layout = layout_from(blocks, mirror_to_target)?;
+    let flock = &flock.0;
+    let parameters = flock.parameters();
+    let leaders = parameters.n_leaders;
+    let rudder = rudder.map(|rudder| floats(rudder, "rudder", &[leaders]));
+    let rudder = rudder.transpose()?;
+    flock.check_rudder(rudder.as_deref())?;
+    let order = flock.order_parameters(false);
+    let order = if layout.order {
+        Some(order?)
+    } else {
+        order.ok()
+    };
+    let view = FlockView {
+        poses: flock.poses(),
+        hulls: flock.hulls(),
+        velocities: flock.velocities(),
+        leaders,
+        phase: flock.phase(),
+        bw_s: parameters.bw_s,
+        target: parameters.target,
+        rudders: rudder.as_deref().unwrap_or_default(),
+        order: order.as_ref(),
+    };
+    let array = PyArray2::zeros(py, [leaders, layout.size()], false);
+    Observer::new(layout, parameters).observe(&view, array.readwrite().as_slice_mut()?);
+    Ok(array)
+}
+
+/// A law as it reads observations of one layout.
+#[pyclass(name = "ObservedLaw", module = "flockenv._core", frozen)]
+pub struct PyObservedLaw(ObservedLaw);
+
+#[pymethods]
+impl PyObservedLaw {
+    /// A law by name, with its gains.
+    #[new]
+    #[pyo3(signature = (name, gains, blocks, mirror_to_target=false))]
+    fn new(
+        name: &Bound<'_, PyAny>,
+        gains: &Bound<'_, PyDict>,
+        blocks: &Bound<'_, PyAny>,
+        mirror_to_target: bool,
+    ) -> PyResult<Self> {
+        let gain = |name: &'static str| -> PyResult<f64> {
+            let value = gains.get_item(name)?;
+            value.map_or(Ok(f64::NAN), |value| real(&value, name))
+        };
+        let law = match text(name, "law")?.as_str() {
+            "steering" => Law::Steering,
+            "sign_corrected" => Law::SignCorrected {
+                gain: gain("gain")?,
+            },
+            "damped" => Law::Damped {
+                gain: gain("gain")?,
+                backward_gain: gain("backward_gain")?,
+                damping: gain("damping")?,
+            },
+            other => {
+                let accepted = "\"steering\", \"sign_corrected\" or \"damped\"";
+                return Err(FlockError::parameter("law", format!("{other:?}"), accepted).into());
+            }
+        };
+        let layout = layout_from(blocks, mirror_to_target)?;
+        Ok(Self(ObservedLaw::new(law, &layout)?))
+    }
+
+    /// How many numbers an observation has.
+    #[getter]
+    fn observation_size(&self) -> usize {
+        self.0.observation_size()
+    }
+
+    /// Rudders for observations (rows, size), or for a flat row of whole observations.
+    fn rudders<'py>(
+        &self,
+        py: Python<'py>,
+        observations: PyReadonlyArray2<'py, f32>,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let size = self.0.observation_size();
+        let width = observations.as_array().ncols();
+        if width == 0 || !width.is_multiple_of(size) {
+            return Err(FlockError::Shape {
+                field: "observation",
+                found: format!("(..., {width})"),
+                expected: format!("(..., {size}), the size of the law's own layout"),
+            }
+            .into());
+        }
+        let rows = observations.as_slice()?.chunks_exact(size);
+        let rudders = rows.map(|observation| self.0.rudder(observation) as f32);
+        Ok(PyArray1::from_iter(py, rudders))
+    }
+}

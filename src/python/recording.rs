@@ -1,0 +1,73 @@
+//! The loop of `flockenv.simulate`.
+
+use super::arguments::{DurationS, SampleHz, Seed};
+use super::flock::BOAT_SUBSTEPS_A_PIECE;
+use super::results;
+use crate::flock::Flock;
+use crate::parameters::FlockParameters;
+use crate::phase_schedule::Phase;
+use crate::recording::{Real, Recorder, Recording, Sampling};
+use numpy::{Element, PyArray1, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// The phases in the order of a cycle; samples hold their place in it.
+#[pyfunction]
+pub fn phase_names() -> Vec<&'static str> {
+    Phase::ALL.iter().map(|phase| phase.name()).collect()
+}
+
+/// Records a run under the steering law: the fields of a `flockenv.Recording` that a run fills.
+#[pyfunction]
+#[pyo3(signature = (parameters, seed, duration_s, sample_hz, single_precision))]
+pub fn record<'py>(
+    py: Python<'py>,
+    parameters: FlockParameters,
+    seed: Seed,
+    duration_s: DurationS,
+    sample_hz: SampleHz,
+    single_precision: bool,
+) -> PyResult<Bound<'py, PyDict>> {
+    let sampling = Sampling::new(duration_s.0, sample_hz.0)?;
+    if single_precision {
+        run::<f32>(py, parameters, seed.0, sampling)
+    } else {
+        run::<f64>(py, parameters, seed.0, sampling)
+    }
+}
+
+fn run<T: Real + Element>(
+    py: Python<'_>,
+    parameters: FlockParameters,
+    seed: u64,
+    sampling: Sampling,
+) -> PyResult<Bound<'_, PyDict>> {
+    parameters.check()?;
+    // Refuses what does not fit before boats are placed.
+    Recording::<T>::with_room_for(&sampling, &parameters)?;
+    let boats = parameters.n_boats;
+    let mut recorder = py.detach(|| Recorder::<T>::new(Flock::new(parameters, seed)?, sampling))?;
+    while !py.detach(|| recorder.run(BOAT_SUBSTEPS_A_PIECE))? {
+        py.check_signals()?;
+    }
+    fields(py, recorder.into_recording(), boats)
+}
+
+fn fields<T: Element>(
+    py: Python<'_>,
+    recording: Recording<T>,
+    boats: usize,
+) -> PyResult<Bound<'_, PyDict>> {
+    let samples = recording.time_s.len();
+    let phases = recording.phase.iter().map(|phase| phase.index() as u8);
+    let rows = |numbers| PyArray1::from_vec(py, numbers).reshape([samples, boats, 3]);
+    let fields = PyDict::new(py);
+    fields.set_item("phase", PyArray1::from_iter(py, phases))?;
+    fields.set_item("order", results::order_series(py, &recording.order)?)?;
+    fields.set_item("time_s", PyArray1::from_vec(py, recording.time_s))?;
+    let window = PyArray1::from_vec(py, recording.in_analysis_window);
+    fields.set_item("in_analysis_window", window)?;
+    fields.set_item("pose", rows(recording.pose)?)?;
+    fields.set_item("velocity", rows(recording.velocity)?)?;
+    Ok(fields)
+}

@@ -1,0 +1,70 @@
+"""Law: contacts list who touches whom, with the forces that hold the hulls apart."""
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv import Flock
+
+
+def at(parameters, *poses, **changes):
+    p = parameters.replace(n_boats=len(poses), n_leaders=0, c4=0.0, **changes)
+    flock = Flock(p.replace(pool=(1000.0, 0)), seed=1)
+    flock.set_state(poses, np.zeros((len(poses), 3)))
+    return flock
+
+
+def test_none_before_the_first_substep(flock):
+    contacts = flock.contacts()
+    assert isinstance(contacts, flockenv.Contacts)
+    assert len(contacts) == 0
+    assert contacts.normal.shape == (0, 2)
+
+
+def test_shapes_and_dtypes(flock):
+    flock.advance(10.0)
+    contacts = flock.contacts()
+    c = len(contacts)
+    assert c > 0
+    assert contacts.i.shape == contacts.j.shape == contacts.gap_cm.shape == (c,)
+    assert contacts.normal.shape == (c, 2)
+    assert contacts.i.dtype == contacts.j.dtype == np.int64
+    assert np.allclose(np.hypot(*contacts.normal.T), 1.0)
+    assert (contacts.force >= 0).all()
+    assert (contacts.i < 12).all()
+    assert (contacts.j >= -2).all()
+
+
+def test_bow_to_bow_forces_are_the_motors(parameters):
+    flock = at(parameters, [-7.5, 0.0, 0.0], [7.5, 0.0, np.pi])
+    flock.advance(1.0)
+    contacts = flock.contacts()
+    pushing = contacts.force > 0
+    assert (contacts.i[pushing], contacts.j[pushing]) == ([0], [1])
+    assert contacts.normal[pushing] == pytest.approx(np.array([[-1.0, 0.0]]))
+    assert contacts.force[pushing] == pytest.approx([15.0], rel=1e-9)
+    assert contacts.gap_cm[pushing] == pytest.approx([0.0], abs=1e-9)
+
+
+def test_the_outer_wall_is_minus_one(parameters):
+    flock = at(parameters, [992.5, 0.0, 0.0])
+    flock.advance(1.0)
+    contacts = flock.contacts()
+    pushing = contacts.force > 0
+    assert contacts.j[pushing].tolist() == [-1]
+    assert contacts.force[pushing] == pytest.approx([15.0], rel=1e-9)
+
+
+def test_the_inner_wall_is_minus_two(parameters):
+    p = parameters.replace(n_boats=1, n_leaders=0, c4=0.0)
+    flock = Flock(p, seed=1)
+    flock.set_state([[56.0, 0.0, np.pi]], [[0.0, 0.0, 0.0]])
+    flock.advance(1.0)
+    contacts = flock.contacts()
+    assert contacts.j[contacts.force > 0].tolist() == [-2]
+
+
+def test_none_after_a_state_was_set(flock):
+    flock.advance(10.0)
+    flock.set_state(flock.pose, flock.velocity, allow_overlap=True)
+    assert len(flock.contacts()) == 0

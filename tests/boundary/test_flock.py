@@ -1,0 +1,317 @@
+"""Law: a flock moves only as asked; whatever it refuses leaves it as it was, and usable."""
+
+import contextlib
+import copy
+import math
+import os
+import pickle
+import signal
+import threading
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+import flockenv
+from flockenv import Flock, ParameterError, SolverError
+
+BAD_SECONDS = [-1.0, -1e-12, math.nan, math.inf, 1e10, pytest.param(10**400, id="huge")]
+BAD_RUDDERS = [
+    [0.0],
+    [0.0, 0.0, 0.0],
+    [[0.0, 0.0]],
+    0.5,
+    [1.1, 0.0],
+    [0.0, -1.000001],
+    [math.nan, 0.0],
+    [math.inf, 0.0],
+    [[0.0], [0.0, 1.0]],
+    np.broadcast_to(0.0, (10**15,)),
+]
+BAD_DTYPES = [
+    ["a", "b"],
+    [None, None],
+    np.array([0.0, 0.0], dtype=object),
+    np.array([0j, 0j]),
+    np.array([True, False]),
+    np.array(["2020-01-01", "2020-01-02"], dtype="datetime64[D]"),
+    {0.0, 1.0},
+]
+
+
+@pytest.fixture
+def unchanged(flock):
+    """A flock that must be the same, bit for bit, after the test's refused calls."""
+    flock.advance(3.0)
+    before = flock.snapshot()
+    yield flock
+    assert flock.snapshot() == before
+    flock.advance(0.1, rudder=[0.5, -0.5])
+
+
+def test_starts_at_rest_without_overlap(flock):
+    assert flock.time_s == 0.0
+    assert flock.phase == "fw"
+    assert not flock.velocity.any()
+    radii = np.hypot(*flock.pose[:, :2].T)
+    assert radii.min() > 48.5 + 5
+    assert radii.max() < 90 - 5
+    flock.set_state(flock.pose, flock.velocity)  # which refuses overlaps
+
+
+def test_shapes_and_dtypes(flock):
+    assert flock.pose.shape == flock.velocity.shape == (12, 3)
+    assert flock.pose.dtype == flock.velocity.dtype == np.float64
+    assert flock.steering_law().shape == (2,)
+    assert np.abs(flock.steering_law()).max() <= 1.0
+    assert flock.seed == 7
+
+
+def test_a_lone_boat_speeds_up_as_its_closed_form(parameters):
+    p = parameters.replace(n_boats=1, n_leaders=0, pool=(math.inf, 0), c4=0.0)
+    flock = Flock(p, seed=0)
+    flock.set_state([[0.0, 0.0, 0.0]], [[0.0, 0.0, 0.0]])
+    flock.advance(1.0)
+    # Eq. (8) from rest: x = v0 (t - (1 - exp(-c0 t))/c0).
+    assert flock.pose[0] == pytest.approx([15.0 * math.exp(-1.0), 0.0, 0.0], rel=1e-4)
+
+
+def test_phases_follow_the_schedule(flock):
+    seen = []
+    for _ in range(5):
+        seen.append((flock.time_s, flock.phase))
+        flock.advance(1.0)
+    assert seen == [(0, "fw"), (1, "fw"), (2, "nop1"), (3, "bw"), (4, "nop2")]
+
+
+def test_arrays_are_copies(flock):
+    pose, before = flock.pose, flock.snapshot()
+    pose[:] = 0.0
+    flock.velocity[:] = 1.0
+    assert flock.snapshot() == before
+
+
+def test_advance_by_parts_is_advance_by_the_whole(flock):
+    other = copy.copy(flock)
+    flock.advance(5.0)
+    for _ in range(50):
+        other.advance(0.1)
+    assert np.array_equal(flock.pose, other.pose)
+    other.advance(0)
+    assert other.time_s == 5.0
+
+
+def test_a_long_advance_works_in_pieces_that_change_nothing(flock):
+    other = copy.copy(flock)
+    flock.advance(1000.0)  # 600 000 boat-substeps: more than one piece
+    for _ in range(10):
+        other.advance(100.0)
+    assert np.array_equal(flock.pose, other.pose)
+    assert flock.statistics.substeps == other.statistics.substeps
+
+
+def test_rudder_of_the_law_is_no_rudder_for_one_substep(flock):
+    other = copy.copy(flock)
+    for _ in range(100):
+        flock.advance(0.02)
+        other.advance(0.02, rudder=other.steering_law())
+    assert np.allclose(flock.pose, other.pose, atol=1e-2)
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        list,
+        tuple,
+        lambda a: a.astype(np.float32),
+        lambda a: np.repeat(a, 2)[::2],
+        lambda a: a[::-1][::-1],
+        lambda a: a.astype(">f8"),
+        lambda a: a.astype(int),
+    ],
+)
+def test_rudders_of_any_layout_do_the_same(flock, form):
+    other = copy.copy(flock)
+    rudder = np.array([1.0, -1.0])
+    flock.advance(1.0, rudder=rudder)
+    other.advance(1.0, rudder=form(rudder))
+    assert np.array_equal(flock.pose, other.pose)
+
+
+def test_states_of_any_layout_do_the_same(flock):
+    flock.advance(2.0)
+    pose, velocity = flock.pose, flock.velocity
+    for form in (np.asfortranarray, lambda a: a.tolist(), lambda a: np.dstack([a, a])[..., 0]):
+        other = Flock(flock.parameters, seed=7)
+        other.set_state(form(pose), form(velocity), time_s=2.0, allow_overlap=True)
+        assert np.array_equal(other.pose, pose)
+        assert np.array_equal(other.velocity, velocity)
+        assert other.time_s == 2.0
+
+
+@pytest.mark.parametrize("seconds", BAD_SECONDS)
+def test_bad_durations_are_refused(unchanged, seconds):
+    with pytest.raises(ParameterError, match="seconds"):
+        unchanged.advance(seconds)
+
+
+@pytest.mark.parametrize("rudder", BAD_RUDDERS)
+def test_bad_rudders_are_refused(unchanged, rudder):
+    with pytest.raises(ParameterError, match="rudder"):
+        unchanged.advance(0.1, rudder=rudder)
+
+
+@pytest.mark.parametrize("array", BAD_DTYPES)
+def test_arrays_of_no_numbers_are_type_errors(unchanged, array):
+    with pytest.raises(TypeError, match="rudder"):
+        unchanged.advance(0.1, rudder=array)
+    with pytest.raises(TypeError, match="pose"):
+        unchanged.set_state(array, np.zeros((12, 3)))
+
+
+@pytest.mark.parametrize("value", [None, "1", [1.0], True, 1j])
+def test_arguments_of_a_wrong_type_are_type_errors(unchanged, value):
+    with pytest.raises(TypeError, match="seconds"):
+        unchanged.advance(value)
+    with pytest.raises(TypeError, match="time_s"):
+        unchanged.set_state(unchanged.pose, unchanged.velocity, value)
+    with pytest.raises(TypeError, match="seed"):
+        unchanged.reset(value)
+
+
+@pytest.mark.parametrize("shape", [(12,), (12, 2), (3, 12), (11, 3), (1, 12, 3), (0, 3), ()])
+def test_states_of_a_wrong_shape_are_refused(unchanged, shape):
+    with pytest.raises(ParameterError, match=r"pose has shape .* expected \(12, 3\)"):
+        unchanged.set_state(np.zeros(shape), unchanged.velocity)
+    with pytest.raises(ValueError, match="velocity"):
+        unchanged.set_state(unchanged.pose, np.zeros(shape))
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1e10])
+def test_states_out_of_range_are_refused(unchanged, value):
+    wrong = unchanged.pose
+    wrong[3, 1] = value
+    with pytest.raises(ParameterError, match=r"pose.*boat 3"):
+        unchanged.set_state(wrong, unchanged.velocity)
+    with pytest.raises(ParameterError, match=r"velocity.*boat 3"):
+        unchanged.set_state(unchanged.pose, wrong)
+    with pytest.raises(ParameterError, match="time_s"):
+        unchanged.set_state(unchanged.pose, unchanged.velocity, value)
+
+
+def test_overlaps_are_refused_unless_allowed(flock):
+    pose = flock.pose
+    pose[1] = pose[0]
+    with pytest.raises(ParameterError, match=r"boats 0 and 1 overlap by .* cm.*allow_overlap"):
+        flock.set_state(pose, flock.velocity)
+    pose[1] = [85.0, 0.0, 0.0]
+    with pytest.raises(ParameterError, match="boat 1 and the outer wall"):
+        flock.set_state(pose, flock.velocity)
+    pose[1] = [50.0, 0.0, 0.0]
+    with pytest.raises(ParameterError, match="boat 1 and the inner wall"):
+        flock.set_state(pose, flock.velocity)
+    flock.set_state(pose, flock.velocity, allow_overlap=True)
+    flock.advance(1.0)
+    assert np.isfinite(flock.pose).all()
+
+
+@pytest.mark.parametrize("seed", [-1, 2**64, pytest.param(10**5000, id="huge"), 1.5, math.nan])
+def test_seeds_out_of_range_are_refused(unchanged, seed):
+    with pytest.raises(ParameterError, match="seed"):
+        unchanged.reset(seed)
+    with pytest.raises(ParameterError, match="seed"):
+        Flock(unchanged.parameters, seed)
+
+
+def test_too_many_boats_for_the_pool_say_how_many_fit(parameters):
+    with pytest.raises(ParameterError, match=r"n_boats = 200 boats do not fit.* \d+ were placed"):
+        Flock(parameters.replace(n_boats=200), seed=1)
+
+
+def test_motion_that_explodes_is_a_solver_error_and_undone(parameters):
+    p = parameters.replace(scheme="moreau", dt_s=0.1, c0=1e6, solver="gauss-seidel")
+    flock = Flock(p, seed=1)
+    pose = flock.pose
+    with pytest.raises(SolverError, match="range"):
+        flock.advance(60.0)
+    assert flock.time_s == 0.0
+    assert np.array_equal(flock.pose, pose)
+
+
+def test_a_signal_stops_a_long_advance_and_undoes_it(flock):
+    def stop(number, frame):
+        raise InterruptedError
+
+    flock.advance(1.0)
+    before = flock.snapshot()
+    usual = signal.signal(signal.SIGUSR1, stop)
+    timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGUSR1))
+    timer.start()
+    try:
+        with pytest.raises(InterruptedError):
+            flock.advance(1e8)
+    finally:
+        signal.signal(signal.SIGUSR1, usual)
+    assert flock.snapshot() == before
+
+
+def test_target_moves_the_law_and_the_parameters(flock):
+    clockwise = flock.steering_law()
+    flock.set_target("ccw")
+    assert flock.parameters == flock.parameters.replace(target="ccw")
+    assert not np.array_equal(flock.steering_law(), clockwise)
+    with pytest.raises(ParameterError, match="target"):
+        flock.set_target("left")
+    with pytest.raises(TypeError, match="target"):
+        flock.set_target(None)
+
+
+def test_reset_is_a_new_flock(flock):
+    flock.advance(3.0)
+    flock.reset(9)
+    assert flock.snapshot() == Flock(flock.parameters, seed=9).snapshot()
+
+
+def test_copies_are_independent_and_go_on_alike(flock):
+    flock.advance(3.0)
+    others = [copy.copy(flock), copy.deepcopy(flock), pickle.loads(pickle.dumps(flock))]
+    before = flock.snapshot()
+    for other in others:
+        other.advance(2.0)
+    assert flock.snapshot() == before
+    flock.advance(2.0)
+    assert all(other.snapshot() == flock.snapshot() for other in others)
+
+
+def test_repr_names_what_it_is(flock):
+    assert repr(flock) == "<flockenv.Flock of 12 boats, 2 of them leaders, seed 7, time 0 s>"
+
+
+def test_statistics_count_the_substeps(flock):
+    flock.advance(1.0)
+    statistics = flock.statistics
+    assert statistics.substeps == 50
+    assert statistics.unsolved == 0
+    assert statistics.worst_residual_cm_s <= 1e-10
+
+
+numbers = hnp.arrays(
+    st.sampled_from([np.float64, np.float32, np.int64, np.uint8, np.complex128, object]),
+    hnp.array_shapes(min_dims=0, max_dims=3, min_side=0, max_side=12),
+)
+
+
+@given(numbers, numbers, st.floats() | st.integers())
+def test_any_arrays_move_the_flock_or_are_refused(pose, rudder, seconds):
+    flock = Flock(flockenv.FlockParameters(n_boats=3, n_leaders=2), seed=1)
+    for call in (
+        lambda: flock.set_state(pose, flock.velocity, seconds),
+        lambda: flock.set_state(flock.pose, pose, allow_overlap=True),
+        lambda: flock.advance(min(seconds, 1.0), rudder),
+    ):
+        with contextlib.suppress(flockenv.FlockError, TypeError):
+            call()
+        assert np.isfinite(flock.pose).all()
+        assert np.isfinite(flock.velocity).all()

@@ -1,0 +1,244 @@
+"""Law: parameters are checked once, by the core, and what is accepted survives every round trip."""
+
+import contextlib
+import copy
+import dataclasses
+import math
+import pickle
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import flockenv
+from flockenv import FlockParameters, ParameterError, _core
+
+NAMES = [field.name for field in dataclasses.fields(FlockParameters)]
+HUGE = pytest.param(10**5000, id="huge")  # has more digits than Python prints
+COUNTS = ["n_boats", "n_leaders", "relinearizations"]
+CHOICES = ["target", "scheme", "noise", "solver"]
+NUMBERS = [name for name in NAMES if name not in (*COUNTS, *CHOICES, "pool", "leaders_reverse")]
+
+
+def test_simulation_preset_is_table_3():
+    p = FlockParameters.preset("simulation")
+    assert (p.c0, p.c1, p.c2, p.c3, p.c4) == (1.0, 1.0, 0.1, 1.0, 0.1)
+    assert (p.n_boats, p.n_leaders, p.pool) == (20, 0, "500-boats")
+    assert (p.fw_s, p.nop1_s, p.bw_s, p.nop2_s) == (2.0, 1.0, 0.3, 1.0)
+    assert (p.scheme, p.noise) == ("leapfrog", "white")
+
+
+def test_paper_preset_differs_in_scheme_noise_and_bw():
+    simulation, paper = (FlockParameters.preset(name) for name in ("simulation", "paper"))
+    assert paper == simulation.replace(scheme="paper", noise="per-step", bw_s=0.6)
+    assert FlockParameters.presets()[:2] == ["simulation", "paper"]
+
+
+def test_fields_are_those_of_the_core_and_described():
+    assert list(_core.preset_fields("simulation")) == NAMES
+    for field in dataclasses.fields(FlockParameters):
+        assert field.metadata["doc"].endswith(".")
+        assert f"{field.name} : " in FlockParameters.__doc__
+
+
+def test_missing_fields_are_those_of_the_simulation_preset():
+    assert FlockParameters() == FlockParameters.preset("simulation")
+
+
+def test_parameters_are_frozen_hashable_and_comparable(parameters):
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        parameters.n_boats = 3
+    assert len({parameters, parameters.replace(), parameters.replace(n_boats=13)}) == 2
+
+
+def test_repr_makes_the_same_parameters(parameters):
+    p = parameters.replace(pool=(math.inf, 3.5))
+    names = {"FlockParameters": FlockParameters, "inf": math.inf}
+    assert eval(repr(p), names) == p  # noqa: S307
+
+
+def test_pools_with_a_name_are_stored_as_it(parameters):
+    assert parameters.replace(pool=(180, 97)).pool == "500-boats"
+    assert parameters.replace(pool=[90.0, 48.5]).pool == "table-1"
+    assert parameters.replace(pool=(90, 0)).pool == (90.0, 0.0)
+
+
+def test_numpy_values_become_plain_ones(parameters):
+    p = parameters.replace(n_boats=np.int64(9), c0=np.float32(0.5), leaders_reverse=np.True_)
+    assert [type(value) for value in (p.n_boats, p.c0, p.leaders_reverse)] == [int, float, bool]
+
+
+@pytest.mark.parametrize("name", COUNTS)
+@pytest.mark.parametrize("value", [-1, 10**30, HUGE, -(10**30), 2.5, math.nan, math.inf])
+def test_counts_out_of_range_are_refused_by_name(parameters, name, value):
+    with pytest.raises(ParameterError, match=name):
+        parameters.replace(**{name: value})
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+@pytest.mark.parametrize("value", [-2.0, math.nan, math.inf, -math.inf, 1e300, HUGE])
+def test_numbers_out_of_range_are_refused_by_name(parameters, name, value):
+    with pytest.raises(ParameterError, match=name):
+        parameters.replace(**{name: value})
+
+
+@pytest.mark.parametrize("name", [*COUNTS, *NUMBERS])
+@pytest.mark.parametrize(
+    "value", [None, "1", [1], 1j, True, np.array([1.0, 2.0]), object(), b"1", "\ud800"]
+)
+def test_values_that_are_no_numbers_are_type_errors_by_name(parameters, name, value):
+    with pytest.raises(TypeError, match=name):
+        parameters.replace(**{name: value})
+
+
+@pytest.mark.parametrize("name", CHOICES)
+def test_unknown_choices_are_refused_with_what_there_is(parameters, name):
+    with pytest.raises(ParameterError, match=f'{name} = "north".*one of "'):
+        parameters.replace(**{name: "north"})
+    with pytest.raises(TypeError, match=name):
+        parameters.replace(**{name: 3})
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"n_boats": 0},
+        {"n_boats": 100_001},
+        {"n_boats": 5, "n_leaders": 6},
+        {"pool": (50.0, 50.0)},
+        {"pool": (40.0, 50.0)},
+        {"pool": (0.0, 0.0)},
+        {"pool": (math.nan, 0.0)},
+        {"pool": (math.inf, math.inf)},
+        {"pool": (90.0, -1.0)},
+        {"pool": "pond"},
+        {"boat_radius_cm": 0.0},
+        {"gyration_radius_cm": 0.0},
+        {"dt_s": 0.0},
+        {"dt_s": 1.5},
+        {"dt_s": 0.11, "scheme": "moreau"},
+        {"dt_s": 0.11, "scheme": "paper"},
+        {"fw_s": 0, "nop1_s": 0, "bw_s": 0, "nop2_s": 0},
+        {"relinearizations": 3},
+        {"turning_bias": 1.01},
+        {"speed_spread_cm_s": 16.0},
+    ],
+)
+def test_scenes_that_cannot_be_are_refused(parameters, change):
+    with pytest.raises(ParameterError, match="is not accepted: "):
+        parameters.replace(**change)
+
+
+@pytest.mark.parametrize("pool", [(1,), (1, 2, 3), 5, None, {"outer": 1}, (None, 1), ("a", "b")])
+def test_pools_of_a_wrong_form_are_type_errors(parameters, pool):
+    with pytest.raises(TypeError, match="pool"):
+        parameters.replace(pool=pool)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"pool": (math.inf, 0.0)},
+        {"pool": (math.inf, 20.0)},
+        {"bw_s": 0.0},
+        {"fw_s": 0.0, "nop1_s": 0.0, "nop2_s": 0.0},
+        {"dt_s": 1.0, "scheme": "leapfrog"},
+        {"dt_s": 0.1, "scheme": "paper"},
+        {"n_leaders": 12},
+        {"boat_shape": 0.0},
+        {"c4": 0.0},
+    ],
+)
+def test_scenes_at_the_edge_are_accepted_and_run(parameters, change):
+    p = parameters.replace(**change)
+    flock = flockenv.Flock(p, seed=1)
+    flock.advance(2.0)
+    assert np.isfinite(flock.pose).all()
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right"),
+    [("n_boat", "n_boats"), ("leaders", "n_leaders"), ("dt", "dt_s"), ("speed", "speed_cm_s")],
+)
+def test_unknown_fields_are_refused_with_the_nearest(parameters, wrong, right):
+    makers = (parameters.replace, FlockParameters, lambda **v: FlockParameters.from_dict(v))
+    for make in makers:
+        with pytest.raises(ParameterError, match=f"{wrong!r}.*{right!r}"):
+            make(**{wrong: 1})
+
+
+def test_presets_are_known_by_name_only():
+    with pytest.raises(ParameterError, match='one of "simulation", "paper"'):
+        FlockParameters.preset("experimant")
+    with pytest.raises(TypeError, match="preset"):
+        FlockParameters.preset(3)
+
+
+radii = st.tuples(st.floats(10, 1e6) | st.just(math.inf), st.floats(0, 9))
+accepted = st.builds(
+    FlockParameters,
+    n_boats=st.integers(3, 100_000),
+    n_leaders=st.integers(0, 3),
+    pool=st.sampled_from(["500-boats", "table-1"]) | radii,
+    boat_radius_cm=st.floats(1e-300, 1e6),
+    c4=st.floats(0, 1e6),
+    dt_s=st.floats(1e-6, 0.1),
+    target=st.sampled_from(["cw", "ccw"]),
+    scheme=st.sampled_from(["leapfrog", "moreau", "paper"]),
+    leaders_reverse=st.booleans(),
+    turning_bias=st.floats(-1, 1),
+)
+
+
+@given(accepted)
+def test_every_round_trip_gives_equal_parameters(p):
+    for q in (
+        FlockParameters.from_dict(p.to_dict()),
+        FlockParameters.from_toml(p.to_toml()),
+        pickle.loads(pickle.dumps(p)),
+        copy.copy(p),
+        copy.deepcopy(p),
+        p.replace(),
+    ):
+        assert q == p
+        assert hash(q) == hash(p)
+        assert repr(q) == repr(p)
+
+
+def test_toml_may_name_a_preset_and_what_differs():
+    p = FlockParameters.from_toml('preset = "paper"\nn_boats = 27\npool = [inf, 0]')
+    assert p == FlockParameters.preset("paper").replace(n_boats=27, pool=(math.inf, 0))
+
+
+@pytest.mark.parametrize("text", ["n_boats = ", "= 3", "n_boats = 3\nn_boats = 4", "\x00"])
+def test_text_that_is_no_toml_is_refused(text):
+    with pytest.raises(ParameterError, match="TOML"):
+        FlockParameters.from_toml(text)
+
+
+@given(st.text() | st.from_regex(r"(n_boats|pool|dt_s|target) = .{0,8}", fullmatch=True))
+def test_any_text_gives_parameters_or_a_named_error(text):
+    with contextlib.suppress(flockenv.FlockError, TypeError):
+        FlockParameters.from_toml(text)
+
+
+anything = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text() | st.binary(),
+    lambda inner: st.lists(inner) | st.tuples(inner, inner),
+    max_leaves=4,
+)
+
+
+@given(st.dictionaries(st.sampled_from([*NAMES, "preset"]) | st.text(), anything, max_size=3))
+def test_any_values_give_parameters_or_a_named_error(values):
+    with contextlib.suppress(flockenv.FlockError, TypeError):
+        FlockParameters.from_dict(values)
+
+
+def test_parameters_that_are_none_are_type_errors():
+    for values in (3, None, "n_boats"):
+        with pytest.raises(TypeError, match="mapping"):
+            FlockParameters.from_dict(values)
+        with pytest.raises(TypeError, match="parameters must be FlockParameters"):
+            flockenv.Flock(values, seed=1)

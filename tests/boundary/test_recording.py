@@ -1,0 +1,276 @@
+"""Law: a recording is what a flock does; a file gives back the same one or a named error."""
+
+import contextlib
+import copy
+import dataclasses
+import math
+import pickle
+import tempfile
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import flockenv
+from flockenv import Flock, FlockError, FlockParameters, ParameterError, Recording, simulate
+
+PARAMETERS = FlockParameters(n_boats=5, n_leaders=1, pool="table-1")
+RUN = simulate(PARAMETERS, seed=3, duration_s=1.0)
+
+
+def saved(recording=RUN, **options) -> bytes:
+    with tempfile.TemporaryDirectory() as folder:
+        recording.save(Path(folder, "run.npz"), **options)
+        return Path(folder, "run.npz").read_bytes()
+
+
+def load(blob: bytes) -> Recording:
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder, "run.npz").write_bytes(blob)
+        return Recording.load(Path(folder, "run.npz"))
+
+
+def test_shapes_and_dtypes():
+    assert RUN.time_s.tolist() == [k / 10 for k in range(11)]
+    assert RUN.phase.tolist() == ["fw"] * 11
+    assert RUN.in_analysis_window.tolist() == [False] * 10 + [True]
+    assert RUN.pose.shape == RUN.velocity.shape == (11, 5, 3)
+    assert RUN.pose.dtype == RUN.velocity.dtype == np.float64
+    assert all(len(getattr(RUN.order, name)) == 11 for name in ("psi_o", "c_v"))
+    assert (RUN.parameters, RUN.seed, RUN.version) == (PARAMETERS, 3, flockenv.__version__)
+    assert repr(RUN) == "<flockenv.Recording of 5 boats, seed 3, 11 samples to 1.0 s>"
+
+
+def test_samples_are_the_flock_at_those_times():
+    flock = Flock(PARAMETERS, seed=3)
+    run = simulate(PARAMETERS, seed=3, duration_s=6.0, sample_hz=2.0)
+    for k in range(13):
+        assert np.array_equal(run.pose[k], flock.pose)
+        assert np.array_equal(run.velocity[k], flock.velocity)
+        assert run.order[k] == flock.order_parameters()
+        assert run.phase[k] == flock.phase
+        flock.advance(0.5)
+
+
+def test_the_analysis_window_is_late_fw_and_early_nop1():
+    run = simulate(PARAMETERS, seed=3, duration_s=4.3, sample_hz=4.0)
+    assert run.time_s[run.in_analysis_window].tolist() == [1.0, 1.25, 1.5, 1.75, 2.0, 2.25]
+
+
+@pytest.mark.parametrize(
+    ("duration_s", "sample_hz", "samples"),
+    [
+        (0, 10, 1),
+        (0.29, 100, 30),
+        (0.3, 10, 4),
+        (0.35, 10, 4),
+        (1, 3, 4),
+        (1, 0.1, 1),
+        (1, 1e-300, 1),
+    ],
+)
+def test_samples_are_taken_up_to_and_including_the_end(duration_s, sample_hz, samples):
+    assert len(simulate(PARAMETERS, 1, duration_s, sample_hz)) == samples
+
+
+def test_float32_rounds_what_is_kept_and_not_the_run():
+    run = simulate(PARAMETERS, seed=3, duration_s=1.0, dtype="float32")
+    assert run.pose.dtype == run.velocity.dtype == np.float32
+    assert np.array_equal(run.pose, RUN.pose.astype(np.float32))
+    assert run.order == RUN.order
+    assert run != RUN
+
+
+def test_undefined_order_parameters_are_nan():
+    pair = simulate(PARAMETERS.replace(n_boats=2), 1, 1.0).order
+    assert np.isnan(pair.c_o).all()
+    assert np.isfinite(pair.psi_o).all()
+    leaders = simulate(PARAMETERS.replace(n_leaders=5), 1, 1.0)
+    assert np.isnan(leaders.order.psi_o).all()
+    assert load(saved(leaders)) == leaders
+
+
+def test_the_law_by_name_is_no_policy():
+    assert simulate(PARAMETERS, 3, 1.0, policy="law") == RUN
+
+
+@pytest.mark.parametrize(
+    ("change", "name"),
+    [
+        ({"duration_s": -1}, "duration_s"),
+        ({"duration_s": math.nan}, "duration_s"),
+        ({"duration_s": math.inf}, "duration_s"),
+        ({"duration_s": 1e10}, "duration_s"),
+        ({"sample_hz": 0}, "sample_hz"),
+        ({"sample_hz": -1}, "sample_hz"),
+        ({"sample_hz": math.nan}, "sample_hz"),
+        ({"sample_hz": 1e7}, "sample_hz"),
+        ({"duration_s": 1e9, "sample_hz": 1e6}, "samples of 5 boats"),
+        ({"duration_s": 1e6, "sample_hz": 1e3}, "samples of 5 boats"),
+        ({"seed": -1}, "seed"),
+        ({"policy": "PPO"}, "policy"),
+        ({"policy": object()}, "policy"),
+        ({"dtype": "int32"}, "dtype"),
+        ({"parameters": PARAMETERS.replace(n_boats=200)}, "n_boats"),
+    ],
+)
+def test_runs_that_cannot_be_are_refused(change, name):
+    arguments = {"parameters": PARAMETERS, "seed": 1, "duration_s": 1.0} | change
+    with pytest.raises(ParameterError, match=name):
+        simulate(**arguments)
+
+
+@pytest.mark.parametrize("name", ["parameters", "seed", "duration_s", "sample_hz"])
+@pytest.mark.parametrize("value", ["1", None, [1]])
+def test_arguments_of_a_wrong_type_are_type_errors(name, value):
+    arguments = {"parameters": PARAMETERS, "seed": 1, "duration_s": 1.0} | {name: value}
+    with pytest.raises(TypeError, match=name):
+        simulate(**arguments)
+
+
+def test_recordings_pickle_and_copy():
+    for other in (pickle.loads(pickle.dumps(RUN)), copy.deepcopy(RUN), copy.copy(RUN)):
+        assert other == RUN
+    assert pickle.loads(pickle.dumps(simulate)) is simulate
+
+
+@pytest.mark.parametrize("compressed", [False, True])
+@pytest.mark.parametrize("dtype", ["float64", "float32"])
+def test_a_file_gives_back_the_same(tmp_path, compressed, dtype):
+    run = simulate(PARAMETERS.replace(pool=(math.inf, 0)), 2**64 - 1, 1.0, dtype=dtype)
+    run.save(tmp_path / "run.npz", compressed=compressed)
+    assert Recording.load(tmp_path / "run.npz") == run
+    assert [path.name for path in tmp_path.iterdir()] == ["run.npz"]
+
+
+def test_a_file_is_readable_without_flockenv(tmp_path):
+    RUN.save(tmp_path / "run.npz")
+    with np.load(tmp_path / "run.npz", allow_pickle=False) as arrays:
+        assert np.array_equal(arrays["pose"], RUN.pose)
+        assert np.array_equal(arrays["order_psi_o"], RUN.order.psi_o)
+        assert FlockParameters.from_toml(str(arrays["parameters"])) == PARAMETERS
+
+
+def test_the_same_recording_makes_the_same_bytes():
+    assert saved() == saved()
+
+
+def test_a_failed_save_leaves_what_was_there(tmp_path, monkeypatch):
+    path = tmp_path / "run.npz"
+    RUN.save(path)
+    before = path.read_bytes()
+
+    def fail(file, **arrays):
+        file.write(b"half")
+        raise OSError("disk full")
+
+    monkeypatch.setattr(np, "savez", fail)
+    with pytest.raises(OSError, match="disk full"):
+        RUN.save(path)
+    assert path.read_bytes() == before
+    assert [each.name for each in tmp_path.iterdir()] == ["run.npz"]
+
+
+def test_a_missing_file_is_an_os_error(tmp_path):
+    with pytest.raises(FileNotFoundError):
+        Recording.load(tmp_path / "none.npz")
+    with pytest.raises(FileNotFoundError):
+        RUN.save(tmp_path / "none" / "run.npz")
+
+
+@pytest.mark.parametrize("change", [
+    {"pose": RUN.pose[:, :4]},
+    {"pose": RUN.pose.astype(int)},
+    {"pose": RUN.pose.tolist()},
+    {"velocity": RUN.velocity.astype(np.float32)},
+    {"velocity": np.full_like(RUN.velocity, np.nan)},
+    {"time_s": RUN.time_s[::-1].copy()},
+    {"time_s": RUN.time_s - 1},
+    {"time_s": RUN.time_s[:0]},
+    {"phase": np.array(["up"] * 11)},
+    {"phase": np.array(["up"] * 11, dtype="<U4")},
+    {"in_analysis_window": np.zeros(11)},
+    {"parameters": PARAMETERS.replace(n_boats=6)},
+    {"order": dataclasses.replace(RUN.order, c_o=np.full(11, np.nan))},
+    {"seed": -1},
+    {"seed": 2**64},
+])  # fmt: skip
+def test_recordings_that_cannot_be_are_refused(change):
+    with pytest.raises(ParameterError):
+        dataclasses.replace(RUN, **change)
+
+
+@pytest.mark.parametrize("blob", [b"", b"text", b"PK\x03\x04", bytes(1000), b"flockst1" * 20])
+def test_foreign_files_are_refused(blob):
+    with pytest.raises(ParameterError, match=r"run\.npz is no whole, unharmed \.npz file"):
+        load(blob)
+
+
+def with_arrays(**changes) -> bytes:
+    """The saved recording with some arrays replaced, or left out where None."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "run.npz")
+        RUN.save(path)
+        with np.load(path, allow_pickle=False) as arrays:
+            kept = dict(arrays) | changes
+        np.savez(path, **{name: array for name, array in kept.items() if array is not None})
+        return path.read_bytes()
+
+
+@pytest.mark.parametrize("change", [
+    {"pose": None},
+    {"extra": np.zeros(3)},
+    {"seed": np.array(-1)},
+    {"seed": np.array([1, 2], np.uint64)},
+    {"format": np.array("flockenv recording 2")},
+    {"version": np.zeros(3)},
+    {"parameters": np.array("n_boats = 'many'")},
+    {"parameters": np.array("n_boat = 5")},
+    {"parameters": np.array("{")},
+    {"pose": RUN.pose[:, :3]},
+    {"order_psi_o": np.array(["a"] * 11)},
+])  # fmt: skip
+def test_files_of_something_else_are_refused(change):
+    with pytest.raises(ParameterError, match=r"run\.npz is no recording of flockenv"):
+        load(with_arrays(**change))
+
+
+def test_pickled_objects_are_never_loaded(tmp_path):
+    class Trap:
+        def __reduce__(self):
+            return Path.touch, (tmp_path / "executed",)
+
+    blob = with_arrays(pose=np.array([Trap()], dtype=object))
+    with pytest.raises(ParameterError):
+        load(blob)
+    assert not (tmp_path / "executed").exists()
+
+
+@pytest.mark.parametrize("shape", [(10**15,), (-1,), (2**62, 4), (10**6, 10**6)])
+@pytest.mark.parametrize("compression", [zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED])
+def test_headers_that_claim_the_world_are_refused(tmp_path, shape, compression):
+    header = str({"descr": "<f8", "fortran_order": False, "shape": shape}).encode()
+    entry = b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header
+    with zipfile.ZipFile(tmp_path / "run.npz", "w", compression) as archive:
+        archive.writestr("pose.npy", entry)
+    with pytest.raises(ParameterError):
+        Recording.load(tmp_path / "run.npz")
+
+
+@given(st.sampled_from([False, True]), st.floats(0, 1, exclude_max=True))
+def test_cut_off_files_are_refused(compressed, fraction):
+    blob = saved(compressed=compressed)
+    with pytest.raises(ParameterError):
+        load(blob[: int(fraction * len(blob))])
+
+
+@settings(max_examples=300)
+@given(st.sampled_from([False, True]), st.floats(0, 1, exclude_max=True), st.integers(0, 7))
+def test_flipped_bits_give_the_same_recording_or_a_named_error(compressed, fraction, bit):
+    blob = bytearray(saved(compressed=compressed))
+    blob[int(fraction * len(blob))] ^= 1 << bit
+    with contextlib.suppress(FlockError):
+        assert load(bytes(blob)) == RUN

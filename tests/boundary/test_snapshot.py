@@ -1,0 +1,106 @@
+"""Law: a snapshot continues bit for bit, and bytes that are none change nothing."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import flockenv
+from flockenv import Flock, FlockParameters, ParameterError
+
+PARAMETERS = FlockParameters(n_boats=12, n_leaders=2, pool="table-1")
+
+
+def moving(parameters=PARAMETERS):
+    flock = Flock(parameters, seed=7)
+    flock.advance(3.0, rudder=[0.3] * parameters.n_leaders)
+    return flock
+
+
+SNAPSHOT = moving().snapshot()
+
+
+@pytest.mark.parametrize("preset", FlockParameters.presets())
+@pytest.mark.parametrize("seconds", [0.0, 1.0, 2.013, 3.5])
+def test_continuing_is_bit_identical(preset, seconds):
+    p = FlockParameters.preset(preset).replace(n_boats=20, n_leaders=3, pool="table-1")
+    flock, other = Flock(p, seed=7), Flock(p, seed=8)
+    flock.advance(seconds)
+    other.restore(flock.snapshot())
+    third = Flock.from_snapshot(flock.snapshot())
+    for each in (flock, other, third):
+        each.advance(7.01)
+    assert np.array_equal(other.pose, flock.pose)
+    assert flock.snapshot() == other.snapshot() == third.snapshot()
+
+
+def test_a_snapshot_brings_seed_and_target_along():
+    flock = moving()
+    flock.set_target("ccw")
+    other = Flock(PARAMETERS, seed=1)
+    other.restore(flock.snapshot())
+    assert (other.seed, other.parameters.target) == (7, "ccw")
+
+
+def refused(blob, match=None):
+    """Both ways in refuse the bytes, and the flock is as it was."""
+    flock = moving()
+    for restore in (flock.restore, Flock.from_snapshot):
+        with pytest.raises(ParameterError, match=match):
+            restore(blob)
+    assert flock.snapshot() == SNAPSHOT
+
+
+def test_foreign_bytes_are_refused():
+    for blob in (b"", b"x", b"PK\x03\x04" * 100, bytes(1000), SNAPSHOT[::-1]):
+        refused(blob, match="snapshot")
+
+
+def test_a_snapshot_of_other_parameters_is_refused():
+    other = moving(PARAMETERS.replace(c3=0.9))
+    flock = moving()
+    with pytest.raises(ParameterError, match="other parameters"):
+        flock.restore(other.snapshot())
+    assert flock.snapshot() == SNAPSHOT
+
+
+@pytest.mark.parametrize("value", [None, "text", 3, [1, 2], bytearray(SNAPSHOT)])
+def test_what_is_no_bytes_is_a_type_error(value):
+    with pytest.raises(TypeError, match="snapshot"):
+        moving().restore(value)
+
+
+@given(st.integers(0, len(SNAPSHOT) - 1))
+def test_cut_off_snapshots_are_refused(length):
+    refused(SNAPSHOT[:length])
+
+
+def test_longer_snapshots_are_refused():
+    refused(SNAPSHOT + b"\0")
+
+
+@given(st.integers(0, 8 * len(SNAPSHOT) - 1))
+def test_flipped_bits_are_refused(bit):
+    blob = bytearray(SNAPSHOT)
+    blob[bit // 8] ^= 1 << bit % 8
+    refused(bytes(blob))
+
+
+def checksum(body: bytes) -> bytes:
+    total = 0xCBF29CE484222325
+    for byte in body:
+        total = (total ^ byte) * 0x100000001B3 % 2**64
+    return total.to_bytes(8, "little")
+
+
+@given(st.data())
+def test_a_forged_checksum_gives_a_sound_flock_or_a_named_error(data):
+    body = bytearray(SNAPSHOT[16:])
+    for _ in range(data.draw(st.integers(1, 3))):
+        body[data.draw(st.integers(0, len(body) - 1))] = data.draw(st.integers(0, 255))
+    try:
+        flock = Flock.from_snapshot(SNAPSHOT[:8] + checksum(body) + bytes(body))
+        flock.advance(0.1)
+    except flockenv.FlockError:
+        return
+    assert np.isfinite(flock.pose).all()

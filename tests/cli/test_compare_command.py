@@ -1,0 +1,53 @@
+"""`flockenv compare` prints and writes what it measured, and refuses nonsense in words."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+
+def flockenv(*arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-c", "from flockenv.cli import main; main()", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120)
+
+
+SHORT = ["--episodes", "3", "--minutes", "0.5", "--boats", "8", "--most-leaders", "1"]
+
+
+def test_the_table_and_the_files(tmp_path: Path) -> None:
+    done = flockenv("compare", *SHORT, "--out", str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    for pool in ("500-boats", "table-1"):
+        assert f"pool {pool}" in done.stdout
+        assert (tmp_path / pool / "leader_curve.png").stat().st_size > 10_000
+    assert "F = " in done.stdout
+    assert "steering law" in done.stdout
+
+
+def test_json_is_all_that_is_printed(tmp_path: Path) -> None:
+    arguments = ["--pool", "table-1", "--json", "--out", str(tmp_path)]
+    done = flockenv("compare", *SHORT, *arguments)
+    means = json.loads(done.stdout)["table-1"]
+    assert [row["leaders"] for row in means] == [0, 1]
+    assert all(row["psi_o_low"] <= row["psi_o"] <= row["psi_o_high"] for row in means)
+    assert done.stderr == ""
+
+
+def test_errors_are_one_line_with_exit_code_2(tmp_path: Path) -> None:
+    for arguments, words in (
+        (["--boats", "2000"], "do not fit"),
+        (["--preset", "simulaton"], "simulation"),
+        (["--target", "left"], "ccw"),
+        (["--bw-s", "-1"], "bw_s"),
+    ):
+        done = flockenv("compare", *SHORT, *arguments, "--out", str(tmp_path))
+        assert done.returncode == 2
+        assert words in done.stderr
+        assert "Traceback" not in done.stderr
+    assert not any(tmp_path.iterdir())
+
+
+def test_presets_lists_every_field() -> None:
+    done = flockenv("presets")
+    assert done.returncode == 0
+    assert "gyration_radius_cm" in done.stdout

@@ -1,0 +1,254 @@
+"""Law: bad input is a named error, and nothing has moved."""
+
+import gymnasium
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv import EpisodeError, FlockError, ParameterError
+
+OPTIONS = {"n_boats": 9, "n_leaders": 2, "episode_s": 1.0}
+FACES = {
+    "single": lambda **options: flockenv.LeadersEnv(**options),
+    "parallel": lambda **options: flockenv.parallel_env(**options),
+    "vector": lambda **options: flockenv.LeadersVectorEnv(3, **options),
+}
+
+
+@pytest.fixture(params=FACES.values(), ids=FACES.keys())
+def face(request):
+    return lambda **options: request.param(**{**OPTIONS, **options})
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"n_leader": 2}, "did you mean 'n_leaders'"),
+        ({"episode": 3.0}, "did you mean 'episode_s'"),
+        ({"rewards": {}}, "did you mean 'reward'"),
+        ({"xyzzy": 1}, "there are preset, params"),
+        ({"reward": {"signed_ordre": 1.0}}, "did you mean 'signed_order'"),
+        ({"observation": {"neighbours": 3}}, "did you mean 'neighbors'"),
+        ({"target": "clockwise"}, '"cw", "ccw", "random", "alternate"'),
+        ({"preset": "simulaton"}, "simulation"),
+        ({"n_leaders": 0}, "at least 1 in an environment"),
+        ({"n_leaders": 10}, "n_leaders = 10"),
+        ({"control_hz": 0.0}, "control_hz = 0"),
+        ({"control_hz": float("nan")}, "control_hz"),
+        ({"episode_s": 0.0}, "episode_s = 0"),
+        ({"episode_s": float("inf")}, "episode_s"),
+        ({"bw_s": (0.5, 0.2)}, "bw_s = (0.5, 0.2)"),
+        ({"bw_s": (0.5, float("nan"))}, "bw_s"),
+        ({"dropout_rate": 1.0}, "dropout_rate = 1"),
+        ({"delay_frames": 2}, "delay_frames = 2"),
+        ({"rudder_levels": 1}, "rudder_levels = 1"),
+        ({"rudder_lag_s": -1.0}, "rudder_lag_s = -1"),
+        ({"rudder_rate_per_s": 0.0}, "rudder_rate_per_s = 0"),
+        ({"reward": {"signed_order": float("nan")}}, "signed_order: NaN"),
+        ({"observation": {"neighbors": 65}}, "neighbors = 65"),
+        (
+            {"observation": dict.fromkeys(["own", "phase", "target", "order", "neighbors"], 0)},
+            "observation",
+        ),
+        ({"n_leaders": 9}, "n_boats > n_leaders"),
+        ({"render_mode": "human"}, "render_mode = 'human'"),
+        ({"dt_s": 0.0}, "dt_s = 0"),
+    ],
+)
+def test_options(face, options, message):
+    with pytest.raises((ParameterError, TypeError)) as caught:
+        face(**options)
+    assert message in str(caught.value) or isinstance(caught.value, TypeError)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"episode_s": "long"},
+        {"observation": 3},
+        {"reward": [1.0]},
+        {"mirror_to_target": 1.5},
+        {"rudder_levels": 2.5},
+        {"params": 3},
+        {"n_boats": "many"},
+    ],
+)
+def test_options_of_a_wrong_type(face, options):
+    with pytest.raises((TypeError, ParameterError)):
+        face(**options)
+
+
+def test_params_and_preset_exclude_each_other():
+    params = flockenv.FlockParameters(n_boats=5, n_leaders=1)
+    with pytest.raises(ParameterError, match="both given"):
+        flockenv.LeadersEnv(params=params, preset="paper")
+    assert flockenv.LeadersEnv(params=params).parameters == params
+    assert flockenv.LeadersEnv(params=params, bw_s=0.7).parameters.bw_s == 0.7
+    assert flockenv.LeadersEnv(preset="paper").parameters.scheme == "paper"
+
+
+def zeros(env):
+    if isinstance(env, flockenv.LeadersParallelEnv):
+        return {agent: np.zeros(1) for agent in env.possible_agents}
+    return np.zeros(env.action_space.shape)
+
+
+def test_stepping_before_a_reset_and_after_the_end(face):
+    env = face(autoreset_mode="disabled") if face.__name__ == "vector" else face()
+    with pytest.raises(EpisodeError, match="reset"):
+        env.step(zeros(env))
+    env.reset(seed=0)
+    if isinstance(env, flockenv.LeadersVectorEnv):
+        return
+    for _ in range(10):
+        env.step(zeros(env))
+    before = env.get_state()
+    with pytest.raises(EpisodeError):
+        env.step(zeros(env))
+    assert env.get_state() == before
+    env.reset()
+    env.step(zeros(env))
+
+
+def test_nan_and_wrong_shapes_move_nothing():
+    for env in (flockenv.LeadersEnv(**OPTIONS), flockenv.LeadersVectorEnv(3, **OPTIONS)):
+        env.reset(seed=0)
+        before = env.get_state()
+        good = np.zeros(env.action_space.shape)
+        one_nan = good.copy()
+        one_nan.flat[-1] = np.nan
+        for actions in (one_nan, good[..., :1], good[..., None], 0.0):
+            with pytest.raises(ParameterError):
+                env.step(actions)
+        for actions in (good.astype(object), good.astype(complex), np.full(good.shape, "a")):
+            with pytest.raises(TypeError):
+                env.step(actions)
+        assert env.get_state() == before
+        env.step(good)
+
+
+def test_rudders_beyond_one_are_clipped():
+    first, second = flockenv.LeadersEnv(**OPTIONS), flockenv.LeadersEnv(**OPTIONS)
+    first.reset(seed=0)
+    second.reset(seed=0)
+    for _ in range(5):
+        first.step([np.inf, -7.0])
+        second.step([1.0, -1.0])
+    assert first.get_state() == second.get_state()
+
+
+def test_levels_out_of_range():
+    env = flockenv.LeadersEnv(rudder_levels=3, **OPTIONS)
+    env.reset(seed=0)
+    before = env.get_state()
+    for actions in ([0, 3], [-1, 0], [0.5, 0]):
+        with pytest.raises(ParameterError, match="whole numbers from 0 to 2"):
+            env.step(actions)
+    assert env.get_state() == before
+
+
+def test_agents_that_are_not_there():
+    env = flockenv.parallel_env(**OPTIONS)
+    env.reset(seed=0)
+    before = env.get_state()
+    good = zeros(env)
+    for actions in (
+        {"leader_0": np.zeros(1)},
+        {**good, "leader_2": np.zeros(1)},
+        {**good, "leader_1": np.zeros(2)},
+        {**good, "leader_1": 0.0},
+        {**good, "leader_1": np.array([np.nan])},
+        {},
+    ):
+        with pytest.raises(ParameterError):
+            env.step(actions)
+    assert env.get_state() == before
+    with pytest.raises(KeyError):
+        env.observation_space("leader_2")
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"targt": "cw"},
+        {"target": "up"},
+        {"bw_s": -1.0},
+        {"state": {"pose": np.zeros((9, 3))}},
+        {"state": {"velocity": np.zeros((9, 3))}},
+        {"state": {"pose": np.full((9, 3), np.nan)}},
+        {"state": {"pose": np.zeros((8, 3))}},
+        {"state": {"pos": np.zeros((9, 3))}},
+        {"snapshot": b"nonsense"},
+        {"snapshot": b""},
+        {"snapshot": flockenv.Flock(flockenv.FlockParameters(n_boats=5), 0).snapshot()},
+    ],
+)
+def test_reset_options(face, options):
+    env = face()
+    env.reset(seed=0)
+    before = env.get_state()
+    with pytest.raises(FlockError):
+        env.reset(seed=1, options=options)
+    assert env.get_state() == before
+    env.step(zeros(env))
+
+
+def test_reset_options_of_others_are_left_alone(face):
+    face().reset(seed=0, options={"curriculum": 3})
+
+
+@pytest.mark.parametrize("seed", [-1, 2**64])
+def test_seeds_out_of_range(seed):
+    with pytest.raises(ParameterError):
+        flockenv.parallel_env(**OPTIONS).reset(seed=seed)
+
+
+def test_vector_seeds_options_and_masks():
+    env = flockenv.LeadersVectorEnv(3, **OPTIONS)
+    env.reset(seed=0)
+    before = env.get_state()
+    for bad in (
+        {"seed": [1, 2]},
+        {"options": {"target": ["cw"]}},
+        {"options": {"reset_mask": np.ones(2, bool)}},
+        {"options": {"reset_mask": np.zeros(3, bool)}},
+    ):
+        with pytest.raises(ParameterError):
+            env.reset(**bad)
+    for mask in ([True, False, True], np.ones(3)):
+        with pytest.raises(TypeError):
+            env.reset(options={"reset_mask": mask})
+    assert env.get_state() == before
+    for bad in ({"num_envs": 0}, {"autoreset_mode": "sometimes"}):
+        with pytest.raises(ParameterError):
+            flockenv.LeadersVectorEnv(**bad)
+
+
+def test_too_many_boats_tell_so_and_leave_the_episode():
+    env = flockenv.LeadersEnv(n_boats=300, n_leaders=1, pool="table-1")
+    with pytest.raises(ParameterError, match="do not fit"):
+        env.reset(seed=0)
+
+
+def test_states_of_others():
+    env = flockenv.LeadersEnv(**OPTIONS)
+    env.reset(seed=0)
+    before = env.get_state()
+    other = flockenv.LeadersEnv(**{**OPTIONS, "control_hz": 5.0})
+    other.reset(seed=0)
+    for state in (b"", b"x" * 100, before[:-1], before + b"x", other.get_state()):
+        with pytest.raises(ParameterError):
+            env.set_state(state)
+    damaged = bytearray(before)
+    damaged[len(damaged) // 2] ^= 1
+    with pytest.raises(ParameterError):
+        env.set_state(bytes(damaged))
+    with pytest.raises(TypeError):
+        env.set_state("state")
+    assert env.get_state() == before
+
+
+def test_gymnasium_order_enforcing():
+    env = gymnasium.make("flockenv/Leaders-v0", **OPTIONS)
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.step(np.zeros(2))

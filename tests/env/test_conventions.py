@@ -1,0 +1,240 @@
+"""Law: episodes, seeds and buffers behave as each interface documents."""
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.vector import AutoresetMode
+
+import flockenv
+
+OPTIONS = {"n_boats": 9, "n_leaders": 3, "episode_s": 2.0}
+STEPS = 20
+
+
+def vector_env(num_envs=4, **options):
+    return gymnasium.make_vec("flockenv/Leaders-v0", num_envs=num_envs, **{**OPTIONS, **options})
+
+
+def actions_of(venv, step):
+    return np.random.default_rng(step).uniform(-1, 1, venv.action_space.shape).astype(np.float32)
+
+
+def test_time_limit_is_truncation_in_the_single_environment():
+    env = gymnasium.make("flockenv/Leaders-v0", **OPTIONS)
+    env.reset(seed=0)
+    for step in range(1, STEPS + 1):
+        _, _, terminated, truncated, info = env.step(env.action_space.sample())
+        assert not terminated
+        assert truncated == (step == STEPS)
+    assert info["episode_summary"]["steps"] == STEPS
+
+
+def test_time_limit_is_truncation_in_the_parallel_environment():
+    env = flockenv.parallel_env(**OPTIONS)
+    env.reset(seed=0)
+    for step in range(1, STEPS + 1):
+        agents = env.agents
+        actions = {agent: env.action_space(agent).sample() for agent in agents}
+        _, _, terminations, truncations, infos = env.step(actions)
+        assert terminations == dict.fromkeys(agents, False)
+        assert truncations == dict.fromkeys(agents, step == STEPS)
+    assert env.agents == []
+    assert all("episode_summary" in info for info in infos.values())
+
+
+def test_default_length_is_eight_minutes_and_sixteen_with_alternating_targets():
+    assert flockenv.LeadersEnv()._batch.core.episode_steps == 4800
+    assert flockenv.LeadersEnv(target="alternate")._batch.core.episode_steps == 9600
+
+
+def test_next_step_autoreset():
+    venv = vector_env(autoreset_mode="next_step")
+    assert venv.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
+    venv.reset(seed=0)
+    for step in range(STEPS):
+        observations, _, terminations, truncations, infos = venv.step(actions_of(venv, step))
+        assert not terminations.any()
+        assert truncations.all() == (step == STEPS - 1)
+    assert infos["_episode_summary"].all()
+    last = observations
+    observations, rewards, _, truncations, infos = venv.step(actions_of(venv, 0))
+    assert not rewards.any()
+    assert not truncations.any()
+    assert infos == {}
+    assert (observations != last).any()
+    # The second episode begins as after a reset, and the ignored action has moved nothing.
+    again = vector_env()
+    again.reset(seed=0)
+    np.testing.assert_array_equal(observations, again.reset()[0])
+
+
+def test_same_step_autoreset():
+    venv = vector_env(autoreset_mode=AutoresetMode.SAME_STEP)
+    plain = vector_env(autoreset_mode="next_step")
+    venv.reset(seed=0)
+    plain.reset(seed=0)
+    for step in range(STEPS):
+        observations, rewards, _, truncations, infos = venv.step(actions_of(venv, step))
+        expected = plain.step(actions_of(venv, step))
+    assert truncations.all()
+    assert infos["_final_obs"].all()
+    np.testing.assert_array_equal(np.stack(list(infos["final_obs"])), expected[0])
+    np.testing.assert_array_equal(rewards, expected[1])
+    assert infos["final_info"]["_episode_summary"].all()
+    begun = plain.step(actions_of(venv, 0))[0]
+    np.testing.assert_array_equal(observations, begun)
+
+
+def test_disabled_autoreset_waits_for_a_partial_reset():
+    venv = vector_env(autoreset_mode="disabled")
+    venv.reset(seed=0)
+    mask = np.array([True, False, False, True])
+    for step in range(10):
+        venv.step(actions_of(venv, step))
+    before = venv.observe()
+    observations, infos = venv.reset(options={"reset_mask": mask})
+    np.testing.assert_array_equal(observations[~mask], before[~mask])
+    assert (observations[mask] != before[mask]).any(axis=1).all()
+    np.testing.assert_array_equal(infos["_target"], mask)
+    for step in range(10):
+        _, _, _, truncations, infos = venv.step(actions_of(venv, step))
+    np.testing.assert_array_equal(truncations, ~mask)
+    np.testing.assert_array_equal(infos["_episode_summary"], ~mask)
+    with pytest.raises(flockenv.EpisodeError, match="reset"):
+        venv.step(actions_of(venv, 0))
+    venv.reset(options={"reset_mask": ~mask})
+    venv.step(actions_of(venv, 0))
+
+
+def test_partial_reset_with_seeds_touches_no_other_flock():
+    venv, reference = vector_env(), vector_env()
+    venv.reset(seed=5)
+    reference.reset(seed=5)
+    mask = np.array([False, True, False, False])
+    observations, _ = venv.reset(seed=[None, 77, None, None], options={"reset_mask": mask})
+    np.testing.assert_array_equal(observations[1], vector_env(1).reset(seed=77)[0][0])
+    ours, theirs = venv.step(actions_of(venv, 1)), reference.step(actions_of(venv, 1))
+    np.testing.assert_array_equal(ours[0][~mask], theirs[0][~mask])
+
+
+@pytest.mark.parametrize("mode", ["next_step", "same_step"])
+def test_nothing_returned_is_written_to_later(mode):
+    venv = vector_env(autoreset_mode=mode)
+    kept = [venv.reset(seed=1)[0]]
+    rewards = []
+    copies = [kept[0].copy()]
+    for step in range(STEPS + 3):
+        observations, reward, _, truncated, _ = venv.step(actions_of(venv, step))
+        kept += [observations, reward, truncated]
+        copies += [observations.copy(), reward.copy(), truncated.copy()]
+        rewards.append(reward)
+    for array, copy in zip(kept, copies, strict=True):
+        np.testing.assert_array_equal(array, copy)
+    assert len({array.__array_interface__["data"][0] for array in kept}) == len(kept)
+
+
+def test_first_episode_has_the_flock_of_the_seed():
+    parameters = flockenv.FlockParameters().replace(n_boats=9, n_leaders=3)
+    env = flockenv.LeadersEnv(**OPTIONS)
+    env.reset(seed=11)
+    np.testing.assert_array_equal(env.flock.pose, flockenv.Flock(parameters, seed=11).pose)
+
+
+def test_a_flock_outside_meets_the_same_noise():
+    env = flockenv.LeadersEnv(**OPTIONS)
+    env.reset(seed=11)
+    flock = env.flock
+    for step in range(STEPS):
+        rudders = np.random.default_rng(step).uniform(-1, 1, 3)
+        env.step(rudders)
+        flock.advance(0.1, rudders)
+    np.testing.assert_array_equal(env.flock.pose, flock.pose)
+
+
+def test_unseeded_environments_differ():
+    first, second = flockenv.LeadersEnv(**OPTIONS), flockenv.LeadersEnv(**OPTIONS)
+    assert (first.reset()[0] != second.reset()[0]).any()
+
+
+def test_targets_and_noise_do_not_depend_on_the_policy():
+    options = {"target": "random", "bw_s": (0.1, 0.9)}
+    drawn = []
+    for rudder in (-1.0, 1.0):
+        venv = vector_env(autoreset_mode="same_step", **options)
+        _, infos = venv.reset(seed=3)
+        episodes = [infos["target"].tolist(), infos["bw_s"].tolist()]
+        for _ in range(3 * STEPS):
+            infos = venv.step(np.full(venv.action_space.shape, rudder, np.float32))[4]
+            if infos:
+                episodes += [infos["target"].tolist(), infos["bw_s"].tolist()]
+        drawn.append(episodes)
+    assert drawn[0] == drawn[1]
+    noise = np.array(drawn[0][1::2])
+    assert noise.min() >= 0.1
+    assert noise.max() <= 0.9
+    assert len(np.unique(noise)) == noise.size
+    assert {target for targets in drawn[0][::2] for target in targets} == {"cw", "ccw"}
+
+
+def test_alternating_targets_change_every_quarter():
+    env = flockenv.LeadersEnv(**{**OPTIONS, "target": "alternate", "episode_s": 4.0})
+    env.reset(seed=0)
+    targets = []
+    for _ in range(40):
+        targets.append(env.episode()["target"])
+        env.step(np.zeros(3))
+    assert targets == ["ccw"] * 10 + ["cw"] * 10 + ["ccw"] * 10 + ["cw"] * 10
+
+
+def test_reset_options_hold_for_one_episode():
+    env = flockenv.LeadersEnv(**OPTIONS)
+    _, info = env.reset(seed=0, options={"target": "ccw", "bw_s": 0.7})
+    assert info["target"] == "ccw"
+    assert info["bw_s"] == 0.7
+    assert env.flock.parameters.bw_s == 0.7
+    _, info = env.reset()
+    assert info["target"] == "cw"
+    assert info["bw_s"] == 0.3
+
+
+def test_reset_to_a_state_and_to_a_snapshot():
+    env = flockenv.LeadersEnv(**OPTIONS)
+    env.reset(seed=0)
+    for _ in range(15):
+        env.step(np.ones(3))
+    flock = env.flock
+    other = flockenv.LeadersEnv(**OPTIONS)
+    other.reset(seed=9, options={"snapshot": flock.snapshot()})
+    assert other.flock.snapshot() == flock.snapshot()
+    rewards = [other.step(np.ones(3))[1] for _ in range(STEPS)]
+    flock.advance(2.0, np.ones(3))
+    np.testing.assert_array_equal(other.flock.pose, flock.pose)
+    assert len(set(rewards)) > 1
+    state = {"pose": flock.pose, "velocity": flock.velocity, "time_s": flock.time_s}
+    observation, _ = other.reset(options={"state": state})
+    np.testing.assert_array_equal(other.flock.pose, flock.pose)
+    assert other.flock.time_s == flock.time_s
+    assert observation in other.observation_space
+
+
+def test_vector_reset_options_can_differ_by_flock():
+    venv = vector_env(num_envs=2)
+    _, infos = venv.reset(seed=0, options={"target": ["cw", "ccw"], "bw_s": 0.5})
+    assert infos["target"].tolist() == ["cw", "ccw"]
+    assert infos["bw_s"].tolist() == [0.5, 0.5]
+
+
+def test_summary_tells_means_over_the_episode():
+    env = flockenv.LeadersEnv(**{**OPTIONS, "episode_s": 20.0})
+    env.reset(seed=0)
+    rewards, in_window = [], []
+    for step in range(200):
+        _, reward, _, _, info = env.step(np.zeros(3))
+        rewards.append(reward)
+        if step >= 20 and env._batch.core.in_analysis_window()[0]:
+            in_window.append(reward)
+    summary = info["episode_summary"]
+    assert summary["total_reward"] == pytest.approx(sum(rewards), rel=1e-12)
+    assert summary["reward_terms"]["signed_order"] == pytest.approx(np.mean(rewards), rel=1e-12)
+    assert summary["signed_order"] == pytest.approx(np.mean(in_window), rel=1e-12)
+    assert 0.0 <= summary["clip_rate"] < 0.05

@@ -1,0 +1,204 @@
+"""Law: LeaderVecEnv keeps stable-baselines3's conventions, one slot a leader."""
+
+import pickle
+
+import gymnasium
+import numpy as np
+import pytest
+
+import flockenv
+
+sb3 = pytest.importorskip("stable_baselines3")
+
+from stable_baselines3 import PPO  # noqa: E402
+from stable_baselines3.common.env_util import is_wrapped  # noqa: E402
+from stable_baselines3.common.evaluation import evaluate_policy  # noqa: E402
+from stable_baselines3.common.monitor import Monitor  # noqa: E402
+from stable_baselines3.common.vec_env import VecCheckNan, VecMonitor, VecNormalize  # noqa: E402
+
+from flockenv.sb3 import LeaderVecEnv  # noqa: E402
+
+OPTIONS = {"n_boats": 9, "episode_s": 2.0}
+STEPS = 20
+
+
+def make(num_flocks=3, n_leaders=2, **options):
+    return LeaderVecEnv(num_flocks, n_leaders=n_leaders, **{**OPTIONS, **options})
+
+
+def actions_of(venv, step):
+    random = np.random.default_rng(step)
+    return random.uniform(-1, 1, (venv.num_envs, 1)).astype(np.float32)
+
+
+def test_shapes_and_types():
+    venv = make()
+    observations = venv.reset()
+    assert observations.shape == (6, *venv.observation_space.shape)
+    observations, rewards, dones, infos = venv.step(actions_of(venv, 0))
+    assert observations.dtype == np.float32
+    assert rewards.dtype == np.float32
+    assert rewards.shape == dones.shape == (6,)
+    assert len({id(info) for info in infos}) == 6
+
+
+def test_end_of_an_episode():
+    venv = make()
+    reference = gymnasium.make_vec("flockenv/Leaders-v0", num_envs=3, n_leaders=2, **OPTIONS)
+    venv.seed(4)
+    venv.reset()
+    reference.reset(seed=4)
+    for step in range(STEPS):
+        actions = actions_of(venv, step)
+        observations, _, dones, infos = venv.step(actions)
+        last, *_ = reference.step(actions.reshape(3, 2))
+        assert dones.all() == (step == STEPS - 1)
+    for slot, info in enumerate(infos):
+        assert info["TimeLimit.truncated"] is True
+        row = last.reshape(6, -1)[slot]
+        np.testing.assert_array_equal(info["terminal_observation"], row)
+        assert info["episode_summary"]["steps"] == STEPS
+        assert info["terminal_state"] in venv.state_space
+    begun = reference.step(actions.reshape(3, 2))[0].reshape(6, -1)
+    np.testing.assert_array_equal(observations, begun)
+    assert len(venv.reset_infos) == 6
+
+
+def test_bootstrapping_sees_every_time_limit():
+    # PPO adds the value of the last observation where an episode was cut; it needs both keys.
+    venv = make(num_flocks=4)
+    venv.reset()
+    ends = [
+        info
+        for step in range(3 * STEPS)
+        for info in venv.step(actions_of(venv, step))[3]
+        if info.get("TimeLimit.truncated") and info.get("terminal_observation") is not None
+    ]
+    assert len(ends) == 3 * venv.num_envs
+
+
+def test_seed_gives_flock_i_the_seed_s_plus_i():
+    venv = make(num_flocks=3, n_leaders=[1, 2, 3])
+    assert venv.seed(10) == [10, 11, 11, 12, 12, 12]
+    observations = venv.reset()
+    for flock, k in enumerate([1, 2, 3]):
+        env = flockenv.LeadersEnv(n_leaders=k, **OPTIONS)
+        expected, _ = env.reset(seed=10 + flock)
+        np.testing.assert_array_equal(observations[venv.flock_of_slot == flock].ravel(), expected)
+    assert (venv.reset() != observations).any()
+    venv.seed(10)
+    np.testing.assert_array_equal(venv.reset(), observations)
+
+
+def test_unseeded_environments_differ():
+    assert (make().reset() != make().reset()).any()
+
+
+def test_leader_counts_mix():
+    venv = make(num_flocks=5, n_leaders=[1, 3])
+    assert venv.num_envs == 1 + 3 + 1 + 3 + 1
+    assert venv.get_attr("leader_index") == [0, 0, 1, 2, 0, 0, 1, 2, 0]
+    venv.reset()
+    venv.step(actions_of(venv, 0))
+    assert venv.state().shape == (9, *venv.state_space.shape)
+
+
+def test_attributes_and_methods_of_slots():
+    venv = make()
+    venv.reset()
+    assert venv.get_attr("flock_index") == [0, 0, 1, 1, 2, 2]
+    assert venv.get_attr("flock_index", indices=[5, 0]) == [2, 0]
+    venv.set_attr("note", "x", indices=3)
+    assert venv.get_attr("note", 3) == ["x"]
+    assert not venv.has_attr("note")
+    with pytest.raises(AttributeError):
+        venv.get_attr("nonsense")
+    assert [episode["step"] for episode in venv.env_method("episode", indices=[0, 1])] == [0, 0]
+    assert venv.env_is_wrapped(Monitor) == [False] * 6
+    assert is_wrapped
+    assert venv.get_attr("render_mode") == [None] * 6
+
+
+def test_options_of_the_next_reset():
+    venv = make()
+    venv.set_options({"target": "ccw"})
+    venv.reset()
+    assert {info["target"] for info in venv.reset_infos} == {"ccw"}
+    venv.reset()
+    assert {info["target"] for info in venv.reset_infos} == {"cw"}
+
+
+def test_nothing_returned_is_written_to_later():
+    venv = make()
+    arrays = [venv.reset()]
+    copies = [arrays[0].copy()]
+    for step in range(STEPS + 2):
+        observations, rewards, dones, _ = venv.step(actions_of(venv, step))
+        arrays += [observations, rewards, dones]
+        copies += [array.copy() for array in (observations, rewards, dones)]
+    for array, copy in zip(arrays, copies, strict=True):
+        np.testing.assert_array_equal(array, copy)
+
+
+def test_wrappers_evaluation_and_ppo():
+    venv = VecMonitor(VecCheckNan(make(num_flocks=4)))
+    model = PPO("MlpPolicy", venv, n_steps=16, batch_size=64, n_epochs=2, seed=1, device="cpu")
+    model.learn(1024)
+    assert len(model.ep_info_buffer) > 0
+    mean, _ = evaluate_policy(model, venv, n_eval_episodes=8)
+    assert np.isfinite(mean)
+    normalised = VecNormalize(make())
+    normalised.reset()
+    normalised.step(actions_of(normalised, 0))
+
+
+def test_ppo_repeats_itself_with_a_seed():
+    weights = []
+    for _ in range(2):
+        model = PPO(
+            "MlpPolicy", make(), n_steps=16, batch_size=32, n_epochs=1, seed=1, device="cpu"
+        )
+        model.learn(200)
+        weights.append(model.policy.state_dict())
+    assert all((weights[0][name] == weights[1][name]).all() for name in weights[0])
+
+
+def test_discrete_rudders():
+    venv = make(rudder_levels=5)
+    assert venv.action_space == gymnasium.spaces.Discrete(5)
+    venv.reset()
+    venv.step(np.arange(6) % 5)
+    np.testing.assert_array_equal(venv._batch.core.rudders(), [-1, -0.5, 0, 0.5, 1, -1])
+    PPO("MlpPolicy", venv, n_steps=8, batch_size=16, n_epochs=1, device="cpu").learn(100)
+
+
+def test_pickle_and_clone():
+    venv = make()
+    venv.seed(0)
+    venv.reset()
+    venv.step(actions_of(venv, 0))
+    for copy in (venv.clone(), pickle.loads(pickle.dumps(venv))):
+        assert copy.get_state() == venv.get_state()
+        assert copy.get_attr("flock_index") == venv.get_attr("flock_index")
+        assert copy.slots[0]._env is copy
+    copy = venv.clone()
+    np.testing.assert_array_equal(
+        venv.step(actions_of(venv, 1))[0], copy.step(actions_of(venv, 1))[0]
+    )
+
+
+def test_bad_input():
+    venv = make()
+    with pytest.raises(flockenv.EpisodeError):
+        venv.step(np.zeros((6, 1)))
+    venv.reset()
+    before = venv.get_state()
+    for actions in (np.full((6, 1), np.nan), np.zeros((5, 1)), np.zeros(6)):
+        with pytest.raises(flockenv.ParameterError):
+            venv.step(actions)
+    with pytest.raises(flockenv.EpisodeError):
+        venv.step_wait()
+    assert venv.get_state() == before
+    for bad in ({"num_flocks": 0}, {"n_leaders": []}, {"n_leaders": [0]}, {"n_leaders": 99}):
+        with pytest.raises(flockenv.ParameterError):
+            LeaderVecEnv(**bad)

@@ -1,0 +1,118 @@
+"""Law: a state put away in the middle of an episode goes on bit for bit."""
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+
+import flockenv
+
+OPTIONS = {"n_boats": 12, "n_leaders": 3, "episode_s": 6.0}
+VARIANTS = {
+    "plain": {},
+    "everything": {
+        "target": "alternate",
+        "bw_s": (0.1, 0.7),
+        "dropout_rate": 0.2,
+        "delay_frames": 1,
+        "rudder_lag_s": 0.2,
+        "rudder_rate_per_s": 5.0,
+        "mirror_to_target": True,
+    },
+    "paper": {"preset": "paper"},
+    "bias": {"speed_spread_cm_s": 3.0, "turning_bias": 0.1, "current_gain": 0.1},
+}
+FACES = {
+    "single": lambda **options: flockenv.LeadersEnv(**options),
+    "parallel": lambda **options: flockenv.parallel_env(**options),
+    "vector": lambda **options: flockenv.LeadersVectorEnv(3, **options),
+    "same step": lambda **options: flockenv.LeadersVectorEnv(
+        3, autoreset_mode="same_step", **options
+    ),
+}
+COPIES = {
+    "set_state": lambda env, fresh: fresh.set_state(env.get_state()) or fresh,
+    "clone": lambda env, fresh: env.clone(),
+    "pickle": lambda env, fresh: pickle.loads(pickle.dumps(env)),
+    "deepcopy": lambda env, fresh: copy.deepcopy(env),
+}
+
+
+def action(env, step):
+    random = np.random.default_rng(step)
+    if isinstance(env, flockenv.LeadersParallelEnv):
+        return {agent: random.uniform(-1, 1, 1) for agent in env.possible_agents}
+    return random.uniform(-1, 1, env.action_space.shape)
+
+
+def equal(first, second):
+    if isinstance(first, dict):
+        return first.keys() == second.keys() and all(equal(first[k], second[k]) for k in first)
+    return np.array_equal(first, second)
+
+
+@pytest.mark.parametrize("variant", VARIANTS.values(), ids=VARIANTS.keys())
+@pytest.mark.parametrize("make", FACES.values(), ids=FACES.keys())
+@pytest.mark.parametrize("again", COPIES.values(), ids=COPIES.keys())
+def test_middle_of_an_episode(make, again, variant):
+    options = {**OPTIONS, **variant}
+    env = make(**options)
+    env.reset(seed=5)
+    for step in range(37):
+        env.step(action(env, step))
+    other = again(env, make(**options))
+    assert other.get_state() == env.get_state()
+    assert equal(env.observe(), other.observe())
+    for step in range(37, 60):
+        ours, theirs = env.step(action(env, step)), other.step(action(env, step))
+        assert all(equal(a, b) for a, b in zip(ours[:4], theirs[:4], strict=True))
+        assert repr(ours[4]) == repr(theirs[4])
+    # Beyond the end: the next episode is the same too.
+    if isinstance(env, flockenv.LeadersVectorEnv):
+        ours, theirs = env.step(action(env, 60)), other.step(action(env, 60))
+    else:
+        ours, theirs = env.reset(), other.reset()
+    assert equal(ours[0], theirs[0])
+    assert other.get_state() == env.get_state()
+
+
+def test_rewinding_is_exact():
+    env = flockenv.LeadersEnv(**OPTIONS)
+    env.reset(seed=0)
+    env.step(np.ones(3))
+    kept = env.get_state()
+    first = [env.step(np.ones(3))[1] for _ in range(20)]
+    env.set_state(kept)
+    assert [env.step(np.ones(3))[1] for _ in range(20)] == first
+
+
+def test_clones_are_independent():
+    env = flockenv.LeadersEnv(**OPTIONS)
+    env.reset(seed=0)
+    before = env.get_state()
+    clone = env.clone()
+    clone.step(np.ones(3))
+    assert env.get_state() == before
+
+
+def test_before_the_first_reset():
+    env = flockenv.LeadersEnv(**OPTIONS)
+    other = pickle.loads(pickle.dumps(env))
+    with pytest.raises(flockenv.EpisodeError):
+        other.step(np.zeros(3))
+    assert other.get_state() == env.get_state()
+
+
+def test_ended_parallel_environment_stays_ended():
+    env = flockenv.parallel_env(**OPTIONS)
+    env.reset(seed=0)
+    middle = env.get_state()
+    for step in range(60):
+        env.step(action(env, step))
+    end = env.get_state()
+    other = flockenv.parallel_env(**OPTIONS)
+    other.set_state(end)
+    assert other.agents == []
+    other.set_state(middle)
+    assert other.agents == other.possible_agents

@@ -1,0 +1,80 @@
+//! Bytes of a batch continue bit for bit, and no bytes at all reach a panic.
+
+use crate::support::{batch, settings, step};
+use flockenv::environment::{EnvBatch, EnvSettings};
+use flockenv::observation::CameraSettings;
+use proptest::prelude::*;
+
+fn rich_settings() -> EnvSettings {
+    EnvSettings {
+        camera: CameraSettings {
+            dropout_rate: 0.2,
+            delay_frames: 1,
+        },
+        ..settings(12)
+    }
+}
+
+#[test]
+fn a_restored_batch_goes_on_bit_for_bit() {
+    let mut original = batch(rich_settings(), &[1, 3], 0);
+    for time in 0..40 {
+        let bytes = original.to_bytes();
+        let mut copy = EnvBatch::from_bytes(&bytes).unwrap();
+        assert_eq!(copy.to_bytes(), bytes);
+        let actions = [f64::from(time).sin(), 0.2, -0.7, 1.0];
+        assert_eq!(step(&mut original, &actions), step(&mut copy, &actions));
+        assert_eq!(original.to_bytes(), copy.to_bytes());
+    }
+}
+
+#[test]
+fn states_of_other_batches_are_refused() {
+    let mut own = batch(settings(12), &[1, 3], 0);
+    let before = own.to_bytes();
+    for other in [
+        batch(settings(13), &[1, 3], 0),
+        batch(settings(12), &[3, 1], 0),
+        batch(settings(12), &[1], 0),
+        batch(rich_settings(), &[1, 3], 0),
+    ] {
+        assert!(own.restore(&other.to_bytes()).is_err());
+        assert_eq!(own.to_bytes(), before);
+    }
+    own.restore(&batch(settings(12), &[1, 3], 9).to_bytes())
+        .unwrap();
+}
+
+/// The seal of `sealed_bytes`, so that damage gets past the checksum.
+fn reseal(bytes: &mut [u8]) {
+    let sum = bytes[16..]
+        .iter()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |sum, &byte| {
+            (sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+        });
+    bytes[8..16].copy_from_slice(&sum.to_le_bytes());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
+    #[test]
+    fn damaged_bytes_are_refused_or_can_be_lived_with(
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..4),
+        seal in any::<bool>(),
+    ) {
+        let mut bytes = batch(rich_settings(), &[2], 0).to_bytes();
+        for (place, value) in changes {
+            let place = place.index(bytes.len());
+            bytes[place] = value;
+        }
+        if seal {
+            reseal(&mut bytes);
+        }
+        if let Ok(mut lived) = EnvBatch::from_bytes(&bytes) {
+            let actions = vec![0.5; lived.rows()];
+            if lived.rows() < 100 {
+                let _ = step(&mut lived, &actions);
+            }
+        }
+    }
+}

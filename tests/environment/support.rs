@@ -1,0 +1,62 @@
+//! Small scenes and a shorthand for steps.
+
+use flockenv::environment::{BatchRows, EnvBatch, EnvSettings, ResetRequest};
+use flockenv::parameters::{FlockParameters, Pool, Preset};
+
+/// Nine boats in the small pool.
+pub fn parameters(n_leaders: usize) -> FlockParameters {
+    FlockParameters {
+        n_boats: 9,
+        n_leaders,
+        pool: Pool::TABLE_1,
+        ..FlockParameters::preset(Preset::Simulation)
+    }
+}
+
+/// Settings of episodes of so many control steps.
+pub fn settings(steps: u32) -> EnvSettings {
+    let mut settings = EnvSettings::default();
+    settings.episode.episode_s = Some(f64::from(steps) / 10.0);
+    settings
+}
+
+/// A request with a seed.
+pub fn seeded(seed: u64) -> Option<ResetRequest> {
+    Some(ResetRequest {
+        seed: Some(seed),
+        ..ResetRequest::default()
+    })
+}
+
+/// A batch of flocks with these numbers of leaders, seeded one after another.
+pub fn batch(settings: EnvSettings, leaders: &[usize], first_seed: u64) -> EnvBatch {
+    let members = leaders.iter().map(|&k| parameters(k)).collect();
+    let mut batch = EnvBatch::new(settings, members).unwrap();
+    let seeds = first_seed..first_seed + leaders.len() as u64;
+    batch.reset(&seeds.map(seeded).collect::<Vec<_>>()).unwrap();
+    batch
+}
+
+/// What a step wrote.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Written {
+    pub observations: Vec<f32>,
+    pub rewards: Vec<f64>,
+    pub truncated: Vec<bool>,
+}
+
+/// Steps and returns what was written.
+pub fn step(batch: &mut EnvBatch, actions: &[f64]) -> flockenv::Result<Written> {
+    let mut written = Written {
+        observations: vec![f32::NAN; batch.rows() * batch.observation_size()],
+        rewards: vec![f64::NAN; batch.rows()],
+        truncated: vec![false; batch.envs().len()],
+    };
+    let rows = BatchRows {
+        observations: &mut written.observations,
+        rewards: &mut written.rewards,
+        truncated: &mut written.truncated,
+    };
+    batch.step(actions, rows)?;
+    Ok(written)
+}
