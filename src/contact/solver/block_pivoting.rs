@@ -2,6 +2,8 @@
 //! from the contacts that carried an impulse before, with Murty's single pivots as the fallback that
 //! guarantees an end.
 
+mod descent;
+
 use super::envelope::{ABSENT, EnvelopeFactor};
 use super::matrix::ContactMatrix;
 use super::{EXACT, SolveReport};
@@ -102,14 +104,18 @@ impl BlockPivoting {
     fn solve_island(&mut self, island: usize, rows: Range<usize>, report: &mut SolveReport) {
         let most_rounds = 50 + 4 * rows.len();
         let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
+        let mut is_solved = false;
         for _ in 0..most_rounds {
             report.iterations += 1;
             report.factored_rows += self.solve_active(island, rows.clone());
             let (mut violations, mut last) = self.count_violations(rows.clone());
-            if violations == 0 && self.refine(island, rows.clone()) {
+            let mut refinements = 0;
+            while violations == 0 && refinements < 3 && self.refine(island, rows.clone()) {
                 (violations, last) = self.count_violations(rows.clone());
+                refinements += 1;
             }
             if violations == 0 {
+                is_solved = true;
                 break;
             }
             if violations < fewest {
@@ -123,6 +129,9 @@ impl BlockPivoting {
             for row in rows.clone() {
                 self.active[row] ^= self.is_violated(row);
             }
+        }
+        if !is_solved {
+            self.descend(island, rows.clone(), report);
         }
         report.factor_entries += self.factors[island].len() as u64;
         self.drop_negative(rows.clone());
