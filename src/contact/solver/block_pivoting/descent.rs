@@ -1,5 +1,6 @@
 //! The way out where pivoting cycles: contacts whose normals nearly depend on each other make the
-//! matrix as good as singular, and signs after a pivot are then those of rounding.
+//! matrix as good as singular, and signs after a pivot are then those of rounding. (Murty's single
+//! pivots, the usual way out, rely on those signs too, and cycle as well.)
 //!
 //! Lawson and Hanson's active-set method (1974) on the dual ½·λᵀ·A·λ + bᵀ·λ over λ ≥ 0. Impulses stay
 //! non-negative and every step lowers the dual, so that no active set comes twice.
