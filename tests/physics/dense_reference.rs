@@ -119,7 +119,7 @@ impl Dense {
     }
 
     /// The least x that meets a set's constraints as equalities: `x` without the rounding of its way.
-    fn polished(&self, set: &[usize], x: DVector<f64>) -> Reference {
+    pub fn polished(&self, set: &[usize], x: DVector<f64>) -> Reference {
         if set.is_empty() {
             return Reference { x, total: 0.0 };
         }

@@ -22,6 +22,7 @@ mod published;
 mod pushing;
 mod sliding;
 mod solver;
+mod solver_agreement;
 mod steady_turning;
 mod symmetry;
 mod work_counts;
