@@ -15,6 +15,7 @@ from flockenv.batch import LeaderBatch, drawn_seed
 from flockenv.errors import EpisodeError, ParameterError
 from flockenv.observation import observation_space
 from flockenv.options import EnvOptions, check_render_mode
+from flockenv.specification import specified
 
 __all__ = ["LeadersParallelEnv", "parallel_env"]
 
@@ -22,25 +23,50 @@ Observations = dict[str, NDArray[np.float32]]
 Infos = dict[str, dict[str, Any]]
 
 
+@specified
 class LeadersParallelEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float32] | int]):
-    """Each leader an agent; all act at once. The task is that of `LeadersEnv`.
+    """Lead a flock of boats around a ring-shaped pool: each leader is an agent.
 
-    Agents are ``leader_0`` to ``leader_{k-1}``, boats 0 to k - 1 of the flock. Each observes its
-    own surroundings and gets its own reward (the terms about the normal boats are the same for
-    all). All agents live until the time limit truncates the episode; ``agents`` is empty from then
-    on.
+    ``flockenv.parallel_env(**options)``
 
-    Parameters
-    ----------
-    render_mode
-        None.
-    **options
-        Those of `LeadersEnv`.
+    ## Description
+    {task}
 
-    Raises
-    ------
-    ParameterError
-        For unknown options and values out of range.
+    Agents are `leader_0` to `leader_{k-1}`, boats 0 to k - 1. All act at once and live until the
+    time limit; `agents` is empty from then on.
+
+    ## Action space
+    An agent's is `Box(-1, 1, (1,), float32)`, its rudder; `Discrete(n)` with `rudder_levels=n`.
+    {rudder}
+
+    ## Observation space
+    An agent's is a `Box` of shape (observation size,), float32. {frame}
+
+    {observation_table}
+
+    `state()` gives the global state, for critics: the entries of `boat` for each boat in order,
+    then the rest.
+
+    {state_table}
+
+    ## Rewards
+    Each agent gets the weighted sum of the terms below, its own where they are a leader's own;
+    `signed_order` with weight 1 unless `reward` says otherwise. Each step's infos have the agent's
+    `"reward_terms"`, the last ones the `"episode_summary"`; those of a reset are empty.
+
+    {reward_table}
+
+    ## Starting state
+    {starting_state}
+
+    ## Episode end
+    {episode_end}
+
+    ## Arguments
+    {arguments_table}
+
+    ## Version history
+    {version_history}
     """
 
     metadata: dict[str, Any] = {  # noqa: RUF012 - PettingZoo's own declaration

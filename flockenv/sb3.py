@@ -17,6 +17,7 @@ from flockenv.errors import EpisodeError, ParameterError
 from flockenv.observation import observation_space
 from flockenv.options import EnvOptions, check_render_mode
 from flockenv.parameters import FlockParameters
+from flockenv.specification import specified
 
 __all__ = ["LeaderSlot", "LeaderVecEnv"]
 
@@ -51,36 +52,57 @@ class LeaderSlot:
         return self._env._batch.core.state(self.flock_index)
 
 
+@specified
 class LeaderVecEnv(VecEnv):
-    """Many flocks, each leader a slot of its own: one policy is shared by all leaders.
+    """Many flocks for stable-baselines3, each leader a slot: one policy is shared by all leaders.
 
-    The task, its observation, reward and options are those of `LeadersEnv`. Slots are leaders,
-    flock after flock. Flocks are stepped in parallel in Rust; arrays that are returned are never
-    written to again. A flock's slots end their episodes together; it is then reset at once, and
-    their infos have ``"TimeLimit.truncated"`` (always True), ``"terminal_observation"``,
-    ``"terminal_state"`` and the ``"episode_summary"``. For episode returns in SB3's logs wrap it
-    in ``VecMonitor``.
+    ``flockenv.sb3.LeaderVecEnv(num_flocks=64, n_leaders=[1, 2, 3, 4], **options)``
 
-    Parameters
-    ----------
-    num_flocks
-        Number of flocks.
-    n_leaders
-        Leaders of each flock; a list is dealt out to the flocks in turn, so that one policy can
-        learn all of them.
-    render_mode
-        None.
-    **options
-        Those of `LeadersEnv`.
+    ## Description
+    {task}
 
-    Raises
-    ------
-    ParameterError
-        For unknown options and values out of range.
+    Slots are leaders, flock after flock. Flocks are stepped in parallel in Rust; results depend
+    neither on `num_flocks` nor on the number of threads. Arrays that are returned are never written
+    to again. For episode returns in SB3's logs wrap it in `VecMonitor`.
 
-    Notes
-    -----
-    ``seed(s)`` makes the next reset seed flock i with s + i, as in `LeadersVectorEnv`.
+    ## Action space
+    A slot's is `Box(-1, 1, (1,), float32)`, its leader's rudder; `Discrete(n)` with
+    `rudder_levels=n`. {rudder}
+
+    ## Observation space
+    A slot's is a `Box` of shape (observation size,), float32. {frame}
+
+    {observation_table}
+
+    `state()` gives each slot the global state of its flock, for critics: the entries of `boat` for
+    each boat in order, then the rest.
+
+    {state_table}
+
+    ## Rewards
+    Each slot gets the weighted sum of the terms below, its own where they are a leader's own;
+    `signed_order` with weight 1 unless `reward` says otherwise. `reward_terms()` tells those of the
+    last step.
+
+    {reward_table}
+
+    ## Starting state
+    {starting_state} Here `seed(s)` makes the next reset seed flock i with s + i, and
+    `set_options` sets the options of the next reset.
+
+    ## Episode end
+    {episode_end} A flock's slots end together and begin the next episode in the same step. Their
+    infos then have `"TimeLimit.truncated"` (always True), `"terminal_observation"`,
+    `"terminal_state"` and the `"episode_summary"`.
+
+    ## Arguments
+    `num_flocks`: number of flocks; `n_leaders`: leaders of each flock, where a list is dealt out to
+    the flocks in turn, so that one policy can learn all of them; and:
+
+    {arguments_table}
+
+    ## Version history
+    {version_history}
     """
 
     def __init__(

@@ -10,59 +10,55 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv import _core
 from flockenv.action import flat_actions, joint_action_space
 from flockenv.batch import LeaderBatch, drawn_seed
-from flockenv.observation import (
-    OBSERVATION_VERSION,
-    observation_entries,
-    observation_space,
-    observation_table,
-)
-from flockenv.options import EnvOptions, arguments_table, check_render_mode
-from flockenv.reward import terms_table
+from flockenv.observation import observation_space
+from flockenv.options import EnvOptions, check_render_mode
+from flockenv.specification import specified
 
 __all__ = ["LeadersEnv"]
 
 
+@specified
 class LeadersEnv(gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
-    """Lead a flock of boats around an annular pool.
+    """Lead a flock of boats around a ring-shaped pool: one policy steers all leaders.
+
+    ``gymnasium.make("flockenv/Leaders-v0", **options)``
 
     ## Description
-    Boats drive through a ring-shaped pool: forward for 2 s, drifting, backward for `bw_s`,
-    drifting, and so on. They align by nothing but frictionless, perfectly inelastic collisions;
-    backing makes them spin, the more the longer it lasts, which destroys order (Tarcai et al.
-    2011). A few of them, the leaders, have a rudder. The task is to make the *normal* boats
-    circulate in the target direction.
+    {task}
 
     ## Action space
-    `Box(-1, 1, (k,), float32)`: the rudders of leaders 0 to k - 1, held for a control step. A
-    positive rudder turns a boat that moves forward counter-clockwise, and works in reverse on one
-    that moves backward. Numbers beyond ±1 are clipped, NaN is an error. With `rudder_levels=n` it
-    is `MultiDiscrete([n] * k)`: levels 0 to n - 1 are rudders evenly spaced from -1 to 1.
+    `Box(-1, 1, (k,), float32)`: the rudders of leaders 0 to k - 1; `MultiDiscrete([n] * k)` with
+    `rudder_levels=n`. {rudder}
 
     ## Observation space
     `Box` of shape (k * observation size,), float32: what leader 0 observes, then leader 1, and so
-    on. Everything is in the local-angle polar (LAP) frame of the leader's own place, outward and
-    clockwise, scaled and clipped at the bounds below.
+    on. {frame}
 
     {observation_table}
 
+    `state()` gives the global state, for critics: the entries of `boat` for each boat in order,
+    then the rest.
+
+    {state_table}
+
     ## Rewards
     The weighted sum of the terms below, mean over leaders; `signed_order` with weight 1 unless
-    `reward` says otherwise.
+    `reward` says otherwise. Each step's info has the `"reward_terms"`, the last one the
+    `"episode_summary"`.
 
     {reward_table}
 
     ## Starting state
-    Boats at random places with random headings, not overlapping, at rest; phase fw begins. The
-    seed fixes the start, the noise (whatever the policy does), the target and the noise level.
+    {starting_state}
 
     ## Episode end
-    Truncated after `episode_s`; never terminated.
+    {episode_end}
 
     ## Arguments
     {arguments_table}
 
     ## Version history
-    - v0, observation version {observation_version}: initial version.
+    {version_history}
     """
 
     metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012 - Gymnasium's own declaration
@@ -165,19 +161,3 @@ class LeadersEnv(gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
     def clone(self) -> Self:
         """Return an independent copy that goes on exactly as this one."""
         return copy.deepcopy(self)
-
-
-def _specification(template: str) -> str:
-    """Return a docstring with its tables filled in from the core's data."""
-    tables = {
-        "observation_table": observation_table(observation_entries()),
-        "reward_table": terms_table(),
-        "arguments_table": arguments_table(),
-        "observation_version": str(OBSERVATION_VERSION),
-    }
-    for name, table in tables.items():
-        template = template.replace(f"{{{name}}}", table.replace("\n", "\n    "))
-    return template
-
-
-LeadersEnv.__doc__ = _specification(LeadersEnv.__doc__ or "")
