@@ -149,12 +149,13 @@ class Window:
         self.paused = False
         self.is_open = True
         self._pygame.display.init()
-        self._surface = self._pygame.display.set_mode((width, height))
+        self._size = (width, height)
+        self._surface = self._pygame.display.set_mode(self._size)
         self._tell()
 
     def show(self, flock: Flock) -> None:
         """Show a flock, and return when the next step is due; at once if the window is closed."""
-        if not self.is_open:
+        if not self._has_display():
             return
         now = time.perf_counter()
         if self.paused or self._single_step or now - self._drawn >= 1 / self.FASTEST_DRAWN:
@@ -173,6 +174,13 @@ class Window:
             self.is_open = False
             self._pygame.display.quit()
 
+    def _has_display(self) -> bool:
+        """Whether the window is open, and no other one has taken its place."""
+        display = self._pygame.display
+        is_there = display.get_init() and self._surface.get_size() == self._size
+        self.is_open = self.is_open and is_there
+        return self.is_open
+
     def _draw(self, flock: Flock) -> None:
         rows = self._renderer.draw(flock)
         # pygame counts columns first.
@@ -190,9 +198,7 @@ class Window:
         return left if self.paused else min(max(self._due - time.perf_counter(), 0.0), left)
 
     def _handle_events(self) -> None:
-        if not self._pygame.display.get_init():
-            # Something else has closed it.
-            self.is_open = False
+        if not self._has_display():
             return
         for event in self._pygame.event.get():
             if event.type == self._pygame.QUIT:

@@ -16,8 +16,8 @@ from flockenv.batch import LeaderBatch, drawn_seed
 from flockenv.errors import EpisodeError, ParameterError
 from flockenv.observation import observation_space
 from flockenv.options import EnvOptions
-from flockenv.screen import DEFAULT_SIZE, Screen
 from flockenv.parameters import FlockParameters
+from flockenv.screen import DEFAULT_SIZE, Screen
 
 __all__ = ["LeaderSlot", "LeaderVecEnv"]
 

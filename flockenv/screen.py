@@ -30,7 +30,7 @@ class Screen:
     def __init__(
         self,
         mode: str | None,
-        size: tuple[int, int],
+        size: Any,
         fps: float,
         modes: tuple[str, ...] = RENDER_MODES,
     ) -> None:

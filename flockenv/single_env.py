@@ -181,7 +181,7 @@ class LeadersEnv(gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
         """Return an independent copy that goes on exactly as this one."""
         return copy.deepcopy(self)
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+    def render(self) -> NDArray[np.uint8] | None:
         """Return a frame, (height, width, 3) uint8, where `render_mode` is "rgb_array".
 
         With "human" every reset and step shows itself in a window (see `rendering.Window` for its

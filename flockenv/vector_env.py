@@ -221,7 +221,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         """Return an independent copy that goes on exactly as this one."""
         return copy.deepcopy(self)
 
-    def render(self) -> tuple[NDArray[np.uint8], ...] | None:  # type: ignore[override]
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
         """Return a frame of each flock, (height, width, 3) uint8, if that is the render mode."""
         if self.render_mode is None:
             return None

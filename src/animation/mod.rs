@@ -13,7 +13,7 @@ use gif::GifEncoder;
 
 named_choice! {
     /// A file format of moving pictures.
-    pub enum AnimationFormat ("format") {
+    pub enum AnimationFormat ("file_format") {
         /// Animated PNG: every colour as it is.
         Apng = "apng",
         /// GIF: up to 255 new colours a frame.

@@ -121,10 +121,10 @@ impl Place {
     /// An arrowhead in the bow half of a hull.
     fn mark(&self, path: &mut PathBuilder, reach: f32, radius: f32) {
         let corners = [
-            (0.78 * reach, 0.0),
-            (-0.06 * reach, 0.62 * radius),
-            (0.12 * reach, 0.0),
-            (-0.06 * reach, -0.62 * radius),
+            (0.84 * reach, 0.0),
+            (-0.12 * reach, 0.68 * radius),
+            (0.1 * reach, 0.0),
+            (-0.12 * reach, -0.68 * radius),
         ];
         for (index, (along, across)) in corners.into_iter().enumerate() {
             let point = self.at(along, across);

@@ -33,8 +33,8 @@ impl Legend {
         Self { typeface }
     }
 
-    /// Writes it.
-    pub fn draw(&self, canvas: &mut Pixmap, flock: &Flock) {
+    /// Writes it, for a frame with or without a grid.
+    pub fn draw(&self, canvas: &mut Pixmap, flock: &Flock, grid_cm: Option<f64>) {
         let Some(typeface) = &self.typeface else {
             return;
         };
@@ -45,11 +45,19 @@ impl Legend {
             typeface,
             em: typeface.size(),
         };
-        sheet.clock(flock);
+        sheet.clock(flock, grid_cm);
         sheet.task(flock);
         let order = flock.order_parameters(false).ok();
         sheet.order(order.as_ref());
         sheet.signed_order(order.map(|order| order.signed_order(flock.parameters().target)));
+    }
+}
+
+/// A number in [−1, 1] with its sign; what rounds to zero has none.
+fn signed_text(number: f64) -> String {
+    match format!("{number:+.2}").as_str() {
+        "+0.00" | "-0.00" => "0.00".to_owned(),
+        text => text.replace('-', "−"),
     }
 }
 
@@ -63,8 +71,8 @@ struct Sheet<'a> {
 }
 
 impl Sheet<'_> {
-    /// Top left: the time and the phase.
-    fn clock(&mut self, flock: &Flock) {
+    /// Top left: the time, the phase and the distance of grid lines.
+    fn clock(&mut self, flock: &Flock, grid_cm: Option<f64>) {
         let left = EDGE * self.em;
         self.write(&format!("{:.1} s", flock.time_s()), left, self.top(0), INK);
         let (current, baseline) = (flock.phase().phase, self.top(1));
@@ -77,6 +85,9 @@ impl Sheet<'_> {
                 self.bar(x, baseline + 0.25 * self.em, width, 0.14 * self.em, INK);
             }
             x += width + 0.55 * self.em;
+        }
+        if let Some(spacing_cm) = grid_cm {
+            self.write(&format!("grid {spacing_cm} cm"), left, self.top(2), FAINT);
         }
     }
 
@@ -122,7 +133,7 @@ impl Sheet<'_> {
             self.write_to_right("towards target -", self.bottom(), INK);
             return;
         };
-        let text = format!("towards target {signed:+.2}").replace('-', "−");
+        let text = format!("towards target {}", signed_text(signed));
         self.write_to_right(&text, self.bottom(), INK);
         let (length, color) = (
             half * signed.abs() as f32,

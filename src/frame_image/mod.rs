@@ -91,7 +91,9 @@ impl FrameRenderer {
         let view = View::of(flock, self.width(), self.height());
         self.draw_background(flock, &view);
         boats::draw(&mut self.canvas, flock, &view);
-        self.legend.draw(&mut self.canvas, flock);
+        let open = !flock.parameters().pool.has_outer_wall();
+        let grid_cm = open.then(|| water::grid_spacing(&view));
+        self.legend.draw(&mut self.canvas, flock, grid_cm);
         // The canvas is opaque throughout, so that premultiplied colours are plain ones.
         for (rgb, pixel) in frame
             .chunks_exact_mut(3)

@@ -33,7 +33,7 @@ pub const TOWARDS: Rgb = Rgb(0x00, 0x9E, 0x73);
 /// Order against the target.
 pub const AGAINST: Rgb = Rgb(0xD5, 0x5E, 0x00);
 /// The arrow that shows the target.
-pub const TARGET: Rgb = Rgb(0xB9, 0xC1, 0xC8);
+pub const TARGET: Rgb = Rgb(0xC3, 0xC9, 0xCE);
 
 impl Rgb {
     /// As tiny-skia's colour.

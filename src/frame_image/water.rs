@@ -30,7 +30,7 @@ pub fn draw(canvas: &mut Pixmap, pool: &Pool, target: Target, view: &View) {
         disc(canvas, view, radius, WALL);
         disc(canvas, view, radius - wall, GROUND);
         if radius >= LEAST_ISLAND {
-            arrow(canvas, view.pixel(Vec2::zeros()), 0.62 * radius, target);
+            arrow(canvas, view.pixel(Vec2::zeros()), 0.66 * radius, target);
         }
     } else {
         cross(canvas, view.pixel(Vec2::zeros()), 2.5 * wall);
@@ -70,7 +70,7 @@ fn cross(canvas: &mut Pixmap, center: Point, half: f32) {
 
 /// Lines at round distances from the world's origin, so that motion shows in open water.
 fn grid(canvas: &mut Pixmap, view: &View) {
-    let spacing = round_spacing(LEAST_SPACING / view.scale);
+    let spacing = grid_spacing(view);
     let (width, height) = (canvas.width() as f32, canvas.height() as f32);
     let first = |center: f64, size: f32| {
         let edge = center - f64::from(size) / 2.0 / view.scale;
@@ -91,19 +91,21 @@ fn grid(canvas: &mut Pixmap, view: &View) {
     }
 }
 
-/// The next of 1, 2, 5, 10, 20, … cm.
-fn round_spacing(least: f64) -> f64 {
-    let decade = 10_f64.powf(least.log10().floor());
-    let found = [1.0, 2.0, 5.0]
-        .into_iter()
-        .find(|step| step * decade >= least);
-    found.unwrap_or(10.0) * decade
+/// Distance of grid lines in cm: 1, 2, 5, 10, 20, …
+pub fn grid_spacing(view: &View) -> f64 {
+    let least = LEAST_SPACING / view.scale;
+    // Whole powers as text are exact, and print as people write them.
+    let decade = least.log10().floor() as i32;
+    let rounded = |step: u8, decade: i32| format!("{step}e{decade}").parse().unwrap_or(least);
+    let steps = [1, 2, 5].map(|step| rounded(step, decade));
+    let found = steps.into_iter().find(|&spacing| spacing >= least);
+    found.unwrap_or_else(|| rounded(1, decade + 1))
 }
 
 /// Most of a circle with a head at its end, turning towards the target.
 fn arrow(canvas: &mut Pixmap, center: Point, radius: f32, target: Target) {
     const SEGMENTS: u32 = 64;
-    let (width, head) = ((radius / 14.0).max(1.5), (radius / 4.0).max(5.0));
+    let (width, head) = ((radius / 24.0).max(1.5), (radius / 6.0).max(5.0));
     // Pixel rows run down: growing angles are clockwise on the frame.
     let turn = target.sign();
     let at = |angle: f64, radius: f32| {

@@ -43,12 +43,12 @@ pub struct PyAnimationEncoder(Option<AnimationEncoder>);
 impl PyAnimationEncoder {
     #[new]
     fn new(
-        format: &Bound<'_, PyAny>,
+        file_format: &Bound<'_, PyAny>,
         width: &Bound<'_, PyAny>,
         height: &Bound<'_, PyAny>,
         fps: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
-        let format = text(format, "format")?.parse()?;
+        let format = text(file_format, "file_format")?.parse()?;
         let (width, height) = (side(width, "width")?, side(height, "height")?);
         let encoder = AnimationEncoder::new(format, width, height, real(fps, "fps")?)?;
         Ok(Self(Some(encoder)))
