@@ -15,8 +15,9 @@ from flockenv.action import flat_actions, leader_action_space
 from flockenv.batch import LeaderBatch, drawn_seed
 from flockenv.errors import EpisodeError, ParameterError
 from flockenv.observation import observation_space
-from flockenv.options import EnvOptions, check_render_mode
+from flockenv.options import EnvOptions
 from flockenv.parameters import FlockParameters
+from flockenv.screen import DEFAULT_SIZE, Screen
 from flockenv.specification import specified
 
 __all__ = ["LeaderSlot", "LeaderVecEnv"]
@@ -111,9 +112,9 @@ class LeaderVecEnv(VecEnv):
         *,
         n_leaders: int | Sequence[int] | None = None,
         render_mode: str | None = None,
+        render_size: tuple[int, int] = DEFAULT_SIZE,
         **options: Any,
     ) -> None:
-        check_render_mode(render_mode)
         if num_flocks < 1:
             raise ParameterError(f"num_flocks = {num_flocks!r} is not accepted: at least 1")
         dealt = list(n_leaders) if isinstance(n_leaders, Sequence) else n_leaders
@@ -127,6 +128,9 @@ class LeaderVecEnv(VecEnv):
         settings = self._batch.settings
         self.num_flocks = num_flocks
         self.render_mode = render_mode
+        fps = settings["control_hz"]
+        self._screen = Screen(render_mode, render_size, fps, ("rgb_array",))
+        self.metadata = {"render_modes": ["rgb_array"], "render_fps": fps}
         self.observation_space = observation_space(settings["observation"])
         self.action_space = leader_action_space(settings["rudder_levels"])
         self.state_space = self._batch.state_space
@@ -265,8 +269,11 @@ class LeaderVecEnv(VecEnv):
         return copy.deepcopy(self)
 
     def get_images(self) -> Sequence[NDArray[np.uint8] | None]:
-        """Return nothing to see: `render_mode` is None."""
-        return [None for _ in self.slots]
+        """Return a frame of each flock; nothing to see where `render_mode` is None."""
+        if self.render_mode is None:
+            return [None for _ in self.slots]
+        flocks = map(self._batch.core.flock, range(self.num_flocks))
+        return [self._screen.frame(flock) for flock in flocks]
 
     def close(self) -> None:
         """Nothing is held open."""

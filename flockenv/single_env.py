@@ -11,7 +11,8 @@ from flockenv import _core
 from flockenv.action import flat_actions, joint_action_space
 from flockenv.batch import LeaderBatch, drawn_seed
 from flockenv.observation import observation_space
-from flockenv.options import EnvOptions, check_render_mode
+from flockenv.options import EnvOptions
+from flockenv.screen import DEFAULT_SIZE, RENDER_MODES, Screen
 from flockenv.specification import specified
 
 __all__ = ["LeadersEnv"]
@@ -61,16 +62,26 @@ class LeadersEnv(gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
     {version_history}
     """
 
-    metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012 - Gymnasium's own declaration
+    metadata: dict[str, Any] = {  # noqa: RUF012 - Gymnasium's own declaration
+        "render_modes": list(RENDER_MODES),
+        "render_fps": 10.0,
+    }
 
-    def __init__(self, *, render_mode: str | None = None, **options: Any) -> None:
-        check_render_mode(render_mode)
-        self.render_mode = render_mode
+    def __init__(
+        self,
+        *,
+        render_mode: str | None = None,
+        render_size: tuple[int, int] = DEFAULT_SIZE,
+        **options: Any,
+    ) -> None:
         parsed = EnvOptions.parse(options)
         self.parameters = parsed.parameters
         self.num_leaders = parsed.parameters.n_leaders
         self._batch = LeaderBatch(parsed, [self.num_leaders], "disabled")
         settings = self._batch.settings
+        self.render_mode = render_mode
+        self._screen = Screen(render_mode, render_size, settings["control_hz"])
+        self.metadata = {**self.metadata, "render_fps": settings["control_hz"]}
         self.observation_space = observation_space(settings["observation"], self.num_leaders)
         self.action_space = joint_action_space(settings["rudder_levels"], self.num_leaders)
         self.state_space = self._batch.state_space
@@ -99,6 +110,8 @@ class LeadersEnv(gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
         """
         super().reset(seed=seed)
         self._batch.reset([seed], options, lambda: drawn_seed(self.np_random))
+        if self._screen.is_live:
+            self._screen.show(self.flock)
         return self.observe(), self._batch.begin_info(0)
 
     def step(
@@ -131,6 +144,8 @@ class LeadersEnv(gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
         over = bool(truncated[0])
         if over:
             info.update(self._batch.end_info(0))
+        if self._screen.is_live:
+            self._screen.show(self.flock)
         return rows.reshape(-1), float(rewards.mean()), False, over, info
 
     def observe(self) -> NDArray[np.float32]:
@@ -161,3 +176,15 @@ class LeadersEnv(gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
     def clone(self) -> Self:
         """Return an independent copy that goes on exactly as this one."""
         return copy.deepcopy(self)
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """Return a frame, (height, width, 3) uint8, where `render_mode` is "rgb_array".
+
+        With "human" every reset and step shows itself in a window (see `rendering.Window` for its
+        keys), and nothing is returned.
+        """
+        return None if self.render_mode is None else self._screen.render(self.flock)
+
+    def close(self) -> None:
+        """Close the window, if there is one; it stays closed."""
+        self._screen.close()

@@ -14,7 +14,8 @@ from flockenv.action import flat_actions, joint_action_space
 from flockenv.batch import LeaderBatch, drawn_seed
 from flockenv.errors import ParameterError
 from flockenv.observation import observation_space
-from flockenv.options import EnvOptions, check_render_mode
+from flockenv.options import EnvOptions
+from flockenv.screen import DEFAULT_SIZE, Screen
 from flockenv.specification import specified
 
 __all__ = ["LeadersVectorEnv"]
@@ -74,18 +75,21 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
     {version_history}
     """
 
+    metadata: dict[str, Any] = {  # noqa: RUF012 - Gymnasium's own declaration
+        "render_modes": ["rgb_array"],
+        "render_fps": 10.0,
+    }
+
     def __init__(
         self,
         num_envs: int = 1,
         *,
         autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
         render_mode: str | None = None,
+        render_size: tuple[int, int] = DEFAULT_SIZE,
         **options: Any,
     ) -> None:
-        check_render_mode(render_mode)
         self.autoreset_mode = _autoreset_mode(autoreset_mode)
-        self.metadata = {"render_modes": [], "autoreset_mode": self.autoreset_mode}
-        self.render_mode = render_mode
         if num_envs < 1:
             raise ParameterError(f"num_envs = {num_envs!r} is not accepted: at least 1")
         parsed = EnvOptions.parse(options)
@@ -95,6 +99,14 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
             parsed, [self.num_leaders] * num_envs, _CORE_NAMES[self.autoreset_mode]
         )
         levels, blocks = self._batch.settings["rudder_levels"], self._batch.settings["observation"]
+        self.render_mode = render_mode
+        fps = self._batch.settings["control_hz"]
+        self._screen = Screen(render_mode, render_size, fps, ("rgb_array",))
+        self.metadata = {
+            **self.metadata,
+            "autoreset_mode": self.autoreset_mode,
+            "render_fps": fps,
+        }
         self.single_observation_space = observation_space(blocks, self.num_leaders)
         self.single_action_space = joint_action_space(levels, self.num_leaders)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
@@ -229,6 +241,13 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
     def clone(self) -> Self:
         """Return an independent copy that goes on exactly as this one."""
         return copy.deepcopy(self)
+
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
+        """Return a frame of each flock, (height, width, 3) uint8, if that is the render mode."""
+        if self.render_mode is None:
+            return None
+        flocks = map(self._batch.core.flock, range(self.num_envs))
+        return tuple(map(self._screen.frame, flocks))
 
 
 _CORE_NAMES = {
