@@ -4,8 +4,8 @@
 //! On paper: two boats that meet head on with opposite speeds stop, with nothing left of either.
 
 use crate::support::{
-    OPEN_WATER, R, SCHEMES, VELOCITY_SCHEMES, angular_momentum, core_distance, deepest_overlap,
-    disc, flock_of, inert, kinetic_energy, momentum, take_substeps,
+    OPEN_WATER, R, SCHEMES, VELOCITY_SCHEMES, angular_momentum, cases, core_distance,
+    deepest_overlap, disc, flock_of, inert, kinetic_energy, momentum, take_substeps,
 };
 use flockenv::boat::{Pose, Velocity};
 use flockenv::contact::Partner;
@@ -73,7 +73,7 @@ fn imploding(scheme: Scheme, n_boats: usize, seed: u64) -> Flock {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(12))]
+    #![proptest_config(cases(12))]
 
     #[test]
     fn momentum_and_angular_momentum_are_conserved(seed in 0_u64..1000, n in 2_usize..24) {

@@ -14,6 +14,12 @@ pub struct Dense {
     pub h: DVector<f64>,
 }
 
+/// A solution and the sum of its multipliers.
+pub struct Reference {
+    pub x: DVector<f64>,
+    pub total: f64,
+}
+
 impl Dense {
     pub fn of(problem: &ContactProblem) -> Self {
         let (rows, columns) = (problem.contacts.len(), 3 * problem.free.len());
@@ -66,46 +72,64 @@ impl Dense {
         self.g.select_rows(set)
     }
 
-    /// Multipliers that meet the constraints of a set as equalities, of least norm.
-    pub fn multipliers(&self, set: &[usize]) -> DVector<f64> {
-        let rows = self.rows(set);
+    /// The constraints of a set as equations for x.
+    fn equalities(&self, set: &[usize]) -> (DMatrix<f64>, DVector<f64>) {
         let right = DVector::from_iterator(set.len(), set.iter().map(|&k| self.h[k]));
-        solve_least_norm(&(&rows * rows.transpose()), &right, 1e-12)
+        (self.rows(set), right)
     }
 
-    /// The solution by trying every active set; `None` if none fits.
-    pub fn by_enumeration(&self, tolerance: f64) -> Option<DVector<f64>> {
+    /// The solution by trying every active set; `None` if none fits. Tolerances grow with the
+    /// multipliers, which nearly dependent constraints make large.
+    pub fn by_enumeration(&self, tolerance: f64) -> Option<Reference> {
         let contacts = self.h.len();
         assert!(contacts <= 10, "2^contacts sets");
         (0_u32..1 << contacts).find_map(|bits| {
             let set: Vec<usize> = (0..contacts).filter(|k| bits >> k & 1 == 1).collect();
             if set.is_empty() {
-                return (self.h.max() <= tolerance).then(|| DVector::zeros(self.g.ncols()));
+                let x = DVector::zeros(self.g.ncols());
+                return (self.h.max() <= tolerance).then_some(Reference { x, total: 0.0 });
             }
-            let lambda = self.multipliers(&set);
-            if lambda.min() < -tolerance {
-                return None;
-            }
-            let x = self.rows(&set).transpose() * lambda;
-            ((&self.g * &x - &self.h).min() >= -tolerance).then_some(x)
+            let (rows, right) = self.equalities(&set);
+            let x = solve_least_norm(&rows, &right, 1e-13);
+            let lambda = solve_least_norm(&rows.transpose(), &x, 1e-13);
+            let slack = tolerance * (1.0 + lambda.amax());
+            let fits = lambda.min() >= -slack && (&self.g * &x - &self.h).min() >= -slack;
+            fits.then(|| Reference {
+                x,
+                total: lambda.sum(),
+            })
         })
     }
 
     /// The solution by Goldfarb and Idnani; `None` if the constraints contradict each other.
-    pub fn by_goldfarb_idnani(&self, tolerance: f64) -> Option<DVector<f64>> {
+    pub fn by_goldfarb_idnani(&self, tolerance: f64) -> Option<Reference> {
         let mut x = DVector::zeros(self.g.ncols());
         let (mut set, mut u): (Vec<usize>, Vec<f64>) = (Vec::new(), Vec::new());
         for _ in 0..10_000 {
             let slack = &self.g * &x - &self.h;
             let worst = slack.imin();
             if slack[worst] >= -tolerance {
-                return Some(x);
+                return Some(self.polished(&set, x));
             }
             if !self.add_constraint(worst, &mut x, &mut set, &mut u) {
                 return None;
             }
         }
         panic!("the dual method ends after finitely many constraints");
+    }
+
+    /// The least x that meets a set's constraints as equalities: `x` without the rounding of its way.
+    fn polished(&self, set: &[usize], x: DVector<f64>) -> Reference {
+        if set.is_empty() {
+            return Reference { x, total: 0.0 };
+        }
+        let (rows, right) = self.equalities(set);
+        let x = solve_least_norm(&rows, &right, 1e-13);
+        let lambda = solve_least_norm(&rows.transpose(), &x, 1e-13);
+        Reference {
+            x,
+            total: lambda.sum(),
+        }
     }
 
     /// Moves until one violated constraint is met, dropping others whose multipliers vanish.

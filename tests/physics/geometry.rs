@@ -3,7 +3,7 @@
 //!
 //! On paper: boats nose to tail, side by side, crossed and at right angles.
 
-use crate::support::{H, R, core_distance};
+use crate::support::{H, R, cases, core_distance};
 use flockenv::boat::Pose;
 use flockenv::geometry::{
     Gap, Hull, HullPose, PairFeature, Vec2, inner_wall_gap, outer_wall_gap, pair_gap, pair_gaps,
@@ -112,7 +112,7 @@ fn slope(gap: &Gap, first: bool, direction: usize) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(cases(2000))]
 
     #[test]
     fn the_least_gap_is_the_distance_of_the_cores(a in pose(), b in pose()) {

@@ -4,6 +4,7 @@
 //! On paper: boats that all head outward have Ψ_o = 1, φ_o = 0; clockwise motion is φ_o = +π/2. And
 //! always C = (N·Ψ² − mean|·|²)/(N − 1), which is (N·Ψ_o² − 1)/(N − 1) for unit vectors.
 
+use crate::support::cases;
 use flockenv::boat::{Pose, Velocity};
 use flockenv::lap_frame::{orientation, orientation_vector, velocity_vector};
 use flockenv::parameters::{Preset, Target};
@@ -158,6 +159,8 @@ fn of_the_normal_boats_only_unless_asked() {
 }
 
 proptest! {
+    #![proptest_config(cases(256))]
+
     #[test]
     fn pair_means_follow_from_means(
         boats in prop::collection::vec(

@@ -6,6 +6,7 @@ use flockenv::parameters::{Noise, Pool, Preset, Scheme};
 use flockenv::snapshot::Snapshot;
 use flockenv::statistics::Statistics;
 use flockenv::{Flock, FlockParameters};
+use proptest::test_runner::{Config as ProptestConfig, RngSeed};
 
 /// All schemes.
 pub const SCHEMES: [Scheme; 3] = [Scheme::Leapfrog, Scheme::Moreau, Scheme::Paper];
@@ -23,6 +24,21 @@ pub const OPEN_WATER: Pool = Pool {
 pub const H: f64 = 2.5;
 pub const R: f64 = 5.0;
 pub const RHO: f64 = 4.74;
+
+/// So many draws of a property test, the same ones every time. PROPTEST_CASES and PROPTEST_RNG_SEED in
+/// the environment ask for more and for others.
+pub fn cases(count: u32) -> ProptestConfig {
+    let asked = ProptestConfig::default();
+    ProptestConfig {
+        cases: std::env::var("PROPTEST_CASES").map_or(count, |_| asked.cases),
+        rng_seed: match asked.rng_seed {
+            RngSeed::Random => RngSeed::Fixed(2011),
+            fixed @ RngSeed::Fixed(_) => fixed,
+        },
+        failure_persistence: None,
+        ..asked
+    }
+}
 
 /// A disc of water without an obstacle.
 pub fn disc(outer_radius_cm: f64) -> Pool {

@@ -1,6 +1,8 @@
 //! The exact solver: block principal pivoting (Júdice and Pires 1994) on each island, warm-started
-//! from the contacts that carried an impulse before, with Murty's single pivots as the fallback that
-//! guarantees an end.
+//! from the contacts that carried an impulse before, with a descent as the fallback that guarantees an
+//! end.
+
+mod descent;
 
 use super::envelope::{ABSENT, EnvelopeFactor};
 use super::matrix::ContactMatrix;
@@ -11,7 +13,7 @@ use std::ops::Range;
 
 /// Signs are judged with this tolerance in cm/s, well below [`EXACT`].
 const TOLERANCE: f64 = 1e-11;
-/// Rounds without fewer violations before single pivots take over.
+/// Rounds without fewer violations before the descent takes over.
 const PATIENCE: u32 = 5;
 
 /// The matrix, the factors of all islands, and the state of pivoting, row by row of the matrix.
@@ -100,14 +102,15 @@ impl BlockPivoting {
     }
 
     fn solve_island(&mut self, island: usize, rows: Range<usize>, report: &mut SolveReport) {
-        let most_rounds = 50 + 4 * rows.len();
         let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
-        for _ in 0..most_rounds {
+        loop {
             report.iterations += 1;
             report.factored_rows += self.solve_active(island, rows.clone());
-            let (mut violations, mut last) = self.count_violations(rows.clone());
-            if violations == 0 && self.refine(island, rows.clone()) {
-                (violations, last) = self.count_violations(rows.clone());
+            let mut violations = self.count_violations(rows.clone());
+            let mut refinements = 0;
+            while violations == 0 && refinements < 3 && self.refine(island, rows.clone()) {
+                violations = self.count_violations(rows.clone());
+                refinements += 1;
             }
             if violations == 0 {
                 break;
@@ -117,8 +120,8 @@ impl BlockPivoting {
             } else if patience > 0 {
                 patience -= 1;
             } else {
-                self.active[last] = !self.active[last];
-                continue;
+                self.descend(island, rows.clone(), report);
+                break;
             }
             for row in rows.clone() {
                 self.active[row] ^= self.is_violated(row);
@@ -209,16 +212,8 @@ impl BlockPivoting {
         }
     }
 
-    /// How many contacts are violated, and the last of them.
-    fn count_violations(&self, rows: Range<usize>) -> (usize, usize) {
-        let (mut count, mut last) = (0, rows.start);
-        for row in rows {
-            if self.is_violated(row) {
-                count += 1;
-                last = row;
-            }
-        }
-        (count, last)
+    fn count_violations(&self, rows: Range<usize>) -> usize {
+        rows.filter(|&row| self.is_violated(row)).count()
     }
 
     /// Drops impulses that are negative by rounding.
