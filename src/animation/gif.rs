@@ -10,8 +10,8 @@ use std::collections::BTreeSet;
 
 /// Index of what has not changed; colours have the others.
 const UNCHANGED: u8 = 255;
-/// Every so manieth pixel trains the palette: 1 is best, 30 fastest.
-const SAMPLING: i32 = 4;
+/// Pixels that train a palette: more give better colours and take longer.
+const TRAINING: usize = 20_000;
 
 pub struct GifEncoder {
     encoder: Encoder<Vec<u8>>,
@@ -83,7 +83,9 @@ impl Palette {
             if colors.len() > most {
                 let opaque = |[r, g, b]: [u8; 3]| [r, g, b, 0xFF];
                 let pixels: Vec<u8> = changes.pixels().flatten().flat_map(opaque).collect();
-                return Self::Quantised(Box::new(NeuQuant::new(SAMPLING, most, &pixels)));
+                // Every so manieth pixel is used; the quantiser takes 1 to 30.
+                let sampling = (pixels.len() / 4 / TRAINING).clamp(1, 30) as i32;
+                return Self::Quantised(Box::new(NeuQuant::new(sampling, most, &pixels)));
             }
         }
         Self::Exact(colors.into_iter().collect())

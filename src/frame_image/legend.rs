@@ -10,10 +10,12 @@ use tiny_skia::{Pixmap, PixmapMut, Rect, Transform};
 
 /// The shorter side of a frame over the size of its letters.
 const SIDE_OVER_SIZE: f32 = 46.0;
-/// Letters below this size (pixels) are not written: small frames show the boats alone.
-const LEAST_SIZE: f32 = 5.0;
-/// Letters are at least this large where there are any.
+/// The smallest letters, in pixels.
 const LEGIBLE_SIZE: f32 = 8.0;
+/// What the text of a corner takes, in sizes, and how far from the middle it has to stay, as a share of
+/// the frame's shorter side: smaller frames show the boats alone.
+const CORNER: (f32, f32) = (13.0, 4.0);
+const CLEAR: f32 = 0.4;
 /// Distance of two baselines, distance to the frame's edge and length of the gauges, in sizes.
 const LINE: f32 = 1.45;
 const EDGE: f32 = 0.9;
@@ -28,9 +30,15 @@ pub struct Legend {
 impl Legend {
     /// For frames of this size.
     pub fn new(width: u32, height: u32) -> Self {
-        let size = width.min(height) as f32 / SIDE_OVER_SIZE;
-        let typeface = (size >= LEAST_SIZE).then(|| Typeface::new(size.max(LEGIBLE_SIZE)));
-        Self { typeface }
+        let (width, height) = (width as f32, height as f32);
+        let side = width.min(height);
+        let size = (side / SIDE_OVER_SIZE).max(LEGIBLE_SIZE);
+        let x = width / 2.0 - CORNER.0 * size;
+        let y = (height / 2.0 - CORNER.1 * size).max(0.0);
+        let fits = x >= 0.0 && x.hypot(y) >= CLEAR * side;
+        Self {
+            typeface: fits.then(|| Typeface::new(size)),
+        }
     }
 
     /// Writes it, for a frame with or without a grid.

@@ -11,7 +11,7 @@ const LEGEND: f64 = 0.12;
 /// The least half-width that open water shows, in lengths of a hull: a lone boat is not blown up.
 const LEAST_LENGTHS: f64 = 6.0;
 /// Steps to a factor of two in the scale of open water, so that it changes seldom.
-const STEPS: f64 = 4.0;
+const STEPS: f64 = 8.0;
 
 /// A similarity from world (cm) to pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
