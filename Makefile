@@ -6,6 +6,7 @@ PYTHON ?= python3
 JOBS ?= 2
 PYTEST_ARGS ?=
 COMPARE_ARGS ?=
+THROUGHPUT_ARGS ?=
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -22,7 +23,8 @@ TEST_EXTRAS := --extra train --extra plot --extra render --extra test --extra de
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help setup build compare test lint format test-rust test-python validate clean
+.PHONY: help setup build compare test lint format test-rust test-python test-rllib validate pages \
+        learning-check throughput clean
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -61,9 +63,29 @@ validate: $(STAMPS)/test $(STAMPS)/core ## the slow tests and the published curv
 	cargo test --locked -- --ignored
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) -m "slow or validation" --timeout 3600 $(PYTEST_ARGS)
 
+pages: $(STAMPS)/test $(STAMPS)/core ## write docs/environments from the docstrings
+	$(BIN)/python docs/environment_pages.py
+
+learning-check: $(STAMPS)/test $(STAMPS)/core ## train 500 000 samples through each face, write docs/learning-check.md
+	$(BIN)/python baselines/learning_check.py
+
+# RLlib pins an older gymnasium, and the peers pin other things: environments of their own.
+test-rllib: $(STAMPS)/test ## RLlib on the parallel environment, in .venv-rllib
+	$(PYTHON) -m venv .venv-rllib
+	VIRTUAL_ENV="$(CURDIR)/.venv-rllib" $(BIN)/uv pip install -r pyproject.toml --extra ray pytest \
+	  pytest-timeout "torch>=2.5" --excludes requirements-excluded.txt
+	VIRTUAL_ENV="$(CURDIR)/.venv-rllib" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
+	OMP_NUM_THREADS=1 .venv-rllib/bin/python -m pytest -m rllib tests/env/test_rllib.py
+
+throughput: $(STAMPS)/test $(STAMPS)/core ## measure speed beside VMAS and MPE2, write docs/throughput.md
+	$(PYTHON) -m venv .venv-peers
+	VIRTUAL_ENV="$(CURDIR)/.venv-peers" $(BIN)/uv pip install vmas mpe2 "torch>=2.5" \
+	  --excludes requirements-excluded.txt
+	$(BIN)/python benches/throughput.py $(THROUGHPUT_ARGS)
+
 clean: ## remove everything that was built or installed here
 	cargo clean
-	rm -rf $(VENV) flockenv/_core.*.so flockenv/_core.*.pyd dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(VENV) .venv-rllib .venv-peers flockenv/_core.*.so flockenv/_core.*.pyd dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find . -name __pycache__ -prune -exec rm -rf {} +
 
 # --- setting up -----------------------------------------------------------------------------------------------

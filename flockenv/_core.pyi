@@ -9,8 +9,10 @@ from flockenv.parameters import FlockParameters
 from flockenv.statistics import Statistics
 
 __all__ = [
+    "AnimationEncoder",
     "EnvBatch",
     "Flock",
+    "FrameRenderer",
     "ObservedLaw",
     "__version__",
     "checked_fields",
@@ -115,6 +117,17 @@ class EnvBatch:
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, _memo: Any) -> Self: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class FrameRenderer:
+    def __new__(cls, width: int, height: int) -> Self: ...
+    def draw(self, flock: Flock) -> NDArray[np.uint8]: ...
+
+@final
+class AnimationEncoder:
+    def __new__(cls, file_format: str, width: int, height: int, fps: float) -> Self: ...
+    def add(self, frame: NDArray[np.uint8]) -> None: ...
+    def finish(self) -> bytes: ...
 
 @final
 class Flock:

@@ -6,7 +6,6 @@ some ten kinds of exceptions for damaged files. Here sizes are checked first and
 
 import math
 import os
-import secrets
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,6 +16,7 @@ from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from flockenv.errors import ParameterError
+from flockenv.whole_file import whole_file
 
 __all__ = ["read_arrays", "write_arrays"]
 
@@ -35,18 +35,9 @@ def write_arrays(
     OSError
         If the file cannot be written; what was there before is still there.
     """
-    target = Path(path)
-    temporary = target.with_name(f".{target.name}.{secrets.token_hex(4)}.tmp")
     save = np.savez_compressed if compressed else np.savez
-    try:
-        with temporary.open("xb") as file:
-            save(file, allow_pickle=False, **dict(arrays))
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(target)
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise
+    with whole_file(path) as file:
+        save(file, allow_pickle=False, **dict(arrays))
 
 
 def read_arrays(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:

@@ -58,7 +58,7 @@ def state_entries(n_boats: int) -> list[Entry]:
     return [Entry(*row) for row in _core.state_table(n_boats)]
 
 
-def _box(entries: Iterable[Entry], repeats: int) -> gymnasium.spaces.Box[np.float32]:
+def _box(entries: Iterable[Entry], repeats: int) -> "gymnasium.spaces.Box[np.float32]":
     bounds = np.array([(entry.low, entry.high) for entry in entries], np.float32)
     low, high = np.tile(bounds, (repeats, 1)).T
     return gymnasium.spaces.Box(low.copy(), high.copy(), dtype=np.float32)
@@ -66,12 +66,12 @@ def _box(entries: Iterable[Entry], repeats: int) -> gymnasium.spaces.Box[np.floa
 
 def observation_space(
     blocks: Mapping[str, Any], leaders: int = 1
-) -> gymnasium.spaces.Box[np.float32]:
+) -> "gymnasium.spaces.Box[np.float32]":
     """Return the space of one leader's observation, or of several one after another."""
     return _box(observation_entries(blocks), leaders)
 
 
-def state_space(n_boats: int) -> gymnasium.spaces.Box[np.float32]:
+def state_space(n_boats: int) -> "gymnasium.spaces.Box[np.float32]":
     """Return the space of the global state."""
     return _box(state_entries(n_boats), 1)
 

@@ -10,6 +10,7 @@ from flockenv.errors import ParameterError
 from flockenv.observation import BLOCKS
 from flockenv.parameters import FlockParameters
 from flockenv.reward import TERMS
+from flockenv.screen import DEFAULT_SIZE
 
 __all__ = ["RESET_OPTIONS", "EnvOptions"]
 
@@ -38,7 +39,9 @@ _MEANINGS = {
     "rudder_levels": "number of levels of the discrete action; None: continuous",
     "rudder_lag_s": "time constant of the rudder servo in s",
     "rudder_rate_per_s": "fastest change of the rudder in 1/s; None: any",
-    "render_mode": "None",
+    "render_mode": 'None, "rgb_array" (`render` returns a frame) or "human" (a window, extra '
+    "`render`)",
+    "render_size": "width and height of a frame in pixels, 64 to 4096",
 }
 
 _FIELDS = tuple(each.name for each in fields(FlockParameters))
@@ -105,12 +108,6 @@ def refuse_unknown(names: Iterable[str], known: Iterable[str], what: str) -> Non
         raise ParameterError(f"{name!r} is no {what}: {hint}")
 
 
-def check_render_mode(render_mode: str | None) -> None:
-    """Refuse render modes: no frames are drawn yet."""
-    if render_mode is not None:
-        raise ParameterError(f"render_mode = {render_mode!r} is not accepted: None")
-
-
 def known_reset_options(options: Mapping[str, Any] | None) -> dict[str, Any]:
     """Return the reset options that are ours.
 
@@ -128,7 +125,13 @@ def known_reset_options(options: Mapping[str, Any] | None) -> dict[str, Any]:
 def arguments_table() -> str:
     """Return the options as a Markdown table."""
     scene = FlockParameters().replace(**_SCENE).to_dict()
-    defaults = {**scene, **_core.env_defaults(), "preset": "simulation", "target": scene["target"]}
+    defaults = {
+        **scene,
+        **_core.env_defaults(),
+        "preset": "simulation",
+        "target": scene["target"],
+        "render_size": DEFAULT_SIZE,
+    }
     lines = ["| option | default | meaning |", "| --- | --- | --- |"]
     for name, meaning in _MEANINGS.items():
         lines.append(f"| `{name}` | `{defaults.get(name)!r}` | {meaning} |")

@@ -14,7 +14,9 @@ from flockenv.action import flat_actions, leader_action_space
 from flockenv.batch import LeaderBatch, drawn_seed
 from flockenv.errors import EpisodeError, ParameterError
 from flockenv.observation import observation_space
-from flockenv.options import EnvOptions, check_render_mode
+from flockenv.options import EnvOptions
+from flockenv.screen import DEFAULT_SIZE, RENDER_MODES, Screen
+from flockenv.specification import specified
 
 __all__ = ["LeadersParallelEnv", "parallel_env"]
 
@@ -22,36 +24,66 @@ Observations = dict[str, NDArray[np.float32]]
 Infos = dict[str, dict[str, Any]]
 
 
+@specified
 class LeadersParallelEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float32] | int]):
-    """Each leader an agent; all act at once. The task is that of `LeadersEnv`.
+    """Lead a flock of boats around a ring-shaped pool: each leader is an agent.
 
-    Agents are ``leader_0`` to ``leader_{k-1}``, boats 0 to k - 1 of the flock. Each observes its
-    own surroundings and gets its own reward (the terms about the normal boats are the same for
-    all). All agents live until the time limit truncates the episode; ``agents`` is empty from then
-    on.
+    ``flockenv.parallel_env(**options)``
 
-    Parameters
-    ----------
-    render_mode
-        None.
-    **options
-        Those of `LeadersEnv`.
+    ## Description
+    {task}
 
-    Raises
-    ------
-    ParameterError
-        For unknown options and values out of range.
+    Agents are `leader_0` to `leader_{k-1}`, boats 0 to k - 1. All act at once and live until the
+    time limit; `agents` is empty from then on.
+
+    ## Action space
+    An agent's is `Box(-1, 1, (1,), float32)`, its rudder; `Discrete(n)` with `rudder_levels=n`.
+    {rudder}
+
+    ## Observation space
+    An agent's is a `Box` of shape (observation size,), float32. {frame}
+
+    {observation_table}
+
+    `state()` gives the global state, for critics: the entries of `boat` for each boat in order,
+    then the rest.
+
+    {state_table}
+
+    ## Rewards
+    Each agent gets the weighted sum of the terms below, its own where they are a leader's own;
+    `signed_order` with weight 1 unless `reward` says otherwise. Each step's infos have the agent's
+    `"reward_terms"`, the last ones the `"episode_summary"`; those of a reset are empty.
+
+    {reward_table}
+
+    ## Starting state
+    {starting_state}
+
+    ## Episode end
+    {episode_end}
+
+    ## Arguments
+    {arguments_table}
+
+    ## Version history
+    {version_history}
     """
 
     metadata: dict[str, Any] = {  # noqa: RUF012 - PettingZoo's own declaration
         "name": "leaders_v0",
-        "render_modes": [],
+        "render_modes": list(RENDER_MODES),
+        "render_fps": 10.0,
         "is_parallelizable": True,
     }
 
-    def __init__(self, *, render_mode: str | None = None, **options: Any) -> None:
-        check_render_mode(render_mode)
-        self.render_mode = render_mode
+    def __init__(
+        self,
+        *,
+        render_mode: str | None = None,
+        render_size: tuple[int, int] = DEFAULT_SIZE,
+        **options: Any,
+    ) -> None:
         parsed = EnvOptions.parse(options)
         self.parameters = parsed.parameters
         leaders = parsed.parameters.n_leaders
@@ -59,6 +91,9 @@ class LeadersParallelEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float3
         self.possible_agents = [f"leader_{leader}" for leader in range(leaders)]
         self.agents: list[str] = []
         settings = self._batch.settings
+        self.render_mode = render_mode
+        self._screen = Screen(render_mode, render_size, settings["control_hz"])
+        self.metadata = {**self.metadata, "render_fps": settings["control_hz"]}
         self.observation_spaces = {
             agent: observation_space(settings["observation"]) for agent in self.possible_agents
         }
@@ -97,6 +132,8 @@ class LeadersParallelEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float3
         """
         self._batch.reset([seed], options, lambda: drawn_seed(self._random))
         self.agents = self.possible_agents[:]
+        if self._screen.is_live:
+            self._screen.show(self.flock)
         # Empty: TorchRL expects every later info to look like those of the reset.
         return self.observe(), {agent: {} for agent in self.agents}
 
@@ -129,6 +166,8 @@ class LeadersParallelEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float3
         infos = self._infos(over)
         if over:
             self.agents = []
+        if self._screen.is_live:
+            self._screen.show(self.flock)
         return (
             dict(zip(agents, rows, strict=True)),
             dict(zip(agents, rewards.tolist(), strict=True)),
@@ -200,11 +239,17 @@ class LeadersParallelEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float3
         """Return an independent copy that goes on exactly as this one."""
         return copy.deepcopy(self)
 
-    def render(self) -> None:
-        """Draw nothing: `render_mode` is None."""
+    def render(self) -> NDArray[np.uint8] | None:
+        """Return a frame, (height, width, 3) uint8, where `render_mode` is "rgb_array".
+
+        With "human" every reset and step shows itself in a window (see `rendering.Window` for its
+        keys), and nothing is returned.
+        """
+        return None if self.render_mode is None else self._screen.render(self.flock)
 
     def close(self) -> None:
-        """Nothing is held open."""
+        """Close the window, if there is one; it stays closed."""
+        self._screen.close()
 
 
 def parallel_env(*, render_mode: str | None = None, **options: Any) -> LeadersParallelEnv:

@@ -166,7 +166,7 @@ class DampedLaw(ObservedPolicy):
         self,
         gain: float = 6.0 / math.pi,
         backward_gain: float = 6.0 / math.pi,
-        damping: float = 10.0,
+        damping: float = 3.0,
         *,
         observation: Mapping[str, Any] | None = None,
         mirror_to_target: bool = False,

@@ -15,8 +15,10 @@ from flockenv.action import flat_actions, leader_action_space
 from flockenv.batch import LeaderBatch, drawn_seed
 from flockenv.errors import EpisodeError, ParameterError
 from flockenv.observation import observation_space
-from flockenv.options import EnvOptions, check_render_mode
+from flockenv.options import EnvOptions
 from flockenv.parameters import FlockParameters
+from flockenv.screen import DEFAULT_SIZE, Screen
+from flockenv.specification import specified
 
 __all__ = ["LeaderSlot", "LeaderVecEnv"]
 
@@ -51,36 +53,57 @@ class LeaderSlot:
         return self._env._batch.core.state(self.flock_index)
 
 
+@specified
 class LeaderVecEnv(VecEnv):
-    """Many flocks, each leader a slot of its own: one policy is shared by all leaders.
+    """Many flocks for stable-baselines3, each leader a slot: one policy is shared by all leaders.
 
-    The task, its observation, reward and options are those of `LeadersEnv`. Slots are leaders,
-    flock after flock. Flocks are stepped in parallel in Rust; arrays that are returned are never
-    written to again. A flock's slots end their episodes together; it is then reset at once, and
-    their infos have ``"TimeLimit.truncated"`` (always True), ``"terminal_observation"``,
-    ``"terminal_state"`` and the ``"episode_summary"``. For episode returns in SB3's logs wrap it
-    in ``VecMonitor``.
+    ``flockenv.sb3.LeaderVecEnv(num_flocks=64, n_leaders=[1, 2, 3, 4], **options)``
 
-    Parameters
-    ----------
-    num_flocks
-        Number of flocks.
-    n_leaders
-        Leaders of each flock; a list is dealt out to the flocks in turn, so that one policy can
-        learn all of them.
-    render_mode
-        None.
-    **options
-        Those of `LeadersEnv`.
+    ## Description
+    {task}
 
-    Raises
-    ------
-    ParameterError
-        For unknown options and values out of range.
+    Slots are leaders, flock after flock. Flocks are stepped in parallel in Rust; results depend
+    neither on `num_flocks` nor on the number of threads. Arrays that are returned are never written
+    to again. For episode returns in SB3's logs wrap it in `VecMonitor`.
 
-    Notes
-    -----
-    ``seed(s)`` makes the next reset seed flock i with s + i, as in `LeadersVectorEnv`.
+    ## Action space
+    A slot's is `Box(-1, 1, (1,), float32)`, its leader's rudder; `Discrete(n)` with
+    `rudder_levels=n`. {rudder}
+
+    ## Observation space
+    A slot's is a `Box` of shape (observation size,), float32. {frame}
+
+    {observation_table}
+
+    `state()` gives each slot the global state of its flock, for critics: the entries of `boat` for
+    each boat in order, then the rest.
+
+    {state_table}
+
+    ## Rewards
+    Each slot gets the weighted sum of the terms below, its own where they are a leader's own;
+    `signed_order` with weight 1 unless `reward` says otherwise. `reward_terms()` tells those of the
+    last step.
+
+    {reward_table}
+
+    ## Starting state
+    {starting_state} Here `seed(s)` makes the next reset seed flock i with s + i, and
+    `set_options` sets the options of the next reset.
+
+    ## Episode end
+    {episode_end} A flock's slots end together and begin the next episode in the same step. Their
+    infos then have `"TimeLimit.truncated"` (always True), `"terminal_observation"`,
+    `"terminal_state"` and the `"episode_summary"`.
+
+    ## Arguments
+    `num_flocks`: number of flocks; `n_leaders`: leaders of each flock, where a list is dealt out to
+    the flocks in turn, so that one policy can learn all of them; and:
+
+    {arguments_table}
+
+    ## Version history
+    {version_history}
     """
 
     def __init__(
@@ -89,9 +112,9 @@ class LeaderVecEnv(VecEnv):
         *,
         n_leaders: int | Sequence[int] | None = None,
         render_mode: str | None = None,
+        render_size: tuple[int, int] = DEFAULT_SIZE,
         **options: Any,
     ) -> None:
-        check_render_mode(render_mode)
         if num_flocks < 1:
             raise ParameterError(f"num_flocks = {num_flocks!r} is not accepted: at least 1")
         dealt = list(n_leaders) if isinstance(n_leaders, Sequence) else n_leaders
@@ -105,6 +128,9 @@ class LeaderVecEnv(VecEnv):
         settings = self._batch.settings
         self.num_flocks = num_flocks
         self.render_mode = render_mode
+        fps = settings["control_hz"]
+        self._screen = Screen(render_mode, render_size, fps, ("rgb_array",))
+        self.metadata = {"render_modes": ["rgb_array"], "render_fps": fps}
         self.observation_space = observation_space(settings["observation"])
         self.action_space = leader_action_space(settings["rudder_levels"])
         self.state_space = self._batch.state_space
@@ -243,8 +269,11 @@ class LeaderVecEnv(VecEnv):
         return copy.deepcopy(self)
 
     def get_images(self) -> Sequence[NDArray[np.uint8] | None]:
-        """Return nothing to see: `render_mode` is None."""
-        return [None for _ in self.slots]
+        """Return a frame of each flock; nothing to see where `render_mode` is None."""
+        if self.render_mode is None:
+            return [None for _ in self.slots]
+        flocks = map(self._batch.core.flock, range(self.num_flocks))
+        return [self._screen.frame(flock) for flock in flocks]
 
     def close(self) -> None:
         """Nothing is held open."""

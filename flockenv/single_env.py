@@ -10,71 +10,78 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv import _core
 from flockenv.action import flat_actions, joint_action_space
 from flockenv.batch import LeaderBatch, drawn_seed
-from flockenv.observation import (
-    OBSERVATION_VERSION,
-    observation_entries,
-    observation_space,
-    observation_table,
-)
-from flockenv.options import EnvOptions, arguments_table, check_render_mode
-from flockenv.reward import terms_table
+from flockenv.observation import observation_space
+from flockenv.options import EnvOptions
+from flockenv.screen import DEFAULT_SIZE, RENDER_MODES, Screen
+from flockenv.specification import specified
 
 __all__ = ["LeadersEnv"]
 
 
+@specified
 class LeadersEnv(gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
-    """Lead a flock of boats around an annular pool.
+    """Lead a flock of boats around a ring-shaped pool: one policy steers all leaders.
+
+    ``gymnasium.make("flockenv/Leaders-v0", **options)``
 
     ## Description
-    Boats drive through a ring-shaped pool: forward for 2 s, drifting, backward for `bw_s`,
-    drifting, and so on. They align by nothing but frictionless, perfectly inelastic collisions;
-    backing makes them spin, the more the longer it lasts, which destroys order (Tarcai et al.
-    2011). A few of them, the leaders, have a rudder. The task is to make the *normal* boats
-    circulate in the target direction.
+    {task}
 
     ## Action space
-    `Box(-1, 1, (k,), float32)`: the rudders of leaders 0 to k - 1, held for a control step. A
-    positive rudder turns a boat that moves forward counter-clockwise, and works in reverse on one
-    that moves backward. Numbers beyond ±1 are clipped, NaN is an error. With `rudder_levels=n` it
-    is `MultiDiscrete([n] * k)`: levels 0 to n - 1 are rudders evenly spaced from -1 to 1.
+    `Box(-1, 1, (k,), float32)`: the rudders of leaders 0 to k - 1; `MultiDiscrete([n] * k)` with
+    `rudder_levels=n`. {rudder}
 
     ## Observation space
     `Box` of shape (k * observation size,), float32: what leader 0 observes, then leader 1, and so
-    on. Everything is in the local-angle polar (LAP) frame of the leader's own place, outward and
-    clockwise, scaled and clipped at the bounds below.
+    on. {frame}
 
     {observation_table}
 
+    `state()` gives the global state, for critics: the entries of `boat` for each boat in order,
+    then the rest.
+
+    {state_table}
+
     ## Rewards
     The weighted sum of the terms below, mean over leaders; `signed_order` with weight 1 unless
-    `reward` says otherwise.
+    `reward` says otherwise. Each step's info has the `"reward_terms"`, the last one the
+    `"episode_summary"`.
 
     {reward_table}
 
     ## Starting state
-    Boats at random places with random headings, not overlapping, at rest; phase fw begins. The
-    seed fixes the start, the noise (whatever the policy does), the target and the noise level.
+    {starting_state}
 
     ## Episode end
-    Truncated after `episode_s`; never terminated.
+    {episode_end}
 
     ## Arguments
     {arguments_table}
 
     ## Version history
-    - v0, observation version {observation_version}: initial version.
+    {version_history}
     """
 
-    metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012 - Gymnasium's own declaration
+    metadata: dict[str, Any] = {  # noqa: RUF012 - Gymnasium's own declaration
+        "render_modes": list(RENDER_MODES),
+        "render_fps": 10.0,
+    }
 
-    def __init__(self, *, render_mode: str | None = None, **options: Any) -> None:
-        check_render_mode(render_mode)
-        self.render_mode = render_mode
+    def __init__(
+        self,
+        *,
+        render_mode: str | None = None,
+        render_size: tuple[int, int] = DEFAULT_SIZE,
+        **options: Any,
+    ) -> None:
         parsed = EnvOptions.parse(options)
         self.parameters = parsed.parameters
         self.num_leaders = parsed.parameters.n_leaders
         self._batch = LeaderBatch(parsed, [self.num_leaders], "disabled")
         settings = self._batch.settings
+        self.render_mode = render_mode
+        self._screen = Screen(render_mode, render_size, settings["control_hz"])
+        self.metadata = {**self.metadata, "render_fps": settings["control_hz"]}
         self.observation_space = observation_space(settings["observation"], self.num_leaders)
         self.action_space = joint_action_space(settings["rudder_levels"], self.num_leaders)
         self.state_space = self._batch.state_space
@@ -103,6 +110,8 @@ class LeadersEnv(gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
         """
         super().reset(seed=seed)
         self._batch.reset([seed], options, lambda: drawn_seed(self.np_random))
+        if self._screen.is_live:
+            self._screen.show(self.flock)
         return self.observe(), self._batch.begin_info(0)
 
     def step(
@@ -135,6 +144,8 @@ class LeadersEnv(gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
         over = bool(truncated[0])
         if over:
             info.update(self._batch.end_info(0))
+        if self._screen.is_live:
+            self._screen.show(self.flock)
         return rows.reshape(-1), float(rewards.mean()), False, over, info
 
     def observe(self) -> NDArray[np.float32]:
@@ -166,18 +177,14 @@ class LeadersEnv(gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
         """Return an independent copy that goes on exactly as this one."""
         return copy.deepcopy(self)
 
+    def render(self) -> NDArray[np.uint8] | None:
+        """Return a frame, (height, width, 3) uint8, where `render_mode` is "rgb_array".
 
-def _specification(template: str) -> str:
-    """Return a docstring with its tables filled in from the core's data."""
-    tables = {
-        "observation_table": observation_table(observation_entries()),
-        "reward_table": terms_table(),
-        "arguments_table": arguments_table(),
-        "observation_version": str(OBSERVATION_VERSION),
-    }
-    for name, table in tables.items():
-        template = template.replace(f"{{{name}}}", table.replace("\n", "\n    "))
-    return template
+        With "human" every reset and step shows itself in a window (see `rendering.Window` for its
+        keys), and nothing is returned.
+        """
+        return None if self.render_mode is None else self._screen.render(self.flock)
 
-
-LeadersEnv.__doc__ = _specification(LeadersEnv.__doc__ or "")
+    def close(self) -> None:
+        """Close the window, if there is one; it stays closed."""
+        self._screen.close()

@@ -14,42 +14,71 @@ from flockenv.action import flat_actions, joint_action_space
 from flockenv.batch import LeaderBatch, drawn_seed
 from flockenv.errors import ParameterError
 from flockenv.observation import observation_space
-from flockenv.options import EnvOptions, check_render_mode
+from flockenv.options import EnvOptions
+from flockenv.screen import DEFAULT_SIZE, Screen
+from flockenv.specification import specified
 
 __all__ = ["LeadersVectorEnv"]
 
 
+@specified
 class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], NDArray[Any]]):
-    """Many flocks at once, one policy steering all leaders of a flock.
+    """Lead many flocks at once, one policy steering all leaders of a flock.
 
-    The task, its observation, reward and options are those of `LeadersEnv`. Flocks are stepped in
-    parallel in Rust; results depend neither on `num_envs` nor on the number of threads. Arrays that
-    are returned are never written to again.
+    ``gymnasium.make_vec("flockenv/Leaders-v0", num_envs=64, **options)``
 
-    Parameters
-    ----------
-    num_envs
-        Number of flocks.
-    autoreset_mode
-        What happens after an episode's end, one of Gymnasium's three modes or its value:
-        ``"next_step"``, ``"same_step"`` (the last observation is in ``infos["final_obs"]``) or
-        ``"disabled"`` (reset with ``options={"reset_mask": mask}``).
-    render_mode
-        None.
-    **options
-        Those of `LeadersEnv`.
+    ## Description
+    {task}
 
-    Raises
-    ------
-    ParameterError
-        For unknown options and values out of range.
+    Flocks are stepped in parallel in Rust; results depend neither on `num_envs` nor on the number
+    of threads. Arrays that are returned are never written to again.
 
-    Notes
-    -----
-    ``reset(seed=s)`` seeds flock i with s + i, a list gives each flock its own. ``options`` holds
-    for all flocks; a list has one entry a flock. At an episode's end ``infos["episode_summary"]``
-    (in ``infos["final_info"]`` with ``"same_step"``) has means over the episode.
+    ## Action space
+    For each flock `Box(-1, 1, (k,), float32)`, the rudders of leaders 0 to k - 1;
+    `MultiDiscrete([n] * k)` with `rudder_levels=n`. {rudder}
+
+    ## Observation space
+    For each flock a `Box` of shape (k * observation size,), float32: what leader 0 observes, then
+    leader 1, and so on. {frame}
+
+    {observation_table}
+
+    `state()` gives the global state of every flock, for critics: the entries of `boat` for each
+    boat in order, then the rest.
+
+    {state_table}
+
+    ## Rewards
+    The weighted sum of the terms below, mean over a flock's leaders; `signed_order` with weight 1
+    unless `reward` says otherwise. `reward_terms()` tells those of the last step.
+
+    {reward_table}
+
+    ## Starting state
+    {starting_state} Here `seed=s` seeds flock i with s + i, a list gives each flock its own, and an
+    option that is a list has one entry a flock. `reset(options={"reset_mask": mask})` resets some
+    flocks.
+
+    ## Episode end
+    {episode_end} At the end `infos["episode_summary"]` has means over the episode. With
+    `autoreset_mode="next_step"` the next step begins the next episode and ignores its action, with
+    `"same_step"` the step itself does (`infos["final_obs"]` and `infos["final_info"]` have what was
+    last), with `"disabled"` flocks wait for a reset with a mask.
+
+    ## Arguments
+    `num_envs`: number of flocks; `autoreset_mode`: one of Gymnasium's `AutoresetMode` or its name;
+    and:
+
+    {arguments_table}
+
+    ## Version history
+    {version_history}
     """
+
+    metadata: dict[str, Any] = {  # noqa: RUF012 - Gymnasium's own declaration
+        "render_modes": ["rgb_array"],
+        "render_fps": 10.0,
+    }
 
     def __init__(
         self,
@@ -57,12 +86,10 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         *,
         autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
         render_mode: str | None = None,
+        render_size: tuple[int, int] = DEFAULT_SIZE,
         **options: Any,
     ) -> None:
-        check_render_mode(render_mode)
         self.autoreset_mode = _autoreset_mode(autoreset_mode)
-        self.metadata = {"render_modes": [], "autoreset_mode": self.autoreset_mode}
-        self.render_mode = render_mode
         if num_envs < 1:
             raise ParameterError(f"num_envs = {num_envs!r} is not accepted: at least 1")
         parsed = EnvOptions.parse(options)
@@ -72,6 +99,14 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
             parsed, [self.num_leaders] * num_envs, _CORE_NAMES[self.autoreset_mode]
         )
         levels, blocks = self._batch.settings["rudder_levels"], self._batch.settings["observation"]
+        self.render_mode = render_mode
+        fps = self._batch.settings["control_hz"]
+        self._screen = Screen(render_mode, render_size, fps, ("rgb_array",))
+        self.metadata = {
+            **self.metadata,
+            "autoreset_mode": self.autoreset_mode,
+            "render_fps": fps,
+        }
         self.single_observation_space = observation_space(blocks, self.num_leaders)
         self.single_action_space = joint_action_space(levels, self.num_leaders)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
@@ -206,6 +241,13 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
     def clone(self) -> Self:
         """Return an independent copy that goes on exactly as this one."""
         return copy.deepcopy(self)
+
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
+        """Return a frame of each flock, (height, width, 3) uint8, if that is the render mode."""
+        if self.render_mode is None:
+            return None
+        flocks = map(self._batch.core.flock, range(self.num_envs))
+        return tuple(map(self._screen.frame, flocks))
 
 
 _CORE_NAMES = {

@@ -4,9 +4,9 @@
 use crate::dynamics::Steering;
 use crate::error::{FlockError, Result};
 use crate::flock::Flock;
+use crate::parallel;
 use crate::parameters::FlockParameters;
-use crate::phase_schedule::Ticks;
-use rayon::prelude::*;
+use crate::phase_schedule::{Ticks, seconds};
 
 /// A batch of flocks, which may differ in parameters.
 #[derive(Debug, Clone)]
@@ -20,11 +20,10 @@ impl FlockBatch {
     /// # Errors
     /// The first error of making a flock.
     pub fn new(members: Vec<(FlockParameters, u64)>) -> Result<Self> {
-        let flocks: Result<Vec<Flock>> = members
-            .into_par_iter()
-            .map(|(parameters, seed)| Flock::new(parameters, seed))
-            .collect();
-        Ok(Self { flocks: flocks? })
+        let flocks = parallel::map(members, |(parameters, seed)| Flock::new(parameters, seed));
+        Ok(Self {
+            flocks: flocks.into_iter().collect::<Result<_>>()?,
+        })
     }
 
     /// How many flocks there are.
@@ -51,27 +50,23 @@ impl FlockBatch {
     /// after another, `None` steers by the paper's law.
     ///
     /// # Errors
-    /// A bad rudder refuses the whole step before anything moves. A flock whose numbers left the finite
+    /// A bad rudder or duration refuses the whole step before anything moves. A flock whose numbers left the finite
     /// range is as it was before, and its error is returned after the others have moved.
     pub fn advance(&mut self, duration: Ticks, rudders: Option<&[f64]>) -> Result<()> {
         self.check_rudder_count(rudders)?;
         let mut begin = 0;
-        let mut steerings = Vec::with_capacity(self.flocks.len());
+        let mut moves = Vec::with_capacity(self.flocks.len());
         for flock in &self.flocks {
             let leaders = flock.parameters().n_leaders;
-            let commands = rudders.map(|all| all.get(begin..begin + leaders).unwrap_or_default());
+            let commands = rudders.map(|all| &all[begin..begin + leaders]);
             flock.check_rudder(commands)?;
-            steerings.push(commands.map_or(Steering::Law, Steering::Held));
+            let end = flock.end_of(seconds(duration))?;
+            moves.push((end, commands.map_or(Steering::Law, Steering::Held)));
             begin += leaders;
         }
-        self.flocks
-            .par_iter_mut()
-            .zip(steerings)
-            .map(|(flock, steering)| flock.advance_to(flock.time() + duration, steering))
-            // A vector first: collecting into a result would stop at the first error.
-            .collect::<Vec<Result<()>>>()
-            .into_iter()
-            .collect()
+        let pairs: Vec<_> = self.flocks.iter_mut().zip(moves).collect();
+        let advance = |(flock, (end, steering)): (&mut Flock, _)| flock.advance_to(end, steering);
+        parallel::map(pairs, advance).into_iter().collect()
     }
 
     fn check_rudder_count(&self, rudders: Option<&[f64]>) -> Result<()> {

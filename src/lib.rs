@@ -19,6 +19,7 @@
 //! solver (how the contact problem is solved), phase, LAP frame, order parameter, rudder command,
 //! control step (policy) and substep (physics), flock batch.
 
+pub mod animation;
 pub mod boat;
 pub mod contact;
 pub mod dynamics;
@@ -26,6 +27,7 @@ pub mod environment;
 pub mod error;
 pub mod flock;
 pub mod flock_batch;
+pub mod frame_image;
 pub mod geometry;
 pub mod lap_frame;
 mod names;
@@ -50,5 +52,6 @@ mod python;
 pub use error::{FlockError, Result};
 pub use flock::Flock;
 pub use flock_batch::FlockBatch;
+pub use frame_image::FrameRenderer;
 pub use order_parameters::OrderParameters;
 pub use parameters::FlockParameters;

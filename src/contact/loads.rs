@@ -50,17 +50,17 @@ impl Loads {
     /// hull's end onto its side, a contact changes its name and goes on: it inherits the load of a
     /// contact between the same boats that is there no more.
     pub fn recall(&self, contacts: &[Contact], k: usize) -> f64 {
-        let contact = &contacts[k];
+        let key = contacts[k].key();
+        let is_pair = contacts[k].second().is_some();
         // A pair has at most two contacts, which are found one after the other.
         let near = &contacts[k.saturating_sub(1)..(k + 2).min(contacts.len())];
         let mut inherited = 0.0;
-        let mut place = self.of_boat[contact.boat as usize];
+        let mut place = self.of_boat[key.0 as usize];
         while let Some(&(known, impulse)) = self.loads.get(place as usize) {
-            if known == contact.key() {
+            if known == key {
                 return impulse;
             }
-            let same_boats = contact.second().is_some() && known.1 == contact.partner;
-            if same_boats && near.iter().all(|other| other.key() != known) {
+            if is_pair && known.1 == key.1 && near.iter().all(|other| other.key() != known) {
                 inherited = impulse;
             }
             place = self.before[place as usize];

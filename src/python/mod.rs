@@ -5,6 +5,7 @@ pub mod env_batch;
 pub mod env_settings;
 pub mod error;
 pub mod flock;
+pub mod frame_image;
 pub mod observation;
 pub mod order;
 pub mod parameters;
@@ -23,6 +24,8 @@ mod _core {
     use super::env_settings::{env_defaults, reward_terms};
     #[pymodule_export]
     use super::flock::PyFlock;
+    #[pymodule_export]
+    use super::frame_image::{PyAnimationEncoder, PyFrameRenderer};
     #[pymodule_export]
     use super::observation::{
         PyObservedLaw, observation_table, observation_version, observe, state_table,

@@ -51,7 +51,7 @@ def face(request):
             "observation",
         ),
         ({"n_leaders": 9}, "n_boats > n_leaders"),
-        ({"render_mode": "human"}, "render_mode = 'human'"),
+        ({"render_mode": "ansi"}, "render_mode = 'ansi'"),
         ({"dt_s": 0.0}, "dt_s = 0"),
     ],
 )

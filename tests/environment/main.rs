@@ -1,7 +1,9 @@
 //! The environment's core without Python, one file per law.
 
+mod animation;
 mod batches;
 mod episodes;
+mod frame_image;
 mod observations;
 mod stored_states;
 mod support;

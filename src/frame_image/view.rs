@@ -1,0 +1,89 @@
+//! Which part of the world a frame shows: world y points up, pixel rows run down.
+
+use crate::flock::Flock;
+use crate::geometry::{Hull, Vec2};
+use tiny_skia::Point;
+
+/// Share of the frame's shorter side that stays free around a pool.
+const MARGIN: f64 = 0.03;
+/// Share of the frame's height above and below that the legend takes in open water.
+const LEGEND: f64 = 0.12;
+/// The least half-width that open water shows, in lengths of a hull: a lone boat is not blown up.
+const LEAST_LENGTHS: f64 = 6.0;
+/// Steps to a factor of two in the scale of open water, so that it changes seldom.
+const STEPS: f64 = 8.0;
+
+/// A similarity from world (cm) to pixels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// World point in the middle of the frame, in cm.
+    pub center: Vec2,
+    /// Pixels in a cm.
+    pub scale: f64,
+    /// The frame's middle, in pixels.
+    middle: Vec2,
+}
+
+impl View {
+    /// The whole pool, or in open water the boats' bounding box, in a frame of this size.
+    pub fn of(flock: &Flock, width: u32, height: u32) -> Self {
+        let size = Vec2::new(f64::from(width), f64::from(height));
+        let pool = &flock.parameters().pool;
+        let (center, scale) = if pool.has_outer_wall() {
+            let radius = size.min() * (0.5 - MARGIN);
+            (Vec2::zeros(), radius / pool.outer_radius_cm)
+        } else {
+            following(flock, size)
+        };
+        Self {
+            center,
+            scale,
+            middle: size / 2.0,
+        }
+    }
+
+    /// Where a world point falls, in pixels.
+    pub fn pixel(&self, world: Vec2) -> Point {
+        let offset = (world - self.center) * self.scale;
+        Point {
+            x: (self.middle.x + offset.x) as f32,
+            y: (self.middle.y - offset.y) as f32,
+        }
+    }
+
+    /// A world direction as one of the frame.
+    pub fn direction(world: Vec2) -> Point {
+        Point {
+            x: world.x as f32,
+            y: -world.y as f32,
+        }
+    }
+
+    /// A length in pixels.
+    pub fn length(&self, cm: f64) -> f32 {
+        (cm * self.scale) as f32
+    }
+
+    /// Whether anything within a reach (cm) of a world point is in the frame.
+    pub fn shows(&self, world: Vec2, reach: f64) -> bool {
+        let room = self.middle / self.scale + Vec2::repeat(reach);
+        let offset = (world - self.center).abs();
+        offset.x <= room.x && offset.y <= room.y
+    }
+}
+
+/// Centre and scale that hold all boats, clear of the legend.
+fn following(flock: &Flock, size: Vec2) -> (Vec2, f64) {
+    let length = 2.0 * Hull::new(flock.parameters()).reach();
+    let (mut low, mut high) = (Vec2::repeat(f64::INFINITY), Vec2::repeat(-f64::INFINITY));
+    for hull in flock.hulls() {
+        low = low.inf(&hull.center);
+        high = high.sup(&hull.center);
+    }
+    let half =
+        ((high - low) / 2.0 + Vec2::repeat(length)).sup(&Vec2::repeat(LEAST_LENGTHS * length));
+    let room = Vec2::new(size.x, size.y * (1.0 - 2.0 * LEGEND)) / 2.0;
+    let scale = room.component_div(&half).min();
+    let step = (scale.log2() * STEPS).floor() / STEPS;
+    ((low + high) / 2.0, step.exp2())
+}

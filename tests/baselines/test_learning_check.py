@@ -1,0 +1,45 @@
+"""Law: the learning check runs through every face, and says so when nothing was learned."""
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("stable_baselines3")
+
+SCRIPT = Path(__file__).parents[2] / "baselines" / "learning_check.py"
+
+
+@pytest.fixture(scope="module")
+def script():
+    spec = importlib.util.spec_from_file_location("learning_check", SCRIPT)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_a_short_run_of_each_face(script, tmp_path):
+    out = tmp_path / "docs" / "check.md"
+    arguments = ["--samples", "500", "--episodes", "4", "--out", str(out)]
+    assert script.main(arguments) in (0, 1)
+    page = out.read_text()
+    for face in script.FACES:
+        assert f"| {face} |" in page
+    assert "baselines/learning_check.py --samples 500" in page
+
+
+def test_faces_train_on_other_seeds_than_those_of_the_evaluation(script):
+    for make in script.FACES.values():
+        env = make()
+        env.seed(script.TRAINING_SEEDS)
+        first = env.reset()
+        assert np.isfinite(first).all()
+        env.seed(script.TRAINING_SEEDS)
+        np.testing.assert_array_equal(env.reset(), first)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(3600)
+def test_every_face_learns(script, tmp_path):
+    assert script.main(["--out", str(tmp_path / "check.md")]) == 0
