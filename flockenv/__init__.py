@@ -1,6 +1,8 @@
 """Flocks of leader-steered rigid boats in a pool, simulated in Rust."""
 
+import importlib
 from importlib.metadata import version
+from types import ModuleType
 
 from flockenv import policies
 from flockenv._core import Flock
@@ -40,3 +42,10 @@ __all__ = [
 __version__ = version("flockenv")
 
 register()
+
+
+def __getattr__(name: str) -> ModuleType:
+    # stable-baselines3 takes seconds to import: only for those who use it.
+    if name == "sb3":
+        return importlib.import_module("flockenv.sb3")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -58,9 +58,12 @@ def state_entries(n_boats: int) -> list[Entry]:
     return [Entry(*row) for row in _core.state_table(n_boats)]
 
 
-def _box(entries: Iterable[Entry], repeats: int) -> "gymnasium.spaces.Box[np.float32]":
-    bounds = np.array([(entry.low, entry.high) for entry in entries], np.float32)
-    low, high = np.tile(bounds, (repeats, 1)).T
+def _bounds(entries: Iterable[Entry]) -> NDArray[np.float32]:
+    return np.array([(entry.low, entry.high) for entry in entries], np.float32)
+
+
+def _box(bounds: NDArray[np.float32]) -> "gymnasium.spaces.Box[np.float32]":
+    low, high = bounds.T
     return gymnasium.spaces.Box(low.copy(), high.copy(), dtype=np.float32)
 
 
@@ -68,12 +71,14 @@ def observation_space(
     blocks: Mapping[str, Any], leaders: int = 1
 ) -> "gymnasium.spaces.Box[np.float32]":
     """Return the space of one leader's observation, or of several one after another."""
-    return _box(observation_entries(blocks), leaders)
+    return _box(np.tile(_bounds(observation_entries(blocks)), (leaders, 1)))
 
 
 def state_space(n_boats: int) -> "gymnasium.spaces.Box[np.float32]":
     """Return the space of the global state."""
-    return _box(state_entries(n_boats), 1)
+    boat_and_rest, rest = _bounds(state_entries(1)), _bounds(state_entries(0))
+    boats = np.tile(boat_and_rest[: -len(rest)], (n_boats, 1))
+    return _box(np.concatenate([boats, rest]))
 
 
 def observe(

@@ -9,16 +9,20 @@ from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from stable_baselines3.common.vec_env import VecEnv
 
 from flockenv.action import flat_actions, leader_action_space
 from flockenv.batch import LeaderBatch, drawn_seed
 from flockenv.errors import EpisodeError, ParameterError
+from flockenv.extras import require
 from flockenv.observation import observation_space
 from flockenv.options import EnvOptions
 from flockenv.parameters import FlockParameters
 from flockenv.screen import DEFAULT_SIZE, Screen
 from flockenv.specification import specified
+
+require("stable_baselines3", "train")
+
+from stable_baselines3.common.vec_env import VecEnv  # noqa: E402 - after the check above
 
 __all__ = ["LeaderSlot", "LeaderVecEnv"]
 

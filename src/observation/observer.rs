@@ -240,35 +240,39 @@ fn order(view: &FlockView) -> [f64; ORDER.len()] {
 /// Writes the global state of one flock, for critics that see everything.
 #[derive(Debug, Clone)]
 pub struct StateObserver {
-    scaling: Scaling,
+    boats: usize,
+    boat: Scaling,
+    rest: Scaling,
     mirror_to_target: bool,
 }
 
 impl StateObserver {
     /// For checked parameters; mirrored like the observations.
     pub fn new(parameters: &FlockParameters, mirror_to_target: bool) -> Self {
-        let entries = state_entries(parameters.n_boats).into_iter();
+        let rest = state_entries(0).into_iter();
         Self {
-            scaling: Scaling::new(entries, parameters),
+            boats: parameters.n_boats,
+            boat: Scaling::new(BOAT.into_iter(), parameters),
+            rest: Scaling::new(rest, parameters),
             mirror_to_target,
         }
     }
 
     /// How many numbers there are.
     pub fn size(&self) -> usize {
-        self.scaling.len()
+        self.boats * self.boat.len() + self.rest.len()
     }
 
     /// Writes the state; `elapsed` is the part of the episode that is over.
     pub fn observe(&self, view: &FlockView, elapsed: f64, out: &mut [f32]) {
-        let mut physical = Vec::with_capacity(self.size());
-        for boat in 0..view.poses.len() {
-            physical.extend(boat_state(view, boat));
-        }
-        physical.extend(phase(view));
-        physical.extend([view.target.sign(), elapsed]);
         let mirrored = self.mirror_to_target && view.target.sign() < 0.0;
-        self.scaling.write(&physical, mirrored, out);
+        let (boats, rest) = out.split_at_mut(self.boats * self.boat.len());
+        for (boat, row) in boats.chunks_exact_mut(self.boat.len()).enumerate() {
+            self.boat.write(&boat_state(view, boat), mirrored, row);
+        }
+        let mut physical = phase(view).to_vec();
+        physical.extend([view.target.sign(), elapsed]);
+        self.rest.write(&physical, mirrored, rest);
     }
 }
 

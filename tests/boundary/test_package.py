@@ -39,3 +39,14 @@ def test_core_is_an_extension_module():
     from flockenv import _core
 
     assert _core.__file__.endswith((".so", ".pyd"))
+
+
+def test_missing_extra_is_named():
+    code = (
+        "import sys; sys.modules['stable_baselines3'] = None\n"
+        "import flockenv\n"
+        "try: flockenv.sb3\n"
+        "except ImportError as error: print(error)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert "flockenv[train]" in done.stdout
