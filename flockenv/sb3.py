@@ -134,7 +134,6 @@ class LeaderVecEnv(VecEnv):
         self.render_mode = render_mode
         fps = settings["control_hz"]
         self._screen = Screen(render_mode, render_size, fps, ("rgb_array",))
-        self.metadata = {"render_modes": ["rgb_array"], "render_fps": fps}
         self.observation_space = observation_space(settings["observation"])
         self.action_space = leader_action_space(settings["rudder_levels"])
         self.state_space = self._batch.state_space
@@ -148,6 +147,7 @@ class LeaderVecEnv(VecEnv):
         self._random = np.random.default_rng()
         self._actions: NDArray[np.float64] | None = None
         super().__init__(len(self.slots), self.observation_space, self.action_space)
+        self.metadata = {"render_modes": ["rgb_array"], "render_fps": fps}
         self._actions_shape = (self.num_envs, *(self.action_space.shape or ()))
 
     def seed(self, seed: int | None = None) -> Sequence[int | None]:

@@ -43,6 +43,7 @@ class Screen:
         self.size = (size[0], size[1])
         self.fps = fps
         self._window: Window | None = None
+        self._shown_s: float | None = None
         self._closed = False
         if mode is not None:
             self._check_now()
@@ -75,6 +76,7 @@ class Screen:
         if self._window is None:
             self._window = rendering.Window(*self.size, fps=self.fps)
         self._window.show(flock)
+        self._shown_s = flock.time_s
         if not self._window.is_open:
             self.close()
 
@@ -82,7 +84,9 @@ class Screen:
         """Do what `render` of an environment with one flock does."""
         if self.mode == "rgb_array":
             return self.frame(flock)
-        self.show(flock)
+        # What a step has shown already takes no time again.
+        if self._window is None or flock.time_s != self._shown_s:
+            self.show(flock)
         return None
 
     def close(self) -> None:

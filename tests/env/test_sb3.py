@@ -202,3 +202,15 @@ def test_bad_input():
     for bad in ({"num_flocks": 0}, {"n_leaders": []}, {"n_leaders": [0]}, {"n_leaders": 99}):
         with pytest.raises(flockenv.ParameterError):
             LeaderVecEnv(**bad)
+
+
+def test_images_are_those_of_the_flocks():
+    venv = LeaderVecEnv(3, render_mode="rgb_array", render_size=(100, 80), n_boats=8, n_leaders=2)
+    venv.seed(1)
+    venv.reset()
+    images = venv.get_images()
+    assert [image.shape for image in images] == [(80, 100, 3)] * 3
+    assert (images[0] != images[1]).any()
+    assert venv.render().dtype == np.uint8
+    assert venv.metadata == {"render_modes": ["rgb_array"], "render_fps": 10.0}
+    assert LeaderVecEnv(n_boats=8, n_leaders=2).get_images() == [None, None]

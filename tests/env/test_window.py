@@ -43,8 +43,8 @@ def test_human_mode_keeps_real_time(pygame):
     for _ in range(5):
         env.step({agent: [0.0] for agent in env.agents})
         assert env.render() is None
-    # render() of the same moment counts as a frame of its own: 10 in all, 0.1 s each.
-    assert 0.9 < time.perf_counter() - start < 3.0
+    # 0.1 s a step; render() has nothing new to show and does not wait.
+    assert 0.45 < time.perf_counter() - start < 0.9
     env.close()
     assert not pygame.display.get_init()
 
