@@ -18,6 +18,10 @@ use std::f64::consts::{PI, TAU};
 const TRIES_PER_BOAT: usize = 200;
 /// Fresh starts of grow-and-relax before placement fails.
 const ATTEMPTS: usize = 6;
+/// Part of the water that hulls may cover before placement is not even tried.
+const LARGEST_COVER: f64 = 0.92;
+/// Part of the water that hulls can cover at random.
+const WELL_COVERED: f64 = 0.78;
 /// Hull sizes, relative, at which growing hulls are pushed apart.
 const GROWTH: [f64; 8] = [0.5, 0.65, 0.78, 0.87, 0.93, 0.97, 0.99, 1.0];
 /// Distance kept between placed hulls, as a fraction of the boat's radius.
@@ -41,20 +45,22 @@ pub fn place(parameters: &FlockParameters, seed: u64) -> Result<Vec<Pose>> {
     if let Some(poses) = by_rejection(parameters.n_boats, &region, &mut rng) {
         return Ok(poses);
     }
-    let mut most = 0;
-    // Hulls that cover nearly all of the water cannot be disjoint; trying would only take time.
-    if parameters.n_boats as f64 * region.hull.area() <= 0.95 * region.area() {
-        for _ in 0..ATTEMPTS {
-            let poses = by_growth(parameters, &region, &mut rng);
-            let placed = region.count_disjoint(&poses);
-            if placed == poses.len() {
-                return Ok(poses);
-            }
-            most = most.max(placed);
-        }
+    // Hulls that cover nearly all of the water cannot be disjoint. Trying would only take time; how
+    // many can be is worth one try for the error message.
+    let full = region.area() / region.hull.area();
+    let (boats, attempts) = if parameters.n_boats as f64 <= LARGEST_COVER * full {
+        (parameters.n_boats, ATTEMPTS)
     } else {
-        let poses = greedily(parameters.n_boats, &region, &mut rng);
-        most = poses.len();
+        ((WELL_COVERED * full) as usize, 1)
+    };
+    let mut most = 0;
+    for _ in 0..attempts {
+        let poses = by_growth(parameters, boats, &region, &mut rng);
+        let placed = region.count_disjoint(&poses);
+        if placed == parameters.n_boats {
+            return Ok(poses);
+        }
+        most = most.max(placed);
     }
     Err(FlockError::Placement {
         requested: parameters.n_boats,
@@ -182,8 +188,13 @@ fn greedily(boats: usize, region: &Region, rng: &mut StreamRng) -> Vec<Pose> {
     poses
 }
 
-fn by_growth(parameters: &FlockParameters, region: &Region, rng: &mut StreamRng) -> Vec<Pose> {
-    let mut poses: Vec<Pose> = (0..parameters.n_boats).map(|_| region.draw(rng)).collect();
+fn by_growth(
+    parameters: &FlockParameters,
+    boats: usize,
+    region: &Region,
+    rng: &mut StreamRng,
+) -> Vec<Pose> {
+    let mut poses: Vec<Pose> = (0..boats).map(|_| region.draw(rng)).collect();
     for size in GROWTH {
         // The last sizes are a little more than the hull, so that gaps stay open.
         let radius = parameters.boat_radius_cm * size * (1.0 + CLEARANCE);
