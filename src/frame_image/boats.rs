@@ -15,7 +15,7 @@ const LEAST_RADIUS: f32 = 1.0;
 /// The radius from which on marks are legible, in pixels.
 const LEAST_MARKED: f32 = 2.5;
 
-/// Draws all boats, leaders on top. Boats of one colour are one path: that takes a fifth of the time.
+/// Draws all boats, leaders on top.
 pub fn draw(canvas: &mut Pixmap, flock: &Flock, view: &View) {
     let hull = Hull::new(flock.parameters());
     let shape = Shape::new(&hull, view);
@@ -24,17 +24,17 @@ pub fn draw(canvas: &mut Pixmap, flock: &Flock, view: &View) {
         (normal, NORMAL, NORMAL_MARK),
         (leaders, LEADER, LEADER_MARK),
     ] {
-        let mut layers = Layers::default();
         for boat in boats {
             if view.shows(boat.center, hull.reach()) {
+                let mut layers = Layers::default();
                 shape.add(boat, view, &mut layers);
+                layers.fill(canvas, body, mark);
             }
         }
-        layers.fill(canvas, body, mark);
     }
 }
 
-/// One path a colour.
+/// The parts of a boat, each in its colour.
 #[derive(Default)]
 struct Layers {
     outline: PathBuilder,
