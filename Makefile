@@ -7,6 +7,8 @@ JOBS ?= 2
 PYTEST_ARGS ?=
 COMPARE_ARGS ?=
 THROUGHPUT_ARGS ?=
+# `make speed-vs-error SPEED_ARGS=--trial`: everything, but too short to mean anything, outside docs.
+SPEED_ARGS ?=
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -16,6 +18,13 @@ UV := VIRTUAL_ENV="$(CURDIR)/$(VENV)" $(BIN)/uv
 RUST_SOURCES := Cargo.toml Cargo.lock $(shell find src)
 STUBS := flockenv/_core.pyi
 
+# The comparison with other engines: a crate and a Python environment of their own.
+PEERS := benches/peers/.venv
+SPEED_BIN := benches/target/release
+SPEED := $(SPEED_BIN)/speed_vs_error
+SPEED_FILES := benches/target/peer_files
+SPEED_DOCS := $(if $(SPEED_ARGS),benches/target/trial,docs)
+
 # Which extras each front door needs, out of pyproject.toml.
 COMPARE_EXTRAS := --extra plot
 TEST_EXTRAS := --extra train --extra plot --extra render --extra test --extra dev
@@ -24,10 +33,10 @@ TEST_EXTRAS := --extra train --extra plot --extra render --extra test --extra de
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .PHONY: help setup build compare test lint format test-rust test-python test-rllib validate pages \
-        learning-check throughput clean
+        learning-check throughput speed-vs-error lint-benches clean
 
 help: ## list the commands
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 compare: build ## set up, then print and plot the paper's leader-count curve
 	$(BIN)/flockenv compare $(COMPARE_ARGS)
@@ -83,8 +92,25 @@ throughput: $(STAMPS)/test $(STAMPS)/core ## measure speed beside VMAS and MPE2,
 	  --excludes requirements-excluded.txt
 	$(BIN)/python benches/throughput.py $(THROUGHPUT_ARGS)
 
+# Timed parts run one after another, the rest on all cores. Measure on a machine that does nothing else.
+speed-vs-error: $(STAMPS)/compare $(STAMPS)/peers ## measure speed and error against other engines, into docs (minutes)
+	cargo build --release --manifest-path benches/Cargo.toml
+	rm -rf $(SPEED_DOCS)/speed_vs_error && mkdir -p $(SPEED_DOCS)/speed_vs_error
+	$(SPEED) $(SPEED_ARGS) $(SPEED_DOCS)/speed_vs_error speed profile solvers parts
+	$(SPEED_BIN)/growth $(SPEED_DOCS)/speed_vs_error $(SPEED_ARGS)
+	$(SPEED) $(SPEED_ARGS) $(SPEED_DOCS)/speed_vs_error tasks $(SPEED_FILES)
+	$(PEERS)/bin/python benches/peers/run.py $(SPEED_FILES) $(SPEED)
+	$(SPEED) $(SPEED_ARGS) $(SPEED_DOCS)/speed_vs_error judge $(SPEED_FILES) \
+		overlap slide wall_push momentum horizon order
+	$(BIN)/python benches/report $(SPEED_DOCS) $(SPEED_FILES) $(SPEED_ARGS)
+
+lint-benches: ## formatting and clippy of the comparison with other engines
+	cargo fmt --check --manifest-path benches/Cargo.toml
+	cargo clippy --release --all-targets --manifest-path benches/Cargo.toml -- -D warnings
+
 clean: ## remove everything that was built or installed here
 	cargo clean
+	rm -rf benches/target $(PEERS)
 	rm -rf $(VENV) .venv-rllib .venv-peers flockenv/_core.*.so flockenv/_core.*.pyd dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find . -name __pycache__ -prune -exec rm -rf {} +
 
@@ -107,6 +133,11 @@ $(STAMPS)/compare: pyproject.toml | $(STAMPS)/venv
 $(STAMPS)/test: pyproject.toml requirements-excluded.txt | $(STAMPS)/venv
 	$(UV) pip install -r pyproject.toml $(TEST_EXTRAS) --excludes requirements-excluded.txt
 	@touch $@ $(STAMPS)/compare
+
+$(STAMPS)/peers: benches/peers/requirements.txt | $(STAMPS)/venv
+	$(PYTHON) -m venv $(PEERS)
+	$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check -r benches/peers/requirements.txt
+	@touch $@
 
 $(STAMPS)/core: $(RUST_SOURCES) pyproject.toml | $(STAMPS)/compare
 	VIRTUAL_ENV="$(CURDIR)/$(VENV)" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv

@@ -1,0 +1,89 @@
+"""The CSV files of one run, joined where they share engine, setting and step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+
+KEY = ["engine", "setting", "scheme", "solver", "relinearizations", "dt_s"]
+# The step and setting that bars and ratios refer to.
+STEP_S = 0.01
+RAPIER = ("rapier2d-f64", "4 iterations / unit 10 cm")
+TIGHT_RAPIER = ("rapier2d-f64", "4 iterations / unit 1 cm")
+BOX2D = ("Box2D (f32)", "4 substeps / unit 10 cm")
+OURS = ("flockenv", "leapfrog / block-pivoting / r0")
+
+
+@dataclass(frozen=True)
+class Measurements:
+    """All tables of a run."""
+
+    speed: pd.DataFrame
+    overlap: pd.DataFrame
+    slide: pd.DataFrame
+    wall_push: pd.DataFrame
+    momentum: pd.DataFrame
+    horizon: pd.DataFrame
+    order: pd.DataFrame
+    solvers: pd.DataFrame
+    profile: pd.DataFrame
+    parts: pd.DataFrame
+    growth: pd.DataFrame
+
+    @classmethod
+    def read(cls, folder: Path) -> Measurements:
+        """Reads every table, with what other programs contributed appended."""
+        tables = {}
+        for name in cls.__dataclass_fields__:
+            frames = [pd.read_csv(folder / f"{name}.csv")]
+            peers = folder / f"{name}_peers.csv"
+            if peers.exists():
+                frames.append(pd.read_csv(peers))
+            filled = [frame.dropna(axis="columns", how="all") for frame in frames]
+            tables[name] = pd.concat(filled, ignore_index=True)
+        return cls(**tables)
+
+    def settings(self) -> pd.DataFrame:
+        """One row for each engine, setting and step: the scene of 27 boats and the exact laws."""
+        joined = None
+        for scene in ("jam", "cycle"):
+            for table, columns in [
+                (self.speed, ["us_per_step", "us_q1", "us_q3", "faster", "times_real_time"]),
+                (self.overlap, ["overlap_mean_cm", "overlap_max_cm", "residual_cm_s", "unsolved"]),
+            ]:
+                own = table[(table.scene == scene) & (table.n == 27)]
+                joined = _join(joined, own, columns, f"{scene}_")
+            for horizon_s, name in [(0.5, "half_second_cm"), (1.0, "second_cm")]:
+                at = (self.horizon.scene == scene) & (self.horizon.horizon_s == horizon_s)
+                own = self.horizon[at].rename(columns={"horizon_median_cm": name})
+                joined = _join(joined, own, [name], f"{scene}_")
+        joined = _join(joined, self.slide, ["slide_median_cm", "slide_worst_cm"], "")
+        joined = _join(joined, self.wall_push, ["force_error"], "")
+        columns = ["momentum_drift", "angular_momentum_drift"]
+        return _join(joined, self.momentum, columns, "")
+
+
+def _join(
+    joined: pd.DataFrame | None, table: pd.DataFrame, columns: list[str], prefix: str
+) -> pd.DataFrame:
+    key = KEY if joined is None else ["engine", "setting", "dt_s"]
+    own = table[key + columns].rename(columns={name: prefix + name for name in columns})
+    return own if joined is None else joined.merge(own, on=key, how="left")
+
+
+def pick(table: pd.DataFrame, who: tuple[str, str], **fields: object) -> pd.Series:
+    """The one row of an engine and setting, at the step of the bars unless told otherwise."""
+    wanted = {"engine": who[0], "setting": who[1], "dt_s": STEP_S, **fields}
+    rows = table
+    for name, value in wanted.items():
+        rows = rows[rows[name] == value]
+    if len(rows) != 1:
+        raise LookupError(f"{len(rows)} rows for {wanted}")
+    return rows.iloc[0]
+
+
+def ours(scheme: str, relinearizations: int) -> tuple[str, str]:
+    """Our engine with the exact solver."""
+    return "flockenv", f"{scheme} / block-pivoting / r{relinearizations}"

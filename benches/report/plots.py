@@ -1,0 +1,141 @@
+"""The figures. Colours are Okabe and Ito's, told apart by every kind of eye; shapes differ too."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib as mpl
+
+mpl.use("Agg")
+
+import matplotlib.pyplot as plt
+import pandas as pd
+from measurements import BOX2D, RAPIER, Measurements, ours
+
+# Name: engine and setting, colour, marker, whether filled.
+SERIES = {
+    "flockenv leapfrog": (ours("leapfrog", 0), "#0072B2", "o", True),
+    "flockenv leapfrog, 1 relinearisation": (ours("leapfrog", 1), "#56B4E9", "o", False),
+    "flockenv leapfrog, 2 relinearisations": (ours("leapfrog", 2), "#009E73", "o", False),
+    "flockenv moreau": (ours("moreau", 0), "#E69F00", "s", True),
+    "flockenv paper": (ours("paper", 0), "#CC79A7", "^", True),
+    "rapier2d-f64": (RAPIER, "#D55E00", "D", True),
+    "Box2D": (BOX2D, "#000000", "v", True),
+    "pymunk (Chipmunk)": (("pymunk", "10 iterations"), "#999999", "P", True),
+    "MuJoCo": (("MuJoCo", "Newton"), "#B8A400", "X", True),
+}
+PEERS_ALONE = {"pymunk (Chipmunk)", "MuJoCo"}
+
+
+def draw_all(m: Measurements, folder: Path) -> None:
+    """Writes every figure into a folder."""
+    style = {"font.size": 10, "axes.grid": True, "grid.alpha": 0.3, "savefig.dpi": 150}
+    with mpl.rc_context(style):
+        for name, draw in [
+            ("pareto", _pareto),
+            ("order_of_schemes", _order_of_schemes),
+            ("order_parameters", _order_parameters),
+            ("growth", _growth),
+            ("parts", _parts),
+        ]:
+            figure = draw(m)
+            figure.savefig(folder / f"{name}.png")
+            plt.close(figure)
+
+
+def _rows(table: pd.DataFrame, who: tuple[str, str]) -> pd.DataFrame:
+    chosen = table[(table.engine == who[0]) & (table.setting == who[1])]
+    return chosen.sort_values("dt_s")
+
+
+def _style(color: str, marker: str, filled: bool) -> dict:
+    face = color if filled else "white"
+    line = {"color": color, "linewidth": 1}
+    return {**line, "marker": marker, "markerfacecolor": face, "markersize": 7}
+
+
+def _pareto(m: Measurements) -> plt.Figure:
+    settings = m.settings()
+    figure, axes = plt.subplots(1, 3, figsize=(14, 6.2), layout="constrained", sharex=True)
+    panels = [
+        ("jam_overlap_mean_cm", "deepest overlap of a step, mean, in cm"),
+        ("jam_half_second_cm", "error of all poses after 0.5 s, in cm"),
+        ("slide_median_cm", "error of one boat after sliding for 2 s, in cm"),
+    ]
+    for axis, (column, label) in zip(axes, panels, strict=True):
+        for name, (who, *style) in SERIES.items():
+            rows = _rows(settings, who)
+            cost = rows.jam_us_per_step / rows.dt_s / 1000
+            axis.plot(cost, rows[column], label=name, **_style(*style))
+        axis.set(xscale="log", yscale="log", ylabel=label)
+        axis.set_xlabel("ms of computing for 1 s of 27 boats in a jam")
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
+    figure.suptitle(
+        "Speed against error: lower left is better. From right to left each line goes through "
+        "dt = 0.005, 0.01, 0.02 s and, for flockenv, 0.05 and 0.1 s",
+        fontsize=11,
+    )
+    return figure
+
+
+def _order_of_schemes(m: Measurements) -> plt.Figure:
+    figure, axis = plt.subplots(figsize=(7, 5), layout="constrained")
+    names = {"leapfrog": ("#0072B2", "o"), "moreau": ("#E69F00", "s"), "paper": ("#CC79A7", "^")}
+    for scheme, style in names.items():
+        rows = _rows(m.slide, ours(scheme, 2))
+        axis.plot(rows.dt_s, rows.slide_median_cm, label=scheme, **_style(*style, True))
+    for name in ("rapier2d-f64", "Box2D", "pymunk (Chipmunk)", "MuJoCo"):
+        who, *style = SERIES[name]
+        rows = _rows(m.slide, who)
+        axis.plot(rows.dt_s, rows.slide_median_cm, label=name, **_style(*style))
+    axis.set(xscale="log", yscale="log", xlabel="dt in s")
+    axis.set_ylabel("error of one boat after sliding for 2 s, in cm")
+    axis.legend(frameon=False)
+    return figure
+
+
+def _order_parameters(m: Measurements) -> plt.Figure:
+    rows = m.order[(m.order.first_seed == 1)].iloc[1:].iloc[::-1]
+    names = [f"{r.engine}, {r.setting}, {r.dt_s:g} s" for r in rows.itertuples()]
+    names = [name.replace(" / block-pivoting", "").replace("flockenv, ", "") for name in names]
+    figure, axes = plt.subplots(1, 2, figsize=(12, 6), layout="constrained", sharey=True)
+    for axis, value, width, label in [
+        (axes[0], "psi_o_error", "psi_o_half_width", "error of mean Ψ_o"),
+        (axes[1], "c_v_error_cm2_s2", "c_v_half_width_cm2_s2", "error of mean C_v in cm²/s²"),
+    ]:
+        axis.axvline(0, color="black", linewidth=1)
+        axis.errorbar(rows[value], names, xerr=rows[width], fmt="o", color="#0072B2", capsize=3)
+        axis.set_xlabel(f"{label}, with 95 % interval")
+    return figure
+
+
+def _growth(m: Measurements) -> plt.Figure:
+    figure, axes = plt.subplots(1, 2, figsize=(12, 5), layout="constrained")
+    jam = m.speed[(m.speed.scene == "jam") & (m.speed.dt_s == 0.01)]
+    for name, (who, *style) in SERIES.items():
+        rows = jam[(jam.engine == who[0]) & (jam.setting == who[1])].sort_values("n")
+        if len(rows) > 1:
+            axes[0].plot(rows.n, rows.us_per_step, label=name, **_style(*style))
+    axes[0].set(ylabel="µs a step, jam, dt = 0.01 s")
+    axes[0].legend(frameon=False, fontsize=9)
+    besides = m.growth.bytes_per_boat - 8 * m.growth.factor_entries_per_boat
+    for values, label, color, marker in [
+        (besides, "bytes a boat, besides the factor", "#0072B2", "o"),
+        (8 * m.growth.factor_entries_per_boat, "bytes a boat, of the factor", "#D55E00", "D"),
+    ]:
+        axes[1].plot(m.growth.n, values, label=label, **_style(color, marker, True))
+    axes[1].set(ylabel="bytes a boat, jam, dt = 0.02 s", ylim=(1, None))
+    axes[1].legend(frameon=False)
+    for axis in axes:
+        axis.set(xscale="log", yscale="log", xlabel="boats")
+    return figure
+
+
+def _parts(m: Measurements) -> plt.Figure:
+    rows = m.parts.iloc[::-1]
+    figure, axis = plt.subplots(figsize=(9, 5), layout="constrained")
+    spread = [rows.us_per_step - rows.us_q1, rows.us_q3 - rows.us_per_step]
+    axis.barh(rows.scene, rows.us_per_step, xerr=spread, color="#56B4E9", capsize=3)
+    axis.set_xlabel("µs a step: 27 boats, leapfrog, dt = 0.01 s, cycle of [2 1 2 1] s")
+    return figure

@@ -1,0 +1,249 @@
+//! An engine with its settings and its step.
+
+use crate::engines::{Box2d, Ours, rapier_f32, rapier_f64};
+use crate::table::{number, text};
+use crate::{Engine, Start};
+use flockenv::FlockParameters;
+use flockenv::parameters::{Scheme, Solver};
+
+/// Which engine, and how it is set.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// flockenv.
+    Ours {
+        /// How a step is taken.
+        scheme: Scheme,
+        /// How contacts are solved.
+        solver: Solver,
+        /// How well gaps hold at the end of a step.
+        relinearizations: usize,
+    },
+    /// rapier2d-f64.
+    RapierF64(rapier_f64::Settings),
+    /// rapier2d, single precision.
+    RapierF32(rapier_f32::Settings),
+    /// Box2D with so many substeps.
+    Box2d(i32),
+}
+
+/// An engine with its settings and its step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Configuration {
+    /// Engine and settings.
+    pub kind: Kind,
+    /// Step in s.
+    pub dt_s: f64,
+}
+
+/// Steps in s that engines are compared at.
+pub const STEPS_S: [f64; 5] = [0.005, 0.01, 0.02, 0.05, 0.1];
+/// The step in s at which the bars stand.
+pub const STEP_S: f64 = 0.01;
+
+impl Configuration {
+    /// Names of what [`Self::cells`] gives.
+    pub const COLUMNS: [&str; 6] = [
+        "engine",
+        "setting",
+        "scheme",
+        "solver",
+        "relinearizations",
+        "dt_s",
+    ];
+
+    /// flockenv with the exact solver.
+    pub fn exact(scheme: Scheme, relinearizations: usize, dt_s: f64) -> Self {
+        Self::ours(scheme, Solver::BlockPivoting, relinearizations, dt_s)
+    }
+
+    /// flockenv.
+    pub fn ours(scheme: Scheme, solver: Solver, relinearizations: usize, dt_s: f64) -> Self {
+        let kind = Kind::Ours {
+            scheme,
+            solver,
+            relinearizations,
+        };
+        Self { kind, dt_s }
+    }
+
+    /// rapier2d-f64 at its default accuracy: what all ratios refer to.
+    pub fn rapier(dt_s: f64) -> Self {
+        Self {
+            kind: Kind::RapierF64(rapier_f64::Settings::default()),
+            dt_s,
+        }
+    }
+
+    /// Box2D with the substeps that it advises.
+    pub fn box2d(dt_s: f64) -> Self {
+        Self {
+            kind: Kind::Box2d(4),
+            dt_s,
+        }
+    }
+
+    /// Every scheme × step × relinearisation with the exact solver.
+    pub fn all_exact() -> Vec<Self> {
+        let mut all = Vec::new();
+        for &scheme in Scheme::ALL {
+            for relinearizations in 0..=2 {
+                for dt_s in STEPS_S {
+                    all.push(Self::exact(scheme, relinearizations, dt_s));
+                }
+            }
+        }
+        all
+    }
+
+    /// The other solvers, at the step of the bars.
+    pub fn all_inexact() -> Vec<Self> {
+        let solvers = [Solver::GaussSeidel, Solver::Clarabel];
+        let each = |scheme| solvers.map(|solver| Self::ours(scheme, solver, 0, STEP_S));
+        Scheme::ALL.iter().copied().flat_map(each).collect()
+    }
+
+    /// The peers in this binary: steps at default settings, then settings at the step of the bars.
+    pub fn all_peers() -> Vec<Self> {
+        let mut all: Vec<Self> = [0.005, 0.01, 0.02].map(Self::rapier).to_vec();
+        let defaults = rapier_f64::Settings::default();
+        let settings = [
+            rapier_f64::Settings {
+                iterations: 8,
+                ..defaults
+            },
+            rapier_f64::Settings {
+                iterations: 16,
+                ..defaults
+            },
+            rapier_f64::Settings {
+                length_unit_cm: 1.0,
+                ..defaults
+            },
+            rapier_f64::Settings {
+                length_unit_cm: 100.0,
+                ..defaults
+            },
+            rapier_f64::Settings {
+                round_obstacle: true,
+                ..defaults
+            },
+        ];
+        all.extend(settings.map(|set| Self {
+            kind: Kind::RapierF64(set),
+            dt_s: STEP_S,
+        }));
+        let single = Kind::RapierF32(rapier_f32::Settings::default());
+        all.push(Self {
+            kind: single,
+            dt_s: STEP_S,
+        });
+        all.extend([0.005, 0.01, 0.02].map(Self::box2d));
+        all.push(Self {
+            kind: Kind::Box2d(16),
+            dt_s: STEP_S,
+        });
+        all
+    }
+
+    /// The parameters of a scene, for this configuration.
+    pub fn parameters(&self, scene: &FlockParameters) -> FlockParameters {
+        let mut parameters = FlockParameters {
+            dt_s: self.dt_s,
+            ..scene.clone()
+        };
+        if let Kind::Ours {
+            scheme,
+            solver,
+            relinearizations,
+        } = self.kind
+        {
+            parameters.scheme = scheme;
+            parameters.solver = solver;
+            parameters.relinearizations = relinearizations;
+        }
+        parameters
+    }
+
+    /// The engine, set up for a scene.
+    pub fn build(&self, scene: &FlockParameters, seed: u64, start: &Start) -> Box<dyn Engine> {
+        let parameters = &self.parameters(scene);
+        match self.kind {
+            Kind::Ours { .. } => Box::new(Ours::new(parameters, seed, start)),
+            Kind::RapierF64(settings) => {
+                Box::new(rapier_f64::Rapier::new(parameters, seed, start, settings))
+            }
+            Kind::RapierF32(settings) => {
+                Box::new(rapier_f32::Rapier::new(parameters, seed, start, settings))
+            }
+            Kind::Box2d(substeps) => Box::new(Box2d::new(parameters, seed, start, substeps)),
+        }
+    }
+
+    /// Steps in a time.
+    pub fn steps(&self, seconds: f64) -> usize {
+        (seconds / self.dt_s).round() as usize
+    }
+
+    /// Its cells of a table.
+    pub fn cells(&self) -> Vec<String> {
+        let (scheme, solver, relinearizations) = match self.kind {
+            Kind::Ours {
+                scheme,
+                solver,
+                relinearizations,
+            } => (scheme.name(), solver.name(), text(relinearizations)),
+            _ => ("", "", String::new()),
+        };
+        vec![
+            text(self.engine()),
+            self.setting(),
+            text(scheme),
+            text(solver),
+            relinearizations,
+            number(self.dt_s),
+        ]
+    }
+
+    fn engine(&self) -> &'static str {
+        match self.kind {
+            Kind::Ours { .. } => "flockenv",
+            Kind::RapierF64(_) => "rapier2d-f64",
+            Kind::RapierF32(_) => "rapier2d (f32)",
+            Kind::Box2d(_) => "Box2D (f32)",
+        }
+    }
+
+    fn setting(&self) -> String {
+        match self.kind {
+            Kind::Ours {
+                scheme,
+                solver,
+                relinearizations,
+            } => {
+                format!(
+                    "{} / {} / r{relinearizations}",
+                    scheme.name(),
+                    solver.name()
+                )
+            }
+            Kind::RapierF64(set) => {
+                rapier_setting(set.iterations, set.length_unit_cm, set.round_obstacle)
+            }
+            Kind::RapierF32(set) => {
+                rapier_setting(set.iterations, set.length_unit_cm, set.round_obstacle)
+            }
+            Kind::Box2d(substeps) => format!("{substeps} substeps / unit 10 cm"),
+        }
+    }
+}
+
+fn rapier_setting(iterations: usize, length_unit_cm: f64, round_obstacle: bool) -> String {
+    let mut parts = vec![
+        format!("{iterations} iterations"),
+        format!("unit {length_unit_cm} cm"),
+    ];
+    if round_obstacle {
+        parts.push(text("round obstacle"));
+    }
+    parts.join(" / ")
+}

@@ -1,0 +1,66 @@
+//! flockenv itself.
+
+use crate::{Engine, Start};
+use flockenv::boat::{Pose, Velocity};
+use flockenv::contact::Partner;
+use flockenv::dynamics::Steering;
+use flockenv::phase_schedule::{Ticks, ticks};
+use flockenv::statistics::Statistics;
+use flockenv::{Flock, FlockParameters};
+
+/// A flock.
+pub struct Ours {
+    flock: Flock,
+    dt: Ticks,
+}
+
+impl Ours {
+    /// A flock that begins at the start given.
+    ///
+    /// # Panics
+    /// If parameters or start are refused.
+    pub fn new(parameters: &FlockParameters, seed: u64, start: &Start) -> Self {
+        let mut flock = Flock::new(parameters.clone(), seed).expect("the parameters hold");
+        flock
+            .set_state(&start.poses, &start.velocities, start.time_s, true)
+            .expect("the start holds");
+        Self {
+            flock,
+            dt: ticks(parameters.dt_s),
+        }
+    }
+
+    /// The flock.
+    pub fn flock(&self) -> &Flock {
+        &self.flock
+    }
+}
+
+impl Engine for Ours {
+    fn advance(&mut self, steps: usize) {
+        let end = self.flock.time() + self.dt * steps as Ticks;
+        self.flock
+            .advance_to(end, Steering::Law)
+            .expect("the motion stays finite");
+    }
+
+    fn poses(&self) -> Vec<Pose> {
+        self.flock.poses().to_vec()
+    }
+
+    fn velocities(&self) -> Vec<Velocity> {
+        self.flock.velocities().to_vec()
+    }
+
+    fn wall_force(&self) -> f64 {
+        let contacts = self.flock.contacts();
+        let on_wall = contacts
+            .iter()
+            .filter(|c| c.contact.partner == Partner::OuterWall);
+        on_wall.map(|c| c.force).sum()
+    }
+
+    fn statistics(&self) -> Option<Statistics> {
+        Some(*self.flock.statistics())
+    }
+}

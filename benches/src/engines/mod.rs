@@ -1,0 +1,13 @@
+//! The engines.
+
+mod box2d;
+mod driver;
+mod flockenv;
+pub mod rapier_f32;
+pub mod rapier_f64;
+mod walls;
+
+pub use box2d::Box2d;
+pub use driver::Driver;
+pub use flockenv::Ours;
+pub use walls::{CHORDS, Side, circle};

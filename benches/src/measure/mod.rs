@@ -1,0 +1,64 @@
+//! The measurements, one file each.
+
+pub mod horizon;
+pub mod momentum;
+pub mod order;
+pub mod overlap;
+pub mod parts;
+pub mod profile;
+pub mod slide;
+pub mod solvers;
+pub mod speed;
+pub mod wall_push;
+
+use crate::Configuration;
+use crate::table::Table;
+use flockenv::FlockParameters;
+use flockenv::boat::Pose;
+use flockenv::geometry::wrap_angle;
+use rayon::prelude::*;
+
+/// How much to measure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effort {
+    /// Enough to see that everything runs.
+    Trial,
+    /// What the report is made from.
+    Full,
+}
+
+impl Effort {
+    /// One of two amounts.
+    pub fn choose<T>(self, trial: T, full: T) -> T {
+        match self {
+            Self::Trial => trial,
+            Self::Full => full,
+        }
+    }
+}
+
+/// A table whose rows begin with a configuration.
+pub fn table(columns: &[&str]) -> Table {
+    Table::new(&[Configuration::COLUMNS.as_slice(), columns].concat())
+}
+
+/// Appends a row that begins with the cells of a configuration.
+pub fn push_row(table: &mut Table, configuration: &[String], cells: Vec<String>) {
+    table.row([configuration, cells.as_slice()].concat());
+}
+
+/// Works something out for every item, on all cores. Nothing that is timed runs here.
+pub fn on_all_cores<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Send + Sync) -> Vec<T> {
+    items.par_iter().map(work).collect()
+}
+
+/// Distance of two arrangements in cm: the root mean square over boats of |Δx|² + ρ²Δα², the metric
+/// that contacts minimise in.
+pub fn distance(parameters: &FlockParameters, a: &[Pose], b: &[Pose]) -> f64 {
+    let square = |(a, b): (&Pose, &Pose)| {
+        let turn = parameters.gyration_radius_cm * wrap_angle(a.heading - b.heading);
+        (a.position - b.position).norm_squared() + turn * turn
+    };
+    let sum: f64 = a.iter().zip(b).map(square).sum();
+    (sum / a.len() as f64).sqrt()
+}

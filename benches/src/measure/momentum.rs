@@ -1,0 +1,114 @@
+//! In open water without drag, thrust and noise, collisions keep the total momentum and the total
+//! angular momentum about any point.
+
+use super::{on_all_cores, push_row, table};
+use crate::table::{Table, number};
+use crate::{Configuration, Scene, Start};
+use flockenv::FlockParameters;
+use flockenv::boat::{Pose, Velocity};
+use flockenv::geometry::{Vec2, cross};
+use flockenv::parameters::Pool;
+
+/// How long the boats fly, in s: through the collisions in the middle.
+pub const FLIGHT_S: f64 = 20.0;
+const BOATS: usize = 27;
+
+/// Twenty-seven boats that nothing but contacts acts on.
+pub fn scene() -> FlockParameters {
+    FlockParameters {
+        pool: Pool {
+            outer_radius_cm: f64::INFINITY,
+            inner_radius_cm: 0.0,
+        },
+        c0: 0.0,
+        c1: 0.0,
+        c2: 0.0,
+        c3: 0.0,
+        c4: 0.0,
+        ..Scene::Jam.parameters(BOATS)
+    }
+}
+
+/// All boats head for a place beside the middle, at 15 cm/s, turning.
+pub fn start() -> Start {
+    let mut start = Start::placed(&scene(), 1);
+    let places = start.poses.iter().map(|pose| pose.position);
+    start.velocities = places
+        .enumerate()
+        .map(|(k, place)| {
+            let direction = (Vec2::new(10.0, 5.0) - place).normalize();
+            let angular = (k as f64 - 13.0) / 26.0;
+            Velocity {
+                linear: direction * 15.0,
+                angular,
+            }
+        })
+        .collect();
+    start
+}
+
+/// Momentum, angular momentum about the origin, and the sums of their parts' sizes.
+struct Momentum {
+    linear: Vec2,
+    angular: f64,
+    linear_size: f64,
+    angular_size: f64,
+}
+
+impl Momentum {
+    fn of(poses: &[Pose], velocities: &[Velocity]) -> Self {
+        let moment = scene().gyration_radius_cm.powi(2);
+        let mut total = Self {
+            linear: Vec2::zeros(),
+            angular: 0.0,
+            linear_size: 0.0,
+            angular_size: 0.0,
+        };
+        for (pose, velocity) in poses.iter().zip(velocities) {
+            let (orbit, spin) = (
+                cross(pose.position, velocity.linear),
+                moment * velocity.angular,
+            );
+            total.linear += velocity.linear;
+            total.angular += orbit + spin;
+            total.linear_size += velocity.linear.norm();
+            total.angular_size += pose.position.norm() * velocity.linear.norm() + spin.abs();
+        }
+        total
+    }
+}
+
+/// The cells of one engine: drift over the flight, relative to the sum of all boats' momenta.
+pub fn row(poses: &[Pose], velocities: &[Velocity]) -> Vec<String> {
+    let start = start();
+    let before = Momentum::of(&start.poses, &start.velocities);
+    let after = Momentum::of(poses, velocities);
+    vec![
+        number((after.linear - before.linear).norm() / before.linear_size),
+        number((after.angular - before.angular).abs() / before.angular_size),
+    ]
+}
+
+/// Names of the columns.
+pub const COLUMNS: [&str; 2] = ["momentum_drift", "angular_momentum_drift"];
+
+/// Measures every configuration.
+pub fn measure() -> Table {
+    let inexact = Configuration::all_inexact();
+    let all = [
+        Configuration::all_exact(),
+        inexact,
+        Configuration::all_peers(),
+    ]
+    .concat();
+    let rows = on_all_cores(&all, |configuration| {
+        let mut engine = configuration.build(&scene(), 1, &start());
+        engine.advance(configuration.steps(FLIGHT_S));
+        row(&engine.poses(), &engine.velocities())
+    });
+    let mut table = table(&COLUMNS);
+    for (configuration, row) in all.iter().zip(rows) {
+        push_row(&mut table, &configuration.cells(), row);
+    }
+    table
+}

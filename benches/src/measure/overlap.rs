@@ -1,0 +1,155 @@
+//! How deep hulls overlap at the end of steps, by flockenv's own gaps on the poses of every engine;
+//! and for flockenv what the solver did and left.
+
+use super::{Effort, on_all_cores, push_row, speed, table};
+use crate::table::{Table, number, text};
+use crate::{Configuration, Scene, Start};
+use flockenv::FlockParameters;
+use flockenv::boat::Pose;
+use flockenv::contact::{Contact, ContactDetector};
+use flockenv::geometry::HullPose;
+use flockenv::statistics::Statistics;
+
+/// Follows the deepest overlap of a run.
+pub struct Overlap {
+    detector: ContactDetector,
+    boats: Vec<HullPose>,
+    contacts: Vec<Contact>,
+    steps: f64,
+    sum: f64,
+    most: f64,
+}
+
+impl Overlap {
+    /// For a scene.
+    pub fn new(parameters: &FlockParameters) -> Self {
+        Self {
+            detector: ContactDetector::new(parameters),
+            boats: Vec::new(),
+            contacts: Vec::new(),
+            steps: 0.0,
+            sum: 0.0,
+            most: 0.0,
+        }
+    }
+
+    /// Looks at the poses at a step's end.
+    pub fn look(&mut self, poses: &[Pose]) {
+        self.boats.clear();
+        self.boats.extend(poses.iter().map(HullPose::new));
+        self.detector.detect(&self.boats, 0.0, &mut self.contacts);
+        let deepest = self.contacts.iter().map(|c| -c.gap.gap).fold(0.0, f64::max);
+        self.steps += 1.0;
+        self.sum += deepest;
+        self.most = self.most.max(deepest);
+    }
+
+    /// The deepest overlap of a step, its mean over steps and the deepest of all, in cm.
+    pub fn mean_and_most(&self) -> [f64; 2] {
+        [self.sum / self.steps, self.most]
+    }
+}
+
+/// Names of the columns.
+pub const COLUMNS: [&str; 9] = [
+    "scene",
+    "n",
+    "overlap_mean_cm",
+    "overlap_max_cm",
+    "residual_cm_s",
+    "unsolved",
+    "solves",
+    "contacts_per_step",
+    "iterations_per_solve",
+];
+
+struct Run {
+    configuration: Configuration,
+    scene: Scene,
+    boats: usize,
+    timed_s: f64,
+}
+
+/// Measures every configuration in every scene.
+pub fn measure(effort: Effort) -> Table {
+    let mut runs = Vec::new();
+    let mut add = |configurations: &[Configuration], scene, boats, timed_s| {
+        let run = |&configuration| Run {
+            configuration,
+            scene,
+            boats,
+            timed_s,
+        };
+        runs.extend(configurations.iter().map(run));
+    };
+    let timed_s = effort.choose(12.0, speed::TIMED_S);
+    // The longest first, so that no core waits for them at the end.
+    add(
+        &speed::larger_flocks(),
+        Scene::Jam,
+        1000,
+        effort.choose(6.0, 24.0),
+    );
+    for scene in Scene::ALL {
+        add(
+            &Configuration::all_inexact(),
+            scene,
+            27,
+            effort.choose(6.0, 24.0),
+        );
+    }
+    for boats in [200, 50] {
+        add(&speed::larger_flocks(), Scene::Jam, boats, timed_s);
+    }
+    for scene in Scene::ALL {
+        let all = [Configuration::all_exact(), Configuration::all_peers()].concat();
+        add(&all, scene, 27, timed_s);
+    }
+    let rows = on_all_cores(&runs, look_at);
+    let mut table = table(&COLUMNS);
+    for (run, row) in runs.iter().zip(rows) {
+        push_row(&mut table, &run.configuration.cells(), row);
+    }
+    table
+}
+
+fn look_at(run: &Run) -> Vec<String> {
+    let scene = run.scene.parameters(run.boats);
+    let start = Start::placed(&scene, 1);
+    let mut engine = run.configuration.build(&scene, 1, &start);
+    engine.advance(run.configuration.steps(speed::WARM_UP_S));
+    let before = engine.statistics();
+    let mut overlap = Overlap::new(&scene);
+    for _ in 0..run.configuration.steps(run.timed_s) {
+        engine.advance(1);
+        overlap.look(&engine.poses());
+    }
+    let work = engine.statistics().zip(before);
+    row(run.scene, run.boats, &overlap, work)
+}
+
+/// The cells of one engine; `work` are its statistics after and before.
+pub fn row(
+    scene: Scene,
+    boats: usize,
+    overlap: &Overlap,
+    work: Option<(Statistics, Statistics)>,
+) -> Vec<String> {
+    let [mean, most] = overlap.mean_and_most();
+    let mut cells = vec![text(scene.name()), text(boats), number(mean), number(most)];
+    cells.extend(work.map_or_else(
+        || vec![String::new(); 5],
+        |(after, before)| {
+            let solves = (after.solves - before.solves) as f64;
+            let substeps = (after.substeps - before.substeps) as f64;
+            vec![
+                number(after.worst_residual_cm_s),
+                text(after.unsolved),
+                text(after.solves),
+                number((after.contacts - before.contacts) as f64 / substeps),
+                number((after.solver_iterations - before.solver_iterations) as f64 / solves),
+            ]
+        },
+    ));
+    cells
+}

@@ -1,0 +1,156 @@
+//! Where the time of a step goes: the parts of leapfrog steps of a jam, one by one, on the states of
+//! consecutive steps. What is left of the whole step is rest: bookkeeping, drift, what parts do to each
+//! other's caches.
+
+use super::Effort;
+use super::solvers::{Problem, jam, without_contacts};
+use crate::configuration::STEP_S;
+use crate::table::{Table, median, number, text};
+use flockenv::Flock;
+use flockenv::boat::Velocity;
+use flockenv::contact::solver::ContactSolver;
+use flockenv::contact::{Contact, ContactDetector};
+use flockenv::geometry::HullPose;
+use flockenv::parameters::Solver;
+use flockenv::phase_schedule::{Ticks, ticks};
+use flockenv::random_streams::BrownianPaths;
+use std::hint::black_box;
+use std::time::Instant;
+
+/// Parts in the order of the columns.
+const PARTS: [&str; 6] = [
+    "whole_us",
+    "noise_us",
+    "free_us",
+    "find_us",
+    "solve_us",
+    "solve_known_us",
+];
+
+/// Consecutive states of a jam.
+struct States {
+    /// The flock before all of them.
+    before: Flock,
+    boats: Vec<Vec<HullPose>>,
+    velocities: Vec<Vec<Velocity>>,
+    problems: Vec<Problem>,
+    /// The same problems with their solutions as guesses.
+    known: Vec<Problem>,
+}
+
+impl States {
+    fn new(boats: usize, count: usize) -> Self {
+        let before = jam(boats);
+        let mut states = Self {
+            boats: Vec::new(),
+            velocities: Vec::new(),
+            problems: Vec::new(),
+            known: Vec::new(),
+            before,
+        };
+        let mut flock = states.before.clone();
+        let mut solver = ContactSolver::new(Solver::BlockPivoting);
+        for _ in 0..count {
+            let (problem, mut known) = (Problem::of(&flock), Problem::of(&flock));
+            problem.solve(&mut solver);
+            known.guess.clone_from(&solver.impulses);
+            states
+                .boats
+                .push(flock.poses().iter().map(HullPose::new).collect());
+            states.velocities.push(flock.velocities().to_vec());
+            states.problems.push(problem);
+            states.known.push(known);
+            flock
+                .advance(STEP_S, None)
+                .expect("the motion stays finite");
+        }
+        states
+    }
+
+    fn whole(&self) -> f64 {
+        let mut flock = self.before.clone();
+        let duration = STEP_S * self.boats.len() as f64;
+        self.per_step(|| {
+            flock
+                .advance(duration, None)
+                .expect("the motion stays finite");
+        })
+    }
+
+    fn noise(&self) -> f64 {
+        let (n, dt) = (self.before.parameters().n_boats, ticks(STEP_S));
+        let mut paths = BrownianPaths::new(1, n, 2 * dt, dt);
+        let mut kicks = vec![0.0; n];
+        self.per_step(|| {
+            for k in 1..=self.boats.len() as Ticks {
+                paths.increments(2 * k * dt - dt, 2 * k * dt + dt, black_box(&mut kicks));
+            }
+        })
+    }
+
+    fn free_motion(&self) -> f64 {
+        self.per_step(|| {
+            for (boats, velocities) in self.boats.iter().zip(&self.velocities) {
+                black_box(without_contacts(
+                    self.before.parameters(),
+                    boats,
+                    velocities,
+                ));
+            }
+        })
+    }
+
+    fn find(&self) -> f64 {
+        let mut detector = ContactDetector::new(self.before.parameters());
+        let mut contacts: Vec<Contact> = Vec::new();
+        self.per_step(|| {
+            for (boats, velocities) in self.boats.iter().zip(&self.velocities) {
+                let margin = detector.margin(velocities, STEP_S);
+                detector.detect(boats, margin, black_box(&mut contacts));
+            }
+        })
+    }
+
+    fn solve(&self, problems: &[Problem]) -> f64 {
+        let mut solver = ContactSolver::new(Solver::BlockPivoting);
+        self.per_step(|| {
+            for problem in problems {
+                black_box(problem.solve(&mut solver));
+            }
+        })
+    }
+
+    fn per_step(&self, work: impl FnOnce()) -> f64 {
+        let begin = Instant::now();
+        work();
+        begin.elapsed().as_secs_f64() * 1e6 / self.boats.len() as f64
+    }
+
+    fn parts(&self) -> [f64; 6] {
+        [
+            self.whole(),
+            self.noise(),
+            self.free_motion(),
+            self.find(),
+            self.solve(&self.problems),
+            self.solve(&self.known),
+        ]
+    }
+}
+
+/// Measures jams of every size; parts take turns.
+pub fn measure(effort: Effort) -> Table {
+    let mut table = Table::new(&[["n", "steps"].as_slice(), &PARTS].concat());
+    for boats in [27, 50, 200, 1000] {
+        let count = effort.choose(10, 24_000 / boats).min(400);
+        let states = States::new(boats, count);
+        let turns: Vec<[f64; 6]> = (0..effort.choose(2, 15)).map(|_| states.parts()).collect();
+        let mut cells = vec![text(boats), text(count)];
+        for part in 0..PARTS.len() {
+            let times: Vec<f64> = turns.iter().map(|turn| turn[part]).collect();
+            cells.push(number(median(&times)));
+        }
+        table.row(cells);
+    }
+    table
+}

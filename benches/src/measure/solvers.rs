@@ -1,0 +1,193 @@
+//! The contact problem alone: the problems of consecutive steps of a jam, rebuilt from its poses and
+//! velocities, solved by each solver from what the step before carried.
+
+use super::Effort;
+use crate::Scene;
+use crate::configuration::STEP_S;
+use crate::table::{Table, median, number, quartiles, text};
+use flockenv::boat::{Drive, FreeMotion, Velocity};
+use flockenv::contact::solver::{ContactSolver, SolveReport};
+use flockenv::contact::{Contact, ContactDetector, ContactProblem, InverseInertia};
+use flockenv::geometry::{HullPose, Vec2};
+use flockenv::parameters::Solver;
+use flockenv::{Flock, FlockParameters};
+use std::time::Instant;
+
+/// Overlaps deeper than this (cm) are no matter of the solver.
+const DEEP: f64 = -0.01;
+
+/// One step's problem.
+pub(super) struct Problem {
+    contacts: Vec<Contact>,
+    inertia: Vec<InverseInertia>,
+    free: Vec<Velocity>,
+    bounds: Vec<f64>,
+    /// What the same contacts carried in the step before.
+    pub(super) guess: Vec<f64>,
+}
+
+impl Problem {
+    /// The problem of the step that a flock in a jam takes next.
+    pub(super) fn of(flock: &Flock) -> Self {
+        let p = flock.parameters();
+        let boats: Vec<HullPose> = flock.poses().iter().map(HullPose::new).collect();
+        let (free, inertia) = without_contacts(p, &boats, flock.velocities());
+        let mut detector = ContactDetector::new(p);
+        let margin = detector.margin(&free, p.dt_s);
+        let mut contacts = Vec::new();
+        detector.detect(&boats, margin, &mut contacts);
+        let bound = |contact: &Contact| {
+            let (gap, spin) = (contact.gap, free[contact.boat as usize].angular);
+            let closing = gap.gap / p.dt_s + 0.5 * gap.bend * p.dt_s * spin * spin;
+            if gap.gap < DEEP { 0.0 } else { closing }
+        };
+        let before = flock.contacts();
+        let carried = |contact: &Contact| {
+            let known = before
+                .iter()
+                .find(|known| known.contact.key() == contact.key());
+            known.map_or(0.0, |known| known.force * p.dt_s)
+        };
+        Self {
+            bounds: contacts.iter().map(bound).collect(),
+            guess: contacts.iter().map(carried).collect(),
+            contacts,
+            inertia,
+            free,
+        }
+    }
+
+    /// Solves from the guess.
+    pub(super) fn solve(&self, solver: &mut ContactSolver) -> SolveReport {
+        solver.impulses.clone_from(&self.guess);
+        solver.active.clear();
+        solver
+            .active
+            .extend(self.guess.iter().map(|&impulse| impulse > 0.0));
+        solver.begin(self.free.len(), &self.contacts);
+        solver.solve(&ContactProblem {
+            contacts: &self.contacts,
+            inertia: &self.inertia,
+            free: &self.free,
+            bounds: &self.bounds,
+        })
+    }
+}
+
+/// Velocities and effective inertia as leapfrog has them, noise left out.
+pub(super) fn without_contacts(
+    parameters: &FlockParameters,
+    boats: &[HullPose],
+    velocities: &[Velocity],
+) -> (Vec<Velocity>, Vec<InverseInertia>) {
+    let motion = FreeMotion::new(parameters);
+    let drive = Drive {
+        thrust: parameters.speed_cm_s,
+        rudder: 0.0,
+        water: Vec2::zeros(),
+        kick: 0.0,
+    };
+    let moment = parameters.gyration_radius_cm.powi(2);
+    let boat = |(boat, velocity): (&HullPose, &Velocity)| {
+        let free = motion.centered(velocity, boat.axis, &drive, Vec2::zeros(), parameters.dt_s);
+        let inertia = InverseInertia {
+            linear: 1.0 / free.linear_weight,
+            angular: 1.0 / (moment * free.angular_weight),
+        };
+        (free.velocity, inertia)
+    };
+    boats.iter().zip(velocities).map(boat).unzip()
+}
+
+/// A jam at rest against the wall, more or less.
+pub(super) fn jam(boats: usize) -> Flock {
+    let parameters = FlockParameters {
+        dt_s: STEP_S,
+        ..Scene::Jam.parameters(boats)
+    };
+    let mut flock = Flock::new(parameters, 1).expect("the boats fit");
+    flock.advance(20.0, None).expect("the motion stays finite");
+    flock
+}
+
+fn problems(boats: usize, count: usize) -> Vec<Problem> {
+    let mut flock = jam(boats);
+    let next = |_| {
+        flock
+            .advance(STEP_S, None)
+            .expect("the motion stays finite");
+        Problem::of(&flock)
+    };
+    (0..count).map(next).collect()
+}
+
+/// How long all problems take a solver, in µs a problem, and what it reports.
+fn solve_all(problems: &[Problem], kind: Solver) -> (f64, Vec<SolveReport>) {
+    let mut solver = ContactSolver::new(kind);
+    let begin = Instant::now();
+    let reports: Vec<_> = problems
+        .iter()
+        .map(|problem| problem.solve(&mut solver))
+        .collect();
+    (
+        begin.elapsed().as_secs_f64() * 1e6 / problems.len() as f64,
+        reports,
+    )
+}
+
+/// Measures every solver on jams of every size; solvers take turns.
+pub fn measure(effort: Effort) -> Table {
+    let mut table = Table::new(&[
+        "solver",
+        "n",
+        "problems",
+        "contacts",
+        "us_per_solve",
+        "us_q1",
+        "us_q3",
+        "residual_median",
+        "residual_worst",
+        "iterations",
+    ]);
+    for boats in [27, 50, 200, 1000] {
+        let count = effort.choose(10, 12_000 / boats).min(200);
+        let problems = problems(boats, count);
+        let turns = effort.choose(2, if boats < 1000 { 9 } else { 5 });
+        let mut times = vec![Vec::new(); Solver::ALL.len()];
+        let mut reports = vec![Vec::new(); Solver::ALL.len()];
+        for _ in 0..turns {
+            for (which, &kind) in Solver::ALL.iter().enumerate() {
+                let (time, found) = solve_all(&problems, kind);
+                times[which].push(time);
+                reports[which] = found;
+            }
+        }
+        for (which, kind) in Solver::ALL.iter().enumerate() {
+            let cells = row(boats, &problems, &times[which], &reports[which]);
+            table.row([vec![text(kind.name())], cells].concat());
+        }
+    }
+    table
+}
+
+fn row(boats: usize, problems: &[Problem], times: &[f64], reports: &[SolveReport]) -> Vec<String> {
+    let mean = |sum: usize| number(sum as f64 / problems.len() as f64);
+    let residuals: Vec<f64> = reports.iter().map(|report| report.residual).collect();
+    let [q1, middle, q3] = quartiles(times);
+    vec![
+        text(boats),
+        text(problems.len()),
+        mean(problems.iter().map(|problem| problem.contacts.len()).sum()),
+        number(middle),
+        number(q1),
+        number(q3),
+        number(median(&residuals)),
+        number(residuals.iter().copied().fold(0.0, f64::max)),
+        mean(
+            reports
+                .iter()
+                .map(|report| report.iterations as usize)
+                .sum(),
+        ),
+    ]
+}

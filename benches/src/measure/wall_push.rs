@@ -1,0 +1,92 @@
+//! Five boats in a row, bow to stern, push the outer wall, which has to carry 5·c0·v0.
+
+use super::{on_all_cores, push_row, table};
+use crate::table::{Table, number, text};
+use crate::{Configuration, Scene, Start};
+use flockenv::FlockParameters;
+use flockenv::boat::{Pose, Velocity};
+use flockenv::geometry::Hull;
+use flockenv::parameters::Pool;
+
+const BOATS: usize = 5;
+/// Time for the row to come to rest, in s.
+pub const SETTLING_S: f64 = 1.0;
+/// Time that the force is averaged over, in s.
+pub const AVERAGED_S: f64 = 1.0;
+
+/// No obstacle, no noise, engines forward.
+pub fn scene() -> FlockParameters {
+    FlockParameters {
+        c4: 0.0,
+        pool: Pool {
+            inner_radius_cm: 0.0,
+            ..Pool::TABLE_1
+        },
+        ..Scene::Jam.parameters(BOATS)
+    }
+}
+
+/// The row, touching, at rest; every other boat is so many cm off the line. Chipmunk needs a hair of
+/// that: it lets boats that are exactly in line pass through each other.
+pub fn start(hair: f64) -> Start {
+    let parameters = scene();
+    let reach = Hull::new(&parameters).reach();
+    let wall = parameters.pool.outer_radius_cm;
+    let pose = |k: usize| {
+        let off = hair * (k % 2) as f64;
+        Pose::new(wall - reach - 2.0 * reach * k as f64, off, 0.0)
+    };
+    Start {
+        poses: (0..BOATS).map(pose).collect(),
+        velocities: vec![Velocity::default(); BOATS],
+        time_s: 0.0,
+    }
+}
+
+/// The force that the wall has to carry, in cm/s².
+pub fn expected() -> f64 {
+    BOATS as f64 * scene().c0 * scene().speed_cm_s
+}
+
+fn measured(configuration: &Configuration) -> f64 {
+    let mut engine = configuration.build(&scene(), 1, &start(0.0));
+    engine.advance(configuration.steps(SETTLING_S));
+    let steps = configuration.steps(AVERAGED_S);
+    let mut sum = 0.0;
+    for _ in 0..steps {
+        engine.advance(1);
+        sum += engine.wall_force();
+    }
+    sum / steps as f64
+}
+
+/// The cells of one engine.
+pub fn row(force: f64) -> Vec<String> {
+    let relative = (force - expected()).abs() / expected();
+    vec![
+        text(BOATS),
+        number(force),
+        number(expected()),
+        number(relative),
+    ]
+}
+
+/// Names of the columns.
+pub const COLUMNS: [&str; 4] = ["boats", "force_cm_s2", "expected_cm_s2", "force_error"];
+
+/// Measures every configuration.
+pub fn measure() -> Table {
+    let inexact = Configuration::all_inexact();
+    let all = [
+        Configuration::all_exact(),
+        inexact,
+        Configuration::all_peers(),
+    ]
+    .concat();
+    let forces = on_all_cores(&all, measured);
+    let mut table = table(&COLUMNS);
+    for (configuration, force) in all.iter().zip(forces) {
+        push_row(&mut table, &configuration.cells(), row(force));
+    }
+    table
+}
