@@ -211,6 +211,29 @@ impl Dynamics {
         self.update_boats();
     }
 
+    /// Turns free velocities into velocities that respect the contacts of the next `dt`; returns
+    /// whether there is any contact.
+    pub(crate) fn settle_contacts(&mut self, dt: f64) -> bool {
+        let Self {
+            contacts,
+            poses,
+            boats,
+            free,
+            inertia,
+            statistics,
+            ..
+        } = self;
+        let touches = contacts.find(poses, boats, free, dt, statistics);
+        if touches {
+            contacts.resolve(poses, free, inertia, dt, statistics);
+            self.velocities.copy_from_slice(contacts.velocities());
+        } else {
+            contacts.clear_loads();
+            self.velocities.copy_from_slice(free);
+        }
+        touches
+    }
+
     /// Preferred speed of a boat in a phase, in cm/s.
     pub(crate) fn thrust(&self, boat: usize, phase: Phase) -> f64 {
         let p = &self.parameters;
@@ -303,6 +326,12 @@ impl Dynamics {
             }
         };
         self.kicks.iter_mut().for_each(|kick| *kick *= scale);
+    }
+
+    /// Fills `kicks` with the noise of a whole substep.
+    pub(crate) fn draw_step_kicks(&mut self, substep: &Substep) {
+        let end = substep.start + substep.length;
+        self.draw_kicks(substep.start, 2 * substep.start, 2 * end);
     }
 
     /// Whether every pose and velocity is one that a flock may hold.

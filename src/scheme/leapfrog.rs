@@ -21,27 +21,14 @@ pub fn leapfrog(flock: &mut Dynamics, substep: &Substep) {
     centered_velocities(flock, kick);
 
     let dt = seconds(substep.length);
-    let Dynamics {
-        contacts,
-        poses,
-        boats,
-        free,
-        inertia,
-        statistics,
-        last,
-        ..
-    } = flock;
-    last.lasting_acceleration.clear();
-    if contacts.find(poses, boats, free, dt, statistics) {
-        contacts.resolve(poses, free, inertia, dt, statistics);
-        last.lasting_acceleration.resize(poses.len(), Vec2::zeros());
-        contacts.add_lasting_acceleration(inertia, kick, &mut last.lasting_acceleration);
+    let touches = flock.settle_contacts(dt);
+    let lasting = &mut flock.last.lasting_acceleration;
+    lasting.clear();
+    if touches {
+        lasting.resize(flock.poses.len(), Vec2::zeros());
         flock
-            .velocities
-            .copy_from_slice(flock.contacts.velocities());
-    } else {
-        contacts.clear_loads();
-        flock.velocities.copy_from_slice(free);
+            .contacts
+            .add_lasting_acceleration(&flock.inertia, kick, lasting);
     }
     flock.kick_s = kick;
     flock.drift(dt);

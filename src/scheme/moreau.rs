@@ -6,31 +6,10 @@ use crate::phase_schedule::seconds;
 /// Free velocities by explicit Euler, contacts on them, then poses with the *new* velocities.
 pub fn moreau(flock: &mut Dynamics, substep: &Substep) {
     let dt = seconds(substep.length);
-    flock.draw_kicks(
-        substep.start,
-        2 * substep.start,
-        2 * (substep.start + substep.length),
-    );
+    flock.draw_step_kicks(substep);
     flock.fill_drives(substep);
     explicit_velocities(flock, dt);
-    let Dynamics {
-        contacts,
-        poses,
-        boats,
-        free,
-        inertia,
-        statistics,
-        ..
-    } = flock;
-    if contacts.find(poses, boats, free, dt, statistics) {
-        contacts.resolve(poses, free, inertia, dt, statistics);
-        flock
-            .velocities
-            .copy_from_slice(flock.contacts.velocities());
-    } else {
-        contacts.clear_loads();
-        flock.velocities.copy_from_slice(free);
-    }
+    flock.settle_contacts(dt);
     flock.kick_s = dt;
     flock.drift(dt);
 }

@@ -17,11 +17,7 @@ const ROUNDING: f64 = 1e-10;
 pub fn paper(flock: &mut Dynamics, substep: &Substep) {
     let dt = seconds(substep.length);
     flock.kick_s = dt;
-    flock.draw_kicks(
-        substep.start,
-        2 * substep.start,
-        2 * (substep.start + substep.length),
-    );
+    flock.draw_step_kicks(substep);
     flock.fill_drives(substep);
     explicit_velocities(flock, dt);
     let Dynamics {
