@@ -231,6 +231,18 @@ def _exponent(rows: pd.DataFrame, column: str) -> str:
     return f"{np.polyfit(np.log(rows.dt_s), np.log(rows[column]), 1)[0]:+.2f}"
 
 
+def lost(m: Measurements) -> str:
+    """Settings whose motion blew up."""
+    rows = m.speed[m.speed.lost > 0]
+    if rows.empty:
+        return "No run left the range of sensible numbers."
+    names = [f"{row.setting} at {row.dt_s:g} s ({row.scene})" for row in rows.itertuples()]
+    return (
+        "A dash among the times: the motion left the range of sensible numbers on at least one "
+        f"seed, which is an error that names the step: {', '.join(names)}."
+    )
+
+
 def spread(m: Measurements) -> str:
     """How far apart the turns of the reference lay."""
     rows = m.speed[(m.speed.engine == RAPIER[0]) & (m.speed.setting == RAPIER[1])]
