@@ -44,6 +44,7 @@ def main() -> None:
         speeds=sections.speeds(m),
         errors=sections.errors(m),
         profile=sections.profile(m),
+        lost=sections.lost(m),
         every_setting=sections.every_setting(m),
         larger_flocks=sections.larger_flocks(m),
         solvers=sections.solvers(m),

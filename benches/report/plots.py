@@ -24,7 +24,6 @@ SERIES = {
     "pymunk (Chipmunk)": (("pymunk", "10 iterations"), "#999999", "P", True),
     "MuJoCo": (("MuJoCo", "Newton"), "#B8A400", "X", True),
 }
-PEERS_ALONE = {"pymunk (Chipmunk)", "MuJoCo"}
 
 
 def draw_all(m: Measurements, folder: Path) -> None:
@@ -56,20 +55,21 @@ def _style(color: str, marker: str, filled: bool) -> dict:
 
 def _pareto(m: Measurements) -> plt.Figure:
     settings = m.settings()
-    figure, axes = plt.subplots(1, 3, figsize=(14, 6.2), layout="constrained", sharex=True)
+    figure, axes = plt.subplots(2, 2, figsize=(12, 11), layout="constrained")
     panels = [
-        ("jam_overlap_mean_cm", "deepest overlap of a step, mean, in cm"),
-        ("jam_half_second_cm", "error of all poses after 0.5 s, in cm"),
-        ("slide_median_cm", "error of one boat after sliding for 2 s, in cm"),
+        ("jam", "jam_overlap_mean_cm", "deepest overlap of a step, mean, in cm"),
+        ("jam", "slide_median_cm", "error of one boat after sliding for 2 s, in cm"),
+        ("jam", "jam_half_second_cm", "error of all poses after 0.5 s of jam, in cm"),
+        ("cycle", "cycle_half_second_cm", "error of all poses after 0.5 s of the cycle, in cm"),
     ]
-    for axis, (column, label) in zip(axes, panels, strict=True):
+    for axis, (scene, column, label) in zip(axes.flat, panels, strict=True):
         for name, (who, *style) in SERIES.items():
             rows = _rows(settings, who)
-            cost = rows.jam_us_per_step / rows.dt_s / 1000
+            cost = rows[f"{scene}_us_per_step"] / rows.dt_s / 1000
             axis.plot(cost, rows[column], label=name, **_style(*style))
         axis.set(xscale="log", yscale="log", ylabel=label)
-        axis.set_xlabel("ms of computing for 1 s of 27 boats in a jam")
-    handles, labels = axes[0].get_legend_handles_labels()
+        axis.set_xlabel(f"ms of computing for 1 s of 27 boats, {scene}")
+    handles, labels = axes.flat[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
     figure.suptitle(
         "Speed against error: lower left is better. From right to left each line goes through "

@@ -205,15 +205,42 @@ def order_parameters(m: Measurements) -> str:
 
 
 def order_of_schemes(m: Measurements) -> str:
-    """Exponents of the slide error in the step, between the four smallest steps."""
+    """Exponents of errors in the step, over the smallest steps there are."""
+    settings = m.settings()
     found = []
     for scheme in ("leapfrog", "moreau", "paper"):
         who = ours(scheme, 2)
-        rows = m.slide[(m.slide.engine == who[0]) & (m.slide.setting == who[1])]
-        rows = rows.sort_values("dt_s").head(4)
-        slope = np.polyfit(np.log(rows.dt_s), np.log(rows.slide_median_cm), 1)[0]
-        found.append([scheme, f"{slope:+.2f}", plain(rows.slide_median_cm.iloc[-1])])
-    return table(["scheme", "error ∝ dt to the power", "error at dt = 0.01 s, cm"], found)
+        slide = _steps_of(m.slide, who).head(4)
+        whole = _steps_of(settings, who).head(3)
+        found.append(
+            [
+                scheme,
+                _exponent(slide, "slide_median_cm"),
+                _exponent(whole, "jam_half_second_cm"),
+                _exponent(whole, "cycle_half_second_cm"),
+            ]
+        )
+    return table(["scheme", "sliding", "0.5 s of the jam", "0.5 s of the cycle"], found)
+
+
+def _steps_of(rows: pd.DataFrame, who: tuple[str, str]) -> pd.DataFrame:
+    return rows[(rows.engine == who[0]) & (rows.setting == who[1])].sort_values("dt_s")
+
+
+def _exponent(rows: pd.DataFrame, column: str) -> str:
+    return f"{np.polyfit(np.log(rows.dt_s), np.log(rows[column]), 1)[0]:+.2f}"
+
+
+def lost(m: Measurements) -> str:
+    """Settings whose motion blew up."""
+    rows = m.speed[m.speed.lost > 0]
+    if rows.empty:
+        return "No run left the range of sensible numbers."
+    names = [f"{row.setting} at {row.dt_s:g} s ({row.scene})" for row in rows.itertuples()]
+    return (
+        "A dash among the times: the motion left the range of sensible numbers on at least one "
+        f"seed, which is an error that names the step: {', '.join(names)}."
+    )
 
 
 def spread(m: Measurements) -> str:

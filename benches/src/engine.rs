@@ -18,6 +18,10 @@ pub trait Engine {
     fn step_call(&self) -> Option<Duration> {
         None
     }
+    /// Whether the motion left the range of sensible numbers; nothing moves any more then.
+    fn is_lost(&self) -> bool {
+        false
+    }
     /// What flockenv did so far.
     fn statistics(&self) -> Option<Statistics> {
         None

@@ -12,6 +12,7 @@ use flockenv::{Flock, FlockParameters};
 pub struct Ours {
     flock: Flock,
     dt: Ticks,
+    is_lost: bool,
 }
 
 impl Ours {
@@ -27,6 +28,7 @@ impl Ours {
         Self {
             flock,
             dt: ticks(parameters.dt_s),
+            is_lost: false,
         }
     }
 
@@ -39,9 +41,9 @@ impl Ours {
 impl Engine for Ours {
     fn advance(&mut self, steps: usize) {
         let end = self.flock.time() + self.dt * steps as Ticks;
-        self.flock
-            .advance_to(end, Steering::Law)
-            .expect("the motion stays finite");
+        if !self.is_lost {
+            self.is_lost = self.flock.advance_to(end, Steering::Law).is_err();
+        }
     }
 
     fn poses(&self) -> Vec<Pose> {
@@ -58,6 +60,10 @@ impl Engine for Ours {
             .iter()
             .filter(|c| c.contact.partner == Partner::OuterWall);
         on_wall.map(|c| c.force).sum()
+    }
+
+    fn is_lost(&self) -> bool {
+        self.is_lost
     }
 
     fn statistics(&self) -> Option<Statistics> {

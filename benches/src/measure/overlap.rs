@@ -44,6 +44,11 @@ impl Overlap {
         self.most = self.most.max(deepest);
     }
 
+    /// Makes all numbers those of nothing seen.
+    fn forget(&mut self) {
+        (self.sum, self.most) = (f64::NAN, f64::NAN);
+    }
+
     /// The deepest overlap of a step, its mean over steps and the deepest of all, in cm.
     pub fn mean_and_most(&self) -> [f64; 2] {
         [self.sum / self.steps, self.most]
@@ -123,6 +128,10 @@ fn look_at(run: &Run) -> Vec<String> {
     for _ in 0..run.configuration.steps(run.timed_s) {
         engine.advance(1);
         overlap.look(&engine.poses());
+    }
+    if engine.is_lost() {
+        overlap.forget();
+        return row(run.scene, run.boats, &overlap, None);
     }
     let work = engine.statistics().zip(before);
     row(run.scene, run.boats, &overlap, work)

@@ -31,6 +31,8 @@ pub struct Times {
     pub whole: Vec<f64>,
     /// Of the engine's own step call; empty where the engine does everything itself.
     pub call: Vec<f64>,
+    /// Seeds on which the motion left the range of sensible numbers.
+    pub lost: usize,
 }
 
 impl Times {
@@ -67,6 +69,9 @@ pub fn take_turns(entries: &[Entry], seeds: u64, timed_s: f64) -> Vec<Times> {
                 times.push(steps, whole, call);
             }
         }
+        for (engine, times) in engines.iter().zip(&mut times) {
+            times.lost += usize::from(engine.is_lost());
+        }
     }
     times
 }
@@ -88,7 +93,7 @@ pub fn yardstick(scene: Scene) -> [f64; 2] {
     [&times.whole, &times.call].map(|times| quartiles(times)[1])
 }
 
-const COLUMNS: [&str; 11] = [
+const COLUMNS: [&str; 12] = [
     "scene",
     "n",
     "us_per_step",
@@ -100,6 +105,7 @@ const COLUMNS: [&str; 11] = [
     "faster_q3",
     "call_faster",
     "times_real_time",
+    "lost",
 ];
 
 /// Writes nothing but the names of the columns.
@@ -185,6 +191,13 @@ pub fn row(scene: Scene, boats: usize, dt_s: f64, times: &Times, reference: &Tim
             .map(|(theirs, ours)| theirs / ours * per_second)
             .collect()
     };
+    if times.lost > 0 {
+        let mut cells = vec![String::new(); COLUMNS.len()];
+        cells[0] = text(scene.name());
+        cells[1] = text(boats);
+        cells[COLUMNS.len() - 1] = text(times.lost);
+        return cells;
+    }
     let [us_q1, us, us_q3] = quartiles(&times.whole);
     let [faster_q1, faster, faster_q3] = quartiles(&ratio(&reference.whole, &times.whole));
     let call_faster = quartiles(&ratio(&reference.call, times.call_or_whole()))[1];
@@ -201,5 +214,6 @@ pub fn row(scene: Scene, boats: usize, dt_s: f64, times: &Times, reference: &Tim
         number(faster_q3),
         number(call_faster),
         number(dt_s * 1e6 / us),
+        text(0),
     ]
 }
