@@ -119,10 +119,11 @@ def _growth(m: Measurements) -> plt.Figure:
             axes[0].plot(rows.n, rows.us_per_step, label=name, **_style(*style))
     axes[0].set(ylabel="µs a step, jam, dt = 0.01 s")
     axes[0].legend(frameon=False, fontsize=9)
-    besides = m.growth.bytes_per_boat - 8 * m.growth.factor_entries_per_boat
+    of_factor = 8 * m.growth.factor_entries_per_boat
     for values, label, color, marker in [
-        (besides, "bytes a boat, besides the factor", "#0072B2", "o"),
-        (8 * m.growth.factor_entries_per_boat, "bytes a boat, of the factor", "#D55E00", "D"),
+        (m.growth.bytes_per_boat, "held, with room to grow", "#000000", "s"),
+        (m.growth.bytes_in_use_per_boat - of_factor, "in use, besides the factor", "#0072B2", "o"),
+        (of_factor, "in use, of the factor", "#D55E00", "D"),
     ]:
         axes[1].plot(m.growth.n, values, label=label, **_style(color, marker, True))
     axes[1].set(ylabel="bytes a boat, jam, dt = 0.02 s", ylim=(1, None))

@@ -77,7 +77,7 @@ def every_setting(m: Measurements) -> str:
     rows = [
         [
             _name(row),
-            plain(row.dt_s, 3),
+            f"{row.dt_s:g}",
             plain(row.jam_us_per_step),
             plain(row.cycle_us_per_step),
             times(row.jam_faster),
@@ -162,15 +162,17 @@ def growth(m: Measurements) -> str:
             plain(row.us_per_step),
             plain(row.times_real_time),
             plain(row.contacts_per_step, 3),
-            plain(row.bytes_per_boat - 8 * row.factor_entries_per_boat, 3),
+            plain(row.bytes_in_use_per_boat - 8 * row.factor_entries_per_boat, 3),
+            plain(row.bytes_per_boat, 3),
             plain(row.factor_entries),
             plain(8 * row.factor_entries_per_boat),
         ]
         for row in m.growth.itertuples()
     ]
     header = [
-        "boats", "µs a step", "× real time", "contacts a step", "bytes a boat, without factor",
-        "factor entries", "factor bytes a boat",
+        "boats", "µs a step", "× real time", "contacts a step",
+        "bytes a boat in use, without factor", "bytes a boat held", "factor entries",
+        "factor bytes a boat",
     ]  # fmt: skip
     return table(header, rows)
 
@@ -180,20 +182,23 @@ def order_parameters(m: Measurements) -> str:
 
     def interval(value: float, width: float) -> str:
         if width == 0:
-            return "(reference)"
+            return "reference"
         mark = "" if abs(value) <= width else " *"
         return f"{value:+.3g} ± {width:.2g}{mark}"
 
     rows = []
     for row in m.order.itertuples():
         name = f"{row.engine}: {row.setting}".replace("flockenv: ", "")
+        runs = f"{row.seeds} × {plain(row.run_s / 60)} min"
         if row.first_seed != 1:
             name += " (other seeds)"
+        if row.psi_o_half_width == 0:
+            runs = f"4 × {runs}"
         rows.append(
             [
                 name,
-                plain(row.dt_s, 1),
-                f"{row.seeds} × {plain(row.run_s / 60)} min",
+                f"{row.dt_s:g}",
+                runs,
                 f"{row.psi_o:.3f}",
                 interval(row.psi_o_error, row.psi_o_half_width),
                 f"{row.c_v_cm2_s2:.2f}",

@@ -31,6 +31,7 @@ fn main() {
         "contacts_per_step",
         "bytes",
         "bytes_per_boat",
+        "bytes_in_use_per_boat",
         "factor_entries",
         "factor_entries_per_boat",
     ]);
@@ -59,6 +60,10 @@ fn row(boats: usize, effort: Effort) -> Vec<String> {
         .expect("the motion stays finite");
     let time = begin.elapsed().as_secs_f64();
     let bytes = (ALLOCATOR.current_usage() - before) as f64;
+    // A copy holds what is in use, and no room to grow.
+    let copy = std::hint::black_box(flock.clone());
+    let bytes_in_use = (ALLOCATOR.current_usage() - before) as f64 - bytes;
+    drop(copy);
     let done = *flock.statistics();
     let (steps, n) = ((done.substeps - warm.substeps) as f64, boats as f64);
     let entries = done.most_factor_entries as f64;
@@ -70,6 +75,7 @@ fn row(boats: usize, effort: Effort) -> Vec<String> {
         number((done.contacts - warm.contacts) as f64 / steps),
         number(bytes),
         number(bytes / n),
+        number(bytes_in_use / n),
         number(entries),
         number(entries / n),
     ]

@@ -141,10 +141,12 @@ impl States {
 /// Measures jams of every size; parts take turns.
 pub fn measure(effort: Effort) -> Table {
     let mut table = Table::new(&[["n", "steps"].as_slice(), &PARTS].concat());
-    for boats in [27, 50, 200, 1000] {
-        let count = effort.choose(10, 24_000 / boats).min(400);
+    for boats in [27, 50, 200, 1000, 10_000] {
+        let count = effort.choose(10, (24_000 / boats).clamp(6, 400));
         let states = States::new(boats, count);
-        let turns: Vec<[f64; 6]> = (0..effort.choose(2, 15)).map(|_| states.parts()).collect();
+        let turns: Vec<[f64; 6]> = (0..effort.choose(2, if boats > 1000 { 5 } else { 15 }))
+            .map(|_| states.parts())
+            .collect();
         let mut cells = vec![text(boats), text(count)];
         for part in 0..PARTS.len() {
             let times: Vec<f64> = turns.iter().map(|turn| turn[part]).collect();
