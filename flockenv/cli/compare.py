@@ -1,4 +1,4 @@
-"""The command line: `flockenv COMMAND --help` tells what each command does."""
+"""`flockenv compare`."""
 
 import json
 from enum import StrEnum
@@ -6,21 +6,11 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-from rich.table import Table
 
-from flockenv import FlockError, FlockParameters, __version__
+from flockenv import FlockParameters
+from flockenv.cli.console import console, progress_bar
 
-__all__ = ["app", "main"]
-
-app = typer.Typer(
-    no_args_is_help=True,
-    rich_markup_mode="markdown",
-    help="Flocks of radio-controlled boats with a few steerable leaders (Tarcai et al. 2011).",
-)
-_console = Console()
-_errors = Console(stderr=True)
+__all__ = ["compare"]
 
 
 class PoolChoice(StrEnum):
@@ -31,25 +21,6 @@ class PoolChoice(StrEnum):
     TABLE_1 = "table-1"
 
 
-def main() -> None:
-    """Run the command line; a `FlockError` ends it with its message and exit code 2."""
-    try:
-        app()
-    except FlockError as error:
-        _errors.print(f"[bold red]Error:[/] {error}", highlight=False)
-        raise SystemExit(2) from error
-
-
-@app.callback(invoke_without_command=True)
-def _root(
-    version: Annotated[bool, typer.Option("--version", help="Print the version and exit.")] = False,
-) -> None:
-    if version:
-        _console.print(__version__)
-        raise typer.Exit
-
-
-@app.command()
 def compare(
     pool: Annotated[PoolChoice, typer.Option(help="Which pool.")] = PoolChoice.BOTH,
     preset: Annotated[str, typer.Option(help="Preset of the scene.")] = "simulation",
@@ -90,7 +61,7 @@ def compare(
     }
     work = len(scenes) * (most_leaders + 1) * episodes * minutes * 60
     results = {}
-    with _progress(quiet or as_json) as progress:
+    with progress_bar(quiet or as_json) as progress:
         task = progress.add_task("simulating", total=work)
         for name, scene in scenes.items():
             results[name] = report(
@@ -103,32 +74,9 @@ def compare(
             )
     if as_json:
         means = {name: each.means.to_json(orient="records") for name, each in results.items()}
-        _console.print_json(data={name: json.loads(text) for name, text in means.items()})
+        console.print_json(data={name: json.loads(text) for name, text in means.items()})
         return
     for name, result in results.items():
-        _console.print(result.table())
-        _console.print(result.lines_in_words(), highlight=False, soft_wrap=True)
-        _console.print(f"Written to {out / name}\n", highlight=False, soft_wrap=True)
-
-
-@app.command()
-def presets() -> None:
-    """Print every preset."""
-    table = Table("field", *FlockParameters.presets())
-    columns = [FlockParameters.preset(name).to_dict() for name in FlockParameters.presets()]
-    for field in columns[0]:
-        table.add_row(field, *(str(column[field]) for column in columns))
-    _console.print(table)
-
-
-def _progress(disable: bool) -> Progress:
-    return Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.percentage:3.0f} %"),
-        TimeElapsedColumn(),
-        TextColumn("left:"),
-        TimeRemainingColumn(),
-        console=_errors,
-        disable=disable,
-    )
+        console.print(result.table())
+        console.print(result.lines_in_words(), highlight=False, soft_wrap=True)
+        console.print(f"Written to {out / name}\n", highlight=False, soft_wrap=True)

@@ -1,0 +1,38 @@
+"""The command line: `flockenv COMMAND --help` tells what each command does. One file a command."""
+
+from typing import Annotated
+
+import typer
+
+from flockenv import FlockError, __version__
+from flockenv.cli.compare import compare
+from flockenv.cli.console import console, errors
+from flockenv.cli.presets import presets
+
+__all__ = ["app", "main"]
+
+app = typer.Typer(
+    no_args_is_help=True,
+    rich_markup_mode="markdown",
+    help="Flocks of radio-controlled boats with a few steerable leaders (Tarcai et al. 2011).",
+)
+for command in (compare, presets):
+    app.command()(command)
+
+
+def main() -> None:
+    """Run the command line; a `FlockError` ends it with its message and exit code 2."""
+    try:
+        app()
+    except FlockError as error:
+        errors.print(f"[bold red]Error:[/] {error}", highlight=False)
+        raise SystemExit(2) from error
+
+
+@app.callback(invoke_without_command=True)
+def _root(
+    version: Annotated[bool, typer.Option("--version", help="Print the version and exit.")] = False,
+) -> None:
+    if version:
+        console.print(__version__)
+        raise typer.Exit
