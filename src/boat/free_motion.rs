@@ -66,13 +66,19 @@ impl FreeMotion {
     }
 
     /// Explicit Euler over `dt`: accelerations at the given velocity.
+    ///
+    /// A spin that a collision left so fast that −c1·α̇³ would turn it round within one step
+    /// (c1·α̇²·dt > 1) is stopped instead: beyond 2, explicit steps would grow without end.
     #[inline]
     pub fn explicit(&self, velocity: &Velocity, axis: Vec2, drive: &Drive, dt: f64) -> Velocity {
         let along = axis.dot(&(velocity.linear - drive.water));
+        let spin = velocity.angular;
+        let excess = (self.c1 * spin * spin * dt - 1.0).max(0.0);
         Velocity {
             linear: velocity.linear + self.linear_acceleration(velocity.linear, axis, drive) * dt,
-            angular: velocity.angular
-                + self.angular_acceleration(velocity.angular, along, drive.rudder) * dt
+            angular: spin
+                + self.angular_acceleration(spin, along, drive.rudder) * dt
+                + excess * spin
                 + drive.kick,
         }
     }
