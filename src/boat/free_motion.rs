@@ -21,15 +21,15 @@ pub struct Drive {
     pub kick: f64,
 }
 
-/// A free velocity and how strongly the substep resists a change of it by contacts.
+/// A free velocity and how readily contacts change it within the substep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FreeVelocity {
     /// The velocity that the boat would have without contacts.
     pub velocity: Velocity,
-    /// Effective linear weight: 1 + dt/2·c0 where drag is implicit.
-    pub linear_weight: f64,
-    /// Effective weight of the angular velocity, to be multiplied with ρ².
-    pub angular_weight: f64,
+    /// One over the effective linear weight, 1 + dt/2·c0 where drag is implicit.
+    pub linear_mobility: f64,
+    /// One over the effective weight of the angular velocity, to be divided by ρ².
+    pub angular_mobility: f64,
 }
 
 /// The constants of eqs (8) and (9).
@@ -100,26 +100,27 @@ impl FreeMotion {
         contact_change: Vec2,
         dt: f64,
     ) -> FreeVelocity {
-        let linear_weight = 1.0 + 0.5 * dt * self.c0;
-        let change = self.linear_acceleration(velocity.linear, axis, drive) * (dt / linear_weight);
+        let linear_mobility = 1.0 / (1.0 + 0.5 * dt * self.c0);
+        let change =
+            self.linear_acceleration(velocity.linear, axis, drive) * (dt * linear_mobility);
         let middle = velocity.linear + (change + contact_change) * 0.5;
         let along = axis.dot(&(middle - drive.water));
 
         let spin = velocity.angular;
         let half_rate = 0.5 * dt * (3.0 * self.c1 * spin * spin + self.c3 * along);
-        let angular_weight = if half_rate >= 0.0 {
-            1.0 + half_rate
+        let angular_mobility = if half_rate >= 0.0 {
+            1.0 / (1.0 + half_rate)
         } else {
-            1.0 / (1.0 - half_rate)
+            1.0 - half_rate
         };
         let torque = self.angular_acceleration(spin, along, drive.rudder) * dt + drive.kick;
         FreeVelocity {
             velocity: Velocity {
                 linear: velocity.linear + change,
-                angular: spin + torque / angular_weight,
+                angular: spin + torque * angular_mobility,
             },
-            linear_weight,
-            angular_weight,
+            linear_mobility,
+            angular_mobility,
         }
     }
 }

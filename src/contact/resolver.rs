@@ -25,6 +25,8 @@ pub struct ContactResolver {
     /// Contacts that carried an impulse, in the order of detection.
     loads: Loads,
     recovery: Option<Box<Recovery>>,
+    /// Poses and hulls where a solve would move the boats.
+    moved: Vec<Pose>,
     trial: Vec<HullPose>,
     /// Overlap in cm at a substep's end that relinearisation stops at; `None` without it.
     allowed_overlap: Option<f64>,
@@ -44,6 +46,7 @@ impl ContactResolver {
             lasting: Vec::new(),
             loads: Loads::default(),
             recovery: None,
+            moved: Vec::new(),
             trial: Vec::new(),
             allowed_overlap: [None, Some(1e-6), Some(1e-9)]
                 .get(parameters.relinearizations)
@@ -106,7 +109,7 @@ impl ContactResolver {
     pub fn find(
         &mut self,
         poses: &mut [Pose],
-        boats: &mut [HullPose],
+        boats: &mut Vec<HullPose>,
         velocities: &[Velocity],
         dt: f64,
         statistics: &mut Statistics,
@@ -126,7 +129,12 @@ impl ContactResolver {
         !self.contacts.is_empty()
     }
 
-    fn recover(&mut self, poses: &mut [Pose], boats: &mut [HullPose], statistics: &mut Statistics) {
+    fn recover(
+        &mut self,
+        poses: &mut [Pose],
+        boats: &mut Vec<HullPose>,
+        statistics: &mut Statistics,
+    ) {
         let recovery = self
             .recovery
             .get_or_insert_with(|| Box::new(Recovery::new(poses.len(), self.gyration_radius)));
@@ -176,8 +184,9 @@ impl ContactResolver {
             .iter()
             .zip(velocities)
             .map(|(pose, velocity)| pose.moved(velocity, dt));
-        self.trial.clear();
-        self.trial.extend(moved.map(|pose| HullPose::new(&pose)));
+        self.moved.clear();
+        self.moved.extend(moved);
+        HullPose::replace_all(&mut self.trial, &self.moved);
     }
 
     /// Solves the contacts found last for free velocities and effective inertia; the result is in

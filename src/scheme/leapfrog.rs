@@ -80,8 +80,8 @@ fn centered_velocities(flock: &mut Dynamics, kick: f64) {
             .map_or_else(Vec2::zeros, |a| a * kick);
         let result = motion.centered(&velocities[boat], boats[boat].axis, drive, change, kick);
         free.push(result.velocity);
-        inertia[boat].linear = 1.0 / result.linear_weight;
-        inertia[boat].angular = inverse_square / result.angular_weight;
+        inertia[boat].linear = result.linear_mobility;
+        inertia[boat].angular = inverse_square * result.angular_mobility;
     }
 }
 
