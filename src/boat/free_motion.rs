@@ -77,6 +77,16 @@ impl FreeMotion {
         }
     }
 
+    fn linear_weight(&self, dt: f64) -> f64 {
+        1.0 + 0.5 * dt * self.c0
+    }
+
+    /// Change of the velocity over `dt` without contacts, with drag centred in the substep.
+    #[inline]
+    pub fn centered_change(&self, velocity: Vec2, axis: Vec2, drive: &Drive, dt: f64) -> Vec2 {
+        self.linear_acceleration(velocity, axis, drive) * (dt / self.linear_weight(dt))
+    }
+
     /// Second order over `dt` with drag, heading drive and angular damping centred in the substep:
     /// Crank–Nicolson, linearised once for the angular velocity. `contact_change` is the change of
     /// velocity that lasting contacts are expected to make in the substep, so that the heading's
@@ -94,8 +104,8 @@ impl FreeMotion {
         contact_change: Vec2,
         dt: f64,
     ) -> FreeVelocity {
-        let linear_weight = 1.0 + 0.5 * dt * self.c0;
-        let change = self.linear_acceleration(velocity.linear, axis, drive) * (dt / linear_weight);
+        let linear_weight = self.linear_weight(dt);
+        let change = self.centered_change(velocity.linear, axis, drive, dt);
         let middle = velocity.linear + (change + contact_change) * 0.5;
         let along = axis.dot(&(middle - drive.water));
 
