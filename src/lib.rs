@@ -20,7 +20,9 @@
 //! control step (policy) and substep (physics), flock batch.
 
 pub mod animation;
+pub mod arrangement;
 pub mod boat;
+pub mod collective_state;
 pub mod contact;
 pub mod dynamics;
 pub mod environment;

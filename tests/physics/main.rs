@@ -4,7 +4,9 @@
 mod dense_reference;
 mod support;
 
+mod arrangement;
 mod bad_input;
+mod collective_state;
 mod conservation;
 mod determinism;
 mod free_motion;
