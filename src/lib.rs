@@ -41,6 +41,7 @@ pub mod parameters;
 pub mod phase_schedule;
 pub mod placement;
 pub mod pool;
+pub mod preset;
 pub mod random_streams;
 pub mod recording;
 pub mod scheme;

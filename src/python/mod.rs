@@ -41,7 +41,9 @@ mod _core {
     #[pymodule_export]
     use super::order::{rotation, signed_order};
     #[pymodule_export]
-    use super::parameters::{checked_fields, critical_bw_s, preset_fields, preset_names};
+    use super::parameters::{
+        checked_fields, critical_bw_s, preset_fields, preset_names, preset_sources,
+    };
     #[pymodule_export]
     use super::recording::{phase_names, record};
 
