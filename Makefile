@@ -27,7 +27,7 @@ SPEED_DOCS := $(if $(SPEED_ARGS),benches/target/trial,docs)
 
 # Which extras each front door needs, out of pyproject.toml.
 COMPARE_EXTRAS := --extra plot
-TEST_EXTRAS := --extra train --extra plot --extra render --extra test --extra dev
+TEST_EXTRAS := --extra train --extra plot --extra render --extra sweep --extra test --extra dev
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:

@@ -8,6 +8,7 @@ from flockenv import FlockError, __version__
 from flockenv.cli.compare import compare
 from flockenv.cli.console import console, errors
 from flockenv.cli.presets import presets
+from flockenv.cli.reproduce import reproduce
 
 __all__ = ["app", "main"]
 
@@ -16,7 +17,7 @@ app = typer.Typer(
     rich_markup_mode="markdown",
     help="Flocks of radio-controlled boats with a few steerable leaders (Tarcai et al. 2011).",
 )
-for command in (compare, presets):
+for command in (compare, presets, reproduce):
     app.command()(command)
 
 
