@@ -18,6 +18,7 @@ ALL = "all"
 # Modules are loaded when asked for: they need the extra `plot`.
 _PAPER: Mapping[str, str] = {
     **dict.fromkeys(("fig14", "fig15", "fig16", "fig17"), "flockenv.reproduce.simulation_figures"),
+    "scheme-and-noise": "flockenv.reproduce.simulation_table",
 }
 _BEYOND: Mapping[str, str] = {}
 

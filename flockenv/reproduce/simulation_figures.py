@@ -26,7 +26,7 @@ from flockenv.runs import RunSpec
 __all__ = ["REPRODUCTIONS"]
 
 _SIZES = (20, 50)
-_BW = "backward motion time bw (s)"
+_BW = "backward time bw (s)"
 _PHI_LABEL = r"$\varphi_o$ (rad)"
 
 
@@ -35,9 +35,9 @@ def interval_note(settings: Settings, runs: int) -> str:
     length = block_length_s(settings.duration_s(60.0))
     return (
         f"Intervals ({CONFIDENCE:.0%}) are of a bootstrap in two stages: {runs} seeds at each "
-        f"point, and blocks of {length:g} s within each run, well above the correlation time of order in "
-        f"one state; {RESAMPLES} resamples. Frames at 10 Hz in the analysis window after the first "
-        "tenth of a run. Three seeds or fewer make intervals rough where runs stay in one state."
+        f"point, and blocks of {length:g} s within each run; {RESAMPLES} resamples. Frames at "
+        "10 Hz in the analysis window after the first tenth of a run. So few seeds make intervals "
+        "rough where runs stay in one state for all of their length."
     )
 
 
@@ -149,8 +149,10 @@ def _figure14(settings: Settings, results: Results) -> Outcome:
                 axes.set_title(f"{each.model.name}, {title}" if row == 0 else title)
                 keys = {"preset": each.model.name, "n_boats": n, "n_leaders": leaders}
                 tables.append(_density_rows(series, "phi_o", keys, "bw_s"))
-        picture.supxlabel(_BW, fontsize=7)
-        picture.supylabel(_PHI_LABEL, fontsize=7)
+        for axes in panels[-1]:
+            axes.set_xlabel(_BW)
+        for axes in panels[:, 0]:
+            axes.set_ylabel(_PHI_LABEL)
         bar = picture.colorbar(
             mesh, ax=panels, location="bottom", extend="max", fraction=0.03, aspect=40
         )
@@ -170,13 +172,15 @@ def _curves(name: str, quantity: str, label: str, settings: Settings, results: R
                 for led in (False, True):
                     leaders = round(0.2 * n) if led else 0
                     series = each.noise(n, led)
-                    _draw_curve(axes, series, quantity, f"k = {leaders}", COLORS[int(led)])
+                    _draw_curve(axes, series, quantity, f"k = {leaders}", int(led))
                     keys = {"preset": each.model.name, "n_boats": n, "n_leaders": leaders}
                     tables.append(_series_rows(series, [quantity], keys, "bw_s"))
                 axes.set_title(f"{each.model.name}, n = {n}")
                 axes.legend(loc="best", handlelength=1.5)
-        picture.supxlabel(_BW, fontsize=7)
-        picture.supylabel(label, fontsize=7)
+        for axes in panels[-1]:
+            axes.set_xlabel(_BW)
+        for axes in panels[:, 0]:
+            axes.set_ylabel(label)
     outcome = _finish(name, settings, evidence, pd.concat(tables), picture)
     outcome.notes.append(
         f"Points and bars: means with their {CONFIDENCE:.0%} intervals. Shaded: the mean plus and "
@@ -185,13 +189,14 @@ def _curves(name: str, quantity: str, label: str, settings: Settings, results: R
     return outcome
 
 
-def _draw_curve(axes: Axes, series: OrderStatistics, quantity: str, label: str, color: str) -> None:
+def _draw_curve(axes: Axes, series: OrderStatistics, quantity: str, label: str, place: int) -> None:
+    color, mark = COLORS[place], ("o-", "^--")[place]
     mean, spread = series.mean(quantity), series.deviation(quantity)[:, 0]
     low, high = _ends(mean)
     value = mean[:, 0]
     axes.fill_between(series.x, value - spread, value + spread, color=color, alpha=0.15, lw=0)
     bars = np.maximum([value - low, high - value], 0.0)
-    axes.errorbar(series.x, value, bars, fmt="o-", color=color, elinewidth=0.7, label=label)
+    axes.errorbar(series.x, value, bars, fmt=mark, color=color, elinewidth=0.7, label=label)
 
 
 def _figure15(settings: Settings, results: Results) -> Outcome:
@@ -225,17 +230,19 @@ def _figure17(settings: Settings, results: Results) -> Outcome:
         panels[1, 0].set_ylabel(_PHI_LABEL)
         panels[2, 0].set_ylabel("share of frames")
         panels[2, 0].legend(loc="best")
-        picture.supxlabel("number of boats n (bw = 0, no leaders)", fontsize=7)
+        for axes in panels[-1]:
+            axes.set_xlabel("number of boats n")
+            axes.set_xticks(range(20, 51, 10))
     outcome = _finish("fig17", settings, evidence, pd.concat(tables), picture)
     outcome.tables["fig17_states"] = pd.concat(states)
     return outcome
 
 
 def _draw_states(axes: Axes, series: OrderStatistics) -> None:
-    for name, color in (("jammed", COLORS[1]), ("rotating", COLORS[0])):
+    for name, color, mark in (("jammed", COLORS[1], "^--"), ("rotating", COLORS[0], "o-")):
         share = series.mean(name)
         axes.fill_between(series.x, *_ends(share), color=color, alpha=0.2, lw=0)
-        axes.plot(series.x, share[:, 0], "o-", color=color, label=name)
+        axes.plot(series.x, share[:, 0], mark, color=color, label=name)
 
 
 def _reproduction(
