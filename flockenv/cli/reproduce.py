@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 from rich.table import Table
 
-from flockenv.cli.console import console, errors, progress_bar
+from flockenv.cli.console import console, errors, progress_bar, resumable
 from flockenv.engines import named
 from flockenv.reproduce import names
 
@@ -39,7 +39,7 @@ def reproduce(
 
     where = named(engine)
     work = plan(what, Settings(seed, minutes))
-    with progress_bar(quiet or as_json) as progress:
+    with resumable(), progress_bar(quiet or as_json) as progress:
         task = progress.add_task(f"{len(work.specs)} runs", total=work.cost)
         claims = reproduce(
             work,

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from flockenv.cli.console import console, errors, progress_bar
+from flockenv.cli.console import console, errors, progress_bar, resumable
 from flockenv.engines import named
 
 __all__ = ["sweep"]
@@ -35,7 +35,7 @@ def sweep(
     where = named(engine)
     work = read_sweep(spec)
     folder = out or Path("results/sweep") / spec.stem
-    with progress_bar(quiet or as_json) as progress:
+    with resumable(), progress_bar(quiet or as_json) as progress:
         task = progress.add_task(f"{len(work.runs)} runs", total=sum(run.cost for run in work.runs))
         table = run_sweep(
             work,
