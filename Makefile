@@ -27,12 +27,12 @@ SPEED_DOCS := $(if $(SPEED_ARGS),benches/target/trial,docs)
 
 # Which extras each front door needs, out of pyproject.toml.
 COMPARE_EXTRAS := --extra plot
-TEST_EXTRAS := --extra train --extra plot --extra render --extra test --extra dev
+TEST_EXTRAS := --extra train --extra plot --extra fit --extra render --extra sweep --extra test --extra dev
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help setup build compare test lint format test-rust test-python test-rllib validate pages \
+.PHONY: help setup build compare test lint format test-rust test-python test-rllib test-ray validate pages \
         learning-check throughput speed-vs-error lint-benches clean
 
 help: ## list the commands
@@ -86,6 +86,13 @@ test-rllib: $(STAMPS)/test ## RLlib on the parallel environment, in .venv-rllib
 	VIRTUAL_ENV="$(CURDIR)/.venv-rllib" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
 	OMP_NUM_THREADS=1 .venv-rllib/bin/python -m pytest -m rllib tests/env/test_rllib.py
 
+# Ray core without RLlib pins nothing, but what it starts outlives a test that fails: kept apart.
+test-ray: $(STAMPS)/test ## the ray engine on a real local Ray, in .venv-ray
+	$(PYTHON) -m venv .venv-ray
+	VIRTUAL_ENV="$(CURDIR)/.venv-ray" $(BIN)/uv pip install -r pyproject.toml --extra sweep "ray>=2.40" pytest pytest-timeout
+	VIRTUAL_ENV="$(CURDIR)/.venv-ray" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
+	.venv-ray/bin/python -m pytest -m ray tests/analysis/test_engines.py
+
 throughput: $(STAMPS)/test $(STAMPS)/core ## measure speed beside VMAS and MPE2, write docs/throughput.md
 	$(PYTHON) -m venv .venv-peers
 	VIRTUAL_ENV="$(CURDIR)/.venv-peers" $(BIN)/uv pip install vmas mpe2 "torch>=2.5" \
@@ -111,7 +118,7 @@ lint-benches: ## formatting and clippy of the comparison with other engines
 clean: ## remove everything that was built or installed here
 	cargo clean
 	rm -rf benches/target $(PEERS)
-	rm -rf $(VENV) .venv-rllib .venv-peers flockenv/_core.*.so flockenv/_core.*.pyd dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(VENV) .venv-rllib .venv-ray .venv-peers flockenv/_core.*.so flockenv/_core.*.pyd dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find . -name __pycache__ -prune -exec rm -rf {} +
 
 # --- setting up -----------------------------------------------------------------------------------------------

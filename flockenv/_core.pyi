@@ -16,14 +16,23 @@ __all__ = [
     "ObservedLaw",
     "__version__",
     "checked_fields",
+    "collective_state_names",
+    "collective_states",
     "critical_bw_s",
     "env_defaults",
+    "lagged_motion",
+    "largest_cluster",
     "observation_table",
     "observation_version",
     "observe",
+    "off_tangent",
+    "on_outer_wall",
+    "ordering_time",
+    "pair_counts",
     "phase_names",
     "preset_fields",
     "preset_names",
+    "preset_sources",
     "record",
     "reward_terms",
     "rotation",
@@ -35,9 +44,37 @@ __version__: str
 
 def preset_names() -> list[str]: ...
 def preset_fields(name: str) -> dict[str, Any]: ...
+def preset_sources(name: str) -> dict[str, str]: ...
 def checked_fields(parameters: Any) -> dict[str, Any]: ...
 def critical_bw_s(preset: str, pool: str | tuple[float, float]) -> float | None: ...
 def phase_names() -> list[str]: ...
+def collective_state_names() -> list[str]: ...
+def collective_states(
+    psi_o: NDArray[np.float64],
+    phi_o: NDArray[np.float64],
+    psi_v: NDArray[np.float64],
+    largest_cluster: NDArray[np.float64],
+    speed_cm_s: float,
+) -> NDArray[np.uint8]: ...
+def off_tangent(phi_o: NDArray[np.float64]) -> NDArray[np.float64]: ...
+def largest_cluster(
+    parameters: FlockParameters, pose: NDArray[np.float64]
+) -> NDArray[np.float64]: ...
+def on_outer_wall(
+    parameters: FlockParameters, pose: NDArray[np.float64]
+) -> NDArray[np.float64]: ...
+def pair_counts(
+    pose: NDArray[np.float64], edges: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+def lagged_motion(
+    pose: NDArray[np.float64], lags: list[int]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+def ordering_time(
+    time_s: NDArray[np.float64],
+    psi_o: NDArray[np.float64],
+    phi_o: NDArray[np.float64],
+    within: float,
+) -> float | None: ...
 def record(
     parameters: FlockParameters,
     seed: int,

@@ -7,7 +7,10 @@ from numpy.typing import NDArray
 
 from flockenv import _core
 
-__all__ = ["OrderParameters", "OrderSeries"]
+__all__ = ["STATES", "OrderParameters", "OrderSeries"]
+
+STATES = np.array(_core.collective_state_names())
+"""Names of the collective states (Table 2; ordered motion by its direction)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +72,59 @@ class OrderSeries:
     def rotation(self) -> NDArray[np.float64]:
         """Ψ_o·sin φ_o in [-1, 1], shape (t,): ±1 for rotation in order, 0 for a jam."""
         return _core.rotation(self.psi_o, self.phi_o)
+
+    def off_tangent(self) -> NDArray[np.float64]:
+        """||φ_o| - π/2| in [0, π/2] rad, shape (t,): 0 for boats that point along the pool."""
+        return _core.off_tangent(self.phi_o)
+
+    def states(
+        self, speed_cm_s: float, largest_cluster: NDArray[np.float64] | None = None
+    ) -> NDArray[np.str_]:
+        """Tell the collective state at each time (Table 2), shape (t,).
+
+        Meant for times in the analysis window. ``"ordered cw"`` and ``"ordered ccw"``: Ψ_o above
+        0.8, φ_o within π/4 of ±π/2, Ψ_v at least a quarter of the preferred speed. ``"jamming"``:
+        Ψ_o above 0.8, φ_o within π/4 of 0, Ψ_v below that. ``"disordered"``: Ψ_o below 0.5.
+        ``"clustering"``: the same, with at least three quarters of the boats in one cluster.
+        ``"between"``: none of these.
+
+        Parameters
+        ----------
+        speed_cm_s
+            Preferred forward speed of the boats.
+        largest_cluster
+            Part of the boats in the largest cluster, shape (t,), as `largest_cluster` of
+            `flockenv.arrangement` tells it. None: no state is called clustering.
+
+        Raises
+        ------
+        ParameterError
+            For an array of another length.
+        """
+        clusters = np.zeros(len(self)) if largest_cluster is None else largest_cluster
+        places = _core.collective_states(self.psi_o, self.phi_o, self.psi_v, clusters, speed_cm_s)
+        return STATES[places]
+
+    def ordering_time(self, time_s: NDArray[np.float64], within: float = np.pi / 20) -> float:
+        """Ordering time τ of a run, eq. (7), in s; NaN if the run does not order.
+
+        The first time at which Ψ_o > 0.8 and ||φ_o| - π/2| < `within`, if mean Ψ_o over the second
+        half of the run exceeds 0.8.
+
+        Parameters
+        ----------
+        time_s
+            Times of the series, shape (t,).
+        within
+            Angle in rad: π/20 as printed, or a wider one.
+
+        Raises
+        ------
+        ParameterError
+            For times of another length.
+        """
+        time = _core.ordering_time(time_s, self.psi_o, self.phi_o, within)
+        return float("nan") if time is None else time
 
     def __len__(self) -> int:
         return len(self.psi_o)

@@ -149,6 +149,7 @@ class FlockParameters:
         name
             ``"simulation"``: Table 3 with `leapfrog` and white noise, whose statistics do not
             depend on dt. ``"paper"``: Table 3 with the paper's literal scheme and per-step noise.
+            ``"experiment"``: Table 1, with constants fitted to Section 4 by ``flockenv fit``.
 
         Raises
         ------
@@ -156,6 +157,17 @@ class FlockParameters:
             For an unknown name.
         """
         return cls(**_core.preset_fields(name))
+
+    @classmethod
+    def preset_sources(cls, name: str) -> dict[str, str]:
+        """Return where each number of a preset comes from, by field.
+
+        Raises
+        ------
+        ParameterError
+            For an unknown name.
+        """
+        return _core.preset_sources(name)
 
     @classmethod
     def critical_bw_s(cls, preset: str, pool: str | tuple[float, float]) -> float:

@@ -272,34 +272,33 @@ impl Dynamics {
 
     /// Fills `drives` for a substep: thrust and rudder of its phase, water, noise kicks.
     pub(crate) fn fill_drives(&mut self, substep: &Substep) {
-        let current = self.water_current();
         self.drives.clear();
         for boat in 0..self.poses.len() {
             self.drives.push(Drive {
                 thrust: self.thrust(boat, substep.phase),
                 rudder: self.rudder(boat, substep.steering),
-                water: if current == 0.0 {
-                    Vec2::zeros()
-                } else {
-                    self.tangent(boat) * current
-                },
+                water: Vec2::zeros(),
                 kick: self.kicks[boat],
             });
         }
+        self.fill_water(|dynamics, boat| dynamics.velocities[boat].linear);
     }
 
-    /// Speed of the water's counter-clockwise current in cm/s: −κ·(mean tangential velocity of the
-    /// boats), capped (Section 4.5).
-    fn water_current(&self) -> f64 {
+    /// Sets the water in `drives` as boats with these velocities move it: counter-clockwise with the
+    /// speed −κ·(mean tangential velocity of the boats), capped (Section 4.5).
+    pub(crate) fn fill_water(&mut self, velocity: impl Fn(&Self, usize) -> Vec2) {
         let p = &self.parameters;
         if p.current_gain == 0.0 {
-            return 0.0;
+            return;
         }
         let sum: f64 = (0..self.poses.len())
-            .map(|boat| self.velocities[boat].linear.dot(&self.tangent(boat)))
+            .map(|boat| velocity(self, boat).dot(&self.tangent(boat)))
             .sum();
-        let current = -p.current_gain * sum / self.poses.len() as f64;
-        current.clamp(-p.current_cap_cm_s, p.current_cap_cm_s)
+        let cap = p.current_cap_cm_s;
+        let current = (-p.current_gain * sum / self.poses.len() as f64).clamp(-cap, cap);
+        for boat in 0..self.poses.len() {
+            self.drives[boat].water = self.tangent(boat) * current;
+        }
     }
 
     /// Counter-clockwise unit tangent at a boat; zero at the pool's centre.

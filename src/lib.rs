@@ -20,7 +20,9 @@
 //! control step (policy) and substep (physics), flock batch.
 
 pub mod animation;
+pub mod arrangement;
 pub mod boat;
+pub mod collective_state;
 pub mod contact;
 pub mod dynamics;
 pub mod environment;
@@ -39,6 +41,7 @@ pub mod parameters;
 pub mod phase_schedule;
 pub mod placement;
 pub mod pool;
+pub mod preset;
 pub mod random_streams;
 pub mod recording;
 pub mod scheme;

@@ -1,8 +1,9 @@
-//! Every constant of Tables 1 and 3, the presets, and one check on construction.
+//! Every constant of Tables 1 and 3, and one check on construction. Presets are in `preset.rs`.
 
 use crate::error::{FlockError, Result};
 use crate::names::named_choice;
 pub use crate::pool::Pool;
+pub use crate::preset::Preset;
 
 named_choice! {
     /// The tangential direction that leaders steer to and rewards are measured in.
@@ -65,34 +66,6 @@ named_choice! {
         GaussSeidel = "gauss-seidel",
         /// The interior-point solver clarabel, for comparison (residual 1e-4…1e-7 cm/s).
         Clarabel = "clarabel",
-    }
-}
-
-named_choice! {
-    /// A named set of parameters.
-    pub enum Preset ("preset") {
-        /// Table 3 with `leapfrog` and white noise: the physics that does not depend on dt.
-        Simulation = "simulation",
-        /// Table 3 with the paper's literal scheme and per-step noise.
-        Paper = "paper",
-    }
-}
-
-impl Preset {
-    /// Critical noise of 27 boats of this preset in a named pool: the length of the backward phase, in
-    /// s, at which mean Ψ_o of leaderless runs falls through the middle between its ordered and its
-    /// disordered level. `None` for a pool in which it has not been measured.
-    ///
-    /// Source: `baselines/critical_noise.py` (8 seeds of 30 minutes every 0.05 s; runs in
-    /// `docs/results/critical_noise.csv`), rounded to 0.01 s.
-    pub fn critical_bw_s(self, pool: &Pool) -> Option<f64> {
-        match (self, pool.name()?) {
-            (Self::Simulation, "500-boats") => Some(0.31),
-            (Self::Simulation, "table-1") => Some(0.45),
-            (Self::Paper, "500-boats") => Some(0.57),
-            (Self::Paper, "table-1") => Some(0.64),
-            _ => None,
-        }
     }
 }
 
@@ -167,50 +140,6 @@ pub struct FlockParameters {
 impl FlockParameters {
     /// The most boats a flock may have: placing them takes some ten seconds.
     pub const MOST_BOATS: usize = 100_000;
-
-    /// A preset: Table 3 with the scheme and noise that the preset stands for.
-    pub fn preset(preset: Preset) -> Self {
-        let table_3 = Self {
-            n_boats: 20,
-            n_leaders: 0,
-            pool: Pool::FIVE_HUNDRED_BOATS,
-            boat_radius_cm: 5.0,
-            boat_shape: 0.5,
-            gyration_radius_cm: 4.74,
-            speed_cm_s: 15.0,
-            reverse_speed_cm_s: 15.0,
-            c0: 1.0,
-            c1: 1.0,
-            c2: 0.1,
-            c3: 1.0,
-            c4: 0.1,
-            fw_s: 2.0,
-            nop1_s: 1.0,
-            bw_s: 0.3,
-            nop2_s: 1.0,
-            leaders_reverse: true,
-            target: Target::Clockwise,
-            scheme: Scheme::Leapfrog,
-            noise: Noise::White,
-            solver: Solver::BlockPivoting,
-            dt_s: 0.02,
-            overlap_tolerance_cm: 0.01,
-            relinearizations: 0,
-            turning_bias: 0.0,
-            speed_spread_cm_s: 0.0,
-            current_gain: 0.0,
-            current_cap_cm_s: 5.0,
-        };
-        match preset {
-            Preset::Simulation => table_3,
-            Preset::Paper => Self {
-                bw_s: 0.6,
-                scheme: Scheme::Paper,
-                noise: Noise::PerStep,
-                ..table_3
-            },
-        }
-    }
 
     /// Half-length of the hull's core segment, h = p·r, in cm.
     pub fn half_length_cm(&self) -> f64 {

@@ -7,7 +7,10 @@ import typer
 from flockenv import FlockError, __version__
 from flockenv.cli.compare import compare
 from flockenv.cli.console import console, errors
+from flockenv.cli.fit import fit
 from flockenv.cli.presets import presets
+from flockenv.cli.reproduce import reproduce
+from flockenv.cli.sweep import sweep
 
 __all__ = ["app", "main"]
 
@@ -16,7 +19,7 @@ app = typer.Typer(
     rich_markup_mode="markdown",
     help="Flocks of radio-controlled boats with a few steerable leaders (Tarcai et al. 2011).",
 )
-for command in (compare, presets):
+for command in (compare, fit, presets, reproduce, sweep):
     app.command()(command)
 
 

@@ -1,9 +1,13 @@
 """Where commands print: results to standard output, progress and errors to standard error."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-__all__ = ["console", "errors", "progress_bar"]
+__all__ = ["console", "errors", "progress_bar", "resumable"]
 
 console = Console()
 errors = Console(stderr=True)
@@ -21,3 +25,13 @@ def progress_bar(disable: bool) -> Progress:
         console=errors,
         disable=disable,
     )
+
+
+@contextmanager
+def resumable() -> Iterator[None]:
+    """On Ctrl-C within a `with` block, end with exit code 130 and say that work can go on."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        errors.print("Interrupted. Finished runs are kept: the same command goes on from them.")
+        raise typer.Exit(130) from None

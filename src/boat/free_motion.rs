@@ -83,6 +83,18 @@ impl FreeMotion {
         }
     }
 
+    /// One over the weight 1 + dt/2·c0.
+    #[inline]
+    fn linear_mobility(&self, dt: f64) -> f64 {
+        1.0 / (1.0 + 0.5 * dt * self.c0)
+    }
+
+    /// Change of the velocity over `dt` without contacts, with drag centred in the substep.
+    #[inline]
+    pub fn centered_change(&self, velocity: Vec2, axis: Vec2, drive: &Drive, dt: f64) -> Vec2 {
+        self.linear_acceleration(velocity, axis, drive) * (dt * self.linear_mobility(dt))
+    }
+
     /// Second order over `dt` with drag, heading drive and angular damping centred in the substep:
     /// Crank–Nicolson, linearised once for the angular velocity. `contact_change` is the change of
     /// velocity that lasting contacts are expected to make in the substep, so that the heading's
@@ -100,9 +112,8 @@ impl FreeMotion {
         contact_change: Vec2,
         dt: f64,
     ) -> FreeVelocity {
-        let linear_mobility = 1.0 / (1.0 + 0.5 * dt * self.c0);
-        let change =
-            self.linear_acceleration(velocity.linear, axis, drive) * (dt * linear_mobility);
+        let linear_mobility = self.linear_mobility(dt);
+        let change = self.centered_change(velocity.linear, axis, drive, dt);
         let middle = velocity.linear + (change + contact_change) * 0.5;
         let along = axis.dot(&(middle - drive.water));
 

@@ -1,6 +1,8 @@
 //! The Python module `flockenv._core`: call, convert, return. The only place that names pyo3 and numpy.
 
 pub mod arguments;
+pub mod arrangement;
+pub mod collective_state;
 pub mod env_batch;
 pub mod env_settings;
 pub mod error;
@@ -19,6 +21,12 @@ mod _core {
     use super::*;
 
     #[pymodule_export]
+    use super::arrangement::{lagged_motion, largest_cluster, on_outer_wall, pair_counts};
+    #[pymodule_export]
+    use super::collective_state::{
+        collective_state_names, collective_states, off_tangents, ordering_time,
+    };
+    #[pymodule_export]
     use super::env_batch::PyEnvBatch;
     #[pymodule_export]
     use super::env_settings::{env_defaults, reward_terms};
@@ -33,7 +41,9 @@ mod _core {
     #[pymodule_export]
     use super::order::{rotation, signed_order};
     #[pymodule_export]
-    use super::parameters::{checked_fields, critical_bw_s, preset_fields, preset_names};
+    use super::parameters::{
+        checked_fields, critical_bw_s, preset_fields, preset_names, preset_sources,
+    };
     #[pymodule_export]
     use super::recording::{phase_names, record};
 

@@ -75,6 +75,21 @@ pub fn preset_names() -> Vec<&'static str> {
     Preset::ALL.iter().map(|preset| preset.name()).collect()
 }
 
+/// Where each field of a preset comes from.
+#[pyfunction]
+pub fn preset_sources<'py>(
+    py: Python<'py>,
+    name: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let preset: Preset = text(name, "preset")?.parse()?;
+    let sources = PyDict::new(py);
+    for field in to_dict(py, &FlockParameters::preset(preset))?.keys() {
+        let name: String = field.extract()?;
+        sources.set_item(field, preset.source(&name))?;
+    }
+    Ok(sources)
+}
+
 /// Checks an object's fields and returns them as plain Python values.
 #[pyfunction]
 pub fn checked_fields<'py>(

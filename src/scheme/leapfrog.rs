@@ -6,7 +6,7 @@
 //! kick after a state was set is a half one.
 
 use crate::boat::Drive;
-use crate::dynamics::{Dynamics, Steering, Substep};
+use crate::dynamics::{Dynamics, LastSubstep, Steering, Substep};
 use crate::geometry::Vec2;
 use crate::phase_schedule::{Phase, seconds};
 
@@ -18,6 +18,7 @@ pub fn leapfrog(flock: &mut Dynamics, substep: &Substep) {
     flock.draw_kicks(substep.start, begin, 2 * substep.start + substep.length);
     flock.fill_drives(substep);
     blend_drives(flock, substep);
+    center_water(flock, kick);
     centered_velocities(flock, kick);
 
     let dt = seconds(substep.length);
@@ -57,6 +58,23 @@ fn blend_drives(flock: &mut Dynamics, substep: &Substep) {
     flock.last.rudder = last_rudder;
 }
 
+/// Replaces the water by that which the boats move in the middle of the kick: taken from velocities
+/// half a kick old, it would cost the scheme its second order.
+fn center_water(flock: &mut Dynamics, kick: f64) {
+    flock.fill_water(|flock, boat| {
+        let (velocity, axis) = (flock.velocities[boat].linear, flock.boats[boat].axis);
+        let drive = &flock.drives[boat];
+        let free = flock.motion.centered_change(velocity, axis, drive, kick);
+        velocity + (free + lasting_change(&flock.last, boat, kick)) * 0.5
+    });
+}
+
+/// Change of a boat's velocity over a kick by contacts that are likely to last.
+fn lasting_change(last: &LastSubstep, boat: usize, kick: f64) -> Vec2 {
+    let acceleration = last.lasting_acceleration.get(boat);
+    acceleration.map_or_else(Vec2::zeros, |a| a * kick)
+}
+
 /// Fills `free` and `inertia` over a kick.
 fn centered_velocities(flock: &mut Dynamics, kick: f64) {
     let gyration = flock.parameters.gyration_radius_cm;
@@ -74,10 +92,7 @@ fn centered_velocities(flock: &mut Dynamics, kick: f64) {
     free.clear();
     for (boat, drive) in drives.iter().enumerate() {
         let drive: &Drive = drive;
-        let change = last
-            .lasting_acceleration
-            .get(boat)
-            .map_or_else(Vec2::zeros, |a| a * kick);
+        let change = lasting_change(last, boat, kick);
         let result = motion.centered(&velocities[boat], boats[boat].axis, drive, change, kick);
         free.push(result.velocity);
         inertia[boat].linear = result.linear_mobility;

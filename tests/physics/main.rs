@@ -4,7 +4,9 @@
 mod dense_reference;
 mod support;
 
+mod arrangement;
 mod bad_input;
+mod collective_state;
 mod conservation;
 mod determinism;
 mod free_motion;
@@ -13,6 +15,7 @@ mod hard_cases;
 mod impact;
 mod jam;
 mod noise;
+mod optional_effects;
 mod order_parameters;
 mod overlap;
 mod parameters;
@@ -23,6 +26,9 @@ mod pushing;
 mod sliding;
 mod solver;
 mod solver_agreement;
+mod speed_spread;
 mod steady_turning;
 mod symmetry;
+mod turning_bias;
+mod water_current;
 mod work_counts;

@@ -20,9 +20,8 @@ fn refused_field(result: Result<(), FlockError>) -> String {
 
 #[test]
 fn presets_are_the_tables() {
-    for preset in Preset::ALL.iter().copied() {
+    for preset in [Preset::Simulation, Preset::Paper] {
         let p = FlockParameters::preset(preset);
-        assert_eq!(p.check(), Ok(()));
         assert_eq!((p.boat_radius_cm, p.half_length_cm()), (5.0, 2.5));
         assert_eq!(p.gyration_radius_cm, 4.74);
         assert_eq!((p.speed_cm_s, p.reverse_speed_cm_s), (15.0, 15.0));
@@ -42,6 +41,28 @@ fn presets_are_the_tables() {
     let radii = |name| Pool::named(name).map(|p| (p.outer_radius_cm, p.inner_radius_cm));
     assert_eq!(radii("table-1"), Ok((90.0, 48.5)));
     assert_eq!(radii("500-boats"), Ok((180.0, 97.0)));
+}
+
+#[test]
+fn the_experiment_is_table_1() {
+    let p = FlockParameters::preset(Preset::Experiment);
+    assert_eq!((p.n_boats, p.n_leaders, p.leaders_reverse), (27, 0, false));
+    assert_eq!(p.pool.name(), Some("table-1"));
+    assert_eq!((p.speed_cm_s, p.c0), (15.0, 1.0));
+    assert_eq!([p.fw_s, p.nop1_s, p.nop2_s], [2.0, 1.0, 1.0]);
+    assert_eq!((p.scheme, p.noise), (Scheme::Leapfrog, Noise::White));
+    // Table 1: backing boats turn at 1 ± 0.2 rad/s; where that rate is steady,
+    // c1·w² = c3·v0·c0²/(c0² + w²).
+    let lagged = |w: f64| p.c3 * p.reverse_speed_cm_s / (1.0 + w * w) - p.c1 * w * w;
+    assert!(lagged(0.8) > 0.0 && lagged(1.2) < 0.0);
+}
+
+#[test]
+fn every_preset_is_accepted() {
+    for preset in Preset::ALL.iter().copied() {
+        assert_eq!(FlockParameters::preset(preset).check(), Ok(()));
+        assert_eq!(preset.source("bw"), None);
+    }
 }
 
 type Change = fn(&mut FlockParameters, f64);

@@ -32,7 +32,7 @@ fn along(scheme: Scheme, w: f64, v0: f64, c0: f64, dt: f64) -> f64 {
 }
 
 /// The steady turning rate in (low, high).
-fn steady_rate(p: &FlockParameters, v0: f64, s: f64, dt: f64, (low, high): (f64, f64)) -> f64 {
+pub fn steady_rate(p: &FlockParameters, v0: f64, s: f64, dt: f64, (low, high): (f64, f64)) -> f64 {
     root(low, high, |w| {
         let along = along(p.scheme, w, v0, p.c0, dt);
         -p.c1 * w.powi(3) + (p.c2 * s - p.c3 * w) * along

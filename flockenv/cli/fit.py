@@ -1,0 +1,88 @@
+"""`flockenv fit`."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from flockenv import FlockParameters
+from flockenv.cli.console import console, progress_bar
+from flockenv.experiment_fit import BOUNDS, MODEL_CONSTANTS
+
+__all__ = ["fit"]
+
+_FREE = f"Constants to fit, by commas, of {', '.join(BOUNDS)}."
+
+
+def fit(
+    free: Annotated[str, typer.Option(help=_FREE)] = ",".join(MODEL_CONSTANTS),
+    only: Annotated[str, typer.Option(help="Keys of the facts to fit to, by commas. [all]")] = "",
+    trials: Annotated[int, typer.Option(help="Trials of the search.")] = 110,
+    seeds: Annotated[int, typer.Option(help="Flock seeds in each trial.")] = 4,
+    finalists: Annotated[int, typer.Option(help="Trials run again on more seeds.")] = 8,
+    held_out: Annotated[int, typer.Option(min=2, help="Seeds that residuals are of.")] = 24,
+    check: Annotated[
+        str | None, typer.Option(help="Search nothing: measure every fact of this preset.")
+    ] = None,
+    scheme: Annotated[str | None, typer.Option(help="Scheme of the runs.")] = None,
+    noise: Annotated[str | None, typer.Option(help="Noise of the runs.")] = None,
+    dt_s: Annotated[float | None, typer.Option(help="Substep in s. [0.05 in a search]")] = None,
+    jobs: Annotated[int, typer.Option(help="Runs at a time.")] = 1,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the search.")] = 0,
+    out: Annotated[Path, typer.Option(help="Folder for the log and the results.")] = Path(
+        "results/fit"
+    ),
+    as_json: Annotated[bool, typer.Option("--json", help="Print the residuals as JSON.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no progress.")] = False,
+) -> None:
+    """Fit the model's constants to the experiment (Table 1, Section 4) and tell what it misses.
+
+    Searches with CMA-ES, runs the best trials again on other seeds, and measures every fact with
+    the winner on seeds that the search has never seen. Writes `trials.csv`, `parameters.toml` and
+    `residuals.csv`; interrupted, the same command goes on where it was.
+
+    Example: `flockenv fit --trials 60 --jobs 2`
+    """
+    from flockenv import fit_report
+    from flockenv.experiment_fit import Fit, experiment_scene
+
+    given = {"scheme": scheme, "noise": noise, "dt_s": dt_s}
+    changes = {name: value for name, value in given.items() if value is not None}
+    if check is not None:
+        scene = FlockParameters.preset(check).replace(**changes)
+        result = fit_report.check(scene, held_out, jobs)
+    else:
+        scene = experiment_scene().replace(**{"dt_s": 0.05, **changes})
+        asked = Fit(
+            free=_words(free),
+            only=_words(only),
+            scene=scene,
+            trials=trials,
+            seeds=seeds,
+            finalists=finalists,
+            seed=seed,
+            jobs=jobs,
+        )
+        with progress_bar(quiet or as_json) as progress:
+            task = progress.add_task("trials", total=fit_report.work(asked, held_out))
+            result = fit_report.report(
+                asked,
+                held_out,
+                out,
+                lambda words, steps: progress.update(task, description=words, advance=steps),
+            )
+    if as_json:
+        rows = json.loads(result.residuals.to_json(orient="records"))
+        console.print_json(data={"parameters": result.scene.to_dict(), "residuals": rows})
+        return
+    console.print(result.table())
+    if check is None:
+        constants = {name: getattr(result.scene, name) for name in _words(free)}
+        fitted = ", ".join(f"{name} = {value:g}" for name, value in constants.items())
+        console.print(fitted, highlight=False, soft_wrap=True)
+        console.print(f"Written to {out}", highlight=False, soft_wrap=True)
+
+
+def _words(text: str) -> tuple[str, ...]:
+    return tuple(word.strip() for word in text.split(",") if word.strip())

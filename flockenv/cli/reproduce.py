@@ -1,0 +1,66 @@
+"""`flockenv reproduce`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.table import Table
+
+from flockenv.cli.console import console, errors, progress_bar, resumable
+from flockenv.engines import named
+from flockenv.reproduce import names
+
+__all__ = ["reproduce"]
+
+_NAMES = f"What to reproduce: {', '.join(names())}, or all."
+
+
+def reproduce(
+    what: Annotated[list[str], typer.Argument(metavar="NAME...", help=_NAMES)],
+    minutes: Annotated[
+        float | None, typer.Option(help="Length of each run. [the paper's own]")
+    ] = None,
+    engine: Annotated[str, typer.Option(help="Where to run: local, joblib or ray.")] = "local",
+    seed: Annotated[int, typer.Option(min=0, help="First seed.")] = 0,
+    out: Annotated[Path, typer.Option(help="Folder for results.")] = Path("results/reproduce"),
+    as_json: Annotated[bool, typer.Option("--json", help="Print the claims as JSON.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no progress.")] = False,
+) -> None:
+    """Reproduce figures of the paper and check its claims.
+
+    Writes each figure (PNG and SVG), its data (CSV and Parquet) and a table of claims with measured
+    values, intervals and verdicts; for `all` also one HTML report. Finished runs are kept in
+    `runs/`: interrupted, the same command goes on where it was.
+
+    Example: `flockenv reproduce fig14 fig17`
+    """
+    from flockenv.reproduce.command import plan, reproduce
+    from flockenv.reproduce.reproduction import Settings
+
+    where = named(engine)
+    work = plan(what, Settings(seed, minutes))
+    with resumable(), progress_bar(quiet or as_json) as progress:
+        task = progress.add_task(f"{len(work.specs)} runs", total=work.cost)
+        claims = reproduce(
+            work,
+            out,
+            where,
+            lambda spec: progress.advance(task, spec.cost),
+            lambda line: errors.print(f"Warning: {line}", highlight=False, soft_wrap=True),
+        )
+    rows = [{"figure": name, **each.row()} for name, list_ in claims.items() for each in list_]
+    if as_json:
+        console.print_json(data=rows)
+        return
+    if rows:
+        console.print(_table(rows))
+    console.print(f"Written to {out}", highlight=False, soft_wrap=True)
+
+
+def _table(rows: list[dict[str, str | float]]) -> Table:
+    table = Table("figure", "claim", "for", "measured", "interval", "claimed", "verdict")
+    for row in rows:
+        interval = f"{row['low']:.3g} to {row['high']:.3g}"
+        cells = (row["figure"], row["claim"], row["scope"], f"{row['measured']:.3g}", interval)
+        table.add_row(*map(str, cells), str(row["accepted"]), str(row["verdict"]))
+    return table

@@ -1,0 +1,53 @@
+"""`flockenv sweep`."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from flockenv.cli.console import console, errors, progress_bar, resumable
+from flockenv.engines import named
+
+__all__ = ["sweep"]
+
+
+def sweep(
+    spec: Annotated[Path, typer.Argument(help="What to run: a TOML file.")],
+    engine: Annotated[str, typer.Option(help="Where to run: local, joblib or ray.")] = "local",
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for results. [results/sweep/NAME]")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no progress.")] = False,
+) -> None:
+    """Run a grid of parameters and seeds, as one table.
+
+    Writes `sweep.csv` and `sweep.parquet`, one row a run; `flockenv.sweep.load_sweep` reads them.
+    Finished runs are kept in `runs/`: interrupted, the same command goes on where it was. What the
+    TOML file holds is told in `docs/sweep.md`.
+
+    Example: `flockenv sweep docs/sweep-example.toml`
+    """
+    from flockenv.sweep import run_sweep
+    from flockenv.sweep_spec import read_sweep
+
+    where = named(engine)
+    work = read_sweep(spec)
+    folder = out or Path("results/sweep") / spec.stem
+    with resumable(), progress_bar(quiet or as_json) as progress:
+        task = progress.add_task(f"{len(work.runs)} runs", total=sum(run.cost for run in work.runs))
+        table = run_sweep(
+            work,
+            folder,
+            where,
+            lambda run: progress.advance(task, run.cost),
+            lambda line: errors.print(f"Warning: {line}", highlight=False, soft_wrap=True),
+        )
+    failed = int((table["failure"] != "").sum())
+    if failed:
+        errors.print(f"Warning: {failed} of {len(table)} runs failed; see the column failure")
+    if as_json:
+        console.print_json(data=json.loads(table.to_json(orient="records")))
+        return
+    console.print(f"{len(table)} runs, written to {folder}", highlight=False, soft_wrap=True)

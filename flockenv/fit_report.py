@@ -1,0 +1,145 @@
+"""The report of `flockenv fit`: search, finals, residuals on held-out seeds, files."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import tomli_w
+from rich.table import Table
+
+from flockenv import _core
+from flockenv.experiment_facts import FACTS, NOISE_S
+from flockenv.experiment_fit import HELD_OUT, Fit, Trial, residuals, run_flocks
+from flockenv.parameters import FlockParameters
+from flockenv.whole_file import whole_file
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["FitReport", "check", "report", "work"]
+
+VERIFIED_DT_S = 0.02
+"""Substep of the runs on held-out seeds."""
+
+_FACTS_SHOWN = ("fact", "source", "asked", "reached", "95 %", "met", "best alone")
+
+
+@dataclass(frozen=True, slots=True)
+class FitReport:
+    """What a fit reached.
+
+    Attributes
+    ----------
+    scene : FlockParameters
+        The fitted parameters.
+    residuals : pandas.DataFrame
+        One row a fact, of held-out seeds; see `flockenv.experiment_fit.residuals`. ``best_alone``
+        is what the trial that came nearest to an unmet fact reaches on the same seeds, whatever
+        it misses otherwise.
+    """
+
+    scene: FlockParameters
+    residuals: "pd.DataFrame"
+
+    def table(self) -> Table:
+        """Return the residuals as a table for the terminal."""
+        table = Table(*_FACTS_SHOWN, title_justify="left")
+        for row in self.residuals.to_dict("records"):
+            low, high = row["value_low"], row["value_high"]
+            alone = row.get("best_alone")
+            table.add_row(
+                row["fact"],
+                row["source"],
+                f"{row['target_low']:.3g} to {row['target_high']:.3g}",
+                f"{row['value']:.3g}",
+                f"{low:.3g} to {high:.3g}",
+                "yes" if row["met"] else "[bold]no[/]",
+                "" if alone is None or alone != alone else f"{alone:.3g}",
+            )
+        return table
+
+
+def work(fit: Fit, held_out: int) -> int:
+    """Return the number of steps that `report` reports: trials and finalists."""
+    return fit.trials + fit.finalists + held_out
+
+
+def report(
+    fit: Fit, held_out: int, folder: Path, progress: Callable[[str, int], None]
+) -> FitReport:
+    """Fit, measure what was chosen on held-out seeds, and write the files.
+
+    Writes ``fit.toml`` (what was asked), ``trials.csv`` (while it goes on; an interrupted fit goes
+    on from it), ``parameters.toml`` (the fitted scene) and ``residuals.csv``.
+
+    Parameters
+    ----------
+    fit
+        What to search.
+    held_out
+        Seeds, from `HELD_OUT` on.
+    folder
+        Where to write.
+    progress
+        Called with what was done, in words, and how many steps of `work` that is.
+    """
+    asked = asdict(fit) | {"scene": fit.scene.to_dict(), "held_out": held_out}
+    header = f"# flockenv {_core.__version__}\n"
+    _write(folder / "fit.toml", header + tomli_w.dumps(asked))
+    trials = []
+    best = float("inf")
+    for trial in fit.search(folder / "trials.csv"):
+        trials.append(trial)
+        best = min(best, trial.loss)
+        progress(f"trial {len(trials)}, least loss {best:.2f}", 1)
+    finals = fit.finals(trials, lambda: progress("finalists", 1))
+    scene = fit.scene.replace(**_rounded(finals[0])).replace(dt_s=VERIFIED_DT_S)
+    seeds = range(HELD_OUT, HELD_OUT + held_out)
+    table = _residuals(scene, seeds, fit.jobs)
+    table["best_alone"] = _best_alone(fit, table, trials, seeds)
+    progress("held-out seeds", held_out)
+    _write(folder / "parameters.toml", header + scene.to_toml())
+    _write(folder / "residuals.csv", table.round(4).to_csv(index=False))
+    return FitReport(scene, table)
+
+
+def check(scene: FlockParameters, held_out: int, jobs: int) -> FitReport:
+    """Measure every fact of a scene on held-out seeds, without a fit."""
+    seeds = range(HELD_OUT, HELD_OUT + held_out)
+    return FitReport(scene, _residuals(scene, seeds, jobs))
+
+
+def _residuals(scene: FlockParameters, seeds: Sequence[int], jobs: int) -> "pd.DataFrame":
+    return residuals(scene, run_flocks(scene, seeds, NOISE_S, jobs))
+
+
+def _best_alone(
+    fit: Fit, reached: "pd.DataFrame", trials: Sequence[Trial], seeds: Sequence[int]
+) -> list[float | None]:
+    """For each fact that was not met, measure the trial that came nearest to it."""
+    with_flocks = [trial for trial in trials if trial.loss < fit.HOPELESS]
+    measured: dict[int, pd.DataFrame] = {}
+    best: list[float | None] = []
+    for place, fact in enumerate(FACTS):
+        if reached["met"][place] or not with_flocks:
+            best.append(None)
+            continue
+        misses = [fact.miss(trial.values[fact.key]) for trial in with_flocks]
+        nearest = misses.index(min(misses))
+        if nearest not in measured:
+            scene = fit.scene.replace(**with_flocks[nearest].constants, dt_s=VERIFIED_DT_S)
+            measured[nearest] = _residuals(scene, seeds, fit.jobs)
+        best.append(float(measured[nearest]["value"][place]))
+    return best
+
+
+def _rounded(trial: Trial) -> dict[str, float]:
+    """Three digits: more are not determined, and these can be read."""
+    return {name: float(f"{value:.3g}") for name, value in trial.constants.items()}
+
+
+def _write(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with whole_file(path) as file:
+        file.write(text.encode())

@@ -1,0 +1,63 @@
+"""What can be reproduced, by name. To add to it: a module with `REPRODUCTIONS`, and a line here."""
+
+import difflib
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
+
+from flockenv.errors import ParameterError
+from flockenv.extras import require
+
+if TYPE_CHECKING:
+    from flockenv.reproduce.reproduction import Reproduction
+
+__all__ = ["ALL", "load", "names", "resolve"]
+
+ALL = "all"
+"""The name that stands for everything of the paper."""
+
+# Modules are loaded when asked for: they need the extra `plot`.
+_PAPER: Mapping[str, str] = {
+    **dict.fromkeys(("fig14", "fig15", "fig16", "fig17"), "flockenv.reproduce.simulation_figures"),
+    "scheme-and-noise": "flockenv.reproduce.simulation_table",
+}
+_BEYOND: Mapping[str, str] = {}
+
+
+def names() -> list[str]:
+    """Return all names there are, but for `ALL`."""
+    return [*_PAPER, *_BEYOND]
+
+
+def resolve(asked: Iterable[str]) -> list[str]:
+    """Return names in the catalogue's order, each once, `ALL` replaced by those of the paper.
+
+    Raises
+    ------
+    ParameterError
+        For an unknown name; the message lists those there are.
+    """
+    asked = list(asked)
+    for name in asked:
+        if name != ALL and name not in names():
+            near = difflib.get_close_matches(name, [*names(), ALL], n=1)
+            hint = f"did you mean {near[0]!r}? " if near else ""
+            raise ParameterError(
+                f"{name!r} cannot be reproduced: {hint}there are {', '.join(names())}, "
+                f"and {ALL!r} for all of the paper"
+            )
+    return [name for name in names() if name in asked or (ALL in asked and name in _PAPER)]
+
+
+def load(name: str) -> "Reproduction":
+    """Return what a name of the catalogue stands for.
+
+    Raises
+    ------
+    MissingExtraError
+        Without the extra ``plot``.
+    """
+    for package in ("pandas", "pyarrow", "scipy", "matplotlib"):
+        require(package, "plot")
+    module = require({**_PAPER, **_BEYOND}[name], "plot")
+    found: Reproduction = next(each for each in module.REPRODUCTIONS if each.name == name)
+    return found

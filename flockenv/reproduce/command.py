@@ -1,0 +1,118 @@
+"""`reproduce`: runs what figures need, and writes figures, data, claims and the report."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from flockenv.engines import Engine, local
+from flockenv.errors import FlockError
+from flockenv.reproduce.catalogue import ALL, load, resolve
+from flockenv.reproduce.claim import CheckedClaim
+from flockenv.reproduce.files import claims_table, write_file, write_outcome, write_table
+from flockenv.reproduce.report import html_report
+from flockenv.reproduce.reproduction import Results, Settings
+from flockenv.run_store import RunStore, run_missing
+from flockenv.runs import RunSpec
+
+__all__ = ["RUNS_FOLDER", "Plan", "plan", "reproduce"]
+
+RUNS_FOLDER = "runs"
+"""Where finished runs are kept, inside the folder of results."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What is to be reproduced, and the runs it takes, each once.
+
+    Attributes
+    ----------
+    asked : list of str
+        The names as given, `ALL` among them or not.
+    names : list of str
+        What they stand for.
+    settings : Settings
+        What the user chose.
+    specs : list of RunSpec
+        All runs.
+    """
+
+    asked: list[str]
+    names: list[str]
+    settings: Settings
+    specs: list[RunSpec]
+
+    @property
+    def cost(self) -> float:
+        """The work of all runs, in the unit of `RunSpec.cost`."""
+        return sum(spec.cost for spec in self.specs)
+
+
+def plan(asked: Iterable[str], settings: Settings) -> Plan:
+    """Return what names stand for and need; nothing is run or written.
+
+    Raises
+    ------
+    ParameterError
+        For an unknown name.
+    MissingExtraError
+        Without the extra ``plot``.
+    """
+    asked = list(asked)
+    names = resolve(asked)
+    specs = [spec for name in names for spec in load(name).runs(settings)]
+    return Plan(asked, names, settings, list(dict.fromkeys(specs)))
+
+
+def reproduce(
+    plan: Plan,
+    folder: Path,
+    engine: Engine = local,
+    progress: Callable[[RunSpec], None] = lambda spec: None,
+    notify: Callable[[str], None] | None = None,
+) -> dict[str, list[CheckedClaim]]:
+    """Make the missing runs, then write ``<folder>/<name>/`` for each name.
+
+    With `ALL` among the names also ``report.html``, complete in itself, and the claims of all
+    figures as ``claims.csv`` and ``claims.parquet``.
+
+    Parameters
+    ----------
+    plan
+        Of `plan`.
+    folder
+        Of the results; finished runs are kept in its `RUNS_FOLDER`, and not made again.
+    engine
+        Where to run.
+    progress
+        Called with each spec once its run is there.
+    notify
+        See `RunStore`.
+
+    Returns
+    -------
+    dict
+        The judged claims of each name.
+
+    Raises
+    ------
+    FlockError
+        If runs failed (all others are kept), or files cannot be written.
+    """
+    runs = folder / RUNS_FOLDER
+    store = RunStore(runs, notify) if notify else RunStore(runs)
+    failures = run_missing(plan.specs, store, engine, progress)
+    for spec, error in failures.items():
+        raise FlockError(f"{len(failures)} runs failed, the first of seed {spec.seed}: {error}")
+    finished = []
+    for name in plan.names:
+        figure = load(name)
+        specs = list(dict.fromkeys(figure.runs(plan.settings)))
+        outcome = figure.analyse(plan.settings, Results(store, specs))
+        write_outcome(outcome, folder / name)
+        finished.append((figure, specs, outcome))
+    claims = {figure.name: outcome.claims for figure, _, outcome in finished}
+    if ALL in plan.asked:
+        judged = [claim for each in claims.values() for claim in each]
+        write_table(claims_table(judged), folder / "claims")
+        write_file(folder / "report.html", html_report(plan.settings, finished).encode())
+    return claims

@@ -1,0 +1,157 @@
+"""Statistics of the order parameters over runs of a series, as measured and as resampled."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flockenv.block_bootstrap import block_sums, block_sums_resampled
+from flockenv.reproduce.reproduction import Results
+from flockenv.runs import RunResult, RunSpec
+
+__all__ = [
+    "PHI_EDGES",
+    "PSI_EDGES",
+    "OrderStatistics",
+    "block_length_s",
+    "is_jammed",
+    "is_rotating",
+]
+
+PHI_EDGES = np.linspace(-np.pi, np.pi, 37)
+"""Edges of the bins of φ_o in rad, 10° each."""
+
+PSI_EDGES = np.linspace(0.0, 1.0, 26)
+"""Edges of the bins of Ψ_o."""
+
+_HIGH_ORDER = 0.8
+_WIDE_ANGLE = np.pi / 4
+_JAMMED_SPEED_CM_S = 5.0
+_PEAK_HALF_WIDTH = np.pi / 12
+
+
+def is_rotating(psi_o: NDArray[np.float64], phi_o: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Where a flock circles in order: Ψ_o > 0.8 and φ_o within π/4 of ±π/2."""
+    return (psi_o > _HIGH_ORDER) & (abs(abs(phi_o) - np.pi / 2) < _WIDE_ANGLE)
+
+
+def is_jammed(
+    psi_o: NDArray[np.float64], phi_o: NDArray[np.float64], psi_v: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """Where a flock is jammed: Ψ_o > 0.8, φ_o within π/4 of 0 and Ψ_v below 5 cm/s."""
+    return (psi_o > _HIGH_ORDER) & (abs(phi_o) < _WIDE_ANGLE) & (psi_v < _JAMMED_SPEED_CM_S)
+
+
+def block_length_s(duration_s: float) -> float:
+    """Return the length of the bootstrap's blocks: 2 minutes, a tenth of runs below 20 minutes."""
+    return min(120.0, duration_s / 10)
+
+
+_PLAIN = ("frames", "psi_o", "psi_o²", "c_v", "c_v²", "rotating", "cw", "jammed", "near_zero")
+
+
+def _quantities(run: RunResult) -> NDArray[np.float64]:
+    order, used = run.order, run.analysed
+    psi, phi, c_v, psi_v = (
+        values[used] for values in (order.psi_o, order.phi_o, order.c_v, order.psi_v)
+    )
+    rotating = is_rotating(psi, phi)
+    columns = [
+        np.ones(len(psi)),
+        psi,
+        psi**2,
+        c_v,
+        c_v**2,
+        rotating,
+        rotating & (phi > 0),
+        is_jammed(psi, phi, psi_v),
+        abs(phi) < _PEAK_HALF_WIDTH,
+    ]
+    return np.hstack(
+        [np.stack(columns, axis=1), _in_bins(phi, PHI_EDGES), _in_bins(psi, PSI_EDGES)]
+    )
+
+
+def _in_bins(values: NDArray[np.float64], edges: NDArray[np.float64]) -> NDArray[np.bool_]:
+    count = len(edges) - 1
+    # Single precision may put φ_o or Ψ_o beyond the last edge by a rounding.
+    place = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, count - 1)
+    return np.asarray(place[:, None] == np.arange(count))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OrderStatistics:
+    """Sums over the analysed frames of a series of p points, each of some runs.
+
+    Every method's result has r replicates along axis 1: first as measured, then as resampled by
+    `flockenv.block_bootstrap`, independently at each point.
+
+    Attributes
+    ----------
+    x : float64 array, shape (p,)
+        Where the points are: noise levels in s or numbers of boats.
+    sums : float64 array, shape (p, r, q)
+        Sums over the runs of a point.
+    run_sums : list of float64 arrays, shape (runs, q)
+        Sums over each run of each point.
+    """
+
+    x: NDArray[np.float64]
+    sums: NDArray[np.float64]
+    run_sums: list[NDArray[np.float64]]
+
+    @classmethod
+    def of(
+        cls, results: Results, x: Sequence[float], points: Sequence[Sequence[RunSpec]]
+    ) -> "OrderStatistics":
+        """Return the statistics of a series."""
+        sums, run_sums = [], []
+        for specs in points:
+            blocks = [_blocks(results[spec]) for spec in specs]
+            # Points must not share draws, but the same point always has the same.
+            sums.append(block_sums_resampled(blocks, int(specs[0].key[:8], 16)))
+            run_sums.append(np.stack([each.sum(axis=0) for each in blocks]))
+        return cls(np.asarray(x, float), np.stack(sums), run_sums)
+
+    def mean(self, name: str) -> NDArray[np.float64]:
+        """Return the mean of "psi_o" or "c_v", or a share of the frames.
+
+        Shares are those "rotating" (see `is_rotating`), "jammed" (see `is_jammed`), and
+        "near_zero": with φ_o within π/12 of 0.
+        """
+        return self._sum(name) / self._sum("frames")
+
+    def deviation(self, name: str) -> NDArray[np.float64]:
+        """Return the standard deviation of "psi_o" or "c_v" over the frames."""
+        return np.sqrt(np.maximum(self.mean(f"{name}²") - self.mean(name) ** 2, 0.0))
+
+    def share(self, name: str, of: str, where: NDArray[np.bool_]) -> NDArray[np.float64]:
+        """Return the share of one kind of frames among another, over points `where`: (r,)."""
+        of_all = self._sum(of)[where].sum(axis=0)
+        with np.errstate(invalid="ignore"):
+            return np.asarray(self._sum(name)[where].sum(axis=0) / of_all)
+
+    def density(self, name: str) -> NDArray[np.float64]:
+        """Return the probability density of "phi_o" (1/rad) or "psi_o", shape (p, r, bins)."""
+        first = len(_PLAIN) + (0 if name == "phi_o" else len(PHI_EDGES) - 1)
+        edges = PHI_EDGES if name == "phi_o" else PSI_EDGES
+        counts = self.sums[:, :, first : first + len(edges) - 1]
+        return np.asarray(counts / self._sum("frames")[:, :, None] / np.diff(edges))
+
+    def runs_by_direction(self) -> tuple[int, int]:
+        """Count runs that rotate for most of their time: those mostly clockwise, and all."""
+        runs = np.concatenate(self.run_sums)
+        frames, rotating, cw = (
+            runs[:, _PLAIN.index(name)] for name in ("frames", "rotating", "cw")
+        )
+        steady = rotating > frames / 2
+        return int((steady & (cw > rotating / 2)).sum()), int(steady.sum())
+
+    def _sum(self, name: str) -> NDArray[np.float64]:
+        return self.sums[:, :, _PLAIN.index(name)]
+
+
+def _blocks(run: RunResult) -> NDArray[np.float64]:
+    times = run.time_s[run.analysed]
+    return block_sums(times, _quantities(run), block_length_s(run.spec.duration_s))

@@ -1,0 +1,116 @@
+"""What a reproduced figure is made of: the runs it needs, and what becomes of them."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from flockenv.errors import FlockError, ParameterError
+from flockenv.reproduce.claim import CheckedClaim
+from flockenv.run_store import RunStore
+from flockenv.runs import RunResult, RunSpec
+
+__all__ = ["Outcome", "Reproduction", "Results", "Settings"]
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What the user chooses for all figures.
+
+    Attributes
+    ----------
+    seed : int
+        First seed of every figure's runs.
+    minutes : float or None
+        Length of a run, None for the paper's own.
+
+    Raises
+    ------
+    ParameterError
+        For a length below a third of a minute or above 1e5 minutes.
+    """
+
+    seed: int = 0
+    minutes: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.minutes is not None and not 1 / 3 <= self.minutes <= 1e5:
+            raise ParameterError(
+                f"minutes = {self.minutes!r} is not accepted: from 1/3 (some cycles) to 1e5"
+            )
+
+    def duration_s(self, paper_minutes: float) -> float:
+        """Return the length of a run in s, given the paper's in minutes."""
+        return 60.0 * (paper_minutes if self.minutes is None else self.minutes)
+
+
+class Results(Mapping[RunSpec, RunResult]):
+    """Finished runs by their specs, read from the store when asked for."""
+
+    def __init__(self, store: RunStore, specs: Iterable[RunSpec]) -> None:
+        self._store = store
+        self._specs = dict.fromkeys(specs)
+
+    def __getitem__(self, spec: RunSpec) -> RunResult:
+        if spec not in self._specs:
+            raise KeyError(spec)
+        result = self._store.load(spec)
+        if result is None:
+            raise FlockError(f"{self._store.path(spec)} has been lost since it was written")
+        return result
+
+    def __iter__(self) -> Iterator[RunSpec]:
+        return iter(self._specs)
+
+    def __len__(self) -> int:
+        return len(self._specs)
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What a figure's analysis gives.
+
+    Attributes
+    ----------
+    tables : dict of pandas.DataFrame
+        The data by name; each is written as ``<name>.csv`` and ``<name>.parquet``. The rows are in
+        an order of their own, never in that of finishing.
+    pictures : dict of matplotlib.figure.Figure
+        Each is written as ``<name>.png`` and ``<name>.svg``.
+    claims : list of CheckedClaim
+        The paper's claims about the figure, judged.
+    notes : list of str
+        What a reader needs: how intervals were made, what was left out, what to conclude.
+    """
+
+    tables: dict[str, pd.DataFrame]
+    pictures: dict[str, Figure] = field(default_factory=dict)
+    claims: list[CheckedClaim] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reproduction:
+    """A figure, table or claim of the paper that can be reproduced.
+
+    Attributes
+    ----------
+    name : str
+        As on the command line: "fig14".
+    title : str
+        What it shows, in a line.
+    section : str
+        Of the paper.
+    runs : callable
+        The runs that settings ask for, in a fixed order. Runs that figures share are made once.
+    analyse : callable
+        From settings and those runs to what is written: a pure function, so that a resumed
+        reproduction equals an uninterrupted one byte for byte.
+    """
+
+    name: str
+    title: str
+    section: str
+    runs: Callable[[Settings], list[RunSpec]]
+    analyse: Callable[[Settings, Results], Outcome]

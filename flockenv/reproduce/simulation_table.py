@@ -1,0 +1,106 @@
+"""The claims of Section 5 by scheme, noise convention and pool: what each of them hangs on."""
+
+from collections.abc import Mapping
+
+import pandas as pd
+
+from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, CheckedClaim
+from flockenv.reproduce.files import claims_table
+from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
+from flockenv.reproduce.simulation_claims import Evidence, check, runs_needed
+from flockenv.reproduce.simulation_design import TABLE, Model
+from flockenv.reproduce.simulation_figures import interval_note
+from flockenv.runs import RunSpec
+
+__all__ = ["REPRODUCTIONS", "dependence"]
+
+_POOLS = ("500-boats", "table-1")
+# (preset that gives the scheme, noise) by name; the first and last are the presets themselves.
+_READINGS = {
+    "paper scheme, per-step noise": ("paper", "per-step"),
+    "paper scheme, white noise": ("paper", "white"),
+    "leapfrog, per-step noise": ("simulation", "per-step"),
+    "leapfrog, white noise": ("simulation", "white"),
+}
+_FIGURES = ("fig14", "fig15", "fig16", "fig17")
+
+
+def _models(pool: str) -> list[Model]:
+    return [Model(name, preset, noise, pool) for name, (preset, noise) in _READINGS.items()]
+
+
+def _runs(settings: Settings) -> list[RunSpec]:
+    models = (model for pool in _POOLS for model in _models(pool))
+    return [spec for model in models for spec in runs_needed(settings, model, TABLE)]
+
+
+def dependence(verdicts: Mapping[str, str]) -> str:
+    """Say what a claim hangs on.
+
+    Parameters
+    ----------
+    verdicts
+        The verdict for each of the four readings "<scheme>, <noise>", the two presets' at the ends.
+    """
+    paper, white, per_step, simulation = (verdicts[name] for name in _READINGS)
+    holds = tuple(each == HOLDS for each in (paper, white, per_step, simulation))
+    decided = all(each in (HOLDS, DOES_NOT_HOLD) for each in verdicts.values())
+    words = {
+        (True, True, True, True): "holds whatever the scheme and the noise convention",
+        (True, True, False, False): "holds only with the paper's scheme",
+        (True, False, True, False): "holds only with the paper's noise convention",
+        (True, False, False, False): "holds only with the paper's scheme and noise together",
+        (False, False, False, True): "holds only with leapfrog and white noise together",
+        (False, True, False, True): "holds only with white noise",
+        (False, False, True, True): "holds only with leapfrog",
+        (False, False, False, False): "holds with none",
+    }
+    if decided and holds in words:
+        return words[holds]
+    both = "holds with both presets" if paper == simulation == HOLDS else ""
+    lists = [
+        f"{verdict} with {'; '.join(names)}"
+        for verdict in dict.fromkeys(verdicts.values())
+        if (names := [name for name, each in verdicts.items() if each == verdict])
+    ]
+    return ". ".join(filter(None, [both, *lists]))
+
+
+def _summary(claims: dict[tuple[str, str], list[CheckedClaim]]) -> pd.DataFrame:
+    rows = []
+    for pool in _POOLS:
+        by_claim = zip(*(claims[pool, name] for name in _READINGS), strict=True)
+        for checked in by_claim:
+            verdicts = {name: each.verdict for name, each in zip(_READINGS, checked, strict=True)}
+            claim = checked[0].claim
+            row = {"claim": claim.text, "section": claim.section, "pool": pool, **verdicts}
+            rows.append(row | {"conclusion": dependence(verdicts)})
+    return pd.DataFrame(rows)
+
+
+def _analyse(settings: Settings, results: Results) -> Outcome:
+    claims: dict[tuple[str, str], list[CheckedClaim]] = {}
+    for pool in _POOLS:
+        for model in _models(pool):
+            evidence = Evidence(settings, results, model, TABLE)
+            claims[pool, model.name] = check(evidence, _FIGURES)
+    every = [claim for each in claims.values() for claim in each]
+    summary = _summary(claims)
+    notes = [
+        f"{row['claim']} ({row['pool']}): {row['conclusion']}."
+        for row in summary.to_dict("records")
+    ]
+    notes.append(interval_note(settings, TABLE.runs))
+    tables = {"scheme_and_noise": summary, "measured": claims_table(every)}
+    return Outcome(tables, claims=every, notes=notes)
+
+
+REPRODUCTIONS = (
+    Reproduction(
+        name="scheme-and-noise",
+        title="The claims of Section 5 by scheme, noise convention and pool",
+        section="5.2",
+        runs=_runs,
+        analyse=_analyse,
+    ),
+)

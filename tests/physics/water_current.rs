@@ -1,0 +1,171 @@
+//! Water current (Section 4.5): a flock that goes round pushes the water the other way round, with the
+//! speed −κ·(mean tangential velocity of all boats), at most the cap; drag and u·ẋ are relative to it.
+//!
+//! On paper: boats with thrusts v_i along the tangent end at v_i + w with w = −κ·mean(v_i)/(1 + κ): a
+//! flock of equal boats at v0/(1 + κ), or at v0 − cap.
+
+use crate::support::{SCHEMES, driven, flock_of, runge_kutta};
+use flockenv::geometry::Vec2;
+use flockenv::parameters::Scheme;
+use flockenv::{Flock, FlockParameters};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// So far from the centre (cm) that boats which go straight stay on the tangent.
+const FAR: f64 = 1e8;
+
+fn with_current(scheme: Scheme, current_gain: f64, current_cap_cm_s: f64) -> FlockParameters {
+    FlockParameters {
+        current_gain,
+        current_cap_cm_s,
+        ..driven(scheme)
+    }
+}
+
+/// Boats at rest around the centre, headed `turn` from outward.
+fn ring(p: &FlockParameters, boats: usize, turn: f64) -> Flock {
+    let places = (0..boats).map(|boat| TAU * boat as f64 / boats as f64);
+    let states: Vec<_> = places
+        .map(|angle| {
+            let pose = [FAR * angle.cos(), FAR * angle.sin(), angle + turn];
+            (pose, [0.0; 3])
+        })
+        .collect();
+    flock_of(p, &states)
+}
+
+/// Counter-clockwise velocity of a boat in cm/s.
+fn tangential(flock: &Flock, boat: usize) -> f64 {
+    let position = flock.poses()[boat].position;
+    let tangent = Vec2::new(-position.y, position.x) / position.norm();
+    flock.velocities()[boat].linear.dot(&tangent)
+}
+
+fn assert_near(found: f64, expected: f64, what: Scheme) {
+    assert!(
+        (found - expected).abs() < 1e-4,
+        "{what:?}: {found}, not {expected}"
+    );
+}
+
+#[test]
+fn a_flock_slows_itself_down() {
+    for scheme in SCHEMES {
+        for (turn, sign) in [(FRAC_PI_2, 1.0), (-FRAC_PI_2, -1.0)] {
+            for gain in [0.1, 0.5, 1.0] {
+                let mut flock = ring(&with_current(scheme, gain, 100.0), 5, turn);
+                flock.advance(40.0, None).expect("finite motion");
+                for boat in 0..5 {
+                    assert_near(tangential(&flock, boat), sign * 15.0 / (1.0 + gain), scheme);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_cap_caps_the_current() {
+    for scheme in SCHEMES {
+        for (cap, expected) in [(3.0, 12.0), (5.0, 10.0), (7.4, 7.6), (7.6, 7.5)] {
+            let mut flock = ring(&with_current(scheme, 1.0, cap), 4, -FRAC_PI_2);
+            flock.advance(40.0, None).expect("finite motion");
+            assert_near(tangential(&flock, 2), -expected, scheme);
+        }
+    }
+}
+
+#[test]
+fn only_the_mean_tangential_velocity_moves_the_water() {
+    for scheme in SCHEMES {
+        let p = with_current(scheme, 1.0, 5.0);
+        // Outward motion moves no water.
+        let mut flock = ring(&p, 4, 0.0);
+        flock.advance(40.0, None).expect("finite motion");
+        for (pose, velocity) in flock.poses().iter().zip(flock.velocities()) {
+            let speed = velocity.linear.dot(&pose.position.normalize());
+            assert_near(speed, 15.0, scheme);
+        }
+        // Nor do two boats that go opposite ways round.
+        let opposite = [
+            ([FAR, 0.0, FRAC_PI_2], [0.0; 3]),
+            ([-FAR, 0.0, FRAC_PI_2], [0.0; 3]),
+        ];
+        let mut flock = flock_of(&p, &opposite);
+        flock.advance(40.0, None).expect("finite motion");
+        assert_near(tangential(&flock, 0), 15.0, scheme);
+        assert_near(tangential(&flock, 1), -15.0, scheme);
+    }
+}
+
+#[test]
+fn a_boat_without_a_motor_drifts_with_the_water_and_does_not_steer() {
+    // A leader that does not back up among 9 boats that do, at 10 cm/s clockwise; κ = 0.25:
+    // w = 0.25·(9·10/10)/1.25 = 1.8 cm/s counter-clockwise.
+    for scheme in SCHEMES {
+        let p = FlockParameters {
+            n_leaders: 1,
+            leaders_reverse: false,
+            fw_s: 0.0,
+            bw_s: 1.0,
+            reverse_speed_cm_s: 10.0,
+            ..with_current(scheme, 0.25, 5.0)
+        };
+        let mut flock = ring(&p, 10, FRAC_PI_2);
+        flock.advance(40.0, Some(&[0.0])).expect("finite motion");
+        assert_near(tangential(&flock, 0), 1.8, scheme);
+        assert_near(tangential(&flock, 1), -8.2, scheme);
+        // Full rudder: nothing flows past it.
+        flock.advance(10.0, Some(&[1.0])).expect("finite motion");
+        assert!(flock.velocities()[0].angular.abs() < 1e-6, "{scheme:?}");
+    }
+}
+
+/// A lone boat that circles the centre with its rudder held, current and all: d/dt of
+/// [x, y, α, ẋ, ẏ, α̇].
+fn rate(p: &FlockParameters, rudder: f64, y: &[f64; 6]) -> [f64; 6] {
+    let [px, py, heading, vx, vy, spin] = *y;
+    let far = px.hypot(py);
+    let (tx, ty) = (-py / far, px / far);
+    let current = -p.current_gain * (vx * tx + vy * ty);
+    let current = current.clamp(-p.current_cap_cm_s, p.current_cap_cm_s);
+    let (rx, ry) = (vx - current * tx, vy - current * ty);
+    let (sin, cos) = heading.sin_cos();
+    let along = cos * rx + sin * ry;
+    [
+        vx,
+        vy,
+        spin,
+        p.c0 * (p.speed_cm_s * cos - rx),
+        p.c0 * (p.speed_cm_s * sin - ry),
+        -p.c1 * spin.powi(3) + (p.c2 * rudder - p.c3 * spin) * along,
+    ]
+}
+
+#[test]
+fn each_scheme_keeps_its_order_with_the_current_on() {
+    for (scheme, least, most) in [
+        (Scheme::Leapfrog, 3.6, 4.4),
+        (Scheme::Moreau, 1.8, 2.2),
+        (Scheme::Paper, 1.8, 2.2),
+    ] {
+        let error = |dt_s: f64| {
+            let p = FlockParameters {
+                n_leaders: 1,
+                c2: 1.0,
+                dt_s,
+                ..with_current(scheme, 0.6, 50.0)
+            };
+            let start = [60.0, 0.0, 0.4 * PI, 0.0, 5.0, 0.0];
+            let mut flock = flock_of(&p, &[([60.0, 0.0, 0.4 * PI], [0.0, 5.0, 0.0])]);
+            flock.advance(6.0, Some(&[0.8])).expect("finite motion");
+            let exact = runge_kutta(start, (0.0, 6.0), 6000, |y, _| rate(&p, 0.8, y));
+            let position = flock.poses()[0].position;
+            (position - Vec2::new(exact[0], exact[1])).norm()
+        };
+        let (coarse, fine) = (error(0.04), error(0.02));
+        let ratio = coarse / fine;
+        assert!(
+            least < ratio && ratio < most,
+            "{scheme:?}: {coarse:e} to {fine:e}, {ratio}"
+        );
+    }
+}

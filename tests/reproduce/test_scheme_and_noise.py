@@ -1,0 +1,32 @@
+"""What a claim hangs on follows from its four verdicts."""
+
+import pytest
+
+from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, INCONCLUSIVE
+from flockenv.reproduce.simulation_table import dependence
+
+READINGS = (
+    "paper scheme, per-step noise",
+    "paper scheme, white noise",
+    "leapfrog, per-step noise",
+    "leapfrog, white noise",
+)
+VERDICTS = {"+": HOLDS, "-": DOES_NOT_HOLD, "?": INCONCLUSIVE}
+
+
+@pytest.mark.parametrize(
+    ("signs", "words"),
+    [
+        ("++++", "whatever the scheme and the noise"),
+        ("++--", "only with the paper's scheme"),
+        ("+-+-", "only with the paper's noise convention"),
+        ("+---", "only with the paper's scheme and noise together"),
+        ("----", "holds with none"),
+        ("+--+", "holds with both presets"),
+        ("+++?", "inconclusive with leapfrog, white noise"),
+        ("+?--", "inconclusive with paper scheme, white noise"),
+    ],
+)
+def test_the_conclusion(signs: str, words: str) -> None:
+    verdicts = {name: VERDICTS[sign] for name, sign in zip(READINGS, signs, strict=True)}
+    assert words in dependence(verdicts)
