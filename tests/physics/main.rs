@@ -21,6 +21,7 @@ mod placement;
 mod published;
 mod pushing;
 mod sliding;
+mod slivers;
 mod solver;
 mod solver_agreement;
 mod steady_turning;
