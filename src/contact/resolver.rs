@@ -8,6 +8,7 @@ use super::{Contact, ContactDetector, ContactProblem, InverseInertia};
 use crate::boat::{Pose, Velocity};
 use crate::geometry::{Gap, HullPose, NeighborList, Vec2};
 use crate::parameters::{FlockParameters, Scheme, Solver};
+use crate::phase_schedule::{seconds, ticks};
 use crate::statistics::Statistics;
 
 /// Relinearisation passes after which a substep is taken as it is.
@@ -33,6 +34,8 @@ pub struct ContactResolver {
     gyration_radius: f64,
     /// Gaps below this (cm, negative) are recovered by displacement.
     deep: f64,
+    /// Length of a whole substep in s: what an overlap has to close in, however short a substep is.
+    whole_substep_s: f64,
 }
 
 impl ContactResolver {
@@ -58,6 +61,7 @@ impl ContactResolver {
                 Scheme::Paper => DEEP.min(-2.0 * parameters.overlap_tolerance_cm),
                 Scheme::Leapfrog | Scheme::Moreau => DEEP,
             },
+            whole_substep_s: seconds(ticks(parameters.dt_s)),
         }
     }
 
@@ -199,6 +203,8 @@ impl ContactResolver {
         dt: f64,
         statistics: &mut Statistics,
     ) {
+        // A substep that a phase or control step cuts to 1 ns would close an overlap at any speed.
+        let closing_s = dt.max(self.whole_substep_s);
         self.bounds.clear();
         self.bounds.extend(self.contacts.iter().map(|contact| {
             let Gap { gap, bend, .. } = contact.gap;
@@ -207,7 +213,8 @@ impl ContactResolver {
             if gap < self.deep {
                 0.0
             } else {
-                gap / dt + 0.5 * bend * dt * spin * spin
+                let bound = if gap < 0.0 { gap / closing_s } else { gap / dt };
+                bound + 0.5 * bend * dt * spin * spin
             }
         }));
         self.solver.begin(poses.len(), &self.contacts);
@@ -266,14 +273,16 @@ impl ContactResolver {
 
     /// Sets the bounds so that the gaps at the substep's end, evaluated where the last solve moves the
     /// boats, open to zero: the normals stay those of the substep's beginning, along which forces act,
-    /// and so does the factor. Returns the deepest overlap at the substep's end in cm.
+    /// and so does the factor. Returns the deepest overlap at the substep's end in cm. A shortened
+    /// substep leaves its share of an overlap from before, which does not count.
     fn relinearize(&mut self, poses: &[Pose], dt: f64) -> f64 {
         let velocities = std::mem::take(&mut self.solver.velocities);
         self.set_trial(poses, &velocities, dt);
+        let left_over = 1.0 - dt / dt.max(self.whole_substep_s);
         let mut deepest = 0.0_f64;
         for (k, contact) in self.contacts.iter().enumerate() {
             if contact.gap.gap >= self.deep {
-                let end_gap = self.end_gap(k);
+                let end_gap = self.end_gap(k) - left_over * contact.gap.gap.min(0.0);
                 deepest = deepest.max(-end_gap);
                 self.bounds[k] = end_gap / dt - contact.gap_rate(&velocities);
             }

@@ -10,6 +10,10 @@ use crate::dynamics::{Dynamics, LastSubstep, Steering, Substep};
 use crate::geometry::Vec2;
 use crate::phase_schedule::{Phase, seconds};
 
+/// Part of `dt_s` below which a kick does not tell what contacts press with: impulses that close small
+/// overlaps do not shrink with it. The kick before stands for it then.
+const SHORTEST_TELLING_KICK: f64 = 0.25;
+
 /// One kick and one drift.
 pub fn leapfrog(flock: &mut Dynamics, substep: &Substep) {
     let half_ticks = flock.last.length + substep.length;
@@ -24,8 +28,10 @@ pub fn leapfrog(flock: &mut Dynamics, substep: &Substep) {
     let dt = seconds(substep.length);
     let touches = flock.settle_contacts(dt);
     let lasting = &mut flock.last.lasting_acceleration;
-    lasting.clear();
-    if touches {
+    if !touches {
+        lasting.clear();
+    } else if kick >= SHORTEST_TELLING_KICK * flock.parameters.dt_s {
+        lasting.clear();
         lasting.resize(flock.poses.len(), Vec2::zeros());
         flock
             .contacts
