@@ -11,7 +11,7 @@ from flockenv.extras import require
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Line", "fit_line", "mean_interval", "summarise"]
+__all__ = ["Difference", "Line", "fit_line", "mean_interval", "paired_difference", "summarise"]
 
 CONFIDENCE = 0.95
 """Level of every interval."""
@@ -46,6 +46,52 @@ class Line:
             f"{self.intercept:.3f} + {self.slope:.4f} k (F = {self.f:.2f}, p = {self.p:.2g}, "
             f"{self.n} runs)"
         )
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """How much one policy exceeds another on the same seeds.
+
+    Attributes
+    ----------
+    mean, low, high : float
+        Mean difference and its bootstrap interval at level `CONFIDENCE`.
+    effect : float
+        Cohen's d of paired differences: mean over standard deviation; NaN without spread.
+    n : int
+        Number of pairs.
+    """
+
+    mean: float
+    low: float
+    high: float
+    effect: float
+    n: int
+
+
+def paired_difference(ours: Iterable[float], theirs: Iterable[float], seed: int = 0) -> Difference:
+    """Compare two policies seed by seed.
+
+    Parameters
+    ----------
+    ours, theirs
+        One value a seed, in the same order.
+    seed
+        Seed of the bootstrap.
+
+    Raises
+    ------
+    ValueError
+        For different numbers of values.
+    """
+    ours, theirs = np.asarray(list(ours), float), np.asarray(list(theirs), float)
+    if ours.shape != theirs.shape:
+        raise ValueError(f"{len(ours)} and {len(theirs)} values are no pairs")
+    differences = ours - theirs
+    mean, low, high = mean_interval(differences, seed)
+    spread = float(differences.std(ddof=1)) if len(differences) > 1 else 0.0
+    effect = mean / spread if spread > 0.0 else float("nan")
+    return Difference(mean, low, high, effect, len(differences))
 
 
 def fit_line(x: Iterable[float], y: Iterable[float]) -> Line:

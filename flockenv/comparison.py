@@ -1,5 +1,7 @@
 """Leader policies against each other: seeded episodes, order by number of leaders (figure 12)."""
 
+import difflib
+import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -9,33 +11,86 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
+from flockenv.errors import ParameterError
 from flockenv.extras import require
 from flockenv.parameters import FlockParameters
-from flockenv.policies import SteeringLaw
+from flockenv.policies import (
+    DampedLaw,
+    RandomRudders,
+    SignCorrectedLaw,
+    SteeringLaw,
+    StraightAhead,
+    load,
+)
+from flockenv.seeds import check_evaluation_seeds
 from flockenv.simulation import LeaderPolicy, simulate
 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["NO_LEADERS", "POLICIES", "QUANTITIES", "compare_leaders"]
+__all__ = [
+    "EVERY_SUBSTEP",
+    "NO_LEADERS",
+    "ORDERING_TIMES",
+    "POLICIES",
+    "QUANTITIES",
+    "compare_leaders",
+    "named_policy",
+]
 
 NO_LEADERS = "no leaders"
 """Name under which runs without leaders are listed."""
 
-QUANTITIES = ("psi_o", "signed_order")
-"""What is compared: mean Ψ_o and mean signed order of the normal boats."""
+EVERY_SUBSTEP = "law"
+"""Stands for the paper's law evaluated at every substep, from the pose: what `simulate` does."""
+
+QUANTITIES = ("psi_o", "signed_order", "share_towards_target")
+"""What is compared: mean Ψ_o and mean signed order of the normal boats, and the part of the time in
+which the signed order exceeds 0.5; all over the frames in the analysis window after the first
+tenth."""
+
+ORDERING_TIMES = {"ordering_time_s": math.pi / 20, "ordering_time_wide_s": math.pi / 4}
+"""Ordering times (eq. 7) with the angle as printed and a wider one; NaN where a flock did not
+order."""
 
 _CONTROL_HZ = 10.0
 
 
-POLICIES: Mapping[str, Callable[[], LeaderPolicy]] = {"steering law": SteeringLaw}
+POLICIES: Mapping[str, Callable[[], LeaderPolicy | str]] = {
+    "steering law": SteeringLaw,
+    "steering law, every substep": lambda: EVERY_SUBSTEP,
+    "sign-corrected law": SignCorrectedLaw,
+    "damped law": DampedLaw,
+    "straight ahead": StraightAhead,
+    "random rudders": RandomRudders,
+}
 """Policies that can be compared by name."""
+
+
+def named_policy(name: str) -> Callable[[], LeaderPolicy | str]:
+    """Return what makes a policy: a name in `POLICIES`, or the path of a policy's ``.npz`` file.
+
+    Raises
+    ------
+    ParameterError
+        For unknown names and files that are no policy.
+    OSError
+        If the file cannot be opened.
+    """
+    if name in POLICIES:
+        return POLICIES[name]
+    if name.endswith(".npz"):
+        learned = load(name)
+        return lambda: learned
+    near = difflib.get_close_matches(name, POLICIES, n=1)
+    hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(POLICIES)}"
+    raise ParameterError(f"{name!r} is no policy and no .npz file: {hint}")
 
 
 def compare_leaders(
     parameters: FlockParameters,
     leaders: Sequence[int],
-    policies: Sequence[str],
+    policies: Mapping[str, Callable[[], LeaderPolicy | str]],
     seeds: Sequence[int],
     duration_s: float,
     progress: Callable[[float], None] = lambda flock_seconds: None,
@@ -53,9 +108,10 @@ def compare_leaders(
     leaders
         Numbers of leaders; 0 is run once, whatever the policies.
     policies
-        Names in `POLICIES`.
+        What makes each policy, by the name to list it under: `POLICIES` or a part of it, others of
+        your own. Each is made anew for each number of leaders.
     seeds
-        One episode each.
+        One episode each; below `flockenv.seeds.FIRST_TRAINING_SEED`.
     duration_s
         Length of an episode in s.
     progress
@@ -64,41 +120,42 @@ def compare_leaders(
     Returns
     -------
     pandas.DataFrame
-        One row an episode: ``policy``, ``leaders``, ``seed``, ``psi_o``, ``signed_order``; both
-        means over the 10 Hz frames in the analysis window after the first tenth.
+        One row an episode: ``policy``, ``leaders``, ``seed``, the `QUANTITIES` and the
+        `ORDERING_TIMES`.
 
     Raises
     ------
     ParameterError
-        For parameters and durations out of range.
-    KeyError
-        For an unknown policy.
+        For parameters and durations out of range, and for training seeds.
     """
     pandas = require("pandas", "plot")
-    chosen = {name: POLICIES[name] for name in policies}
+    check_evaluation_seeds(seeds)
     parts = []
     if 0 in leaders:
         scene = parameters.replace(n_leaders=0)
-        found = _without_leaders(scene, seeds, duration_s, progress)
+        found = _simulated(scene, seeds, duration_s, progress)
         parts.append({"policy": NO_LEADERS, "leaders": 0, "seed": seeds, **found})
-    for name, make in chosen.items():
+    for name, make in policies.items():
         for k in (k for k in leaders if k > 0):
-            scene = parameters.replace(n_leaders=k)
-            found = _with_leaders(scene, make(), seeds, duration_s, progress)
+            scene, policy = parameters.replace(n_leaders=k), make()
+            if isinstance(policy, str):
+                found = _simulated(scene, seeds, duration_s, progress)
+            else:
+                found = _stepped(scene, policy, seeds, duration_s, progress)
             parts.append({"policy": name, "leaders": k, "seed": seeds, **found})
     tables = [pandas.DataFrame(part) for part in parts]
     runs: pd.DataFrame = pandas.concat(tables, ignore_index=True)
     return runs
 
 
-def _with_leaders(
+def _stepped(
     scene: FlockParameters,
     policy: LeaderPolicy,
     seeds: Sequence[int],
     duration_s: float,
     progress: Callable[[float], None],
 ) -> dict[str, NDArray[np.float64]]:
-    env = _environment(scene, len(seeds), duration_s)
+    env = _environment(scene, len(seeds), duration_s, policy)
     observations, _ = env.reset(seed=list(seeds))
     state, ended = None, np.zeros(len(seeds), np.bool_)
     infos: dict[str, Any] = {}
@@ -107,10 +164,13 @@ def _with_leaders(
         observations, _, _, ended, infos = env.step(actions)
         progress(len(seeds) / _CONTROL_HZ)
     summary = infos["episode_summary"]
-    return {name: np.asarray(summary[name], np.float64) for name in QUANTITIES}
+    names = (*QUANTITIES, *ORDERING_TIMES)
+    return {name: np.asarray(summary[name], np.float64) for name in names}
 
 
-def _environment(scene: FlockParameters, num_envs: int, duration_s: float) -> Any:
+def _environment(
+    scene: FlockParameters, num_envs: int, duration_s: float, policy: LeaderPolicy | None = None
+) -> Any:
     return gymnasium.make_vec(
         "flockenv/Leaders-v0",
         num_envs=num_envs,
@@ -120,28 +180,34 @@ def _environment(scene: FlockParameters, num_envs: int, duration_s: float) -> An
         episode_s=duration_s,
         control_hz=_CONTROL_HZ,
         autoreset_mode="disabled",
+        observation=getattr(policy, "observation", {}),
+        mirror_to_target=getattr(policy, "mirror_to_target", False),
     )
 
 
-def _without_leaders(
+def _simulated(
     scene: FlockParameters,
     seeds: Sequence[int],
     duration_s: float,
     progress: Callable[[float], None],
 ) -> dict[str, NDArray[np.float64]]:
     # The environment derives a flock's seed from its own: ask it, to pair the runs.
-    env = _environment(scene.replace(n_leaders=1), len(seeds), duration_s)
+    env = _environment(scene.replace(n_leaders=max(1, scene.n_leaders)), len(seeds), duration_s)
     _, infos = env.reset(seed=list(seeds))
     flock_seeds = [int(seed) for seed in infos["flock_seed"]]
 
     def run(seed: int) -> list[float]:
         recording = simulate(scene, seed, duration_s, _CONTROL_HZ, dtype=np.float32)
         frames = recording.in_analysis_window & (recording.time_s > 0.1 * duration_s)
-        signed = recording.order.signed_order(scene.target)
+        order = recording.order
+        signed = order.signed_order(scene.target)[frames]
         progress(duration_s)
-        return [recording.order.psi_o[frames].mean(), signed[frames].mean()]
+        ordering = [
+            order.ordering_time(recording.time_s, within) for within in ORDERING_TIMES.values()
+        ]
+        return [order.psi_o[frames].mean(), signed.mean(), (signed > 0.5).mean(), *ordering]
 
     # Threads suffice: the simulator lets go of the interpreter while it runs.
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         means = np.array(list(pool.map(run, flock_seeds)))
-    return dict(zip(QUANTITIES, means.T, strict=True))
+    return dict(zip((*QUANTITIES, *ORDERING_TIMES), means.T, strict=True))

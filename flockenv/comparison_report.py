@@ -1,21 +1,39 @@
 """The report of `flockenv compare`: means, straight lines, files."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.table import Table
 
 from flockenv._core import __version__
-from flockenv.analysis import CONFIDENCE, Line, fit_line, summarise
-from flockenv.comparison import NO_LEADERS, POLICIES, QUANTITIES, compare_leaders
+from flockenv.analysis import (
+    CONFIDENCE,
+    Difference,
+    Line,
+    fit_line,
+    paired_difference,
+    summarise,
+)
+from flockenv.comparison import NO_LEADERS, ORDERING_TIMES, QUANTITIES, compare_leaders
+from flockenv.extras import require
 from flockenv.parameters import FlockParameters
+from flockenv.simulation import LeaderPolicy
+from flockenv.whole_file import whole_file
 
 if TYPE_CHECKING:
     import pandas as pd
 
 __all__ = ["ComparisonReport", "report"]
+
+
+NAMES = {
+    "psi_o": "Ψ_o",
+    "signed_order": "signed order",
+    "share_towards_target": "time towards target",
+}
+"""What the `QUANTITIES` are called in print."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,11 +48,15 @@ class ComparisonReport:
         One row for each policy and number of leaders.
     lines : dict
         The line for each (policy, quantity), over all its runs and those without leaders.
+    differences : pandas.DataFrame
+        How much signed order each policy has beyond the first of them, seed by seed, for each
+        number of leaders; empty for a single policy.
     """
 
     scene: FlockParameters
     means: "pd.DataFrame"
     lines: dict[tuple[str, str], Line]
+    differences: "pd.DataFrame"
 
     def title(self) -> str:
         """Return what was run, in one line."""
@@ -50,21 +72,29 @@ class ComparisonReport:
         table.caption = (
             f"means over {self.means['runs'].max()} runs with {CONFIDENCE:.0%} intervals"
         )
-        for column in ("policy", "leaders", "Ψ_o", "signed order"):
+        for column in ("policy", "leaders", *(NAMES[q] for q in QUANTITIES), "ordered"):
             table.add_column(column, no_wrap=True)
         for row in self.means.to_dict("records"):
             cells = [
                 f"{row[q]:6.3f} [{row[f'{q}_low']:6.3f}, {row[f'{q}_high']:6.3f}]"
                 for q in QUANTITIES
             ]
-            table.add_row(row["policy"], str(row["leaders"]), *cells)
+            ordered = f"{row['ordered']:4.0%}"
+            table.add_row(row["policy"], str(row["leaders"]), *cells, ordered)
         return table
+
+    def differences_in_words(self) -> str:
+        """Return the differences between policies, one a row of text."""
+        return "\n".join(
+            f"{row['policy']} - {row['reference']}, {row['leaders']} leaders: signed order "
+            f"{row['mean']:+.3f} [{row['low']:+.3f}, {row['high']:+.3f}], d = {row['effect']:.2f}"
+            for row in self.differences.to_dict("records")
+        )
 
     def lines_in_words(self) -> str:
         """Return the fitted lines, one a row of text."""
-        names = {"psi_o": "Ψ_o", "signed_order": "signed order"}
         return "\n".join(
-            f"{policy}: {names[quantity]} = {line}"
+            f"{policy}: {NAMES[quantity]} = {line}"
             for (policy, quantity), line in self.lines.items()
         )
 
@@ -72,46 +102,82 @@ class ComparisonReport:
 def report(
     scene: FlockParameters,
     leaders: Sequence[int],
+    policies: Mapping[str, Callable[[], LeaderPolicy | str]],
     seeds: Sequence[int],
     duration_s: float,
     folder: Path,
     progress: Callable[[float], None],
 ) -> ComparisonReport:
-    """Run a comparison of every policy and write its files.
+    """Run a comparison of policies and write its files.
 
-    Writes ``runs.csv``, ``means.csv``, ``lines.csv``, ``leader_curve.png`` and
+    Writes ``runs.csv``, ``means.csv``, ``lines.csv``, ``differences.csv``, ``leader_curve.png`` and
     ``parameters.toml`` into `folder`.
 
     Raises
     ------
     ParameterError
-        For parameters and durations out of range; nothing is written then.
+        For parameters, seeds and durations out of range; nothing is written then.
     MissingExtraError
         Without the extra ``plot``.
     """
     from flockenv.figures import leader_curve
 
-    runs = compare_leaders(scene, leaders, list(POLICIES), seeds, duration_s, progress)
-    means = summarise(runs, ["policy", "leaders"], list(QUANTITIES))
+    runs = compare_leaders(scene, leaders, policies, seeds, duration_s, progress)
+    means = _means(runs)
     lines = {}
-    for policy in POLICIES:
+    for policy in policies:
         own = runs[runs["policy"].isin([policy, NO_LEADERS])]
         for quantity in QUANTITIES:
             lines[policy, quantity] = fit_line(own["leaders"], own[quantity])
-    result = ComparisonReport(scene, means, lines)
+    result = ComparisonReport(scene, means, lines, _differences(runs, list(policies)))
     folder.mkdir(parents=True, exist_ok=True)
-    runs.to_csv(folder / "runs.csv", index=False)
-    means.to_csv(folder / "means.csv", index=False)
-    _lines_csv(lines, folder / "lines.csv")
+    for name, table in (
+        ("runs", runs),
+        ("means", means),
+        ("lines", _lines_table(lines)),
+        ("differences", result.differences),
+    ):
+        with whole_file(folder / f"{name}.csv") as file:
+            table.to_csv(file, index=False)
     header = f"# flockenv {__version__}, seeds {seeds[0]} to {seeds[-1]}, {duration_s:g} s each\n"
-    (folder / "parameters.toml").write_text(header + scene.to_toml(), encoding="utf-8")
+    with whole_file(folder / "parameters.toml") as file:
+        file.write((header + scene.to_toml()).encode())
     leader_curve(runs, means, lines, result.title(), folder / "leader_curve.png")
     return result
 
 
-def _lines_csv(lines: dict[tuple[str, str], Line], path: Path) -> None:
-    rows = ["policy,quantity,slope,intercept,f,p,runs"]
-    for (policy, quantity), line in lines.items():
-        numbers = (line.slope, line.intercept, line.f, line.p, line.n)
-        rows.append(",".join([policy, quantity, *map(str, numbers)]))
-    path.write_text("\n".join(rows) + "\n", encoding="utf-8")
+def _means(runs: "pd.DataFrame") -> "pd.DataFrame":
+    """Return means and intervals, and how many runs ordered, and how soon (medians)."""
+    by = ["policy", "leaders"]
+    means = summarise(runs, by, list(QUANTITIES))
+    groups = runs.groupby(by, sort=False)
+    columns = groups[list(ORDERING_TIMES)].median()
+    columns["ordered"] = groups["ordering_time_wide_s"].count() / groups.size()
+    merged: pd.DataFrame = means.merge(columns.reset_index(), on=by, validate="one_to_one")
+    return merged
+
+
+def _differences(runs: "pd.DataFrame", policies: Sequence[str]) -> "pd.DataFrame":
+    """Return what each policy has beyond the first, seed by seed."""
+    pandas = require("pandas", "plot")
+    runs = runs[runs["leaders"] > 0]
+    orders = runs.pivot_table(index=["leaders", "seed"], columns="policy", values="signed_order")
+    rows = [
+        {"policy": policy, "reference": policies[0], "leaders": k}
+        | asdict(paired_difference(orders.loc[k][policy], orders.loc[k][policies[0]]))
+        for policy in policies[1:]
+        for k in sorted(runs["leaders"].unique())
+    ]
+    columns = ["policy", "reference", "leaders", *(each.name for each in fields(Difference))]
+    table: pd.DataFrame = pandas.DataFrame(rows, columns=columns)
+    return table
+
+
+def _lines_table(lines: Mapping[tuple[str, str], Line]) -> "pd.DataFrame":
+    pandas = require("pandas", "plot")
+    rows = [
+        {"policy": policy, "quantity": quantity} | asdict(line)
+        for (policy, quantity), line in lines.items()
+    ]
+    table: pd.DataFrame = pandas.DataFrame(rows).rename(columns={"n": "runs"})
+    return table

@@ -62,20 +62,43 @@ pub fn off_tangent(phi: f64) -> f64 {
     (phi.abs() - FRAC_PI_2).abs()
 }
 
-/// Ordering time τ (eq. 7): the first time at which Ψ_o > 0.8 and ||φ_o| − π/2| is less than
-/// `within`, if mean Ψ_o over the second half of the run exceeds 0.8; otherwise none. The slices are
-/// of equal length, the times increasing; the run lasts until the last of them.
+/// Waits for a flock to order: τ of eq. (7), sample by sample.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct OrderingWatch {
+    late_samples: u32,
+    late_order: f64,
+    first_s: Option<f64>,
+}
+
+impl OrderingWatch {
+    /// Takes note of the order at a time since the run began. `is_late` tells the second half of the
+    /// run; an orientation is tangential that is less than `within` (rad) off.
+    pub fn note(&mut self, time_s: f64, order: &OrderParameters, within: f64, is_late: bool) {
+        if is_late {
+            self.late_samples += 1;
+            self.late_order += order.psi_o;
+        }
+        let is_ordered = order.psi_o > HIGH_ORDER && off_tangent(order.phi_o) < within;
+        if is_ordered && self.first_s.is_none() {
+            self.first_s = Some(time_s);
+        }
+    }
+
+    /// The first time in s at which Ψ_o > 0.8 and ||φ_o| − π/2| was less than `within`, if mean Ψ_o
+    /// over the second half exceeds 0.8; otherwise none.
+    pub fn ordering_time_s(&self) -> Option<f64> {
+        let stays = self.late_order > HIGH_ORDER * f64::from(self.late_samples);
+        self.first_s.filter(|_| stays)
+    }
+}
+
+/// Ordering time τ (eq. 7) of a series of samples. The slices are of equal length, the times
+/// increasing; the run lasts until the last of them.
 pub fn ordering_time(time_s: &[f64], order: &[OrderParameters], within: f64) -> Option<f64> {
     let half = time_s.last()? / 2.0;
-    let samples = || time_s.iter().zip(order);
-    let late: Vec<f64> = samples()
-        .filter(|(time, _)| **time >= half)
-        .map(|(_, order)| order.psi_o)
-        .collect();
-    if late.iter().sum::<f64>() <= HIGH_ORDER * late.len() as f64 {
-        return None;
+    let mut watch = OrderingWatch::default();
+    for (&time, order) in time_s.iter().zip(order) {
+        watch.note(time, order, within, time >= half);
     }
-    samples()
-        .find(|(_, order)| order.psi_o > HIGH_ORDER && off_tangent(order.phi_o) < within)
-        .map(|(time, _)| *time)
+    watch.ordering_time_s()
 }

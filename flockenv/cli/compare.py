@@ -21,6 +21,9 @@ class PoolChoice(StrEnum):
     TABLE_1 = "table-1"
 
 
+DEFAULT_POLICIES = ("steering law",)
+
+
 def compare(
     pool: Annotated[PoolChoice, typer.Option(help="Which pool.")] = PoolChoice.BOTH,
     preset: Annotated[str, typer.Option(help="Preset of the scene.")] = "simulation",
@@ -30,6 +33,13 @@ def compare(
     minutes: Annotated[float, typer.Option(help="Length of an episode.")] = 8.0,
     bw_s: Annotated[
         float | None, typer.Option(help="Noise: length of the backward phase in s. [critical]")
+    ] = None,
+    policy: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Policy to compare, repeatable: a name, or the .npz file of a learned one; "
+            "differences are taken from the first. [steering law]"
+        ),
     ] = None,
     target: Annotated[str, typer.Option(help="Direction: cw or ccw.")] = "cw",
     seed: Annotated[int, typer.Option(min=0, help="First seed.")] = 0,
@@ -41,14 +51,16 @@ def compare(
 ) -> None:
     """Print and plot order against the number of leaders (figure 12).
 
-    Runs without leaders, and with leaders that follow the paper's law, on the same seeds, at the
-    critical noise of the pool. Writes `runs.csv`, `means.csv`, `leader_curve.png` and
-    `parameters.toml` for each pool.
+    Runs without leaders, and with leaders that follow each policy, on the same seeds, at the
+    critical noise of the pool. Writes `runs.csv`, `means.csv`, `lines.csv`, `differences.csv`,
+    `leader_curve.png` and `parameters.toml` for each pool.
 
-    Example: `flockenv compare --pool table-1 --episodes 128`
+    Example: `flockenv compare --pool table-1 --policy "steering law" --policy "damped law"`
     """
+    from flockenv.comparison import named_policy
     from flockenv.comparison_report import report
 
+    policies = {name: named_policy(name) for name in policy or DEFAULT_POLICIES}
     pools = [choice.value for choice in PoolChoice if choice != PoolChoice.BOTH]
     chosen = pools if pool == PoolChoice.BOTH else [pool.value]
     base = FlockParameters.preset(preset).replace(n_boats=boats, target=target)
@@ -59,7 +71,8 @@ def compare(
         )
         for name in chosen
     }
-    work = len(scenes) * (most_leaders + 1) * episodes * minutes * 60
+    runs = 1 + most_leaders * len(policies)
+    work = len(scenes) * runs * episodes * minutes * 60
     results = {}
     with progress_bar(quiet or as_json) as progress:
         task = progress.add_task("simulating", total=work)
@@ -67,6 +80,7 @@ def compare(
             results[name] = report(
                 scene,
                 range(most_leaders + 1),
+                policies,
                 range(seed, seed + episodes),
                 minutes * 60,
                 out / name,
@@ -78,5 +92,6 @@ def compare(
         return
     for name, result in results.items():
         console.print(result.table())
-        console.print(result.lines_in_words(), highlight=False, soft_wrap=True)
+        words = [result.lines_in_words(), result.differences_in_words()]
+        console.print("\n".join(filter(None, words)), highlight=False, soft_wrap=True)
         console.print(f"Written to {out / name}\n", highlight=False, soft_wrap=True)

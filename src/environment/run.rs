@@ -9,6 +9,7 @@ use crate::flock::Flock;
 use crate::observation::{Camera, CameraState, FlockView, Observer, StateObserver};
 use crate::order_parameters::OrderParameters;
 use crate::parameters::FlockParameters;
+use crate::phase_schedule::seconds;
 
 /// What is there to be seen.
 #[derive(Debug, Clone)]
@@ -189,11 +190,13 @@ impl Run {
         }
         let (flock, episode) = (&self.scene.flock, &self.scene.episode);
         let settled = 10 * (u64::from(episode.step) + 1) > u64::from(episode.steps);
-        if let Some(order) = &self.scene.order
-            && settled
-            && flock.schedule().in_analysis_window(flock.time())
-        {
-            self.totals.add_window(order, view.target);
+        if let Some(order) = &self.scene.order {
+            let time_s = seconds(settings.episode.time_of(episode.step + 1));
+            let is_late = 2 * (u64::from(episode.step) + 1) >= u64::from(episode.steps);
+            self.totals.watch_order(order, time_s, is_late);
+            if settled && flock.schedule().in_analysis_window(flock.time()) {
+                self.totals.add_window(order, view.target);
+            }
         }
     }
 

@@ -1,8 +1,16 @@
 //! Sums over an episode, and the summary told at its end.
 
 use super::{Episode, RewardTerms, TERMS};
+use crate::collective_state::OrderingWatch;
 use crate::order_parameters::OrderParameters;
 use crate::parameters::Target;
+use std::f64::consts::PI;
+
+/// Signed order above this is motion in the target direction.
+pub const TOWARDS_TARGET: f64 = 0.5;
+/// How far off the tangent a flock counts as ordered: as eq. (7) prints it, and wider, since a boat that
+/// slides along the wall heads outward of it.
+pub const ORDERED_WITHIN: [f64; 2] = [PI / 20.0, PI / 4.0];
 
 /// Sums over the control steps of an episode.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
@@ -12,6 +20,8 @@ pub struct Totals {
     window_steps: u32,
     signed_order: f64,
     psi_o: f64,
+    steps_towards_target: u32,
+    ordering: [OrderingWatch; 2],
     clipped: u64,
     observed: u64,
 }
@@ -30,6 +40,14 @@ impl Totals {
         self.window_steps += 1;
         self.signed_order += order.signed_order(target);
         self.psi_o += order.psi_o;
+        self.steps_towards_target += u32::from(order.signed_order(target) > TOWARDS_TARGET);
+    }
+
+    /// Takes note of the order at a time since the episode began; `is_late` in its second half.
+    pub fn watch_order(&mut self, order: &OrderParameters, time_s: f64, is_late: bool) {
+        for (watch, within) in self.ordering.iter_mut().zip(ORDERED_WITHIN) {
+            watch.note(time_s, order, within, is_late);
+        }
     }
 
     /// Counts numbers observed, and those clipped among them.
@@ -54,6 +72,10 @@ impl Totals {
             terms,
             signed_order: self.signed_order / window,
             psi_o: self.psi_o / window,
+            share_towards_target: f64::from(self.steps_towards_target) / window,
+            ordering_times_s: self
+                .ordering
+                .map(|watch| watch.ordering_time_s().unwrap_or(f64::NAN)),
             clip_rate: self.clipped as f64 / self.observed as f64,
         }
     }
@@ -77,6 +99,11 @@ pub struct EpisodeSummary {
     pub signed_order: f64,
     /// Ψ_o, mean over the same steps.
     pub psi_o: f64,
+    /// Part of the same steps in which the signed order exceeds [`TOWARDS_TARGET`].
+    pub share_towards_target: f64,
+    /// Ordering time (eq. 7) in s since the episode began, with the angle as printed, π/20, and with
+    /// π/4; NaN if the flock did not order.
+    pub ordering_times_s: [f64; 2],
     /// Part of the observed numbers that were clipped at their bounds.
     pub clip_rate: f64,
 }

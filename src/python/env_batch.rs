@@ -276,6 +276,10 @@ fn summary_dict<'py>(py: Python<'py>, summary: &EpisodeSummary) -> PyResult<Boun
     dict.set_item("reward_terms", terms)?;
     dict.set_item("signed_order", summary.signed_order)?;
     dict.set_item("psi_o", summary.psi_o)?;
+    dict.set_item("share_towards_target", summary.share_towards_target)?;
+    let [printed, wide] = summary.ordering_times_s;
+    dict.set_item("ordering_time_s", printed)?;
+    dict.set_item("ordering_time_wide_s", wide)?;
     dict.set_item("clip_rate", summary.clip_rate)?;
     Ok(dict)
 }

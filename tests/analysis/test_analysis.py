@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from flockenv.analysis import fit_line, mean_interval, summarise
+from flockenv.analysis import fit_line, mean_interval, paired_difference, summarise
 
 
 def test_a_line_through_three_points() -> None:
@@ -59,3 +59,16 @@ def test_groups_keep_their_order_and_their_own_means() -> None:
     assert means["psi_o"].tolist() == [2.0, 7.0]
     assert means["runs"].tolist() == [2, 2]
     assert list(means) == ["policy", "k", "runs", "psi_o", "psi_o_low", "psi_o_high"]
+
+
+def test_pairs_are_compared_seed_by_seed() -> None:
+    theirs = np.array([0.0, 10.0, -5.0, 3.0])
+    found = paired_difference(theirs + np.array([1.0, 2.0, 3.0, 2.0]), theirs)
+    assert found.mean == pytest.approx(2.0)
+    assert found.effect == pytest.approx(2.0 / np.sqrt(2.0 / 3.0))
+    assert 1.0 <= found.low < 2.0 < found.high <= 3.0
+    same = paired_difference(theirs, theirs)
+    assert (same.mean, same.low, same.high, same.n) == (0.0, 0.0, 0.0, 4)
+    assert np.isnan(same.effect)
+    with pytest.raises(ValueError, match="3 and 2"):
+        paired_difference([1, 2, 3], [1, 2])
