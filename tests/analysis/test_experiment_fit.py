@@ -46,7 +46,8 @@ def test_an_interrupted_search_goes_on_from_its_log(quick, tmp_path):
     before = next(quick)
     resumed = list(fit.search(cut))
     assert cut.read_bytes() == whole.read_bytes()
-    assert resumed == uninterrupted
+    # NaN, of trials without flocks, equals itself in words only.
+    assert repr(resumed) == repr(uninterrupted)
     # Nothing that the log holds is run again.
     list(fit.search(cut))
     ran = next(quick) - before
