@@ -197,10 +197,7 @@ impl Dynamics {
 
     /// Works out the direction vectors of the poses.
     pub fn update_boats(&mut self) {
-        self.boats
-            .iter_mut()
-            .zip(&self.poses)
-            .for_each(|(boat, pose)| *boat = HullPose::new(pose));
+        HullPose::replace_all(&mut self.boats, &self.poses);
     }
 
     /// Moves every boat with its velocity for a time.

@@ -3,7 +3,7 @@
 //! camera's y-down convention, so that φ = 0 points at the outer wall and +π/2 is clockwise motion.
 
 use crate::boat::{Pose, Velocity};
-use crate::geometry::{Vec2, turned_left, wrap_angle};
+use crate::geometry::{HullPose, Vec2, turned_left, wrap_angle};
 
 /// The axes at one place.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,8 +39,7 @@ pub fn orientation(pose: &Pose) -> f64 {
 
 /// The unit orientation vector o in LAP components: (cos φ, sin φ).
 pub fn orientation_vector(pose: &Pose) -> Vec2 {
-    let (sin, cos) = pose.heading.sin_cos();
-    LapFrame::at(pose.position).components(Vec2::new(cos, sin))
+    LapFrame::at(pose.position).components(HullPose::new(pose).axis)
 }
 
 /// The velocity in LAP components (outward, clockwise) in cm/s.

@@ -31,7 +31,8 @@ impl OrderParameters {
     /// # Errors
     /// [`FlockError::Parameter`] if there is no boat.
     pub fn of(poses: &[Pose], velocities: &[Velocity]) -> Result<Self> {
-        let hulls: Vec<HullPose> = poses.iter().map(HullPose::new).collect();
+        let mut hulls = Vec::with_capacity(poses.len());
+        HullPose::replace_all(&mut hulls, poses);
         Self::of_hulls(&hulls, velocities)
     }
 

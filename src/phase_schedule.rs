@@ -1,7 +1,7 @@
 //! The fw-nop-bw-nop cycle and the exact clock it runs on.
 //!
 //! Time is counted in integer ticks of 1 ns, so that a substep can end exactly on a phase switch or
-//! a control step and no sliver steps appear.
+//! a control step, and no sliver of a step is left by rounding where the two meet.
 
 use crate::names::named_choice;
 use crate::parameters::FlockParameters;

@@ -21,15 +21,15 @@ pub struct Drive {
     pub kick: f64,
 }
 
-/// A free velocity and how strongly the substep resists a change of it by contacts.
+/// A free velocity and how readily contacts change it within the substep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FreeVelocity {
     /// The velocity that the boat would have without contacts.
     pub velocity: Velocity,
-    /// Effective linear weight: 1 + dt/2·c0 where drag is implicit.
-    pub linear_weight: f64,
-    /// Effective weight of the angular velocity, to be multiplied with ρ².
-    pub angular_weight: f64,
+    /// One over the effective linear weight, 1 + dt/2·c0 where drag is implicit.
+    pub linear_mobility: f64,
+    /// One over the effective weight of the angular velocity, to be divided by ρ².
+    pub angular_mobility: f64,
 }
 
 /// The constants of eqs (8) and (9).
@@ -66,25 +66,33 @@ impl FreeMotion {
     }
 
     /// Explicit Euler over `dt`: accelerations at the given velocity.
+    ///
+    /// A spin that a collision left so fast that −c1·α̇³ would turn it round within one step
+    /// (c1·α̇²·dt > 1) is stopped instead: beyond 2, explicit steps would grow without end.
     #[inline]
     pub fn explicit(&self, velocity: &Velocity, axis: Vec2, drive: &Drive, dt: f64) -> Velocity {
         let along = axis.dot(&(velocity.linear - drive.water));
+        let spin = velocity.angular;
+        let excess = (self.c1 * spin * spin * dt - 1.0).max(0.0);
         Velocity {
             linear: velocity.linear + self.linear_acceleration(velocity.linear, axis, drive) * dt,
-            angular: velocity.angular
-                + self.angular_acceleration(velocity.angular, along, drive.rudder) * dt
+            angular: spin
+                + self.angular_acceleration(spin, along, drive.rudder) * dt
+                + excess * spin
                 + drive.kick,
         }
     }
 
-    fn linear_weight(&self, dt: f64) -> f64 {
-        1.0 + 0.5 * dt * self.c0
+    /// One over the weight 1 + dt/2·c0.
+    #[inline]
+    fn linear_mobility(&self, dt: f64) -> f64 {
+        1.0 / (1.0 + 0.5 * dt * self.c0)
     }
 
     /// Change of the velocity over `dt` without contacts, with drag centred in the substep.
     #[inline]
     pub fn centered_change(&self, velocity: Vec2, axis: Vec2, drive: &Drive, dt: f64) -> Vec2 {
-        self.linear_acceleration(velocity, axis, drive) * (dt / self.linear_weight(dt))
+        self.linear_acceleration(velocity, axis, drive) * (dt * self.linear_mobility(dt))
     }
 
     /// Second order over `dt` with drag, heading drive and angular damping centred in the substep:
@@ -104,26 +112,26 @@ impl FreeMotion {
         contact_change: Vec2,
         dt: f64,
     ) -> FreeVelocity {
-        let linear_weight = self.linear_weight(dt);
+        let linear_mobility = self.linear_mobility(dt);
         let change = self.centered_change(velocity.linear, axis, drive, dt);
         let middle = velocity.linear + (change + contact_change) * 0.5;
         let along = axis.dot(&(middle - drive.water));
 
         let spin = velocity.angular;
         let half_rate = 0.5 * dt * (3.0 * self.c1 * spin * spin + self.c3 * along);
-        let angular_weight = if half_rate >= 0.0 {
-            1.0 + half_rate
+        let angular_mobility = if half_rate >= 0.0 {
+            1.0 / (1.0 + half_rate)
         } else {
-            1.0 / (1.0 - half_rate)
+            1.0 - half_rate
         };
         let torque = self.angular_acceleration(spin, along, drive.rudder) * dt + drive.kick;
         FreeVelocity {
             velocity: Velocity {
                 linear: velocity.linear + change,
-                angular: spin + torque / angular_weight,
+                angular: spin + torque * angular_mobility,
             },
-            linear_weight,
-            angular_weight,
+            linear_mobility,
+            angular_mobility,
         }
     }
 }

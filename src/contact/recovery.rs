@@ -50,7 +50,7 @@ impl Recovery {
         &mut self,
         detector: &mut ContactDetector,
         poses: &mut [Pose],
-        boats: &mut [HullPose],
+        boats: &mut Vec<HullPose>,
         allowed: f64,
         most_passes: u32,
     ) -> f64 {
@@ -63,10 +63,7 @@ impl Recovery {
             }
             self.passes += 1;
             self.displace(poses);
-            boats
-                .iter_mut()
-                .zip(poses.iter())
-                .for_each(|(boat, pose)| *boat = HullPose::new(pose));
+            HullPose::replace_all(boats, poses);
         }
         detector.detect(boats, margin, &mut self.contacts);
         self.smallest_gap()
@@ -116,6 +113,7 @@ pub fn push_apart(
     gyration_radius: f64,
     most_passes: u32,
 ) -> f64 {
-    let mut boats: Vec<HullPose> = poses.iter().map(HullPose::new).collect();
+    let mut boats = Vec::with_capacity(poses.len());
+    HullPose::replace_all(&mut boats, poses);
     Recovery::new(poses.len(), gyration_radius).run(detector, poses, &mut boats, 0.0, most_passes)
 }

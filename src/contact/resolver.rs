@@ -8,6 +8,7 @@ use super::{Contact, ContactDetector, ContactProblem, InverseInertia};
 use crate::boat::{Pose, Velocity};
 use crate::geometry::{Gap, HullPose, NeighborList, Vec2};
 use crate::parameters::{FlockParameters, Scheme, Solver};
+use crate::phase_schedule::{seconds, ticks};
 use crate::statistics::Statistics;
 
 /// Relinearisation passes after which a substep is taken as it is.
@@ -25,12 +26,16 @@ pub struct ContactResolver {
     /// Contacts that carried an impulse, in the order of detection.
     loads: Loads,
     recovery: Option<Box<Recovery>>,
+    /// Poses and hulls where a solve would move the boats.
+    moved: Vec<Pose>,
     trial: Vec<HullPose>,
     /// Overlap in cm at a substep's end that relinearisation stops at; `None` without it.
     allowed_overlap: Option<f64>,
     gyration_radius: f64,
     /// Gaps below this (cm, negative) are recovered by displacement.
     deep: f64,
+    /// Length of a whole substep in s: what an overlap has to close in, however short a substep is.
+    whole_substep_s: f64,
 }
 
 impl ContactResolver {
@@ -44,6 +49,7 @@ impl ContactResolver {
             lasting: Vec::new(),
             loads: Loads::default(),
             recovery: None,
+            moved: Vec::new(),
             trial: Vec::new(),
             allowed_overlap: [None, Some(1e-6), Some(1e-9)]
                 .get(parameters.relinearizations)
@@ -55,6 +61,7 @@ impl ContactResolver {
                 Scheme::Paper => DEEP.min(-2.0 * parameters.overlap_tolerance_cm),
                 Scheme::Leapfrog | Scheme::Moreau => DEEP,
             },
+            whole_substep_s: seconds(ticks(parameters.dt_s)),
         }
     }
 
@@ -106,7 +113,7 @@ impl ContactResolver {
     pub fn find(
         &mut self,
         poses: &mut [Pose],
-        boats: &mut [HullPose],
+        boats: &mut Vec<HullPose>,
         velocities: &[Velocity],
         dt: f64,
         statistics: &mut Statistics,
@@ -126,7 +133,12 @@ impl ContactResolver {
         !self.contacts.is_empty()
     }
 
-    fn recover(&mut self, poses: &mut [Pose], boats: &mut [HullPose], statistics: &mut Statistics) {
+    fn recover(
+        &mut self,
+        poses: &mut [Pose],
+        boats: &mut Vec<HullPose>,
+        statistics: &mut Statistics,
+    ) {
         let recovery = self
             .recovery
             .get_or_insert_with(|| Box::new(Recovery::new(poses.len(), self.gyration_radius)));
@@ -176,8 +188,9 @@ impl ContactResolver {
             .iter()
             .zip(velocities)
             .map(|(pose, velocity)| pose.moved(velocity, dt));
-        self.trial.clear();
-        self.trial.extend(moved.map(|pose| HullPose::new(&pose)));
+        self.moved.clear();
+        self.moved.extend(moved);
+        HullPose::replace_all(&mut self.trial, &self.moved);
     }
 
     /// Solves the contacts found last for free velocities and effective inertia; the result is in
@@ -190,6 +203,8 @@ impl ContactResolver {
         dt: f64,
         statistics: &mut Statistics,
     ) {
+        // A substep that a phase or control step cuts to 1 ns would close an overlap at any speed.
+        let closing_s = dt.max(self.whole_substep_s);
         self.bounds.clear();
         self.bounds.extend(self.contacts.iter().map(|contact| {
             let Gap { gap, bend, .. } = contact.gap;
@@ -198,7 +213,8 @@ impl ContactResolver {
             if gap < self.deep {
                 0.0
             } else {
-                gap / dt + 0.5 * bend * dt * spin * spin
+                let bound = if gap < 0.0 { gap / closing_s } else { gap / dt };
+                bound + 0.5 * bend * dt * spin * spin
             }
         }));
         self.solver.begin(poses.len(), &self.contacts);
@@ -257,14 +273,16 @@ impl ContactResolver {
 
     /// Sets the bounds so that the gaps at the substep's end, evaluated where the last solve moves the
     /// boats, open to zero: the normals stay those of the substep's beginning, along which forces act,
-    /// and so does the factor. Returns the deepest overlap at the substep's end in cm.
+    /// and so does the factor. Returns the deepest overlap at the substep's end in cm. A shortened
+    /// substep leaves its share of an overlap from before, which does not count.
     fn relinearize(&mut self, poses: &[Pose], dt: f64) -> f64 {
         let velocities = std::mem::take(&mut self.solver.velocities);
         self.set_trial(poses, &velocities, dt);
+        let left_over = 1.0 - dt / dt.max(self.whole_substep_s);
         let mut deepest = 0.0_f64;
         for (k, contact) in self.contacts.iter().enumerate() {
             if contact.gap.gap >= self.deep {
-                let end_gap = self.end_gap(k);
+                let end_gap = self.end_gap(k) - left_over * contact.gap.gap.min(0.0);
                 deepest = deepest.max(-end_gap);
                 self.bounds[k] = end_gap / dt - contact.gap_rate(&velocities);
             }

@@ -3,7 +3,7 @@
 use crate::error::{FlockError, Result};
 use crate::names::named_choice;
 use crate::parameters::Target;
-use crate::phase_schedule::{Ticks, seconds, ticks};
+use crate::phase_schedule::{Ticks, ticks};
 use crate::random_streams::Stream;
 use rand::RngExt;
 use rand_chacha::rand_core::Rng;
@@ -72,7 +72,7 @@ impl EpisodeSettings {
                 Err(FlockError::parameter(
                     "bw_s",
                     format!("({low}, {high})"),
-                    "a range (low, high) with 0 <= low <= high",
+                    "a range (low, high) with 0 <= low <= high <= 1e6",
                 ))
             }
             _ => Ok(()),
@@ -92,14 +92,10 @@ impl EpisodeSettings {
         (self.duration_s() * self.control_hz).round() as u32
     }
 
-    /// Length of a control step.
-    pub fn period(&self) -> Ticks {
-        ticks(1.0 / self.control_hz)
-    }
-
-    /// Length of a control step in s, as the clock counts it.
-    pub fn period_s(&self) -> f64 {
-        seconds(self.period())
+    /// Time from an episode's start to the end of so many control steps, to the nearest tick: where a
+    /// period is no whole number of ticks, rounding does not add up.
+    pub fn time_of(&self, steps: u32) -> Ticks {
+        ticks(f64::from(steps) / self.control_hz)
     }
 }
 

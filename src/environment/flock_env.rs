@@ -33,7 +33,7 @@ impl FlockEnv {
     /// For checked settings and parameters; to be reset before it can be stepped.
     pub fn new(settings: &EnvSettings, parameters: FlockParameters) -> Self {
         Self {
-            servo: settings.rudder.servo(settings.episode.period_s()),
+            servo: settings.rudder.servo(1.0 / settings.episode.control_hz),
             state_observer: StateObserver::new(&parameters, settings.observation.mirror_to_target),
             seeds: None,
             run: None,

@@ -3,7 +3,7 @@
 use super::{EnvSettings, Episode, TargetChoice};
 use crate::boat::{Pose, Velocity};
 use crate::error::{FlockError, Result};
-use crate::flock::Flock;
+use crate::flock::{Flock, LATEST};
 use crate::parameters::FlockParameters;
 
 /// Where an episode begins.
@@ -75,6 +75,10 @@ impl ResetRequest {
         } = &self.start
         {
             flock.set_state(poses, velocities, *time_s, *allow_overlap)?;
+        }
+        if flock.time() + plan.time_of(episode.steps) > LATEST {
+            let accepted = "a time at least an episode's length before 1e9 s";
+            return Err(FlockError::parameter("time_s", flock.time_s(), accepted));
         }
         episode.bw_s = flock.parameters().bw_s;
         flock.set_target(episode.target());

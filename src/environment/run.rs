@@ -165,7 +165,8 @@ impl Run {
             let command = settings.rudder.command(action);
             *rudder = servo.moved(*rudder, if mirrored { -command } else { command });
         }
-        let end = scene.flock.time() + settings.episode.period();
+        let (plan, step) = (&settings.episode, scene.episode.step);
+        let end = scene.flock.time() + plan.time_of(step + 1) - plan.time_of(step);
         if let Err(error) = scene.flock.advance_to(end, Steering::Held(&scene.rudders)) {
             self.ended = true;
             return Err(error);

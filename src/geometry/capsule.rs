@@ -3,6 +3,7 @@
 use super::Vec2;
 use crate::boat::Pose;
 use crate::parameters::FlockParameters;
+use wide::f64x4;
 
 /// The shape that all boats of a flock share.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,11 +47,30 @@ impl HullPose {
     /// From a pose.
     #[inline]
     pub fn new(pose: &Pose) -> Self {
-        let (sin, cos) = pose.heading.sin_cos();
+        let (sin, cos) = f64x4::splat(pose.heading).sin_cos();
         Self {
             center: pose.position,
-            axis: Vec2::new(cos, sin),
+            axis: Vec2::new(cos.as_array()[0], sin.as_array()[0]),
         }
+    }
+
+    /// Replaces `into` by the hulls at some poses, bit for bit those of [`Self::new`].
+    ///
+    /// Four headings at a time, which is faster; and the result does not depend on the machine's
+    /// mathematical library.
+    pub fn replace_all(into: &mut Vec<Self>, poses: &[Pose]) {
+        into.clear();
+        let mut fours = poses.chunks_exact(4);
+        for four in &mut fours {
+            let headings = f64x4::new(std::array::from_fn(|k| four[k].heading));
+            let (sin, cos) = headings.sin_cos();
+            let (sin, cos) = (sin.as_array(), cos.as_array());
+            into.extend((0..4).map(|k| Self {
+                center: four[k].position,
+                axis: Vec2::new(cos[k], sin[k]),
+            }));
+        }
+        into.extend(fours.remainder().iter().map(Self::new));
     }
 
     /// The end of the core segment at the bow (`side` +1) or stern (−1).

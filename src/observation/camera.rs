@@ -130,8 +130,7 @@ impl Camera {
     fn develop(&mut self, leaders: usize) {
         let mut hulls = std::mem::take(&mut self.hulls);
         let seen = self.seen();
-        hulls.clear();
-        hulls.extend(seen.poses.iter().map(HullPose::new));
+        HullPose::replace_all(&mut hulls, &seen.poses);
         let order = OrderParameters::of_hulls(&hulls[leaders..], &seen.velocities[leaders..]).ok();
         (self.hulls, self.order) = (hulls, order);
     }

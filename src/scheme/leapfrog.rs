@@ -10,6 +10,10 @@ use crate::dynamics::{Dynamics, LastSubstep, Steering, Substep};
 use crate::geometry::Vec2;
 use crate::phase_schedule::{Phase, seconds};
 
+/// Part of `dt_s` below which a kick does not tell what contacts press with: impulses that close small
+/// overlaps do not shrink with it. The kick before stands for it then.
+const SHORTEST_TELLING_KICK: f64 = 0.25;
+
 /// One kick and one drift.
 pub fn leapfrog(flock: &mut Dynamics, substep: &Substep) {
     let half_ticks = flock.last.length + substep.length;
@@ -24,8 +28,10 @@ pub fn leapfrog(flock: &mut Dynamics, substep: &Substep) {
     let dt = seconds(substep.length);
     let touches = flock.settle_contacts(dt);
     let lasting = &mut flock.last.lasting_acceleration;
-    lasting.clear();
-    if touches {
+    if !touches {
+        lasting.clear();
+    } else if kick >= SHORTEST_TELLING_KICK * flock.parameters.dt_s {
+        lasting.clear();
         lasting.resize(flock.poses.len(), Vec2::zeros());
         flock
             .contacts
@@ -95,8 +101,8 @@ fn centered_velocities(flock: &mut Dynamics, kick: f64) {
         let change = lasting_change(last, boat, kick);
         let result = motion.centered(&velocities[boat], boats[boat].axis, drive, change, kick);
         free.push(result.velocity);
-        inertia[boat].linear = 1.0 / result.linear_weight;
-        inertia[boat].angular = inverse_square / result.angular_weight;
+        inertia[boat].linear = result.linear_mobility;
+        inertia[boat].angular = inverse_square * result.angular_mobility;
     }
 }
 

@@ -178,7 +178,7 @@ fn corrupt_and_foreign_snapshots_change_nothing() {
 /// Constants so wild that an explicit step leaves the finite numbers.
 fn exploding(scheme: Scheme) -> FlockParameters {
     FlockParameters {
-        c1: 1e6,
+        c0: 1e6,
         dt_s: 0.1,
         ..driven(scheme)
     }

@@ -209,3 +209,34 @@ fn leapfrog_is_exact_to_a_hundredth_of_a_millimetre_a_second() {
     );
     assert!(error(Scheme::Moreau) > 10.0 * error(Scheme::Leapfrog));
 }
+
+#[test]
+fn no_spin_grows_at_the_longest_step() {
+    // Turning on the spot, engine off, obeys α̈ = −c1·α̇³: α̇ = α̇0/sqrt(1 + 2·c1·α̇0²·t) only ever shrinks.
+    for scheme in SCHEMES {
+        for spin in [0.5, 4.0, 6.0, 50.0, 1e4] {
+            let p = FlockParameters {
+                dt_s: scheme.longest_dt_s().min(0.1),
+                speed_cm_s: 0.0,
+                reverse_speed_cm_s: 0.0,
+                ..driven(scheme)
+            };
+            let mut flock = flock_of(&p, &[([0.0; 3], [0.0, 0.0, spin])]);
+            let mut before = spin;
+            for _ in 0..50 {
+                take_substeps(&mut flock, 1);
+                let now = flock.velocities()[0].angular;
+                assert!(
+                    (0.0..=before).contains(&now),
+                    "{scheme:?}: {before} to {now}"
+                );
+                before = now;
+            }
+            let exact = spin / (1.0 + 2.0 * p.c1 * spin * spin * flock.time_s()).sqrt();
+            assert!(
+                before <= 1.2 * exact,
+                "{scheme:?} from {spin}: {before}, exactly {exact}"
+            );
+        }
+    }
+}

@@ -7,7 +7,7 @@ use crate::support::{deepest_overlap, driven, kinetic_energy, momentum, take_sub
 use flockenv::contact::Partner;
 use flockenv::flock::ContactForce;
 use flockenv::geometry::{Hull, HullPose, Vec2, inner_wall_gap, outer_wall_gap};
-use flockenv::parameters::{Pool, Scheme};
+use flockenv::parameters::{Pool, Preset, Scheme};
 use flockenv::{Flock, FlockParameters};
 
 fn jam(n_boats: usize, c4: f64, seed: u64) -> Flock {
@@ -107,5 +107,36 @@ fn jams_hold_for_hours() {
         let mut flock = jam(n, 0.1, seed);
         let overlaps = hold(&mut flock, 60);
         assert_held(&flock, &overlaps);
+    }
+}
+
+#[test]
+fn the_longest_step_of_the_explicit_schemes_stays_bounded() {
+    // Collisions spin boats at more than the 4.7 rad/s beyond which −c1·α̇³ alone would make explicit
+    // steps of 0.1 s grow without end. An engine can push no boat past its speed.
+    for scheme in [Scheme::Moreau, Scheme::Paper] {
+        for relinearizations in [0, 1] {
+            for seed in 1..=4 {
+                let p = FlockParameters {
+                    scheme,
+                    relinearizations,
+                    n_boats: 27,
+                    bw_s: 2.0,
+                    dt_s: scheme.longest_dt_s(),
+                    pool: Pool::TABLE_1,
+                    ..FlockParameters::preset(Preset::Simulation)
+                };
+                let mut flock = Flock::new(p, seed).expect("27 boats fit");
+                for _ in 0..80 {
+                    flock.advance(1.0, None).expect("bounded motion");
+                    let fastest = flock.velocities().iter().map(|v| v.linear.norm());
+                    let fastest = fastest.fold(0.0, f64::max);
+                    assert!(
+                        fastest < 60.0,
+                        "{scheme:?} {relinearizations} {seed}: {fastest} cm/s"
+                    );
+                }
+            }
+        }
     }
 }

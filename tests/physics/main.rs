@@ -24,6 +24,7 @@ mod placement;
 mod published;
 mod pushing;
 mod sliding;
+mod slivers;
 mod solver;
 mod solver_agreement;
 mod speed_spread;

@@ -91,8 +91,8 @@ pub(super) fn without_contacts(
     let boat = |(boat, velocity): (&HullPose, &Velocity)| {
         let free = motion.centered(velocity, boat.axis, &drive, Vec2::zeros(), parameters.dt_s);
         let inertia = InverseInertia {
-            linear: 1.0 / free.linear_weight,
-            angular: 1.0 / (moment * free.angular_weight),
+            linear: free.linear_mobility,
+            angular: free.angular_mobility / moment,
         };
         (free.velocity, inertia)
     };

@@ -115,6 +115,12 @@ impl BlockPivoting {
             report.iterations += 1;
             return;
         }
+        if rows.len() == 1 {
+            report.iterations += 1;
+            self.solve_alone(rows.start);
+            report.residual = self.worst_residual(rows, report.residual);
+            return;
+        }
         let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
         loop {
             report.iterations += 1;
@@ -143,6 +149,18 @@ impl BlockPivoting {
         report.factor_entries += self.factors[island].len() as u64;
         self.drop_negative(rows.clone());
         report.residual = self.worst_residual(rows, report.residual);
+    }
+
+    /// One contact alone needs no guess and no factor: it pushes as much as it would overlap.
+    fn solve_alone(&mut self, number: usize) {
+        let row = &self.matrix.rows()[number];
+        let impulse = (-row.right / (row.diagonal * (1.0 + self.ridge))).max(0.0);
+        self.active[number] = impulse > 0.0;
+        self.impulses[number] = impulse;
+        if impulse > 0.0 {
+            row.apply(impulse, &mut self.velocities);
+        }
+        self.slacks[number] = row.slack(&self.velocities);
     }
 
     /// Impulses that close exactly the active gaps, and the slacks of all; returns factored rows.

@@ -4,10 +4,11 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from flockenv import _core
+from flockenv.observation import observation_entries
+from flockenv.policies.rows import rudders_for
 
 __all__ = ["DampedLaw", "ObservedPolicy", "SignCorrectedLaw", "SteeringLaw"]
 
@@ -40,6 +41,7 @@ class ObservedPolicy:
         self.gains = dict(gains)
         self.observation = dict(observation or {})
         self.mirror_to_target = mirror_to_target
+        self._size = len(observation_entries(self.observation))
         self._core = _core.ObservedLaw(self._law, self.gains, self.observation, mirror_to_target)
 
     def predict(
@@ -71,15 +73,7 @@ class ObservedPolicy:
         ParameterError
             If the last axis is no multiple of the layout's size.
         """
-        if isinstance(observation, Mapping):
-            return {agent: self._rudders(each) for agent, each in observation.items()}, state
-        return self._rudders(observation), state
-
-    def _rudders(self, observation: ArrayLike) -> NDArray[np.float32]:
-        array = np.ascontiguousarray(observation, np.float32)
-        width = array.shape[-1] if array.ndim else 0
-        rudders = self._core.rudders(array.reshape(-1, width) if width else array.reshape(1, -1))
-        return rudders.reshape(*array.shape[:-1], -1)
+        return rudders_for(observation, self._size, self._core.rudders), state
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _rebuilt, (type(self), self.gains, self.observation, self.mirror_to_target)

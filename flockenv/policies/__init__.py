@@ -1,0 +1,16 @@
+"""Leader policies: closed-form laws, learned networks and plain ones to compare with."""
+
+from flockenv.policies.laws import DampedLaw, ObservedPolicy, SignCorrectedLaw, SteeringLaw
+from flockenv.policies.network import NetworkPolicy, load
+from flockenv.policies.plain import RandomRudders, StraightAhead
+
+__all__ = [
+    "DampedLaw",
+    "NetworkPolicy",
+    "ObservedPolicy",
+    "RandomRudders",
+    "SignCorrectedLaw",
+    "SteeringLaw",
+    "StraightAhead",
+    "load",
+]

@@ -1,0 +1,220 @@
+"""Learned policies: small networks in an ``.npz`` file, evaluated with NumPy alone."""
+
+import json
+import os
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from flockenv.array_file import read_arrays, write_arrays
+from flockenv.errors import ParameterError
+from flockenv.observation import OBSERVATION_VERSION, observation_entries
+from flockenv.policies.rows import rudders_for
+
+__all__ = ["ACTIVATIONS", "NetworkPolicy", "load"]
+
+FORMAT = "flockenv policy 1"
+"""First entry of every policy file."""
+
+
+def _relu(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    return np.maximum(values, np.float32(0.0))
+
+
+ACTIVATIONS: Mapping[str, Callable[[NDArray[np.float32]], NDArray[np.float32]]] = {
+    "tanh": np.tanh,
+    "relu": _relu,
+}
+"""What may stand between two layers."""
+
+_LARGEST_FILE = 5 << 20
+
+
+class NetworkPolicy:
+    """A fully connected network from one leader's observation to its rudder, shared by all leaders.
+
+    Parameters
+    ----------
+    weights
+        One matrix a layer, shape (inputs, outputs), float32; the last has one output.
+    biases
+        One vector a layer, shape (outputs,), float32.
+    activation
+        A name in `ACTIVATIONS`, between the layers; the last layer's output is clipped to [-1, 1].
+    observation, mirror_to_target
+        Layout of the observations, as in the environments' options of those names. Without weights
+        for the whole layout the policy is refused.
+    made
+        What made it: any short texts by name, such as the command, the seed and the samples.
+
+    Raises
+    ------
+    ParameterError
+        For layers that do not fit each other or the layout, numbers that are not finite, and
+        unknown activations.
+    """
+
+    def __init__(
+        self,
+        weights: Sequence[ArrayLike],
+        biases: Sequence[ArrayLike],
+        activation: str = "tanh",
+        *,
+        observation: Mapping[str, Any] | None = None,
+        mirror_to_target: bool = False,
+        made: Mapping[str, str] | None = None,
+    ) -> None:
+        self.observation = dict(observation or {})
+        self.mirror_to_target = bool(mirror_to_target)
+        self.activation = activation
+        self.made = {str(name): str(text) for name, text in (made or {}).items()}
+        self._size = len(observation_entries(self.observation))
+        self._layers = _checked_layers(weights, biases, self._size)
+        if activation not in ACTIVATIONS:
+            raise ParameterError(
+                f"activation = {activation!r} is not accepted: one of {', '.join(ACTIVATIONS)}"
+            )
+
+    @property
+    def weights(self) -> list[NDArray[np.float32]]:
+        """Copies of the layers' matrices, shape (inputs, outputs)."""
+        return [weight.copy() for weight, _ in self._layers]
+
+    @property
+    def biases(self) -> list[NDArray[np.float32]]:
+        """Copies of the layers' biases, shape (outputs,)."""
+        return [bias.copy() for _, bias in self._layers]
+
+    def predict(
+        self,
+        observation: ArrayLike | Mapping[Any, ArrayLike],
+        state: Any = None,
+        episode_start: Any = None,
+        deterministic: bool = True,
+    ) -> tuple[Any, Any]:
+        """Return rudders for observations.
+
+        Parameters
+        ----------
+        observation
+            Shape (..., m * observation size): m leaders' observations one after another in the last
+            axis; or a dictionary of such arrays by agent.
+        state, episode_start, deterministic
+            Not used: the network has no memory, and what is shipped is its mean.
+
+        Returns
+        -------
+        action : numpy.ndarray or dict
+            Shape (..., m), float32, in [-1, 1].
+        state
+            As it was given.
+
+        Raises
+        ------
+        ParameterError
+            If the last axis is no multiple of the layout's size.
+        """
+        return rudders_for(observation, self._size, self._forward), state
+
+    def _forward(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
+        between = ACTIVATIONS[self.activation]
+        values = rows
+        for weight, bias in self._layers[:-1]:
+            values = between(values @ weight + bias)
+        weight, bias = self._layers[-1]
+        rudders: NDArray[np.float32] = np.clip(values @ weight + bias, -1.0, 1.0)[:, 0]
+        return rudders
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the policy to an ``.npz`` file, whole or not at all.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be written; what was there before is still there.
+        """
+        header = {
+            "format": FORMAT,
+            "observation_version": OBSERVATION_VERSION,
+            "observation": self.observation,
+            "mirror_to_target": self.mirror_to_target,
+            "activation": self.activation,
+            "layers": len(self._layers),
+            "made": self.made,
+        }
+        arrays: dict[str, NDArray[Any]] = {"header": np.array(json.dumps(header, sort_keys=True))}
+        for place, (weight, bias) in enumerate(self._layers):
+            arrays |= {f"weight_{place}": weight, f"bias_{place}": bias}
+        write_arrays(path, arrays)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """Read a policy; nothing in the file is ever executed.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be opened.
+        ParameterError
+            If it is no policy file, is damaged, or was made for another version of the observation.
+        """
+        if os.path.getsize(path) > _LARGEST_FILE:
+            raise ParameterError(f"{path} is no policy: it is larger than {_LARGEST_FILE} bytes")
+        arrays = read_arrays(path)
+        try:
+            header = json.loads(str(arrays["header"]))
+            if not isinstance(header, dict) or header.get("format") != FORMAT:
+                raise ParameterError(f"{path} is no policy in the format {FORMAT!r}")
+            version = header["observation_version"]
+            if version != OBSERVATION_VERSION:
+                raise ParameterError(
+                    f"{path} was made for version {version} of the observation; this is version "
+                    f"{OBSERVATION_VERSION}: train it anew"
+                )
+            places = range(header["layers"])
+            return cls(
+                [arrays[f"weight_{place}"] for place in places],
+                [arrays[f"bias_{place}"] for place in places],
+                header["activation"],
+                observation=header["observation"],
+                mirror_to_target=header["mirror_to_target"],
+                made=header["made"],
+            )
+        except (KeyError, TypeError, ValueError, AttributeError) as error:
+            if isinstance(error, ParameterError):
+                raise
+            raise ParameterError(f"{path} is no whole policy: {error!r}") from error
+
+    def __repr__(self) -> str:
+        sizes = [self._size, *(len(bias) for _, bias in self._layers)]
+        return f"{type(self).__name__}({'-'.join(map(str, sizes))}, {self.activation})"
+
+
+def _checked_layers(
+    weights: Sequence[ArrayLike], biases: Sequence[ArrayLike], size: int
+) -> list[tuple[NDArray[np.float32], NDArray[np.float32]]]:
+    if len(weights) != len(biases) or len(weights) == 0:
+        raise ParameterError(
+            f"{len(weights)} weights and {len(biases)} biases are not accepted: one of each a layer"
+        )
+    layers, inputs = [], size
+    for place, (weight, bias) in enumerate(zip(weights, biases, strict=True)):
+        matrix, vector = np.array(weight, np.float32), np.array(bias, np.float32)
+        outputs = 1 if place == len(weights) - 1 else vector.size
+        if matrix.shape != (inputs, outputs) or vector.shape != (outputs,):
+            raise ParameterError(
+                f"layer {place} has weights {matrix.shape} and biases {vector.shape}, which is not "
+                f"accepted: ({inputs}, {outputs}) and ({outputs},)"
+            )
+        if not (np.isfinite(matrix).all() and np.isfinite(vector).all()):
+            raise ParameterError(f"layer {place} holds numbers that are not finite")
+        layers.append((matrix, vector))
+        inputs = outputs
+    return layers
+
+
+def load(path: str | os.PathLike[str]) -> NetworkPolicy:
+    """Read a shipped or trained policy: `NetworkPolicy.load`."""
+    return NetworkPolicy.load(path)
