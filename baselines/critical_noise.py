@@ -6,6 +6,8 @@ the noise of the strongest rotation, mean |Ψ_o sin φ_o|, so that a jam, which 
 not taken for order; the disordered level is mean Ψ_o at the highest noise.
 
     python baselines/critical_noise.py --seeds 8 --out docs/results/critical_noise.csv
+    python baselines/critical_noise.py --preset experiment --pool table-1 \
+        --out docs/results/critical_noise_experiment.csv
 """
 
 import argparse
@@ -20,9 +22,12 @@ from rich.progress import track
 
 import flockenv
 
-PRESETS = ("simulation", "paper")
+NOISE_S = {
+    "simulation": np.round(np.arange(0.0, 0.91, 0.05), 2),
+    "paper": np.round(np.arange(0.0, 0.91, 0.05), 2),
+    "experiment": np.round(np.arange(0.4, 2.81, 0.2), 1),
+}
 POOLS = ("500-boats", "table-1")
-NOISE_S = np.round(np.arange(0.0, 0.91, 0.05), 2)
 
 
 def order_of_run(scene: flockenv.FlockParameters, seed: int, minutes: float) -> dict[str, float]:
@@ -49,9 +54,17 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=8)
     parser.add_argument("--minutes", type=float, default=30)
     parser.add_argument("--out", type=Path, default=Path("results/critical_noise.csv"))
+    parser.add_argument("--preset", choices=NOISE_S, action="append")
+    parser.add_argument("--pool", choices=POOLS, action="append")
     options = parser.parse_args()
 
-    cells = list(product(PRESETS, POOLS, NOISE_S.tolist(), range(options.seeds)))
+    cells = [
+        cell
+        for preset in options.preset or ("simulation", "paper")
+        for cell in product(
+            [preset], options.pool or POOLS, NOISE_S[preset].tolist(), range(options.seeds)
+        )
+    ]
 
     def run(cell: tuple[str, str, float, int]) -> dict[str, object]:
         preset, pool, bw_s, seed = cell

@@ -2,9 +2,10 @@
 
 The search is CMA-ES (Hansen's covariance matrix adaptation, from the package cmaes) over logarithms
 of the constants. A trial measures the single boat first; only if that backs and turns about as the
-experiment's boats do, flocks are run, on the same seeds in every trial. After the search the best
-trials are run again on more seeds, and what is chosen is measured on seeds that the search has
-never seen.
+experiment's boats do, flocks are run, on the same seeds in every trial. The luck of those seeds
+makes the least loss of a trial too good: after the search the best trials, and the minimum of a
+surface that is smoothed through all of them, are run again on more seeds, and what is chosen is
+measured on seeds that the search has never seen.
 """
 
 import math
@@ -27,7 +28,16 @@ from flockenv.whole_file import whole_file
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["BOUNDS", "HELD_OUT", "Fit", "Trial", "experiment_scene", "residuals", "run_flocks"]
+__all__ = [
+    "BOUNDS",
+    "HELD_OUT",
+    "Fit",
+    "Trial",
+    "experiment_scene",
+    "residuals",
+    "run_flocks",
+    "surface_minimum",
+]
 
 BOUNDS: Mapping[str, tuple[float, float]] = {
     "c1": (0.05, 5.0),
@@ -78,7 +88,7 @@ class Fit:
     scene : FlockParameters
         Everything else.
     trials, seeds, finalists, seed : int
-        Trials of the search, flock seeds in each; how many of the best are run again on three times
+        Trials of the search, flock seeds in each; how many of the best are run again on four times
         as many other seeds; seed of the search.
     jobs : int
         Runs at a time.
@@ -97,7 +107,7 @@ class Fit:
     scene: FlockParameters = field(default_factory=experiment_scene)
     trials: int = 110
     seeds: int = 4
-    finalists: int = 8
+    finalists: int = 3
     seed: int = 0
     jobs: int = 1
 
@@ -153,10 +163,10 @@ class Fit:
     ) -> list[Trial]:
         """Run the best trials again on other seeds, best first: its favourites were lucky."""
         ranked = sorted(trials, key=lambda trial: trial.loss)[: self.finalists]
+        smooth = surface_minimum(self._with_flocks(trials), self.only, self.seed)
         again = []
-        for trial in ranked:
-            seeds = range(self.seeds, 4 * self.seeds)
-            again.append(self.trial(trial.constants, seeds))
+        for constants in [*(trial.constants for trial in ranked), *smooth]:
+            again.append(self.trial(constants, range(self.seeds, 5 * self.seeds)))
             progress()
         return sorted(again, key=lambda trial: trial.loss)
 
@@ -171,6 +181,9 @@ class Fit:
             return Trial(dict(constants), lone, self.HOPELESS + missed)
         values = measure(boat, run_flocks(scene, seeds, NOISE_S, self.jobs))
         return Trial(dict(constants), values, loss(values, self.only))
+
+    def _with_flocks(self, trials: Sequence[Trial]) -> list[Trial]:
+        return [trial for trial in trials if trial.loss < self.HOPELESS]
 
     def _constants(self, place: NDArray[np.float64]) -> dict[str, float]:
         constants = {}
@@ -203,6 +216,45 @@ def run_flocks(
         k: np.array([[next(rows) for _ in seeds] for _ in levels]) for k, levels in noise_s.items()
     }
     return FlockRuns(noise_s, values)
+
+
+def surface_minimum(
+    trials: Sequence[Trial], only: Sequence[str] = (), seed: int = 0
+) -> list[dict[str, float]]:
+    """Find the constants of least loss on planes through all trials: a response surface.
+
+    Each fact is a linear function of the logarithms of the constants, fitted to all trials by least
+    squares; its loss is minimised over draws as widely spread as the trials are. Averaging over
+    trials, it is less deceived by their seeds' luck than the best of them.
+
+    Returns
+    -------
+    list of dict
+        One set of constants, or none if there are fewer than five trials a constant.
+    """
+    if len(trials) < 5 * (len(trials[0].constants) + 1 if trials else 1):
+        return []
+    names = list(trials[0].constants)
+    places = np.log([list(trial.constants.values()) for trial in trials])
+    middle, spread = places.mean(axis=0), np.cov(places.T).reshape(len(names), len(names))
+    known = [fact.key for fact in FACTS]
+    values = np.array([[trial.values[key] for key in known] for trial in trials])
+    whole = np.isfinite(values).all(axis=1)
+    planes, *_ = np.linalg.lstsq(_with_one(places[whole] - middle), values[whole], rcond=None)
+    rng = np.random.default_rng(seed)
+    draws = rng.multivariate_normal(np.zeros(len(names)), spread, 4000, method="cholesky")
+    losses = [loss(dict(zip(known, row, strict=True)), only) for row in _with_one(draws) @ planes]
+    best = np.exp(middle + draws[int(np.argmin(losses))])
+    return [
+        {
+            name: float(np.clip(value, *BOUNDS[name]))
+            for name, value in zip(names, best, strict=True)
+        }
+    ]
+
+
+def _with_one(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.hstack([np.ones((len(rows), 1)), rows])
 
 
 def residuals(scene: FlockParameters, runs: FlockRuns, resamples: int = 1000) -> "pd.DataFrame":

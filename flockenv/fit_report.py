@@ -22,7 +22,7 @@ __all__ = ["FitReport", "check", "report", "work"]
 VERIFIED_DT_S = 0.02
 """Substep of the runs on held-out seeds."""
 
-_FACTS_SHOWN = ("fact", "source", "asked", "reached", "95 %", "met", "best alone")
+_FACTS_SHOWN = ("fact", "source", "asked", "reached", "95 %", "met", "best seen")
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,9 +34,9 @@ class FitReport:
     scene : FlockParameters
         The fitted parameters.
     residuals : pandas.DataFrame
-        One row a fact, of held-out seeds; see `flockenv.experiment_fit.residuals`. ``best_alone``
-        is what the trial that came nearest to an unmet fact reaches on the same seeds, whatever
-        it misses otherwise.
+        One row a fact, of held-out seeds; see `flockenv.experiment_fit.residuals`. ``best_seen``
+        is what the trial that came nearest to the fact reached on its own few seeds, whatever it
+        missed otherwise: more than can be had together.
     """
 
     scene: FlockParameters
@@ -47,7 +47,7 @@ class FitReport:
         table = Table(*_FACTS_SHOWN, title_justify="left")
         for row in self.residuals.to_dict("records"):
             low, high = row["value_low"], row["value_high"]
-            alone = row.get("best_alone")
+            best = row.get("best_seen")
             table.add_row(
                 row["fact"],
                 row["source"],
@@ -55,14 +55,14 @@ class FitReport:
                 f"{row['value']:.3g}",
                 f"{low:.3g} to {high:.3g}",
                 "yes" if row["met"] else "[bold]no[/]",
-                "" if alone is None or alone != alone else f"{alone:.3g}",
+                "" if best is None else f"{best:.3g}",
             )
         return table
 
 
 def work(fit: Fit, held_out: int) -> int:
     """Return the number of steps that `report` reports: trials and finalists."""
-    return fit.trials + fit.finalists + held_out
+    return fit.trials + fit.finalists + 1 + held_out
 
 
 def report(
@@ -97,7 +97,7 @@ def report(
     scene = fit.scene.replace(**_rounded(finals[0])).replace(dt_s=VERIFIED_DT_S)
     seeds = range(HELD_OUT, HELD_OUT + held_out)
     table = _residuals(scene, seeds, fit.jobs)
-    table["best_alone"] = _best_alone(fit, table, trials, seeds)
+    table["best_seen"] = _best_seen(fit, trials)
     progress("held-out seeds", held_out)
     _write(folder / "parameters.toml", header + scene.to_toml())
     _write(folder / "residuals.csv", table.round(4).to_csv(index=False))
@@ -114,24 +114,12 @@ def _residuals(scene: FlockParameters, seeds: Sequence[int], jobs: int) -> "pd.D
     return residuals(scene, run_flocks(scene, seeds, NOISE_S, jobs))
 
 
-def _best_alone(
-    fit: Fit, reached: "pd.DataFrame", trials: Sequence[Trial], seeds: Sequence[int]
-) -> list[float | None]:
-    """For each fact that was not met, measure the trial that came nearest to it."""
+def _best_seen(fit: Fit, trials: Sequence[Trial]) -> list[float]:
+    """For each fact the value of the trial that came nearest to it, whatever else that missed."""
     with_flocks = [trial for trial in trials if trial.loss < fit.HOPELESS]
-    measured: dict[int, pd.DataFrame] = {}
-    best: list[float | None] = []
-    for place, fact in enumerate(FACTS):
-        if reached["met"][place] or not with_flocks:
-            best.append(None)
-            continue
-        misses = [fact.miss(trial.values[fact.key]) for trial in with_flocks]
-        nearest = misses.index(min(misses))
-        if nearest not in measured:
-            scene = fit.scene.replace(**with_flocks[nearest].constants, dt_s=VERIFIED_DT_S)
-            measured[nearest] = _residuals(scene, seeds, fit.jobs)
-        best.append(float(measured[nearest]["value"][place]))
-    return best
+    if not with_flocks:
+        return [float("nan")] * len(FACTS)
+    return [min((trial.values[fact.key] for trial in with_flocks), key=fact.miss) for fact in FACTS]
 
 
 def _rounded(trial: Trial) -> dict[str, float]:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from flockenv.alternation import simulate_alternating
 from flockenv.errors import ParameterError
 from flockenv.order_parameters import OrderSeries
 from flockenv.parameters import FlockParameters
@@ -32,7 +33,14 @@ def _law(spec: "RunSpec") -> Recording:
     return simulate(spec.parameters, spec.seed, spec.duration_s, spec.sample_hz, dtype=np.float32)
 
 
-PROTOCOLS: Mapping[str, Callable[["RunSpec"], Recording]] = {"law": _law}
+def _alternating(spec: "RunSpec") -> Recording:
+    return simulate_alternating(spec.parameters, spec.seed, spec.duration_s, spec.sample_hz)
+
+
+PROTOCOLS: Mapping[str, Callable[["RunSpec"], Recording]] = {
+    "law": _law,
+    "alternating": _alternating,
+}
 """Ways to make a run, by name. They live in this package, so that any worker process finds them."""
 
 
@@ -51,7 +59,8 @@ class RunSpec:
     sample_hz : float
         Samples a second.
     protocol : str
-        How leaders are led, a name in `PROTOCOLS`; "law": by eq. (10), towards the fixed target.
+        How leaders are led, a name in `PROTOCOLS`; "law": by eq. (10), towards the fixed target;
+        "alternating": by eq. (10), towards directions that alternate every 4 minutes.
     keep : str
         What is kept of the run, one of `KEEP`.
 

@@ -20,7 +20,7 @@ def fit(
     only: Annotated[str, typer.Option(help="Keys of the facts to fit to, by commas. [all]")] = "",
     trials: Annotated[int, typer.Option(help="Trials of the search.")] = 110,
     seeds: Annotated[int, typer.Option(help="Flock seeds in each trial.")] = 4,
-    finalists: Annotated[int, typer.Option(help="Trials run again on more seeds.")] = 8,
+    finalists: Annotated[int, typer.Option(help="Trials run again on more seeds.")] = 3,
     held_out: Annotated[int, typer.Option(min=2, help="Seeds that residuals are of.")] = 24,
     check: Annotated[
         str | None, typer.Option(help="Search nothing: measure every fact of this preset.")

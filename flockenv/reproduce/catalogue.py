@@ -17,6 +17,12 @@ ALL = "all"
 
 # Modules are loaded when asked for: they need the extra `plot`.
 _PAPER: Mapping[str, str] = {
+    **dict.fromkeys(("fig4", "table2"), "flockenv.reproduce.state_figures"),
+    **dict.fromkeys(("fig5", "fig6", "fig7"), "flockenv.reproduce.time_figures"),
+    "fig8": "flockenv.reproduce.leader_figures",
+    **dict.fromkeys(("fig9", "fig10", "fig11"), "flockenv.reproduce.noise_figures"),
+    "fig12": "flockenv.reproduce.leader_figures",
+    "motion": "flockenv.reproduce.motion_figures",
     **dict.fromkeys(("fig14", "fig15", "fig16", "fig17"), "flockenv.reproduce.simulation_figures"),
     "scheme-and-noise": "flockenv.reproduce.simulation_table",
 }

@@ -89,7 +89,9 @@ def _high(series: OrderStatistics) -> NDArray[np.bool_]:
     return series.x >= HIGH_NOISE_S - 1e-9
 
 
-def critical_noise(x: NDArray[np.float64], y: Replicates) -> Replicates:
+def critical_noise(
+    x: NDArray[np.float64], y: Replicates, disordered_s: float = HIGH_NOISE_S
+) -> Replicates:
     """Where curves last fall through the middle between highest and disordered level.
 
     Parameters
@@ -98,13 +100,15 @@ def critical_noise(x: NDArray[np.float64], y: Replicates) -> Replicates:
         Noise levels in s, shape (p,).
     y
         Mean Ψ_o at each level, shape (p, r).
+    disordered_s
+        Levels from this on are taken for disordered.
 
     Returns
     -------
     float64 array, shape (r,)
         In s, by linear interpolation; NaN for curves that fall by less than 0.3.
     """
-    top, bottom = y.max(axis=0), y[x >= HIGH_NOISE_S - 1e-9].mean(axis=0)
+    top, bottom = y.max(axis=0), y[x >= disordered_s - 1e-9].mean(axis=0)
     middle = (top + bottom) / 2
     above = y > middle
     last = len(x) - 1 - above[::-1].argmax(axis=0)

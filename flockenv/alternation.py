@@ -1,0 +1,65 @@
+"""Leaders that change their direction again and again, as in figure 7."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flockenv import _core
+from flockenv.errors import ParameterError
+from flockenv.order_parameters import OrderSeries
+from flockenv.parameters import FlockParameters
+from flockenv.recording import PHASES, Recording
+from flockenv.simulation import _sample
+
+__all__ = ["PERIOD_S", "TARGETS", "simulate_alternating", "target_at"]
+
+PERIOD_S = 240.0
+"""Length of a stretch in one direction in s (Section 2.6)."""
+
+TARGETS = ("ccw", "cw")
+"""The directions, one after another (Section 2.6: CCW-CW-CCW-CW)."""
+
+
+def target_at(time_s: float, period_s: float = PERIOD_S, targets: Sequence[str] = TARGETS) -> str:
+    """Return the direction that holds from a time on."""
+    return targets[int(time_s // period_s) % len(targets)]
+
+
+def simulate_alternating(
+    parameters: FlockParameters,
+    seed: int,
+    duration_s: float,
+    sample_hz: float = 10.0,
+    period_s: float = PERIOD_S,
+) -> Recording:
+    """Run a flock whose leaders follow the paper's law towards directions that alternate.
+
+    A pure function of its arguments. The first direction is counter-clockwise, whatever the target
+    of the parameters; directions change at samples.
+
+    Raises
+    ------
+    ParameterError
+        For arguments out of range, and periods that are no whole number of samples.
+    SolverError
+        If the motion left its range.
+    """
+    samples = round(period_s * sample_hz)
+    if samples < 1 or abs(samples / sample_hz - period_s) > 1e-9:
+        raise ParameterError(
+            f"period_s = {period_s!r} is not accepted: a whole number of samples at "
+            f"{sample_hz!r} a second"
+        )
+    flock = _core.Flock(parameters, seed)
+    rows = []
+    for place in range(int(duration_s * sample_hz * (1 + 1e-12)) + 1):
+        flock.advance(max(place / sample_hz - flock.time_s, 0.0))
+        if place % samples == 0:
+            flock.set_target(TARGETS[place // samples % len(TARGETS)])
+        rows.append(_sample(flock, np.dtype(np.float32)))
+    columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    columns["phase"] = columns["phase"].astype(PHASES.dtype)
+    order = OrderSeries(*columns.pop("order").T)
+    return Recording(
+        **columns, order=order, parameters=parameters, seed=int(seed), version=_core.__version__
+    )

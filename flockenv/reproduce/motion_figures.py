@@ -1,0 +1,118 @@
+"""What single boats and pairs of boats do: displacement, persistence, distances, the wall."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+
+from flockenv import arrangement
+from flockenv.analysis import CONFIDENCE
+from flockenv.block_bootstrap import interval
+from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
+from flockenv.reproduce.state_figures import LEVELS_S, drawn, pose_points, pose_runs, poses_of
+from flockenv.reproduce.style import COLORS, column_figure, paper_style
+from flockenv.runs import RunResult
+
+__all__ = ["REPRODUCTIONS"]
+
+_EDGES_CM = np.arange(8.0, 62.0, 2.0)
+_LAGS_S = np.array([0.2, 0.6, 1, 2, 4, 7, 10, 15, 20, 30, 45, 60, 90, 120, 180])
+
+
+def _motion(settings: Settings, results: Results) -> Outcome:
+    lagged, pairs, walls = [], [], []
+    for bw_s, specs in pose_points(settings).items():
+        runs = [results[spec] for spec in specs]
+        lagged.append(_lagged_rows(bw_s, runs))
+        pairs.append(_pair_rows(bw_s, runs))
+        walls.append(_wall_row(bw_s, runs))
+    moved, near, wall = pd.concat(lagged), pd.concat(pairs), pd.DataFrame(walls)
+    with paper_style():
+        picture = column_figure(11.0, 15.0)
+        panels = picture.subplots(2, 2)
+        for place, bw_s in enumerate(LEVELS_S[::2]):
+            own = moved[moved["bw_s"] == bw_s]
+            label, color = f"bw = {bw_s} s", COLORS[place]
+            panels[0, 0].loglog(own["lag_s"], own["msd_cm2"], color=color, label=label)
+            panels[0, 1].semilogx(own["lag_s"], own["heading_correlation"], color=color)
+            own = near[near["bw_s"] == bw_s]
+            panels[1, 0].plot(own["distance_cm"], own["g"], color=color)
+        panels[1, 1].errorbar(
+            wall["bw_s"],
+            wall["on_outer_wall"],
+            np.maximum(
+                [
+                    wall["on_outer_wall"] - wall["on_outer_wall_low"],
+                    wall["on_outer_wall_high"] - wall["on_outer_wall"],
+                ],
+                0.0,
+            ),
+            fmt="o-",
+        )
+        panels[0, 0].set(xlabel="time (s)", ylabel="mean-square displacement (cm²)")
+        panels[0, 0].legend()
+        panels[0, 1].set(xlabel="time (s)", ylabel=r"$\langle\cos\Delta\alpha\rangle$")
+        panels[0, 1].axhline(np.exp(-1), color="0.6", lw=0.6)
+        panels[1, 0].set(xlabel="distance of centres (cm)", ylabel="pairs over independent ones")
+        panels[1, 0].axhline(1.0, color="0.6", lw=0.6)
+        panels[1, 1].set(xlabel="bw (s)", ylabel="share of boats on the outer wall", ylim=(0, 1))
+    notes = [
+        "Mean-square displacement and heading correlation are over boats and starting times; the "
+        "heading is kept for about as long as the correlation is above 1/e (grey). Pairs are "
+        "divided by those of boats at the same radii with independent polar angles. On the wall: "
+        "within 0.5 cm of it.",
+        f"Bars: {CONFIDENCE:.0%} intervals of a bootstrap over runs.",
+    ]
+    tables = {"motion_lagged": moved, "motion_pairs": near, "motion_wall": wall}
+    return Outcome(tables, {"motion": picture}, [], notes)
+
+
+def _lagged_rows(bw_s: float, runs: Sequence[RunResult]) -> pd.DataFrame:
+    lags = [lag for lag in _LAGS_S if lag < runs[0].spec.duration_s]
+    samples = [round(lag * runs[0].spec.sample_hz) for lag in lags]
+    squares = [arrangement.mean_square_displacement(poses_of(run), samples) for run in runs]
+    cosines = [arrangement.heading_correlation(poses_of(run), samples) for run in runs]
+    return pd.DataFrame(
+        {
+            "bw_s": bw_s,
+            "lag_s": lags,
+            "msd_cm2": np.mean(squares, axis=0),
+            "heading_correlation": np.mean(cosines, axis=0),
+        }
+    )
+
+
+def _pair_rows(bw_s: float, runs: Sequence[RunResult]) -> pd.DataFrame:
+    poses = np.concatenate([poses_of(run)[run.analysed][::3] for run in runs])
+    return pd.DataFrame(
+        {
+            "bw_s": bw_s,
+            "distance_cm": (_EDGES_CM[:-1] + _EDGES_CM[1:]) / 2,
+            "g": arrangement.pair_distribution(poses, _EDGES_CM),
+        }
+    )
+
+
+def _wall_row(bw_s: float, runs: Sequence[RunResult]) -> dict[str, float]:
+    means = [
+        arrangement.on_outer_wall(run.spec.parameters, poses_of(run)[run.analysed]).mean()
+        for run in runs
+    ]
+    mean, low, high = interval(drawn(np.array(means)))
+    return {
+        "bw_s": bw_s,
+        "on_outer_wall": mean,
+        "on_outer_wall_low": low,
+        "on_outer_wall_high": high,
+    }
+
+
+REPRODUCTIONS = (
+    Reproduction(
+        name="motion",
+        title="Single boats, pairs and the wall",
+        section="4",
+        runs=pose_runs,
+        analyse=_motion,
+    ),
+)
