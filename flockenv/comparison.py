@@ -94,6 +94,7 @@ def compare_leaders(
     seeds: Sequence[int],
     duration_s: float,
     progress: Callable[[float], None] = lambda flock_seconds: None,
+    environment: Mapping[str, Any] | None = None,
 ) -> "pd.DataFrame":
     """Run seeded episodes for every policy and number of leaders.
 
@@ -116,6 +117,10 @@ def compare_leaders(
         Length of an episode in s.
     progress
         Called with flock-seconds as they are simulated.
+    environment
+        Options of the environment that differ from its defaults, such as ``target="alternate"`` or
+        ``dropout_rate=0.003``. What runs in `simulate` (no leaders, the law at every substep) has
+        none of them and is refused then.
 
     Returns
     -------
@@ -126,12 +131,14 @@ def compare_leaders(
     Raises
     ------
     ParameterError
-        For parameters and durations out of range, and for training seeds.
+        For parameters, options and durations out of range, and for training seeds.
     """
     pandas = require("pandas", "plot")
     check_evaluation_seeds(seeds)
+    options = {"target": parameters.target, **(environment or {})}
     parts = []
     if 0 in leaders:
+        _refuse_options(environment, NO_LEADERS)
         scene = parameters.replace(n_leaders=0)
         found = _simulated(scene, seeds, duration_s, progress)
         parts.append({"policy": NO_LEADERS, "leaders": 0, "seed": seeds, **found})
@@ -139,13 +146,22 @@ def compare_leaders(
         for k in (k for k in leaders if k > 0):
             scene, policy = parameters.replace(n_leaders=k), make()
             if isinstance(policy, str):
+                _refuse_options(environment, name)
                 found = _simulated(scene, seeds, duration_s, progress)
             else:
-                found = _stepped(scene, policy, seeds, duration_s, progress)
+                found = _stepped(scene, policy, seeds, duration_s, progress, options)
             parts.append({"policy": name, "leaders": k, "seed": seeds, **found})
     tables = [pandas.DataFrame(part) for part in parts]
     runs: pd.DataFrame = pandas.concat(tables, ignore_index=True)
     return runs
+
+
+def _refuse_options(environment: Mapping[str, Any] | None, policy: str) -> None:
+    if environment:
+        raise ParameterError(
+            f"{policy!r} runs outside of the environment, which is not accepted with its options "
+            f"{', '.join(environment)}"
+        )
 
 
 def _stepped(
@@ -154,8 +170,13 @@ def _stepped(
     seeds: Sequence[int],
     duration_s: float,
     progress: Callable[[float], None],
+    options: Mapping[str, Any],
 ) -> dict[str, NDArray[np.float64]]:
-    env = _environment(scene, len(seeds), duration_s, policy)
+    layout = {
+        "observation": getattr(policy, "observation", {}),
+        "mirror_to_target": getattr(policy, "mirror_to_target", False),
+    }
+    env = _environment(scene, len(seeds), duration_s, {**options, **layout})
     observations, _ = env.reset(seed=list(seeds))
     state, ended = None, np.zeros(len(seeds), np.bool_)
     infos: dict[str, Any] = {}
@@ -169,19 +190,17 @@ def _stepped(
 
 
 def _environment(
-    scene: FlockParameters, num_envs: int, duration_s: float, policy: LeaderPolicy | None = None
+    scene: FlockParameters, num_envs: int, duration_s: float, options: Mapping[str, Any]
 ) -> Any:
     return gymnasium.make_vec(
         "flockenv/Leaders-v0",
         num_envs=num_envs,
         vectorization_mode="vector_entry_point",
         params=scene,
-        target=scene.target,
         episode_s=duration_s,
         control_hz=_CONTROL_HZ,
         autoreset_mode="disabled",
-        observation=getattr(policy, "observation", {}),
-        mirror_to_target=getattr(policy, "mirror_to_target", False),
+        **options,
     )
 
 
@@ -192,7 +211,8 @@ def _simulated(
     progress: Callable[[float], None],
 ) -> dict[str, NDArray[np.float64]]:
     # The environment derives a flock's seed from its own: ask it, to pair the runs.
-    env = _environment(scene.replace(n_leaders=max(1, scene.n_leaders)), len(seeds), duration_s)
+    some = scene.replace(n_leaders=max(1, scene.n_leaders))
+    env = _environment(some, len(seeds), duration_s, {})
     _, infos = env.reset(seed=list(seeds))
     flock_seeds = [int(seed) for seed in infos["flock_seed"]]
 

@@ -1,9 +1,10 @@
 """The report of `flockenv compare`: means, straight lines, files."""
 
+import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
 
@@ -47,10 +48,11 @@ class ComparisonReport:
     means : pandas.DataFrame
         One row for each policy and number of leaders.
     lines : dict
-        The line for each (policy, quantity), over all its runs and those without leaders.
+        The line for each (policy, quantity), over all its runs and those without leaders;
+        empty for a single number of leaders.
     differences : pandas.DataFrame
-        How much signed order each policy has beyond the first of them, seed by seed, for each
-        number of leaders; empty for a single policy.
+        How much signed order each policy has beyond each one before it, its ``reference``, seed by
+        seed, for each number of leaders; empty for a single policy.
     """
 
     scene: FlockParameters
@@ -84,11 +86,14 @@ class ComparisonReport:
         return table
 
     def differences_in_words(self) -> str:
-        """Return the differences between policies, one a row of text."""
+        """Return the differences from the first policy, one a row of text."""
+        shown = self.differences
+        if len(shown) > 0:
+            shown = shown[shown["reference"] == shown["reference"].iloc[0]]
         return "\n".join(
             f"{row['policy']} - {row['reference']}, {row['leaders']} leaders: signed order "
             f"{row['mean']:+.3f} [{row['low']:+.3f}, {row['high']:+.3f}], d = {row['effect']:.2f}"
-            for row in self.differences.to_dict("records")
+            for row in shown.to_dict("records")
         )
 
     def lines_in_words(self) -> str:
@@ -107,6 +112,7 @@ def report(
     duration_s: float,
     folder: Path,
     progress: Callable[[float], None],
+    environment: Mapping[str, Any] | None = None,
 ) -> ComparisonReport:
     """Run a comparison of policies and write its files.
 
@@ -122,12 +128,12 @@ def report(
     """
     from flockenv.figures import leader_curve
 
-    runs = compare_leaders(scene, leaders, policies, seeds, duration_s, progress)
+    runs = compare_leaders(scene, leaders, policies, seeds, duration_s, progress, environment)
     means = _means(runs)
     lines = {}
     for policy in policies:
         own = runs[runs["policy"].isin([policy, NO_LEADERS])]
-        for quantity in QUANTITIES:
+        for quantity in QUANTITIES if own["leaders"].nunique() > 1 else ():
             lines[policy, quantity] = fit_line(own["leaders"], own[quantity])
     result = ComparisonReport(scene, means, lines, _differences(runs, list(policies)))
     folder.mkdir(parents=True, exist_ok=True)
@@ -158,14 +164,14 @@ def _means(runs: "pd.DataFrame") -> "pd.DataFrame":
 
 
 def _differences(runs: "pd.DataFrame", policies: Sequence[str]) -> "pd.DataFrame":
-    """Return what each policy has beyond the first, seed by seed."""
+    """Return what each policy has beyond each one before it, seed by seed."""
     pandas = require("pandas", "plot")
     runs = runs[runs["leaders"] > 0]
     orders = runs.pivot_table(index=["leaders", "seed"], columns="policy", values="signed_order")
     rows = [
-        {"policy": policy, "reference": policies[0], "leaders": k}
-        | asdict(paired_difference(orders.loc[k][policy], orders.loc[k][policies[0]]))
-        for policy in policies[1:]
+        {"policy": policy, "reference": reference, "leaders": k}
+        | asdict(paired_difference(orders.loc[k][policy], orders.loc[k][reference]))
+        for reference, policy in itertools.combinations(policies, 2)
         for k in sorted(runs["leaders"].unique())
     ]
     columns = ["policy", "reference", "leaders", *(each.name for each in fields(Difference))]

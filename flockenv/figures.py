@@ -39,7 +39,7 @@ def leader_curve(
     means
         Its means and intervals by policy and number of leaders, of `summarise`.
     lines
-        The fitted line for each (policy, quantity).
+        The fitted line for each (policy, quantity) that has one.
     title
         What was run.
     path
@@ -52,7 +52,8 @@ def leader_curve(
             for place, policy in enumerate(policies):
                 shown = _Shown(runs, means, [policy, NO_LEADERS], quantity)
                 shift = 0.1 * (place - (len(policies) - 1) / 2)
-                _draw_policy(axes, shown, lines[policy, quantity], shift, COLORS[place])
+                line = lines.get((policy, quantity))
+                _draw_policy(axes, shown, line, shift, COLORS[place % len(COLORS)])
             axes.set_xlabel("number of leaders k")
             axes.set_ylabel(_LABELS[quantity])
             axes.set_xticks(sorted(runs["leaders"].unique()))
@@ -76,7 +77,7 @@ class _Shown:
         self.spread = abs(ends - self.mean)
 
 
-def _draw_policy(axes: Axes, shown: _Shown, line: Line, shift: float, color: str) -> None:
+def _draw_policy(axes: Axes, shown: _Shown, line: Line | None, shift: float, color: str) -> None:
     axes.plot(shown.leaders + shift, shown.values, ".", ms=3, alpha=0.3, color=color, mew=0)
     axes.errorbar(
         shown.k + shift,
@@ -89,6 +90,8 @@ def _draw_policy(axes: Axes, shown: _Shown, line: Line, shift: float, color: str
         color=color,
         label=shown.label,
     )
+    if line is None:
+        return
     x = np.array([shown.k.min(), shown.k.max()])
     y = line.intercept + line.slope * x
     axes.plot(x, y, "-", lw=1, color=color, label=f"F = {line.f:.1f}, p = {line.p:.1g}")

@@ -7,6 +7,7 @@ import typer
 from flockenv import FlockError, __version__
 from flockenv.cli.compare import compare
 from flockenv.cli.console import console, errors
+from flockenv.cli.evaluate import evaluate
 from flockenv.cli.fit import fit
 from flockenv.cli.presets import presets
 from flockenv.cli.reproduce import reproduce
@@ -19,15 +20,15 @@ app = typer.Typer(
     rich_markup_mode="markdown",
     help="Flocks of radio-controlled boats with a few steerable leaders (Tarcai et al. 2011).",
 )
-for command in (compare, fit, presets, reproduce, sweep):
+for command in (compare, evaluate, fit, presets, reproduce, sweep):
     app.command()(command)
 
 
 def main() -> None:
-    """Run the command line; a `FlockError` ends it with its message and exit code 2."""
+    """Run the command line; errors of the user's or of files end it with exit code 2."""
     try:
         app()
-    except FlockError as error:
+    except (FlockError, OSError) as error:
         errors.print(f"[bold red]Error:[/] {error}", highlight=False)
         raise SystemExit(2) from error
 

@@ -71,7 +71,7 @@ def test_the_report_writes_its_files(scene: flockenv.FlockParameters, tmp_path: 
     stored = (folder / "parameters.toml").read_text("utf-8")
     assert flockenv.FlockParameters.from_toml(stored) == scene
     assert len(result.means) == 1 + 3 * 2
-    assert len(result.differences) == 2 * 2
+    assert len(result.differences) == 3 * 2
     assert (folder / "leader_curve.png").read_bytes().startswith(b"\x89PNG")
 
 

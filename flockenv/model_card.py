@@ -1,0 +1,96 @@
+"""A policy's model card: what it is, how it was made and how it compares, in Markdown."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from flockenv._core import __version__
+from flockenv.analysis import CONFIDENCE
+from flockenv.comparison_report import ComparisonReport
+from flockenv.observation import OBSERVATION_VERSION
+from flockenv.policies import NetworkPolicy
+
+__all__ = ["model_card"]
+
+
+def model_card(
+    name: str,
+    policy: Any,
+    results: Mapping[str, ComparisonReport],
+    *,
+    command: str,
+    seeds: Sequence[int],
+    duration_s: float,
+) -> str:
+    """Return the card of a policy as Markdown.
+
+    Parameters
+    ----------
+    name
+        Under which name it stands in the results.
+    policy
+        The policy itself; of a `NetworkPolicy`, the card tells how it was made.
+    results
+        Comparisons in which it takes part, by scene.
+    command
+        What made the results.
+    seeds, duration_s
+        Of their episodes.
+    """
+    lines = [f"# {name}", ""]
+    if isinstance(policy, NetworkPolicy):
+        lines += [f"`{policy!r}`, version {OBSERVATION_VERSION} of the observation.", ""]
+        lines += ["| made by | |", "| --- | --- |"]
+        lines += [f"| {what} | `{text}` |" for what, text in policy.made.items()]
+    else:
+        lines += [f"`{policy!r}`: nothing in it is learned."]
+    lines += [
+        "",
+        "## Comparison",
+        "",
+        f"`{command}`, flockenv {__version__}: {len(seeds)} episodes of {duration_s:g} s for each "
+        f"policy and number of leaders, seeds {seeds[0]} to {seeds[-1]}, the same for all; "
+        f"{CONFIDENCE:.0%} bootstrap intervals. Differences are paired by seed; d is their mean "
+        "over their standard deviation.",
+    ]
+    for scene, result in results.items():
+        lines += ["", f"### {scene}", "", f"{result.title()}.", "", *_means(result)]
+        lines += ["", *_differences(name, result), "", *_lines(result)]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def _interval(row: Mapping[Any, Any], quantity: str) -> str:
+    return f"{row[quantity]:.3f} [{row[f'{quantity}_low']:.3f}, {row[f'{quantity}_high']:.3f}]"
+
+
+def _means(result: ComparisonReport) -> list[str]:
+    lines = [
+        "| policy | leaders | signed order | Ψ_o | time towards target | ordered (π/4) |",
+        "| --- " * 6 + "|",
+    ]
+    for row in result.means.to_dict("records"):
+        cells = [_interval(row, q) for q in ("signed_order", "psi_o", "share_towards_target")]
+        ordered = f"{row['ordered']:.0%}"
+        if row["ordered"] > 0:
+            ordered += f", median {row['ordering_time_wide_s']:.0f} s"
+        lines.append(f"| {row['policy']} | {row['leaders']} | {' | '.join(cells)} | {ordered} |")
+    return lines
+
+
+def _differences(name: str, result: ComparisonReport) -> list[str]:
+    own = result.differences[result.differences["policy"] == name]
+    lines = ["| beyond | leaders | signed order | d |", "| --- " * 4 + "|"]
+    for row in own.to_dict("records"):
+        interval = f"{row['mean']:+.3f} [{row['low']:+.3f}, {row['high']:+.3f}]"
+        lines.append(
+            f"| {row['reference']} | {row['leaders']} | {interval} | {row['effect']:.2f} |"
+        )
+    return lines if len(own) > 0 else []
+
+
+def _lines(result: ComparisonReport) -> list[str]:
+    fits = [
+        f"- {policy}: signed order = {line}"
+        for (policy, quantity), line in result.lines.items()
+        if quantity == "signed_order"
+    ]
+    return ["Straight lines in the number of leaders k:", "", *fits] if fits else []

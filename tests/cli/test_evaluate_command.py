@@ -1,0 +1,68 @@
+"""`flockenv evaluate` compares one policy with others on the same seeds, and writes its card."""
+
+import json
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from flockenv.observation import observation_entries
+from flockenv.policies import NetworkPolicy
+
+Run = Callable[..., subprocess.CompletedProcess[str]]
+
+SHORT = ["--episodes", "3", "--minutes", "0.5", "--boats", "8", "--pool", "table-1"]
+
+
+def learned(folder: Path) -> str:
+    size = len(observation_entries())
+    policy = NetworkPolicy(
+        [np.zeros((size, 1))], [[0.25]], made={"command": "by hand", "seed": "7"}
+    )
+    policy.save(folder / "leaning.npz")
+    return str(folder / "leaning.npz")
+
+
+def test_the_card_tells_what_made_it_and_how_it_compares(flockenv: Run, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    arguments = ["--leaders", "2", "--bw-s", "0.2", "--bw-s", "0.4", "--out", str(out)]
+    done = flockenv("evaluate", learned(tmp_path), *SHORT, *arguments)
+    assert done.returncode == 0, done.stderr
+    card = (out / "card.md").read_text("utf-8")
+    assert card.startswith("# leaning\n")
+    for text in (
+        "by hand",
+        "table-1-bw-0.2",
+        "table-1-bw-0.4",
+        "| damped law | 2 |",
+        "seeds 0 to 2",
+    ):
+        assert text in card
+    assert (out / "table-1-bw-0.4" / "leader_curve.png").stat().st_size > 10_000
+
+
+def test_alternating_targets_and_drop_outs(flockenv: Run, tmp_path: Path) -> None:
+    arguments = ["--leaders", "1", "--alternate", "--dropout-rate", "0.01", "--json"]
+    out = ["--against", "straight ahead", "--out", str(tmp_path)]
+    done = flockenv("evaluate", "damped law", *SHORT, *arguments, *out)
+    assert done.returncode == 0, done.stderr
+    (row,) = json.loads(done.stdout)["table-1-bw-0.45"]
+    assert (row["policy"], row["reference"], row["n"]) == ("damped law", "straight ahead", 3)
+    assert row["low"] <= row["mean"] <= row["high"]
+
+
+def test_errors_are_named(flockenv: Run, tmp_path: Path) -> None:
+    (tmp_path / "broken.npz").write_bytes(b"PK nothing")
+    for arguments, words in (
+        (["dampd law"], "did you mean 'damped law'"),
+        (["damped law"], "both the policy"),
+        ([str(tmp_path / "broken.npz")], "broken.npz"),
+        ([str(tmp_path / "missing.npz")], "missing.npz"),
+        (["straight ahead", "--against", "steering law, every substep", "--alternate"], "options"),
+    ):
+        done = flockenv("evaluate", *arguments, *SHORT, "--out", str(tmp_path / "out"))
+        assert done.returncode == 2, done.stderr
+        assert words in done.stderr
+        assert "Traceback" not in done.stderr
+    assert not (tmp_path / "out").exists()
