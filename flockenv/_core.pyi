@@ -22,6 +22,7 @@ __all__ = [
     "env_defaults",
     "lagged_motion",
     "largest_cluster",
+    "nearest_levels",
     "observation_table",
     "observation_version",
     "observe",
@@ -86,6 +87,7 @@ def rotation(psi_o: NDArray[np.float64], phi_o: NDArray[np.float64]) -> NDArray[
 def signed_order(
     psi_o: NDArray[np.float64], phi_o: NDArray[np.float64], target: str
 ) -> NDArray[np.float64]: ...
+def nearest_levels(rudders: NDArray[np.float64], rudder_levels: int) -> NDArray[np.int64]: ...
 def env_defaults() -> dict[str, Any]: ...
 def reward_terms() -> list[tuple[str, str]]: ...
 

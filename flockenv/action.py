@@ -25,19 +25,32 @@ def joint_action_space(levels: int | None, leaders: int) -> gymnasium.Space[Any]
     return gymnasium.spaces.MultiDiscrete([levels] * leaders)
 
 
-def flat_actions(actions: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
+def flat_actions(
+    actions: ArrayLike, shape: tuple[int, ...], levels: int | None, name: str = "actions"
+) -> NDArray[np.float64]:
     """Return actions of the given shape as the core takes them: one number a leader, in order.
+
+    `levels` is the environments' option `rudder_levels`; messages call the actions by `name`.
 
     Raises
     ------
     ParameterError
-        For another shape.
+        For another shape, and for numbers with a fraction part in their type where levels are due:
+        a rudder of 1.0 is not level 1.
     TypeError
         For anything that is not made of real numbers.
     """
-    array = np.asarray(actions)
+    try:
+        array = np.asarray(actions)
+    except ValueError as error:
+        raise ParameterError(f"{name} must be a rectangular array: {error}") from error
     if array.dtype.kind not in "fiu":
-        raise TypeError(f"actions must be real numbers, not of dtype {array.dtype}")
+        raise TypeError(f"{name} must be real numbers, not of dtype {array.dtype}")
+    if levels is not None and array.dtype.kind == "f":
+        raise ParameterError(
+            f"{name} must be integers, whole numbers from 0 to {levels - 1} that name levels of "
+            f"the rudder, not of dtype {array.dtype}"
+        )
     if array.shape != shape:
-        raise ParameterError(f"actions have shape {array.shape}, expected {shape}")
+        raise ParameterError(f"{name}: shape {array.shape} is not accepted, expected {shape}")
     return array.astype(np.float64).reshape(-1)

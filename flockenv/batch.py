@@ -12,9 +12,9 @@ from flockenv.observation import state_space
 from flockenv.options import EnvOptions, known_reset_options
 from flockenv.reward import TERMS
 
-__all__ = ["LeaderBatch"]
+__all__ = ["LeaderBatch", "at_least_one", "drawn_seed", "seeds_from"]
 
-_HALF_OF_SEEDS = 2**63
+_SEEDS = 2**64
 
 
 class LeaderBatch:
@@ -80,4 +80,30 @@ class LeaderBatch:
 
 def drawn_seed(random: np.random.Generator) -> int:
     """Draw a seed for an environment that was given none."""
-    return int(random.integers(_HALF_OF_SEEDS))
+    return int(random.integers(_SEEDS // 2))
+
+
+def at_least_one(count: Any, name: str) -> int:
+    """Return a count of flocks or leaders as an int, or raise the error that names it."""
+    number = _whole(count, name)
+    if number < 1:
+        raise ParameterError(f"{name} = {number} is not accepted: at least 1")
+    return number
+
+
+def seeds_from(first: Any, flocks: int) -> list[int]:
+    """Return the seeds of flocks where the first one has this seed: each has the next."""
+    number = _whole(first, "seed")
+    if not 0 <= number <= _SEEDS - flocks:
+        raise ParameterError(
+            f"seed = {number} is not accepted: at least 0, and below 2^64 for the last of "
+            f"{flocks} flocks"
+        )
+    return [number + flock for flock in range(flocks)]
+
+
+def _whole(value: Any, name: str) -> int:
+    if isinstance(value, bool) or not isinstance(value, int | np.integer):
+        kind = type(value).__name__
+        raise TypeError(f"{name} must be an integer, not {value!r} of type {kind}")
+    return int(value)

@@ -27,7 +27,8 @@ _MEANINGS = {
     "uniformly for each episode",
     "target": '"cw", "ccw", "random" (drawn for each episode) or "alternate" (ccw, cw, ccw, cw, a '
     "quarter of the episode each)",
-    "episode_s": "length of an episode in s; None: 480, and 960 where targets alternate",
+    "episode_s": "length of an episode in s, rounded to whole control steps; None: 480, and 960 "
+    "where targets alternate",
     "control_hz": "control steps a second",
     "observation": "blocks that differ from the default layout, such as `{'order': False, "
     "'neighbors': 4}`",
@@ -36,11 +37,11 @@ _MEANINGS = {
     "dropout_rate": "chance that the camera misses a boat in a frame and shows where it was before",
     "delay_frames": "frames that the leaders' picture is late, 0 or 1",
     "reward": "weights of the reward's terms; terms that are not named weigh nothing",
-    "rudder_levels": "number of levels of the discrete action; None: continuous",
+    "rudder_levels": "number of levels of the discrete action, 2 to 1001; None: continuous",
     "rudder_lag_s": "time constant of the rudder servo in s",
     "rudder_rate_per_s": "fastest change of the rudder in 1/s; None: any",
-    "render_mode": 'None, "rgb_array" (`render` returns a frame) or "human" (a window, extra '
-    "`render`)",
+    "render_mode": 'None, "rgb_array" (`render` returns a frame) or, for environments with one '
+    'flock, "human" (a window, extra `render`)',
     "render_size": "width and height of a frame in pixels, 64 to 4096",
 }
 
@@ -79,7 +80,9 @@ class EnvOptions:
                 settings[name] = dict(settings[name])
                 refuse_unknown(settings[name], known, f"part of {name}")
         parameters = _parameters(given)
-        settings.setdefault("target", parameters.target)
+        target = settings.setdefault("target", parameters.target)
+        if target in ("cw", "ccw"):
+            parameters = parameters.replace(target=target)
         return cls(parameters, settings)
 
 
@@ -115,6 +118,8 @@ def known_reset_options(options: Mapping[str, Any] | None) -> dict[str, Any]:
     """
     if options is None:
         return {}
+    if not isinstance(options, Mapping):
+        raise TypeError(f"reset options must be a dictionary, not {type(options).__name__}")
     for name in options:
         near = difflib.get_close_matches(str(name), (*RESET_OPTIONS, "reset_mask"), 1, 0.7)
         if near and name != near[0]:

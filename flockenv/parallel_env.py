@@ -1,21 +1,19 @@
 """`LeadersParallelEnv`: each leader an agent, behind PettingZoo's parallel interface."""
 
-import copy
 from collections.abc import Mapping
-from typing import Any, Self
+from typing import Any
 
 import gymnasium
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pettingzoo import ParallelEnv
 
-from flockenv import _core
 from flockenv.action import flat_actions, leader_action_space
-from flockenv.batch import LeaderBatch, drawn_seed
+from flockenv.batch import drawn_seed
 from flockenv.errors import EpisodeError, ParameterError
 from flockenv.observation import observation_space
-from flockenv.options import EnvOptions
-from flockenv.screen import DEFAULT_SIZE, RENDER_MODES, Screen
+from flockenv.one_flock import OneFlock
+from flockenv.screen import DEFAULT_SIZE, RENDER_MODES
 from flockenv.specification import specified
 
 __all__ = ["LeadersParallelEnv", "parallel_env"]
@@ -25,7 +23,9 @@ Infos = dict[str, dict[str, Any]]
 
 
 @specified
-class LeadersParallelEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float32] | int]):
+class LeadersParallelEnv(
+    OneFlock, ParallelEnv[str, NDArray[np.float32], NDArray[np.float32] | int]
+):
     """Lead a flock of boats around a ring-shaped pool: each leader is an agent.
 
     ``flockenv.parallel_env(**options)``
@@ -84,23 +84,16 @@ class LeadersParallelEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float3
         render_size: tuple[int, int] = DEFAULT_SIZE,
         **options: Any,
     ) -> None:
-        parsed = EnvOptions.parse(options)
-        self.parameters = parsed.parameters
-        leaders = parsed.parameters.n_leaders
-        self._batch = LeaderBatch(parsed, [leaders], "disabled")
-        self.possible_agents = [f"leader_{leader}" for leader in range(leaders)]
-        self.agents: list[str] = []
+        self._set_up(options, render_mode, render_size)
         settings = self._batch.settings
-        self.render_mode = render_mode
-        self._screen = Screen(render_mode, render_size, settings["control_hz"])
-        self.metadata = {**self.metadata, "render_fps": settings["control_hz"]}
+        self.possible_agents = [f"leader_{leader}" for leader in range(self.num_leaders)]
+        self.agents: list[str] = []
         self.observation_spaces = {
             agent: observation_space(settings["observation"]) for agent in self.possible_agents
         }
         self.action_spaces = {
             agent: leader_action_space(settings["rudder_levels"]) for agent in self.possible_agents
         }
-        self.state_space = self._batch.state_space
         self._random = np.random.default_rng()
 
     def observation_space(self, agent: str) -> gymnasium.spaces.Space[NDArray[np.float32]]:
@@ -132,8 +125,7 @@ class LeadersParallelEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float3
         """
         self._batch.reset([seed], options, lambda: drawn_seed(self._random))
         self.agents = self.possible_agents[:]
-        if self._screen.is_live:
-            self._screen.show(self.flock)
+        self._show()
         # Empty: TorchRL expects every later info to look like those of the reset.
         return self.observe(), {agent: {} for agent in self.agents}
 
@@ -166,8 +158,7 @@ class LeadersParallelEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float3
         infos = self._infos(over)
         if over:
             self.agents = []
-        if self._screen.is_live:
-            self._screen.show(self.flock)
+        self._show()
         return (
             dict(zip(agents, rows, strict=True)),
             dict(zip(agents, rewards.tolist(), strict=True)),
@@ -179,20 +170,20 @@ class LeadersParallelEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float3
     def _flat(self, actions: Mapping[str, ArrayLike]) -> NDArray[np.float64]:
         if not self.agents:
             raise EpisodeError("step was called before a reset or after the episode's end")
+        if not isinstance(actions, Mapping):
+            raise TypeError(f"actions must be a dictionary, not {type(actions).__name__}")
         if actions.keys() != set(self.agents):
             wrong = sorted(set(self.agents).symmetric_difference(actions), key=str)
             raise ParameterError(
                 f"actions are for other agents than {', '.join(self.agents)}: see {wrong}"
             )
-        values = [np.asarray(actions[agent]) for agent in self.agents]
         levels = self._batch.settings["rudder_levels"]
         shape = (1,) if levels is None else ()
-        for agent, value in zip(self.agents, values, strict=True):
-            if value.shape != shape:
-                raise ParameterError(
-                    f"the action of {agent} has shape {value.shape}, expected {shape}"
-                )
-        return flat_actions(np.stack(values), (len(values), *shape))
+        each = [
+            flat_actions(actions[agent], shape, levels, f"the action of {agent}")
+            for agent in self.agents
+        ]
+        return np.concatenate(each)
 
     def _infos(self, over: bool) -> Infos:
         terms = self._batch.reward_terms()
@@ -213,43 +204,10 @@ class LeadersParallelEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float3
         """Return the observations as they are now, by agent."""
         return self._by_agent(self._batch.core.observe())
 
-    def state(self) -> NDArray[np.float32]:
-        """Return the global state for centralised critics, shape (state size,), float32."""
-        return self._batch.core.state(0)
-
-    def episode(self) -> dict[str, Any]:
-        """Return target, noise level, seed and step of the episode."""
-        return self._batch.core.episode(0)
-
-    @property
-    def flock(self) -> _core.Flock:
-        """A copy of the flock as it is now."""
-        return self._batch.core.flock(0)
-
-    def get_state(self) -> bytes:
-        """Return everything that the future depends on, as bytes."""
-        return self._batch.core.to_bytes()
-
     def set_state(self, state: bytes) -> None:
         """Continue from `get_state` of an environment with the same options, bit for bit."""
-        self._batch.core.restore(state)
+        super().set_state(state)
         self.agents = self.possible_agents[:] if self._batch.core.is_running(0) else []
-
-    def clone(self) -> Self:
-        """Return an independent copy that goes on exactly as this one."""
-        return copy.deepcopy(self)
-
-    def render(self) -> NDArray[np.uint8] | None:
-        """Return a frame, (height, width, 3) uint8, where `render_mode` is "rgb_array".
-
-        With "human" every reset and step shows itself in a window (see `rendering.Window` for its
-        keys), and nothing is returned.
-        """
-        return None if self.render_mode is None else self._screen.render(self.flock)
-
-    def close(self) -> None:
-        """Close the window, if there is one; it stays closed."""
-        self._screen.close()
 
 
 def parallel_env(*, render_mode: str | None = None, **options: Any) -> LeadersParallelEnv:

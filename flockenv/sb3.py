@@ -4,14 +4,14 @@ Needs the extra ``train``: ``pip install flockenv[train]``.
 """
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flockenv.action import flat_actions, leader_action_space
-from flockenv.batch import LeaderBatch, drawn_seed
+from flockenv.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
 from flockenv.errors import EpisodeError, ParameterError
 from flockenv.extras import require
 from flockenv.observation import observation_space
@@ -119,14 +119,10 @@ class LeaderVecEnv(VecEnv):
         render_size: tuple[int, int] = DEFAULT_SIZE,
         **options: Any,
     ) -> None:
-        if num_flocks < 1:
-            raise ParameterError(f"num_flocks = {num_flocks!r} is not accepted: at least 1")
-        dealt = list(n_leaders) if isinstance(n_leaders, Sequence) else n_leaders
-        if isinstance(dealt, list) and not dealt:
-            raise ParameterError("n_leaders = [] is not accepted: a number or a list of numbers")
-        most = max(dealt) if isinstance(dealt, list) else dealt
-        parsed = EnvOptions.parse(options if most is None else {**options, "n_leaders": most})
-        counts = dealt if isinstance(dealt, list) else [parsed.parameters.n_leaders]
+        num_flocks = at_least_one(num_flocks, "num_flocks")
+        counts = None if n_leaders is None else _leader_counts(n_leaders)
+        parsed = EnvOptions.parse({**options, "n_leaders": max(counts)} if counts else options)
+        counts = counts or [parsed.parameters.n_leaders]
         leaders = [counts[flock % len(counts)] for flock in range(num_flocks)]
         self._batch = LeaderBatch(parsed, leaders, "same_step")
         settings = self._batch.settings
@@ -153,7 +149,8 @@ class LeaderVecEnv(VecEnv):
     def seed(self, seed: int | None = None) -> Sequence[int | None]:
         """Seed the flocks at the next reset: flock i with ``seed + i``; None draws one."""
         first = drawn_seed(self._random) if seed is None else seed
-        self._seeds = [first + flock for flock in self.flock_of_slot.tolist()]
+        seeds = seeds_from(first, self.num_flocks)
+        self._seeds = [seeds[flock] for flock in self.flock_of_slot]
         return self._seeds
 
     def reset(self) -> NDArray[np.float32]:
@@ -167,6 +164,8 @@ class LeaderVecEnv(VecEnv):
         first = np.searchsorted(self.flock_of_slot, np.arange(self.num_flocks))
         seeds = [self._seeds[slot] for slot in first.tolist()]
         options = [self._options[slot] for slot in first.tolist()]
+        if not all(isinstance(each, Mapping) for each in options):
+            raise TypeError("set_options: a dictionary, or a list of one for each slot")
         names = {name for each in options for name in each}
         if any(each.keys() != names for each in options):
             raise ParameterError("set_options: the flocks' options have to name the same things")
@@ -180,7 +179,11 @@ class LeaderVecEnv(VecEnv):
 
     def step_async(self, actions: NDArray[Any]) -> None:
         """Take note of actions, shape (slots, 1) rudders or (slots,) numbers of levels."""
-        self._actions = flat_actions(actions, self._actions_shape)
+        levels = self._batch.settings["rudder_levels"]
+        if levels is not None and np.shape(actions) == (self.num_envs, 1):
+            # As the closed-form laws give them.
+            actions = np.reshape(actions, self.num_envs)
+        self._actions = flat_actions(actions, self._actions_shape, levels)
 
     def step_wait(
         self,
@@ -281,3 +284,13 @@ class LeaderVecEnv(VecEnv):
 
     def close(self) -> None:
         """Nothing is held open."""
+
+
+def _leader_counts(n_leaders: Any) -> list[int]:
+    """Leaders of the flocks, to be dealt out in turn."""
+    dealt = n_leaders.tolist() if isinstance(n_leaders, np.ndarray) else n_leaders
+    if not isinstance(dealt, Sequence) or isinstance(dealt, str):
+        dealt = [dealt]
+    if not dealt:
+        raise ParameterError("n_leaders = [] is not accepted: a number or a list of numbers")
+    return [at_least_one(count, "n_leaders") for count in dealt]

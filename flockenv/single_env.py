@@ -1,25 +1,23 @@
 """`LeadersEnv`: one policy steering all leaders of a flock, behind Gymnasium's interface."""
 
-import copy
-from typing import Any, Self
+from typing import Any
 
 import gymnasium
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flockenv import _core
 from flockenv.action import flat_actions, joint_action_space
-from flockenv.batch import LeaderBatch, drawn_seed
+from flockenv.batch import drawn_seed
 from flockenv.observation import observation_space
-from flockenv.options import EnvOptions
-from flockenv.screen import DEFAULT_SIZE, RENDER_MODES, Screen
+from flockenv.one_flock import OneFlock
+from flockenv.screen import DEFAULT_SIZE, RENDER_MODES
 from flockenv.specification import specified
 
 __all__ = ["LeadersEnv"]
 
 
 @specified
-class LeadersEnv(gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
+class LeadersEnv(OneFlock, gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
     """Lead a flock of boats around a ring-shaped pool: one policy steers all leaders.
 
     ``gymnasium.make("flockenv/Leaders-v0", **options)``
@@ -74,17 +72,10 @@ class LeadersEnv(gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
         render_size: tuple[int, int] = DEFAULT_SIZE,
         **options: Any,
     ) -> None:
-        parsed = EnvOptions.parse(options)
-        self.parameters = parsed.parameters
-        self.num_leaders = parsed.parameters.n_leaders
-        self._batch = LeaderBatch(parsed, [self.num_leaders], "disabled")
+        self._set_up(options, render_mode, render_size)
         settings = self._batch.settings
-        self.render_mode = render_mode
-        self._screen = Screen(render_mode, render_size, settings["control_hz"])
-        self.metadata = {**self.metadata, "render_fps": settings["control_hz"]}
         self.observation_space = observation_space(settings["observation"], self.num_leaders)
         self.action_space = joint_action_space(settings["rudder_levels"], self.num_leaders)
-        self.state_space = self._batch.state_space
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -108,10 +99,9 @@ class LeadersEnv(gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
         info : dict
             Target, noise level and seed of the episode.
         """
-        super().reset(seed=seed)
         self._batch.reset([seed], options, lambda: drawn_seed(self.np_random))
-        if self._screen.is_live:
-            self._screen.show(self.flock)
+        super().reset(seed=None if seed is None else int(seed))
+        self._show()
         return self.observe(), self._batch.begin_info(0)
 
     def step(
@@ -137,54 +127,16 @@ class LeadersEnv(gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
         EpisodeError
             Before the first reset and after the end.
         """
-        flat = flat_actions(action, (self.num_leaders,))
+        flat = flat_actions(action, (self.num_leaders,), self._batch.settings["rudder_levels"])
         rows, rewards, truncated = self._batch.core.step(flat)
         terms = {name: float(each.mean()) for name, each in self._batch.reward_terms().items()}
         info: dict[str, Any] = {"reward_terms": terms}
         over = bool(truncated[0])
         if over:
             info.update(self._batch.end_info(0))
-        if self._screen.is_live:
-            self._screen.show(self.flock)
+        self._show()
         return rows.reshape(-1), float(rewards.mean()), False, over, info
 
     def observe(self) -> NDArray[np.float32]:
         """Return the observation as it is now."""
         return self._batch.core.observe().reshape(-1)
-
-    def state(self) -> NDArray[np.float32]:
-        """Return the global state, shape (state size,), float32."""
-        return self._batch.core.state(0)
-
-    def episode(self) -> dict[str, Any]:
-        """Return target, noise level, seed and step of the episode."""
-        return self._batch.core.episode(0)
-
-    @property
-    def flock(self) -> _core.Flock:
-        """A copy of the flock as it is now."""
-        return self._batch.core.flock(0)
-
-    def get_state(self) -> bytes:
-        """Return everything that the future depends on, as bytes."""
-        return self._batch.core.to_bytes()
-
-    def set_state(self, state: bytes) -> None:
-        """Continue from `get_state` of an environment with the same options, bit for bit."""
-        self._batch.core.restore(state)
-
-    def clone(self) -> Self:
-        """Return an independent copy that goes on exactly as this one."""
-        return copy.deepcopy(self)
-
-    def render(self) -> NDArray[np.uint8] | None:
-        """Return a frame, (height, width, 3) uint8, where `render_mode` is "rgb_array".
-
-        With "human" every reset and step shows itself in a window (see `rendering.Window` for its
-        keys), and nothing is returned.
-        """
-        return None if self.render_mode is None else self._screen.render(self.flock)
-
-    def close(self) -> None:
-        """Close the window, if there is one; it stays closed."""
-        self._screen.close()

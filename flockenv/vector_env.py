@@ -1,7 +1,7 @@
 """`LeadersVectorEnv`: many flocks behind Gymnasium's vector interface, stepped at once in Rust."""
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Self
 
 import gymnasium
@@ -11,7 +11,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from flockenv.action import flat_actions, joint_action_space
-from flockenv.batch import LeaderBatch, drawn_seed
+from flockenv.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
 from flockenv.errors import ParameterError
 from flockenv.observation import observation_space
 from flockenv.options import EnvOptions
@@ -90,8 +90,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         **options: Any,
     ) -> None:
         self.autoreset_mode = _autoreset_mode(autoreset_mode)
-        if num_envs < 1:
-            raise ParameterError(f"num_envs = {num_envs!r} is not accepted: at least 1")
+        num_envs = at_least_one(num_envs, "num_envs")
         parsed = EnvOptions.parse(options)
         self.num_envs = num_envs
         self.num_leaders = parsed.parameters.n_leaders
@@ -140,12 +139,13 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         infos : dict
             Of the flocks that were reset.
         """
-        options = dict(options or {})
-        mask = _checked_mask(options.pop("reset_mask", None), self.num_envs)
+        seeds = _seed_each(seed, self.num_envs)
+        mask = None
+        if isinstance(options, Mapping):
+            mask = _checked_mask(options.get("reset_mask"), self.num_envs)
+        self._batch.reset(seeds, options, lambda: drawn_seed(self.np_random), mask)
         if isinstance(seed, int | np.integer):
             super().reset(seed=int(seed))
-        seeds = _seed_each(seed, self.num_envs)
-        self._batch.reset(seeds, options, lambda: drawn_seed(self.np_random), mask)
         infos: dict[str, Any] = {}
         for flock in range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist():
             infos = self._add_info(infos, self._batch.begin_info(flock), flock)
@@ -179,7 +179,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         EpisodeError
             Before the first reset, and after an episode's end with ``"disabled"``.
         """
-        flat = flat_actions(actions, self._actions_shape)
+        flat = flat_actions(actions, self._actions_shape, self._batch.settings["rudder_levels"])
         observations, rewards, truncated = self._batch.core.step(flat)
         infos = self._end_infos(truncated) if truncated.any() else {}
         return (
@@ -279,11 +279,12 @@ def _checked_mask(mask: Any, num_envs: int) -> NDArray[np.bool_] | None:
     return mask
 
 
-def _seed_each(seed: int | Sequence[int | None] | None, num_envs: int) -> list[int | None]:
+def _seed_each(seed: Any, num_envs: int) -> Sequence[int | None]:
     if seed is None:
         return [None] * num_envs
-    if isinstance(seed, int | np.integer):
-        return [int(seed) + flock for flock in range(num_envs)]
-    if len(seed) != num_envs:
-        raise ParameterError(f"seed lists {len(seed)} seeds, expected {num_envs}")
-    return list(seed)
+    seeds = seed.tolist() if isinstance(seed, np.ndarray) else seed
+    if not isinstance(seeds, Sequence) or isinstance(seeds, str):
+        return seeds_from(seeds, num_envs)
+    if len(seeds) != num_envs:
+        raise ParameterError(f"seed lists {len(seeds)} seeds, expected {num_envs}")
+    return list(seeds)

@@ -1,6 +1,7 @@
 """Leader policies: closed-form laws, learned networks and plain ones to compare with."""
 
 from flockenv.policies.laws import DampedLaw, ObservedPolicy, SignCorrectedLaw, SteeringLaw
+from flockenv.policies.levels import WithLevels
 from flockenv.policies.network import NetworkPolicy, load
 from flockenv.policies.plain import RandomRudders, StraightAhead
 
@@ -12,5 +13,6 @@ __all__ = [
     "SignCorrectedLaw",
     "SteeringLaw",
     "StraightAhead",
+    "WithLevels",
     "load",
 ]

@@ -63,8 +63,20 @@ impl RudderSettings {
     /// The rudder that a checked action asks for, in [−1, 1].
     pub fn command(&self, action: f64) -> f64 {
         match self.levels {
-            Some(levels) => 2.0 * action / (levels - 1) as f64 - 1.0,
+            // Levels i and n - 1 - i are opposite to the bit: mirrored tasks stay the same task.
+            Some(levels) => {
+                let highest = (levels - 1) as f64;
+                (2.0 * action - highest) / highest
+            }
             None => action.clamp(-1.0, 1.0),
+        }
+    }
+
+    /// The action whose command is nearest to a rudder in [−1, 1].
+    pub fn action(&self, rudder: f64) -> f64 {
+        match self.levels {
+            Some(levels) => (0.5 * (rudder + 1.0) * (levels - 1) as f64).round(),
+            None => rudder,
         }
     }
 

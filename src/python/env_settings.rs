@@ -135,7 +135,8 @@ fn bw_range(value: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
     ))
 }
 
-fn count(value: &Bound<'_, PyAny>, name: &'static str) -> PyResult<usize> {
+/// A whole number of at least 0.
+pub fn count(value: &Bound<'_, PyAny>, name: &'static str) -> PyResult<usize> {
     // Saturates on 32-bit targets, far beyond what any count may be.
     Ok(usize::try_from(whole(value, name)?).unwrap_or(usize::MAX))
 }

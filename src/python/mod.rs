@@ -36,7 +36,7 @@ mod _core {
     use super::frame_image::{PyAnimationEncoder, PyFrameRenderer};
     #[pymodule_export]
     use super::observation::{
-        PyObservedLaw, observation_table, observation_version, observe, state_table,
+        PyObservedLaw, nearest_levels, observation_table, observation_version, observe, state_table,
     };
     #[pymodule_export]
     use super::order::{rotation, signed_order};

@@ -1,12 +1,13 @@
 //! Observations outside environments: the table, a flock observed, laws evaluated.
 
 use super::arguments::{floats, real, text};
-use super::env_settings::layout_from;
+use super::env_settings::{count, layout_from};
 use super::flock::PyFlock;
+use crate::environment::RudderSettings;
 use crate::error::FlockError;
 use crate::observation::{BOAT, Entry, FlockView, OBSERVATION_VERSION, Observer, state_entries};
 use crate::observed_law::{Law, ObservedLaw};
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -158,6 +159,13 @@ impl PyObservedLaw {
         py: Python<'py>,
         observations: PyReadonlyArray2<'py, f32>,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let rudders = self.of_rows(&observations)?;
+        Ok(PyArray1::from_iter(py, rudders.iter().map(|&s| s as f32)))
+    }
+}
+
+impl PyObservedLaw {
+    fn of_rows(&self, observations: &PyReadonlyArray2<'_, f32>) -> PyResult<Vec<f64>> {
         let size = self.0.observation_size();
         let width = observations.as_array().ncols();
         if width == 0 || !width.is_multiple_of(size) {
@@ -168,8 +176,31 @@ impl PyObservedLaw {
             }
             .into());
         }
-        let rows = observations.as_slice()?.chunks_exact(size);
-        let rudders = rows.map(|observation| self.0.rudder(observation) as f32);
-        Ok(PyArray1::from_iter(py, rudders))
+        let numbers = observations.as_slice()?;
+        if numbers.iter().any(|number| number.is_nan()) {
+            return Err(FlockError::parameter("observation", f64::NAN, "numbers").into());
+        }
+        let rows = numbers.chunks_exact(size);
+        Ok(rows.map(|observation| self.0.rudder(observation)).collect())
     }
+}
+
+/// Numbers of the levels nearest to rudders, of so many that an environment may have.
+#[pyfunction]
+pub fn nearest_levels<'py>(
+    py: Python<'py>,
+    rudders: PyReadonlyArray1<'py, f64>,
+    rudder_levels: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyArray1<i64>>> {
+    let settings = RudderSettings {
+        levels: Some(count(rudder_levels, "rudder_levels")?),
+        ..RudderSettings::default()
+    };
+    settings.check()?;
+    let rudders = rudders.as_array();
+    if let Some(rudder) = rudders.iter().find(|s| !(-1.0..=1.0).contains(*s)) {
+        return Err(FlockError::parameter("rudder", rudder, "numbers in [-1, 1]").into());
+    }
+    let nearest = rudders.iter().map(|&s| settings.action(s) as i64);
+    Ok(PyArray1::from_iter(py, nearest))
 }

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv import Flock, OrderParameters, ParameterError
+from flockenv import Flock, OrderParameters, ParameterError, _core
 
 
 def circling(parameters, n, n_leaders=0, speed=10.0):
@@ -62,3 +62,9 @@ def test_a_series_compares_and_indexes(parameters):
     assert series[0] == series[1] != series[2]
     assert series[0][0] == series[2][0]
     assert len(series[0]) == 11
+
+
+def test_series_of_different_lengths_are_refused():
+    for derive in (lambda *series: _core.signed_order(*series, "cw"), _core.rotation):
+        with pytest.raises(ParameterError, match="phi_o"):
+            derive(np.ones(3), np.ones(2))

@@ -117,7 +117,7 @@ def test_nan_and_wrong_shapes_move_nothing():
         good = np.zeros(env.action_space.shape)
         one_nan = good.copy()
         one_nan.flat[-1] = np.nan
-        for actions in (one_nan, good[..., :1], good[..., None], 0.0):
+        for actions in (one_nan, good[..., :1], good[..., None], 0.0, [[1.0], [2.0, 3.0]]):
             with pytest.raises(ParameterError):
                 env.step(actions)
         for actions in (good.astype(object), good.astype(complex), np.full(good.shape, "a")):
@@ -141,7 +141,8 @@ def test_levels_out_of_range():
     env = flockenv.LeadersEnv(rudder_levels=3, **OPTIONS)
     env.reset(seed=0)
     before = env.get_state()
-    for actions in ([0, 3], [-1, 0], [0.5, 0]):
+    # A rudder of 1.0 is not level 1.
+    for actions in ([0, 3], [-1, 0], [0.5, 0], [1.0, 0.0]):
         with pytest.raises(ParameterError, match="whole numbers from 0 to 2"):
             env.step(actions)
     assert env.get_state() == before
@@ -158,9 +159,13 @@ def test_agents_that_are_not_there():
         {**good, "leader_1": np.zeros(2)},
         {**good, "leader_1": 0.0},
         {**good, "leader_1": np.array([np.nan])},
+        {**good, "leader_1": [[1.0], [2.0, 3.0]]},
         {},
     ):
         with pytest.raises(ParameterError):
+            env.step(actions)
+    for actions in (None, [0.0, 0.0], {**good, "leader_1": [True]}, {**good, "leader_1": ["a"]}):
+        with pytest.raises(TypeError, match="action"):
             env.step(actions)
     assert env.get_state() == before
     with pytest.raises(KeyError):
@@ -197,10 +202,57 @@ def test_reset_options_of_others_are_left_alone(face):
     face().reset(seed=0, options={"curriculum": 3})
 
 
-@pytest.mark.parametrize("seed", [-1, 2**64])
-def test_seeds_out_of_range(seed):
-    with pytest.raises(ParameterError):
-        flockenv.parallel_env(**OPTIONS).reset(seed=seed)
+@pytest.mark.parametrize("options", [5, "abc", [], [("target", "cw")]])
+def test_reset_options_that_are_no_dictionary(face, options):
+    with pytest.raises(TypeError, match="reset options must be a dictionary"):
+        face().reset(seed=0, options=options)
+
+
+@pytest.mark.parametrize("seed", [-1, 2**64, np.int64(-1)])
+def test_seeds_out_of_range(face, seed):
+    env = face()
+    env.reset(seed=0)
+    before = env.get_state()
+    with pytest.raises(ParameterError, match="seed = "):
+        env.reset(seed=seed)
+    assert env.get_state() == before
+
+
+@pytest.mark.parametrize("seed", ["1", True, 1j, {1}])
+def test_seeds_that_are_no_integers(face, seed):
+    with pytest.raises(TypeError, match="seed must be an integer"):
+        face().reset(seed=seed)
+
+
+def test_seeds_of_numpy(face):
+    first, second = face(), face()
+    first.reset(seed=3)
+    second.reset(seed=np.uint64(3))
+    assert first.get_state() == second.get_state()
+
+
+@pytest.mark.parametrize("time_s", [1e9, 1e9 - 0.5])
+def test_episodes_end_before_the_end_of_time(face, time_s):
+    # Beyond it a state could be put away, but not brought back.
+    env = face()
+    env.reset(seed=0)
+    parameters = flockenv.FlockParameters(n_boats=9, n_leaders=2)
+    flock = flockenv.Flock(parameters, 0)
+    late = {"pose": flock.pose, "time_s": time_s}
+    flock.set_state(flock.pose, flock.velocity, time_s=time_s)
+    for options in ({"state": late}, {"snapshot": flock.snapshot()}):
+        with pytest.raises(ParameterError, match="time_s"):
+            env.reset(seed=0, options=options)
+    env.reset(seed=0, options={"state": {**late, "time_s": 1e9 - 1.0}})
+    for _ in range(10):
+        env.step(zeros(env))
+    env.set_state(env.get_state())
+
+
+@pytest.mark.parametrize("num_envs", ["3", 2.5, True, None, [3]])
+def test_counts_that_are_no_integers(num_envs):
+    with pytest.raises(TypeError, match="num_envs must be an integer"):
+        flockenv.LeadersVectorEnv(num_envs, **OPTIONS)
 
 
 def test_vector_seeds_options_and_masks():

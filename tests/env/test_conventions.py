@@ -238,3 +238,8 @@ def test_summary_tells_means_over_the_episode():
     assert summary["reward_terms"]["signed_order"] == pytest.approx(np.mean(rewards), rel=1e-12)
     assert summary["signed_order"] == pytest.approx(np.mean(in_window), rel=1e-12)
     assert 0.0 <= summary["clip_rate"] < 0.05
+
+
+def test_parameters_tell_the_target():
+    assert flockenv.LeadersEnv(target="ccw").parameters.target == "ccw"
+    assert flockenv.parallel_env(target="cw").parameters.target == "cw"

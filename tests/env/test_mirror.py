@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import flockenv
+from flockenv.observation import observation_entries, state_entries
 
 QUIET = {"n_boats": 12, "n_leaders": 3, "c4": 0.0, "episode_s": 20.0, "mirror_to_target": True}
 FLIP = np.array([1.0, -1.0, -1.0])
@@ -67,3 +68,39 @@ def test_counter_clockwise_actions_are_reflected():
     env.reset(seed=0)
     env.step(np.array([1.0, -0.25, 0.0]))
     np.testing.assert_array_equal(env._batch.core.rudders(), [-1.0, 0.25, 0.0])
+
+
+SIGNS = np.array([-1.0 if each.mirrored else 1.0 for each in observation_entries()], np.float32)
+STATE_SIGNS = np.array([-1.0 if each.mirrored else 1.0 for each in state_entries(12)], np.float32)
+TERMS = {"signed_order": 1.0, "leader_velocity": 0.25, "rudder_effort": 0.125, "jam": 2.0}
+
+
+@pytest.mark.parametrize("target", ["ccw", "random", "alternate"])
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"rudder_levels": 4},
+        {"rudder_lag_s": 0.3, "rudder_rate_per_s": 2.0},
+        {"dropout_rate": 0.3, "delay_frames": 1},
+    ],
+)
+def test_mirroring_reflects_what_its_table_says_bit_for_bit(target, options):
+    scene = {"n_boats": 12, "n_leaders": 3, "episode_s": 8.0, "reward": TERMS, "target": target}
+    plain = flockenv.LeadersEnv(**scene, **options)
+    mirrored = flockenv.LeadersEnv(**scene, **options, mirror_to_target=True)
+    seen, _ = plain.reset(seed=3)
+    reflected, _ = mirrored.reset(seed=3)
+    mirrored.action_space.seed(0)
+    for _ in range(80):
+        turn = plain.episode()["target"] == "ccw"
+        signs, state_signs = (SIGNS, STATE_SIGNS) if turn else (1.0, 1.0)
+        np.testing.assert_array_equal(seen.reshape(3, -1) * signs, reflected.reshape(3, -1))
+        np.testing.assert_array_equal(plain.state() * state_signs, mirrored.state())
+        action = mirrored.action_space.sample()
+        other_side = 3 - action if "rudder_levels" in options else -action
+        seen, reward, _, _, info = plain.step(other_side if turn else action)
+        reflected, *rest, mirrored_info = mirrored.step(action)
+        assert reward == rest[0]
+        assert info == mirrored_info or "episode_summary" in info
+    assert plain.flock.snapshot() == mirrored.flock.snapshot()

@@ -9,7 +9,7 @@ import pytest
 
 import flockenv
 from flockenv.observation import observation_entries, observe
-from flockenv.policies import DampedLaw, SignCorrectedLaw, SteeringLaw
+from flockenv.policies import DampedLaw, SignCorrectedLaw, SteeringLaw, WithLevels
 
 LAWS = (SteeringLaw, SignCorrectedLaw, DampedLaw)
 
@@ -140,6 +140,53 @@ def test_laws_survive_pickles():
         assert (again.gains, again.observation) == (law.gains, law.observation)
         assert again.mirror_to_target
     assert "damping=2" in repr(law)
+
+
+@pytest.mark.parametrize("kind", LAWS)
+def test_levels_are_the_nearest_ones(kind):
+    observations = random_observations(40)
+    rudders, _ = kind().predict(observations)
+    for count in (2, 3, 8, 1001):
+        law = pickle.loads(pickle.dumps(WithLevels(kind(), count)))
+        levels, _ = law.predict(observations)
+        assert levels.dtype == np.int64
+        assert levels.shape == rudders.shape
+        nearest = np.linspace(-1, 1, count)[levels]
+        assert np.abs(nearest - rudders).max() <= 1 / (count - 1) + 1e-6
+
+
+@pytest.mark.parametrize("kind", LAWS)
+def test_laws_drive_environments_with_levels(kind):
+    options = {"n_boats": 6, "n_leaders": 2, "rudder_levels": 5, "episode_s": 3.0}
+    law = WithLevels(kind(), 5)
+    env = flockenv.LeadersEnv(**options)
+    venv = flockenv.LeadersVectorEnv(2, **options)
+    parallel = flockenv.parallel_env(**options)
+    rows, _ = env.reset(seed=0)
+    batch, _ = venv.reset(seed=0)
+    by_agent, _ = parallel.reset(seed=0)
+    for _ in range(30):
+        action, actions = law.predict(rows)[0], law.predict(by_agent)[0]
+        assert action in env.action_space
+        assert all(actions[agent] in parallel.action_space(agent) for agent in parallel.agents)
+        rows, *_ = env.step(action)
+        batch, *_ = venv.step(law.predict(batch)[0])
+        by_agent, *_ = parallel.step(actions)
+        np.testing.assert_array_equal(rows, np.concatenate(list(by_agent.values())))
+        np.testing.assert_array_equal(rows, batch[0])
+
+
+def test_rudders_of_a_law_are_no_levels():
+    env = flockenv.LeadersEnv(n_boats=6, n_leaders=2, rudder_levels=3)
+    observation, _ = env.reset(seed=0)
+    with pytest.raises(flockenv.ParameterError, match="whole numbers from 0 to 2"):
+        env.step(SteeringLaw().predict(observation)[0])
+    with pytest.raises(flockenv.ParameterError, match="rudder_levels = 1"):
+        WithLevels(SteeringLaw(), 1)
+    with pytest.raises(flockenv.ParameterError, match="NaN"):
+        WithLevels(SteeringLaw(), 3).predict(np.full_like(observation, np.nan))
+    with pytest.raises(flockenv.ParameterError, match="NaN"):
+        SteeringLaw().predict(np.full_like(observation, np.nan))
 
 
 def test_sign_correction_helps():

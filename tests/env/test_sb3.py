@@ -204,6 +204,34 @@ def test_bad_input():
             LeaderVecEnv(**bad)
 
 
+def test_counts_and_seeds_are_checked():
+    assert make(n_leaders=np.array([1, 3])).num_envs == 1 + 3 + 1
+    for bad in ("3", 2.5, True, None):
+        with pytest.raises(TypeError, match="num_flocks must be an integer"):
+            make(num_flocks=bad)
+    for bad in ("12", [1, "a"], [1, None], [1, 1.5], {1, 2}, [[1]]):
+        with pytest.raises(TypeError, match="n_leaders must be an integer"):
+            make(n_leaders=bad)
+    venv = make()
+    for bad in (-1, 2**64 - 2):
+        with pytest.raises(flockenv.ParameterError, match="seed = "):
+            venv.seed(bad)
+    for bad in ("1", 1.5, True):
+        with pytest.raises(TypeError, match="seed must be an integer"):
+            venv.seed(bad)
+    venv.seed(2**64 - 3)
+    venv.reset()
+    venv.set_options([])
+    with pytest.raises((TypeError, IndexError)):
+        venv.reset()
+
+
+def test_laws_steer_slots_with_levels():
+    law = flockenv.policies.WithLevels(flockenv.policies.SteeringLaw(), 5)
+    mean, _ = evaluate_policy(law, VecMonitor(make(rudder_levels=5)), n_eval_episodes=6)
+    assert np.isfinite(mean)
+
+
 def test_images_are_those_of_the_flocks():
     venv = LeaderVecEnv(3, render_mode="rgb_array", render_size=(100, 80), n_boats=8, n_leaders=2)
     venv.seed(1)
