@@ -12,6 +12,9 @@ __all__ = ["Contacts"]
 class Contacts:
     """Contacts and near-contacts of a flock's last substep, c of them.
 
+    Snapshots do not hold them: a flock that was restored or unpickled has none until its next
+    substep, and goes on from the same loads all the same.
+
     Two nearly parallel hulls, and a hull along the outer wall, touch at two points: two entries.
 
     Attributes
