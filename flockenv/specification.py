@@ -25,7 +25,7 @@ target direction."""
 _RUDDER = """A rudder is held for a control step. A positive one turns a boat that moves forward
 counter-clockwise, and works in reverse on one that moves backward. Numbers beyond ±1 are clipped,
 NaN is an error and nothing moves. With `rudder_levels=n` levels 0 to n - 1 are rudders evenly
-spaced from -1 to 1."""
+spaced from -1 to 1; `policies.WithLevels` chooses them for a policy that gives rudders."""
 
 _FRAME = """Everything is in the local-angle polar (LAP) frame of the leader's own place, outward
 and clockwise, scaled and clipped at the bounds below (the part of numbers that were clipped is told
