@@ -14,7 +14,7 @@ from flockenv.order_parameters import OrderSeries
 from flockenv.parameters import FlockParameters
 from flockenv.recording import PHASES, PRECISIONS, Recording
 
-__all__ = ["LeaderPolicy", "simulate"]
+__all__ = ["LeaderPolicy", "sample", "simulate"]
 
 _TICKS_A_SECOND = 1e9
 
@@ -124,7 +124,7 @@ def _steered(
         flock.advance((tick - now) / _TICKS_A_SECOND, rudder)
         now = tick
         if is_sample:
-            samples.append(_sample(flock, precision))
+            samples.append(sample(flock, precision))
         if is_control and parameters.n_leaders > 0:
             seen = observe(flock, layout, mirror_to_target=mirrored, rudder=rudder)
             actions, state = policy.predict(seen, state)
@@ -150,7 +150,8 @@ def _events(
         yield tick, tick in sampled, tick in steered
 
 
-def _sample(flock: _core.Flock, precision: np.dtype[Any]) -> dict[str, Any]:
+def sample(flock: _core.Flock, precision: np.dtype[Any]) -> dict[str, Any]:
+    """Return one sample of a `Recording` by field, its order parameters as a list under "order"."""
     has_normal_boats = flock.parameters.n_leaders < flock.parameters.n_boats
     order = flock.order_parameters() if has_normal_boats else None
     names = OrderSeries.__dataclass_fields__
