@@ -108,12 +108,15 @@ class Outcome:
         The paper's claims about the figure, judged.
     notes : list of str
         What a reader needs: how intervals were made, what was left out, what to conclude.
+    shown : list of str
+        Names of tables that the report shows in full.
     """
 
     tables: dict[str, pd.DataFrame]
     pictures: dict[str, Figure] = field(default_factory=dict)
     claims: list[CheckedClaim] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    shown: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

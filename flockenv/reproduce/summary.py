@@ -38,26 +38,38 @@ def markdown_summary(
             lines += [f"![{figure.title}]({figure.name}/{figure.name}.png)", ""]
             lines += [f"{figure.name}: {figure.title}.", ""]
     for figure, _, outcome in finished:
+        lines += [f"## {figure.name}: {figure.title}", ""]
         if outcome.claims:
-            lines += [f"## {figure.name}: {figure.title}", "", *_table(outcome.claims), ""]
+            lines += [*_claims(outcome.claims), ""]
+        for name in outcome.shown:
+            table = outcome.tables[name]
+            rows: list[Sequence[object]] = [list(table.columns), *table.to_numpy().tolist()]
+            lines += [*_table(rows), ""]
         lines += [line for note in outcome.notes for line in (note, "")]
     return "\n".join(lines)
 
 
-def _table(claims: Sequence[CheckedClaim]) -> list[str]:
-    rows = ["| claim | section | for | quantity | claimed | measured | interval | verdict |"]
-    rows.append("| --- " * 8 + "|")
+def _claims(claims: Sequence[CheckedClaim]) -> list[str]:
+    rows = [["claim", "section", "for", "quantity", "claimed", "measured", "interval", "verdict"]]
     for checked in claims:
         claim = checked.claim
-        cells = (
-            claim.text + (f" ({checked.note})" if checked.note else ""),
-            claim.section,
-            checked.scope,
-            claim.quantity,
-            claim.accepted,
-            f"{checked.measured:.3g}",
-            f"{checked.low:.3g} to {checked.high:.3g}",
-            f"**{checked.verdict}**",
+        rows.append(
+            [
+                claim.text + (f" ({checked.note})" if checked.note else ""),
+                claim.section,
+                checked.scope,
+                claim.quantity,
+                claim.accepted,
+                f"{checked.measured:.3g}",
+                f"{checked.low:.3g} to {checked.high:.3g}",
+                f"**{checked.verdict}**",
+            ]
         )
-        rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
-    return rows
+    return _table(rows)
+
+
+def _table(rows: Sequence[Sequence[object]]) -> list[str]:
+    lines = [
+        "| " + " | ".join(str(cell).replace("|", "\\|") for cell in row) + " |" for row in rows
+    ]
+    return [lines[0], "| --- " * len(rows[0]) + "|", *lines[1:]]
