@@ -30,6 +30,7 @@ __all__ = [
     "ordering_time",
     "pair_counts",
     "phase_names",
+    "pool_radii_cm",
     "preset_fields",
     "preset_names",
     "preset_sources",
