@@ -14,10 +14,9 @@ from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv.errors import ParameterError
-from flockenv.order_parameters import OrderSeries
 from flockenv.parameters import FlockParameters
-from flockenv.recording import PHASES, Recording
-from flockenv.simulation import sample
+from flockenv.recording import Recording
+from flockenv.simulation import columns_of, sample
 
 __all__ = [
     "DENSITY_RATIO",
@@ -145,7 +144,7 @@ def _recorded(
     duration_s: float,
     sample_hz: float,
 ) -> Recording:
-    count = math.floor(duration_s * sample_hz)
+    count = math.floor(duration_s * sample_hz * (1 + 1e-12))
     turns = [place * len(scenes) // max(count, 1) for place in range(count)]
     flock = _core.Flock(scenes[0], seed)
     samples = [sample(flock, np.dtype(np.float32))]
@@ -155,11 +154,8 @@ def _recorded(
             flock, now = _moved(flock, scenes[turn], seed), turn
         flock.advance((place + 1) / sample_hz - flock.time_s)
         samples.append(sample(flock, np.dtype(np.float32)))
-    columns = {name: np.array([each[name] for each in samples]) for name in samples[0]}
-    columns["phase"] = columns["phase"].astype(PHASES.dtype)
-    orders = OrderSeries(*columns.pop("order").T)
     return Recording(
-        **columns, order=orders, parameters=parameters, seed=seed, version=_core.__version__
+        **columns_of(samples), parameters=parameters, seed=seed, version=_core.__version__
     )
 
 
