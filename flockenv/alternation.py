@@ -6,10 +6,9 @@ import numpy as np
 
 from flockenv import _core
 from flockenv.errors import ParameterError
-from flockenv.order_parameters import OrderSeries
 from flockenv.parameters import FlockParameters
-from flockenv.recording import PHASES, Recording
-from flockenv.simulation import _sample
+from flockenv.recording import Recording
+from flockenv.simulation import columns_of, sample
 
 __all__ = ["PERIOD_S", "TARGETS", "simulate_alternating", "target_at"]
 
@@ -56,10 +55,7 @@ def simulate_alternating(
         flock.advance(max(place / sample_hz - flock.time_s, 0.0))
         if place % samples == 0:
             flock.set_target(TARGETS[place // samples % len(TARGETS)])
-        rows.append(_sample(flock, np.dtype(np.float32)))
-    columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-    columns["phase"] = columns["phase"].astype(PHASES.dtype)
-    order = OrderSeries(*columns.pop("order").T)
+        rows.append(sample(flock, np.dtype(np.float32)))
     return Recording(
-        **columns, order=order, parameters=parameters, seed=int(seed), version=_core.__version__
+        **columns_of(rows), parameters=parameters, seed=int(seed), version=_core.__version__
     )

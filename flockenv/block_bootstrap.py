@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from flockenv.analysis import CONFIDENCE
 
-__all__ = ["RESAMPLES", "block_sums", "block_sums_resampled", "interval"]
+__all__ = ["RESAMPLES", "block_places", "block_sums", "block_sums_resampled", "interval"]
 
-RESAMPLES = 999
+RESAMPLES = 499
 """How many times blocks are drawn."""
 
 
@@ -43,11 +43,22 @@ def block_sums(
     ValueError
         Without samples.
     """
+    starts = np.flatnonzero(np.diff(block_places(time_s, block_s), prepend=-1))
+    return np.add.reduceat(np.asarray(values, np.float64), starts, axis=0)
+
+
+def block_places(time_s: NDArray[np.float64], block_s: float) -> NDArray[np.int64]:
+    """Return in which block each sample lies, counted over those that hold one: shape (t,).
+
+    Raises
+    ------
+    ValueError
+        Without samples.
+    """
     if len(time_s) == 0:
         raise ValueError("there are no samples to average")
-    place = np.floor((time_s - time_s[0]) / block_s)
-    starts = np.flatnonzero(np.diff(place, prepend=-1.0))
-    return np.add.reduceat(np.asarray(values, np.float64), starts, axis=0)
+    steps = np.diff(np.floor((time_s - time_s[0]) / block_s), prepend=0.0)
+    return np.cumsum(steps > 0)
 
 
 def block_sums_resampled(

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from flockenv.alternation import simulate_alternating
 from flockenv.errors import ParameterError
+from flockenv.loops import LOOPS, simulate_loop
 from flockenv.order_parameters import OrderSeries
 from flockenv.parameters import FlockParameters
 from flockenv.recording import PHASES, Recording
@@ -37,9 +38,14 @@ def _alternating(spec: "RunSpec") -> Recording:
     return simulate_alternating(spec.parameters, spec.seed, spec.duration_s, spec.sample_hz)
 
 
+def _loop(spec: "RunSpec") -> Recording:
+    return simulate_loop(spec.parameters, spec.seed, spec.duration_s, spec.sample_hz, spec.protocol)
+
+
 PROTOCOLS: Mapping[str, Callable[["RunSpec"], Recording]] = {
     "law": _law,
     "alternating": _alternating,
+    **dict.fromkeys(LOOPS, _loop),
 }
 """Ways to make a run, by name. They live in this package, so that any worker process finds them."""
 
@@ -60,7 +66,8 @@ class RunSpec:
         Samples a second.
     protocol : str
         How leaders are led, a name in `PROTOCOLS`; "law": by eq. (10), towards the fixed target;
-        "alternating": by eq. (10), towards directions that alternate every 4 minutes.
+        "alternating": by eq. (10), towards directions that alternate every 4 minutes; and the
+        loops of `flockenv.loops`.
     keep : str
         What is kept of the run, one of `KEEP`.
 

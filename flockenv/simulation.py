@@ -1,7 +1,7 @@
 """`simulate`: a seeded run from a random start, recorded."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -14,7 +14,7 @@ from flockenv.order_parameters import OrderSeries
 from flockenv.parameters import FlockParameters
 from flockenv.recording import PHASES, PRECISIONS, Recording
 
-__all__ = ["LeaderPolicy", "simulate"]
+__all__ = ["LeaderPolicy", "columns_of", "sample", "simulate"]
 
 _TICKS_A_SECOND = 1e9
 
@@ -124,15 +124,12 @@ def _steered(
         flock.advance((tick - now) / _TICKS_A_SECOND, rudder)
         now = tick
         if is_sample:
-            samples.append(_sample(flock, precision))
+            samples.append(sample(flock, precision))
         if is_control and parameters.n_leaders > 0:
             seen = observe(flock, layout, mirror_to_target=mirrored, rudder=rudder)
             actions, state = policy.predict(seen, state)
             rudder = sign * np.clip(np.asarray(actions, np.float64).reshape(-1), -1.0, 1.0)
-    columns = {name: np.array([each[name] for each in samples]) for name in samples[0]}
-    columns["phase"] = columns["phase"].astype(PHASES.dtype)
-    orders = columns.pop("order").T
-    return {**columns, "order": OrderSeries(*orders)}
+    return columns_of(samples)
 
 
 def _events(
@@ -150,7 +147,8 @@ def _events(
         yield tick, tick in sampled, tick in steered
 
 
-def _sample(flock: _core.Flock, precision: np.dtype[Any]) -> dict[str, Any]:
+def sample(flock: _core.Flock, precision: np.dtype[Any]) -> dict[str, Any]:
+    """Return one sample of a `Recording` by field, its order parameters as a list under "order"."""
     has_normal_boats = flock.parameters.n_leaders < flock.parameters.n_boats
     order = flock.order_parameters() if has_normal_boats else None
     names = OrderSeries.__dataclass_fields__
@@ -162,6 +160,14 @@ def _sample(flock: _core.Flock, precision: np.dtype[Any]) -> dict[str, Any]:
         "velocity": flock.velocity.astype(precision),
         "order": [getattr(order, name) if order else math.nan for name in names],
     }
+
+
+def columns_of(samples: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Return samples as the arrays of a `Recording`, by field."""
+    columns = {name: np.array([each[name] for each in samples]) for name in samples[0]}
+    columns["phase"] = columns["phase"].astype(PHASES.dtype)
+    orders = columns.pop("order").T
+    return {**columns, "order": OrderSeries(*orders)}
 
 
 def _precision(dtype: DTypeLike) -> np.dtype[Any]:

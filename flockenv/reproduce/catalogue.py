@@ -26,7 +26,7 @@ _PAPER: Mapping[str, str] = {
     **dict.fromkeys(("fig14", "fig15", "fig16", "fig17"), "flockenv.reproduce.simulation_figures"),
     "scheme-and-noise": "flockenv.reproduce.simulation_table",
 }
-_BEYOND: Mapping[str, str] = {}
+_BEYOND: Mapping[str, str] = {"transition-order": "flockenv.reproduce.transition_order"}
 
 
 def names() -> list[str]:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from flockenv.engines import Engine, local
 from flockenv.errors import FlockError
@@ -11,6 +12,7 @@ from flockenv.reproduce.claim import CheckedClaim
 from flockenv.reproduce.files import claims_table, write_file, write_outcome, write_table
 from flockenv.reproduce.report import html_report
 from flockenv.reproduce.reproduction import Results, Settings
+from flockenv.reproduce.summary import markdown_summary
 from flockenv.run_store import RunStore, run_missing
 from flockenv.runs import RunSpec
 
@@ -72,8 +74,8 @@ def reproduce(
 ) -> dict[str, list[CheckedClaim]]:
     """Make the missing runs, then write ``<folder>/<name>/`` for each name.
 
-    With `ALL` among the names also ``report.html``, complete in itself, and the claims of all
-    figures as ``claims.csv`` and ``claims.parquet``.
+    With `ALL` among the names also ``report.html``, complete in itself, ``summary.md``, and the
+    claims of all figures as ``claims.csv`` and ``claims.parquet``.
 
     Parameters
     ----------
@@ -104,10 +106,11 @@ def reproduce(
     for spec, error in failures.items():
         raise FlockError(f"{len(failures)} runs failed, the first of seed {spec.seed}: {error}")
     finished = []
+    derived: dict[Any, Any] = {}
     for name in plan.names:
         figure = load(name)
         specs = list(dict.fromkeys(figure.runs(plan.settings)))
-        outcome = figure.analyse(plan.settings, Results(store, specs))
+        outcome = figure.analyse(plan.settings, Results(store, specs, derived))
         write_outcome(outcome, folder / name)
         finished.append((figure, specs, outcome))
     claims = {figure.name: outcome.claims for figure, _, outcome in finished}
@@ -115,4 +118,5 @@ def reproduce(
         judged = [claim for each in claims.values() for claim in each]
         write_table(claims_table(judged), folder / "claims")
         write_file(folder / "report.html", html_report(plan.settings, finished).encode())
+        write_file(folder / "summary.md", markdown_summary(plan.settings, finished).encode())
     return claims

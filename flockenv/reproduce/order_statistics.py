@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv.block_bootstrap import block_sums, block_sums_resampled
+from flockenv.block_bootstrap import block_places, block_sums, block_sums_resampled
 from flockenv.reproduce.reproduction import Results
 from flockenv.runs import RunResult, RunSpec
 
@@ -51,7 +51,8 @@ def block_length_s(duration_s: float) -> float:
 _PLAIN = ("frames", "psi_o", "psi_o²", "c_v", "c_v²", "rotating", "cw", "jammed", "near_zero")
 
 
-def _quantities(run: RunResult) -> NDArray[np.float64]:
+def _blocks(run: RunResult) -> NDArray[np.float64]:
+    """Sum what is counted of a run over its blocks: shape (b, q)."""
     order, used = run.order, run.analysed
     psi, phi, c_v, psi_v = (
         values[used] for values in (order.psi_o, order.phi_o, order.c_v, order.psi_v)
@@ -68,16 +69,31 @@ def _quantities(run: RunResult) -> NDArray[np.float64]:
         is_jammed(psi, phi, psi_v),
         abs(phi) < _PEAK_HALF_WIDTH,
     ]
-    return np.hstack(
-        [np.stack(columns, axis=1), _in_bins(phi, PHI_EDGES), _in_bins(psi, PSI_EDGES)]
-    )
+    times, length = run.time_s[used], block_length_s(run.spec.duration_s)
+    place = block_places(times, length)
+    bins = [_counts(place, phi, PHI_EDGES), _counts(place, psi, PSI_EDGES)]
+    return np.hstack([block_sums(times, np.stack(columns, axis=1), length), *bins])
 
 
-def _in_bins(values: NDArray[np.float64], edges: NDArray[np.float64]) -> NDArray[np.bool_]:
-    count = len(edges) - 1
+def _counts(
+    place: NDArray[np.int64], values: NDArray[np.float64], edges: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    """Count values by block and bin: shape (blocks, bins)."""
+    bins = len(edges) - 1
     # Single precision may put φ_o or Ψ_o beyond the last edge by a rounding.
-    place = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, count - 1)
-    return np.asarray(place[:, None] == np.arange(count))
+    column = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, bins - 1)
+    shape = (int(place[-1]) + 1, bins)
+    return np.bincount(place * bins + column, minlength=shape[0] * bins).reshape(shape)
+
+
+class _Point:
+    """One point of a series: sums over its runs, as they are and resampled, and over each run."""
+
+    def __init__(self, runs: Sequence[RunResult]) -> None:
+        blocks = [_blocks(run) for run in runs]
+        # Points must not share draws, but the same point always has the same.
+        self.sums = block_sums_resampled(blocks, int(runs[0].spec.key[:8], 16))
+        self.run_sums = np.stack([each.sum(axis=0) for each in blocks])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -106,13 +122,12 @@ class OrderStatistics:
         cls, results: Results, x: Sequence[float], points: Sequence[Sequence[RunSpec]]
     ) -> "OrderStatistics":
         """Return the statistics of a series."""
-        sums, run_sums = [], []
-        for specs in points:
-            blocks = [_blocks(results[spec]) for spec in specs]
-            # Points must not share draws, but the same point always has the same.
-            sums.append(block_sums_resampled(blocks, int(specs[0].key[:8], 16)))
-            run_sums.append(np.stack([each.sum(axis=0) for each in blocks]))
-        return cls(np.asarray(x, float), np.stack(sums), run_sums)
+        found = [results.derive(_Point, tuple(specs)) for specs in points]
+        return cls(
+            np.asarray(x, float),
+            np.stack([point.sums for point in found]),
+            [point.run_sums for point in found],
+        )
 
     def mean(self, name: str) -> NDArray[np.float64]:
         """Return the mean of "psi_o" or "c_v", or a share of the frames.
@@ -150,8 +165,3 @@ class OrderStatistics:
 
     def _sum(self, name: str) -> NDArray[np.float64]:
         return self.sums[:, :, _PLAIN.index(name)]
-
-
-def _blocks(run: RunResult) -> NDArray[np.float64]:
-    times = run.time_s[run.analysed]
-    return block_sums(times, _quantities(run), block_length_s(run.spec.duration_s))

@@ -66,6 +66,10 @@ def _section(reproduction: Reproduction, specs: Sequence[RunSpec], outcome: Outc
     parts += [f"<p>{escape(note)}</p>" for note in outcome.notes]
     if outcome.claims:
         parts.append(_claims(outcome.claims))
+    for name in outcome.shown:
+        table = outcome.tables[name]
+        rows = [list(table.columns), *table.to_numpy().tolist()]
+        parts.append(_table([[escape(str(cell)) for cell in row] for row in rows]))
     parts += ["<details><summary>What was run</summary>", _runs(specs), "</details>"]
     return "\n".join(parts)
 

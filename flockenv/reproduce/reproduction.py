@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Any, TypeVar
 
 import pandas as pd
 from matplotlib.figure import Figure
@@ -10,6 +11,8 @@ from flockenv.errors import FlockError, ParameterError
 from flockenv.reproduce.claim import CheckedClaim
 from flockenv.run_store import RunStore
 from flockenv.runs import RunResult, RunSpec
+
+Derived = TypeVar("Derived")
 
 __all__ = ["Outcome", "Reproduction", "Results", "Settings"]
 
@@ -46,10 +49,23 @@ class Settings:
 
 
 class Results(Mapping[RunSpec, RunResult]):
-    """Finished runs by their specs, read from the store when asked for."""
+    """Finished runs by their specs, read from the store when asked for.
 
-    def __init__(self, store: RunStore, specs: Iterable[RunSpec]) -> None:
+    Parameters
+    ----------
+    store
+        Where they are.
+    specs
+        Which of them a figure may use.
+    derived
+        What figures that share runs derive from them, see `derive`.
+    """
+
+    def __init__(
+        self, store: RunStore, specs: Iterable[RunSpec], derived: dict[Any, Any] | None = None
+    ) -> None:
         self._store = store
+        self._derived = {} if derived is None else derived
         self._specs = dict.fromkeys(specs)
 
     def __getitem__(self, spec: RunSpec) -> RunResult:
@@ -59,6 +75,16 @@ class Results(Mapping[RunSpec, RunResult]):
         if result is None:
             raise FlockError(f"{self._store.path(spec)} has been lost since it was written")
         return result
+
+    def derive(
+        self, make: Callable[[list[RunResult]], Derived], specs: tuple[RunSpec, ...]
+    ) -> Derived:
+        """Return ``make([run, …])`` of some runs, made once for all figures that share them."""
+        key = (make, specs)
+        if key not in self._derived:
+            self._derived[key] = make([self[spec] for spec in specs])
+        derived: Derived = self._derived[key]
+        return derived
 
     def __iter__(self) -> Iterator[RunSpec]:
         return iter(self._specs)
@@ -82,12 +108,15 @@ class Outcome:
         The paper's claims about the figure, judged.
     notes : list of str
         What a reader needs: how intervals were made, what was left out, what to conclude.
+    shown : list of str
+        Names of tables that the report shows in full.
     """
 
     tables: dict[str, pd.DataFrame]
     pictures: dict[str, Figure] = field(default_factory=dict)
     claims: list[CheckedClaim] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    shown: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -42,7 +42,7 @@ mod _core {
     use super::order::{rotation, signed_order};
     #[pymodule_export]
     use super::parameters::{
-        checked_fields, critical_bw_s, preset_fields, preset_names, preset_sources,
+        checked_fields, critical_bw_s, pool_radii_cm, preset_fields, preset_names, preset_sources,
     };
     #[pymodule_export]
     use super::recording::{phase_names, record};

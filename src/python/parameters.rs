@@ -108,6 +108,13 @@ pub fn critical_bw_s(preset: &str, pool: &Bound<'_, PyAny>) -> PyResult<Option<f
         .critical_bw_s(&Pool::read(pool, "pool")?))
 }
 
+/// Radii of a pool in cm, outer and inner, whether it has a name or not.
+#[pyfunction]
+pub fn pool_radii_cm(pool: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
+    let pool = Pool::read(pool, "pool")?;
+    Ok((pool.outer_radius_cm, pool.inner_radius_cm))
+}
+
 impl Field for usize {
     fn read(value: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Self> {
         // Saturates on 32-bit targets, far beyond what any count may be.

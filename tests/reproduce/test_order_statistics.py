@@ -13,7 +13,9 @@ from flockenv.reproduce.order_statistics import (
     is_jammed,
     is_rotating,
 )
+from flockenv.reproduce.reproduction import Results
 from flockenv.reproduce.simulation_claims import critical_noise
+from flockenv.run_store import RunStore
 from flockenv.runs import ORDER_NAMES, RunResult, RunSpec
 
 SCENE = flockenv.FlockParameters.preset("simulation")
@@ -36,9 +38,17 @@ def made(seed: int, order: Mapping[str, object], samples: int = 1000) -> RunResu
     )
 
 
+class Made(Results):
+    def __init__(self, runs: tuple[RunResult, ...]) -> None:
+        super().__init__(RunStore("nowhere"), [run.spec for run in runs])
+        self._runs = {run.spec: run for run in runs}
+
+    def __getitem__(self, spec: RunSpec) -> RunResult:
+        return self._runs[spec]
+
+
 def statistics(*runs: RunResult) -> OrderStatistics:
-    results = {run.spec: run for run in runs}
-    return OrderStatistics.of(results, [0.0], [list(results)])  # type: ignore[arg-type]
+    return OrderStatistics.of(Made(runs), [0.0], [[run.spec for run in runs]])
 
 
 def test_states() -> None:

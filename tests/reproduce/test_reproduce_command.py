@@ -153,5 +153,8 @@ def test_the_report_is_complete_in_itself(uninterrupted: Path, monkeypatch: obje
         assert checked.verdict in page
     assert flockenv.__version__ in page
     assert "gyration_radius_cm" in page
+    summary = (uninterrupted / "summary.md").read_text("utf-8")
+    assert all(checked.claim.quantity in summary for checked in claims["fig17"])
+    assert "fig17/fig17.png" in summary
     table = pd.read_csv(uninterrupted / "claims.csv")
     assert len(table) == len(claims["fig17"])

@@ -1,0 +1,75 @@
+"""The summary of a report in Markdown: key figures and the table of claims."""
+
+from collections.abc import Sequence
+
+from flockenv import _core
+from flockenv.analysis import CONFIDENCE
+from flockenv.reproduce.claim import CheckedClaim
+from flockenv.reproduce.reproduction import Outcome, Reproduction, Settings
+from flockenv.run_store import RESULTS_VERSION
+from flockenv.runs import RunSpec
+
+__all__ = ["KEY_FIGURES", "markdown_summary"]
+
+KEY_FIGURES = ("fig9", "fig12", "fig14", "fig17")
+"""The figures shown, as far as they are there: two of the experiment, two of the simulation."""
+
+
+def markdown_summary(
+    settings: Settings,
+    finished: Sequence[tuple[Reproduction, Sequence[RunSpec], Outcome]],
+) -> str:
+    """Return the page; it refers to pictures as ``<name>/<name>.png``, where they are written."""
+    hours = sum({spec.key: spec.duration_s for _, specs, _ in finished for spec in specs}.values())
+    minutes = settings.minutes
+    length = "of the paper's own length" if minutes is None else f"of {minutes:g} min"
+    lines = [
+        "# The paper's figures and claims, reproduced",
+        "",
+        f"Written by `flockenv reproduce all` of flockenv {_core.__version__} (results version "
+        f"{RESULTS_VERSION}); runs {length}, {hours / 3600:.0f} hours of flock time, first seed "
+        f"{settings.seed}. A claim holds if the {CONFIDENCE:.0%} interval of the measured quantity "
+        "lies in the claimed range, does not hold if it lies outside, and is inconclusive "
+        "otherwise; the ranges stand in the code and were settled before the runs.",
+        "",
+    ]
+    for figure, _, _ in finished:
+        if figure.name in KEY_FIGURES:
+            lines += [f"![{figure.title}]({figure.name}/{figure.name}.png)", ""]
+            lines += [f"{figure.name}: {figure.title}.", ""]
+    for figure, _, outcome in finished:
+        lines += [f"## {figure.name}: {figure.title}", ""]
+        if outcome.claims:
+            lines += [*_claims(outcome.claims), ""]
+        for name in outcome.shown:
+            table = outcome.tables[name]
+            rows: list[Sequence[object]] = [list(table.columns), *table.to_numpy().tolist()]
+            lines += [*_table(rows), ""]
+        lines += [line for note in outcome.notes for line in (note, "")]
+    return "\n".join(lines)
+
+
+def _claims(claims: Sequence[CheckedClaim]) -> list[str]:
+    rows = [["claim", "section", "for", "quantity", "claimed", "measured", "interval", "verdict"]]
+    for checked in claims:
+        claim = checked.claim
+        rows.append(
+            [
+                claim.text + (f" ({checked.note})" if checked.note else ""),
+                claim.section,
+                checked.scope,
+                claim.quantity,
+                claim.accepted,
+                f"{checked.measured:.3g}",
+                f"{checked.low:.3g} to {checked.high:.3g}",
+                f"**{checked.verdict}**",
+            ]
+        )
+    return _table(rows)
+
+
+def _table(rows: Sequence[Sequence[object]]) -> list[str]:
+    lines = [
+        "| " + " | ".join(str(cell).replace("|", "\\|") for cell in row) + " |" for row in rows
+    ]
+    return [lines[0], "| --- " * len(rows[0]) + "|", *lines[1:]]
