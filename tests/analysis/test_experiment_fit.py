@@ -101,7 +101,7 @@ def test_a_response_surface_finds_what_lucky_trials_hide():
 
 def test_a_fit_is_written_and_told(quick, tmp_path):
     steps = []
-    fit = Fit(trials=22, seeds=1, finalists=2)
+    fit = Fit(trials=44, seeds=1, finalists=2)
     result = fit_report.report(fit, 4, tmp_path, lambda words, count: steps.append(count))
     assert sum(steps) >= fit_report.work(fit, 4)
     names = {"fit.toml", "trials.csv", "parameters.toml", "residuals.csv"}

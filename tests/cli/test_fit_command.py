@@ -1,0 +1,64 @@
+"""`flockenv fit` refuses nonsense in words; `flockenv presets` tells where numbers come from."""
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+import flockenv
+from flockenv import experiment_fit
+from flockenv.cli import app
+
+
+@pytest.fixture
+def quick(monkeypatch):
+    def run_flock(scene, seed):
+        return [0.9 if scene.bw_s < 1.4 + 0.2 * scene.n_leaders else 0.2, 0.8, 0.7, 0, 0.05, 0.7]
+
+    monkeypatch.setattr(experiment_fit, "run_flock", run_flock)
+
+
+def test_a_fit_prints_its_residuals_and_writes_its_files(quick, tmp_path):
+    options = ["--trials", "11", "--seeds", "1", "--finalists", "1", "--held-out", "2"]
+    done = CliRunner().invoke(app, ["fit", *options, "--json", "--out", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    told = json.loads(done.output)
+    assert {row["met"] for row in told["residuals"]} <= {True, False}
+    fitted = flockenv.FlockParameters.from_dict(told["parameters"])
+    text = (tmp_path / "parameters.toml").read_text(encoding="utf-8")
+    assert flockenv.FlockParameters.from_toml(text) == fitted
+
+
+def test_a_preset_can_be_checked_without_a_fit(quick, tmp_path):
+    options = ["--check", "experiment", "--held-out", "2", "--scheme", "moreau", "--json"]
+    done = CliRunner().invoke(app, ["fit", *options, "--out", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    assert json.loads(done.output)["parameters"]["scheme"] == "moreau"
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("options", "word"),
+    [
+        (["--free", "c9"], "c9"),
+        (["--only", "beauty"], "beauty"),
+        (["--trials", "0"], "trials"),
+        (["--scheme", "euler"], "scheme"),
+        (["--check", "nothing"], "preset"),
+    ],
+)
+def test_nonsense_is_refused_in_words(options, word, tmp_path):
+    done = CliRunner().invoke(app, ["fit", *options, "--out", str(tmp_path / "out")])
+    assert isinstance(done.exception, flockenv.FlockError)
+    assert word in str(done.exception)
+    assert not (tmp_path / "out").exists()
+
+
+def test_presets_tell_where_each_number_comes_from():
+    for name in flockenv.FlockParameters.presets():
+        sources = flockenv.FlockParameters.preset_sources(name)
+        assert list(sources) == list(flockenv.FlockParameters.preset(name).to_dict())
+        assert all(sources.values())
+    done = CliRunner().invoke(app, ["presets"], env={"COLUMNS": "160"})
+    assert "experiment: flockenv fit" in done.output
+    assert "Table 3" in done.output
