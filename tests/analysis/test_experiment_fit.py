@@ -101,9 +101,10 @@ def test_a_response_surface_finds_what_lucky_trials_hide():
 
 def test_a_fit_is_written_and_told(quick, tmp_path):
     steps = []
-    fit = Fit(trials=44, seeds=1, finalists=2)
+    fit = Fit(trials=22, seeds=1, finalists=2)
     result = fit_report.report(fit, 4, tmp_path, lambda words, count: steps.append(count))
-    assert sum(steps) >= fit_report.work(fit, 4)
+    # The response surface needs more trials with flocks than there may be here.
+    assert fit_report.work(fit, 4) - 1 <= sum(steps) <= fit_report.work(fit, 4)
     names = {"fit.toml", "trials.csv", "parameters.toml", "residuals.csv"}
     assert {path.name for path in tmp_path.iterdir()} == names
     text = (tmp_path / "parameters.toml").read_text(encoding="utf-8")
