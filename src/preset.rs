@@ -50,7 +50,7 @@ impl Preset {
             "bw_s" => match self {
                 Self::Simulation => "near the critical noise",
                 Self::Paper => "Section 5.2 (0.6 to 0.8)",
-                Self::Experiment => "Section 4.3 (critical noise)",
+                Self::Experiment => "Section 4.2 (figure 5)",
             },
             "leaders_reverse" if experiment => "Section 2.6 (motor on in fw only)",
             "leaders_reverse" => "eq. (8), the same for all",
@@ -117,11 +117,11 @@ impl FlockParameters {
             Preset::Experiment => Self {
                 n_boats: 27,
                 pool: Pool::TABLE_1,
-                reverse_speed_cm_s: 4.74,
-                c1: 0.309,
-                c2: 0.543,
-                c3: 0.134,
-                c4: 0.0141,
+                reverse_speed_cm_s: 4.94,
+                c1: 0.265,
+                c2: 0.973,
+                c3: 0.123,
+                c4: 0.00584,
                 bw_s: 1.4,
                 leaders_reverse: false,
                 ..simulation

@@ -41,13 +41,19 @@ def _p_value(line: Line | None) -> tuple[float, float, float]:
     return p, p, p
 
 
+def _span(runs: pd.DataFrame, quantity: str) -> tuple[float, float]:
+    """Return the range of noise in which the quantity is defined."""
+    known = runs.loc[runs[quantity].notna(), "bw_s"]
+    return float(known.min()), float(known.max())
+
+
 def _draw_line(axes: Axes, line: Line | None, x: tuple[float, float]) -> None:
     if line is None:
         return
     ends = np.array(x)
     label = f"{line.intercept:.3g} + {line.slope:.3g} x\nF = {line.f:.3g}, p = {line.p:.1g}"
     axes.plot(ends, line.intercept + line.slope * ends, "k--", lw=0.8, label=label)
-    axes.legend(loc="best")
+    axes.legend(loc="upper right")
 
 
 # --- figure 12 -----------------------------------------------------------------------------------
@@ -87,7 +93,8 @@ def _figure12(settings: Settings, results: Results) -> Outcome:
         means = runs.groupby("leaders")["psi_o"].mean()
         axes.plot(means.index, means, "_", ms=14, mew=1.5, color=COLORS[1], label="mean")
         _draw_line(axes, line, (-0.2, 4.2))
-        axes.set(xlabel="number of leaders", ylabel=r"$\Psi_o$", ylim=(0, 1), xticks=range(5))
+        axes.set(xlabel="number of leaders", ylabel=r"$\Psi_o$", ylim=(0, 1.4), xticks=range(5))
+        axes.set_yticks([0, 0.2, 0.4, 0.6, 0.8, 1])
     notes = [
         "Each point is one 8-minute run, its bar one standard deviation of the frames.",
         _INTERVALS,
@@ -129,8 +136,10 @@ def _figure8(settings: Settings, results: Results) -> Outcome:
                     cmap=DENSITY_COLORS,
                 )
                 line = line_or_none(runs["bw_s"], runs[quantity] / 60)
-                _draw_line(axes, line, (min(LEVELS_S), max(LEVELS_S)))
+                _draw_line(axes, line, _span(runs, quantity))
                 axes.set_title(f"{name}, within {angle}")
+                # Eight minutes, and room for the legend above.
+                axes.set_ylim(0.0, 10.5)
         bar = picture.colorbar(points, ax=panels, location="bottom", fraction=0.04, aspect=40)
         bar.set_label(r"mean $\Psi_o$ after ordering")
         picture.supxlabel("backward motion time bw (s)", fontsize=7)

@@ -121,7 +121,8 @@ def _direction_claims(series: Series) -> list[CheckedClaim]:
             "Jamming comes mainly without leaders",
             f"{quantity}: without leaders less with",
             jams[0] - (jams[1] + jams[2]) / 2,
-            0.0,
+            # No jam at all does not count as one that leaders prevent.
+            1e-3,
         )
     )
     return claims
