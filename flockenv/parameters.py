@@ -175,7 +175,8 @@ class FlockParameters:
 
         The length of the backward phase, in s, at which mean Ψ_o of leaderless runs falls through
         the middle between its ordered and its disordered level; measured by
-        ``baselines/critical_noise.py`` for every preset in both named pools.
+        ``baselines/critical_noise.py`` for Table 3's presets in both named pools, for
+        ``"experiment"`` in ``"table-1"``.
 
         Raises
         ------
@@ -185,8 +186,8 @@ class FlockParameters:
         bw_s = _core.critical_bw_s(preset, pool)
         if bw_s is None:
             raise ParameterError(
-                f"pool = {pool!r}: the critical noise is known for '500-boats' and 'table-1'; "
-                "measure it with baselines/critical_noise.py and pass bw_s"
+                f"pool = {pool!r}: the critical noise of preset {preset!r} has not been measured "
+                "there; measure it with baselines/critical_noise.py and pass bw_s"
             )
         return bw_s
 

@@ -81,8 +81,9 @@ def _picture(name: str, shown: RunResult, cycles: pd.DataFrame, led: bool) -> Ou
         if led:
             for start in np.arange(0.0, shown.spec.duration_s - 1e-6, PERIOD_S):
                 panels[1].axvline(start / 60, color="0.6", lw=0.6)
-                middle, word = (start + PERIOD_S / 2) / 60, target_at(start).upper()
-                panels[1].text(middle, 2.5, word, ha="center", fontsize=6)
+                end = min(start + PERIOD_S, shown.spec.duration_s)
+                word = target_at(start).upper()
+                panels[1].text((start + end) / 120, 2.5, word, ha="center", fontsize=6)
         panels[2].set_xlabel("time (min)")
         picture.suptitle(f"bw = {shown.spec.parameters.bw_s} s, seed {shown.spec.seed}", fontsize=7)
     notes = [

@@ -1,0 +1,82 @@
+"""Law: the experiment's figures hold what their runs hold, and claims follow from them by rule."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from flockenv.block_bootstrap import RESAMPLES, interval
+from flockenv.reproduce.catalogue import load
+from flockenv.reproduce.command import plan, reproduce
+from flockenv.reproduce.experiment_design import LEVELS_S, SETUPS, noise_series
+from flockenv.reproduce.experiment_runs import line_or_none, resampled
+from flockenv.reproduce.reproduction import Settings
+from flockenv.reproduce.state_figures import drawn
+from flockenv.reproduce.time_figures import _flips, _longest
+
+SHORT = Settings(minutes=1 / 3)
+FIGURES = ("fig4", "fig5", "fig6", "fig7", "fig8", "fig9", "fig10", "fig11", "fig12")
+
+
+@pytest.mark.parametrize("name", [*FIGURES, "table2", "motion"])
+def test_runs_are_those_of_the_experiment(name):
+    specs = load(name).runs(Settings())
+    assert len(set(specs)) == len(specs) > 0
+    for spec in specs:
+        scene = spec.parameters
+        assert (scene.n_boats, scene.pool, scene.leaders_reverse) == (27, "table-1", False)
+        assert scene.n_leaders <= 4
+        assert 0.4 <= scene.bw_s <= 2.8
+        assert spec.duration_s in (480.0, 960.0)
+
+
+def test_columns_differ_by_leaders_alone():
+    for setup in SETUPS:
+        points = noise_series(Settings(), setup)
+        assert len(points) == len(LEVELS_S)
+        for bw_s, specs in zip(LEVELS_S, points, strict=True):
+            assert {spec.parameters.bw_s for spec in specs} == {bw_s}
+            assert {spec.parameters.n_leaders for spec in specs} == {setup.n_leaders}
+
+
+@pytest.mark.parametrize("name", ["fig7", "fig12", "table2"])
+def test_a_figure_of_short_runs_is_written(name, tmp_path):
+    claims = reproduce(plan([name], SHORT), tmp_path)
+    for ending in ("csv", "parquet", "png", "svg"):
+        assert (tmp_path / name / f"{name}.{ending}").stat().st_size > 0
+    told = pd.read_csv(tmp_path / name / "claims.csv")
+    assert len(told) == len(claims[name]) > 0
+    assert set(told["verdict"]) <= {"holds", "does not hold", "inconclusive"}
+
+
+def test_runs_are_drawn_within_their_groups():
+    runs = pd.DataFrame({"k": [0] * 4 + [1] * 4, "y": [0.0] * 4 + [1.0] * 4})
+    slopes = resampled(runs, "k", lambda r: np.polyfit(r["k"], r["y"], 1)[0])
+    assert len(slopes) == RESAMPLES + 1
+    assert interval(slopes) == pytest.approx((1.0, 1.0, 1.0))
+
+
+def test_a_line_needs_three_known_points():
+    x, y = pd.Series([0.0, 1.0, 2.0, 3.0]), pd.Series([1.0, 3.0, np.nan, 7.0])
+    line = line_or_none(x, y)
+    assert line is not None
+    assert (line.slope, line.intercept, line.n) == (pytest.approx(2.0), pytest.approx(1.0), 3)
+    assert line_or_none(x[1:], y[1:]) is None
+
+
+def test_means_over_runs_are_drawn_from_them():
+    values = drawn(np.array([0.0, 1.0]))
+    assert values[0] == 0.5
+    assert set(values[1:]) == {0.0, 0.5, 1.0}
+
+
+def cycles(*rotation):
+    return pd.DataFrame({"time_s": 6.0 * np.arange(len(rotation)), "rotation": rotation})
+
+
+def test_changes_of_direction_and_stretches_of_order():
+    both = cycles(0.9, 0.8, 0.1, 0.9, -0.1, -0.9, -0.9, -0.9, 0.2, 0.9)
+    # Disorder between two stretches one way is no change of direction, but it ends a stretch.
+    assert _flips(both) == 2
+    assert _longest(both) == pytest.approx(3 * 6 / 60)
+    assert _flips(cycles(0.1, 0.2, -0.3)) == 0
+    assert _longest(cycles(0.1, 0.2, -0.3)) == 0.0
