@@ -84,6 +84,7 @@ def record(
     duration_s: float,
     sample_hz: float,
     single_precision: bool,
+    contacts: bool,
 ) -> dict[str, Any]: ...
 def rotation(psi_o: NDArray[np.float64], phi_o: NDArray[np.float64]) -> NDArray[np.float64]: ...
 def signed_order(

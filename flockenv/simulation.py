@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import DTypeLike
 
 from flockenv import _core
+from flockenv.contacts import ContactSeries
 from flockenv.errors import ParameterError
 from flockenv.observation import observe
 from flockenv.order_parameters import OrderSeries
@@ -35,6 +36,7 @@ def simulate(
     *,
     control_hz: float = 10.0,
     dtype: DTypeLike = np.float64,
+    contacts: bool = False,
 ) -> Recording:
     """Run a flock from its random start and record it: a pure function of its arguments.
 
@@ -62,6 +64,8 @@ def simulate(
     dtype
         float64, or float32 for half the size, which rounds the pose and velocity that are kept but
         not the run.
+    contacts
+        Whether contacts and their forces are recorded too: some 20 bytes a contact.
 
     Returns
     -------
@@ -80,11 +84,15 @@ def simulate(
     """
     precision = _precision(dtype)
     if policy is None or policy == "law":
-        columns = _core.record(parameters, seed, duration_s, sample_hz, precision == np.float32)
+        columns = _core.record(
+            parameters, seed, duration_s, sample_hz, precision == np.float32, contacts
+        )
         columns["phase"] = PHASES[columns["phase"]]
     elif hasattr(policy, "predict"):
         _check_rates(duration_s, sample_hz, control_hz)
-        columns = _steered(parameters, seed, duration_s, sample_hz, policy, control_hz, precision)
+        columns = _steered(
+            parameters, seed, duration_s, sample_hz, policy, control_hz, precision, contacts
+        )
     else:
         raise ParameterError(
             f"policy = {policy!r} is not accepted: None, 'law' or an object with predict"
@@ -112,24 +120,28 @@ def _steered(
     policy: LeaderPolicy,
     control_hz: float,
     precision: np.dtype[Any],
+    contacts: bool,
 ) -> dict[str, Any]:
     flock = _core.Flock(parameters, seed)
     mirrored = getattr(policy, "mirror_to_target", False)
     sign = -1.0 if mirrored and parameters.target == "ccw" else 1.0
     layout = getattr(policy, "observation", None)
     rudder, state = np.zeros(parameters.n_leaders), None
-    samples = []
+    samples, touching = [], []
     now = 0
     for tick, is_sample, is_control in _events(duration_s, sample_hz, control_hz):
         flock.advance((tick - now) / _TICKS_A_SECOND, rudder)
         now = tick
         if is_sample:
             samples.append(sample(flock, precision))
+            if contacts:
+                touching.append(flock.contacts())
         if is_control and parameters.n_leaders > 0:
             seen = observe(flock, layout, mirror_to_target=mirrored, rudder=rudder)
             actions, state = policy.predict(seen, state)
             rudder = sign * np.clip(np.asarray(actions, np.float64).reshape(-1), -1.0, 1.0)
-    return columns_of(samples)
+    series = ContactSeries.of(touching) if contacts else None
+    return {**columns_of(samples), "contacts": series}
 
 
 def _events(

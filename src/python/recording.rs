@@ -19,7 +19,7 @@ pub fn phase_names() -> Vec<&'static str> {
 
 /// Records a run under the steering law: the fields of a `flockenv.Recording` that a run fills.
 #[pyfunction]
-#[pyo3(signature = (parameters, seed, duration_s, sample_hz, single_precision))]
+#[pyo3(signature = (parameters, seed, duration_s, sample_hz, single_precision, contacts))]
 pub fn record<'py>(
     py: Python<'py>,
     parameters: FlockParameters,
@@ -27,12 +27,13 @@ pub fn record<'py>(
     duration_s: DurationS,
     sample_hz: SampleHz,
     single_precision: bool,
+    contacts: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let sampling = Sampling::new(duration_s.0, sample_hz.0)?;
     if single_precision {
-        run::<f32>(py, parameters, seed.0, sampling)
+        run::<f32>(py, parameters, seed.0, sampling, contacts)
     } else {
-        run::<f64>(py, parameters, seed.0, sampling)
+        run::<f64>(py, parameters, seed.0, sampling, contacts)
     }
 }
 
@@ -41,12 +42,16 @@ fn run<T: Real + Element>(
     parameters: FlockParameters,
     seed: u64,
     sampling: Sampling,
+    contacts: bool,
 ) -> PyResult<Bound<'_, PyDict>> {
     parameters.check()?;
     // Refuses what does not fit before boats are placed.
     Recording::<T>::with_room_for(&sampling, &parameters)?;
     let boats = parameters.n_boats;
     let mut recorder = py.detach(|| Recorder::<T>::new(Flock::new(parameters, seed)?, sampling))?;
+    if contacts {
+        recorder = recorder.with_contacts();
+    }
     while !py.detach(|| recorder.run(BOAT_SUBSTEPS_A_PIECE))? {
         py.check_signals()?;
     }
@@ -69,5 +74,8 @@ fn fields<T: Element>(
     fields.set_item("in_analysis_window", window)?;
     fields.set_item("pose", rows(recording.pose)?)?;
     fields.set_item("velocity", rows(recording.velocity)?)?;
+    let contacts = recording.contacts.as_ref();
+    let contacts = contacts.map(|samples| results::contact_series(py, samples));
+    fields.set_item("contacts", contacts.transpose()?)?;
     Ok(fields)
 }
