@@ -112,8 +112,9 @@ class Recording:
         """Write the recording to an ``.npz`` file, whole or not at all.
 
         Its arrays have the names of this class's attributes (``order_psi_o`` … for the order
-        parameters, ``contacts_i`` … for contacts), the parameters are TOML. An hour of 20 boats at 10 Hz takes 37 MB, or 20 MB in
-        float32; compression saves little of that and takes seconds.
+        parameters, ``contacts_i`` … for contacts), the parameters are TOML. An hour of 20 boats at
+        10 Hz takes 37 MB without contacts, or 20 MB in float32; compression saves little of that
+        and takes seconds.
 
         Raises
         ------

@@ -1,7 +1,7 @@
 """`simulate`: a seeded run from a random start, recorded."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -37,6 +37,7 @@ def simulate(
     control_hz: float = 10.0,
     dtype: DTypeLike = np.float64,
     contacts: bool = False,
+    progress: Callable[[float], object] | None = None,
 ) -> Recording:
     """Run a flock from its random start and record it: a pure function of its arguments.
 
@@ -65,7 +66,9 @@ def simulate(
         float64, or float32 for half the size, which rounds the pose and velocity that are kept but
         not the run.
     contacts
-        Whether contacts and their forces are recorded too: some 20 bytes a contact.
+        Whether contacts and their forces are recorded too: 28 bytes a contact.
+    progress
+        Called now and then with the flock-seconds simulated since; what it raises ends the run.
 
     Returns
     -------
@@ -85,14 +88,13 @@ def simulate(
     precision = _precision(dtype)
     if policy is None or policy == "law":
         columns = _core.record(
-            parameters, seed, duration_s, sample_hz, precision == np.float32, contacts
+            parameters, seed, duration_s, sample_hz, precision == np.float32, contacts, progress
         )
         columns["phase"] = PHASES[columns["phase"]]
     elif hasattr(policy, "predict"):
         _check_rates(duration_s, sample_hz, control_hz)
-        columns = _steered(
-            parameters, seed, duration_s, sample_hz, policy, control_hz, precision, contacts
-        )
+        steps = _told(_events(duration_s, sample_hz, control_hz), progress)
+        columns = _steered(parameters, seed, steps, policy, precision, contacts)
     else:
         raise ParameterError(
             f"policy = {policy!r} is not accepted: None, 'law' or an object with predict"
@@ -115,10 +117,8 @@ def _check_rates(duration_s: float, sample_hz: float, control_hz: float) -> None
 def _steered(
     parameters: FlockParameters,
     seed: int,
-    duration_s: float,
-    sample_hz: float,
+    steps: Iterable[tuple[int, bool, bool]],
     policy: LeaderPolicy,
-    control_hz: float,
     precision: np.dtype[Any],
     contacts: bool,
 ) -> dict[str, Any]:
@@ -129,7 +129,7 @@ def _steered(
     rudder, state = np.zeros(parameters.n_leaders), None
     samples, touching = [], []
     now = 0
-    for tick, is_sample, is_control in _events(duration_s, sample_hz, control_hz):
+    for tick, is_sample, is_control in steps:
         flock.advance((tick - now) / _TICKS_A_SECOND, rudder)
         now = tick
         if is_sample:
@@ -157,6 +157,18 @@ def _events(
     sampled, steered = ticks(sample_hz), ticks(control_hz)
     for tick in sorted(sampled | steered):
         yield tick, tick in sampled, tick in steered
+
+
+def _told(
+    steps: Iterable[tuple[int, bool, bool]], progress: Callable[[float], object] | None
+) -> Iterator[tuple[int, bool, bool]]:
+    """Pass steps on, and tell every 10 s of them."""
+    told = 0
+    for step in steps:
+        if progress is not None and step[0] - told >= 10 * _TICKS_A_SECOND:
+            progress((step[0] - told) / _TICKS_A_SECOND)
+            told = step[0]
+        yield step
 
 
 def sample(flock: _core.Flock, precision: np.dtype[Any]) -> dict[str, Any]:

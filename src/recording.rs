@@ -251,6 +251,11 @@ impl<T: Real> Recorder<T> {
         Ok(true)
     }
 
+    /// Seconds from the beginning of the run to where it is now.
+    pub fn elapsed_s(&self) -> f64 {
+        seconds(self.flock.time() - self.begin)
+    }
+
     fn work(&self) -> u64 {
         let p = self.flock.parameters();
         self.flock.statistics().substeps * p.n_boats as u64

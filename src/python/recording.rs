@@ -19,7 +19,7 @@ pub fn phase_names() -> Vec<&'static str> {
 
 /// Records a run under the steering law: the fields of a `flockenv.Recording` that a run fills.
 #[pyfunction]
-#[pyo3(signature = (parameters, seed, duration_s, sample_hz, single_precision, contacts))]
+#[pyo3(signature = (parameters, seed, duration_s, sample_hz, single_precision, contacts, progress=None))]
 pub fn record<'py>(
     py: Python<'py>,
     parameters: FlockParameters,
@@ -28,22 +28,38 @@ pub fn record<'py>(
     sample_hz: SampleHz,
     single_precision: bool,
     contacts: bool,
+    progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let sampling = Sampling::new(duration_s.0, sample_hz.0)?;
     if single_precision {
-        run::<f32>(py, parameters, seed.0, sampling, contacts)
+        run::<f32>(
+            py,
+            parameters,
+            seed.0,
+            sampling,
+            contacts,
+            progress.as_ref(),
+        )
     } else {
-        run::<f64>(py, parameters, seed.0, sampling, contacts)
+        run::<f64>(
+            py,
+            parameters,
+            seed.0,
+            sampling,
+            contacts,
+            progress.as_ref(),
+        )
     }
 }
 
-fn run<T: Real + Element>(
-    py: Python<'_>,
+fn run<'py, T: Real + Element>(
+    py: Python<'py>,
     parameters: FlockParameters,
     seed: u64,
     sampling: Sampling,
     contacts: bool,
-) -> PyResult<Bound<'_, PyDict>> {
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
     parameters.check()?;
     // Refuses what does not fit before boats are placed.
     Recording::<T>::with_room_for(&sampling, &parameters)?;
@@ -52,8 +68,14 @@ fn run<T: Real + Element>(
     if contacts {
         recorder = recorder.with_contacts();
     }
+    let mut told_s = 0.0;
     while !py.detach(|| recorder.run(BOAT_SUBSTEPS_A_PIECE))? {
         py.check_signals()?;
+        if let Some(progress) = progress {
+            let elapsed_s = recorder.elapsed_s();
+            progress.call1((elapsed_s - told_s,))?;
+            told_s = elapsed_s;
+        }
     }
     fields(py, recorder.into_recording(), boats)
 }
