@@ -7,10 +7,15 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-__all__ = ["console", "errors", "progress_bar", "resumable"]
+__all__ = ["console", "errors", "progress_bar", "resumable", "say"]
 
 console = Console()
 errors = Console(stderr=True)
+
+
+def say(text: str, on: Console = console) -> None:
+    """Print a line as it is: brackets in a file's name are no markup, and nothing breaks it."""
+    on.print(text, markup=False, highlight=False, soft_wrap=True)
 
 
 def progress_bar(disable: bool) -> Progress:

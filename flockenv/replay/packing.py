@@ -6,6 +6,7 @@ into planes of bytes that compress well. ``packing.js`` undoes it.
 
 import base64
 import json
+import math
 import zlib
 from typing import Any
 
@@ -54,19 +55,19 @@ class Packer:
         header = json.dumps(self._columns, separators=(",", ":")).encode("ascii")
         content = len(header).to_bytes(4, "little") + header + b"".join(self._bytes)
         # A page of the same recording has the same bytes: no time in the header.
-        packed = zlib.compressobj(level=9, wbits=31)
+        packed = zlib.compressobj(level=6, wbits=31)
         return base64.b64encode(packed.compress(content) + packed.flush()).decode("ascii")
 
     def _append(
         self, name: str, whole: NDArray[np.int64], quantum: float, differences: int
     ) -> None:
-        by_channel = np.ascontiguousarray(whole.reshape(len(whole), -1).T).reshape(-1)
+        channels = math.prod(whole.shape[1:])
+        by_channel = np.ascontiguousarray(whole.reshape(len(whole), channels).T).reshape(-1)
         # Small numbers of either sign become small numbers without one.
         folded = ((by_channel << 1) ^ (by_channel >> 63)).astype("<u4")
         planes = np.ascontiguousarray(folded.view(np.uint8).reshape(-1, 4).T)
         used = max((plane + 1 for plane in range(4) if planes[plane].any()), default=0)
         self._bytes.append(planes[:used].tobytes())
-        channels = int(np.prod(whole.shape[1:], dtype=np.int64))
         self._columns.append(
             {
                 "name": name,
