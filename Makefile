@@ -32,7 +32,7 @@ TEST_EXTRAS := --extra train --extra plot --extra fit --extra render --extra swe
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help setup build compare test lint format test-rust test-python test-rllib test-ray validate pages \
+.PHONY: help setup build compare test lint format test-rust test-python test-browser test-rllib test-ray validate pages \
         learning-check throughput speed-vs-error lint-benches clean
 
 help: ## list the commands
@@ -67,6 +67,10 @@ test-rust: ## the physics alone, no Python
 # One thread for each worker's linear algebra, or the workers fight over the cores.
 test-python: $(STAMPS)/test $(STAMPS)/core ## the Python package
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
+
+test-browser: $(STAMPS)/browser $(STAMPS)/core ## the replay page, clicked and read in headless Chromium
+	@tests/browser/need_chromium.sh
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m browser tests/browser $(PYTEST_ARGS)
 
 validate: $(STAMPS)/test $(STAMPS)/core ## the slow tests and the published curves
 	cargo test --locked -- --ignored
@@ -140,6 +144,10 @@ $(STAMPS)/compare: pyproject.toml | $(STAMPS)/venv
 $(STAMPS)/test: pyproject.toml requirements-excluded.txt | $(STAMPS)/venv
 	$(UV) pip install -r pyproject.toml $(TEST_EXTRAS) --excludes requirements-excluded.txt
 	@touch $@ $(STAMPS)/compare
+
+$(STAMPS)/browser: pyproject.toml $(STAMPS)/test
+	$(UV) pip install -r pyproject.toml --extra browser
+	@touch $@
 
 $(STAMPS)/peers: benches/peers/requirements.txt | $(STAMPS)/venv
 	$(PYTHON) -m venv $(PEERS)
