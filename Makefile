@@ -32,11 +32,12 @@ TEST_EXTRAS := --extra train --extra plot --extra fit --extra render --extra swe
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help setup build compare test lint format test-rust test-python test-browser test-rllib test-ray validate pages \
+.PHONY: help setup build compare test lint format test-rust test-python test-browser test-rllib test-ray \
+        validate pages replay-animation \
         learning-check throughput speed-vs-error lint-benches clean
 
 help: ## list the commands
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-18s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 compare: build ## set up, then print and plot the paper's leader-count curve
 	$(BIN)/flockenv compare $(COMPARE_ARGS)
@@ -78,6 +79,10 @@ validate: $(STAMPS)/test $(STAMPS)/core ## the slow tests and the published curv
 
 pages: $(STAMPS)/test $(STAMPS)/core ## write docs/environments from the docstrings
 	$(BIN)/python docs/environment_pages.py
+
+replay-animation: $(STAMPS)/browser $(STAMPS)/core ## photograph the replay page into docs/replay.webp
+	@tests/browser/need_chromium.sh
+	$(BIN)/python docs/replay_animation.py
 
 learning-check: $(STAMPS)/test $(STAMPS)/core ## train 500 000 samples through each face, write docs/learning-check.md
 	$(BIN)/python baselines/learning_check.py
