@@ -84,8 +84,7 @@ def record(
     seed: int,
     duration_s: float,
     sample_hz: float,
-    single_precision: bool,
-    contacts: bool,
+    kept: dict[str, bool],
     progress: Callable[[float], object] | None = None,
 ) -> dict[str, Any]: ...
 def rotation(psi_o: NDArray[np.float64], phi_o: NDArray[np.float64]) -> NDArray[np.float64]: ...

@@ -87,9 +87,8 @@ def simulate(
     """
     precision = _precision(dtype)
     if policy is None or policy == "law":
-        columns = _core.record(
-            parameters, seed, duration_s, sample_hz, precision == np.float32, contacts, progress
-        )
+        kept = {"single_precision": bool(precision == np.float32), "contacts": contacts}
+        columns = _core.record(parameters, seed, duration_s, sample_hz, kept, progress)
         columns["phase"] = PHASES[columns["phase"]]
     elif hasattr(policy, "predict"):
         _check_rates(duration_s, sample_hz, control_hz)

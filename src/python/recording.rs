@@ -17,21 +17,29 @@ pub fn phase_names() -> Vec<&'static str> {
     Phase::ALL.iter().map(|phase| phase.name()).collect()
 }
 
+/// What of a run is kept besides its states, and how precisely.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Kept {
+    single_precision: bool,
+    contacts: bool,
+}
+
 /// Records a run under the steering law: the fields of a `flockenv.Recording` that a run fills.
 #[pyfunction]
-#[pyo3(signature = (parameters, seed, duration_s, sample_hz, single_precision, contacts, progress=None))]
+#[pyo3(signature = (parameters, seed, duration_s, sample_hz, kept, progress=None))]
 pub fn record<'py>(
     py: Python<'py>,
     parameters: FlockParameters,
     seed: Seed,
     duration_s: DurationS,
     sample_hz: SampleHz,
-    single_precision: bool,
-    contacts: bool,
+    kept: Kept,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let sampling = Sampling::new(duration_s.0, sample_hz.0)?;
-    if single_precision {
+    let contacts = kept.contacts;
+    if kept.single_precision {
         run::<f32>(
             py,
             parameters,
