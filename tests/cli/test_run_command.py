@@ -102,15 +102,19 @@ def test_errors_are_named_with_exit_code_2(arguments, words, run, tmp_path):
 
 @pytest.mark.parametrize("policy", ["law", "steering-law"])
 def test_ctrl_c_says_what_became_of_the_work(policy, tmp_path):
-    out = tmp_path / "run.npz"
+    out = tmp_path / "sub" / "run.npz"
     long = ["run", "--minutes", "6000", "--hz", "0.01", "--policy", policy, "--set", "n_leaders=1"]
     process = subprocess.Popen(
         [*COMMAND, *long, "--quiet", "--out", str(out)], stderr=subprocess.PIPE, text=True
     )
-    time.sleep(3.0)
+    # The folder is made right before the run begins.
+    deadline = time.monotonic() + 60.0
+    while not out.parent.exists() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    time.sleep(1.0)
     process.send_signal(signal.SIGINT)
     _, told = process.communicate(timeout=30)
     assert process.returncode == 130
     assert "Nothing was written" in told
     assert "Traceback" not in told
-    assert list(tmp_path.iterdir()) == []
+    assert list(out.parent.iterdir()) == []
