@@ -1,13 +1,13 @@
 """Where commands print: results to standard output, progress and errors to standard error."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-__all__ = ["console", "errors", "progress_bar", "resumable", "say"]
+__all__ = ["console", "errors", "interruptible", "progress_bar", "resumable", "say"]
 
 console = Console()
 errors = Console(stderr=True)
@@ -33,10 +33,15 @@ def progress_bar(disable: bool) -> Progress:
 
 
 @contextmanager
-def resumable() -> Iterator[None]:
-    """On Ctrl-C within a `with` block, end with exit code 130 and say that work can go on."""
+def interruptible(told: str) -> Iterator[None]:
+    """On Ctrl-C within a `with` block, end with exit code 130 and say what became of the work."""
     try:
         yield
     except KeyboardInterrupt:
-        errors.print("Interrupted. Finished runs are kept: the same command goes on from them.")
+        say(f"Interrupted. {told}", errors)
         raise typer.Exit(130) from None
+
+
+def resumable() -> AbstractContextManager[None]:
+    """On Ctrl-C within a `with` block, end with exit code 130 and say that work can go on."""
+    return interruptible("Finished runs are kept: the same command goes on from them.")

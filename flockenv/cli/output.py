@@ -4,15 +4,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-import typer
-
 from flockenv import ParameterError, Recording
-from flockenv.cli.console import errors, say
 
-__all__ = ["INTERRUPTED", "interruptible", "load_recording", "writable"]
-
-INTERRUPTED = 130
-"""Exit code after Ctrl-C, as shells have it."""
+__all__ = ["load_recording", "writable"]
 
 
 def load_recording(path: Path) -> Recording:
@@ -43,13 +37,3 @@ def writable(path: Path) -> Iterator[Path]:
         yield path
     except OSError as error:
         raise ParameterError(f"{path} cannot be written: {error.strerror}") from error
-
-
-@contextmanager
-def interruptible(told: str) -> Iterator[None]:
-    """Let Ctrl-C end a command with a line on what became of its work."""
-    try:
-        yield
-    except KeyboardInterrupt:
-        say(f"Stopped. {told}", errors)
-        raise typer.Exit(INTERRUPTED) from None

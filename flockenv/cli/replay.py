@@ -6,8 +6,8 @@ from typing import Annotated
 import typer
 
 from flockenv import ParameterError
-from flockenv.cli.console import console, progress_bar, say
-from flockenv.cli.output import interruptible, load_recording, writable
+from flockenv.cli.console import console, interruptible, progress_bar, say
+from flockenv.cli.output import load_recording, writable
 
 __all__ = ["replay"]
 

@@ -1,6 +1,5 @@
 """`flockenv run`."""
 
-from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Annotated
 
@@ -8,19 +7,14 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
-from flockenv import ParameterError, Recording, policies, simulate
-from flockenv.cli.console import console, progress_bar, say
-from flockenv.cli.output import interruptible, writable
+from flockenv import ParameterError, Recording, simulate
+from flockenv.cli.console import console, interruptible, progress_bar, say
+from flockenv.cli.output import writable
 from flockenv.cli.scene import ChangesOption, FileOption, PresetOption, read_scene, save_scene
+from flockenv.comparison import EVERY_SUBSTEP, POLICIES, named_policy
 from flockenv.simulation import LeaderPolicy
 
 __all__ = ["run"]
-
-_POLICIES: Mapping[str, Callable[[], LeaderPolicy]] = {
-    "steering-law": policies.SteeringLaw,
-    "sign-corrected-law": policies.SignCorrectedLaw,
-    "damped-law": policies.DampedLaw,
-}
 
 
 def run(
@@ -30,10 +24,10 @@ def run(
     policy: Annotated[
         str,
         typer.Option(
-            help="How leaders steer: law (eq. 10 at every substep), or at 10 Hz from what they "
-            f"observe: {', '.join(_POLICIES)}."
+            help="How leaders steer: law (eq. 10 at every substep); or at 10 Hz, from what they "
+            f"observe, a policy's .npz file or one of: {', '.join(POLICIES)}."
         ),
-    ] = "law",
+    ] = EVERY_SUBSTEP,
     seed: Annotated[int, typer.Option(min=0, help="Seed of placement and noise.")] = 0,
     minutes: Annotated[float, typer.Option(min=0.0, help="Length of the run.")] = 8.0,
     hz: Annotated[float, typer.Option(help="Samples a second.")] = 10.0,
@@ -88,12 +82,12 @@ def run(
 
 
 def _policy(name: str) -> LeaderPolicy | str:
-    if name == "law":
+    if name == EVERY_SUBSTEP:
         return name
-    if name not in _POLICIES:
-        accepted = ", ".join(("law", *_POLICIES))
-        raise ParameterError(f"--policy {name!r} is not accepted: {accepted}")
-    return _POLICIES[name]()
+    try:
+        return named_policy(name)()
+    except OSError as error:
+        raise ParameterError(f"--policy {name} cannot be read: {error.strerror}") from error
 
 
 def _summary(recording: Recording) -> dict[str, float | int | None]:

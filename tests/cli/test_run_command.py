@@ -45,7 +45,7 @@ def test_the_parameters_beside_it_run_it_again(run, tmp_path):
 
 def test_json_is_all_that_is_printed(tmp_path):
     out = tmp_path / "run.npz"
-    policy = ["--policy", "damped-law", "--no-contacts", "--hz", "5"]
+    policy = ["--policy", "damped law", "--no-contacts", "--hz", "5"]
     done = command("run", *SMALL, *policy, "--json", "--out", out)
     assert done.stderr == ""
     summary = json.loads(done.stdout)
@@ -74,7 +74,9 @@ def test_replay_writes_a_page_beside_the_recording(run, tmp_path):
     [
         (["run", "--set", "n_bots=3"], "n_boats"),
         (["run", "--preset", "simulaton"], "simulation"),
-        (["run", "--policy", "ppo"], "steering-law"),
+        (["run", "--policy", "dampd law"], "damped law"),
+        (["run", "--policy", "{}/none.npz"], "cannot be read"),
+        (["run", "--policy", "{}/good.npz"], "good.npz"),
         (["run", "--out", "{}/run.txt"], ".npz"),
         (["run", "--out", "/proc/none/run.npz"], "cannot be written"),
         (["run", "--hz", "0"], "sample_hz"),
@@ -100,7 +102,7 @@ def test_errors_are_named_with_exit_code_2(arguments, words, run, tmp_path):
     assert sorted(tmp_path.iterdir()) == before
 
 
-@pytest.mark.parametrize("policy", ["law", "steering-law"])
+@pytest.mark.parametrize("policy", ["law", "steering law"])
 def test_ctrl_c_says_what_became_of_the_work(policy, tmp_path):
     out = tmp_path / "sub" / "run.npz"
     long = ["run", "--minutes", "6000", "--hz", "0.01", "--policy", policy, "--set", "n_leaders=1"]
