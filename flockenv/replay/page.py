@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from flockenv import _core
 from flockenv.contacts import ContactSeries
 from flockenv.errors import ParameterError
+from flockenv.parameters import FlockParameters
 from flockenv.recording import PHASES, Recording
 from flockenv.replay.packing import Packer
 from flockenv.whole_file import whole_file
@@ -141,7 +142,6 @@ def _as_script_content(value: Any) -> str:
 
 def _run(name: str, recording: Recording, every: int) -> dict[str, Any]:
     parameters = recording.parameters
-    lengths = _core.scene_lengths(parameters)
     return {
         "name": name,
         "seed": str(recording.seed),
@@ -151,12 +151,22 @@ def _run(name: str, recording: Recording, every: int) -> dict[str, Any]:
         "leaders": parameters.n_leaders,
         "target": parameters.target,
         "bw_s": parameters.bw_s,
-        # JSON has no infinity: open water has no outer wall.
-        "lengths": {key: each if math.isfinite(each) else None for key, each in lengths.items()},
+        "lengths": _lengths(parameters),
         "phases": PHASES.tolist(),
         "samples": len(recording),
         "every": every,
         "data": _series(recording, every),
+    }
+
+
+def _lengths(parameters: FlockParameters) -> dict[str, float | None]:
+    outer, inner = _core.pool_radii_cm(parameters.pool)
+    return {
+        # JSON has no infinity: open water has no outer wall.
+        "outer_radius_cm": outer if math.isfinite(outer) else None,
+        "inner_radius_cm": inner,
+        "hull_radius_cm": parameters.boat_radius_cm,
+        "hull_half_length_cm": parameters.boat_shape * parameters.boat_radius_cm,
     }
 
 
