@@ -32,11 +32,12 @@ TEST_EXTRAS := --extra train --extra plot --extra fit --extra render --extra swe
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help setup build compare test lint format test-rust test-python test-rllib test-ray validate pages \
+.PHONY: help setup build compare test lint format test-rust test-python test-browser test-rllib test-ray \
+        validate pages replay-animation \
         learning-check throughput speed-vs-error lint-benches clean
 
 help: ## list the commands
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-18s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 compare: build ## set up, then print and plot the paper's leader-count curve
 	$(BIN)/flockenv compare $(COMPARE_ARGS)
@@ -68,12 +69,20 @@ test-rust: ## the physics alone, no Python
 test-python: $(STAMPS)/test $(STAMPS)/core ## the Python package
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
 
+test-browser: $(STAMPS)/browser $(STAMPS)/core ## the replay page, clicked and read in headless Chromium
+	@tests/browser/need_chromium.sh
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m browser tests/browser $(PYTEST_ARGS)
+
 validate: $(STAMPS)/test $(STAMPS)/core ## the slow tests and the published curves
 	cargo test --locked -- --ignored
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) -m "slow or validation" --timeout 3600 $(PYTEST_ARGS)
 
 pages: $(STAMPS)/test $(STAMPS)/core ## write docs/environments from the docstrings
 	$(BIN)/python docs/environment_pages.py
+
+replay-animation: $(STAMPS)/browser $(STAMPS)/core ## photograph the replay page into docs/replay.webp
+	@tests/browser/need_chromium.sh
+	$(BIN)/python docs/replay_animation.py
 
 learning-check: $(STAMPS)/test $(STAMPS)/core ## train 500 000 samples through each face, write docs/learning-check.md
 	$(BIN)/python baselines/learning_check.py
@@ -140,6 +149,10 @@ $(STAMPS)/compare: pyproject.toml | $(STAMPS)/venv
 $(STAMPS)/test: pyproject.toml requirements-excluded.txt | $(STAMPS)/venv
 	$(UV) pip install -r pyproject.toml $(TEST_EXTRAS) --excludes requirements-excluded.txt
 	@touch $@ $(STAMPS)/compare
+
+$(STAMPS)/browser: pyproject.toml $(STAMPS)/test
+	$(UV) pip install -r pyproject.toml --extra browser
+	@touch $@
 
 $(STAMPS)/peers: benches/peers/requirements.txt | $(STAMPS)/venv
 	$(PYTHON) -m venv $(PEERS)

@@ -6,7 +6,7 @@ from types import ModuleType
 
 from flockenv import policies
 from flockenv._core import Flock
-from flockenv.contacts import Contacts
+from flockenv.contacts import Contacts, ContactSeries
 from flockenv.errors import EpisodeError, FlockError, ParameterError, SolverError
 from flockenv.order_parameters import OrderParameters, OrderSeries
 from flockenv.parallel_env import LeadersParallelEnv, parallel_env
@@ -19,6 +19,7 @@ from flockenv.statistics import Statistics
 from flockenv.vector_env import LeadersVectorEnv
 
 __all__ = [
+    "ContactSeries",
     "Contacts",
     "EpisodeError",
     "Flock",

@@ -1,3 +1,4 @@
+from collections.abc import Callable
 from typing import Any, Self, final
 
 import numpy as np
@@ -83,7 +84,8 @@ def record(
     seed: int,
     duration_s: float,
     sample_hz: float,
-    single_precision: bool,
+    kept: dict[str, bool],
+    progress: Callable[[float], object] | None = None,
 ) -> dict[str, Any]: ...
 def rotation(psi_o: NDArray[np.float64], phi_o: NDArray[np.float64]) -> NDArray[np.float64]: ...
 def signed_order(

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv.array_file import read_arrays, write_arrays
+from flockenv.contacts import ContactSeries
 from flockenv.errors import ParameterError
 from flockenv.order_parameters import OrderSeries
 from flockenv.parameters import FlockParameters
@@ -18,6 +19,7 @@ __all__ = ["PHASES", "PRECISIONS", "Recording"]
 _FORMAT = "flockenv recording 1"
 PHASES = np.array(_core.phase_names())
 _ORDER = tuple(each.name for each in fields(OrderSeries))
+_CONTACTS = tuple(each.name for each in fields(ContactSeries))
 _ARRAYS = ("time_s", "phase", "in_analysis_window", "pose", "velocity")
 PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
 
@@ -46,6 +48,8 @@ class Recording:
         Seed of all random streams.
     version : str
         Version of flockenv that ran it.
+    contacts : ContactSeries or None
+        Contacts that carried a force, if they were recorded.
 
     Raises
     ------
@@ -62,6 +66,7 @@ class Recording:
     parameters: FlockParameters
     seed: int
     version: str
+    contacts: ContactSeries | None = None
 
     def __post_init__(self) -> None:
         times = np.shape(self.time_s)[:1]
@@ -83,6 +88,8 @@ class Recording:
         seed: Any = self.seed
         if not isinstance(seed, int) or not 0 <= seed < 2**64:
             raise ParameterError(f"seed = {seed!r} is not accepted: an int from 0 to 2^64 - 1")
+        if self.contacts is not None:
+            self.contacts.check(len(self), self.parameters.n_boats)
 
     def __len__(self) -> int:
         return len(self.time_s)
@@ -90,7 +97,7 @@ class Recording:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Recording):
             return NotImplemented
-        plain = ("order", "parameters", "seed", "version")
+        plain = ("order", "parameters", "seed", "version", "contacts")
         return all(getattr(self, name) == getattr(other, name) for name in plain) and all(
             np.array_equal(getattr(self, name), getattr(other, name)) for name in _ARRAYS
         )
@@ -105,8 +112,9 @@ class Recording:
         """Write the recording to an ``.npz`` file, whole or not at all.
 
         Its arrays have the names of this class's attributes (``order_psi_o`` … for the order
-        parameters), the parameters are TOML. An hour of 20 boats at 10 Hz takes 37 MB, or 20 MB in
-        float32; compression saves little of that and takes seconds.
+        parameters, ``contacts_i`` … for contacts), the parameters are TOML. An hour of 20 boats at
+        10 Hz takes 37 MB without contacts, or 20 MB in float32; compression saves little of that
+        and takes seconds.
 
         Raises
         ------
@@ -115,6 +123,8 @@ class Recording:
         """
         arrays = {name: getattr(self, name) for name in _ARRAYS}
         arrays |= {f"order_{name}": getattr(self.order, name) for name in _ORDER}
+        if self.contacts is not None:
+            arrays |= {f"contacts_{name}": getattr(self.contacts, name) for name in _CONTACTS}
         texts = {
             "format": _FORMAT,
             "version": self.version,
@@ -145,6 +155,9 @@ class Recording:
     def _from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> Self:
         texts = ("format", "version", "parameters")
         expected = {*_ARRAYS, *(f"order_{name}" for name in _ORDER), *texts, "seed"}
+        with_contacts = {f"contacts_{name}" for name in _CONTACTS}
+        has_contacts = not with_contacts.isdisjoint(arrays)
+        expected |= with_contacts if has_contacts else set()
         if arrays.keys() != expected:
             different = ", ".join(sorted(arrays.keys() ^ expected))
             raise ParameterError(f"these arrays are missing or unknown: {different}")
@@ -160,6 +173,9 @@ class Recording:
             parameters=FlockParameters.from_toml(parameters),
             seed=int(arrays["seed"]),
             version=version,
+            contacts=ContactSeries(*(arrays[f"contacts_{name}"] for name in _CONTACTS))
+            if has_contacts
+            else None,
         )
 
 

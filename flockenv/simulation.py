@@ -1,13 +1,14 @@
 """`simulate`: a seeded run from a random start, recorded."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import DTypeLike
 
 from flockenv import _core
+from flockenv.contacts import ContactSeries
 from flockenv.errors import ParameterError
 from flockenv.observation import observe
 from flockenv.order_parameters import OrderSeries
@@ -35,6 +36,8 @@ def simulate(
     *,
     control_hz: float = 10.0,
     dtype: DTypeLike = np.float64,
+    contacts: bool = False,
+    progress: Callable[[float], object] | None = None,
 ) -> Recording:
     """Run a flock from its random start and record it: a pure function of its arguments.
 
@@ -62,6 +65,10 @@ def simulate(
     dtype
         float64, or float32 for half the size, which rounds the pose and velocity that are kept but
         not the run.
+    contacts
+        Whether contacts and their forces are recorded too: 28 bytes a contact.
+    progress
+        Called now and then with the flock-seconds simulated since; what it raises ends the run.
 
     Returns
     -------
@@ -80,11 +87,13 @@ def simulate(
     """
     precision = _precision(dtype)
     if policy is None or policy == "law":
-        columns = _core.record(parameters, seed, duration_s, sample_hz, precision == np.float32)
+        kept = {"single_precision": bool(precision == np.float32), "contacts": contacts}
+        columns = _core.record(parameters, seed, duration_s, sample_hz, kept, progress)
         columns["phase"] = PHASES[columns["phase"]]
     elif hasattr(policy, "predict"):
         _check_rates(duration_s, sample_hz, control_hz)
-        columns = _steered(parameters, seed, duration_s, sample_hz, policy, control_hz, precision)
+        steps = _told(_events(duration_s, sample_hz, control_hz), progress)
+        columns = _steered(parameters, seed, steps, policy, precision, contacts)
     else:
         raise ParameterError(
             f"policy = {policy!r} is not accepted: None, 'law' or an object with predict"
@@ -107,29 +116,31 @@ def _check_rates(duration_s: float, sample_hz: float, control_hz: float) -> None
 def _steered(
     parameters: FlockParameters,
     seed: int,
-    duration_s: float,
-    sample_hz: float,
+    steps: Iterable[tuple[int, bool, bool]],
     policy: LeaderPolicy,
-    control_hz: float,
     precision: np.dtype[Any],
+    contacts: bool,
 ) -> dict[str, Any]:
     flock = _core.Flock(parameters, seed)
     mirrored = getattr(policy, "mirror_to_target", False)
     sign = -1.0 if mirrored and parameters.target == "ccw" else 1.0
     layout = getattr(policy, "observation", None)
     rudder, state = np.zeros(parameters.n_leaders), None
-    samples = []
+    samples, touching = [], []
     now = 0
-    for tick, is_sample, is_control in _events(duration_s, sample_hz, control_hz):
+    for tick, is_sample, is_control in steps:
         flock.advance((tick - now) / _TICKS_A_SECOND, rudder)
         now = tick
         if is_sample:
             samples.append(sample(flock, precision))
+            if contacts:
+                touching.append(flock.contacts())
         if is_control and parameters.n_leaders > 0:
             seen = observe(flock, layout, mirror_to_target=mirrored, rudder=rudder)
             actions, state = policy.predict(seen, state)
             rudder = sign * np.clip(np.asarray(actions, np.float64).reshape(-1), -1.0, 1.0)
-    return columns_of(samples)
+    series = ContactSeries.of(touching) if contacts else None
+    return {**columns_of(samples), "contacts": series}
 
 
 def _events(
@@ -145,6 +156,18 @@ def _events(
     sampled, steered = ticks(sample_hz), ticks(control_hz)
     for tick in sorted(sampled | steered):
         yield tick, tick in sampled, tick in steered
+
+
+def _told(
+    steps: Iterable[tuple[int, bool, bool]], progress: Callable[[float], object] | None
+) -> Iterator[tuple[int, bool, bool]]:
+    """Pass steps on, and tell every 10 s of them."""
+    told = 0
+    for step in steps:
+        if progress is not None and step[0] - told >= 10 * _TICKS_A_SECOND:
+            progress((step[0] - told) / _TICKS_A_SECOND)
+            told = step[0]
+        yield step
 
 
 def sample(flock: _core.Flock, precision: np.dtype[Any]) -> dict[str, Any]:

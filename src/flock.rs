@@ -4,7 +4,7 @@ use crate::boat::{Pose, Velocity};
 use crate::contact::{Contact, Partner};
 use crate::dynamics::{Checkpoint, Dynamics, Steering, Substep};
 use crate::error::{FlockError, Result};
-use crate::geometry::HullPose;
+use crate::geometry::{HullPose, Vec2};
 use crate::order_parameters::OrderParameters;
 use crate::parameters::{FlockParameters, Target};
 use crate::phase_schedule::{PhaseMoment, PhaseSchedule, Ticks, seconds, ticks};
@@ -19,6 +19,8 @@ pub const LATEST: Ticks = 1_000_000_000_000_000_000;
 pub struct ContactForce {
     /// The contact, its gap taken at the current poses.
     pub contact: Contact,
+    /// Where the force acts on the hull of `contact.boat`, at the current poses.
+    pub point: Vec2,
     /// Mean force over the last substep in cm/s² (mass 1), along the normal on `contact.boat`.
     pub force: f64,
 }
@@ -323,6 +325,7 @@ impl Flock {
     pub fn contacts(&self) -> Vec<ContactForce> {
         let mut resolver = self.dynamics.contacts.clone();
         let detector = resolver.detector();
+        let hull = detector.hull();
         let resolver = &self.dynamics.contacts;
         resolver
             .contacts()
@@ -335,8 +338,10 @@ impl Flock {
                 } else {
                     0.0
                 };
+                let contact = Contact { gap, ..*contact };
                 ContactForce {
-                    contact: Contact { gap, ..*contact },
+                    point: contact.point(&self.hulls()[contact.boat as usize], hull),
+                    contact,
                     force,
                 }
             })

@@ -2,7 +2,7 @@
 
 use crate::dynamics::Steering;
 use crate::error::{FlockError, Result};
-use crate::flock::Flock;
+use crate::flock::{ContactForce, Flock};
 use crate::order_parameters::OrderParameters;
 use crate::parameters::FlockParameters;
 use crate::phase_schedule::{Phase, Ticks, seconds, ticks};
@@ -76,6 +76,25 @@ impl Real for f32 {
     }
 }
 
+/// Contacts that carried a force, sample after sample.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ContactSamples {
+    /// How many of them each sample has.
+    pub count: Vec<usize>,
+    /// The contacts; their forces are means over the substep before the sample.
+    pub contacts: Vec<ContactForce>,
+}
+
+impl ContactSamples {
+    fn push(&mut self, flock: &Flock) {
+        let before = self.contacts.len();
+        let contacts = flock.contacts().into_iter();
+        self.contacts
+            .extend(contacts.filter(|each| each.force > 0.0));
+        self.count.push(self.contacts.len() - before);
+    }
+}
+
 /// The samples of a run, row after row.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Recording<T> {
@@ -91,6 +110,8 @@ pub struct Recording<T> {
     pub velocity: Vec<T>,
     /// Order parameters of the normal boats; all NaN where there is none.
     pub order: Vec<OrderParameters>,
+    /// Contacts, if they are recorded.
+    pub contacts: Option<ContactSamples>,
 }
 
 impl<T: Real> Recording<T> {
@@ -130,6 +151,7 @@ impl<T: Real> Recording<T> {
             pose: Vec::new(),
             velocity: Vec::new(),
             order: Vec::new(),
+            contacts: None,
         }
     }
 
@@ -168,6 +190,9 @@ impl<T: Real> Recording<T> {
         }
         self.order
             .push(flock.order_parameters(false).unwrap_or(NO_BOAT));
+        if let Some(contacts) = &mut self.contacts {
+            contacts.push(flock);
+        }
     }
 }
 
@@ -197,6 +222,13 @@ impl<T: Real> Recorder<T> {
         })
     }
 
+    /// The same run, of which contacts are recorded too.
+    #[must_use]
+    pub fn with_contacts(mut self) -> Self {
+        self.recording.contacts = Some(ContactSamples::default());
+        self
+    }
+
     /// Goes on for about so many substeps times boats; returns whether the recording is complete.
     /// Where it pauses changes nothing.
     ///
@@ -217,6 +249,11 @@ impl<T: Real> Recorder<T> {
             }
         }
         Ok(true)
+    }
+
+    /// Seconds from the beginning of the run to where it is now.
+    pub fn elapsed_s(&self) -> f64 {
+        seconds(self.flock.time() - self.begin)
     }
 
     fn work(&self) -> u64 {

@@ -6,11 +6,13 @@ import typer
 
 from flockenv import FlockError, __version__
 from flockenv.cli.compare import compare
-from flockenv.cli.console import console, errors
+from flockenv.cli.console import console, errors, say
 from flockenv.cli.evaluate import evaluate
 from flockenv.cli.fit import fit
 from flockenv.cli.presets import presets
+from flockenv.cli.replay import replay
 from flockenv.cli.reproduce import reproduce
+from flockenv.cli.run import run
 from flockenv.cli.sweep import sweep
 
 __all__ = ["app", "main"]
@@ -20,7 +22,7 @@ app = typer.Typer(
     rich_markup_mode="markdown",
     help="Flocks of radio-controlled boats with a few steerable leaders (Tarcai et al. 2011).",
 )
-for command in (compare, evaluate, fit, presets, reproduce, sweep):
+for command in (run, replay, compare, evaluate, fit, presets, reproduce, sweep):
     app.command()(command)
 
 
@@ -29,7 +31,8 @@ def main() -> None:
     try:
         app()
     except (FlockError, OSError) as error:
-        errors.print(f"[bold red]Error:[/] {error}", highlight=False)
+        errors.print("[bold red]Error:[/]", end=" ")
+        say(str(error), errors)
         raise SystemExit(2) from error
 
 

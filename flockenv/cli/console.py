@@ -1,16 +1,21 @@
 """Where commands print: results to standard output, progress and errors to standard error."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-__all__ = ["console", "errors", "progress_bar", "resumable"]
+__all__ = ["console", "errors", "interruptible", "progress_bar", "resumable", "say"]
 
 console = Console()
 errors = Console(stderr=True)
+
+
+def say(text: str, on: Console = console) -> None:
+    """Print a line as it is: brackets in a file's name are no markup, and nothing breaks it."""
+    on.print(text, markup=False, highlight=False, soft_wrap=True)
 
 
 def progress_bar(disable: bool) -> Progress:
@@ -28,10 +33,15 @@ def progress_bar(disable: bool) -> Progress:
 
 
 @contextmanager
-def resumable() -> Iterator[None]:
-    """On Ctrl-C within a `with` block, end with exit code 130 and say that work can go on."""
+def interruptible(told: str) -> Iterator[None]:
+    """On Ctrl-C within a `with` block, end with exit code 130 and say what became of the work."""
     try:
         yield
     except KeyboardInterrupt:
-        errors.print("Interrupted. Finished runs are kept: the same command goes on from them.")
+        say(f"Interrupted. {told}", errors)
         raise typer.Exit(130) from None
+
+
+def resumable() -> AbstractContextManager[None]:
+    """On Ctrl-C within a `with` block, end with exit code 130 and say that work can go on."""
+    return interruptible("Finished runs are kept: the same command goes on from them.")

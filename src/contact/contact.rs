@@ -1,7 +1,7 @@
 //! One place where a hull is near another hull or a wall.
 
 use crate::boat::Velocity;
-use crate::geometry::{Gap, PairFeature};
+use crate::geometry::{Gap, Hull, HullPose, PairFeature, Vec2, cross};
 
 /// What a boat is near to.
 #[derive(
@@ -56,6 +56,20 @@ impl Contact {
             Partner::Boat(boat) => Some(boat as usize),
             Partner::OuterWall | Partner::InnerWall => None,
         }
+    }
+
+    /// Where the normal pushes the first hull: a point of its surface.
+    pub fn point(&self, boat: &HullPose, hull: Hull) -> Vec2 {
+        let (normal, h) = (self.gap.normal, hull.half_length);
+        // The lever arm tells how far along the core, but not of a push along the core: that is on
+        // the end.
+        let across = cross(boat.axis, normal);
+        let along = if across.abs() > 1e-9 {
+            (self.gap.arm_i / across).clamp(-h, h)
+        } else {
+            h * -boat.axis.dot(&normal).signum()
+        };
+        boat.center + boat.axis * along - normal * hull.radius
     }
 
     /// Rate of change of the gap at given velocities of all boats, in cm/s.

@@ -17,38 +17,73 @@ pub fn phase_names() -> Vec<&'static str> {
     Phase::ALL.iter().map(|phase| phase.name()).collect()
 }
 
+/// What of a run is kept besides its states, and how precisely.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Kept {
+    single_precision: bool,
+    contacts: bool,
+}
+
 /// Records a run under the steering law: the fields of a `flockenv.Recording` that a run fills.
 #[pyfunction]
-#[pyo3(signature = (parameters, seed, duration_s, sample_hz, single_precision))]
+#[pyo3(signature = (parameters, seed, duration_s, sample_hz, kept, progress=None))]
 pub fn record<'py>(
     py: Python<'py>,
     parameters: FlockParameters,
     seed: Seed,
     duration_s: DurationS,
     sample_hz: SampleHz,
-    single_precision: bool,
+    kept: Kept,
+    progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let sampling = Sampling::new(duration_s.0, sample_hz.0)?;
-    if single_precision {
-        run::<f32>(py, parameters, seed.0, sampling)
+    let contacts = kept.contacts;
+    if kept.single_precision {
+        run::<f32>(
+            py,
+            parameters,
+            seed.0,
+            sampling,
+            contacts,
+            progress.as_ref(),
+        )
     } else {
-        run::<f64>(py, parameters, seed.0, sampling)
+        run::<f64>(
+            py,
+            parameters,
+            seed.0,
+            sampling,
+            contacts,
+            progress.as_ref(),
+        )
     }
 }
 
-fn run<T: Real + Element>(
-    py: Python<'_>,
+fn run<'py, T: Real + Element>(
+    py: Python<'py>,
     parameters: FlockParameters,
     seed: u64,
     sampling: Sampling,
-) -> PyResult<Bound<'_, PyDict>> {
+    contacts: bool,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
     parameters.check()?;
     // Refuses what does not fit before boats are placed.
     Recording::<T>::with_room_for(&sampling, &parameters)?;
     let boats = parameters.n_boats;
     let mut recorder = py.detach(|| Recorder::<T>::new(Flock::new(parameters, seed)?, sampling))?;
+    if contacts {
+        recorder = recorder.with_contacts();
+    }
+    let mut told_s = 0.0;
     while !py.detach(|| recorder.run(BOAT_SUBSTEPS_A_PIECE))? {
         py.check_signals()?;
+        if let Some(progress) = progress {
+            let elapsed_s = recorder.elapsed_s();
+            progress.call1((elapsed_s - told_s,))?;
+            told_s = elapsed_s;
+        }
     }
     fields(py, recorder.into_recording(), boats)
 }
@@ -69,5 +104,8 @@ fn fields<T: Element>(
     fields.set_item("in_analysis_window", window)?;
     fields.set_item("pose", rows(recording.pose)?)?;
     fields.set_item("velocity", rows(recording.velocity)?)?;
+    let contacts = recording.contacts.as_ref();
+    let contacts = contacts.map(|samples| results::contact_series(py, samples));
+    fields.set_item("contacts", contacts.transpose()?)?;
     Ok(fields)
 }

@@ -2,9 +2,11 @@
 
 use crate::contact::Partner;
 use crate::flock::ContactForce;
+use crate::geometry::Vec2;
 use crate::order_parameters::OrderParameters;
+use crate::recording::ContactSamples;
 use crate::statistics::Statistics;
-use numpy::{PyArray1, PyArrayMethods};
+use numpy::{Element, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -51,24 +53,53 @@ pub fn order_series<'py>(
 /// A `flockenv.Contacts`; walls are numbered −1 (outer) and −2 (inner).
 pub fn contacts<'py>(py: Python<'py>, contacts: &[ContactForce]) -> PyResult<Bound<'py, PyAny>> {
     let class = py.import("flockenv.contacts")?.getattr("Contacts")?;
-    let partner = |contact: &ContactForce| match contact.contact.partner {
-        Partner::Boat(boat) => i64::from(boat),
-        Partner::OuterWall => -1,
-        Partner::InnerWall => -2,
-    };
-    let normals = contacts.iter().map(|c| c.contact.gap.normal);
-    let normals: Vec<f64> = normals.flat_map(|normal| [normal.x, normal.y]).collect();
     let each = contacts.iter();
     class.call1((
-        PyArray1::from_vec(
-            py,
-            each.clone().map(|c| i64::from(c.contact.boat)).collect(),
-        ),
-        PyArray1::from_vec(py, each.clone().map(partner).collect()),
-        PyArray1::from_vec(py, each.clone().map(|c| c.contact.gap.gap).collect()),
-        PyArray1::from_vec(py, normals).reshape([contacts.len(), 2])?,
-        PyArray1::from_vec(py, each.map(|c| c.force).collect()),
+        PyArray1::from_iter(py, each.clone().map(|c| i64::from(c.contact.boat))),
+        PyArray1::from_iter(py, each.clone().map(|c| i64::from(partner(c)))),
+        PyArray1::from_iter(py, each.clone().map(|c| c.contact.gap.gap)),
+        pairs(py, contacts, |c| c.contact.gap.normal, |x| x)?,
+        PyArray1::from_iter(py, each.map(|c| c.force)),
+        pairs(py, contacts, |c| c.point, |x| x)?,
     ))
+}
+
+/// A `flockenv.ContactSeries`.
+pub fn contact_series<'py>(
+    py: Python<'py>,
+    samples: &ContactSamples,
+) -> PyResult<Bound<'py, PyAny>> {
+    let class = py.import("flockenv.contacts")?.getattr("ContactSeries")?;
+    let contacts = &samples.contacts[..];
+    let each = contacts.iter();
+    class.call1((
+        PyArray1::from_iter(py, samples.count.iter().map(|&count| count as i64)),
+        PyArray1::from_iter(py, each.clone().map(|c| c.contact.boat as i32)),
+        PyArray1::from_iter(py, each.clone().map(partner)),
+        pairs(py, contacts, |c| c.contact.gap.normal, |x| x as f32)?,
+        PyArray1::from_iter(py, each.map(|c| c.force as f32)),
+        pairs(py, contacts, |c| c.point, |x| x as f32)?,
+    ))
+}
+
+fn partner(contact: &ContactForce) -> i32 {
+    match contact.contact.partner {
+        Partner::Boat(boat) => boat as i32,
+        Partner::OuterWall => -1,
+        Partner::InnerWall => -2,
+    }
+}
+
+/// One vector a contact: (c, 2).
+fn pairs<'py, T: Element>(
+    py: Python<'py>,
+    contacts: &[ContactForce],
+    vector: fn(&ContactForce) -> Vec2,
+    rounded: fn(f64) -> T,
+) -> PyResult<Bound<'py, PyArray2<T>>> {
+    let vectors = contacts.iter().map(vector);
+    let numbers: Vec<T> = vectors.flat_map(|v| [v.x, v.y]).map(rounded).collect();
+    PyArray1::from_vec(py, numbers).reshape([contacts.len(), 2])
 }
 
 macro_rules! statistics_fields {

@@ -44,6 +44,7 @@ def test_bow_to_bow_forces_are_the_motors(parameters):
     assert contacts.normal[pushing] == pytest.approx(np.array([[-1.0, 0.0]]))
     assert contacts.force[pushing] == pytest.approx([15.0], rel=1e-9)
     assert contacts.gap_cm[pushing] == pytest.approx([0.0], abs=1e-9)
+    assert contacts.point_cm[pushing] == pytest.approx(np.zeros((1, 2)), abs=1e-9)
 
 
 def test_the_outer_wall_is_minus_one(parameters):
@@ -52,6 +53,7 @@ def test_the_outer_wall_is_minus_one(parameters):
     contacts = flock.contacts()
     pushing = contacts.force > 0
     assert contacts.j[pushing].tolist() == [-1]
+    assert contacts.point_cm[pushing] == pytest.approx(np.array([[1000.0, 0.0]]))
     assert contacts.force[pushing] == pytest.approx([15.0], rel=1e-9)
 
 
@@ -62,6 +64,20 @@ def test_the_inner_wall_is_minus_two(parameters):
     flock.advance(1.0)
     contacts = flock.contacts()
     assert contacts.j[contacts.force > 0].tolist() == [-2]
+
+
+def test_a_flank_touches_where_the_other_bow_is(parameters):
+    # Boat 1 heads down at the flank of boat 0, 1 cm ahead of its middle.
+    flock = at(parameters, [0.0, 0.0, 0.0], [1.0, 12.5, -np.pi / 2])
+    flock.advance(0.1)
+    contacts = flock.contacts()
+    pushed = contacts.force > 0
+    assert contacts.normal[pushed] == pytest.approx(np.array([[0.0, -1.0]]), abs=0.2)
+    offset = contacts.point_cm[pushed][0] - flock.pose[0, :2]
+    across = np.array([-np.sin(flock.pose[0, 2]), np.cos(flock.pose[0, 2])])
+    assert offset @ across == pytest.approx(5.0, abs=1e-9)
+    bow = flock.pose[1, :2] + 2.5 * np.array([np.cos(flock.pose[1, 2]), np.sin(flock.pose[1, 2])])
+    assert np.linalg.norm(contacts.point_cm[pushed][0] - bow) == pytest.approx(5.0, abs=1e-3)
 
 
 def test_none_after_a_state_was_set(flock):

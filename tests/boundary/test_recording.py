@@ -93,6 +93,57 @@ def test_undefined_order_parameters_are_nan():
     assert load(saved(leaders)) == leaders
 
 
+def test_contacts_are_the_flocks_that_carried_a_force():
+    crowd = PARAMETERS.replace(n_boats=20, bw_s=0.0)
+    run = simulate(crowd, seed=3, duration_s=10.0, sample_hz=2.0, contacts=True)
+    assert run.contacts.count.sum() == len(run.contacts.i) > 50
+    flock = Flock(crowd, seed=3)
+    seen = []
+    for k in range(21):
+        seen.append(flock.contacts())
+        assert run.contacts.count[k] == (seen[-1].force > 0).sum()
+        flock.advance(0.5)
+    assert run.contacts == flockenv.ContactSeries.of(seen)
+    assert load(saved(run)) == run
+    alone = simulate(crowd, seed=3, duration_s=10.0, sample_hz=2.0)
+    assert alone.contacts is None
+    assert np.array_equal(alone.pose, run.pose)
+
+
+def test_contacts_under_a_policy():
+    crowd = PARAMETERS.replace(n_boats=20, bw_s=0.0)
+    law = flockenv.policies.SteeringLaw()
+    run = simulate(crowd, seed=3, duration_s=10.0, policy=law, contacts=True)
+    assert len(run.contacts.i) > 200
+    assert load(saved(run)) == run
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"count": np.array([1, 2])},
+        {"i": np.array([0, 5, 1], np.int32)},
+        {"j": np.array([-3, 1, 1], np.int32)},
+        {"force": np.array([1, 0, 1], np.float32)},
+        {"force": np.ones(3)},
+        {"normal": np.full((3, 2), np.nan, np.float32)},
+        {"count": np.array([2**62, 2**62] + [0] * 8 + [3])},
+    ],
+)
+def test_contacts_that_cannot_be_are_refused(change):
+    good = {
+        "count": np.array([3] + [0] * 10),
+        "i": np.zeros(3, np.int32),
+        "j": np.ones(3, np.int32),
+        "normal": np.ones((3, 2), np.float32),
+        "force": np.ones(3, np.float32),
+        "point_cm": np.ones((3, 2), np.float32),
+    }
+    dataclasses.replace(RUN, contacts=flockenv.ContactSeries(**good))
+    with pytest.raises(ParameterError, match=f"contacts.{next(iter(change))}"):
+        dataclasses.replace(RUN, contacts=flockenv.ContactSeries(**good | change))
+
+
 def test_the_law_by_name_is_no_policy():
     assert simulate(PARAMETERS, 3, 1.0, policy="law") == RUN
 

@@ -74,7 +74,7 @@ fn walls_balance_engines_and_drag() {
         let engines: Vec2 = boats.iter().map(|b| b.axis * 15.0).sum();
         let mut walls = Vec2::zeros();
         let mut carrying = 0;
-        for ContactForce { contact, force } in flock.contacts() {
+        for ContactForce { contact, force, .. } in flock.contacts() {
             let boat = &boats[contact.boat as usize];
             let side = if contact.feature == 0 { -1.0 } else { 1.0 };
             walls += force

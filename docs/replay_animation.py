@@ -1,0 +1,106 @@
+"""Writes docs/replay.webp: the replay page, photographed while it plays in headless Chromium."""
+
+import io
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from PIL import Image
+from selenium import webdriver
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.support.ui import Select, WebDriverWait
+
+import flockenv
+from flockenv.replay import write_replay
+
+SCENE = flockenv.FlockParameters(n_boats=27, n_leaders=4, pool="table-1", bw_s=0.2)
+SEED, DURATION_S = 7, 480.0
+POLICIES = {"steering law": None, "damped law": flockenv.policies.DampedLaw()}
+SIZE = (900, 638)
+BEGIN_S, STEP_S, FRAMES, FPS = 150.0, 0.4, 60, 10.0
+# A boat is pointed at for some of the frames.
+BOAT, POINTED = 9, range(24, 36)
+
+
+def main() -> None:
+    """Record, write the page, and photograph it."""
+    runs = {
+        name: flockenv.simulate(SCENE, SEED, DURATION_S, policy=policy, contacts=True)
+        for name, policy in POLICIES.items()
+    }
+    with tempfile.TemporaryDirectory() as folder:
+        page = Path(folder, "replay.html")
+        write_replay(page, runs)
+        first, *others = frames(page)
+    first.save(
+        Path(__file__).with_name("replay.webp"),
+        save_all=True,
+        append_images=others,
+        duration=round(1000 / FPS),
+        loop=0,
+        quality=70,
+        method=6,
+    )
+
+
+def frames(page: Path) -> Iterator[Image.Image]:
+    """Yield pictures of the page as it plays."""
+    driver = chromium()
+    try:
+        driver.get(page.as_uri())
+        WebDriverWait(driver, 20).until(
+            lambda d: d.execute_script("return document.body.dataset.ready")
+        )
+        # What the frames amount to.
+        Select(driver.find_element("id", "speed")).select_by_value(f"{STEP_S * FPS:g}")
+        Select(driver.find_element("id", "trails")).select_by_value("5")
+        driver.execute_script("document.activeElement.blur()")
+        for frame in range(FRAMES):
+            driver.execute_script(
+                "player.seek(arguments[0]); player.show()", BEGIN_S + STEP_S * frame
+            )
+            point(driver, frame in POINTED)
+            yield Image.open(io.BytesIO(driver.get_screenshot_as_png())).convert("RGB")
+    finally:
+        driver.quit()
+
+
+def chromium() -> webdriver.Chrome:
+    """Return a headless Chromium with a window of the picture's size."""
+    options = webdriver.ChromeOptions()
+    options.binary_location = program("CHROMIUM", "chromium")
+    for argument in (
+        "--headless=new",
+        "--no-sandbox",
+        "--disable-dev-shm-usage",
+        "--hide-scrollbars",
+    ):
+        options.add_argument(argument)
+    driver = webdriver.Chrome(
+        options=options, service=Service(program("CHROMEDRIVER", "chromedriver"))
+    )
+    width, height = SIZE
+    metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+    return driver
+
+
+def program(variable: str, name: str) -> str:
+    """Return a program's path; `tests/browser/need_chromium.sh` has seen that it is there."""
+    return shutil.which(os.environ.get(variable, name)) or name
+
+
+def point(driver: webdriver.Chrome, at_boat: bool) -> None:
+    """Move the pointer to the boat, or away from all boats."""
+    canvas = driver.find_element("css selector", ".run canvas")
+    x, y = driver.execute_script("return player.panels[0].scene.place(arguments[0])", BOAT)
+    half = canvas.size["width"] / 2
+    place = (round(x - half), round(y - half)) if at_boat else (0, 0)
+    ActionChains(driver, duration=0).move_to_element_with_offset(canvas, *place).perform()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,120 @@
+"""`flockenv run`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from numpy.typing import NDArray
+
+from flockenv import ParameterError, Recording, simulate
+from flockenv.cli.console import console, interruptible, progress_bar, say
+from flockenv.cli.output import writable
+from flockenv.cli.scene import ChangesOption, FileOption, PresetOption, read_scene, save_scene
+from flockenv.comparison import EVERY_SUBSTEP, POLICIES, named_policy
+from flockenv.simulation import LeaderPolicy
+
+__all__ = ["run"]
+
+
+def run(
+    preset: PresetOption = None,
+    params: FileOption = None,
+    changes: ChangesOption = None,
+    policy: Annotated[
+        str,
+        typer.Option(
+            help="How leaders steer: law (eq. 10 at every substep); or at 10 Hz, from what they "
+            f"observe, a policy's .npz file or one of: {', '.join(POLICIES)}."
+        ),
+    ] = EVERY_SUBSTEP,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of placement and noise.")] = 0,
+    minutes: Annotated[float, typer.Option(min=0.0, help="Length of the run.")] = 8.0,
+    hz: Annotated[float, typer.Option(help="Samples a second.")] = 10.0,
+    contacts: Annotated[
+        bool, typer.Option("--contacts/--no-contacts", help="Record contact forces too.")
+    ] = True,
+    out: Annotated[Path, typer.Option(help="The recording.")] = Path("results/run.npz"),
+    as_json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no progress.")] = False,
+) -> None:
+    """Run one flock and record it.
+
+    Writes the recording, and beside it the exact parameters as TOML, which `--params` reads.
+    `flockenv replay` shows it.
+
+    Example: `flockenv run --set n_boats=27 --set n_leaders=3 --set bw_s=0.3 --seed 7`
+    """
+    scene = read_scene(preset, params, changes)
+    if out.suffix != ".npz":
+        raise ParameterError(f"--out {out} is not accepted: a name that ends in .npz")
+    leaders = _policy(policy)
+    with writable(out):
+        pass  # Better told now than after the run.
+    with interruptible("Nothing was written."), progress_bar(quiet or as_json) as progress:
+        task = progress.add_task("simulating", total=minutes * 60)
+        recording = simulate(
+            scene,
+            seed,
+            minutes * 60,
+            hz,
+            leaders,
+            contacts=contacts,
+            progress=lambda seconds: progress.advance(task, seconds),
+        )
+        progress.update(task, completed=minutes * 60)
+    parameters = out.with_suffix(".toml")
+    remark = f"flockenv {recording.version}: seed {seed}, policy {policy}, {minutes:g} min"
+    with interruptible(f"{out} may not have been written."):
+        with writable(out):
+            recording.save(out)
+        with writable(parameters):
+            save_scene(parameters, scene, remark)
+    summary = _summary(recording)
+    if as_json:
+        files = {"recording": str(out), "parameters": str(parameters)}
+        console.print_json(data={**files, "seed": seed, "policy": policy, **summary})
+        return
+    words = ", ".join(f"{name} {value}" for name, value in _words(summary))
+    say(f"{recording.parameters.n_boats} boats, seed {seed}: {words}")
+    say(f"Written to {out} and {parameters}")
+    say(f"See it: flockenv replay {out}")
+
+
+def _policy(name: str) -> LeaderPolicy | str:
+    if name == EVERY_SUBSTEP:
+        return name
+    try:
+        return named_policy(name)()
+    except OSError as error:
+        raise ParameterError(f"--policy {name} cannot be read: {error.strerror}") from error
+
+
+def _summary(recording: Recording) -> dict[str, float | int | None]:
+    """Means over the samples in the analysis window after the first tenth of the run."""
+    settled = recording.time_s > 0.1 * recording.time_s[-1]
+    window = recording.in_analysis_window & settled
+    order = recording.order
+    series = {
+        "psi_o": order.psi_o,
+        "signed_order": order.signed_order(recording.parameters.target),
+        "rotation": order.rotation(),
+        "psi_v_cm_s": order.psi_v,
+    }
+    means = {name: _mean(values[window]) for name, values in series.items()}
+    return {"samples": len(recording), "samples_in_window": int(window.sum()), **means}
+
+
+def _mean(values: NDArray[np.float64]) -> float | None:
+    """Return the mean; None of nothing, and where there is no normal boat."""
+    return float(values.mean()) if len(values) and np.isfinite(values).all() else None
+
+
+def _words(summary: dict[str, float | int | None]) -> list[tuple[str, str]]:
+    words = {
+        "psi_o": "mean Ψ_o",
+        "signed_order": "order towards target",
+        "rotation": "rotation",
+    }
+    found = {word: summary[name] for name, word in words.items()}
+    return [(word, "undefined" if n is None else f"{n:.3f}") for word, n in found.items()]

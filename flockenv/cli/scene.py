@@ -1,0 +1,103 @@
+"""The scene of a command: a preset, a TOML file, single fields; saved beside its results."""
+
+import tomllib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from flockenv import FlockParameters, ParameterError
+from flockenv.whole_file import whole_file
+
+__all__ = ["ChangesOption", "FileOption", "PresetOption", "read_scene", "save_scene"]
+
+PresetOption = Annotated[
+    str | None,
+    typer.Option("--preset", help="Named parameters: see `flockenv presets`. [simulation]"),
+]
+FileOption = Annotated[
+    Path | None,
+    typer.Option("--params", help="TOML file of parameters, such as those saved beside results."),
+]
+ChangesOption = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="FIELD=VALUE", help="Change one field; may be repeated."),
+]
+
+
+def read_scene(
+    preset: str | None = None, file: Path | None = None, changes: Sequence[str] | None = None
+) -> FlockParameters:
+    """Return the parameters that a command's options ask for.
+
+    Parameters
+    ----------
+    preset
+        The preset that all else changes; None for the file's own, or "simulation".
+    file
+        TOML file with any of the fields, and ``preset``.
+    changes
+        ``field=value`` each, values as in TOML; words need no quotes.
+
+    Raises
+    ------
+    ParameterError
+        For an unknown preset or field, a value that is not accepted, a file that cannot be read
+        or is no TOML, a change without ``=``, a field that is changed twice; the message names it.
+    """
+    fields = _file_fields(file) if file is not None else {}
+    if preset is not None:
+        if fields.get("preset", preset) != preset:
+            raise ParameterError(
+                f"--preset {preset} contradicts preset = {fields['preset']!r} in {file}"
+            )
+        fields["preset"] = preset
+    changed = _changed_fields(changes or ())
+    try:
+        return FlockParameters.from_dict(fields | changed)
+    except TypeError as error:
+        raise ParameterError(str(error)) from error
+
+
+def save_scene(path: Path, parameters: FlockParameters, remark: str) -> None:
+    """Write parameters as TOML that `--params` reads, with a remark on how they were used.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written; what was there before is still there.
+    """
+    lines = "".join(f"# {line}\n" for line in remark.splitlines())
+    with whole_file(path) as file:
+        file.write((lines + parameters.to_toml()).encode())
+
+
+def _file_fields(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text("utf-8"))
+    except OSError as error:
+        raise ParameterError(f"--params {path} cannot be read: {error.strerror}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ParameterError(f"--params {path} is no TOML: {error}") from error
+
+
+def _changed_fields(changes: Sequence[str]) -> dict[str, Any]:
+    fields: dict[str, Any] = {}
+    for change in changes:
+        name, equals, text = (part.strip() for part in change.partition("="))
+        if not (name and equals and text):
+            raise ParameterError(f"--set {change!r} is not accepted: FIELD=VALUE, as in bw_s=0.3")
+        if name in fields:
+            raise ParameterError(f"--set changes {name} twice")
+        fields[name] = _value(text)
+    return fields
+
+
+def _value(text: str) -> Any:
+    """Return a value as TOML has it; what is none is a word."""
+    try:
+        found = tomllib.loads(f"value = {text}")
+    except tomllib.TOMLDecodeError:
+        return text
+    return found["value"] if found.keys() == {"value"} else text

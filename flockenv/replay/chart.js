@@ -1,0 +1,240 @@
+// A series against time, for every run, with a cursor that a click or drag moves.
+
+const EDGE = { left: 40, right: 10, top: 8, bottom: 20 };
+
+class Chart {
+  /** `reach` in s shows that much before and after the cursor; null shows the whole run. */
+  constructor(canvas, runs, reach, seek) {
+    Object.assign(this, { canvas, runs, reach, kept: null });
+    const go = (event) => seek(this.timeAt(event.clientX - canvas.getBoundingClientRect().left));
+    canvas.addEventListener("pointerdown", (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      this.held = [this.from, this.to];
+      go(event);
+    });
+    canvas.addEventListener("pointermove", (event) => canvas.hasPointerCapture(event.pointerId) && go(event));
+    canvas.addEventListener("lostpointercapture", () => { this.held = null; });
+  }
+
+  /** Where the times shown begin and end: around the cursor, or all there are. */
+  #choose(time) {
+    const [begin, end] = span(this.runs);
+    [this.from, this.to] = [begin, Math.max(end, begin + 1e-3)];
+    if (this.held) {
+      [this.from, this.to] = this.held;
+    } else if (this.reach !== null && end - begin > 2 * this.reach) {
+      this.from = Math.min(Math.max(time - this.reach, begin), end - 2 * this.reach);
+      this.to = this.from + 2 * this.reach;
+    }
+  }
+
+  timeAt(x) {
+    const share = (x - EDGE.left) / (this.width - EDGE.left - EDGE.right);
+    return this.from + share * (this.to - this.from);
+  }
+
+  xOf(time) {
+    const share = (time - this.from) / (this.to - this.from);
+    return EDGE.left + share * (this.width - EDGE.left - EDGE.right);
+  }
+
+  yOf(value) {
+    const [low, high] = this.range;
+    const room = this.height - EDGE.top - EDGE.bottom;
+    return EDGE.top + ((high - value) / (high - low)) * room;
+  }
+
+  draw(time, quantity, palette) {
+    [this.width, this.height] = [this.canvas.clientWidth, this.canvas.clientHeight];
+    this.#choose(time);
+    this.range = quantity.range ?? valueRange(this.runs, quantity.key);
+    const context = fitted(this.canvas);
+    if (this.reach === null) {
+      this.#drawKept(context, quantity, palette);
+    } else {
+      this.#drawAll(context, quantity, palette);
+    }
+    const x = this.xOf(time);
+    context.strokeStyle = palette.ink;
+    context.lineWidth = 1.5;
+    context.beginPath();
+    context.moveTo(x, EDGE.top - 4);
+    context.lineTo(x, this.height - EDGE.bottom);
+    context.stroke();
+  }
+
+  /** The whole run changes with the size, the series and the colours only. */
+  #drawKept(context, quantity, palette) {
+    const key = JSON.stringify([this.canvas.width, this.canvas.height, quantity.key, palette]);
+    if (this.kept?.key !== key) {
+      const picture = document.createElement("canvas");
+      [picture.width, picture.height] = [this.canvas.width, this.canvas.height];
+      const other = picture.getContext("2d");
+      other.setTransform(context.getTransform());
+      this.#drawAll(other, quantity, palette);
+      this.kept = { key, picture };
+    }
+    context.clearRect(0, 0, this.width, this.height);
+    context.drawImage(this.kept.picture, 0, 0, this.width, this.height);
+  }
+
+  #drawAll(context, quantity, palette) {
+    context.clearRect(0, 0, this.width, this.height);
+    if (this.reach !== null) {
+      this.#windows(context, palette);
+    }
+    this.#axes(context, quantity, palette);
+    this.runs.forEach((run, place) => {
+      const column = run.columns.get(quantity.key);
+      if (column) {
+        const dense = (run.length * (this.to - this.from)) / (run.time.at(-1) - run.time[0] || 1);
+        const draw = dense > 2 * this.width ? drawBand : drawLine;
+        draw(this, context, run, column, palette[`run-${place + 1}`]);
+      }
+    });
+  }
+
+  #windows(context, palette) {
+    const run = this.runs[0];
+    context.fillStyle = palette.window;
+    const last = run.sampleAt(this.to);
+    let start = null;
+    for (let k = run.sampleAt(this.from); k <= last; k += 1) {
+      const inside = run.inWindow(k);
+      if (inside && start === null) {
+        start = run.time[k];
+      }
+      if (start !== null && (!inside || k === last)) {
+        const left = Math.max(this.xOf(start), EDGE.left);
+        const right = Math.min(this.xOf(run.time[k]), this.width - EDGE.right);
+        context.fillRect(left, EDGE.top, Math.max(right - left, 0), this.height - EDGE.top - EDGE.bottom);
+        start = null;
+      }
+    }
+  }
+
+  #axes(context, quantity, palette) {
+    const { width, height } = this;
+    context.font = `11px ${getComputedStyle(document.body).fontFamily}`;
+    context.lineWidth = 1;
+    context.textBaseline = "middle";
+    context.textAlign = "right";
+    const [low, high] = this.range;
+    for (const value of ticks(low, high, Math.max(height / 34, 2))) {
+      const y = Math.round(this.yOf(value)) + 0.5;
+      context.strokeStyle = palette.grid;
+      context.beginPath();
+      context.moveTo(EDGE.left, y);
+      context.lineTo(width - EDGE.right, y);
+      context.stroke();
+      context.fillStyle = palette.faint;
+      context.fillText(plain(value), EDGE.left - 6, y);
+    }
+    context.textBaseline = "alphabetic";
+    context.textAlign = "center";
+    for (const time of ticks(this.from, this.to, Math.max(width / 90, 2), timeStep)) {
+      context.fillStyle = palette.faint;
+      context.fillText(clockText(time), Math.min(this.xOf(time), width - 22), height - 5);
+    }
+  }
+}
+
+/** First and last time of all runs. */
+function span(runs) {
+  return [Math.min(...runs.map((run) => run.time[0])), Math.max(...runs.map((run) => run.time.at(-1)))];
+}
+
+const ranges = new Map();
+
+function valueRange(runs, key) {
+  if (!ranges.has(key)) {
+    let [low, high] = [0, 0];
+    for (const run of runs) {
+      const column = run.columns.get(key);
+      for (let k = 0; column && k < column.length; k += 1) {
+        low = Math.min(low, column.at(k));
+        high = Math.max(high, column.at(k));
+      }
+    }
+    ranges.set(key, [low, high > low ? high : low + 1]);
+  }
+  return ranges.get(key);
+}
+
+/** Round numbers between two, about so many. */
+function ticks(low, high, count, roundStep = roundNumber) {
+  const step = roundStep((high - low) / count);
+  const first = Math.ceil(low / step - 1e-9);
+  const last = Math.floor(high / step + 1e-9);
+  return Array.from({ length: last - first + 1 }, (_, k) => (first + k) * step);
+}
+
+/** The next of 1, 2, 5, 10, 20 … */
+function roundNumber(least) {
+  const decade = 10 ** Math.floor(Math.log10(least));
+  return [1, 2, 5, 10].find((each) => each * decade >= least) * decade;
+}
+
+/** The next round number of seconds, minutes or hours. */
+function timeStep(least) {
+  const steps = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600];
+  return least < 1 ? roundNumber(least) : steps.find((step) => step >= least) ?? 3600 * roundNumber(least / 3600);
+}
+
+function plain(value) {
+  return String(Number(value.toPrecision(6))).replace("-", "−");
+}
+
+/** Minutes and seconds. */
+function clockText(time) {
+  const seconds = Math.round(time);
+  return seconds < 60 ? `${plain(time)} s` : `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
+}
+
+function drawLine(chart, context, run, column, color) {
+  const [first, last] = [run.sampleAt(chart.from), run.sampleAt(chart.to)];
+  context.save();
+  context.beginPath();
+  context.rect(EDGE.left, 0, chart.width - EDGE.left - EDGE.right, chart.height);
+  context.clip();
+  context.strokeStyle = color;
+  context.lineWidth = 1.8;
+  context.lineJoin = "round";
+  context.beginPath();
+  for (let k = first; k <= Math.min(last + 1, run.length - 1); k += 1) {
+    context.lineTo(chart.xOf(run.time[k]), chart.yOf(column.at(k)));
+  }
+  context.stroke();
+  context.restore();
+}
+
+/** For each pixel the range of its samples, pale, and their mean. */
+function drawBand(chart, context, run, column, color) {
+  const right = Math.min(chart.xOf(run.time.at(-1)), chart.width - EDGE.right);
+  const means = [];
+  context.fillStyle = color;
+  context.globalAlpha = 0.25;
+  let k = run.sampleAt(chart.from);
+  for (let x = EDGE.left; x < right; x += 1) {
+    const until = chart.timeAt(x + 1);
+    let [low, high, sum, count] = [Infinity, -Infinity, 0, 0];
+    for (; k < run.length && run.time[k] < until; k += 1) {
+      const value = column.at(k);
+      low = Math.min(low, value);
+      high = Math.max(high, value);
+      sum += value;
+      count += 1;
+    }
+    if (count > 0) {
+      context.fillRect(x, chart.yOf(high), 1, Math.max(chart.yOf(low) - chart.yOf(high), 1));
+      means.push([x + 0.5, chart.yOf(sum / count)]);
+    }
+  }
+  context.globalAlpha = 1;
+  context.strokeStyle = color;
+  context.lineWidth = 1.4;
+  context.lineJoin = "round";
+  context.beginPath();
+  means.forEach((point) => context.lineTo(...point));
+  context.stroke();
+}

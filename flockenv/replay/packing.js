@@ -1,0 +1,55 @@
+// Undoes packing.py: base64, gzip, planes of bytes, folded signs, differences along time.
+
+/** One series: `values[channel * length + sample] * quantum`. */
+class Column {
+  constructor(header, values) {
+    this.length = header.length;
+    this.channels = header.channels;
+    this.quantum = header.quantum;
+    this.values = values;
+  }
+
+  at(sample, channel = 0) {
+    return this.values[channel * this.length + sample] * this.quantum;
+  }
+}
+
+/** Returns the series of a run by name. */
+async function unpack(text) {
+  const bytes = await gunzip(Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)));
+  const end = 4 + new DataView(bytes.buffer).getUint32(0, true);
+  const headers = JSON.parse(new TextDecoder().decode(bytes.subarray(4, end)));
+  const columns = new Map();
+  let place = end;
+  for (const header of headers) {
+    const count = header.length * header.channels;
+    const planes = bytes.subarray(place, place + count * header.planes);
+    place += planes.length;
+    columns.set(header.name, new Column(header, unfolded(planes, count, header)));
+  }
+  return columns;
+}
+
+async function gunzip(bytes) {
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+function unfolded(planes, count, header) {
+  const values = new Int32Array(count);
+  for (let k = 0; k < count; k += 1) {
+    let folded = 0;
+    for (let plane = 0; plane < header.planes; plane += 1) {
+      folded |= planes[plane * count + k] << (8 * plane);
+    }
+    values[k] = (folded >>> 1) ^ -(folded & 1);
+  }
+  for (let round = 0; round < header.differences; round += 1) {
+    for (let start = 0; start < count; start += header.length) {
+      for (let k = start + 1; k < start + header.length; k += 1) {
+        values[k] += values[k - 1];
+      }
+    }
+  }
+  return values;
+}

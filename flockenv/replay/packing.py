@@ -1,0 +1,80 @@
+"""Series of numbers, packed small enough for a page that holds an hour of a flock.
+
+Numbers are rounded to a quantum, differenced along time (twice: boats move smoothly), and split
+into planes of bytes that compress well. ``packing.js`` undoes it.
+"""
+
+import base64
+import json
+import math
+import zlib
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Packer"]
+
+_DIFFERENCES = 2
+_LARGEST = 2**28
+
+
+class Packer:
+    """Collects named series, and turns them into text: base64 of gzip of a header and bytes."""
+
+    def __init__(self) -> None:
+        self._columns: list[dict[str, Any]] = []
+        self._bytes: list[bytes] = []
+
+    def add(self, name: str, values: NDArray[Any], quantum: float) -> None:
+        """Add a series that changes smoothly along its first axis.
+
+        Parameters
+        ----------
+        name
+            Its name on the page.
+        values
+            Shape (t, ...), finite.
+        quantum
+            What values are rounded to; a coarser one is used for numbers too large for it.
+        """
+        largest = float(np.abs(values).max(initial=0.0))
+        quantum = max(quantum, largest / _LARGEST)
+        whole = np.rint(np.asarray(values, np.float64) / quantum).astype(np.int64)
+        for _ in range(_DIFFERENCES):
+            whole = np.diff(whole, axis=0, prepend=np.zeros_like(whole[:1]))
+        self._append(name, whole, quantum, _DIFFERENCES)
+
+    def add_plain(self, name: str, values: NDArray[Any], quantum: float = 1.0) -> None:
+        """Add numbers that have nothing to do with the ones before, within 2^28 quanta."""
+        whole = np.rint(np.asarray(values, np.float64) / quantum).astype(np.int64)
+        self._append(name, whole, quantum, 0)
+
+    def text(self) -> str:
+        """Return all of it as base64."""
+        header = json.dumps(self._columns, separators=(",", ":")).encode("ascii")
+        content = len(header).to_bytes(4, "little") + header + b"".join(self._bytes)
+        # A page of the same recording has the same bytes: no time in the header.
+        packed = zlib.compressobj(level=6, wbits=31)
+        return base64.b64encode(packed.compress(content) + packed.flush()).decode("ascii")
+
+    def _append(
+        self, name: str, whole: NDArray[np.int64], quantum: float, differences: int
+    ) -> None:
+        channels = math.prod(whole.shape[1:])
+        by_channel = np.ascontiguousarray(whole.reshape(len(whole), channels).T).reshape(-1)
+        # Small numbers of either sign become small numbers without one.
+        folded = ((by_channel << 1) ^ (by_channel >> 63)).astype("<u4")
+        planes = np.ascontiguousarray(folded.view(np.uint8).reshape(-1, 4).T)
+        used = max((plane + 1 for plane in range(4) if planes[plane].any()), default=0)
+        self._bytes.append(planes[:used].tobytes())
+        self._columns.append(
+            {
+                "name": name,
+                "length": len(whole),
+                "channels": channels,
+                "quantum": quantum,
+                "differences": differences,
+                "planes": used,
+            }
+        )

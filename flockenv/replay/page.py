@@ -1,0 +1,217 @@
+"""The page: recordings, a template, a style sheet and scripts, in one file that loads nothing."""
+
+import base64
+import hashlib
+import html
+import json
+import math
+import os
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flockenv import _core
+from flockenv.contacts import ContactSeries
+from flockenv.errors import ParameterError
+from flockenv.parameters import FlockParameters
+from flockenv.recording import PHASES, Recording
+from flockenv.replay.packing import Packer
+from flockenv.whole_file import whole_file
+
+__all__ = ["MOST_BYTES", "Replay", "write_replay"]
+
+MOST_BYTES = 10_000_000
+"""Size that no page exceeds: of longer runs it shows fewer samples a second."""
+
+_SCRIPTS = ("packing.js", "run.js", "scene.js", "chart.js", "card.js", "player.js")
+_THINNING = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+_MOST_RUNS = 2
+_MOST_SAMPLES = 400_000
+# What numbers are rounded to: finer than a page shows them, in cm, rad, cm/s, rad/s, cm/s².
+_POSITION, _ANGLE, _SPEED, _TURNING, _FORCE = 0.01, 0.001, 0.05, 0.005, 0.1
+_ORDER_QUANTA = {
+    "psi_o": 0.0005,
+    "phi_o": 0.001,
+    "c_o": 0.0005,
+    "psi_v": 0.005,
+    "phi_v": 0.001,
+    "c_v": 0.05,
+    "signed_order": 0.0005,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Replay:
+    """A page that was written.
+
+    Attributes
+    ----------
+    size : int
+        Bytes.
+    every : int
+        Which of the samples it shows: 1 for all, 2 for every other one …
+    """
+
+    size: int
+    every: int
+
+
+def write_replay(path: str | os.PathLike[str], recordings: Mapping[str, Recording]) -> Replay:
+    """Write one or two recordings as one HTML page that plays them and needs no network.
+
+    Parameters
+    ----------
+    path
+        The file to write.
+    recordings
+        One or two recordings by the names they have on the page; two play side by side.
+        Forces are shown of those that hold contacts (``simulate(..., contacts=True)``).
+
+    Returns
+    -------
+    Replay
+        The page's size, at most `MOST_BYTES`, and which samples it shows.
+
+    Raises
+    ------
+    ParameterError
+        For no recording or more than two, and for one too large to be shown at all.
+    OSError
+        If the file cannot be written; what was there before is still there.
+    """
+    if not 1 <= len(recordings) <= _MOST_RUNS:
+        raise ParameterError(f"{len(recordings)} recordings are not accepted: 1 or {_MOST_RUNS}")
+    longest = max(len(recording) for recording in recordings.values())
+    for every in _THINNING:
+        if longest > every * _MOST_SAMPLES:
+            continue
+        page = _page(recordings, every).encode()
+        if len(page) <= MOST_BYTES:
+            with whole_file(path) as file:
+                file.write(page)
+            return Replay(len(page), every)
+    raise ParameterError(
+        f"the recordings do not fit a page of {MOST_BYTES} bytes, not even one in {_THINNING[-1]} "
+        "samples: record fewer boats or a shorter run"
+    )
+
+
+def _page(recordings: Mapping[str, Recording], every: int) -> str:
+    runs = [_run(name, recording, every) for name, recording in recordings.items()]
+    style, script = _read("replay.css"), "\n".join(map(_read, _SCRIPTS))
+    parts = {
+        "title": html.escape(" and ".join(recordings)),
+        "policy": "; ".join(
+            (
+                "default-src 'none'",
+                f"style-src '{_digest(style)}'",
+                f"script-src '{_digest(script)}'",
+                "img-src data:",
+                "base-uri 'none'",
+                "form-action 'none'",
+            )
+        ),
+        "style": style,
+        "script": script,
+        "runs": _as_script_content(runs),
+    }
+    # One pass over the template alone: nothing that a recording says is taken for a place in it.
+    return re.sub(r"\{\{(\w+)\}\}", lambda match: parts[match[1]], _read("page.html"))
+
+
+@cache
+def _read(name: str) -> str:
+    return resources.files("flockenv.replay").joinpath(name).read_text("utf-8")
+
+
+def _digest(source: str) -> str:
+    return "sha256-" + base64.b64encode(hashlib.sha256(source.encode()).digest()).decode("ascii")
+
+
+def _as_script_content(value: Any) -> str:
+    """Return JSON that cannot end the script element it stands in."""
+    text = json.dumps(value, separators=(",", ":"), allow_nan=False)
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+
+
+def _run(name: str, recording: Recording, every: int) -> dict[str, Any]:
+    parameters = recording.parameters
+    return {
+        "name": name,
+        "seed": str(recording.seed),
+        "version": recording.version,
+        "parameters": {key: str(value) for key, value in parameters.to_dict().items()},
+        "boats": parameters.n_boats,
+        "leaders": parameters.n_leaders,
+        "target": parameters.target,
+        "bw_s": parameters.bw_s,
+        "lengths": _lengths(parameters),
+        "phases": PHASES.tolist(),
+        "samples": len(recording),
+        "every": every,
+        "data": _series(recording, every),
+    }
+
+
+def _lengths(parameters: FlockParameters) -> dict[str, float | None]:
+    outer, inner = _core.pool_radii_cm(parameters.pool)
+    return {
+        # JSON has no infinity: open water has no outer wall.
+        "outer_radius_cm": outer if math.isfinite(outer) else None,
+        "inner_radius_cm": inner,
+        "hull_radius_cm": parameters.boat_radius_cm,
+        "hull_half_length_cm": parameters.boat_shape * parameters.boat_radius_cm,
+    }
+
+
+def _series(recording: Recording, every: int) -> str:
+    shown = slice(None, None, every)
+    packer = Packer()
+    packer.add("time_s", recording.time_s[shown], 0.0005)
+    phase = (recording.phase[shown, None] == PHASES).argmax(axis=1)
+    packer.add_plain("phase", phase)
+    packer.add_plain("in_analysis_window", recording.in_analysis_window[shown])
+    pose, velocity = recording.pose[shown], recording.velocity[shown]
+    packer.add("position_cm", pose[..., :2], _POSITION)
+    packer.add("heading", pose[..., 2], _ANGLE)
+    packer.add("speed_cm_s", np.hypot(velocity[..., 0], velocity[..., 1]), _SPEED)
+    packer.add("turning_rate", velocity[..., 2], _TURNING)
+    for key, quantum in _ORDER_QUANTA.items():
+        values = _order(recording, key)[shown]
+        if np.isfinite(values).all():
+            packer.add(key, values, quantum)
+    if recording.contacts is not None:
+        _add_contacts(packer, recording, recording.contacts, every)
+    return packer.text()
+
+
+def _order(recording: Recording, key: str) -> NDArray[np.float64]:
+    if key == "signed_order":
+        return recording.order.signed_order(recording.parameters.target)
+    values: NDArray[np.float64] = getattr(recording.order, key)
+    return values
+
+
+def _add_contacts(
+    packer: Packer, recording: Recording, contacts: ContactSeries, every: int
+) -> None:
+    sample = np.repeat(np.arange(len(recording)), contacts.count)
+    kept = sample % every == 0
+    sample, i, normal = sample[kept], contacts.i[kept], contacts.normal[kept]
+    # A hull's surface point is its foot on the core and the normal: one number is left to tell.
+    pose = recording.pose[sample, i]
+    foot = contacts.point_cm[kept] - pose[:, :2]
+    foot += recording.parameters.boat_radius_cm * normal
+    axis = np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])], axis=1)
+    packer.add_plain("contact_count", contacts.count[::every])
+    packer.add_plain("contact_i", i)
+    packer.add_plain("contact_j", contacts.j[kept])
+    packer.add_plain("contact_along_cm", (foot * axis).sum(axis=1), 0.1)
+    packer.add_plain("contact_angle", np.arctan2(normal[:, 1], normal[:, 0]), 0.02)
+    packer.add_plain("contact_force", np.minimum(contacts.force[kept], 1e6), _FORCE)

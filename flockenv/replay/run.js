@@ -1,0 +1,101 @@
+// A run: what the recording says at each of its samples, and in between for the picture.
+
+/** The series a chart can show: name in the data, words, unit, decimals, range (none: the data's). */
+const QUANTITIES = [
+  { key: "signed_order", words: "order towards target", decimals: 2, range: [-1, 1] },
+  { key: "psi_o", words: "order Ψₒ", decimals: 2, range: [0, 1] },
+  { key: "phi_o", words: "angle φₒ", unit: "rad", decimals: 2, range: [-Math.PI, Math.PI] },
+  { key: "c_o", words: "correlation Cₒ", decimals: 2 },
+  { key: "psi_v", words: "velocity Ψᵥ", unit: "cm/s", decimals: 1 },
+  { key: "phi_v", words: "angle φᵥ", unit: "rad", decimals: 2, range: [-Math.PI, Math.PI] },
+  { key: "c_v", words: "correlation Cᵥ", unit: "cm²/s²", decimals: 0 },
+];
+
+class Run {
+  constructor(facts, columns) {
+    Object.assign(this, facts);
+    this.columns = columns;
+    const time = columns.get("time_s");
+    this.length = time.length;
+    this.time = Float64Array.from(time.values, (value) => value * time.quantum);
+    this.firstContact = this.#firstContacts();
+  }
+
+  get hasForces() {
+    return this.columns.has("contact_count");
+  }
+
+  #firstContacts() {
+    const first = new Int32Array(this.length + 1);
+    if (this.hasForces) {
+      const count = this.columns.get("contact_count").values;
+      for (let k = 0; k < this.length; k += 1) {
+        first[k + 1] = first[k] + count[k];
+      }
+    }
+    return first;
+  }
+
+  /** The last sample at or before a time. */
+  sampleAt(time) {
+    let low = 0;
+    let high = this.length;
+    while (high - low > 1) {
+      const middle = (low + high) >> 1;
+      if (this.time[middle] <= time + 1e-9) {
+        low = middle;
+      } else {
+        high = middle;
+      }
+    }
+    return low;
+  }
+
+  /** Poses at a time: [x, y, heading] a boat, on straight lines between samples. */
+  posesAt(time) {
+    const sample = this.sampleAt(time);
+    const next = Math.min(sample + 1, this.length - 1);
+    const gap = this.time[next] - this.time[sample];
+    const share = gap > 0 ? Math.min(Math.max((time - this.time[sample]) / gap, 0), 1) : 0;
+    const position = this.columns.get("position_cm");
+    const heading = this.columns.get("heading");
+    const between = (column, channel) => {
+      const now = column.at(sample, channel);
+      return now + share * (column.at(next, channel) - now);
+    };
+    return Array.from({ length: this.boats }, (_, boat) => [
+      between(position, 2 * boat),
+      between(position, 2 * boat + 1),
+      between(heading, boat),
+    ]);
+  }
+
+  /** Value of a series at a sample; undefined where there is none. */
+  value(key, sample) {
+    return this.columns.get(key)?.at(sample);
+  }
+
+  phase(sample) {
+    return this.phases[this.columns.get("phase").at(sample)];
+  }
+
+  inWindow(sample) {
+    return this.columns.get("in_analysis_window").at(sample) === 1;
+  }
+
+  /** Contacts that carried a force at a sample: boats, foot along the core, direction, force. */
+  contacts(sample) {
+    const found = [];
+    const column = (name) => this.columns.get(`contact_${name}`);
+    for (let k = this.firstContact[sample]; k < this.firstContact[sample + 1]; k += 1) {
+      found.push({
+        i: column("i").at(k),
+        j: column("j").at(k),
+        along: column("along_cm").at(k),
+        angle: column("angle").at(k),
+        force: column("force").at(k),
+      });
+    }
+    return found;
+  }
+}

@@ -1,0 +1,281 @@
+// The picture of a run at one time: water, walls, trails, boats, forces.
+
+const MARGIN = 0.022;
+const TRAIL_PIECES = 6;
+/** Force, in cm/s², that is drawn as long as a hull is wide: what one motor presses with is 15. */
+const FORCE_OF_A_HULL = 30;
+/** Weaker ones are left out. */
+const LEAST_FORCE = 0.5;
+
+/** Colours of the style sheet, by name. */
+function colors() {
+  const style = getComputedStyle(document.documentElement);
+  const names = ["ground", "wall", "water", "grid", "ink", "faint", "target", "normal", "mark",
+    "leader", "leader-mark", "outline", "force", "pin", "run-1", "run-2", "window", "track"];
+  return Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
+}
+
+/** Fits a canvas' pixels to its place on the page; returns its context in CSS pixels. */
+function fitted(canvas) {
+  const ratio = window.devicePixelRatio || 1;
+  const width = Math.round(canvas.clientWidth * ratio);
+  const height = Math.round(canvas.clientHeight * ratio);
+  if (canvas.width !== width || canvas.height !== height) {
+    [canvas.width, canvas.height] = [width, height];
+  }
+  const context = canvas.getContext("2d");
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  return context;
+}
+
+class Scene {
+  constructor(canvas, run) {
+    this.canvas = canvas;
+    this.run = run;
+    this.poses = [];
+  }
+
+  draw(time, { trailSeconds, forces, boat, palette }) {
+    this.poses = this.run.posesAt(time);
+    this.context = fitted(this.canvas);
+    this.palette = palette;
+    this.#look();
+    this.#water();
+    if (trailSeconds > 0) {
+      this.#trails(time, trailSeconds, boat);
+    }
+    for (let k = this.run.boats - 1; k >= 0; k -= 1) {
+      this.#boat(k);
+    }
+    if (forces && this.run.hasForces) {
+      this.#forces(this.run.sampleAt(time));
+    }
+    if (boat !== null) {
+      this.#ring(boat);
+    }
+  }
+
+  /** The boat under a point of the canvas, or null. */
+  boatAt(x, y) {
+    const { hull_radius_cm: radius, hull_half_length_cm: half } = this.run.lengths;
+    const reach = Math.max(radius * this.scale, 6);
+    let found = null;
+    let nearest = reach;
+    this.poses.forEach(([, , heading], boat) => {
+      const [cx, cy] = this.place(boat);
+      const [dx, dy] = [x - cx, y - cy];
+      const [ux, uy] = [Math.cos(heading), -Math.sin(heading)];
+      const length = half * this.scale;
+      const along = Math.min(Math.max(dx * ux + dy * uy, -length), length);
+      const distance = Math.hypot(dx - along * ux, dy - along * uy);
+      if (distance <= nearest) {
+        [found, nearest] = [boat, distance];
+      }
+    });
+    return found;
+  }
+
+  /** Where a boat is on the canvas. */
+  place(boat) {
+    return this.#pixel(this.poses[boat][0], this.poses[boat][1]);
+  }
+
+  #pixel(x, y) {
+    return [
+      this.middle[0] + (x - this.center[0]) * this.scale,
+      this.middle[1] - (y - this.center[1]) * this.scale,
+    ];
+  }
+
+  /** Centre and scale: the whole pool, or all boats in open water. */
+  #look() {
+    const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
+    this.middle = [width / 2, height / 2];
+    const side = Math.min(width, height);
+    const outer = this.run.lengths.outer_radius_cm;
+    if (outer !== null) {
+      this.center = [0, 0];
+      this.scale = (side * (0.5 - MARGIN)) / outer;
+      return;
+    }
+    const xs = this.poses.map((pose) => pose[0]);
+    const ys = this.poses.map((pose) => pose[1]);
+    const [left, right] = [Math.min(...xs), Math.max(...xs)];
+    const [low, high] = [Math.min(...ys), Math.max(...ys)];
+    this.center = [(left + right) / 2, (low + high) / 2];
+    const reach = this.run.lengths.hull_radius_cm + this.run.lengths.hull_half_length_cm;
+    const half = Math.max(right - left, high - low, 16 * reach) / 2 + 3 * reach;
+    // In steps, so that the picture does not breathe.
+    this.scale = 2 ** (Math.floor(4 * Math.log2((0.42 * side) / half)) / 4);
+  }
+
+  #water() {
+    const { context, palette, run } = this;
+    const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
+    const { outer_radius_cm: outer, inner_radius_cm: inner } = run.lengths;
+    const wall = Math.max(Math.min(width, height) / 200, 1);
+    context.clearRect(0, 0, width, height);
+    if (outer === null) {
+      context.fillStyle = palette.water;
+      context.fillRect(0, 0, width, height);
+      this.#grid(width, height);
+    } else {
+      this.#disc(outer * this.scale + wall, palette.wall);
+      this.#disc(outer * this.scale, palette.water);
+    }
+    if (inner > 0) {
+      this.#disc(inner * this.scale, palette.wall);
+      this.#disc(inner * this.scale - wall, palette.ground);
+      if (inner * this.scale >= 24) {
+        this.#arrow(0.66 * inner * this.scale);
+      }
+    }
+  }
+
+  #disc(radius, color) {
+    const { context } = this;
+    context.beginPath();
+    context.arc(...this.#pixel(0, 0), Math.max(radius, 0), 0, 2 * Math.PI);
+    context.fillStyle = color;
+    context.fill();
+  }
+
+  #grid(width, height) {
+    const { context } = this;
+    const decade = 10 ** Math.floor(Math.log10(60 / this.scale));
+    const spacing = [1, 2, 5, 10].map((step) => step * decade).find((s) => s * this.scale >= 60);
+    context.strokeStyle = this.palette.grid;
+    context.lineWidth = 1;
+    context.beginPath();
+    const first = (center, size) => Math.ceil((center - size / 2 / this.scale) / spacing) * spacing;
+    for (let x = first(this.center[0], width); ; x += spacing) {
+      const px = Math.round(this.#pixel(x, 0)[0]) + 0.5;
+      if (px > width) break;
+      context.moveTo(px, 0);
+      context.lineTo(px, height);
+    }
+    for (let y = first(this.center[1], height); ; y += spacing) {
+      const py = Math.round(this.#pixel(0, y)[1]) + 0.5;
+      if (py < 0) break;
+      context.moveTo(0, py);
+      context.lineTo(width, py);
+    }
+    context.stroke();
+  }
+
+  /** Most of a circle with a head at its end: the target. */
+  #arrow(radius) {
+    const { context, palette } = this;
+    const turn = this.run.target === "cw" ? 1 : -1;
+    const [x, y] = this.#pixel(0, 0);
+    const head = Math.max(radius / 6, 5);
+    const start = -0.5 * Math.PI + turn * 0.25 * Math.PI;
+    const end = -0.5 * Math.PI + turn * 1.8 * Math.PI;
+    context.strokeStyle = context.fillStyle = palette.target;
+    context.lineWidth = Math.max(radius / 24, 1.5);
+    context.lineCap = "round";
+    context.beginPath();
+    context.arc(x, y, radius, start, end, turn < 0);
+    context.stroke();
+    const at = (angle, r) => [x + r * Math.cos(angle), y + r * Math.sin(angle)];
+    context.beginPath();
+    context.moveTo(...at(end + (turn * head) / radius, radius));
+    context.lineTo(...at(end - turn * 0.02, radius + 0.6 * head));
+    context.lineTo(...at(end - turn * 0.02, radius - 0.6 * head));
+    context.fill();
+  }
+
+  #trails(time, seconds, chosen) {
+    const { context, palette, run } = this;
+    const position = run.columns.get("position_cm");
+    const [first, last] = [run.sampleAt(time - seconds), run.sampleAt(time)];
+    context.lineJoin = context.lineCap = "round";
+    for (let boat = 0; boat < run.boats; boat += 1) {
+      const isBold = boat === chosen;
+      context.strokeStyle = boat < run.leaders ? palette.leader : palette.normal;
+      context.lineWidth = isBold ? 3 : 1.4;
+      for (let piece = 0; piece < TRAIL_PIECES; piece += 1) {
+        const from = first + Math.floor(((last - first) * piece) / TRAIL_PIECES);
+        const to = first + Math.floor(((last - first) * (piece + 1)) / TRAIL_PIECES);
+        context.globalAlpha = ((isBold ? 0.9 : 0.42) * (piece + 1)) / TRAIL_PIECES;
+        context.beginPath();
+        for (let k = from; k <= to; k += 1) {
+          context.lineTo(...this.#pixel(position.at(k, 2 * boat), position.at(k, 2 * boat + 1)));
+        }
+        if (piece === TRAIL_PIECES - 1) {
+          context.lineTo(...this.place(boat));
+        }
+        context.stroke();
+      }
+    }
+    context.globalAlpha = 1;
+  }
+
+  #boat(boat) {
+    const { context, palette, run } = this;
+    const radius = Math.max(run.lengths.hull_radius_cm * this.scale, 1);
+    const half = run.lengths.hull_half_length_cm * this.scale;
+    const isLeader = boat < run.leaders;
+    const line = Math.min(Math.max(0.14 * radius, 1), 0.3 * radius);
+    context.save();
+    context.translate(...this.place(boat));
+    context.rotate(-this.poses[boat][2]);
+    context.beginPath();
+    context.arc(half, 0, radius - line / 2, -Math.PI / 2, Math.PI / 2);
+    context.arc(-half, 0, radius - line / 2, Math.PI / 2, 1.5 * Math.PI);
+    context.closePath();
+    context.fillStyle = isLeader ? palette.leader : palette.normal;
+    context.fill();
+    context.lineWidth = line;
+    context.strokeStyle = palette.outline;
+    context.stroke();
+    if (radius >= 2.5) {
+      const [reach, inner] = [half + radius - line, radius - line];
+      context.fillStyle = isLeader ? palette["leader-mark"] : palette.mark;
+      context.beginPath();
+      context.moveTo(0.84 * reach, 0);
+      context.lineTo(-0.12 * reach, -0.68 * inner);
+      context.lineTo(0.1 * reach, 0);
+      context.lineTo(-0.12 * reach, 0.68 * inner);
+      context.fill();
+    }
+    context.restore();
+  }
+
+  /** A bar across each contact, as long as its force is strong (above two motors' as its root). */
+  #forces(sample) {
+    const { context, palette, run } = this;
+    const { hull_radius_cm: radius } = run.lengths;
+    context.lineCap = "round";
+    for (const { i, along, angle, force } of run.contacts(sample)) {
+      if (force < LEAST_FORCE) {
+        continue;
+      }
+      const [x, y, heading] = this.poses[i];
+      const [nx, ny] = [Math.cos(angle), Math.sin(angle)];
+      const px = x + along * Math.cos(heading) - radius * nx;
+      const py = y + along * Math.sin(heading) - radius * ny;
+      const share = force / FORCE_OF_A_HULL;
+      const half = radius * Math.min(share < 1 ? share : Math.sqrt(share), 3);
+      const ends = [1, -1].map((side) => this.#pixel(px + side * half * nx, py + side * half * ny));
+      for (const [color, extra] of [[palette.mark, 2], [palette.force, 0]]) {
+        context.strokeStyle = color;
+        context.lineWidth = Math.max(0.3 * radius * this.scale, 2) + extra;
+        context.beginPath();
+        context.moveTo(...ends[0]);
+        context.lineTo(...ends[1]);
+        context.stroke();
+      }
+    }
+  }
+
+  #ring(boat) {
+    const { context, run } = this;
+    const reach = (run.lengths.hull_radius_cm + run.lengths.hull_half_length_cm) * this.scale;
+    context.strokeStyle = this.palette.pin;
+    context.lineWidth = 2;
+    context.beginPath();
+    context.arc(...this.place(boat), reach + 4, 0, 2 * Math.PI);
+    context.stroke();
+  }
+}

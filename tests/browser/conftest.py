@@ -1,0 +1,169 @@
+"""A headless Chromium, and the replay page as one who clicks and reads it."""
+
+import math
+import os
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+import flockenv
+from flockenv.replay import write_replay
+
+SIZE = (1366, 768)
+
+
+@pytest.fixture(scope="session")
+def scene() -> flockenv.FlockParameters:
+    return flockenv.FlockParameters(n_boats=12, n_leaders=2, pool="table-1", bw_s=0.0)
+
+
+def program(variable: str, *names: str) -> str:
+    wanted = (os.environ.get(variable), *names)
+    found = next((path for path in map(shutil.which, filter(None, wanted)) if path), None)
+    if found is None:
+        pytest.fail(f"{names[0]} was not found: `make test-browser` says what to install")
+    return found
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Iterator:
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+
+    options = webdriver.ChromeOptions()
+    options.binary_location = program("CHROMIUM", "chromium")
+    # Containers run as root, where Chromium's own sandbox refuses to start, with little /dev/shm.
+    for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    service = Service(program("CHROMEDRIVER", "chromedriver"))
+    driver = webdriver.Chrome(options=options, service=service)
+    width, height = SIZE
+    driver.execute_cdp_cmd(
+        "Emulation.setDeviceMetricsOverride",
+        {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False},
+    )
+    yield driver
+    driver.quit()
+
+
+@pytest.fixture(scope="session")
+def law(scene) -> flockenv.Recording:
+    return flockenv.simulate(scene, 7, 120.0, contacts=True)
+
+
+@pytest.fixture(scope="session")
+def damped(scene) -> flockenv.Recording:
+    policy = flockenv.policies.DampedLaw()
+    return flockenv.simulate(scene, 7, 90.0, policy=policy, contacts=True)
+
+
+@pytest.fixture(scope="session")
+def pages(law, damped, tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("pages")
+    write_replay(folder / "one.html", {"law": law})
+    write_replay(folder / "two.html", {"law": law, "damped": damped})
+    return folder
+
+
+@pytest.fixture
+def open_page(chromium) -> Callable[[Path], "ReplayPage"]:
+    return lambda path: ReplayPage(chromium, path)
+
+
+class ReplayPage:
+    def __init__(self, driver, path: Path) -> None:
+        self.driver = driver
+        # Installed for these tests alone: nothing of it may be needed to collect them.
+        from selenium.webdriver.support.ui import WebDriverWait
+
+        driver.get_log("browser")
+        driver.get_log("performance")
+        driver.get(path.as_uri())
+        WebDriverWait(driver, 30).until(lambda _: self.state())
+
+    def actions(self):
+        from selenium.webdriver.common.action_chains import ActionChains
+
+        return ActionChains(self.driver)
+
+    def state(self) -> str | None:
+        return self.script("return document.body.dataset.ready")
+
+    def script(self, source: str, *arguments):
+        return self.driver.execute_script(source, *arguments)
+
+    def find(self, selector: str, run: int | None = None):
+        scope = "" if run is None else f".run[data-run='{run}'] "
+        return self.driver.find_element("css selector", scope + selector)
+
+    def text(self, selector: str, run: int | None = None) -> str:
+        return self.find(selector, run).text
+
+    def number(self, selector: str, run: int | None = None) -> float:
+        return number(self.text(selector, run))
+
+    def time(self) -> float:
+        return number(self.text("#clock"))
+
+    def click(self, selector: str) -> None:
+        self.find(selector).click()
+
+    def press(self, *names: str) -> None:
+        from selenium.webdriver.common.keys import Keys
+
+        keys = [getattr(Keys, name, name) for name in names]
+        self.actions().send_keys(*keys).perform()
+        self.settle()
+
+    def choose(self, selector: str, value: str) -> None:
+        from selenium.webdriver.support.ui import Select
+
+        Select(self.find(selector)).select_by_value(value)
+        self.settle()
+
+    def click_at(self, selector: str, share: float) -> None:
+        """Click at a share of an element's width, at half its height."""
+        element = self.find(selector)
+        x = (share - 0.5) * element.size["width"]
+        self.actions().move_to_element_with_offset(element, round(x), 0).click().perform()
+        self.settle()
+
+    def point_at(self, run: int, x: float, y: float) -> None:
+        """Move the pointer to a place on a run's canvas."""
+        canvas = self.find("canvas", run)
+        x, y = x - canvas.size["width"] / 2, y - canvas.size["height"] / 2
+        move = self.actions().move_to_element_with_offset(canvas, round(x), round(y))
+        move.perform()
+        self.settle()
+
+    def settle(self) -> None:
+        """Wait until what was asked for is drawn."""
+        self.driver.execute_async_script(
+            "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done))"
+        )
+
+    def pixels(self, run: int, x_cm: float, y_cm: float, outer_cm: float) -> tuple[float, float]:
+        """Where a point of the pool is on a run's canvas."""
+        size = self.find("canvas", run).size
+        scale = min(size["width"], size["height"]) * (0.5 - 0.022) / outer_cm
+        return size["width"] / 2 + x_cm * scale, size["height"] / 2 - y_cm * scale
+
+    def color(self, run: int, x: float, y: float) -> tuple[int, ...]:
+        source = """
+            const canvas = document.querySelector(`.run[data-run="${arguments[0]}"] canvas`);
+            const ratio = canvas.width / canvas.clientWidth;
+            const place = [Math.round(arguments[1] * ratio), Math.round(arguments[2] * ratio)];
+            return Array.from(canvas.getContext("2d").getImageData(...place, 1, 1).data)"""
+        return tuple(self.script(source, run, x, y))[:3]
+
+    def picture(self, selector: str) -> str:
+        return self.script("return document.querySelector(arguments[0]).toDataURL()", selector)
+
+
+def number(text: str) -> float:
+    """The number that a text begins with."""
+    word = text.split()[0].replace("−", "-")
+    return math.nan if word == "–" else float(word)

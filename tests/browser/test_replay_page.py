@@ -1,0 +1,311 @@
+"""Law: a replay shows what the recording says, does what is clicked, and asks no network."""
+
+import dataclasses
+import json
+import time
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv.replay import MOST_BYTES, write_replay
+
+pytestmark = pytest.mark.browser
+
+OUTER_CM = 90.0
+NORMAL, LEADER, FORCE = (0x00, 0x72, 0xB2), (0xF0, 0xA2, 0x02), (0xC2, 0x18, 0x5B)
+LAST_DIGIT = 0.0051
+
+
+@pytest.fixture
+def page(open_page, pages):
+    return open_page(pages / "one.html")
+
+
+@pytest.fixture
+def pair(open_page, pages):
+    return open_page(pages / "two.html")
+
+
+def sample(page, recording: flockenv.Recording) -> int:
+    return int(np.searchsorted(recording.time_s, page.time() + 1e-6, side="right")) - 1
+
+
+def check_numbers(page, recording: flockenv.Recording, run: int = 0) -> None:
+    k = min(sample(page, recording), len(recording) - 1)
+    signed = recording.order.signed_order(recording.parameters.target)
+    assert page.number(".time", run) == pytest.approx(recording.time_s[k], abs=0.051)
+    assert page.number(".psi", run) == pytest.approx(
+        recording.order.psi_o[k], abs=LAST_DIGIT + 5e-4
+    )
+    assert page.number(".phi", run) == pytest.approx(
+        recording.order.phi_o[k], abs=LAST_DIGIT + 1e-3
+    )
+    assert page.number(".signed", run) == pytest.approx(signed[k], abs=LAST_DIGIT + 5e-4)
+    assert page.text(".phase.now", run) == recording.phase[k]
+
+
+def place_of(page, recording: flockenv.Recording, boat: int) -> tuple[float, float]:
+    x, y, _ = recording.pose[sample(page, recording), boat]
+    return page.pixels(0, x, y, OUTER_CM)
+
+
+def test_it_opens_without_a_network_or_a_complaint(page, law):
+    assert page.state() == "true"
+    assert page.driver.title == "law – flockenv replay"
+    assert "seed 7" in page.text(".facts", 0)
+    assert f"flockenv {law.version}" in page.text(".facts", 0)
+    page.click("#play")
+    time.sleep(0.5)
+    assert page.driver.get_log("browser") == []
+    log = [json.loads(entry["message"])["message"] for entry in page.driver.get_log("performance")]
+    asked = [
+        each["params"]["request"]["url"]
+        for each in log
+        if each["method"] == "Network.requestWillBeSent"
+    ]
+    assert asked
+    assert [url for url in asked if not url.startswith(("file:", "data:", "blob:"))] == []
+
+
+def test_its_policy_forbids_the_network(page):
+    source = """
+        const done = arguments[0];
+        fetch("http://127.0.0.1:9/").then(() => done("sent"), () => done("refused"))"""
+    assert page.driver.execute_async_script(source) == "refused"
+    log = " ".join(entry["message"] for entry in page.driver.get_log("browser"))
+    assert "Content Security Policy" in log
+
+
+def test_scrubbing_shows_the_recordings_numbers(page, law):
+    check_numbers(page, law)
+    seen = set()
+    for share in (0.1, 0.33, 0.5, 0.77, 0.95):
+        page.click_at("#scrub", share)
+        assert page.time() == pytest.approx(share * 120.0, abs=3.0)
+        check_numbers(page, law)
+        seen.add(page.text(".psi", 0))
+    assert len(seen) > 2
+
+
+def test_play_keeps_real_time_and_pauses(page, law):
+    page.click("#play")
+    assert page.find("#play").get_attribute("aria-label") == "Pause"
+    time.sleep(1.5)
+    page.click("#play")
+    stopped = page.time()
+    assert 1.0 <= stopped <= 3.0
+    time.sleep(0.3)
+    assert page.time() == stopped
+    check_numbers(page, law)
+
+
+def test_speed(page):
+    page.choose("#speed", "16")
+    page.click("#play")
+    time.sleep(1.5)
+    page.click("#play")
+    assert 16.0 <= page.time() <= 48.0
+
+
+def test_it_stops_at_the_end_and_begins_again(page):
+    page.press("END")
+    assert page.time() == 120.0
+    page.click("#play")
+    time.sleep(0.3)
+    assert page.time() < 5.0
+
+
+def test_steps_and_keys(page, law):
+    page.click("#forward")
+    page.settle()
+    assert page.time() == 0.1
+    page.press("ARROW_RIGHT", "ARROW_RIGHT")
+    assert page.time() == 0.3
+    page.press("ARROW_LEFT")
+    assert page.time() == 0.2
+    page.click("#back")
+    page.settle()
+    assert page.time() == 0.1
+    page.press("+")
+    assert page.find("#speed").get_attribute("value") == "2"
+    page.press("HOME")
+    assert page.time() == 0.0
+    page.script("document.activeElement.blur()")
+    page.press(" ")
+    assert page.find("#play").get_attribute("aria-label") == "Pause"
+    page.press(" ")
+    assert page.find("#play").get_attribute("aria-label") == "Play"
+    check_numbers(page, law)
+
+
+def test_boats_are_drawn_where_they_are(page, law):
+    page.choose("#trails", "0")
+    page.click("#forces")
+    for share in (0.2, 0.6):
+        page.click_at("#scrub", share)
+        page.press("ARROW_LEFT")
+        for boat, (x, y, heading) in enumerate(law.pose[sample(page, law)]):
+            # Towards the stern there is no direction mark.
+            stern = (x - 4 * np.cos(heading), y - 4 * np.sin(heading))
+            color = page.color(0, *page.pixels(0, *stern, OUTER_CM))
+            assert color == (LEADER if boat < 2 else NORMAL)
+
+
+def test_hovering_tells_a_boats_numbers(page, law):
+    page.click_at("#scrub", 0.6)
+    page.press("ARROW_LEFT")
+    k = sample(page, law)
+    for boat in (0, 7):
+        page.point_at(0, *place_of(page, law, boat))
+        assert page.text(".card .head", 0).split()[:2] == ["boat", str(boat)]
+        assert ("leader" in page.text(".card .head", 0)) == (boat < 2)
+        x, y, heading = law.pose[k, boat]
+        speed, turning = np.hypot(*law.velocity[k, boat, :2]), law.velocity[k, boat, 2]
+        read = {
+            name: page.number(f"dd[data-number='{name}']", 0)
+            for name in ("x", "y", "heading", "speed", "turning", "contacts", "strongest push")
+        }
+        assert (read["x"], read["y"]) == pytest.approx((x, y), abs=0.056)
+        assert np.cos(read["heading"] - heading) == pytest.approx(1.0, abs=1e-4)
+        assert read["speed"] == pytest.approx(speed, abs=0.076)
+        assert read["turning"] == pytest.approx(turning, abs=0.0076)
+        first = law.contacts.count[:k].sum()
+        now = slice(first, first + law.contacts.count[k])
+        touches = (law.contacts.i[now] == boat) | (law.contacts.j[now] == boat)
+        assert read["contacts"] == touches.sum()
+        strongest = law.contacts.force[now][touches].max(initial=0.0)
+        assert read["strongest push"] == pytest.approx(strongest, abs=0.11)
+    page.point_at(0, 5, 300)
+    assert not page.find(".card", 0).is_displayed()
+
+
+def test_a_click_keeps_a_boats_numbers(page, law):
+    page.point_at(0, *place_of(page, law, 3))
+    page.actions().click().perform()
+    page.point_at(0, 5, 300)
+    page.click_at("#scrub", 0.9)
+    assert page.text(".card .head", 0) == "boat 3"
+    page.press("ARROW_LEFT")
+    x = law.pose[sample(page, law), 3, 0]
+    assert page.number("dd[data-number='x']", 0) == pytest.approx(x, abs=0.056)
+    page.press("]")
+    assert page.text(".card .head", 0) == "boat 4"
+    page.press("ESCAPE")
+    assert not page.find(".card", 0).is_displayed()
+
+
+def test_forces_are_drawn_where_hulls_touch(page, law):
+    counts = law.contacts.count
+    ends = np.cumsum(counts)
+    strong = [
+        (k, c)
+        for k in range(400, 1200)
+        for c in range(ends[k] - counts[k], ends[k])
+        if 10.0 < law.contacts.force[c] < 60.0
+    ]
+    k, c = strong[len(strong) // 2]
+    page.script("player.seek(arguments[0])", law.time_s[k])
+    page.settle()
+    place = page.pixels(0, *map(float, law.contacts.point_cm[c]), OUTER_CM)
+    assert page.color(0, *place) == FORCE
+    page.click("#forces")
+    page.settle()
+    assert page.color(0, *place) != FORCE
+
+
+def test_trails_can_be_switched_off(page):
+    page.press("END")
+    with_trails = page.picture(".run canvas")
+    page.choose("#trails", "0")
+    assert page.picture(".run canvas") != with_trails
+
+
+def test_the_chart_follows_and_leads(page, law):
+    before = page.picture("#overview")
+    page.click_at("#overview", 0.5)
+    # Clicked in the middle of the canvas, of which the axis takes 40 pixels and the edge 10.
+    width = page.find("#overview").size["width"]
+    assert page.time() == pytest.approx(120.0 * (0.5 * width - 40) / (width - 50), abs=0.5)
+    assert page.picture("#overview") != before
+    check_numbers(page, law)
+    for key in ("psi_o", "psi_v", "c_v"):
+        page.choose("#quantity", key)
+        value = getattr(law.order, key)[sample(page, law)]
+        decimals = len(page.text("#legend b").partition(".")[2])
+        shown = page.number("#legend b")
+        assert shown == pytest.approx(value, abs=0.5 * 10.0**-decimals + 0.03)
+
+
+def test_two_runs_side_by_side(pair, law, damped):
+    assert [pair.text(".name", run) for run in (0, 1)] == ["law", "damped"]
+    assert pair.find(".run[data-run='0']").rect["y"] == pair.find(".run[data-run='1']").rect["y"]
+    pair.click_at("#scrub", 0.5)
+    pair.press("ARROW_LEFT")
+    check_numbers(pair, law, 0)
+    check_numbers(pair, damped, 1)
+    assert law.order.psi_o[600] != damped.order.psi_o[600]
+    pair.point_at(0, *place_of(pair, law, 4))
+    heads = [pair.text(".card .head", run) for run in (0, 1)]
+    assert heads == ["boat 4", "boat 4"]
+    # The shorter run stays at its end.
+    pair.press("END")
+    assert pair.time() == 120.0
+    assert pair.number(".time", 1) == 90.0
+    check_numbers(pair, damped, 1)
+
+
+def test_recorded_words_are_not_run(open_page, law, tmp_path):
+    evil = (
+        "</script><script>window.hacked=1</script><img src=x onerror='window.hacked=2'>{{script}}"
+    )
+    run = dataclasses.replace(law, version=evil)
+    write_replay(tmp_path / "evil.html", {evil: run, f"{evil}2": law})
+    page = open_page(tmp_path / "evil.html")
+    assert page.state() == "true"
+    assert page.script("return window.hacked") is None
+    assert page.text(".name", 0) == evil
+    assert page.text(".facts", 0) == f"seed 7 · flockenv {evil}"
+    assert page.script("return document.images.length") == 0
+
+
+def test_a_damaged_page_says_so(open_page, pages, tmp_path):
+    text = (pages / "one.html").read_text()
+    place = text.index('"data":"') + 1000
+    damaged = tmp_path / "damaged.html"
+    damaged.write_text(text[:place] + ("A" * 400) + text[place + 400 :])
+    page = open_page(damaged)
+    assert page.state() == "failed"
+    assert "damaged" in page.text("#note")
+
+
+def test_without_contacts_or_normal_boats(open_page, scene, tmp_path):
+    run = flockenv.simulate(scene.replace(n_boats=2), 1, 5.0)
+    write_replay(tmp_path / "leaders.html", {"leaders": run})
+    page = open_page(tmp_path / "leaders.html")
+    assert page.state() == "true"
+    assert not page.find("#forces").is_enabled()
+    assert page.text(".psi", 0) == "–"
+    assert page.driver.get_log("browser") == []
+
+
+def test_an_hour_opens_at_once_and_scrubs_smoothly(open_page, scene, tmp_path):
+    scene = scene.replace(n_boats=27, n_leaders=3, pool="500-boats", bw_s=0.3)
+    run = flockenv.simulate(scene, 7, 3600.0, contacts=True)
+    assert write_replay(tmp_path / "hour.html", {"hour": run}).every == 1
+    assert (tmp_path / "hour.html").stat().st_size < MOST_BYTES
+    begin = time.perf_counter()
+    page = open_page(tmp_path / "hour.html")
+    assert time.perf_counter() - begin < 10.0
+    source = """
+        const scrub = document.getElementById("scrub");
+        const begin = performance.now();
+        for (let k = 0; k < 100; k += 1) {
+          scrub.value = 3600 * ((k * 0.618) % 1);
+          scrub.dispatchEvent(new Event("input"));
+          player.show();
+        }
+        return (performance.now() - begin) / 100"""
+    assert page.script(source) < 40.0
+    page.click_at("#scrub", 0.7)
+    check_numbers(page, run)

@@ -1,0 +1,122 @@
+"""`flockenv run` and `flockenv replay`: what they write is what was asked for, and whole."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import flockenv
+
+COMMAND = [sys.executable, "-c", "from flockenv.cli import main; main()"]
+SMALL = ["--set", "n_boats=8", "--set", "n_leaders=2", "--set", "pool=table-1", "--minutes", "0.2"]
+
+
+def command(*arguments: object) -> subprocess.CompletedProcess[str]:
+    words = [*COMMAND, *map(str, arguments)]
+    return subprocess.run(words, capture_output=True, text=True, timeout=120)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory) -> Path:
+    out = tmp_path_factory.mktemp("runs") / "law.npz"
+    done = command("run", *SMALL, "--seed", "7", "--out", out)
+    assert done.returncode == 0, done.stderr
+    assert f"flockenv replay {out}" in done.stdout.replace("\n", "")
+    return out
+
+
+def test_the_recording_is_what_simulate_returns(run):
+    scene = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="table-1")
+    assert flockenv.Recording.load(run) == flockenv.simulate(scene, 7, 12.0, contacts=True)
+
+
+def test_the_parameters_beside_it_run_it_again(run, tmp_path):
+    again = tmp_path / "again.npz"
+    toml = run.with_suffix(".toml")
+    done = command("run", "--params", toml, "--minutes", "0.2", "--seed", "7", "--out", again)
+    assert done.returncode == 0, done.stderr
+    assert flockenv.Recording.load(again) == flockenv.Recording.load(run)
+    assert "seed 7, policy law" in toml.read_text()
+
+
+def test_json_is_all_that_is_printed(tmp_path):
+    out = tmp_path / "run.npz"
+    policy = ["--policy", "damped law", "--no-contacts", "--hz", "5"]
+    done = command("run", *SMALL, *policy, "--json", "--out", out)
+    assert done.stderr == ""
+    summary = json.loads(done.stdout)
+    recording = flockenv.Recording.load(out)
+    assert recording.contacts is None
+    assert summary["samples"] == len(recording) == 61
+    late = recording.in_analysis_window & (recording.time_s > 1.2)
+    assert summary["psi_o"] == recording.order.psi_o[late].mean()
+    assert summary["recording"] == str(out)
+
+
+def test_replay_writes_a_page_beside_the_recording(run, tmp_path):
+    done = command("replay", run, "--json")
+    assert done.stderr == ""
+    written = json.loads(done.stdout)
+    page = run.with_suffix(".html")
+    assert written == {"html": str(page), "bytes": page.stat().st_size, "every": 1}
+    pair = tmp_path / "sub" / "pair.html"
+    done = command("replay", run, run, "--html", pair)
+    assert done.returncode == 0, done.stderr
+    assert "<title>law (1) and law (2) – flockenv replay</title>" in pair.read_text()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["run", "--set", "n_bots=3"], "n_boats"),
+        (["run", "--preset", "simulaton"], "simulation"),
+        (["run", "--policy", "dampd law"], "damped law"),
+        (["run", "--policy", "{}/none.npz"], "cannot be read"),
+        (["run", "--policy", "{}/good.npz"], "good.npz"),
+        (["run", "--out", "{}/run.txt"], ".npz"),
+        (["run", "--out", "/proc/none/run.npz"], "cannot be written"),
+        (["run", "--hz", "0"], "sample_hz"),
+        (["run", "--set", "target=[/nothing]"], "target"),
+        (["run", "--params", "{}/none.toml"], "cannot be read"),
+        (["replay", "{}/none.npz"], "cannot be read"),
+        (["replay", "{}/damaged.npz"], "damaged.npz"),
+        (["replay", "{}/other.npz", "--html", "{}/x.html"], "other.npz"),
+        (["replay", "{}/good.npz", "--html", "{}/page.png"], ".html"),
+        (["replay", "{}/good.npz", "--name", "a", "--name", "b"], "2 times for 1"),
+    ],
+)
+def test_errors_are_named_with_exit_code_2(arguments, words, run, tmp_path):
+    good = run.read_bytes()
+    (tmp_path / "good.npz").write_bytes(good)
+    (tmp_path / "damaged.npz").write_bytes(good[:3000] + bytes(200) + good[3200:])
+    (tmp_path / "other.npz").write_bytes(b"PK\5\6" + bytes(18))
+    before = sorted(tmp_path.iterdir())
+    done = command(*(word.replace("{}", str(tmp_path)) for word in arguments), "--quiet")
+    assert done.returncode == 2
+    assert words in done.stderr
+    assert "Traceback" not in done.stderr
+    assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize("policy", ["law", "steering law"])
+def test_ctrl_c_says_what_became_of_the_work(policy, tmp_path):
+    out = tmp_path / "sub" / "run.npz"
+    long = ["run", "--minutes", "6000", "--hz", "0.01", "--policy", policy, "--set", "n_leaders=1"]
+    process = subprocess.Popen(
+        [*COMMAND, *long, "--quiet", "--out", str(out)], stderr=subprocess.PIPE, text=True
+    )
+    # The folder is made right before the run begins.
+    deadline = time.monotonic() + 60.0
+    while not out.parent.exists() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    time.sleep(1.0)
+    process.send_signal(signal.SIGINT)
+    _, told = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert "Nothing was written" in told
+    assert "Traceback" not in told
+    assert list(out.parent.iterdir()) == []

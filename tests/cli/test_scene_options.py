@@ -1,0 +1,86 @@
+"""Law: a scene is a preset, then a file, then single fields; what is wrong has a name."""
+
+import pytest
+
+import flockenv
+from flockenv.cli.scene import read_scene, save_scene
+
+SIMULATION = flockenv.FlockParameters()
+
+
+def test_nothing_asked_for_is_the_preset_simulation():
+    assert read_scene() == SIMULATION
+    assert read_scene("paper") == flockenv.FlockParameters.preset("paper")
+
+
+@pytest.mark.parametrize(
+    ("change", "field", "value"),
+    [
+        ("n_boats=27", "n_boats", 27),
+        (" bw_s = 0.25 ", "bw_s", 0.25),
+        ("bw_s=0", "bw_s", 0.0),
+        ("pool=table-1", "pool", "table-1"),
+        ('pool="table-1"', "pool", "table-1"),
+        ("pool=[200, 10]", "pool", (200.0, 10.0)),
+        ("pool=[inf, 0]", "pool", (float("inf"), 0.0)),
+        ("target=ccw", "target", "ccw"),
+        ("leaders_reverse=false", "leaders_reverse", False),
+    ],
+)
+def test_values_are_those_of_toml_and_words(change, field, value):
+    assert read_scene(changes=[change]) == SIMULATION.replace(**{field: value})
+
+
+def test_a_file_then_fields(tmp_path):
+    file = tmp_path / "scene.toml"
+    file.write_text('preset = "paper"\nn_boats = 12\nbw_s = 0.1\n')
+    paper = flockenv.FlockParameters.preset("paper")
+    assert read_scene(file=file) == paper.replace(n_boats=12, bw_s=0.1)
+    assert read_scene("paper", file, ["bw_s=0.2"]) == paper.replace(n_boats=12, bw_s=0.2)
+    with pytest.raises(flockenv.ParameterError, match="contradicts preset = 'paper'"):
+        read_scene("simulation", file)
+
+
+def test_what_is_saved_is_read(tmp_path):
+    scene = SIMULATION.replace(pool=(123.0, 4.5), n_boats=3, bw_s=0.7)
+    save_scene(tmp_path / "scene.toml", scene, "seed 7\nn_boats = 99")
+    assert read_scene(file=tmp_path / "scene.toml") == scene
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        (["n_bots=3"], "did you mean 'n_boats'"),
+        (["n_boats"], "FIELD=VALUE"),
+        (["=3"], "FIELD=VALUE"),
+        (["n_boats="], "FIELD=VALUE"),
+        (["n_boats=3", "n_boats=4"], "n_boats twice"),
+        (["n_boats=three"], "n_boats"),
+        (["n_boats=-1"], "n_boats"),
+        (["bw_s=nan"], "bw_s"),
+        (["bw_s=1\nn_boats=2"], "bw_s"),
+        (["pool=bath"], "500-boats"),
+    ],
+)
+def test_bad_changes_are_named(changes, words):
+    with pytest.raises(flockenv.ParameterError, match=words):
+        read_scene(changes=changes)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"n_boats = ", "is no TOML"),
+        (b"\xff\xfe", "is no TOML"),
+        (b"n_bots = 3", "did you mean 'n_boats'"),
+        (b"preset = 3", "preset"),
+        (b"preset = 'papr'", "paper"),
+        (None, "cannot be read"),
+    ],
+)
+def test_bad_files_are_named(content, words, tmp_path):
+    file = tmp_path / "scene.toml"
+    if content is not None:
+        file.write_bytes(content)
+    with pytest.raises(flockenv.ParameterError, match=words):
+        read_scene(file=file)

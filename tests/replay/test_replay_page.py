@@ -1,0 +1,77 @@
+"""Law: a page is one file that loads nothing, holds its size, and says what was recorded."""
+
+import base64
+import hashlib
+import re
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv.replay import MOST_BYTES, page, write_replay
+
+SCENE = flockenv.FlockParameters(n_boats=27, n_leaders=3, bw_s=0.3)
+
+
+@pytest.fixture(scope="module")
+def hour():
+    return flockenv.simulate(SCENE, 7, 3600.0, contacts=True)
+
+
+def test_an_hour_is_under_the_limit_with_every_sample(hour, tmp_path):
+    jam = SCENE.replace(pool="table-1", bw_s=0.0)
+    crowded = flockenv.simulate(jam, 7, 3600.0, contacts=True)
+    for name, run in (("moving", hour), ("jam", crowded)):
+        written = write_replay(tmp_path / f"{name}.html", {name: run})
+        size = (tmp_path / f"{name}.html").stat().st_size
+        assert written.size == size < MOST_BYTES
+        assert written.every == 1
+
+
+def test_two_hours_side_by_side_are_under_it_too(hour, tmp_path):
+    written = write_replay(tmp_path / "pair.html", {"a": hour, "b": hour})
+    assert written.size < MOST_BYTES
+    assert written.every == 1
+
+
+def test_what_does_not_fit_is_thinned(hour, tmp_path, monkeypatch):
+    monkeypatch.setattr(page, "MOST_BYTES", 2_000_000)
+    written = write_replay(tmp_path / "thin.html", {"thin": hour})
+    assert written.size <= 2_000_000
+    assert written.every > 1
+    monkeypatch.setattr(page, "MOST_BYTES", 10_000)
+    with pytest.raises(flockenv.ParameterError, match="do not fit a page of 10000 bytes"):
+        write_replay(tmp_path / "none.html", {"none": hour})
+    assert not (tmp_path / "none.html").exists()
+
+
+def test_nothing_is_loaded_and_only_its_own_script_runs(tmp_path):
+    write_replay(tmp_path / "run.html", {"run": flockenv.simulate(SCENE, 7, 1.0)})
+    text = (tmp_path / "run.html").read_text("utf-8")
+    assert re.findall(r"https?:|//[a-z]+\.|@import|url\(", text) == []
+    policy = re.search(r'Content-Security-Policy" content="([^"]*)"', text)[1]
+    assert "default-src 'none'" in policy
+    script = re.search(r"<script>(.*?)</script>", text, re.DOTALL)[1]
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    assert f"script-src 'sha256-{digest}'" in policy
+
+
+def test_words_cannot_leave_their_place(tmp_path):
+    run = flockenv.simulate(SCENE, 7, 1.0)
+    write_replay(tmp_path / "run.html", {"</script><b>&{{script}}": run})
+    text = (tmp_path / "run.html").read_text("utf-8")
+    assert text.count("</script>") == 2
+    assert "<b>" not in text
+    assert text.count("class Player") == 1
+
+
+@pytest.mark.parametrize("count", [0, 3])
+def test_one_or_two_recordings(count, tmp_path):
+    run = flockenv.simulate(SCENE, 7, 1.0)
+    with pytest.raises(flockenv.ParameterError, match=f"{count} recordings"):
+        write_replay(tmp_path / "x.html", {str(k): run for k in range(count)})
+
+
+def test_open_water_far_out_and_one_sample(tmp_path):
+    scene = SCENE.replace(pool=(np.inf, 0.0), n_leaders=0)
+    assert write_replay(tmp_path / "x.html", {"x": flockenv.simulate(scene, 7, 0.0)}).every == 1
