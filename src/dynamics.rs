@@ -231,14 +231,19 @@ impl Dynamics {
         touches
     }
 
+    /// Preferred speed in a phase, in cm/s, before the spread between boats.
+    fn preferred_speed(&self, is_leader: bool, phase: Phase) -> f64 {
+        let p = &self.parameters;
+        match phase {
+            Phase::Forward => p.speed_cm_s,
+            Phase::Backward if !is_leader || p.leaders_reverse => -p.reverse_speed_cm_s,
+            Phase::Backward | Phase::DriftAfterForward | Phase::DriftAfterBackward => 0.0,
+        }
+    }
+
     /// Preferred speed of a boat in a phase, in cm/s.
     pub(crate) fn thrust(&self, boat: usize, phase: Phase) -> f64 {
-        let p = &self.parameters;
-        let speed = match phase {
-            Phase::Forward => p.speed_cm_s,
-            Phase::Backward if boat >= p.n_leaders || p.leaders_reverse => -p.reverse_speed_cm_s,
-            Phase::Backward | Phase::DriftAfterForward | Phase::DriftAfterBackward => 0.0,
-        };
+        let speed = self.preferred_speed(boat < self.parameters.n_leaders, phase);
         self.speed_factors
             .get(boat)
             .map_or(speed, |factor| speed * factor)
@@ -272,14 +277,21 @@ impl Dynamics {
 
     /// Fills `drives` for a substep: thrust and rudder of its phase, water, noise kicks.
     pub(crate) fn fill_drives(&mut self, substep: &Substep) {
+        let normal = Drive {
+            thrust: self.preferred_speed(false, substep.phase),
+            rudder: self.parameters.turning_bias,
+            water: Vec2::zeros(),
+            kick: 0.0,
+        };
         self.drives.clear();
-        for boat in 0..self.poses.len() {
-            self.drives.push(Drive {
-                thrust: self.thrust(boat, substep.phase),
-                rudder: self.rudder(boat, substep.steering),
-                water: Vec2::zeros(),
-                kick: self.kicks[boat],
-            });
+        self.drives
+            .extend(self.kicks.iter().map(|&kick| Drive { kick, ..normal }));
+        for leader in 0..self.parameters.n_leaders {
+            self.drives[leader].thrust = self.preferred_speed(true, substep.phase);
+            self.drives[leader].rudder = self.rudder(leader, substep.steering);
+        }
+        for (drive, factor) in self.drives.iter_mut().zip(&self.speed_factors) {
+            drive.thrust *= factor;
         }
         self.fill_water(|dynamics, boat| dynamics.velocities[boat].linear);
     }

@@ -7,6 +7,7 @@ use crate::geometry::{
     pair_gaps,
 };
 use crate::parameters::{FlockParameters, Pool};
+use std::ops::RangeInclusive;
 
 /// Geometry of a scene: hulls, walls and the neighbour list.
 #[derive(Debug, Clone)]
@@ -53,9 +54,14 @@ impl ContactDetector {
         let distance = 2.0 * self.hull.reach() + margin;
         self.neighbors
             .update(boats.iter().map(|boat| boat.center), distance, self.skin);
+        // Of a boat and a wall only one moves.
+        let wall_margin = 0.5 * margin;
+        let open = self.open_water(wall_margin);
         for (boat, partners) in self.neighbors.groups() {
-            // Of a boat and a wall only one moves.
-            self.detect_walls(boat, &boats[boat as usize], 0.5 * margin, contacts);
+            let pose = &boats[boat as usize];
+            if !open.contains(&pose.center.norm_squared()) {
+                self.detect_walls(boat, pose, wall_margin, contacts);
+            }
             for &partner in partners {
                 let (first, second) = (boat.min(partner), boat.max(partner));
                 let (a, b) = (&boats[first as usize], &boats[second as usize]);
@@ -64,6 +70,20 @@ impl ContactDetector {
                 });
             }
         }
+    }
+
+    /// Squared distances from the pool's centre at which no wall is nearer than `margin`.
+    fn open_water(&self, margin: f64) -> RangeInclusive<f64> {
+        let square = |distance: f64| distance.max(0.0) * distance;
+        let reach = self.hull.reach() + margin;
+        let low = if self.pool.has_inner_wall() {
+            square(self.pool.inner_radius_cm + reach)
+        } else {
+            0.0
+        };
+        let high = self.pool.outer_radius_cm - reach;
+        // Nowhere, where the walls' margins meet in the middle.
+        low..=if high < 0.0 { -1.0 } else { square(high) }
     }
 
     fn detect_walls(&self, boat: u32, pose: &HullPose, margin: f64, contacts: &mut Vec<Contact>) {

@@ -60,17 +60,15 @@ impl HullPose {
     /// mathematical library.
     pub fn replace_all(into: &mut Vec<Self>, poses: &[Pose]) {
         into.clear();
-        let mut fours = poses.chunks_exact(4);
-        for four in &mut fours {
-            let headings = f64x4::new(std::array::from_fn(|k| four[k].heading));
-            let (sin, cos) = headings.sin_cos();
-            let (sin, cos) = (sin.as_array(), cos.as_array());
-            into.extend((0..4).map(|k| Self {
-                center: four[k].position,
-                axis: Vec2::new(cos[k], sin[k]),
+        for four in poses.chunks(4) {
+            let heading = |k: usize| four.get(k).map_or(0.0, |pose| pose.heading);
+            let (sin, cos) = f64x4::new(std::array::from_fn(heading)).sin_cos();
+            let axes = cos.as_array().iter().zip(sin.as_array());
+            into.extend(four.iter().zip(axes).map(|(pose, (&cos, &sin))| Self {
+                center: pose.position,
+                axis: Vec2::new(cos, sin),
             }));
         }
-        into.extend(fours.remainder().iter().map(Self::new));
     }
 
     /// The end of the core segment at the bow (`side` +1) or stern (−1).
