@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from flockenv import ParameterError
-from flockenv.cli.console import console, errors, progress_bar
+from flockenv.cli.console import console, errors, progress_bar, say
 
 __all__ = ["train"]
 
@@ -78,12 +78,8 @@ def train(
         console.print_json(data={**last, **best, "policy": str(out / "best.npz")})
         return
     for name, value in progress.validations[-1].items():
-        console.print(f"{name}: {value:g}", highlight=False)
-    console.print(
-        f"Best mean signed order {progress.best_score:.3f}: {out / 'best.npz'}",
-        highlight=False,
-        soft_wrap=True,
-    )
+        say(f"{name}: {value:g}")
+    say(f"Best mean signed order {progress.best_score:.3f}: {out / 'best.npz'}")
 
 
 def _settings(path: Path | None, change: list[str], samples: int | None, seed: int | None) -> Any:
@@ -112,4 +108,4 @@ def _tell_interrupted(out: Path) -> None:
         words = f"Interrupted. The last checkpoint is kept: flockenv train --resume --out {out}"
     else:
         words = "Interrupted before the first checkpoint: start again."
-    errors.print(words, highlight=False, soft_wrap=True)
+    say(words, errors)

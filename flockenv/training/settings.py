@@ -124,6 +124,9 @@ class TrainingSettings:
                 f"batch_size = {self.batch_size!r} is not accepted: it must divide the "
                 f"{self.rollout_samples} samples of a rollout (n_steps x leaders of all flocks)"
             )
+        for name in self.options:
+            if name in _NOT_OPTIONS:
+                raise ParameterError(f"options: {name!r} is not accepted: another setting rules it")
         for pool in self.pools:
             EnvOptions.parse({**self.environment(pool), "n_leaders": max(self.n_leaders)})
 
@@ -204,6 +207,15 @@ class TrainingSettings:
             raise ParameterError(f"settings are not TOML: {error}") from error
 
 
+#: Settings of their own, and what the network's output does not fit.
+_NOT_OPTIONS = (
+    *(each.name for each in fields(TrainingSettings)),
+    "pool",
+    "params",
+    "bw_s",
+    "rudder_levels",
+    "render_mode",
+)
 _CHOICES: Mapping[str, tuple[str, ...]] = {
     "target": ("random", "cw", "ccw", "alternate"),
     "activation": tuple(ACTIVATIONS),

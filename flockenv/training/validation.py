@@ -26,11 +26,10 @@ def validation_scores(policy: LeaderPolicy, settings: TrainingSettings) -> dict[
     """
     first = training_seed(_FIRST_NUMBER)
     seeds = range(first, first + settings.validation_episodes)
+    options = {**settings.options, "control_hz": settings.validation_hz}
     scores = {}
     for name, scene in _scenes(settings):
-        found = run_episodes(
-            scene, policy, seeds, settings.validation_s, control_hz=settings.validation_hz
-        )
+        found = run_episodes(scene, policy, seeds, settings.validation_s, options=options)
         scores[name] = float(np.mean(found["signed_order"]))
     return scores
 

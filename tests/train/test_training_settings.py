@@ -33,6 +33,8 @@ def test_toml_round_trip(tiny: TrainingSettings) -> None:
         ({"reward": {"order": 1.0}}, "order"),
         ({"reward": 1.0}, "a table"),
         ({"options": {"delay": 1}}, "delay"),
+        ({"options": {"rudder_levels": 3}}, "rudder_levels"),
+        ({"options": {"episode_s": 3.0}}, "another setting"),
         ({"activation": "gelu"}, "tanh"),
         ({"use_sde": 1}, "true or false"),
         ({"start": 3}, "a text"),
