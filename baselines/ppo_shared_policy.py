@@ -54,8 +54,6 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--out", type=Path, default=Path("results/ppo_shared_policy"))
     parser.add_argument("--resume", action="store_true")
     options = parser.parse_args(arguments)
-    given = sys.argv[1:] if arguments is None else arguments
-    command = shlex.join(["python", "baselines/ppo_shared_policy.py", *given])
 
     def report(progress: training.Progress) -> None:
         best = "none yet" if progress.best_score is None else f"{progress.best_score:.3f}"
@@ -68,11 +66,11 @@ def main(arguments: list[str] | None = None) -> None:
 
     try:
         if options.resume:
-            result = training.resume(
-                options.out, samples=options.samples, command=command, report=report
-            )
+            result = training.resume(options.out, samples=options.samples, report=report)
         else:
             settings = SETTINGS.replace(samples=options.samples, seed=options.seed)
+            given = sys.argv[1:] if arguments is None else arguments
+            command = shlex.join(["python", "baselines/ppo_shared_policy.py", *given])
             result = training.train(settings, options.out, command=command, report=report)
     except KeyboardInterrupt:
         sys.exit(f"\nInterrupted: --resume goes on from the last checkpoint in {options.out}")

@@ -49,9 +49,8 @@ def train(
         raise ParameterError(
             "--resume takes settings from the checkpoint; only --samples may differ"
         )
-    command = shlex.join(["flockenv", *sys.argv[1:]])
     with progress_bar(quiet or as_json) as bar:
-        task = bar.add_task("samples", total=None)
+        task = bar.add_task("beginning", total=None)
 
         def report(progress: training.Progress) -> None:
             words = f"{progress.samples} samples"
@@ -63,10 +62,11 @@ def train(
             if resume:
                 wanted = training.stored_settings(out, samples)
                 bar.update(task, total=wanted.samples)
-                result = training.resume(out, samples=samples, command=command, report=report)
+                result = training.resume(out, samples=samples, report=report)
             else:
                 asked = _settings(settings, change or [], samples, seed)
                 bar.update(task, total=asked.samples)
+                command = shlex.join(["flockenv", *sys.argv[1:]])
                 result = training.train(asked, out, command=command, report=report)
         except KeyboardInterrupt:
             _tell_interrupted(out)

@@ -27,8 +27,9 @@ FORMAT = "flockenv checkpoint 1"
 
 @dataclass
 class Progress:
-    """How far a run is: samples, seconds, and what was measured on the way."""
+    """How far a run is: what began it, samples, seconds, and what was measured on the way."""
 
+    command: str = ""
     samples: int = 0
     wall_s: float = 0.0
     best_score: float | None = None

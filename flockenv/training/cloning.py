@@ -1,5 +1,6 @@
 """Behaviour cloning: a network that steers as a law does, for training to start from."""
 
+import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -64,6 +65,7 @@ def clone_law(
     asked = (dict(settings.observation), settings.mirror_to_target)
     if own != asked:
         raise ParameterError(f"the law's layout is {own!r}, that of the settings {asked!r}")
+    begin = time.perf_counter()
     generator = torch.Generator().manual_seed(settings.seed)
     rows, rudders = _visited(law, settings, samples)
     order = torch.randperm(len(rows), generator=generator).numpy()
@@ -73,7 +75,9 @@ def clone_law(
         network = _network(rows.shape[1], settings)
     _fit(network, rows[seen], rudders[seen], epochs, generator)
     layers = [layer for layer in network if isinstance(layer, torch.nn.Linear)]
-    made = made_by(command, seed=settings.seed, samples=len(rows), wall_s=0.0)
+    made = made_by(
+        command, seed=settings.seed, samples=len(rows), wall_s=time.perf_counter() - begin
+    )
     policy = NetworkPolicy(
         [layer.weight.detach().numpy().T for layer in layers],
         [layer.bias.detach().numpy() for layer in layers],

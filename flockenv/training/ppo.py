@@ -6,7 +6,7 @@ import math
 import time
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -97,22 +97,21 @@ def train(
     with _one_thread():
         model = _model(settings)
         start = _start(settings, command)
+        if start is not None:
+            copy_into_actor(start, _actor(model), settings)
         with _written(folder, Progress()):
             folder.mkdir(parents=True, exist_ok=True)
             with whole_file(folder / "settings.toml") as file:
                 file.write(settings.to_toml().encode())
             if start is not None:
                 start.save(folder / "start.npz")
-        if start is not None:
-            copy_into_actor(start, _actor(model), settings)
-        return _Run(model, settings, folder, Progress(), command, report).go_on()
+        return _Run(model, settings, folder, Progress(command), report).go_on()
 
 
 def resume(
     folder: Path,
     *,
     samples: int | None = None,
-    command: str = "",
     report: Report = lambda progress: None,
 ) -> TrainingResult:
     """Go on from a run's last checkpoint, exactly as if it had never stopped.
@@ -123,7 +122,7 @@ def resume(
         What was given to `train`. Loading its checkpoint executes nothing.
     samples
         When to stop, if not as in the settings.
-    command, report
+    report
         As for `train`.
 
     Raises
@@ -138,7 +137,7 @@ def resume(
     with _one_thread():
         model = _model(settings)
         progress = checkpoint.restore(folder / "checkpoint.npz", model)
-        return _Run(model, settings, folder, progress, command, report).go_on()
+        return _Run(model, settings, folder, progress, report).go_on()
 
 
 def stored_settings(folder: Path, samples: int | None = None) -> TrainingSettings:
@@ -159,11 +158,10 @@ class _Run:
         settings: TrainingSettings,
         folder: Path,
         progress: Progress,
-        command: str,
         report: Report,
     ) -> None:
         self.model, self.settings, self.folder = model, settings, folder
-        self.progress, self.command, self.report = progress, command, report
+        self.progress, self.report = progress, report
         self.begin = time.perf_counter() - progress.wall_s
         self.log = Logger(None, [])
 
@@ -178,8 +176,12 @@ class _Run:
         try:
             while self.progress.samples < self.settings.samples:
                 self._iterate()
+            if self.progress.best_score is None:  # resumed, to stop before any validation
+                self._validate()
         finally:
-            self.log.close()
+            # What a full disk kept from the logs has been told already, or hides nothing else.
+            with suppress(OSError):
+                self.log.close()
         best = load(self.folder / "best.npz")
         return TrainingResult(best, self.settings, self.progress, self.folder)
 
@@ -190,7 +192,7 @@ class _Run:
         progress.samples = self.model.num_timesteps
         progress.wall_s = time.perf_counter() - self.begin
         progress.curve.append({"samples": progress.samples, **told})
-        self.log.dump(progress.samples)
+        self._log()
         ends = progress.samples >= settings.samples
 
         def due(every: int) -> bool:
@@ -238,7 +240,7 @@ class _Run:
         score = sum(scores.values()) / len(scores)
         for name, value in {**scores, "mean": score}.items():
             self.log.record(f"validation/{name}", value)
-        self.log.dump(self.progress.samples)
+        self._log()
         row = {"samples": self.progress.samples, "mean": score, **scores}
         self.progress.validations.append(row)
         if self.progress.best_score is None or score > self.progress.best_score:
@@ -247,9 +249,13 @@ class _Run:
                 policy.save(self.folder / "best.npz")
             self.progress.best_score = score
 
+    def _log(self) -> None:
+        with _written(self.folder, self.progress):
+            self.log.dump(self.progress.samples)
+
     def _policy(self) -> NetworkPolicy:
         made = made_by(
-            self.command,
+            self.progress.command,
             seed=self.settings.seed,
             samples=self.progress.samples,
             wall_s=self.progress.wall_s,

@@ -108,7 +108,7 @@ class TrainingSettings:
     seed: int = 0
     start: str = ""
     checkpoint_every: int = 100_000
-    validate_every: int = 250_000
+    validate_every: int = 500_000
     validation_episodes: int = 8
     validation_s: float = 240.0
     validation_hz: float = 10.0

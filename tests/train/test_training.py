@@ -11,7 +11,8 @@ import torch
 import flockenv
 from flockenv import training
 from flockenv.policies import NetworkPolicy, load
-from flockenv.training import TrainingError, TrainingSettings, checkpoint, ppo
+from flockenv.seeds import FIRST_TRAINING_SEED
+from flockenv.training import TrainingError, TrainingSettings, checkpoint, ppo, validation
 from flockenv.training.actor import copy_into_actor, network_policy
 from flockenv.whole_file import whole_file
 
@@ -48,9 +49,9 @@ def test_resumed_is_uninterrupted(tiny: TrainingSettings, tmp_path: Path, use_sd
         final_learning_rate=1e-5,
         options={"dropout_rate": 0.2, "delay_frames": 1},
     )
-    training.train(settings, tmp_path / "whole")
+    training.train(settings, tmp_path / "whole", command="train")
     with pytest.raises(Killed):
-        training.train(settings, tmp_path / "killed", report=killed_after(576))
+        training.train(settings, tmp_path / "killed", command="train", report=killed_after(576))
     torch.manual_seed(99)
     np.random.seed(99)  # noqa: NPY002 - the generator that PPO shuffles with
     result = training.resume(tmp_path / "killed")
@@ -119,6 +120,7 @@ def test_a_start_that_does_not_fit_is_refused(tiny: TrainingSettings, tmp_path: 
     NetworkPolicy([np.zeros((size, 1))], [[0.0]]).save(path)
     with pytest.raises(flockenv.ParameterError, match="mirror_to_target"):
         training.train(tiny.replace(start=str(path), net_arch=[]), tmp_path / "run")
+    assert not (tmp_path / "run").exists()
 
 
 def test_a_start_of_another_observation_version_is_refused(
@@ -186,6 +188,26 @@ def test_a_loss_that_is_no_number_stops_before_the_next_checkpoint(
     assert training.resume(tmp_path, samples=384).progress.samples == 384
 
 
+def test_validations_use_the_same_seeds_and_none_that_claims_are_made_with(
+    tiny: TrainingSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen = []
+    run_episodes = validation.run_episodes
+
+    def watched(scene, policy, seeds, *arguments, **options):
+        seen.append((scene.pool, scene.n_leaders, tuple(seeds)))
+        return run_episodes(scene, policy, seeds, *arguments, **options)
+
+    monkeypatch.setattr(validation, "run_episodes", watched)
+    training.train(tiny, tmp_path)
+    assert seen[:4] == seen[4:]
+    assert len(set(seen)) == 4
+    seeds = {seed for _, _, each in seen for seed in each}
+    assert len(seeds) == tiny.validation_episodes
+    # Neither those of evaluations nor those of any training run.
+    assert min(seeds) > FIRST_TRAINING_SEED + 2**32 * 2**20
+
+
 def test_folders_are_not_mixed_up(tiny: TrainingSettings, tmp_path: Path) -> None:
     with pytest.raises(flockenv.ParameterError, match="no checkpoint"):
         training.resume(tmp_path)
@@ -208,6 +230,15 @@ def test_a_policy_is_no_checkpoint(tiny: TrainingSettings, tmp_path: Path) -> No
     (tmp_path / "best.npz").replace(tmp_path / "checkpoint.npz")
     with pytest.raises(flockenv.ParameterError, match="no checkpoint in the format"):
         training.resume(tmp_path)
+
+
+def test_a_run_that_is_cut_short_has_its_policy(tiny: TrainingSettings, tmp_path: Path) -> None:
+    with pytest.raises(Killed):
+        training.train(tiny, tmp_path, report=killed_after(192))
+    assert not (tmp_path / "best.npz").exists()
+    result = training.resume(tmp_path, samples=192)
+    assert result.progress.samples == 192
+    assert result.policy.made["samples"] == "192"
 
 
 def test_what_a_run_leaves(tiny: TrainingSettings, tmp_path: Path) -> None:
