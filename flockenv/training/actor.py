@@ -1,6 +1,7 @@
 """From a torch actor to a `NetworkPolicy` and back."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 
 from flockenv.errors import ParameterError
 from flockenv.extras import require
@@ -13,7 +14,7 @@ require("stable_baselines3", "train")
 import torch  # noqa: E402 - after the check above
 from stable_baselines3.common.policies import ActorCriticPolicy  # noqa: E402
 
-__all__ = ["ACTIVATION_MODULES", "copy_into_actor", "network_policy"]
+__all__ = ["ACTIVATION_MODULES", "copy_into_actor", "network_policy", "one_thread"]
 
 ACTIVATION_MODULES: Mapping[str, type[torch.nn.Module]] = {
     "tanh": torch.nn.Tanh,
@@ -78,3 +79,14 @@ def copy_into_actor(
         for layer, weight, bias in zip(_layers(policy), start.weights, start.biases, strict=True):
             layer.weight.copy_(torch.from_numpy(weight.T.copy()))
             layer.bias.copy_(torch.from_numpy(bias))
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Let torch use one thread: sums differ with their number, and small networks are no faster."""
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)

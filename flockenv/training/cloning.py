@@ -12,7 +12,7 @@ from flockenv.errors import ParameterError
 from flockenv.policies import DampedLaw, NetworkPolicy, SignCorrectedLaw, SteeringLaw
 from flockenv.policies.laws import ObservedPolicy
 from flockenv.provenance import made_by
-from flockenv.training.actor import ACTIVATION_MODULES
+from flockenv.training.actor import ACTIVATION_MODULES, one_thread
 from flockenv.training.pools import PooledVecEnv
 from flockenv.training.settings import TrainingError, TrainingSettings
 
@@ -70,10 +70,11 @@ def clone_law(
     rows, rudders = _visited(law, settings, samples)
     order = torch.randperm(len(rows), generator=generator).numpy()
     held_out, seen = np.split(order, [len(rows) // 10])
-    with torch.random.fork_rng(devices=[]):
-        torch.manual_seed(settings.seed)
-        network = _network(rows.shape[1], settings)
-    _fit(network, rows[seen], rudders[seen], epochs, generator)
+    with one_thread():
+        with torch.random.fork_rng(devices=[]):
+            torch.manual_seed(settings.seed)
+            network = _network(rows.shape[1], settings)
+        _fit(network, rows[seen], rudders[seen], epochs, generator)
     layers = [layer for layer in network if isinstance(layer, torch.nn.Linear)]
     made = made_by(
         command, seed=settings.seed, samples=len(rows), wall_s=time.perf_counter() - begin

@@ -23,7 +23,12 @@ from flockenv.errors import ParameterError
 from flockenv.policies import NetworkPolicy, load
 from flockenv.provenance import made_by
 from flockenv.training import checkpoint
-from flockenv.training.actor import ACTIVATION_MODULES, copy_into_actor, network_policy
+from flockenv.training.actor import (
+    ACTIVATION_MODULES,
+    copy_into_actor,
+    network_policy,
+    one_thread,
+)
 from flockenv.training.checkpoint import Progress
 from flockenv.training.cloning import LAWS, clone_law
 from flockenv.training.pools import PooledVecEnv
@@ -94,7 +99,7 @@ def train(
     folder = Path(folder)
     if (folder / "checkpoint.npz").exists():
         raise ParameterError(f"{folder} holds a run already: resume it, or name another folder")
-    with _one_thread():
+    with one_thread():
         model = _model(settings)
         start = _start(settings, command)
         if start is not None:
@@ -134,7 +139,7 @@ def resume(
     """
     folder = Path(folder)
     settings = stored_settings(folder, samples)
-    with _one_thread():
+    with one_thread():
         model = _model(settings)
         progress = checkpoint.restore(folder / "checkpoint.npz", model)
         return _Run(model, settings, folder, progress, report).go_on()
@@ -339,17 +344,6 @@ def _start(settings: TrainingSettings, command: str) -> NetworkPolicy | None:
         observation=settings.observation, mirror_to_target=settings.mirror_to_target
     )
     return clone_law(law, settings, command=command)
-
-
-@contextmanager
-def _one_thread() -> Iterator[None]:
-    """Let torch use one thread: sums differ with their number, and small networks are no faster."""
-    before = torch.get_num_threads()
-    torch.set_num_threads(1)
-    try:
-        yield
-    finally:
-        torch.set_num_threads(before)
 
 
 @contextmanager
