@@ -5,6 +5,7 @@ import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import gymnasium
@@ -36,6 +37,7 @@ __all__ = [
     "QUANTITIES",
     "compare_leaders",
     "named_policy",
+    "run_episodes",
 ]
 
 NO_LEADERS = "no leaders"
@@ -149,7 +151,7 @@ def compare_leaders(
                 _refuse_options(environment, name)
                 found = _simulated(scene, seeds, duration_s, progress)
             else:
-                found = _stepped(scene, policy, seeds, duration_s, progress, options)
+                found = run_episodes(scene, policy, seeds, duration_s, progress, options)
             parts.append({"policy": name, "leaders": k, "seed": seeds, **found})
     tables = [pandas.DataFrame(part) for part in parts]
     runs: pd.DataFrame = pandas.concat(tables, ignore_index=True)
@@ -164,14 +166,28 @@ def _refuse_options(environment: Mapping[str, Any] | None, policy: str) -> None:
         )
 
 
-def _stepped(
+def run_episodes(
     scene: FlockParameters,
     policy: LeaderPolicy,
     seeds: Sequence[int],
     duration_s: float,
-    progress: Callable[[float], None],
-    options: Mapping[str, Any],
+    progress: Callable[[float], None] = lambda flock_seconds: None,
+    options: Mapping[str, Any] = MappingProxyType({}),
 ) -> dict[str, NDArray[np.float64]]:
+    """Run one episode a seed with leaders that follow a policy, whatever range the seeds are of.
+
+    Parameters
+    ----------
+    scene, policy, seeds, duration_s, progress
+        As for `compare_leaders`, for one policy and number of leaders.
+    options
+        Further options of the environment.
+
+    Returns
+    -------
+    dict
+        The `QUANTITIES` and `ORDERING_TIMES` by name, one number an episode.
+    """
     layout = {
         "observation": getattr(policy, "observation", {}),
         "mirror_to_target": getattr(policy, "mirror_to_target", False),
@@ -183,7 +199,7 @@ def _stepped(
     while not ended.all():
         actions, state = policy.predict(observations, state)
         observations, _, _, ended, infos = env.step(actions)
-        progress(len(seeds) / _CONTROL_HZ)
+        progress(len(seeds) / options.get("control_hz", _CONTROL_HZ))
     summary = infos["episode_summary"]
     names = (*QUANTITIES, *ORDERING_TIMES)
     return {name: np.asarray(summary[name], np.float64) for name in names}
@@ -198,9 +214,8 @@ def _environment(
         vectorization_mode="vector_entry_point",
         params=scene,
         episode_s=duration_s,
-        control_hz=_CONTROL_HZ,
         autoreset_mode="disabled",
-        **options,
+        **{"control_hz": _CONTROL_HZ, **options},
     )
 
 

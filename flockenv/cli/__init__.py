@@ -14,6 +14,7 @@ from flockenv.cli.replay import replay
 from flockenv.cli.reproduce import reproduce
 from flockenv.cli.run import run
 from flockenv.cli.sweep import sweep
+from flockenv.cli.train import train
 
 __all__ = ["app", "main"]
 
@@ -22,7 +23,7 @@ app = typer.Typer(
     rich_markup_mode="markdown",
     help="Flocks of radio-controlled boats with a few steerable leaders (Tarcai et al. 2011).",
 )
-for command in (run, replay, compare, evaluate, fit, presets, reproduce, sweep):
+for command in (run, replay, compare, evaluate, fit, presets, reproduce, sweep, train):
     app.command()(command)
 
 

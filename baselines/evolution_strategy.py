@@ -1,0 +1,279 @@
+"""Train a leader policy with an evolution strategy: NumPy and flockenv alone, no torch.
+
+    python baselines/evolution_strategy.py                          # an easy scene, two minutes
+    python baselines/evolution_strategy.py --pool table-1 --boats 27 --leaders 3 --noise 1 \
+        --control-hz 10 --episode-s 120 --reward signed_order --generations 300 \
+        --out results/evolution/table-1
+
+Gaussian perturbations of all weights are tried in pairs of opposite signs, a flock or several for
+each, all in one batch of the simulator. Candidates of a generation steer the same episodes, so that
+they differ by their weights alone; their mean rewards are replaced by ranks; Adam follows the
+estimated gradient. The policy is linear feedback on the observation unless hidden layers are asked
+for. Interrupted, the same command goes on from the last generation. The result is a policy file:
+
+    flockenv compare --policy "steering law" --policy results/evolution/policy.npz
+"""
+
+import argparse
+import itertools
+import json
+import shlex
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.progress import Progress
+
+import flockenv
+from flockenv.array_file import read_arrays, write_arrays
+from flockenv.observation import OBSERVATION_VERSION
+from flockenv.policies import NetworkPolicy
+from flockenv.provenance import made_by
+from flockenv.reward import TERMS
+from flockenv.seeds import training_seed
+
+SEEDS_OF_A_RUN = 1 << 24
+DECAY_1, DECAY_2 = 0.9, 0.99
+
+
+@dataclass
+class State:
+    """Where the search is: all that the next generation depends on."""
+
+    generation: int
+    weights: np.ndarray
+    moment_1: np.ndarray
+    moment_2: np.ndarray
+    wall_s: float
+    curve: np.ndarray
+
+
+class Shape:
+    """A network's layers within one vector of weights."""
+
+    def __init__(self, inputs: int, hidden: list[int]) -> None:
+        sizes = [inputs, *hidden, 1]
+        self.layers = list(itertools.pairwise(sizes))
+        self.size = sum(i * o + o for i, o in self.layers)
+
+    def split(self, flat: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Matrices and biases of vectors (..., size)."""
+        parts, start = [], 0
+        for i, o in self.layers:
+            matrix = flat[..., start : start + i * o].reshape(*flat.shape[:-1], i, o)
+            bias = flat[..., start + i * o : start + i * o + o]
+            parts.append((matrix, bias[..., None, :]))
+            start += i * o + o
+        return parts
+
+    def rudders(self, flat: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Rudders (candidates, rows) for weights (candidates, size) and rows (..., inputs)."""
+        layers = self.split(flat)
+        for matrix, bias in layers[:-1]:
+            rows = np.tanh(rows @ matrix + bias)
+        matrix, bias = layers[-1]
+        return np.clip(rows @ matrix + bias, -1.0, 1.0)[..., 0]
+
+    def policy(self, flat: np.ndarray, made: dict[str, str]) -> NetworkPolicy:
+        layers = self.split(flat)
+        return NetworkPolicy(
+            [matrix for matrix, _ in layers],
+            [bias[0] for _, bias in layers],
+            "tanh",
+            mirror_to_target=True,
+            made=made,
+        )
+
+    def first(self, random: np.random.Generator) -> np.ndarray:
+        """Small random hidden layers; an output layer of zeros: leaders that go straight ahead."""
+        parts = [
+            np.concatenate([random.standard_normal(i * o) / np.sqrt(i), np.zeros(o)])
+            for i, o in self.layers
+        ]
+        parts[-1][:] = 0.0
+        return np.concatenate(parts)
+
+
+def environment(options: argparse.Namespace, flocks: int) -> flockenv.LeadersVectorEnv:
+    critical = flockenv.FlockParameters.critical_bw_s("simulation", options.pool)
+    return flockenv.LeadersVectorEnv(
+        flocks,
+        autoreset_mode="disabled",
+        n_boats=options.boats,
+        n_leaders=options.leaders,
+        pool=options.pool,
+        bw_s=options.noise * critical,
+        target="random",
+        mirror_to_target=True,
+        control_hz=options.control_hz,
+        episode_s=options.episode_s,
+        reward={options.reward: 1.0},
+    )
+
+
+def mean_rewards(
+    env: flockenv.LeadersVectorEnv,
+    seeds: list[int],
+    steer: Callable[[np.ndarray], np.ndarray],
+) -> tuple[np.ndarray, np.ndarray]:
+    """Mean reward and mean signed order of one episode a flock."""
+    observations, _ = env.reset(seed=seeds)
+    total, steps, ended = np.zeros(env.num_envs), 0, np.zeros(env.num_envs, bool)
+    while not ended.all():
+        observations, rewards, _, ended, infos = env.step(steer(observations))
+        total += rewards
+        steps += 1
+    return total / steps, infos["episode_summary"]["signed_order"]
+
+
+def scores(
+    env: flockenv.LeadersVectorEnv, shape: Shape, candidates: np.ndarray, seeds: list[int]
+) -> np.ndarray:
+    """Mean reward of each candidate; all of them steer the episodes of the same seeds."""
+    count, weights = len(candidates), candidates.astype(np.float32)
+
+    def steer(observations: np.ndarray) -> np.ndarray:
+        rows = observations.reshape(count, len(seeds) * env.num_leaders, -1)
+        return shape.rudders(weights, rows).reshape(env.num_envs, env.num_leaders)
+
+    rewards, _ = mean_rewards(env, seeds * count, steer)
+    return rewards.reshape(count, len(seeds)).mean(axis=1)
+
+
+def centred_ranks(values: np.ndarray) -> np.ndarray:
+    """From -0.5 for the worst to 0.5 for the best."""
+    ranks = np.empty(len(values))
+    ranks[np.argsort(values, kind="stable")] = np.arange(len(values))
+    return ranks / (len(values) - 1) - 0.5
+
+
+def next_generation(
+    state: State, env: flockenv.LeadersVectorEnv, shape: Shape, options: argparse.Namespace
+) -> State:
+    # A generator of its own for each generation: nothing but the number has to be remembered.
+    number = state.generation
+    random = np.random.default_rng([options.seed, number])
+    half = random.standard_normal((options.pairs, shape.size))
+    candidates = state.weights + options.sigma * np.concatenate([half, -half])
+    first = options.seed * SEEDS_OF_A_RUN + number * options.flocks
+    seeds = [training_seed(first + flock) for flock in range(options.flocks)]
+    found = scores(env, shape, candidates, seeds)
+    ranks = centred_ranks(found)
+    gradient = (ranks[: options.pairs] - ranks[options.pairs :]) @ half
+    gradient /= 2 * options.pairs * options.sigma
+    moment_1 = DECAY_1 * state.moment_1 + (1 - DECAY_1) * gradient
+    moment_2 = DECAY_2 * state.moment_2 + (1 - DECAY_2) * gradient**2
+    direction = (moment_1 / (1 - DECAY_1 ** (number + 1))) / (
+        np.sqrt(moment_2 / (1 - DECAY_2 ** (number + 1))) + 1e-8
+    )
+    weights = state.weights + options.rate * direction
+    curve = np.append(state.curve, found.mean())
+    return State(number + 1, weights, moment_1, moment_2, state.wall_s, curve)
+
+
+def identity(options: argparse.Namespace) -> str:
+    """What a stored search must have been started with to go on."""
+    own = {k: v for k, v in vars(options).items() if k not in ("out", "generations", "quiet")}
+    return json.dumps({**own, "observation_version": OBSERVATION_VERSION}, sort_keys=True)
+
+
+def load_state(path: Path, options: argparse.Namespace) -> State | None:
+    if not path.exists():
+        return None
+    arrays = read_arrays(path)
+    if str(arrays.get("identity")) != identity(options):
+        raise flockenv.ParameterError(
+            f"{path} is of a search with other options: name another folder with --out"
+        )
+    numbers = [arrays[name] for name in ("weights", "moment_1", "moment_2")]
+    wall_s, curve = float(arrays["wall_s"]), arrays["curve"]
+    return State(int(arrays["generation"]), *numbers, wall_s, curve)
+
+
+def save_state(path: Path, state: State, options: argparse.Namespace) -> None:
+    arrays: dict[str, Any] = {name: np.asarray(value) for name, value in vars(state).items()}
+    write_arrays(path, {**arrays, "identity": np.array(identity(options))})
+
+
+def samples_of(options: argparse.Namespace, generations: int) -> int:
+    steps = round(options.episode_s * options.control_hz)
+    return generations * 2 * options.pairs * options.flocks * options.leaders * steps
+
+
+def search(options: argparse.Namespace, command: str) -> NetworkPolicy:
+    env = environment(options, 2 * options.pairs * options.flocks)
+    shape = Shape(env.single_observation_space.shape[0] // options.leaders, options.hidden)
+    path = options.out / "state.npz"
+    options.out.mkdir(parents=True, exist_ok=True)
+    state = load_state(path, options)
+    if state is None:
+        weights = shape.first(np.random.default_rng(options.seed))
+        state = State(0, weights, 0 * weights, 0 * weights, 0.0, np.empty(0))
+    begin = time.perf_counter() - state.wall_s
+    with Progress(disable=options.quiet) as progress:
+        task = progress.add_task("", total=options.generations, completed=state.generation)
+        while state.generation < options.generations:
+            state = next_generation(state, env, shape, options)
+            state.wall_s = time.perf_counter() - begin
+            save_state(path, state, options)
+            words = f"mean reward of the candidates {state.curve[-1]:.3f}"
+            progress.update(task, description=words, completed=state.generation)
+    samples = samples_of(options, state.generation)
+    made = made_by(command, seed=options.seed, samples=samples, wall_s=state.wall_s)
+    policy = shape.policy(state.weights, made)
+    policy.save(options.out / "policy.npz")
+    return policy
+
+
+def tell_held_out(options: argparse.Namespace, policies: dict[str, Any]) -> None:
+    """Print what policies earn in episodes that the search has never seen."""
+    env, root = environment(options, options.episodes), np.sqrt(options.episodes)
+    for name, policy in policies.items():
+        steer = lambda rows, policy=policy: policy.predict(rows)[0]  # noqa: E731
+        found = mean_rewards(env, list(range(options.episodes)), steer)
+        for what, values in zip((options.reward, "signed order"), found, strict=True):
+            half = 1.96 * values.std(ddof=1) / root
+            print(f"{name}: mean {what} {values.mean():.3f} ± {half:.3f}")
+
+
+def main(arguments: list[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--pool", choices=("500-boats", "table-1"), default="500-boats")
+    parser.add_argument("--boats", type=int, default=6, help="leaders included")
+    parser.add_argument("--leaders", type=int, default=2)
+    parser.add_argument("--noise", type=float, default=0.3, help="1: the pool's critical noise")
+    parser.add_argument("--control-hz", type=float, default=2.0)
+    parser.add_argument("--episode-s", type=float, default=60.0)
+    parser.add_argument("--hidden", type=int, nargs="*", default=[], help="hidden layers")
+    parser.add_argument("--reward", choices=TERMS, default="leader_velocity")
+    parser.add_argument("--generations", type=int, default=50)
+    parser.add_argument("--pairs", type=int, default=16, help="pairs of opposite perturbations")
+    parser.add_argument("--flocks", type=int, default=4, help="episodes for each candidate")
+    parser.add_argument("--sigma", type=float, default=0.3, help="of the perturbations")
+    parser.add_argument("--rate", type=float, default=0.15, help="learning rate of Adam")
+    parser.add_argument("--episodes", type=int, default=64, help="held-out episodes at the end")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--out", type=Path, default=Path("results/evolution"))
+    parser.add_argument("--quiet", action="store_true")
+    options = parser.parse_args(arguments)
+    if min(options.pairs, options.generations, options.flocks, *options.hidden, 1) < 1:
+        parser.error("pairs, generations, flocks and hidden layers are at least 1")
+    given = sys.argv[1:] if arguments is None else arguments
+    command = shlex.join(["python", "baselines/evolution_strategy.py", *given])
+    try:
+        policy = search(options, command)
+        ahead = flockenv.policies.StraightAhead(mirror_to_target=True)
+        tell_held_out(options, {"evolved": policy, "straight ahead": ahead})
+    except KeyboardInterrupt:
+        sys.exit(f"Interrupted: the same command goes on from {options.out / 'state.npz'}")
+    except (flockenv.FlockError, OSError) as error:
+        sys.exit(f"Error: {error}")
+    print(f"written to {options.out / 'policy.npz'}")
+
+
+if __name__ == "__main__":
+    main()

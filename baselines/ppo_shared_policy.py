@@ -1,0 +1,85 @@
+"""Train the shipped policy: PPO, one network shared by one to four leaders, both pools and ways.
+
+    python baselines/ppo_shared_policy.py                        # into results/ppo_shared_policy
+    python baselines/ppo_shared_policy.py --resume               # goes on after a kill
+    flockenv compare --policy "damped law" --policy results/ppo_shared_policy/best.npz
+
+Training starts from a clone of the damped law instead of from nothing. Episodes have between half
+and 1.25 times the critical noise of their pool. What it leaves is told in docs/train.md; a policy
+that is shipped is `best.npz`, copied to baselines/policies, and says in `made` how it came about.
+"""
+
+import argparse
+import shlex
+import sys
+from pathlib import Path
+
+import flockenv
+from flockenv import training
+from flockenv.training import TrainingSettings
+
+SETTINGS = TrainingSettings(
+    pools=("500-boats", "table-1"),
+    n_boats=27,
+    n_leaders=(1, 2, 3, 4),
+    noise=(0.5, 1.25),
+    target="random",
+    mirror_to_target=True,
+    start="damped law",
+    # Five decisions a second: at ten, exploring rudders cancel out before a boat has turned.
+    control_hz=5.0,
+    episode_s=240.0,
+    reward={"signed_order": 1.0},
+    samples=3_000_000,
+    num_flocks=16,
+    n_steps=128,
+    batch_size=512,
+    n_epochs=6,
+    learning_rate=3e-4,
+    final_learning_rate=3e-5,
+    gamma=0.99,
+    gae_lambda=0.95,
+    net_arch=(64, 64),
+    activation="tanh",
+    log_std_init=-1.0,
+    # Validated as policies are compared, at ten decisions a second.
+    validation_hz=10.0,
+)
+
+
+def main(arguments: list[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--samples", type=int, default=SETTINGS.samples)
+    parser.add_argument("--seed", type=int, default=SETTINGS.seed)
+    parser.add_argument("--out", type=Path, default=Path("results/ppo_shared_policy"))
+    parser.add_argument("--resume", action="store_true")
+    options = parser.parse_args(arguments)
+
+    def report(progress: training.Progress) -> None:
+        best = "none yet" if progress.best_score is None else f"{progress.best_score:.3f}"
+        left = progress.wall_s * (options.samples / max(progress.samples, 1) - 1)
+        print(
+            f"\r{progress.samples} samples, best mean signed order {best}, {left:.0f} s left  ",
+            end="",
+            flush=True,
+        )
+
+    try:
+        if options.resume:
+            result = training.resume(options.out, samples=options.samples, report=report)
+        else:
+            settings = SETTINGS.replace(samples=options.samples, seed=options.seed)
+            given = sys.argv[1:] if arguments is None else arguments
+            command = shlex.join(["python", "baselines/ppo_shared_policy.py", *given])
+            result = training.train(settings, options.out, command=command, report=report)
+    except KeyboardInterrupt:
+        sys.exit(f"\nInterrupted: --resume goes on from the last checkpoint in {options.out}")
+    except flockenv.FlockError as error:
+        sys.exit(f"\nError: {error}")
+    for name, value in result.progress.validations[-1].items():
+        print(f"\n{name}: {value:g}", end="")
+    print(f"\nwritten to {options.out / 'best.npz'}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,111 @@
+"""`flockenv train`."""
+
+import shlex
+import sys
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from flockenv import ParameterError
+from flockenv.cli.console import console, errors, progress_bar, say
+
+__all__ = ["train"]
+
+
+def train(
+    settings: Annotated[
+        Path | None, typer.Option(help="What to train: a TOML file. [built-in settings]")
+    ] = None,
+    change: Annotated[
+        list[str] | None,
+        typer.Option("--set", help="Change a setting, repeatable: NAME=VALUE, as in TOML."),
+    ] = None,
+    samples: Annotated[
+        int | None, typer.Option(min=1, help="When to stop: leaders' control steps.")
+    ] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Number of the training run.")] = None,
+    out: Annotated[Path, typer.Option(help="Folder for the policy and the run.")] = Path(
+        "results/train"
+    ),
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on from the folder's last checkpoint.")
+    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the scores as JSON.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no progress.")] = False,
+) -> None:
+    """Train one policy for all leaders with PPO (extra `train`).
+
+    Writes `best.npz`, the best policy by validation, which `flockenv compare --policy` takes,
+    `last.npz`, `curve.csv`, `validations.csv`, `settings.toml`, a checkpoint and logs for
+    tensorboard. What the TOML file holds is told in `docs/train.md`.
+
+    Example: `flockenv train --set 'pools=["table-1"]' --set 'start="damped law"' --samples 500000`
+    """
+    from flockenv import training
+
+    if resume and (settings or change or seed is not None):
+        raise ParameterError(
+            "--resume takes settings from the checkpoint; only --samples may differ"
+        )
+    with progress_bar(quiet or as_json) as bar:
+        task = bar.add_task("beginning", total=None)
+
+        def report(progress: training.Progress) -> None:
+            words = f"{progress.samples} samples"
+            if progress.best_score is not None:
+                words += f", signed order {progress.best_score:.3f}"
+            bar.update(task, description=words, completed=progress.samples)
+
+        try:
+            if resume:
+                wanted = training.stored_settings(out, samples)
+                bar.update(task, total=wanted.samples)
+                result = training.resume(out, samples=samples, report=report)
+            else:
+                asked = _settings(settings, change or [], samples, seed)
+                bar.update(task, total=asked.samples)
+                command = shlex.join(["flockenv", *sys.argv[1:]])
+                result = training.train(asked, out, command=command, report=report)
+        except KeyboardInterrupt:
+            _tell_interrupted(out)
+            raise typer.Exit(130) from None
+    progress = result.progress
+    if as_json:
+        last = {"samples": progress.samples, "wall_s": round(progress.wall_s, 1)}
+        best = {"best": progress.best_score, "validations": progress.validations}
+        console.print_json(data={**last, **best, "policy": str(out / "best.npz")})
+        return
+    for name, value in progress.validations[-1].items():
+        say(f"{name}: {value:g}")
+    say(f"Best mean signed order {progress.best_score:.3f}: {out / 'best.npz'}")
+
+
+def _settings(path: Path | None, change: list[str], samples: int | None, seed: int | None) -> Any:
+    from flockenv.training import TrainingSettings
+
+    values: dict[str, Any] = {}
+    if path is not None:
+        try:
+            values = TrainingSettings.from_toml(path.read_text()).to_dict()
+        except (OSError, UnicodeDecodeError) as error:
+            raise ParameterError(f"{path} cannot be read: {error}") from error
+    for each in change:
+        try:
+            values |= tomllib.loads(each)
+        except tomllib.TOMLDecodeError as error:
+            raise ParameterError(
+                f"--set {each!r} is not accepted: NAME=VALUE as in TOML, texts in quotes ({error})"
+            ) from error
+    given = {"samples": samples, "seed": seed}
+    values |= {name: value for name, value in given.items() if value is not None}
+    return TrainingSettings.from_dict(values)
+
+
+def _tell_interrupted(out: Path) -> None:
+    if (out / "checkpoint.npz").exists():
+        words = f"Interrupted. The last checkpoint is kept: flockenv train --resume --out {out}"
+    else:
+        words = "Interrupted before the first checkpoint: start again."
+    say(words, errors)

@@ -1,0 +1,23 @@
+"""Training of leaders: PPO with one policy shared by all of them.
+
+Needs the extra ``train``: ``pip install flockenv[train]``.
+"""
+
+# First: it says what to install where stable-baselines3 and torch are missing.
+import flockenv.training.actor  # noqa: F401
+from flockenv.training.checkpoint import Progress
+from flockenv.training.cloning import LAWS, clone_law
+from flockenv.training.ppo import TrainingResult, resume, stored_settings, train
+from flockenv.training.settings import TrainingError, TrainingSettings
+
+__all__ = [
+    "LAWS",
+    "Progress",
+    "TrainingError",
+    "TrainingResult",
+    "TrainingSettings",
+    "clone_law",
+    "resume",
+    "stored_settings",
+    "train",
+]

@@ -1,0 +1,143 @@
+"""Behaviour cloning: a network that steers as a law does, for training to start from."""
+
+import time
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from flockenv.errors import ParameterError
+from flockenv.policies import DampedLaw, NetworkPolicy, SignCorrectedLaw, SteeringLaw
+from flockenv.policies.laws import ObservedPolicy
+from flockenv.provenance import made_by
+from flockenv.training.actor import ACTIVATION_MODULES, one_thread
+from flockenv.training.pools import PooledVecEnv
+from flockenv.training.settings import TrainingError, TrainingSettings
+
+__all__ = ["LAWS", "clone_law"]
+
+LAWS: Mapping[str, Callable[..., ObservedPolicy]] = {
+    "steering law": SteeringLaw,
+    "sign-corrected law": SignCorrectedLaw,
+    "damped law": DampedLaw,
+}
+"""Laws that can be cloned by name, with their default gains."""
+
+
+def clone_law(
+    law: ObservedPolicy,
+    settings: TrainingSettings,
+    *,
+    samples: int = 100_000,
+    epochs: int = 20,
+    command: str = "",
+) -> NetworkPolicy:
+    """Fit a network to a law's rudders in the states that it visits, somewhat disturbed.
+
+    Parameters
+    ----------
+    law
+        Any closed-form law with the layout of the settings.
+    settings
+        Where the leaders steer, the network's shape, and the seed.
+    samples
+        Observations to learn from; a tenth of them is held out.
+    epochs
+        Passes through them.
+    command
+        What is told in ``made``.
+
+    Returns
+    -------
+    NetworkPolicy
+        ``made["clone_rms"]`` is its root mean square difference from the law where held out.
+
+    Raises
+    ------
+    ParameterError
+        If the law's layout is not that of the settings.
+    TrainingError
+        If the loss is not finite.
+    """
+    own = (law.observation, law.mirror_to_target)
+    asked = (dict(settings.observation), settings.mirror_to_target)
+    if own != asked:
+        raise ParameterError(f"the law's layout is {own!r}, that of the settings {asked!r}")
+    begin = time.perf_counter()
+    generator = torch.Generator().manual_seed(settings.seed)
+    rows, rudders = _visited(law, settings, samples)
+    order = torch.randperm(len(rows), generator=generator).numpy()
+    held_out, seen = np.split(order, [len(rows) // 10])
+    with one_thread():
+        with torch.random.fork_rng(devices=[]):
+            torch.manual_seed(settings.seed)
+            network = _network(rows.shape[1], settings)
+        _fit(network, rows[seen], rudders[seen], epochs, generator)
+    layers = [layer for layer in network if isinstance(layer, torch.nn.Linear)]
+    made = made_by(
+        command, seed=settings.seed, samples=len(rows), wall_s=time.perf_counter() - begin
+    )
+    policy = NetworkPolicy(
+        [layer.weight.detach().numpy().T for layer in layers],
+        [layer.bias.detach().numpy() for layer in layers],
+        settings.activation,
+        observation=settings.observation,
+        mirror_to_target=settings.mirror_to_target,
+        made={**made, "cloned": repr(law)},
+    )
+    error = policy.predict(rows[held_out])[0][:, 0] - rudders[held_out]
+    policy.made["clone_rms"] = f"{np.sqrt(np.mean(error**2)):.4f}"
+    return policy
+
+
+def _visited(
+    law: ObservedPolicy, settings: TrainingSettings, samples: int
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    env = PooledVecEnv(settings)
+    random = np.random.default_rng(settings.seed)
+    observations: Any = env.reset()
+    rows, rudders = [], []
+    disturbance = np.zeros((env.num_envs, 1))
+    for _ in range(-(-samples // env.num_envs)):
+        steered, _ = law.predict(observations)
+        rows.append(observations)
+        rudders.append(steered[:, 0])
+        # Slowly varying, or it would cancel out before a boat has turned.
+        disturbance = 0.95 * disturbance + 0.15 * random.standard_normal(disturbance.shape)
+        observations, _, _, _ = env.step(np.clip(steered + disturbance, -1.0, 1.0))
+    return np.concatenate(rows), np.concatenate(rudders)
+
+
+def _network(inputs: int, settings: TrainingSettings) -> torch.nn.Sequential:
+    modules: list[torch.nn.Module] = []
+    for outputs in settings.net_arch:
+        modules += [torch.nn.Linear(inputs, outputs), ACTIVATION_MODULES[settings.activation]()]
+        inputs = outputs
+    return torch.nn.Sequential(*modules, torch.nn.Linear(inputs, 1))
+
+
+def _fit(
+    network: torch.nn.Sequential,
+    rows: NDArray[np.float32],
+    rudders: NDArray[np.float32],
+    epochs: int,
+    generator: torch.Generator,
+) -> None:
+    inputs, targets = torch.from_numpy(rows), torch.from_numpy(rudders)
+    optimizer = torch.optim.Adam(network.parameters(), lr=3e-3)
+    batches = max(1, len(inputs) // 128)
+    steps = torch.optim.lr_scheduler.CosineAnnealingLR(optimizer, epochs * batches)
+    for _ in range(epochs):
+        for batch in torch.randperm(len(inputs), generator=generator).chunk(batches):
+            error = network(inputs[batch])[:, 0] - targets[batch]
+            # The rudder is clipped: beyond the end of its range any output is right.
+            beyond = (targets[batch].abs() >= 1.0) & (error * targets[batch] > 0.0)
+            loss = error.masked_fill(beyond, 0.0).square().mean()
+            if not torch.isfinite(loss):
+                raise TrainingError("cloning: the loss is not finite")
+            optimizer.zero_grad()
+            loss.backward()
+            optimizer.step()
+            steps.step()

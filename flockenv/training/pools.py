@@ -1,0 +1,110 @@
+"""`PooledVecEnv`: flocks in several pools as one vector environment."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flockenv.errors import ParameterError
+from flockenv.sb3 import LeaderVecEnv
+from flockenv.seeds import training_seed
+from flockenv.training.settings import TrainingSettings
+
+# After flockenv.sb3, which says what to install where it is missing.
+from stable_baselines3.common.vec_env import VecEnv  # isort: skip
+
+__all__ = ["PooledVecEnv"]
+
+_SEEDS_OF_A_RUN = 1 << 20
+
+
+class PooledVecEnv(VecEnv):
+    """One `LeaderVecEnv` a pool behind one face; slots are those of the first pool, then the next.
+
+    Parameters
+    ----------
+    settings
+        Where and with how many flocks.
+    """
+
+    def __init__(self, settings: TrainingSettings) -> None:
+        self.parts = [
+            LeaderVecEnv(
+                settings.num_flocks,
+                n_leaders=list(settings.n_leaders),
+                **settings.environment(pool),
+            )
+            for pool in settings.pools
+        ]
+        first = self.parts[0]
+        self._ends = np.cumsum([part.num_envs for part in self.parts])
+        self._first_seed = training_seed(settings.seed * _SEEDS_OF_A_RUN)
+        super().__init__(int(self._ends[-1]), first.observation_space, first.action_space)
+
+    def reset(self) -> NDArray[np.float32]:
+        """Begin anew with the run's training seeds."""
+        seed = self._first_seed
+        for part in self.parts:
+            part.seed(seed)
+            seed += part.num_flocks
+        return np.concatenate([part.reset() for part in self.parts])
+
+    def step_async(self, actions: NDArray[Any]) -> None:
+        """Take note of rudders, shape (slots, 1)."""
+        for part, rows in zip(self.parts, np.split(actions, self._ends[:-1]), strict=True):
+            part.step_async(rows)
+
+    def step_wait(
+        self,
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_], list[dict[str, Any]]]:
+        """Take the control step in every pool."""
+        steps = [part.step_wait() for part in self.parts]
+        observations, rewards, dones, infos = zip(*steps, strict=True)
+        return (
+            np.concatenate(observations),
+            np.concatenate(rewards),
+            np.concatenate(dones),
+            [info for each in infos for info in each],
+        )
+
+    def get_state(self) -> list[bytes]:
+        """Return everything that the future depends on, one entry a pool."""
+        return [part.get_state() for part in self.parts]
+
+    def set_state(self, states: Sequence[bytes]) -> NDArray[np.float32]:
+        """Continue from `get_state` of the same settings; return the observations."""
+        if len(states) != len(self.parts):
+            raise ParameterError(f"{len(states)} states for {len(self.parts)} pools")
+        return np.concatenate(
+            [part.set_state(state) for part, state in zip(self.parts, states, strict=True)]
+        )
+
+    def seed(self, seed: int | None = None) -> Sequence[int | None]:
+        """Do nothing: seeds are those of the settings."""
+        return [None] * self.num_envs
+
+    def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
+        """Return an attribute of each slot."""
+        if "parts" not in self.__dict__:
+            raise AttributeError(attr_name)
+        each = [value for part in self.parts for value in part.get_attr(attr_name)]
+        return [each[slot] for slot in self._get_indices(indices)]
+
+    def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
+        """Refuse: attributes belong to the parts."""
+        raise NotImplementedError("set attributes of PooledVecEnv.parts")
+
+    def env_method(
+        self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any
+    ) -> list[Any]:
+        """Call a method of each slot."""
+        methods = self.get_attr(method_name, indices)
+        return [method(*method_args, **method_kwargs) for method in methods]
+
+    def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
+        """Return False for each slot: there are no wrappers around single slots."""
+        return [False for _ in self._get_indices(indices)]
+
+    def close(self) -> None:
+        """Nothing is held open."""

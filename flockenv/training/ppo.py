@@ -1,0 +1,372 @@
+"""The training run: PPO of stable-baselines3, checkpoints, validations, the best policy kept."""
+
+import csv
+import io
+import math
+import time
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import torch
+from stable_baselines3 import PPO
+from stable_baselines3.common.callbacks import BaseCallback
+from stable_baselines3.common.logger import KVWriter, Logger, TensorBoardOutputFormat
+from stable_baselines3.common.policies import ActorCriticPolicy
+from stable_baselines3.common.utils import FloatSchedule
+
+from flockenv.errors import ParameterError
+from flockenv.policies import NetworkPolicy, load
+from flockenv.provenance import made_by
+from flockenv.training import checkpoint
+from flockenv.training.actor import (
+    ACTIVATION_MODULES,
+    copy_into_actor,
+    network_policy,
+    one_thread,
+)
+from flockenv.training.checkpoint import Progress
+from flockenv.training.cloning import LAWS, clone_law
+from flockenv.training.pools import PooledVecEnv
+from flockenv.training.settings import TrainingError, TrainingSettings
+from flockenv.training.validation import validation_scores
+from flockenv.whole_file import whole_file
+
+__all__ = ["TrainingResult", "resume", "stored_settings", "train"]
+
+Report = Callable[[Progress], None]
+
+# The log is written here, after an update instead of before the next.
+_NEVER = 1 << 62
+
+
+@dataclass(frozen=True)
+class TrainingResult:
+    """What a run left: the best policy by validation, and how it came about.
+
+    Attributes
+    ----------
+    policy
+        The best mean policy, as in ``best.npz``.
+    settings
+        What it was trained with.
+    progress
+        Samples, seconds, learning curve and validations.
+    folder
+        Where everything is: ``best.npz``, ``last.npz``, ``checkpoint.npz``, ``settings.toml``,
+        ``curve.csv``, ``validations.csv`` and, if it is installed, what tensorboard shows.
+    """
+
+    policy: NetworkPolicy
+    settings: TrainingSettings
+    progress: Progress
+    folder: Path
+
+
+def train(
+    settings: TrainingSettings,
+    folder: Path,
+    *,
+    command: str = "",
+    report: Report = lambda progress: None,
+) -> TrainingResult:
+    """Train a policy into an empty folder.
+
+    The same settings give the same policy, bit for bit on a CPU.
+
+    Parameters
+    ----------
+    settings
+        What to train, and how.
+    folder
+        Where to write.
+    command
+        What is told in the policies' ``made``.
+    report
+        Called after each rollout.
+
+    Raises
+    ------
+    ParameterError
+        If the folder holds a run already, and for a policy to start from that does not fit.
+    TrainingError
+        If the loss is not finite or a file cannot be written; the last checkpoint is intact.
+    """
+    folder = Path(folder)
+    if (folder / "checkpoint.npz").exists():
+        raise ParameterError(f"{folder} holds a run already: resume it, or name another folder")
+    with one_thread():
+        model = _model(settings)
+        start = _start(settings, command)
+        if start is not None:
+            copy_into_actor(start, _actor(model), settings)
+        with _written(folder, Progress()):
+            folder.mkdir(parents=True, exist_ok=True)
+            with whole_file(folder / "settings.toml") as file:
+                file.write(settings.to_toml().encode())
+            if start is not None:
+                start.save(folder / "start.npz")
+        return _Run(model, settings, folder, Progress(command), report).go_on()
+
+
+def resume(
+    folder: Path,
+    *,
+    samples: int | None = None,
+    report: Report = lambda progress: None,
+) -> TrainingResult:
+    """Go on from a run's last checkpoint, exactly as if it had never stopped.
+
+    Parameters
+    ----------
+    folder
+        What was given to `train`. Loading its checkpoint executes nothing.
+    samples
+        When to stop, if not as in the settings.
+    report
+        As for `train`.
+
+    Raises
+    ------
+    ParameterError
+        If there is no checkpoint, or a damaged one.
+    TrainingError
+        As for `train`.
+    """
+    folder = Path(folder)
+    settings = stored_settings(folder, samples)
+    with one_thread():
+        model = _model(settings)
+        progress = checkpoint.restore(folder / "checkpoint.npz", model)
+        return _Run(model, settings, folder, progress, report).go_on()
+
+
+def stored_settings(folder: Path, samples: int | None = None) -> TrainingSettings:
+    """Return what `resume` goes on with; see there."""
+    path = Path(folder) / "checkpoint.npz"
+    if not path.exists():
+        raise ParameterError(f"{folder} holds no checkpoint to resume")
+    settings = checkpoint.read_settings(path)
+    return settings if samples is None else settings.replace(samples=samples)
+
+
+class _Run:
+    """One run from where its model and progress are to its last sample."""
+
+    def __init__(
+        self,
+        model: PPO,
+        settings: TrainingSettings,
+        folder: Path,
+        progress: Progress,
+        report: Report,
+    ) -> None:
+        self.model, self.settings, self.folder = model, settings, folder
+        self.progress, self.report = progress, report
+        self.begin = time.perf_counter() - progress.wall_s
+        self.log = Logger(None, [])
+
+    def go_on(self) -> TrainingResult:
+        formats: list[KVWriter] = []
+        if find_spec("tensorboard") is not None:
+            with _written(self.folder, self.progress):
+                formats = [TensorBoardOutputFormat(str(self.folder / "tensorboard"))]
+        self.log = Logger(None, formats)
+        self.model.set_logger(self.log)
+        self.report(self.progress)
+        try:
+            while self.progress.samples < self.settings.samples:
+                self._iterate()
+            if self.progress.best_score is None:  # resumed, to stop before any validation
+                self._validate()
+        finally:
+            # What a full disk kept from the logs has been told already, or hides nothing else.
+            with suppress(OSError):
+                self.log.close()
+        best = load(self.folder / "best.npz")
+        return TrainingResult(best, self.settings, self.progress, self.folder)
+
+    def _iterate(self) -> None:
+        settings, progress = self.settings, self.progress
+        before = progress.samples
+        told = self._rollout_and_update()
+        progress.samples = self.model.num_timesteps
+        progress.wall_s = time.perf_counter() - self.begin
+        progress.curve.append({"samples": progress.samples, **told})
+        self._log()
+        ends = progress.samples >= settings.samples
+
+        def due(every: int) -> bool:
+            return ends or progress.samples // every > before // every
+
+        if due(settings.validate_every):
+            self._validate()
+        if due(settings.checkpoint_every) or due(settings.validate_every):
+            self._checkpoint()
+        self.report(progress)
+
+    def _rollout_and_update(self) -> dict[str, float]:
+        settings, model, watch = self.settings, self.model, _Watch()
+        model.lr_schedule = FloatSchedule(settings.learning_rate_at(model.num_timesteps))
+        try:
+            model.learn(
+                settings.rollout_samples, watch, log_interval=_NEVER, reset_num_timesteps=False
+            )
+        except ValueError as error:
+            # Torch's distributions refuse the first NaN before the loss is seen.
+            if self._finite():
+                raise
+            raise self._broken(math.nan) from error
+        loss = float(self.log.name_to_value["train/loss"])
+        if not (math.isfinite(loss) and self._finite()):
+            raise self._broken(loss)
+        for name, value in watch.means().items():
+            self.log.record(f"rollout/{name}", value)
+        learned = ("loss", "approx_kl", "clip_fraction", "explained_variance")
+        told = {name: float(self.log.name_to_value[f"train/{name}"]) for name in learned}
+        return {**watch.means(), **told}
+
+    def _finite(self) -> bool:
+        return all(bool(torch.isfinite(each).all()) for each in self.model.policy.parameters())
+
+    def _broken(self, loss: float) -> TrainingError:
+        return TrainingError(
+            f"the loss is {loss} after {self.progress.samples} samples: try a lower learning_rate "
+            f"or max_grad_norm; {_last_good(self.folder)}"
+        )
+
+    def _validate(self) -> None:
+        policy = self._policy()
+        scores = validation_scores(policy, self.settings)
+        score = sum(scores.values()) / len(scores)
+        for name, value in {**scores, "mean": score}.items():
+            self.log.record(f"validation/{name}", value)
+        self._log()
+        row = {"samples": self.progress.samples, "mean": score, **scores}
+        self.progress.validations.append(row)
+        if self.progress.best_score is None or score > self.progress.best_score:
+            policy.made["validation"] = f"{score:.4f}"
+            with _written(self.folder, self.progress):
+                policy.save(self.folder / "best.npz")
+            self.progress.best_score = score
+
+    def _log(self) -> None:
+        with _written(self.folder, self.progress):
+            self.log.dump(self.progress.samples)
+
+    def _policy(self) -> NetworkPolicy:
+        made = made_by(
+            self.progress.command,
+            seed=self.settings.seed,
+            samples=self.progress.samples,
+            wall_s=self.progress.wall_s,
+        )
+        return network_policy(_actor(self.model), self.settings, made)
+
+    def _checkpoint(self) -> None:
+        with _written(self.folder, self.progress):
+            self._policy().save(self.folder / "last.npz")
+            _write_rows(self.folder / "curve.csv", self.progress.curve)
+            _write_rows(self.folder / "validations.csv", self.progress.validations)
+            path = self.folder / "checkpoint.npz"
+            checkpoint.save(path, self.model, self.settings, self.progress)
+
+
+class _Watch(BaseCallback):
+    """Means over a rollout of what the learner itself does not keep."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.rewards: list[float] = []
+        self.orders: list[float] = []
+
+    def _on_step(self) -> bool:
+        self.rewards.append(float(self.locals["rewards"].mean()))
+        if self.locals["dones"].any():
+            summaries = [each.get("episode_summary") for each in self.locals["infos"]]
+            self.orders += [each["signed_order"] for each in summaries if each]
+        return True
+
+    def means(self) -> dict[str, float]:
+        orders = sum(self.orders) / len(self.orders) if self.orders else math.nan
+        return {"reward": sum(self.rewards) / len(self.rewards), "signed_order": orders}
+
+
+def _model(settings: TrainingSettings) -> PPO:
+    if settings.device == "cuda" and not torch.cuda.is_available():
+        raise ParameterError("device = 'cuda' is not accepted: torch finds no GPU")
+    layers = list(settings.net_arch)
+    policy: dict[str, Any] = {
+        "net_arch": {"pi": layers, "vf": layers},
+        "activation_fn": ACTIVATION_MODULES[settings.activation],
+        "log_std_init": settings.log_std_init,
+    }
+    with warnings.catch_warnings():
+        # Small networks are often faster on the CPU, which is the user's choice.
+        warnings.filterwarnings("ignore", "You are trying to run PPO on the GPU")
+        return PPO(
+            "MlpPolicy",
+            PooledVecEnv(settings),
+            learning_rate=settings.learning_rate,
+            n_steps=settings.n_steps,
+            batch_size=settings.batch_size,
+            n_epochs=settings.n_epochs,
+            gamma=settings.gamma,
+            gae_lambda=settings.gae_lambda,
+            clip_range=settings.clip_range,
+            ent_coef=settings.ent_coef,
+            vf_coef=settings.vf_coef,
+            max_grad_norm=settings.max_grad_norm,
+            target_kl=settings.target_kl or None,
+            use_sde=settings.use_sde,
+            sde_sample_freq=settings.sde_sample_freq,
+            policy_kwargs=policy,
+            seed=settings.seed,
+            device=settings.device,
+        )
+
+
+def _actor(model: PPO) -> ActorCriticPolicy:
+    assert isinstance(model.policy, ActorCriticPolicy)
+    return model.policy
+
+
+def _start(settings: TrainingSettings, command: str) -> NetworkPolicy | None:
+    if not settings.start:
+        return None
+    if settings.start not in LAWS:
+        return load(settings.start)
+    law = LAWS[settings.start](
+        observation=settings.observation, mirror_to_target=settings.mirror_to_target
+    )
+    return clone_law(law, settings, command=command)
+
+
+@contextmanager
+def _written(folder: Path, progress: Progress) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise TrainingError(
+            f"{folder} cannot be written to after {progress.samples} samples: {error}; "
+            f"{_last_good(folder)}"
+        ) from error
+
+
+def _last_good(folder: Path) -> str:
+    path = folder / "checkpoint.npz"
+    return f"the last good checkpoint is {path}" if path.exists() else "there is no checkpoint yet"
+
+
+def _write_rows(path: Path, rows: list[dict[str, float]]) -> None:
+    if rows:
+        text = io.StringIO(newline="")
+        writer = csv.DictWriter(text, rows[0].keys(), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+        with whole_file(path) as file:
+            file.write(text.getvalue().encode())

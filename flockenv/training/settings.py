@@ -1,0 +1,297 @@
+"""`TrainingSettings`: everything that a training run depends on."""
+
+import difflib
+import math
+import tomllib
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields
+from typing import Any, Self
+
+import tomli_w
+
+from flockenv.errors import FlockError, ParameterError
+from flockenv.options import EnvOptions
+from flockenv.parameters import FlockParameters
+from flockenv.policies.network import ACTIVATIONS
+
+__all__ = ["TrainingError", "TrainingSettings"]
+
+
+class TrainingError(FlockError, RuntimeError):
+    """Training cannot go on; the last checkpoint is intact and the message says where."""
+
+
+@dataclass(frozen=True)
+class TrainingSettings:
+    """Settings of PPO with one policy shared by all leaders; checked once, to and from TOML.
+
+    A sample is one leader's control step. Raises `ParameterError` for values out of range.
+
+    Attributes
+    ----------
+    preset, n_boats
+        The scene; leaders are counted in `n_boats`.
+    pools
+        Named pools, each with `num_flocks` flocks.
+    n_leaders
+        Numbers of leaders, dealt out to the flocks of each pool in turn.
+    noise
+        Lowest and highest noise, drawn for each episode, in units of the pool's critical noise
+        (`FlockParameters.critical_bw_s`).
+    target
+        ``"random"``, ``"cw"``, ``"ccw"`` or ``"alternate"``.
+    episode_s, control_hz
+        Length of a training episode in s, and control steps a second.
+    mirror_to_target, observation, reward
+        The environments' options of those names.
+    options
+        Further options of the environments, such as ``delay_frames``.
+    samples
+        When to stop: the run ends with the rollout that reaches it.
+    num_flocks, n_steps, batch_size, n_epochs
+        Flocks in each pool; control steps of a rollout; samples of a minibatch, which must divide a
+        rollout; passes through a rollout.
+    learning_rate, final_learning_rate
+        Of Adam, falling linearly with the samples.
+    gamma, gae_lambda, clip_range, ent_coef, vf_coef, max_grad_norm, target_kl
+        As in stable-baselines3's PPO; `target_kl` 0: no limit.
+    net_arch, activation
+        Hidden layers of the actor and, apart, of the critic, and what stands between layers.
+    log_std_init, use_sde, sde_sample_freq
+        Exploration: logarithm of the first standard deviation, whether it depends on the state
+        (gSDE), and control steps after which that is drawn anew.
+    seed
+        Number of the training run; the flocks' seeds come from it (`flockenv.seeds.training_seed`).
+    start
+        A policy's ``.npz`` file to start from, whose hidden layers and layout these must be; or the
+        name of a closed-form law, which is cloned first; empty: from nothing.
+    checkpoint_every
+        Samples between checkpoints.
+    validate_every, validation_episodes, validation_s, validation_hz
+        Samples between validations of the mean policy at the critical noise, episodes for each
+        pool and number of leaders, their length in s and control steps a second.
+    device
+        ``"auto"`` (a GPU if there is one), ``"cpu"`` or ``"cuda"``.
+    """
+
+    preset: str = "simulation"
+    n_boats: int = 27
+    pools: tuple[str, ...] = ("500-boats", "table-1")
+    n_leaders: tuple[int, ...] = (1, 2, 3, 4)
+    noise: tuple[float, float] = (0.5, 1.25)
+    target: str = "random"
+    episode_s: float = 240.0
+    control_hz: float = 10.0
+    mirror_to_target: bool = True
+    observation: Mapping[str, Any] = field(default_factory=dict)
+    reward: Mapping[str, float] = field(default_factory=lambda: {"signed_order": 1.0})
+    options: Mapping[str, Any] = field(default_factory=dict)
+    samples: int = 2_000_000
+    num_flocks: int = 16
+    n_steps: int = 128
+    batch_size: int = 512
+    n_epochs: int = 6
+    learning_rate: float = 3e-4
+    final_learning_rate: float = 3e-4
+    gamma: float = 0.995
+    gae_lambda: float = 0.95
+    clip_range: float = 0.2
+    ent_coef: float = 0.0
+    vf_coef: float = 0.5
+    max_grad_norm: float = 0.5
+    target_kl: float = 0.0
+    net_arch: tuple[int, ...] = (64, 64)
+    activation: str = "tanh"
+    log_std_init: float = -0.5
+    use_sde: bool = False
+    sde_sample_freq: int = 16
+    seed: int = 0
+    start: str = ""
+    checkpoint_every: int = 100_000
+    validate_every: int = 500_000
+    validation_episodes: int = 8
+    validation_s: float = 240.0
+    validation_hz: float = 10.0
+    device: str = "auto"
+
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            object.__setattr__(self, each.name, _checked(each.name, getattr(self, each.name)))
+        if self.noise[0] > self.noise[1]:
+            raise ParameterError(f"noise = {self.noise!r} is not accepted: (lowest, highest)")
+        if self.rollout_samples % self.batch_size:
+            raise ParameterError(
+                f"batch_size = {self.batch_size!r} is not accepted: it must divide the "
+                f"{self.rollout_samples} samples of a rollout (n_steps x leaders of all flocks)"
+            )
+        for name in self.options:
+            if name in _NOT_OPTIONS:
+                raise ParameterError(f"options: {name!r} is not accepted: another setting rules it")
+        for pool in self.pools:
+            EnvOptions.parse({**self.environment(pool), "n_leaders": max(self.n_leaders)})
+
+    @property
+    def leaders(self) -> int:
+        """Leaders of all flocks: samples of one control step."""
+        dealt = (self.n_leaders[i % len(self.n_leaders)] for i in range(self.num_flocks))
+        return len(self.pools) * sum(dealt)
+
+    @property
+    def rollout_samples(self) -> int:
+        """Samples of one rollout."""
+        return self.n_steps * self.leaders
+
+    def environment(self, pool: str) -> dict[str, Any]:
+        """Return the options of the environment in a pool, without the numbers of leaders."""
+        critical = FlockParameters.critical_bw_s(self.preset, pool)
+        return {
+            "preset": self.preset,
+            "pool": pool,
+            "n_boats": self.n_boats,
+            "bw_s": (self.noise[0] * critical, self.noise[1] * critical),
+            "target": self.target,
+            "episode_s": self.episode_s,
+            "control_hz": self.control_hz,
+            "mirror_to_target": self.mirror_to_target,
+            "observation": dict(self.observation),
+            "reward": dict(self.reward),
+            **self.options,
+        }
+
+    def learning_rate_at(self, samples: int) -> float:
+        """Return the learning rate after so many samples."""
+        done = min(1.0, samples / self.samples)
+        return self.learning_rate + done * (self.final_learning_rate - self.learning_rate)
+
+    def replace(self, **changes: Any) -> Self:
+        """Return these settings with some fields changed."""
+        return type(self).from_dict({**self.to_dict(), **changes})
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return every field by name."""
+        return asdict(self)
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any]) -> Self:
+        """Return settings from fields by name, defaults for the others.
+
+        Raises
+        ------
+        ParameterError
+            For unknown names, with the nearest one, and values out of range.
+        """
+        names = [each.name for each in fields(cls)]
+        for name in values:
+            if name not in names:
+                near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+                hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(names)}"
+                raise ParameterError(f"{name!r} is no setting of the training: {hint}")
+        return cls(**values)
+
+    def to_toml(self) -> str:
+        """Return the settings as TOML."""
+        return tomli_w.dumps(self.to_dict())
+
+    @classmethod
+    def from_toml(cls, text: str) -> Self:
+        """Return settings from TOML.
+
+        Raises
+        ------
+        ParameterError
+            For text that is no TOML, and as `from_dict`.
+        """
+        try:
+            return cls.from_dict(tomllib.loads(text))
+        except tomllib.TOMLDecodeError as error:
+            raise ParameterError(f"settings are not TOML: {error}") from error
+
+
+#: Settings of their own, and what the network's output does not fit.
+_NOT_OPTIONS = (
+    *(each.name for each in fields(TrainingSettings)),
+    "pool",
+    "params",
+    "bw_s",
+    "rudder_levels",
+    "render_mode",
+)
+_CHOICES: Mapping[str, tuple[str, ...]] = {
+    "target": ("random", "cw", "ccw", "alternate"),
+    "activation": tuple(ACTIVATIONS),
+    "device": ("auto", "cpu", "cuda"),
+}
+#: Lowest and highest number; numbers of a list each.
+_RANGES: Mapping[str, tuple[float, float]] = {
+    "n_boats": (2, 10_000),
+    "n_leaders": (1, 10_000),
+    "noise": (0.0, 100.0),
+    "episode_s": (0.1, 1e6),
+    "control_hz": (0.1, 1000.0),
+    "samples": (1, 1e15),
+    "num_flocks": (1, 1_000_000),
+    "n_steps": (2, 1_000_000),
+    "batch_size": (2, 1e9),
+    "n_epochs": (1, 10_000),
+    "learning_rate": (0.0, 1.0),
+    "final_learning_rate": (0.0, 1.0),
+    "gamma": (0.0, 1.0),
+    "gae_lambda": (0.0, 1.0),
+    "clip_range": (1e-6, 10.0),
+    "ent_coef": (-1.0, 10.0),
+    "vf_coef": (0.0, 100.0),
+    "max_grad_norm": (1e-9, 1e9),
+    "target_kl": (0.0, 100.0),
+    "net_arch": (1, 4096),
+    "log_std_init": (-20.0, 5.0),
+    "sde_sample_freq": (-1, 1_000_000),
+    "seed": (0, (1 << 32) - 1),
+    "checkpoint_every": (1, 1e15),
+    "validate_every": (1, 1e15),
+    "validation_episodes": (2, 100_000),
+    "validation_s": (1.0, 1e6),
+    "validation_hz": (0.1, 1000.0),
+}
+
+
+def _checked(name: str, value: Any) -> Any:
+    default = {each.name: each.default for each in fields(TrainingSettings)}[name]
+    if isinstance(default, tuple):
+        return _checked_list(name, value, default)
+    if name in _RANGES:
+        return _checked_number(name, value, whole=isinstance(default, int))
+    if isinstance(default, bool) and not isinstance(value, bool):
+        raise ParameterError(f"{name} = {value!r} is not accepted: true or false")
+    if isinstance(default, str) and not isinstance(value, str):
+        raise ParameterError(f"{name} = {value!r} is not accepted: a text")
+    if name in _CHOICES and value not in _CHOICES[name]:
+        raise ParameterError(f"{name} = {value!r} is not accepted: {', '.join(_CHOICES[name])}")
+    if name in ("observation", "reward", "options"):
+        if not isinstance(value, Mapping):
+            raise ParameterError(f"{name} = {value!r} is not accepted: a table")
+        return dict(value)
+    return value
+
+
+def _checked_list(name: str, value: Any, default: tuple[Any, ...]) -> tuple[Any, ...]:
+    if not isinstance(value, list | tuple) or (not value and name != "net_arch"):
+        raise ParameterError(f"{name} = {value!r} is not accepted: a list")
+    if name == "noise" and len(value) != 2:
+        raise ParameterError(f"noise = {value!r} is not accepted: (lowest, highest)")
+    if name == "pools":
+        return tuple(str(pool) for pool in value)
+    return tuple(_checked_number(name, each, whole=isinstance(default[0], int)) for each in value)
+
+
+def _checked_number(name: str, value: Any, whole: bool) -> Any:
+    low, high = _RANGES[name]
+    kinds = int if whole else int | float
+    if (
+        isinstance(value, bool)
+        or not isinstance(value, kinds)
+        or not math.isfinite(value)
+        or not low <= value <= high
+    ):
+        what = "a whole number" if whole else "a number"
+        raise ParameterError(f"{name} = {value!r} is not accepted: {what} in [{low:g}, {high:g}]")
+    return value if whole else float(value)

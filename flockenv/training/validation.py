@@ -1,0 +1,46 @@
+"""How good a policy is while it is trained: the same seeded episodes each time."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from flockenv.comparison import run_episodes
+from flockenv.parameters import FlockParameters
+from flockenv.seeds import training_seed
+from flockenv.simulation import LeaderPolicy
+from flockenv.training.settings import TrainingSettings
+
+__all__ = ["validation_scores"]
+
+# The best policy is chosen by these, so they are training seeds; no training run reaches them.
+_FIRST_NUMBER = 1 << 62
+
+
+def validation_scores(policy: LeaderPolicy, settings: TrainingSettings) -> dict[str, float]:
+    """Return the mean signed order of a policy at the critical noise, over paired seeds.
+
+    Returns
+    -------
+    dict
+        One number for each pool, number of leaders and, without mirroring, direction.
+    """
+    first = training_seed(_FIRST_NUMBER)
+    seeds = range(first, first + settings.validation_episodes)
+    options = {**settings.options, "control_hz": settings.validation_hz}
+    scores = {}
+    for name, scene in _scenes(settings):
+        found = run_episodes(scene, policy, seeds, settings.validation_s, options=options)
+        scores[name] = float(np.mean(found["signed_order"]))
+    return scores
+
+
+def _scenes(settings: TrainingSettings) -> Iterator[tuple[str, FlockParameters]]:
+    preset = FlockParameters.preset(settings.preset).replace(n_boats=settings.n_boats)
+    # Mirrored, both directions are one task.
+    targets = ("cw",) if settings.mirror_to_target else ("cw", "ccw")
+    for pool in settings.pools:
+        scene = preset.replace(pool=pool, bw_s=FlockParameters.critical_bw_s(settings.preset, pool))
+        for k in sorted(set(settings.n_leaders)):
+            for target in targets:
+                name = f"{pool} k={k}" + ("" if settings.mirror_to_target else f" {target}")
+                yield name, scene.replace(n_leaders=k, target=target)

@@ -1,0 +1,82 @@
+"""Law: the search climbs, goes on exactly where it was, and leaves a policy of core parts alone."""
+
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv.policies import load
+
+SCRIPT = Path(__file__).parents[2] / "baselines" / "evolution_strategy.py"
+TINY = ["--pairs", "3", "--flocks", "1", "--episode-s", "5", "--episodes", "4", "--quiet"]
+
+
+@pytest.fixture(scope="module")
+def script():
+    spec = importlib.util.spec_from_file_location("evolution_strategy", SCRIPT)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize("hidden", [[], ["--hidden", "4"]])
+def test_resumed_is_uninterrupted(script, tmp_path: Path, hidden: list[str]) -> None:
+    whole, parts = tmp_path / "whole", tmp_path / "parts"
+    script.main([*TINY, *hidden, "--generations", "3", "--out", str(whole)])
+    script.main([*TINY, *hidden, "--generations", "1", "--out", str(parts)])
+    script.main([*TINY, *hidden, "--generations", "3", "--out", str(parts)])
+    one, other = load(whole / "policy.npz"), load(parts / "policy.npz")
+    for own, resumed in zip(one.weights + one.biases, other.weights + other.biases, strict=True):
+        np.testing.assert_array_equal(own, resumed)
+    # 3 generations, 6 candidates, one flock with 2 leaders, 10 steps.
+    assert one.made["samples"] == str(3 * 6 * 2 * 10)
+    assert one.made["command"].startswith("python baselines/evolution_strategy.py")
+
+
+def test_candidates_steer_as_their_policies_do(script) -> None:
+    random = np.random.default_rng(0)
+    size = len(flockenv.observation.observation_entries())
+    for hidden in ([], [5, 3]):
+        shape = script.Shape(size, hidden)
+        flat = random.standard_normal((4, shape.size)).astype(np.float32) / 5
+        rows = random.uniform(-1, 1, (4, 7, size)).astype(np.float32)
+        rudders = shape.rudders(flat, rows)
+        assert (abs(rudders) < 1).any()
+        for candidate in range(4):
+            policy = shape.policy(flat[candidate], {})
+            expected = policy.predict(rows[candidate])[0][:, 0]
+            np.testing.assert_allclose(rudders[candidate], expected, atol=2e-6)
+
+
+def test_it_climbs(script, monkeypatch: pytest.MonkeyPatch) -> None:
+    """On rewards that are known, -|w - 1|², instead of the flock's."""
+    shape = script.Shape(3, [])
+    monkeypatch.setattr(script, "scores", lambda env, shape, w, seeds: -((w - 1) ** 2).sum(axis=1))
+    parser = {"pairs": 8, "flocks": 1, "sigma": 0.1, "rate": 0.1, "seed": 0}
+    options = script.argparse.Namespace(**parser)
+    zeros = np.zeros(shape.size)
+    state = script.State(0, zeros, zeros, zeros, 0.0, np.empty(0))
+    for _ in range(60):
+        state = script.next_generation(state, None, shape, options)
+    np.testing.assert_allclose(state.weights, 1.0, atol=0.25)
+
+
+def test_other_options_do_not_go_on(script, tmp_path: Path) -> None:
+    script.main([*TINY, "--generations", "1", "--out", str(tmp_path)])
+    with pytest.raises(SystemExit, match="other options"):
+        script.main([*TINY, "--generations", "2", "--seed", "1", "--out", str(tmp_path)])
+
+
+def test_neither_torch_nor_pandas_is_needed(tmp_path: Path) -> None:
+    forbid = "import sys; sys.modules.update(torch=None, stable_baselines3=None, pandas=None)"
+    run = f"import runpy; runpy.run_path({str(SCRIPT)!r}, run_name='__main__')"
+    arguments = [*TINY, "--generations", "1", "--out", str(tmp_path)]
+    command = [sys.executable, "-c", f"{forbid}; {run}", *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "policy.npz").is_file()

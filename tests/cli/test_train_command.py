@@ -1,0 +1,96 @@
+"""`flockenv train` trains, goes on, and says in words what is missing."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from flockenv.policies import load
+
+pytest.importorskip("stable_baselines3")
+
+TINY = """
+n_boats = 6
+pools = ["500-boats"]
+n_leaders = [1, 2]
+episode_s = 5.0
+control_hz = 2.0
+num_flocks = 2
+n_steps = 32
+batch_size = 32
+n_epochs = 1
+net_arch = [8]
+samples = 192
+checkpoint_every = 1
+validation_episodes = 2
+validation_s = 5.0
+device = "cpu"
+"""
+
+
+@pytest.fixture
+def tiny(tmp_path: Path) -> str:
+    path = tmp_path / "tiny.toml"
+    path.write_text(TINY)
+    return str(path)
+
+
+def test_it_trains_and_goes_on(flockenv, tiny: str, tmp_path: Path) -> None:
+    out = str(tmp_path / "run")
+    arguments = ["--settings", tiny, "--set", "net_arch=[4]", "--seed", "5", "--out", out]
+    done = flockenv("train", *arguments, "--json")
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["samples"] == 192
+    assert done.stderr == ""
+    policy = load(tmp_path / "run" / "best.npz")
+    assert policy.weights[0].shape[1] == 4
+    assert policy.made["seed"] == "5"
+    assert "train --settings" in policy.made["command"]
+    more = flockenv("train", "--resume", "--samples", "384", "--out", out, "--quiet")
+    assert more.returncode == 0, more.stderr
+    assert "samples: 384" in more.stdout
+    assert "best.npz" in more.stdout
+
+
+def test_errors_are_one_line_with_exit_code_2(flockenv, tiny: str, tmp_path: Path) -> None:
+    for arguments, words in (
+        (["--settings", tiny, "--set", "net_arc=[4]"], "net_arch"),
+        (["--settings", tiny, "--set", "start=law"], "as in TOML"),
+        (["--settings", str(tmp_path / "none.toml")], "none.toml"),
+        (["--resume"], "no checkpoint"),
+        (["--resume", "--seed", "3"], "only --samples"),
+    ):
+        done = flockenv("train", *arguments, "--out", str(tmp_path / "run"))
+        assert done.returncode == 2, done.stderr
+        assert words in done.stderr
+        assert "Traceback" not in done.stderr
+
+
+def test_the_missing_extra_is_named(tmp_path: Path) -> None:
+    forbid = "import sys; sys.modules.update(torch=None, stable_baselines3=None)"
+    run = "from flockenv.cli import main; main()"
+    command = [sys.executable, "-c", f"{forbid}; {run}", "train", "--out", str(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 2
+    assert "pip install 'flockenv[train]'" in done.stderr
+
+
+def test_an_interrupt_tells_how_to_go_on(tiny: str, tmp_path: Path) -> None:
+    out = tmp_path / "run"
+    command = [sys.executable, "-c", "from flockenv.cli import main; main()", "train", "--quiet"]
+    arguments = ["--settings", tiny, "--samples", "100000000", "--out", str(out)]
+    run = subprocess.Popen([*command, *arguments], stderr=subprocess.PIPE, text=True)
+    deadline = time.monotonic() + 120
+    while not (out / "checkpoint.npz").exists():
+        assert time.monotonic() < deadline
+        assert run.poll() is None
+        time.sleep(0.1)
+    run.send_signal(signal.SIGINT)
+    _, told = run.communicate(timeout=60)
+    assert run.returncode == 130
+    assert "--resume" in told
+    assert (out / "checkpoint.npz").exists()
