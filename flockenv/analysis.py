@@ -43,7 +43,7 @@ class Line:
 
     def __str__(self) -> str:
         return (
-            f"{self.intercept:.3f} + {self.slope:.4f} k (F = {self.f:.2f}, p = {self.p:.2g}, "
+            f"{self.intercept:.3f} {'-' if self.slope < 0 else '+'} {abs(self.slope):.4f} k (F = {self.f:.2f}, p = {self.p:.2g}, "
             f"{self.n} runs)"
         )
 
