@@ -30,7 +30,9 @@ __all__ = ["ComparisonReport", "report"]
 
 
 # A table of one line a row needs so many columns.
-_WIDE = 120
+_WIDE = 132
+# That of "[-0.123, -0.045]".
+_INTERVAL_WIDTH = 16
 
 NAMES = {
     "psi_o": "Ψ_o",
@@ -78,14 +80,17 @@ class ComparisonReport:
         table.caption = (
             f"means over {self.means['runs'].max()} runs with {CONFIDENCE:.0%} intervals"
         )
-        table.box, table.padding = (table.box, (0, 1)) if is_wide else (None, (0, 1, 0, 0))
+        if not is_wide:
+            table.box, table.padding = None, (0, 1, 0, 0)
         table.add_column("policy", no_wrap=is_wide)
-        for column in ("leaders", *(NAMES[q] for q in QUANTITIES), "ordered"):
-            table.add_column(column, no_wrap=True)
-        between = " " if is_wide else "\n"
+        table.add_column("leaders", no_wrap=True)
+        for quantity in QUANTITIES:
+            table.add_column(NAMES[quantity], no_wrap=is_wide, min_width=_INTERVAL_WIDTH)
+        table.add_column("ordered", no_wrap=True)
         for row in self.means.to_dict("records"):
             cells = [
-                f"{row[q]:6.3f}{between}[{row[f'{q}_low']:6.3f}, {row[f'{q}_high']:6.3f}]"
+                f"{row[q]:6.3f}{' ' if is_wide else chr(10)}"
+                f"[{row[f'{q}_low']:.3f}, {row[f'{q}_high']:.3f}]"
                 for q in QUANTITIES
             ]
             ordered = f"{row['ordered']:4.0%}"
