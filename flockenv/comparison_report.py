@@ -31,8 +31,8 @@ __all__ = ["ComparisonReport", "report"]
 
 # A table of one line a row needs so many columns.
 _WIDE = 132
-# That of "[-0.123, -0.045]".
-_INTERVAL_WIDTH = 16
+# That of "[-0.123, 0.045]".
+_INTERVAL_WIDTH = 15
 
 NAMES = {
     "psi_o": "Ψ_o",
@@ -81,7 +81,7 @@ class ComparisonReport:
             f"means over {self.means['runs'].max()} runs with {CONFIDENCE:.0%} intervals"
         )
         if not is_wide:
-            table.box, table.padding = None, (0, 1, 0, 0)
+            table.box, table.padding, table.pad_edge = None, (0, 1, 0, 0), False
         table.add_column("policy", no_wrap=is_wide)
         table.add_column("leaders", no_wrap=True)
         for quantity in QUANTITIES:

@@ -64,6 +64,6 @@ def finished_in(folder: Path, parts: Collection[str]) -> Iterator[None]:
         raise typer.Exit(130) from None
 
 
-def resumable() -> AbstractContextManager[None]:
-    """On Ctrl-C within a `with` block, end with exit code 130 and say that work can go on."""
-    return interruptible("Finished runs are kept: the same command goes on from them.")
+def resumable(folder: Path) -> AbstractContextManager[None]:
+    """On Ctrl-C within a `with` block, end with exit code 130 and say where work goes on from."""
+    return interruptible(f"Finished runs are kept in {folder}: the same command goes on from them.")
