@@ -7,6 +7,7 @@ JOBS ?= 2
 PYTEST_ARGS ?=
 COMPARE_ARGS ?=
 THROUGHPUT_ARGS ?=
+SOAK_ARGS ?=
 # `make speed-vs-error SPEED_ARGS=--trial`: everything, but too short to mean anything, outside docs.
 SPEED_ARGS ?=
 
@@ -34,7 +35,7 @@ TEST_EXTRAS := --extra train --extra plot --extra fit --extra render --extra swe
 .NOTPARALLEL:
 .PHONY: help setup build compare test lint format test-rust test-python test-browser test-rllib test-ray \
         validate pages replay-animation \
-        learning-check throughput speed-vs-error lint-benches clean
+        learning-check throughput soak fuzz speed-vs-error lint-benches clean
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-18s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -68,6 +69,9 @@ test-rust: ## the physics alone, no Python
 # One thread for each worker's linear algebra, or the workers fight over the cores.
 test-python: $(STAMPS)/test $(STAMPS)/core ## the Python package
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
+
+fuzz: $(STAMPS)/test $(STAMPS)/core ## hostile parameters, options, states, files and command lines, for minutes
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --hypothesis-profile thorough --timeout 1800 tests/fuzz $(PYTEST_ARGS)
 
 test-browser: $(STAMPS)/browser $(STAMPS)/core ## the replay page, clicked and read in headless Chromium
 	@tests/browser/need_chromium.sh
@@ -107,6 +111,9 @@ throughput: $(STAMPS)/test $(STAMPS)/core ## measure speed beside VMAS and MPE2,
 	VIRTUAL_ENV="$(CURDIR)/.venv-peers" $(BIN)/uv pip install vmas mpe2 "torch>=2.5" \
 	  --excludes requirements-excluded.txt
 	$(BIN)/python benches/throughput.py $(THROUGHPUT_ARGS)
+
+soak: $(STAMPS)/test $(STAMPS)/core ## ten million control steps with random rudders, write docs/soak.md (minutes)
+	$(BIN)/python benches/soak.py $(SOAK_ARGS)
 
 # Timed parts run one after another, the rest on all cores. Measure on a machine that does nothing else.
 speed-vs-error: $(STAMPS)/compare $(STAMPS)/peers ## measure speed and error against other engines, into docs (minutes)

@@ -42,9 +42,10 @@ class Line:
     n: int
 
     def __str__(self) -> str:
+        sign = "-" if self.slope < 0 else "+"
         return (
-            f"{self.intercept:.3f} + {self.slope:.4f} k (F = {self.f:.2f}, p = {self.p:.2g}, "
-            f"{self.n} runs)"
+            f"{self.intercept:.3f} {sign} {abs(self.slope):.4f} k (F = {self.f:.2f}, "
+            f"p = {self.p:.2g}, {self.n} runs)"
         )
 
 

@@ -33,7 +33,7 @@ def largest_cluster(parameters: FlockParameters, pose: ArrayLike) -> NDArray[np.
     Raises
     ------
     ParameterError
-        For another shape.
+        For another shape, and numbers that are not finite.
     """
     return _core.largest_cluster(parameters, _poses(pose))
 
@@ -99,6 +99,8 @@ def _poses(pose: ArrayLike) -> NDArray[np.float64]:
     poses = np.asarray(pose, np.float64)
     if poses.ndim != 3:
         raise ParameterError(f"pose has shape {poses.shape}, expected (t, n, 3)")
+    if not np.isfinite(poses).all():
+        raise ParameterError("pose is not accepted: finite numbers")
     return poses
 
 

@@ -21,6 +21,8 @@ from flockenv.whole_file import whole_file
 __all__ = ["read_arrays", "write_arrays"]
 
 _MOST_BYTES = 16 << 30
+# What is compressed better than anything measured may not fill the memory with it.
+_MOST_INFLATED_BYTES, _INFLATED_RATIO = 1 << 30, 20
 # Deflate cannot do better; an entry that claims more is a lie that would fill the memory.
 _HIGHEST_RATIO = 1100
 
@@ -62,8 +64,10 @@ def read_arrays(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
 def _read(file: IO[bytes]) -> dict[str, NDArray[Any]]:
     arrays: dict[str, NDArray[Any]] = {}
     with zipfile.ZipFile(file) as archive:
-        if sum(entry.file_size for entry in archive.infolist()) > _MOST_BYTES:
-            raise ValueError(f"it claims more than {_MOST_BYTES} bytes of data")
+        claimed = sum(entry.file_size for entry in archive.infolist())
+        size = file.seek(0, os.SEEK_END)
+        if claimed > _MOST_BYTES or claimed > max(_MOST_INFLATED_BYTES, _INFLATED_RATIO * size):
+            raise ValueError(f"its {size} bytes claim to hold {claimed} bytes of data")
         for entry in archive.infolist():
             name = entry.filename.removesuffix(".npy")
             if name in arrays:

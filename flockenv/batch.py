@@ -15,6 +15,8 @@ from flockenv.reward import TERMS
 __all__ = ["LeaderBatch", "at_least_one", "drawn_seed", "seeds_from"]
 
 _SEEDS = 2**64
+# More would fill the memory before anything is simulated.
+_MOST = 100_000
 
 
 class LeaderBatch:
@@ -86,8 +88,8 @@ def drawn_seed(random: np.random.Generator) -> int:
 def at_least_one(count: Any, name: str) -> int:
     """Return a count of flocks or leaders as an int, or raise the error that names it."""
     number = _whole(count, name)
-    if number < 1:
-        raise ParameterError(f"{name} = {number} is not accepted: at least 1")
+    if not 1 <= number <= _MOST:
+        raise ParameterError(f"{name} = {number} is not accepted: 1 to {_MOST}")
     return number
 
 

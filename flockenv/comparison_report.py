@@ -29,6 +29,11 @@ if TYPE_CHECKING:
 __all__ = ["ComparisonReport", "report"]
 
 
+# A table of one line a row needs so many columns.
+_WIDE = 132
+# That of "[-0.123, 0.045]".
+_INTERVAL_WIDTH = 15
+
 NAMES = {
     "psi_o": "Ψ_o",
     "signed_order": "signed order",
@@ -68,17 +73,24 @@ class ComparisonReport:
             f"target {scene.target}, {scene.scheme} + {scene.noise}"
         )
 
-    def table(self) -> Table:
-        """Return the means as a table for the terminal."""
+    def table(self, width: int = _WIDE) -> Table:
+        """Return the means as a table for a terminal of so many columns."""
+        is_wide = width >= _WIDE
         table = Table(title=self.title(), title_justify="left", caption_justify="left")
         table.caption = (
             f"means over {self.means['runs'].max()} runs with {CONFIDENCE:.0%} intervals"
         )
-        for column in ("policy", "leaders", *(NAMES[q] for q in QUANTITIES), "ordered"):
-            table.add_column(column, no_wrap=True)
+        if not is_wide:
+            table.box, table.padding, table.pad_edge = None, (0, 1, 0, 0), False
+        table.add_column("policy", no_wrap=is_wide)
+        table.add_column("leaders", no_wrap=True)
+        for quantity in QUANTITIES:
+            table.add_column(NAMES[quantity], no_wrap=is_wide, min_width=_INTERVAL_WIDTH)
+        table.add_column("ordered", no_wrap=True)
         for row in self.means.to_dict("records"):
             cells = [
-                f"{row[q]:6.3f} [{row[f'{q}_low']:6.3f}, {row[f'{q}_high']:6.3f}]"
+                f"{row[q]:6.3f}{' ' if is_wide else chr(10)}"
+                f"[{row[f'{q}_low']:.3f}, {row[f'{q}_high']:.3f}]"
                 for q in QUANTITIES
             ]
             ordered = f"{row['ordered']:4.0%}"

@@ -66,7 +66,7 @@ def work(fit: Fit, held_out: int) -> int:
 
 
 def report(
-    fit: Fit, held_out: int, folder: Path, progress: Callable[[str, int], None]
+    fit: Fit, held_out: int, folder: Path, progress: Callable[[str, float], None]
 ) -> FitReport:
     """Fit, measure what was chosen on held-out seeds, and write the files.
 
@@ -96,22 +96,30 @@ def report(
     finals = fit.finals(trials, lambda: progress("finalists", 1))
     scene = fit.scene.replace(**_rounded(finals[0])).replace(dt_s=VERIFIED_DT_S)
     seeds = range(HELD_OUT, HELD_OUT + held_out)
-    table = _residuals(scene, seeds, fit.jobs)
+    table = _residuals(scene, seeds, fit.jobs, progress)
     table["best_seen"] = _best_seen(fit, trials)
-    progress("held-out seeds", held_out)
     _write(folder / "parameters.toml", header + scene.to_toml())
     _write(folder / "residuals.csv", table.round(4).to_csv(index=False))
     return FitReport(scene, table)
 
 
-def check(scene: FlockParameters, held_out: int, jobs: int) -> FitReport:
-    """Measure every fact of a scene on held-out seeds, without a fit."""
+def check(
+    scene: FlockParameters, held_out: int, jobs: int, progress: Callable[[str, float], None]
+) -> FitReport:
+    """Measure every fact of a scene on held-out seeds, without a fit: `held_out` steps of work."""
     seeds = range(HELD_OUT, HELD_OUT + held_out)
-    return FitReport(scene, _residuals(scene, seeds, jobs))
+    return FitReport(scene, _residuals(scene, seeds, jobs, progress))
 
 
-def _residuals(scene: FlockParameters, seeds: Sequence[int], jobs: int) -> "pd.DataFrame":
-    return residuals(scene, run_flocks(scene, seeds, NOISE_S, jobs))
+def _residuals(
+    scene: FlockParameters,
+    seeds: Sequence[int],
+    jobs: int,
+    progress: Callable[[str, float], None],
+) -> "pd.DataFrame":
+    a_run = 1 / sum(map(len, NOISE_S.values()))
+    runs = run_flocks(scene, seeds, NOISE_S, jobs, lambda: progress("held-out seeds", a_run))
+    return residuals(scene, runs)
 
 
 def _best_seen(fit: Fit, trials: Sequence[Trial]) -> list[float]:

@@ -81,7 +81,7 @@ class EnvOptions:
                 refuse_unknown(settings[name], known, f"part of {name}")
         parameters = _parameters(given)
         target = settings.setdefault("target", parameters.target)
-        if target in ("cw", "ccw"):
+        if isinstance(target, str) and target in ("cw", "ccw"):
             parameters = parameters.replace(target=target)
         return cls(parameters, settings)
 

@@ -1,7 +1,6 @@
 """Every constant that defines a scene. Values and range checks live in the Rust core."""
 
 import difflib
-import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any, Self
@@ -10,6 +9,7 @@ import tomli_w
 
 from flockenv import _core
 from flockenv.errors import ParameterError
+from flockenv.toml_text import read_toml
 
 __all__ = ["FlockParameters"]
 
@@ -232,12 +232,10 @@ class FlockParameters:
         ------
         ParameterError
             For text that is no TOML, and as for the class.
+        TypeError
+            For what is no text, and as for the class.
         """
-        try:
-            values = tomllib.loads(text)
-        except tomllib.TOMLDecodeError as error:
-            raise ParameterError(f"parameters are not TOML: {error}") from error
-        return cls.from_dict(values)
+        return cls.from_dict(read_toml(text, "the text of parameters"))
 
 
 _NAMES = tuple(each.name for each in fields(FlockParameters))

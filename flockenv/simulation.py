@@ -86,7 +86,7 @@ def simulate(
         If the motion left its range of 1e9 (cm, cm/s, rad, rad/s).
     """
     precision = _precision(dtype)
-    if policy is None or policy == "law":
+    if policy is None or (isinstance(policy, str) and policy == "law"):
         kept = {"single_precision": bool(precision == np.float32), "contacts": contacts}
         columns = _core.record(parameters, seed, duration_s, sample_hz, kept, progress)
         columns["phase"] = PHASES[columns["phase"]]

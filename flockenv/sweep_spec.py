@@ -29,7 +29,6 @@ and all grids must name the same fields.
 import difflib
 import itertools
 import os
-import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -38,6 +37,7 @@ from typing import Any
 from flockenv.errors import FlockError, ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.runs import RunSpec
+from flockenv.toml_text import read_toml
 
 __all__ = ["MOST_RUNS", "SweepSpec", "read_sweep"]
 
@@ -80,11 +80,12 @@ def read_sweep(path: str | os.PathLike[str]) -> SweepSpec:
         message names the file.
     """
     try:
-        return _parse(tomllib.loads(Path(path).read_text("utf-8")))
+        text = Path(path).read_text("utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise ParameterError(f"{path} cannot be read: {error}") from error
-    except tomllib.TOMLDecodeError as error:
-        raise ParameterError(f"{path} is no TOML: {error}") from error
+    values = read_toml(text, str(path))
+    try:
+        return _parse(values)
     except (FlockError, TypeError) as error:
         raise ParameterError(f"{path}: {error}") from error
 

@@ -1,12 +1,14 @@
 """The command line: `flockenv COMMAND --help` tells what each command does. One file a command."""
 
-from typing import Annotated
+import functools
+from collections.abc import Callable
+from typing import Annotated, Any
 
 import typer
 
 from flockenv import FlockError, __version__
 from flockenv.cli.compare import compare
-from flockenv.cli.console import console, errors, say
+from flockenv.cli.console import console, errors, interruptible, say
 from flockenv.cli.evaluate import evaluate
 from flockenv.cli.fit import fit
 from flockenv.cli.presets import presets
@@ -23,8 +25,21 @@ app = typer.Typer(
     rich_markup_mode="markdown",
     help="Flocks of radio-controlled boats with a few steerable leaders (Tarcai et al. 2011).",
 )
+
+
+def _interruptible(command: Callable[..., None]) -> Callable[..., None]:
+    """Return the command with exit code 130 also where Ctrl-C finds it between its long parts."""
+
+    @functools.wraps(command)
+    def wrapped(*arguments: Any, **options: Any) -> None:
+        with interruptible("What was finished before is kept."):
+            command(*arguments, **options)
+
+    return wrapped
+
+
 for command in (run, replay, compare, evaluate, fit, presets, reproduce, sweep, train):
-    app.command()(command)
+    app.command()(_interruptible(command))
 
 
 def main() -> None:

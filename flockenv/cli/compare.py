@@ -1,39 +1,29 @@
 """`flockenv compare`."""
 
 import json
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from flockenv import FlockParameters
-from flockenv.cli.console import console, progress_bar
+from flockenv.cli.console import console, finished_in, progress_bar, say
+from flockenv.cli.output import check_folder
+from flockenv.cli.pools import PoolOption, pool_name, scenes
+from flockenv.cli.scene import ChangesOption, FileOption, PresetOption
 
 __all__ = ["compare"]
-
-
-class PoolChoice(StrEnum):
-    """Pools that a comparison can be run in."""
-
-    BOTH = "both"
-    FIVE_HUNDRED_BOATS = "500-boats"
-    TABLE_1 = "table-1"
-
 
 DEFAULT_POLICIES = ("steering law",)
 
 
 def compare(
-    pool: Annotated[PoolChoice, typer.Option(help="Which pool.")] = PoolChoice.BOTH,
-    preset: Annotated[str, typer.Option(help="Preset of the scene.")] = "simulation",
-    boats: Annotated[int, typer.Option(help="Boats, leaders included.")] = 27,
+    pool: PoolOption = None,
+    preset: PresetOption = None,
+    params: FileOption = None,
+    changes: ChangesOption = None,
     most_leaders: Annotated[int, typer.Option(min=1, help="Runs 0 to this many leaders.")] = 4,
     episodes: Annotated[int, typer.Option(min=2, help="Seeds for each number.")] = 64,
-    minutes: Annotated[float, typer.Option(help="Length of an episode.")] = 8.0,
-    bw_s: Annotated[
-        float | None, typer.Option(help="Noise: length of the backward phase in s. [critical]")
-    ] = None,
+    minutes: Annotated[float, typer.Option(min=0.0, help="Length of an episode.")] = 8.0,
     policy: Annotated[
         list[str] | None,
         typer.Option(
@@ -41,7 +31,6 @@ def compare(
             "differences are taken from the first. [steering law]"
         ),
     ] = None,
-    target: Annotated[str, typer.Option(help="Direction: cw or ccw.")] = "cw",
     seed: Annotated[int, typer.Option(min=0, help="First seed.")] = 0,
     out: Annotated[Path, typer.Option(help="Folder for tables and pictures.")] = Path(
         "results/compare"
@@ -51,32 +40,26 @@ def compare(
 ) -> None:
     """Print and plot order against the number of leaders (figure 12).
 
-    Runs without leaders, and with leaders that follow each policy, on the same seeds, at the
-    critical noise of the pool. Writes `runs.csv`, `means.csv`, `lines.csv`, `differences.csv`,
-    `leader_curve.png` and `parameters.toml` for each pool.
+    Runs without leaders, and with leaders that follow each policy, on the same seeds: 27 boats in
+    both pools, at the critical noise of each, unless the scene says otherwise. Writes `runs.csv`,
+    `means.csv`, `lines.csv`, `differences.csv`, `leader_curve.png` and the exact parameters, which
+    `--params` reads, for each pool.
 
-    Example: `flockenv compare --pool table-1 --policy "steering law" --policy "damped law"`
+    Example: `flockenv compare --pool table-1 --policy "damped law" --set bw_s=0.4`
     """
     from flockenv.comparison import named_policy
-    from flockenv.comparison_report import report
+    from flockenv.comparison_report import ComparisonReport, report
 
     policies = {name: named_policy(name) for name in policy or DEFAULT_POLICIES}
-    pools = [choice.value for choice in PoolChoice if choice != PoolChoice.BOTH]
-    chosen = pools if pool == PoolChoice.BOTH else [pool.value]
-    base = FlockParameters.preset(preset).replace(n_boats=boats, target=target)
-    scenes = {
-        name: base.replace(
-            pool=name,
-            bw_s=FlockParameters.critical_bw_s(preset, name) if bw_s is None else bw_s,
-        )
-        for name in chosen
-    }
+    found = scenes(preset, params, changes, pool)
+    check_folder(out)
     runs = 1 + most_leaders * len(policies)
-    work = len(scenes) * runs * episodes * minutes * 60
-    results = {}
-    with progress_bar(quiet or as_json) as progress:
+    work = len(found) * runs * episodes * minutes * 60
+    results: dict[str, ComparisonReport] = {}
+    with finished_in(out, results), progress_bar(quiet or as_json) as progress:
         task = progress.add_task("simulating", total=work)
-        for name, scene in scenes.items():
+        for scene in found:
+            name = pool_name(scene)
             results[name] = report(
                 scene,
                 range(most_leaders + 1),
@@ -91,7 +74,7 @@ def compare(
         console.print_json(data={name: json.loads(text) for name, text in means.items()})
         return
     for name, result in results.items():
-        console.print(result.table())
+        console.print(result.table(console.width))
         words = [result.lines_in_words(), result.differences_in_words()]
-        console.print("\n".join(filter(None, words)), highlight=False, soft_wrap=True)
-        console.print(f"Written to {out / name}\n", highlight=False, soft_wrap=True)
+        say("\n".join(filter(None, words)))
+        say(f"Written to {out / name}\n")

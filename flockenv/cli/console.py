@@ -1,13 +1,16 @@
 """Where commands print: results to standard output, progress and errors to standard error."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
 
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-__all__ = ["console", "errors", "interruptible", "progress_bar", "resumable", "say"]
+__all__ = ["console", "errors", "finished_in", "interruptible", "progress_bar", "resumable", "say"]
+
+_NOTHING = "Nothing was written."
 
 console = Console()
 errors = Console(stderr=True)
@@ -42,6 +45,25 @@ def interruptible(told: str) -> Iterator[None]:
         raise typer.Exit(130) from None
 
 
-def resumable() -> AbstractContextManager[None]:
-    """On Ctrl-C within a `with` block, end with exit code 130 and say that work can go on."""
-    return interruptible("Finished runs are kept: the same command goes on from them.")
+@contextmanager
+def finished_in(folder: Path, parts: Collection[str]) -> Iterator[None]:
+    """On Ctrl-C within a `with` block, end with exit code 130 and say which parts are finished.
+
+    Parameters
+    ----------
+    folder
+        Where each part has a folder of its name, written when it is finished.
+    parts
+        Names of the finished parts, as it grows within the block.
+    """
+    try:
+        yield
+    except KeyboardInterrupt:
+        told = f"Finished and kept in {folder}: {', '.join(parts)}." if parts else _NOTHING
+        say(f"Interrupted. {told}", errors)
+        raise typer.Exit(130) from None
+
+
+def resumable(folder: Path) -> AbstractContextManager[None]:
+    """On Ctrl-C within a `with` block, end with exit code 130 and say where work goes on from."""
+    return interruptible(f"Finished runs are kept in {folder}: the same command goes on from them.")

@@ -8,9 +8,11 @@ from typing import Annotated, Any
 
 import typer
 
-from flockenv import FlockParameters, ParameterError
-from flockenv.cli.compare import PoolChoice
-from flockenv.cli.console import console, progress_bar
+from flockenv import ParameterError
+from flockenv.cli.console import console, finished_in, progress_bar, say
+from flockenv.cli.output import check_folder
+from flockenv.cli.pools import PoolOption, pool_name, scenes
+from flockenv.cli.scene import ChangesOption, FileOption, PresetOption
 
 __all__ = ["evaluate"]
 
@@ -25,9 +27,10 @@ def evaluate(
         list[str] | None,
         typer.Option(help="What to compare with, repeatable. [steering law, damped law]"),
     ] = None,
-    pool: Annotated[PoolChoice, typer.Option(help="Which pool.")] = PoolChoice.BOTH,
-    preset: Annotated[str, typer.Option(help="Preset of the scene.")] = "simulation",
-    boats: Annotated[int, typer.Option(help="Boats, leaders included.")] = 27,
+    pool: PoolOption = None,
+    preset: PresetOption = None,
+    params: FileOption = None,
+    changes: ChangesOption = None,
     leaders: Annotated[
         list[int] | None, typer.Option(min=1, help="Number of leaders, repeatable. [1 to 4]")
     ] = None,
@@ -43,7 +46,7 @@ def evaluate(
     ] = 0.0,
     episodes: Annotated[int, typer.Option(min=2, help="Seeds for each case.")] = 512,
     minutes: Annotated[
-        float | None, typer.Option(help="Length of an episode. [8; 16 with --alternate]")
+        float | None, typer.Option(min=0.0, help="Length of an episode. [8; 16 with --alternate]")
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="First seed.")] = 0,
     out: Annotated[Path, typer.Option(help="Folder for tables, pictures and the card.")] = Path(
@@ -54,13 +57,14 @@ def evaluate(
 ) -> None:
     """Compare one policy with others on the same seeds and write its model card.
 
-    Writes `card.md` and, for each pool and noise level, a folder with the tables and the picture of
-    `flockenv compare`.
+    Runs 27 boats in both pools, at the critical noise of each, unless the scene says otherwise.
+    Writes `card.md` and, for each pool and noise level, a folder with the tables, the picture and
+    the exact parameters, as `flockenv compare` does.
 
     Example: `flockenv evaluate baselines/policies/table-1.npz --pool table-1 --leaders 3`
     """
     from flockenv.comparison import named_policy
-    from flockenv.comparison_report import report
+    from flockenv.comparison_report import ComparisonReport, report
     from flockenv.model_card import model_card
     from flockenv.whole_file import whole_file
 
@@ -75,12 +79,16 @@ def evaluate(
     duration_s = 60.0 * (minutes if minutes is not None else 16.0 if alternate else 8.0)
     numbers = sorted(set(leaders or (1, 2, 3, 4)))
     seeds = range(seed, seed + episodes)
-    scenes = _scenes(preset, pool, boats, bw_s)
-    results = {}
-    with progress_bar(quiet or as_json) as progress:
-        work = len(scenes) * len(numbers) * len(policies) * episodes * duration_s
+    found = {
+        f"{pool_name(each)}-bw-{each.bw_s:g}": each
+        for each in scenes(preset, params, changes, pool, bw_s)
+    }
+    check_folder(out)
+    results: dict[str, ComparisonReport] = {}
+    with finished_in(out, results), progress_bar(quiet or as_json) as progress:
+        work = len(found) * len(numbers) * len(policies) * episodes * duration_s
         task = progress.add_task("simulating", total=work)
-        for scene_name, scene in scenes.items():
+        for scene_name, scene in found.items():
             results[scene_name] = report(
                 scene,
                 numbers,
@@ -102,25 +110,13 @@ def evaluate(
     with whole_file(out / "card.md") as file:
         file.write(card.encode())
     if as_json:
-        found = {
+        told = {
             scene: json.loads(each.differences.to_json(orient="records"))
             for scene, each in results.items()
         }
-        console.print_json(data=found)
+        console.print_json(data=told)
         return
     for each in results.values():
-        console.print(each.table())
-        console.print(each.differences_in_words(), highlight=False, soft_wrap=True)
-    console.print(f"Written to {out}", highlight=False, soft_wrap=True)
-
-
-def _scenes(
-    preset: str, pool: PoolChoice, boats: int, bw_s: list[float] | None
-) -> dict[str, FlockParameters]:
-    pools = [each.value for each in PoolChoice if each != PoolChoice.BOTH]
-    base = FlockParameters.preset(preset).replace(n_boats=boats)
-    return {
-        f"{name}-bw-{noise:g}": base.replace(pool=name, bw_s=noise)
-        for name in (pools if pool == PoolChoice.BOTH else [pool.value])
-        for noise in bw_s or [FlockParameters.critical_bw_s(preset, name)]
-    }
+        console.print(each.table(console.width))
+        say(each.differences_in_words())
+    say(f"Written to {out}")

@@ -7,7 +7,8 @@ from typing import Annotated
 import typer
 
 from flockenv import FlockParameters
-from flockenv.cli.console import console, progress_bar
+from flockenv.cli.console import console, interruptible, progress_bar, say
+from flockenv.cli.output import check_folder
 from flockenv.experiment_fit import BOUNDS, MODEL_CONSTANTS
 
 __all__ = ["fit"]
@@ -28,7 +29,7 @@ def fit(
     scheme: Annotated[str | None, typer.Option(help="Scheme of the runs.")] = None,
     noise: Annotated[str | None, typer.Option(help="Noise of the runs.")] = None,
     dt_s: Annotated[float | None, typer.Option(help="Substep in s. [0.05 in a search]")] = None,
-    jobs: Annotated[int, typer.Option(help="Runs at a time.")] = 1,
+    jobs: Annotated[int, typer.Option(help="Runs at a time.", min=1)] = 1,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the search.")] = 0,
     out: Annotated[Path, typer.Option(help="Folder for the log and the results.")] = Path(
         "results/fit"
@@ -51,7 +52,12 @@ def fit(
     changes = {name: value for name, value in given.items() if value is not None}
     if check is not None:
         scene = FlockParameters.preset(check).replace(**changes)
-        result = fit_report.check(scene, held_out, jobs)
+        told = "Nothing was written."
+        with interruptible(told), progress_bar(quiet or as_json) as progress:
+            task = progress.add_task("held-out seeds", total=held_out)
+            result = fit_report.check(
+                scene, held_out, jobs, lambda words, steps: progress.advance(task, steps)
+            )
     else:
         scene = experiment_scene().replace(**{"dt_s": 0.05, **changes})
         asked = Fit(
@@ -64,7 +70,9 @@ def fit(
             seed=seed,
             jobs=jobs,
         )
-        with progress_bar(quiet or as_json) as progress:
+        check_folder(out)
+        told = f"Finished trials are kept in {out}: the same command goes on from them."
+        with interruptible(told), progress_bar(quiet or as_json) as progress:
             task = progress.add_task("trials", total=fit_report.work(asked, held_out))
             result = fit_report.report(
                 asked,
@@ -80,8 +88,8 @@ def fit(
     if check is None:
         constants = {name: getattr(result.scene, name) for name in _words(free)}
         fitted = ", ".join(f"{name} = {value:g}" for name, value in constants.items())
-        console.print(fitted, highlight=False, soft_wrap=True)
-        console.print(f"Written to {out}", highlight=False, soft_wrap=True)
+        say(fitted)
+        say(f"Written to {out}")
 
 
 def _words(text: str) -> tuple[str, ...]:

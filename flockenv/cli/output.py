@@ -3,10 +3,11 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryFile
 
 from flockenv import ParameterError, Recording
 
-__all__ = ["load_recording", "writable"]
+__all__ = ["check_folder", "load_recording", "writable"]
 
 
 def load_recording(path: Path) -> Recording:
@@ -21,6 +22,29 @@ def load_recording(path: Path) -> Recording:
         return Recording.load(path)
     except OSError as error:
         raise ParameterError(f"{path} cannot be read: {error.strerror}") from error
+
+
+def check_folder(folder: Path) -> None:
+    """Check, before long work, that files can be written into a folder; leaves nothing behind.
+
+    Raises
+    ------
+    ParameterError
+        If the folder cannot be made, or no file in it.
+    """
+    made: list[Path] = []
+    try:
+        for each in (*reversed(folder.parents), folder):
+            if not each.is_dir():
+                each.mkdir()
+                made.append(each)
+        with TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise ParameterError(f"--out {folder} cannot be written: {error.strerror}") from error
+    finally:
+        for each in reversed(made):
+            each.rmdir()
 
 
 @contextmanager

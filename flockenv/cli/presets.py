@@ -1,30 +1,80 @@
 """`flockenv presets`."""
 
+from typing import Annotated
+
+import typer
 from rich.table import Table
 
 from flockenv import FlockParameters
-from flockenv.cli.console import console
+from flockenv.cli.console import console, say
 
-__all__ = ["presets"]
+__all__ = ["ABOUT", "presets"]
+
+ABOUT = {
+    "simulation": "Table 3's boats, with a scheme and a noise whose statistics do not depend on dt",
+    "paper": "Table 3's boats, with the paper's own scheme and noise taken literally",
+    "experiment": "the boats of Table 1, with constants fitted to Section 4",
+}
+"""What each preset is, in a line."""
+
+# Narrower terminals have the sources in a table of their own.
+_WIDE = 120
 
 
-def presets() -> None:
-    """Print every preset, and where each number comes from (sections of Tarcai et al. 2011)."""
+def presets(
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print values and sources as JSON.")
+    ] = False,
+) -> None:
+    """Print every preset, and where each number comes from (sections of Tarcai et al. 2011).
+
+    Example: `flockenv presets --json`
+    """
     names = FlockParameters.presets()
-    values = [FlockParameters.preset(name).to_dict() for name in names]
-    sources = [FlockParameters.preset_sources(name) for name in names]
-    table = Table("field", *names, "source")
-    for field in values[0]:
-        told = [source[field] for source in sources]
-        table.add_row(field, *(str(each[field]) for each in values), _merged(names, told))
+    values = {name: FlockParameters.preset(name).to_dict() for name in names}
+    sources = {name: FlockParameters.preset_sources(name) for name in names}
+    if as_json:
+        told = {
+            name: {
+                "about": ABOUT[name],
+                "fields": {
+                    field: {"value": value, "source": sources[name][field]}
+                    for field, value in values[name].items()
+                },
+            }
+            for name in names
+        }
+        console.print_json(data=told)
+        return
+    for name in names:
+        say(f"{name}: {ABOUT[name]}")
+    merged = {
+        field: _merged({name: source[field] for name, source in sources.items()})
+        for field in values[names[0]]
+    }
+    is_wide = console.width >= _WIDE
+    table, origins = Table("field", box=None), Table("field", "source", box=None)
+    for name in names:
+        table.add_column(name, no_wrap=True)
+    table.columns[0].no_wrap = origins.columns[0].no_wrap = True
+    if is_wide:
+        table.add_column("source")
+    for field, source in merged.items():
+        row = [field, *(str(each[field]) for each in values.values())]
+        table.add_row(*row, *([source] if is_wide else []))
+        origins.add_row(field, source)
+    say("")
     console.print(table)
+    if not is_wide:
+        say("\nWhere they come from\n")
+        console.print(origins)
 
 
-def _merged(names: list[str], sources: list[str]) -> str:
+def _merged(by_preset: dict[str, str]) -> str:
     """Return the sources, each once: with the presets that have it, unless all have the same."""
-    if len(set(sources)) == 1:
-        return sources[0]
-    by_source: dict[str, list[str]] = {}
-    for name, source in zip(names, sources, strict=True):
-        by_source.setdefault(source, []).append(name)
-    return "\n".join(f"{', '.join(own)}: {source}" for source, own in by_source.items())
+    presets_of: dict[str, list[str]] = {}
+    for name, source in by_preset.items():
+        presets_of.setdefault(source, []).append(name)
+    if len(presets_of) == 1:
+        return next(iter(presets_of))
+    return "\n".join(f"{', '.join(names)}: {source}" for source, names in presets_of.items())

@@ -6,7 +6,8 @@ from typing import Annotated
 import typer
 from rich.table import Table
 
-from flockenv.cli.console import console, errors, progress_bar, resumable
+from flockenv.cli.console import console, errors, progress_bar, resumable, say
+from flockenv.cli.output import check_folder
 from flockenv.engines import named
 from flockenv.reproduce import names
 
@@ -39,14 +40,15 @@ def reproduce(
 
     where = named(engine)
     work = plan(what, Settings(seed, minutes))
-    with resumable(), progress_bar(quiet or as_json) as progress:
+    check_folder(out)
+    with resumable(out / "runs"), progress_bar(quiet or as_json) as progress:
         task = progress.add_task(f"{len(work.specs)} runs", total=work.cost)
         claims = reproduce(
             work,
             out,
             where,
             lambda spec: progress.advance(task, spec.cost),
-            lambda line: errors.print(f"Warning: {line}", highlight=False, soft_wrap=True),
+            lambda line: say(f"Warning: {line}", errors),
         )
     rows = [{"figure": name, **each.row()} for name, list_ in claims.items() for each in list_]
     if as_json:
@@ -54,7 +56,7 @@ def reproduce(
         return
     if rows:
         console.print(_table(rows))
-    console.print(f"Written to {out}", highlight=False, soft_wrap=True)
+    say(f"Written to {out}")
 
 
 def _table(rows: list[dict[str, str | float]]) -> Table:

@@ -1,16 +1,24 @@
 """The scene of a command: a preset, a TOML file, single fields; saved beside its results."""
 
-import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from flockenv import FlockParameters, ParameterError
+from flockenv.toml_text import read_toml
 from flockenv.whole_file import whole_file
 
-__all__ = ["ChangesOption", "FileOption", "PresetOption", "read_scene", "save_scene"]
+__all__ = [
+    "ChangesOption",
+    "FileOption",
+    "PresetOption",
+    "given_fields",
+    "read_scene",
+    "save_scene",
+    "scene_of",
+]
 
 PresetOption = Annotated[
     str | None,
@@ -46,6 +54,16 @@ def read_scene(
         For an unknown preset or field, a value that is not accepted, a file that cannot be read
         or is no TOML, a change without ``=``, a field that is changed twice; the message names it.
     """
+    return scene_of(given_fields(preset, file, changes))
+
+
+def given_fields(
+    preset: str | None = None, file: Path | None = None, changes: Sequence[str] | None = None
+) -> dict[str, Any]:
+    """Return the fields that a command's options name, and ``preset`` if they name one.
+
+    Parameters and errors are those of `read_scene`; names and values are checked by `scene_of`.
+    """
     fields = _file_fields(file) if file is not None else {}
     if preset is not None:
         if fields.get("preset", preset) != preset:
@@ -53,9 +71,19 @@ def read_scene(
                 f"--preset {preset} contradicts preset = {fields['preset']!r} in {file}"
             )
         fields["preset"] = preset
-    changed = _changed_fields(changes or ())
+    return fields | _changed_fields(changes or ())
+
+
+def scene_of(fields: Mapping[str, Any]) -> FlockParameters:
+    """Return the parameters that have these fields.
+
+    Raises
+    ------
+    ParameterError
+        For unknown names and values that are not accepted, also of a wrong type.
+    """
     try:
-        return FlockParameters.from_dict(fields | changed)
+        return FlockParameters.from_dict(fields)
     except TypeError as error:
         raise ParameterError(str(error)) from error
 
@@ -75,10 +103,10 @@ def save_scene(path: Path, parameters: FlockParameters, remark: str) -> None:
 
 def _file_fields(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(path.read_text("utf-8"))
+        return read_toml(path.read_text("utf-8"), f"--params {path}")
     except OSError as error:
         raise ParameterError(f"--params {path} cannot be read: {error.strerror}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except UnicodeDecodeError as error:
         raise ParameterError(f"--params {path} is no TOML: {error}") from error
 
 
@@ -97,7 +125,7 @@ def _changed_fields(changes: Sequence[str]) -> dict[str, Any]:
 def _value(text: str) -> Any:
     """Return a value as TOML has it; what is none is a word."""
     try:
-        found = tomllib.loads(f"value = {text}")
-    except tomllib.TOMLDecodeError:
+        found = read_toml(f"value = {text}", text)
+    except ParameterError:
         return text
     return found["value"] if found.keys() == {"value"} else text

@@ -6,8 +6,10 @@ from typing import Annotated
 
 import typer
 
-from flockenv.cli.console import console, errors, progress_bar, resumable
+from flockenv.cli.console import console, errors, progress_bar, resumable, say
+from flockenv.cli.output import check_folder, writable
 from flockenv.engines import named
+from flockenv.whole_file import whole_file
 
 __all__ = ["sweep"]
 
@@ -23,7 +25,8 @@ def sweep(
 ) -> None:
     """Run a grid of parameters and seeds, as one table.
 
-    Writes `sweep.csv` and `sweep.parquet`, one row a run; `flockenv.sweep.load_sweep` reads them.
+    Writes `sweep.csv` and `sweep.parquet`, one row a run, which `flockenv.sweep.load_sweep` reads,
+    and beside them the TOML file as `sweep.toml`.
     Finished runs are kept in `runs/`: interrupted, the same command goes on where it was. What the
     TOML file holds is told in `docs/sweep.md`.
 
@@ -35,14 +38,18 @@ def sweep(
     where = named(engine)
     work = read_sweep(spec)
     folder = out or Path("results/sweep") / spec.stem
-    with resumable(), progress_bar(quiet or as_json) as progress:
+    check_folder(folder)
+    asked = spec.read_bytes()
+    with writable(folder / "sweep.toml") as path, whole_file(path) as file:
+        file.write(asked)
+    with resumable(folder / "runs"), progress_bar(quiet or as_json) as progress:
         task = progress.add_task(f"{len(work.runs)} runs", total=sum(run.cost for run in work.runs))
         table = run_sweep(
             work,
             folder,
             where,
             lambda run: progress.advance(task, run.cost),
-            lambda line: errors.print(f"Warning: {line}", highlight=False, soft_wrap=True),
+            lambda line: say(f"Warning: {line}", errors),
         )
     failed = int((table["failure"] != "").sum())
     if failed:
@@ -50,4 +57,4 @@ def sweep(
     if as_json:
         console.print_json(data=json.loads(table.to_json(orient="records")))
         return
-    console.print(f"{len(table)} runs, written to {folder}", highlight=False, soft_wrap=True)
+    say(f"{len(table)} runs, written to {folder}")

@@ -182,7 +182,7 @@ class NetworkPolicy:
                 mirror_to_target=header["mirror_to_target"],
                 made=header["made"],
             )
-        except (KeyError, TypeError, ValueError, AttributeError) as error:
+        except (KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
             if isinstance(error, ParameterError):
                 raise
             raise ParameterError(f"{path} is no whole policy: {error!r}") from error

@@ -75,20 +75,33 @@ impl AnimationEncoder {
         self.frames
     }
 
+    /// Checks that a frame of a shape (height, width, 3) can be added.
+    ///
+    /// # Errors
+    /// [`FlockError::Shape`] for another shape than that of this animation's frames.
+    pub fn check_shape(&self, shape: &[usize]) -> Result<()> {
+        let (width, height) = self.size;
+        if shape == [height as usize, width as usize, 3] {
+            return Ok(());
+        }
+        Err(FlockError::Shape {
+            field: "frame",
+            found: format!("{shape:?}").replace('[', "(").replace(']', ")"),
+            expected: format!("({height}, {width}, 3)"),
+        })
+    }
+
     /// Adds a frame of a shape (height, width, 3): red, green and blue of each pixel, row by row from the
     /// top left.
     ///
     /// # Errors
     /// [`FlockError::Shape`] for another shape than that of this animation's frames.
     pub fn add(&mut self, shape: &[usize], rgb: &[u8]) -> Result<()> {
+        self.check_shape(shape)?;
         let (width, height) = self.size;
-        let expected = [height as usize, width as usize, 3];
-        if shape != expected || rgb.len() != expected.iter().product::<usize>() {
-            return Err(FlockError::Shape {
-                field: "frame",
-                found: format!("{shape:?}").replace('[', "(").replace(']', ")"),
-                expected: format!("({height}, {width}, 3)"),
-            });
+        if rgb.len() != shape.iter().product::<usize>() {
+            let accepted = "as many bytes as its shape has";
+            return Err(FlockError::parameter("frame", rgb.len(), accepted));
         }
         let region = if self.frames == 0 {
             Region::whole(width, height)

@@ -60,9 +60,11 @@ impl PyAnimationEncoder {
             .extract::<PyReadonlyArray3<'_, u8>>()
             .map_err(|_| wrong_type(frame, "frame", "an array (height, width, 3) of uint8"))?;
         let shape = frame.shape();
+        let encoder = self.encoder()?;
+        // A broadcast view may claim far more than there is memory.
+        encoder.check_shape(shape)?;
         // A copy, since other Python threads may write to the array meanwhile.
         let rgb: Vec<u8> = frame.as_array().iter().copied().collect();
-        let encoder = self.encoder()?;
         Ok(py.detach(|| encoder.add(shape, &rgb))?)
     }
 

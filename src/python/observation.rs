@@ -7,6 +7,7 @@ use crate::environment::RudderSettings;
 use crate::error::FlockError;
 use crate::observation::{BOAT, Entry, FlockView, OBSERVATION_VERSION, Observer, state_entries};
 use crate::observed_law::{Law, ObservedLaw};
+use crate::parameters::FlockParameters;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -56,10 +57,15 @@ pub fn observation_table(blocks: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
 
 /// Every entry of the global state of so many boats, in order.
 #[pyfunction]
-pub fn state_table(n_boats: usize) -> Vec<Row> {
+pub fn state_table(n_boats: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
+    let n_boats = count(n_boats, "n_boats")?;
+    if n_boats > FlockParameters::MOST_BOATS {
+        let accepted = format!("0 to {}", FlockParameters::MOST_BOATS);
+        return Err(FlockError::parameter("n_boats", n_boats, accepted).into());
+    }
     let entries = state_entries(n_boats).into_iter().enumerate();
     let boats = n_boats * BOAT.len();
-    entries
+    Ok(entries
         .map(|(place, entry)| {
             if place < boats {
                 row("boat", place / BOAT.len(), entry)
@@ -67,7 +73,7 @@ pub fn state_table(n_boats: usize) -> Vec<Row> {
                 row("clock", 0, entry)
             }
         })
-        .collect()
+        .collect())
 }
 
 /// What the leaders of a flock observe now: (k, size) float32. `rudder`: as the rudders stand.

@@ -1,0 +1,83 @@
+"""The scenes of a comparison: a scene in one pool or in both, at one noise level or several."""
+
+from collections.abc import Sequence
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from flockenv import FlockParameters, ParameterError
+from flockenv.cli.scene import given_fields, scene_of
+
+__all__ = ["PoolChoice", "PoolOption", "pool_name", "scenes"]
+
+#: The flock of the experiment, unless another number is asked for.
+_BOATS = 27
+
+
+class PoolChoice(StrEnum):
+    """Pools that a comparison can be run in."""
+
+    BOTH = "both"
+    FIVE_HUNDRED_BOATS = "500-boats"
+    TABLE_1 = "table-1"
+
+
+PoolOption = Annotated[
+    PoolChoice | None, typer.Option("--pool", help="Which pool. [both, or that of the scene]")
+]
+
+
+def scenes(
+    preset: str | None,
+    file: Path | None,
+    changes: Sequence[str] | None,
+    pool: PoolChoice | None,
+    noise_levels: Sequence[float] | None = None,
+) -> list[FlockParameters]:
+    """Return the scenes that a command's options ask for, one a pool and noise level.
+
+    What neither the file nor a change names is the preset's, but for 27 boats, both pools, and the
+    critical noise of each pool. Numbers of leaders are the command's own affair.
+
+    Raises
+    ------
+    ParameterError
+        As for `read_scene`; for a pool or a noise level asked for twice; for changes of the number
+        of leaders; for pools whose critical noise is not known.
+    """
+    for change in changes or ():
+        if change.partition("=")[0].strip() == "n_leaders":
+            raise ParameterError(
+                f"--set {change} is not accepted: numbers of leaders have an option of their own"
+            )
+    fields = given_fields(preset, file, changes)
+    if pool is not None and "pool" in fields and fields["pool"] != pool.value:
+        raise ParameterError(f"--pool {pool.value} contradicts pool = {fields['pool']!r}")
+    if noise_levels and "bw_s" in fields:
+        raise ParameterError(f"--bw-s contradicts bw_s = {fields['bw_s']!r}")
+    base = scene_of({"n_boats": _BOATS, **fields})
+    pools: list[Any] = [fields["pool"]] if "pool" in fields else _pools(pool or PoolChoice.BOTH)
+    found = []
+    for each in pools:
+        scene = base.replace(pool=each)
+        levels: Sequence[float] = [scene.bw_s] if "bw_s" in fields else noise_levels or []
+        if not levels:
+            name = fields.get("preset", "simulation")
+            levels = [FlockParameters.critical_bw_s(name, scene.pool)]
+        found += [scene.replace(bw_s=level) for level in levels]
+    return found
+
+
+def pool_name(scene: FlockParameters) -> str:
+    """Return what the pool of a scene is called in the names of folders."""
+    if isinstance(scene.pool, str):
+        return scene.pool
+    outer, inner = scene.pool
+    return f"{outer:g}x{inner:g}"
+
+
+def _pools(choice: PoolChoice) -> list[str]:
+    every = [each.value for each in PoolChoice if each != PoolChoice.BOTH]
+    return every if choice == PoolChoice.BOTH else [choice.value]

@@ -1,0 +1,236 @@
+"""Law: every command explains itself in 80 columns, refuses nonsense, and says where work is."""
+
+import json
+import os
+import pty
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import flockenv
+from flockenv.cli import app
+from flockenv.cli.presets import ABOUT
+
+COMMAND = [sys.executable, "-c", "from flockenv.cli import main; main()"]
+COMMANDS = sorted(command.callback.__name__ for command in app.registered_commands)
+SPEC = """
+minutes = 600
+seeds = 40
+[[grid]]
+n_boats = [20]
+"""
+TINY = ["--episodes", "2", "--minutes", "0.2", "--set", "n_boats=5"]
+
+
+def shown(*arguments: str, columns: int = 80):
+    return CliRunner().invoke(app, arguments, env={"COLUMNS": str(columns), "NO_COLOR": "1"})
+
+
+def flockenv_cli(*arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:
+    words = [*COMMAND, *map(str, arguments)]
+    variables = {**os.environ, "COLUMNS": "80", **environment}
+    return subprocess.run(words, capture_output=True, text=True, timeout=120, env=variables)
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_has_an_example_and_fits(name):
+    told = shown(name, "--help")
+    assert told.exit_code == 0
+    assert f"Example: flockenv {name}" in told.output
+    assert max(map(len, told.output.splitlines())) <= 80
+
+
+@pytest.mark.parametrize("name", sorted({*COMMANDS} - {"presets"}))
+def test_work_can_be_quiet_and_machine_readable(name):
+    options = shown(name, "--help").output
+    for option in ("--json", "--quiet", "-q", "--html" if name == "replay" else "--out"):
+        assert option in options
+    assert "--seed" in options or name in ("replay", "sweep")
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_misspelt_options_are_told_with_exit_code_2(name):
+    told = shown(name, "--jason")
+    assert told.exit_code == 2
+    assert "--jason" in told.output
+
+
+def test_presets_in_80_columns():
+    told = shown("presets")
+    assert told.exit_code == 0
+    assert max(map(len, told.output.splitlines())) <= 100
+    assert "…" not in told.output
+    for name, about in ABOUT.items():
+        assert f"{name}: {about}" in told.output
+    for words in ("gyration_radius_cm", "4.74", "experiment: flockenv fit", "Section 5.2"):
+        assert words in told.output
+
+
+def test_presets_as_json_are_the_presets():
+    told = json.loads(shown("presets", "--json").output)
+    assert list(told) == list(ABOUT) == flockenv.FlockParameters.presets()
+    for name, preset in told.items():
+        values = {field: each["value"] for field, each in preset["fields"].items()}
+        assert flockenv.FlockParameters.from_dict(values) == flockenv.FlockParameters.preset(name)
+        assert all(each["source"] for each in preset["fields"].values())
+
+
+@pytest.mark.parametrize(
+    ("variable", "line", "words"),
+    [
+        ("complete_bash", "flockenv re", ["replay", "reproduce"]),
+        ("complete_zsh", "flockenv comp", ["compare"]),
+        ("complete_fish", "flockenv eval", ["evaluate"]),
+        ("complete_bash", "flockenv run --see", ["--seed"]),
+    ],
+)
+def test_shells_complete(variable, line, words):
+    environment = {
+        "_FLOCKENV_COMPLETE": variable,
+        "_TYPER_COMPLETE_ARGS": line,
+        "_TYPER_COMPLETE_FISH_ACTION": "get-args",
+        "COMP_WORDS": line,
+        "COMP_CWORD": str(len(line.split()) - 1),
+    }
+    code = "import sys; sys.argv[0] = 'flockenv'; from flockenv.cli import main; main()"
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        env={**os.environ, **environment},
+    )
+    assert all(word in done.stdout for word in words), (done.stdout, done.stderr)
+    assert "sweep" not in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["compare", "--set", "n_bots=3"], "did you mean 'n_boats'"),
+        (["compare", "--set", "n_leaders=3"], "an option of their own"),
+        (["compare", "--params", "{}/none.toml"], "cannot be read"),
+        (["compare", "--params", "{}/wall.toml", "--pool", "500-boats"], "contradicts"),
+        (["compare", "--set", "pool=[90, 10]"], "critical noise"),
+        (["compare", "--out", "{}/file/out"], "cannot be written"),
+        (["evaluate", "straight ahead", "--set", "bw_s=1", "--bw-s", "2"], "--bw-s contradicts"),
+        (["evaluate", "straight ahead", "--out", "{}/file"], "cannot be written"),
+        (["fit", "--out", "{}/file/out"], "cannot be written"),
+        (["sweep", "{}/none.toml"], "cannot be read"),
+        (["sweep", "{}/spec.toml", "--out", "{}/file/out"], "cannot be written"),
+        (["sweep", "{}/spec.toml", "--engine", "lokal"], "local"),
+        (["reproduce", "fig14", "--out", "{}/file/out"], "cannot be written"),
+        (["reproduce", "fig99"], "fig14"),
+        (["run", "--out", "{}/file/run.npz"], "cannot be written"),
+        (["replay", "{}/file"], "file"),
+    ],
+)
+def test_errors_are_one_line_with_exit_code_2(arguments, words, tmp_path, monkeypatch, capsys):
+    (tmp_path / "file").write_text("here already")
+    (tmp_path / "spec.toml").write_text(SPEC)
+    (tmp_path / "wall.toml").write_text('pool = "table-1"\n')
+    before = sorted(tmp_path.rglob("*"))
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", ["flockenv", *(a.replace("{}", ".") for a in arguments)])
+    with pytest.raises(SystemExit) as ended:
+        flockenv.cli.main()
+    told = capsys.readouterr().err
+    assert ended.value.code == 2, told
+    assert words in told.replace("\n", " ")
+    assert "Traceback" not in told
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_saved_parameters_compare_the_same_again(tmp_path):
+    first = flockenv_cli("compare", "--pool", "table-1", *TINY, "--json", "--out", tmp_path / "a")
+    assert first.returncode == 0, first.stderr
+    params = tmp_path / "a" / "table-1" / "parameters.toml"
+    scene = flockenv.FlockParameters.from_toml(params.read_text())
+    assert (scene.n_boats, scene.pool) == (5, "table-1")
+    assert scene.bw_s == flockenv.FlockParameters.critical_bw_s("simulation", "table-1")
+    again = flockenv_cli(
+        "compare", "--params", params, *TINY[:4], "--json", "--out", tmp_path / "b"
+    )
+    assert json.loads(again.stdout) == json.loads(first.stdout)
+
+
+def test_a_pool_of_ones_own(tmp_path):
+    scene = ["--set", "pool=[150, 30]", "--set", "bw_s=0.2", "--set", "target=ccw"]
+    arguments = ["--against", "straight ahead", "--leaders", "1", "--json", "--out", tmp_path]
+    done = flockenv_cli("evaluate", "damped law", *scene, *TINY, *arguments)
+    assert done.returncode == 0, done.stderr
+    assert list(json.loads(done.stdout)) == ["150x30-bw-0.2"]
+    text = (tmp_path / "150x30-bw-0.2" / "parameters.toml").read_text()
+    assert flockenv.FlockParameters.from_toml(text).target == "ccw"
+
+
+def test_a_table_in_80_columns(tmp_path):
+    done = flockenv_cli("compare", "--pool", "table-1", *TINY, "-q", "--out", tmp_path)
+    assert done.stderr == ""
+    table, _ = done.stdout.split("means over")
+    assert max(map(len, table.splitlines())) <= 80
+    assert "…" not in table
+
+
+def test_a_sweep_keeps_what_was_asked_beside_its_table(tmp_path):
+    (tmp_path / "small.toml").write_text("minutes = 0.1\nseeds = 1\n[[grid]]\nn_boats = [3]\n")
+    done = flockenv_cli("sweep", tmp_path / "small.toml", "--out", tmp_path / "out", "-q")
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "out" / "sweep.toml").read_bytes() == (tmp_path / "small.toml").read_bytes()
+
+
+LONG = {
+    "compare": (["--minutes", "900", "--episodes", "8", "--pool", "table-1"], "Nothing was"),
+    "evaluate": (["damped law", "--minutes", "900", "--episodes", "8"], "Nothing was"),
+    "fit": (["--trials", "5000"], "Finished trials are kept in "),
+    "reproduce": (["fig14", "--minutes", "600"], "Finished runs are kept in "),
+    "sweep": (["{}/spec.toml"], "Finished runs are kept in "),
+}
+
+
+@pytest.mark.parametrize("name", LONG)
+def test_ctrl_c_says_where_finished_work_is(name, tmp_path):
+    (tmp_path / "spec.toml").write_text(SPEC)
+    arguments, words = LONG[name]
+    arguments = [each.replace("{}", str(tmp_path)) for each in arguments]
+    # A bar is drawn on a terminal only.
+    terminal, own = pty.openpty()
+    process = subprocess.Popen(
+        [*COMMAND, name, *arguments, "--out", str(tmp_path / "out")],
+        stderr=own,
+        env={**os.environ, "COLUMNS": "200", "TERM": "xterm"},
+        start_new_session=True,
+    )
+    os.close(own)
+    try:
+        # The bar appears when the work begins.
+        assert os.read(terminal, 1000)
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        told = everything(terminal)
+        assert process.wait(timeout=60) == 130, told
+    finally:
+        process.kill()
+        os.close(terminal)
+    assert f"Interrupted. {words}" in told
+    assert "left:" in told
+    assert "Traceback" not in told
+    assert not list(Path(tmp_path).rglob("*.tmp"))
+
+
+def everything(terminal: int) -> str:
+    """What is printed on a terminal until its program ends."""
+    told = b""
+    while True:
+        try:
+            part = os.read(terminal, 4096)
+        except OSError:  # Linux's way to say that the other end is closed.
+            part = b""
+        if not part:
+            return told.decode(errors="replace")
+        told += part

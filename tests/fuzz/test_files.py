@@ -1,0 +1,354 @@
+"""Law: whatever a file holds, a named error or what was saved; nothing in it is executed, and no
+writer leaves half a file."""
+
+import io
+import json
+import os
+import warnings
+import zipfile
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory, gettempdir
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+import flockenv
+from flockenv import FlockError, FlockParameters, ParameterError, Recording, simulate
+from flockenv.array_file import read_arrays
+from flockenv.cli.scene import read_scene, save_scene
+from flockenv.observation import observation_entries
+from flockenv.policies import NetworkPolicy, load
+from flockenv.rendering import save_animation
+from flockenv.replay import write_replay
+from flockenv.run_store import RunStore, StoreWarning
+from flockenv.runs import RunSpec, execute
+from flockenv.sweep_spec import read_sweep
+
+FUZZ = settings.get_profile("fuzz")
+PARAMETERS = FlockParameters(n_boats=4, n_leaders=1, pool="table-1")
+RUN = simulate(PARAMETERS, 1, 0.5, contacts=True)
+SPEC = RunSpec(parameters=PARAMETERS, seed=1, duration_s=5.0, keep="poses")
+RESULT = execute(SPEC)
+SIZE = len(observation_entries())
+POLICY = NetworkPolicy([np.full((SIZE, 1), 0.1)], [[0.25]], made={"seed": "7"})
+SWEEP = """
+minutes = 0.1
+seeds = 2
+[fixed]
+pool = "table-1"
+[[grid]]
+n_boats = [4, 5]
+bw_s = [0.0, 0.2]
+"""
+
+
+def load_run(path: Path):
+    """The kept run, or None if it was set aside with a warning."""
+    store = RunStore(path.parent / "store")
+    target = store.path(SPEC)
+    target.parent.mkdir(parents=True)
+    target.write_bytes(path.read_bytes())
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always", StoreWarning)
+        found = store.load(SPEC)
+    assert (found is None) == (not target.exists()) == bool(told)
+    if found is None:
+        raise ParameterError(str(told[0].message))
+    return found
+
+
+def same_run(found) -> bool:
+    pairs = zip(found.arrays().items(), RESULT.arrays().items(), strict=True)
+    return all(a == b and np.array_equal(x, y, equal_nan=True) for (a, x), (b, y) in pairs)
+
+
+def same_policy(found) -> bool:
+    return found.weights[0].tobytes() == POLICY.weights[0].tobytes()
+
+
+#: How a kind of file is written, read, and whether what was read is what was written.
+KINDS = {
+    "recording": (RUN.save, Recording.load, lambda found: found == RUN),
+    "policy": (POLICY.save, load, same_policy),
+    "kept run": (
+        lambda path: (
+            (Path(path).parent / "made").mkdir()
+            or Path(path).write_bytes(kept(Path(path).parent / "made"))
+        ),
+        load_run,
+        same_run,
+    ),
+    "sweep": (
+        lambda path: Path(path).write_text(SWEEP),
+        read_sweep,
+        lambda found: len(found.runs) == 8,
+    ),
+    "parameters": (
+        lambda path: save_scene(Path(path), PARAMETERS, "seed 1"),
+        lambda path: read_scene(file=path),
+        lambda found: found == PARAMETERS,
+    ),
+}
+kinds = st.sampled_from(sorted(KINDS))
+archives = st.sampled_from(["recording", "policy", "kept run"])
+
+
+def kept(folder: Path) -> bytes:
+    store = RunStore(folder)
+    store.save(RESULT)
+    return store.path(SPEC).read_bytes()
+
+
+@cache
+def written(kind: str) -> bytes:
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "file")
+        KINDS[kind][0](path)
+        return path.read_bytes()
+
+
+def read(kind: str, blob: bytes):
+    """What is read from a file of these bytes; None where a named error is raised."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "file")
+        path.write_bytes(blob)
+        try:
+            return KINDS[kind][1](path)
+        except FlockError:
+            return None
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_whole_files_are_read(kind):
+    assert KINDS[kind][2](read(kind, written(kind)))
+
+
+@FUZZ
+@given(archives, st.floats(0, 1, exclude_max=True))
+def test_cut_off_archives(kind, share):
+    assert read(kind, written(kind)[: int(share * len(written(kind)))]) is None
+
+
+@FUZZ
+@given(archives, st.lists(st.tuples(st.floats(0, 1, exclude_max=True), st.integers(1, 255))))
+def test_archives_with_changed_bytes(kind, changes):
+    blob = bytearray(written(kind))
+    for share, bits in changes:
+        blob[int(share * len(blob))] ^= bits
+    found = read(kind, bytes(blob))
+    assert found is None or KINDS[kind][2](found)
+
+
+@FUZZ
+@given(st.sampled_from(["sweep", "parameters"]), st.data())
+def test_changed_texts(kind, data):
+    text = written(kind)
+    begin, end = sorted(data.draw(st.tuples(*[st.integers(0, len(text))] * 2)))
+    read(kind, text[:begin] + data.draw(st.binary(max_size=10)) + text[end:])
+
+
+@FUZZ
+@given(kinds, kinds)
+def test_files_of_another_kind(kind, other):
+    if kind != other:
+        assert read(kind, written(other)) is None
+
+
+@FUZZ
+@given(kinds, st.binary(max_size=200))
+def test_foreign_bytes(kind, blob):
+    read(kind, blob)
+
+
+TRAP = Path(gettempdir(), f"flockenv-trap-{os.getpid()}")
+
+
+class Trap:
+    def __reduce__(self):
+        return Path.touch, (TRAP,)
+
+
+HOSTILE_ARRAYS = (
+    np.array([Trap()], dtype=object),
+    np.array(1.0),
+    np.full((3, 4, 3), np.nan),
+    np.zeros((0, 4, 3)),
+    np.array("[" * 100_000),
+    np.array("{}"),
+    np.array("n_boats = 1" + "0" * 5000),
+    np.array(["fw"] * 6),
+    np.array([b"bytes"]),
+    np.zeros(3, "datetime64[s]"),
+    np.zeros(2, [("a", "f8")]),
+    np.array([2**64 - 1], np.uint64),
+    np.array(True),
+)
+
+
+def replaced(blob: bytes, changes) -> bytes:
+    """An archive with some arrays replaced by their place in it; None leaves them out."""
+    with np.load(io.BytesIO(blob), allow_pickle=False) as arrays:
+        names = list(arrays)
+        content = dict(arrays)
+    for place, array in changes.items():
+        name = names[place % len(names)]
+        content[name] = array
+        if array is None:
+            del content[name]
+    file = io.BytesIO()
+    np.savez(file, **content)
+    return file.getvalue()
+
+
+@FUZZ
+@given(
+    archives,
+    st.dictionaries(
+        st.integers(0, 40), st.one_of(st.none(), st.sampled_from(HOSTILE_ARRAYS)), min_size=1
+    ),
+)
+def test_archives_with_foreign_arrays(kind, changes):
+    found = read(kind, replaced(written(kind), changes))
+    assert not TRAP.exists()
+    if kind == "recording" and found is not None:
+        assert np.isfinite(found.pose).all()
+
+
+json_values = st.recursive(
+    st.one_of(st.none(), st.booleans(), st.integers(-3, 2**70), st.floats(), st.text(max_size=5)),
+    lambda inner: st.one_of(
+        st.lists(inner, max_size=3), st.dictionaries(st.text(max_size=5), inner, max_size=3)
+    ),
+    max_leaves=4,
+)
+
+
+@FUZZ
+@given(
+    st.dictionaries(
+        st.sampled_from(
+            ["format", "observation_version", "observation", "mirror_to_target", "activation",
+             "layers", "made"]
+        ),
+        json_values,
+    ),
+    st.sets(st.sampled_from(["format", "observation", "layers", "made"]), max_size=1),
+)  # fmt: skip
+def test_policies_with_a_changed_header(changes, missing):
+    with np.load(io.BytesIO(written("policy")), allow_pickle=False) as arrays:
+        content = dict(arrays)
+    header = json.loads(str(content["header"])) | changes
+    content["header"] = np.array(json.dumps({n: v for n, v in header.items() if n not in missing}))
+    file = io.BytesIO()
+    np.savez(file, **content)
+    found = read("policy", file.getvalue())
+    if found is not None:
+        action, _ = found.predict(np.zeros((2, found.weights[0].shape[0]), np.float32))
+        assert np.isfinite(action).all()
+
+
+def archive(names, entry: bytes, method: int, claims: int | None = None) -> bytes:
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", method) as target:
+        for name in names:
+            target.writestr(f"{name}.npy", entry)
+        for info in target.infolist() if claims is not None else ():
+            info.file_size = claims
+    return file.getvalue()
+
+
+@FUZZ
+@given(
+    archives,
+    st.sampled_from([zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_LZMA]),
+    st.lists(st.one_of(st.integers(-1, 5), st.sampled_from([2**31, 10**12, 2**62])), max_size=3),
+    st.sampled_from(["<f8", "<i8", "|b1", "<U4", "<U0", "<U2147483647", "|O", "|V0", "<M8[s]"]),
+    st.one_of(st.none(), st.sampled_from([8 * 10**12, 2**33])),
+)
+def test_headers_that_claim_the_world(kind, method, shape, descr, claims):
+    header = str({"descr": descr, "fortran_order": False, "shape": tuple(shape)}).encode()
+    entry = b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header
+    assert read(kind, archive(["pose", "header", "time_s"], entry, method, claims)) is None
+
+
+def test_an_archive_that_would_fill_the_memory_is_refused_unread(tmp_path):
+    (tmp_path / "bomb.npz").write_bytes(
+        archive(["pose"], os.urandom(2 << 20), zipfile.ZIP_DEFLATED, claims=2 << 30)
+    )
+    with pytest.raises(ParameterError, match="claim to hold 2147483648 bytes"):
+        read_arrays(tmp_path / "bomb.npz")
+
+
+WRITERS = {
+    "recording": lambda path: RUN.save(path.with_suffix(".npz")),
+    "policy": lambda path: POLICY.save(path.with_suffix(".npz")),
+    "kept run": lambda path: RunStore(path.parent / "runs").save(RESULT),
+    "parameters": lambda path: save_scene(path.with_suffix(".toml"), PARAMETERS, "seed 1"),
+    "page": lambda path: write_replay(path.with_suffix(".html"), {"run": RUN}),
+    "GIF": lambda path: save_animation(
+        path.with_suffix(".gif"), [np.zeros((9, 9, 3), np.uint8)], 5.0
+    ),
+    "PNG": lambda path: save_animation(
+        path.with_suffix(".png"), [np.zeros((9, 9, 3), np.uint8)], 5.0
+    ),
+}
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    found = (path for path in folder.rglob("*") if path.is_file())
+    return {str(path): path.read_bytes() for path in found}
+
+
+@pytest.mark.parametrize("fails", ["fsync", "replace"])
+@pytest.mark.parametrize("writer", WRITERS)
+def test_a_disk_that_fails_leaves_what_was_there(writer, fails, tmp_path, monkeypatch):
+    WRITERS[writer](tmp_path / "file")
+    before = files(tmp_path)
+    assert len(before) == 1
+
+    def fail(*_arguments, **_options):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(*((os, "fsync", fail) if fails == "fsync" else (Path, "replace", fail)))
+    with pytest.raises((FlockError, OSError), match="No space left"):
+        WRITERS[writer](tmp_path / "file")
+    assert files(tmp_path) == before
+
+
+@FUZZ
+@given(
+    st.lists(
+        st.one_of(
+            st.builds(np.zeros, st.tuples(*[st.integers(0, 5)] * 3), st.just(np.uint8)),
+            st.sampled_from([
+                np.zeros((9, 9, 3), np.uint8), np.zeros((9, 9, 3)), np.zeros((9, 9)), None, "a",
+                np.broadcast_to(np.uint8(1), (10**6, 10**6, 3)), 3, [[[1, 2, 3]]],
+            ]),
+        ),
+        max_size=3,
+    ),
+    st.one_of(st.floats(), st.floats(1, 50), st.none(), st.text(max_size=3)),
+    st.sampled_from(["a.gif", "a.png", "a.apng", "a.GIF", "a.jpg", "", "no/a.gif", "a\0.gif"]),
+)  # fmt: skip
+@example(
+    [np.zeros((9, 9, 3), np.uint8), np.broadcast_to(np.uint8(1), (10**6, 10**6, 3))], 5.0, "a.gif"
+)
+def test_animations(frames, fps, name):
+    with TemporaryDirectory() as folder:
+        try:
+            save_animation(f"{folder}/{name}", frames, fps)
+        except (FlockError, ValueError, TypeError, OSError):
+            assert not any(Path(folder).iterdir())
+            return
+        (path,) = Path(folder).iterdir()
+        head = path.read_bytes()[:8]
+        assert head[:6] == b"GIF89a" or head == b"\x89PNG\r\n\x1a\n"
+
+
+def test_the_largest_flock_still_answers():
+    # Far more than any pool holds: refused in words, not by the memory.
+    with pytest.raises(ParameterError, match="do not fit"):
+        flockenv.Flock(FlockParameters(n_boats=100_000, pool="table-1"), 0)
