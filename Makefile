@@ -81,7 +81,8 @@ test-browser: $(STAMPS)/browser $(STAMPS)/core ## the replay page, clicked and r
 
 wheel: $(STAMPS)/venv ## the wheel and the source distribution, into dist
 	rm -rf dist
-	PATH="$(CURDIR)/$(BIN):$$PATH" maturin build --release --locked --sdist --out dist
+	$(BIN)/maturin build --release --locked --out dist
+	$(BIN)/maturin sdist --out dist
 
 test-wheel: $(STAMPS)/test wheel ## wheel, source distribution and `pip install .`, each in an empty environment
 	PYTHONS="$(PYTHONS)" $(BIN)/python -m pytest -m wheel tests/package $(PYTEST_ARGS)

@@ -22,7 +22,7 @@ class OrderParameters:
     Attributes
     ----------
     psi_o : float
-        Ψ_o, length of the mean orientation in [0, 1] (eq. 1). N disordered boats have about 0.886/√N.
+        Ψ_o, length of the mean orientation in [0, 1] (eq. 1); some 0.886/√N for N disordered boats.
     phi_o : float
         φ_o, angle of the mean orientation in (-π, π] (eq. 3).
     c_o : float
