@@ -2,6 +2,10 @@
 # up the rest themselves in .venv. `make help` lists the others.
 
 PYTHON ?= python3
+# Other interpreters that `make test-wheel` tries the wheel on, such as "python3.12 python3.13".
+PYTHONS ?=
+# `make audit AUDIT=--strict`: what cannot be checked here fails.
+AUDIT ?=
 # Parallel pytest workers, and options passed on to pytest or to the comparison.
 JOBS ?= 2
 PYTEST_ARGS ?=
@@ -28,13 +32,15 @@ SPEED_DOCS := $(if $(SPEED_ARGS),benches/target/trial,docs)
 
 # Which extras each front door needs, out of pyproject.toml.
 COMPARE_EXTRAS := --extra plot
+OLDEST_EXTRAS := --extra plot --extra fit --extra render --extra sweep
+AUDIT_EXTRAS := --extra train --extra plot --extra fit --extra render --extra ray --extra sweep
 TEST_EXTRAS := --extra train --extra plot --extra fit --extra render --extra sweep --extra test --extra dev
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help setup build compare test lint format test-rust test-python test-browser test-rllib test-ray \
-        validate pages replay-animation \
+.PHONY: help setup build compare test lint format test-rust test-python test-browser test-wheel test-oldest \
+        test-rllib test-ray validate docs wheel audit licences pages replay-animation \
         learning-check throughput soak fuzz speed-vs-error lint-benches clean
 
 help: ## list the commands
@@ -76,6 +82,39 @@ fuzz: $(STAMPS)/test $(STAMPS)/core ## hostile parameters, options, states, file
 test-browser: $(STAMPS)/browser $(STAMPS)/core ## the replay page, clicked and read in headless Chromium
 	@tests/browser/need_chromium.sh
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m browser tests/browser $(PYTEST_ARGS)
+
+wheel: $(STAMPS)/venv ## the wheel and the source distribution, into dist
+	rm -rf dist
+	$(BIN)/maturin build --release --locked --out dist
+	$(BIN)/maturin sdist --out dist
+
+test-wheel: $(STAMPS)/test wheel ## wheel, source distribution and `pip install .`, each in an empty environment
+	PYTHONS="$(PYTHONS)" $(BIN)/python -m pytest -m wheel tests/package $(PYTEST_ARGS)
+
+# The bounds of pyproject.toml, each at its lowest; what runs the tests is the newest.
+test-oldest: $(STAMPS)/venv ## the oldest supported versions, in .venv-oldest
+	$(PYTHON) -m venv --clear .venv-oldest
+	VIRTUAL_ENV="$(CURDIR)/.venv-oldest" $(BIN)/uv pip install -r pyproject.toml $(OLDEST_EXTRAS) \
+	  --resolution lowest-direct
+	VIRTUAL_ENV="$(CURDIR)/.venv-oldest" $(BIN)/uv pip install hypothesis pytest pytest-timeout
+	VIRTUAL_ENV="$(CURDIR)/.venv-oldest" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
+	OMP_NUM_THREADS=1 .venv-oldest/bin/python -m pytest tests/boundary tests/env tests/analysis tests/cli
+
+# Pages with code cells are executed.
+docs: $(STAMPS)/docs $(STAMPS)/core ## build the pages, warnings are errors, into docs/_build/html
+	OMP_NUM_THREADS=1 $(BIN)/python -m sphinx --fail-on-warning --nitpicky --builder html docs docs/_build/html
+
+# Advisories come from elsewhere than the packages: where that is out of reach, it is said.
+audit: $(STAMPS)/audit ## licences, sources and known vulnerabilities of what this depends on
+	cargo deny --locked --all-features check licenses bans sources
+	if cargo deny --locked fetch db; then cargo deny --locked --all-features check advisories; \
+	  else echo "NOT CHECKED: advisories on crates, their database is out of reach"; test -z "$(AUDIT)"; fi
+	$(UV) pip compile --quiet --universal pyproject.toml $(AUDIT_EXTRAS) --output-file $(STAMPS)/requirements.txt
+	$(BIN)/pip-audit $(AUDIT) --disable-pip --no-deps --requirement $(STAMPS)/requirements.txt
+
+licences: ## collect the notices of the crates that are compiled in, into LICENSES
+	cargo about --version || cargo install --locked cargo-about --features cli
+	cargo about generate --locked --all-features about.hbs --output-file LICENSES/crates.txt
 
 validate: $(STAMPS)/test $(STAMPS)/core ## the slow tests and the published curves
 	cargo test --locked -- --ignored
@@ -134,7 +173,8 @@ lint-benches: ## formatting and clippy of the comparison with other engines
 clean: ## remove everything that was built or installed here
 	cargo clean
 	rm -rf benches/target $(PEERS)
-	rm -rf $(VENV) .venv-rllib .venv-ray .venv-peers flockenv/_core.*.so flockenv/_core.*.pyd dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf docs/_build
+	rm -rf $(VENV) .venv-rllib .venv-ray .venv-peers .venv-oldest flockenv/_core.*.so flockenv/_core.*.pyd dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find . -name __pycache__ -prune -exec rm -rf {} +
 
 # --- setting up -----------------------------------------------------------------------------------------------
@@ -159,6 +199,15 @@ $(STAMPS)/test: pyproject.toml requirements-excluded.txt | $(STAMPS)/venv
 
 $(STAMPS)/browser: pyproject.toml $(STAMPS)/test
 	$(UV) pip install -r pyproject.toml --extra browser
+	@touch $@
+
+$(STAMPS)/docs: pyproject.toml $(STAMPS)/test
+	$(UV) pip install -r pyproject.toml --extra docs
+	@touch $@
+
+$(STAMPS)/audit: pyproject.toml $(STAMPS)/test
+	cargo deny --version || cargo install --locked cargo-deny
+	$(UV) pip install --quiet pip-audit
 	@touch $@
 
 $(STAMPS)/peers: benches/peers/requirements.txt | $(STAMPS)/venv

@@ -138,6 +138,9 @@ def report(
     MissingExtraError
         Without the extra ``plot``.
     """
+    # All of them before hours of runs.
+    for package in ("matplotlib", "pandas", "scipy"):
+        require(package, "plot")
     from flockenv.figures import leader_curve
 
     runs = compare_leaders(scene, leaders, policies, seeds, duration_s, progress, environment)

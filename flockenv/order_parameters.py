@@ -22,14 +22,14 @@ class OrderParameters:
     Attributes
     ----------
     psi_o : float
-        Ψ_o = |mean orientation| in [0, 1] (eq. 1). N disordered boats have about 0.886/√N.
+        Ψ_o, length of the mean orientation in [0, 1] (eq. 1); some 0.886/√N for N disordered boats.
     phi_o : float
         φ_o, angle of the mean orientation in (-π, π] (eq. 3).
     c_o : float
         C_o, mean dot product of the orientations of two different boats in [-1, 1] (eq. 2, each
         pair once); NaN for a single boat.
     psi_v : float
-        Ψ_v = |mean velocity| in cm/s (eq. 4).
+        Ψ_v, length of the mean velocity in cm/s (eq. 4).
     phi_v : float
         φ_v, angle of the mean velocity in (-π, π] (eq. 6).
     c_v : float

@@ -1,0 +1,101 @@
+"""How Sphinx builds the pages: `make docs`."""
+
+import sys
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from sphinx.addnodes import pending_xref
+from sphinx.application import Sphinx
+from sphinx.environment import BuildEnvironment
+
+import flockenv
+
+sys.path.insert(0, str(Path(__file__).parent / "extensions"))
+
+project = "flockenv"
+author = "flockenv contributors"
+project_copyright = author
+release = version = flockenv.__version__
+
+extensions = [
+    "myst_nb",
+    "numpydoc",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinxcontrib.typer",
+    "mathml",
+]
+exclude_patterns = ["_build", "results", "speed_vs_error"]
+
+html_theme = "furo"
+html_title = f"flockenv {release}"
+html_math_renderer = "mathml"
+html_show_copyright = False
+html_copy_source = False
+
+nitpicky = True
+# Their pages are elsewhere, and a build needs no network.
+nitpick_ignore_regex = [
+    (
+        r"py:.*",
+        r"(ArrayLike|DTypeLike|NDArray|np|numpy|pd|pandas|gymnasium|pettingzoo|collections|typing|"
+        r"os|pathlib|xarray|stable_baselines3|Path|PathLike|Any|Self|Mapping|Sequence|Callable|"
+        r"Iterator|Iterable|Generator)(\..*)?",
+    ),
+    # What DTypeLike is short for.
+    (r"py:.*", r"type\[.*"),
+    # Internal modules and type variables of public signatures.
+    (r"py:.*", r"(flockenv\.)?_core(\..*)?"),
+    (r"py:.*", r"flockenv\.engines\.(Item|Value)"),
+]
+
+myst_enable_extensions = ["dollarmath", "deflist"]
+myst_heading_anchors = 3
+
+# Pages with code cells run whole, at every build; a cell that fails, fails the build.
+nb_execution_mode = "force"
+nb_execution_raise_on_error = True
+nb_execution_timeout = 300
+nb_execution_show_tb = True
+
+default_role = "autolink"
+autodoc_default_options = {"members": True}
+autodoc_member_order = "bysource"
+autodoc_typehints_format = "short"
+python_use_unqualified_type_names = True
+python_maximum_signature_line_length = 88
+numpydoc_show_class_members = False
+numpydoc_xref_param_type = False
+
+
+ENVIRONMENTS = ("LeadersEnv", "LeadersVectorEnv", "LeadersParallelEnv", "LeaderVecEnv")
+
+
+def setup(app: Sphinx) -> None:
+    """Register what autodoc does not know by itself."""
+    app.connect("autodoc-process-docstring", _link_environment_pages)
+    app.connect("autodoc-process-signature", _hide_cls)
+    app.connect("missing-reference", _plain_name)
+
+
+def _link_environment_pages(
+    app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: list[str]
+) -> None:
+    # Their docstrings are Markdown, and pages of their own.
+    if what == "class" and name.rpartition(".")[2] in ENVIRONMENTS:
+        lines[:] = [f"See :doc:`/environments/{obj.__name__}`."]
+
+
+def _hide_cls(
+    app: Sphinx, what: str, name: str, obj: Any, options: Any, signature: str, returns: str
+) -> tuple[str, str] | None:
+    # Class methods of the compiled module show their first argument.
+    return (signature.replace("($cls, ", "("), returns) if signature else None
+
+
+def _plain_name(
+    app: Sphinx, env: BuildEnvironment, node: pending_xref, shown: nodes.Element
+) -> nodes.Element | None:
+    # Names in single backticks link to what the reference has, and are just names otherwise.
+    return shown if node["reftype"] == "obj" else None

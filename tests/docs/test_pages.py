@@ -1,0 +1,75 @@
+"""Law: what the pages show runs as it stands, in their order; what they name is there."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from sybil.document import Document
+from sybil.example import Example, NotEvaluated
+from sybil.parsers.myst import CodeBlockParser, PythonCodeBlockParser, SkipParser
+
+import flockenv
+
+REPOSITORY = Path(__file__).parents[2]
+DOCS = REPOSITORY / "docs"
+EXECUTED = {
+    "README.md": ["python"],
+    "docs/start.md": ["python", "sh"],
+    "docs/extend/policy.md": ["python"],
+}
+PAGES = sorted(
+    str(path.relative_to(REPOSITORY))
+    for path in (*REPOSITORY.glob("*.md"), *DOCS.rglob("*.md"))
+    if "_build" not in path.parts
+)
+# Made by readers and commands, and an environment's id.
+NO_FILES_YET = {"docs/_build/html", "flockenv/Leaders-v0", "src/scheme/centered.rs"}
+
+
+def run_shell(example: Example) -> None:
+    """Run a block as a user's shell does in an environment that has flockenv."""
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        ["bash", "-euo", "pipefail", "-c", str(example.parsed)],
+        env={**os.environ, "PATH": path},
+        capture_output=True,
+        text=True,
+        timeout=240,
+        check=False,
+    )
+    assert done.returncode == 0, f"{example.path}, line {example.line}: {done.stderr}"
+
+
+@pytest.mark.parametrize("page", EXECUTED)
+def test_blocks_run(page, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    parsers = {"python": PythonCodeBlockParser(), "sh": CodeBlockParser("sh", run_shell)}
+    chosen = [parsers[language] for language in EXECUTED[page]]
+    document = Document.parse(str(REPOSITORY / page), SkipParser(), *chosen)
+    run = 0
+    for example in document.examples():
+        try:
+            example.evaluate()
+        except NotEvaluated:
+            continue
+        run += 1
+    assert run >= 2
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_files_that_are_named_exist(page):
+    text = (REPOSITORY / page).read_text()
+    folders = "baselines|benches|docs|flockenv|src|tests"
+    named = set(re.findall(rf"`((?:{folders})/[\w./-]+)`", text)) - NO_FILES_YET
+    assert [name for name in sorted(named) if not (REPOSITORY / name).exists()] == []
+
+
+def test_every_public_name_has_a_reference():
+    reference = "\n".join(path.read_text() for path in (DOCS / "api").glob("*.md"))
+    documented = re.findall(r"\.\. auto(?:class|exception|function):: ([\w.]+)", reference)
+    names = {name.rpartition(".")[2] for name in documented}
+    wanted = {*flockenv.__all__, *flockenv.policies.__all__} - {"__version__", "policies"}
+    assert sorted(wanted - names) == []
