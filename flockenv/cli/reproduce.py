@@ -20,6 +20,9 @@ def reproduce(
     minutes: Annotated[
         float | None, typer.Option(help="Length of each run. [the paper's own]")
     ] = None,
+    budget: Annotated[
+        float, typer.Option(help="Core-minutes that transition-order may take.")
+    ] = 40.0,
     engine: Annotated[str, typer.Option(help="Where to run: local, joblib or ray.")] = "local",
     seed: Annotated[int, typer.Option(min=0, help="First seed.")] = 0,
     out: Annotated[Path, typer.Option(help="Folder for results.")] = Path("results/reproduce"),
@@ -38,7 +41,7 @@ def reproduce(
     from flockenv.reproduce.reproduction import Settings
 
     where = named(engine)
-    work = plan(what, Settings(seed, minutes))
+    work = plan(what, Settings(seed, minutes, budget))
     with resumable(), progress_bar(quiet or as_json) as progress:
         task = progress.add_task(f"{len(work.specs)} runs", total=work.cost)
         claims = reproduce(

@@ -6,13 +6,7 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv.reproduce.order_statistics import (
-    PHI_EDGES,
-    PSI_EDGES,
-    OrderStatistics,
-    is_jammed,
-    is_rotating,
-)
+from flockenv.reproduce.order_statistics import PHI_EDGES, PSI_EDGES, OrderStatistics
 from flockenv.reproduce.reproduction import Results
 from flockenv.reproduce.simulation_claims import critical_noise
 from flockenv.run_store import RunStore
@@ -49,14 +43,6 @@ class Made(Results):
 
 def statistics(*runs: RunResult) -> OrderStatistics:
     return OrderStatistics.of(Made(runs), [0.0], [[run.spec for run in runs]])
-
-
-def test_states() -> None:
-    psi = np.array([0.9, 0.9, 0.9, 0.9, 0.3])
-    phi = np.array([np.pi / 2, -1.0, 0.1, 0.1, np.pi / 2])
-    psi_v = np.array([12.0, 12.0, 1.0, 9.0, 12.0])
-    assert is_rotating(psi, phi).tolist() == [True, True, False, False, False]
-    assert is_jammed(psi, phi, psi_v).tolist() == [False, False, True, False, False]
 
 
 def test_means_shares_and_directions() -> None:
