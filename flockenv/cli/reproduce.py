@@ -26,6 +26,10 @@ def reproduce(
     engine: Annotated[str, typer.Option(help="Where to run: local, joblib or ray.")] = "local",
     seed: Annotated[int, typer.Option(min=0, help="First seed.")] = 0,
     out: Annotated[Path, typer.Option(help="Folder for results.")] = Path("results/reproduce"),
+    summary: Annotated[
+        Path | None,
+        typer.Option(help="With all: Markdown file for claims and key figures, as in docs."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the claims as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no progress.")] = False,
 ) -> None:
@@ -50,6 +54,7 @@ def reproduce(
             where,
             lambda spec: progress.advance(task, spec.cost),
             lambda line: errors.print(f"Warning: {line}", highlight=False, soft_wrap=True),
+            summary,
         )
     rows = [{"figure": name, **each.row()} for name, list_ in claims.items() for each in list_]
     if as_json:

@@ -75,7 +75,7 @@ def statements(table: pd.DataFrame) -> list[str]:
     table
         With the columns ``claim``, ``pool``, ``conclusion`` and one for each reading.
     """
-    first, last = list(_READINGS)[0], list(_READINGS)[-1]
+    first, *_, last = _READINGS
     said = []
     for pool, rows in table.groupby("pool", sort=False):
         both = rows[(rows[first] == HOLDS) & (rows[last] == HOLDS)]
@@ -90,7 +90,7 @@ def statements(table: pd.DataFrame) -> list[str]:
         said += [
             f"Pool {pool}: {len(names)} of {len(rows)} claims {words}: {'; '.join(names)}."
             for words, names in groups.items()
-            if names or words == list(groups)[0]
+            if names or words == next(iter(groups))
         ]
     return said
 
@@ -114,8 +114,8 @@ def _analyse(settings: Settings, results: Results) -> Outcome:
             evidence = Evidence(settings, results, model, TABLE)
             claims[pool, model.name] = check(evidence, _FIGURES)
     every = [claim for each in claims.values() for claim in each]
-    tables = {"scheme_and_noise": table, "measured": claims_table(every)}
     table = _summary(claims)
+    tables = {"scheme_and_noise": table, "measured": claims_table(every)}
     notes = [*statements(table), interval_note(settings, TABLE.runs)]
     return Outcome(tables, notes=notes, shown=["scheme_and_noise"])
 

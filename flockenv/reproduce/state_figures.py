@@ -235,7 +235,7 @@ def _state_claims(
 def _rate(
     names: Sequence[str], leaving: dict[float, NDArray[np.float64]], low_s: float, high_s: float
 ) -> NDArray[np.float64]:
-    """Changes out of some states for each second in them, over levels: shape (resamples + 1,)."""
+    """Return changes out of some states for each second in them, shape (resamples + 1,)."""
     chosen = np.isin(STATES, names)
     levels = [each for bw_s, each in leaving.items() if low_s <= bw_s <= high_s]
     time, left = np.sum(levels, axis=0)[:, :, chosen].sum(axis=2).T

@@ -68,7 +68,8 @@ def test_densities_integrate_to_one_and_keep_the_ends() -> None:
 
 
 def test_runs_in_different_states_have_wide_intervals() -> None:
-    runs = [made(seed, {"psi_o": 0.9, "phi_o": 1.5 * (-1) ** seed}) for seed in range(3)]
+    order = {"psi_o": 0.9, "psi_v": 10.0}
+    runs = [made(seed, {**order, "phi_o": 1.5 * (-1) ** seed}) for seed in range(3)]
     shares = statistics(*runs).share("cw", "rotating", np.array([True]))
     assert shares[0] == pytest.approx(2 / 3)
     assert shares[1:].min() == 0.0
