@@ -187,7 +187,8 @@ class FlockParameters:
         if bw_s is None:
             raise ParameterError(
                 f"pool = {pool!r}: the critical noise of preset {preset!r} has not been measured "
-                "there; measure it with baselines/critical_noise.py and pass bw_s"
+                "there. Choose another pool, or name a noise level yourself (bw_s; on the command "
+                "line `--pool table-1` or `--bw-s 1.0`); baselines/critical_noise.py measures it"
             )
         return bw_s
 

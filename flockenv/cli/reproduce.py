@@ -21,9 +21,16 @@ def reproduce(
     minutes: Annotated[
         float | None, typer.Option(help="Length of each run. [the paper's own]")
     ] = None,
+    budget: Annotated[
+        float, typer.Option(help="Core-minutes that transition-order may take.")
+    ] = 40.0,
     engine: Annotated[str, typer.Option(help="Where to run: local, joblib or ray.")] = "local",
     seed: Annotated[int, typer.Option(min=0, help="First seed.")] = 0,
     out: Annotated[Path, typer.Option(help="Folder for results.")] = Path("results/reproduce"),
+    summary: Annotated[
+        Path | None,
+        typer.Option(help="With all: Markdown file for claims and key figures, as in docs."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the claims as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no progress.")] = False,
 ) -> None:
@@ -39,7 +46,7 @@ def reproduce(
     from flockenv.reproduce.reproduction import Settings
 
     where = named(engine)
-    work = plan(what, Settings(seed, minutes))
+    work = plan(what, Settings(seed, minutes, budget))
     check_folder(out)
     with resumable(out / "runs"), progress_bar(quiet or as_json) as progress:
         task = progress.add_task(f"{len(work.specs)} runs", total=work.cost)
@@ -49,6 +56,7 @@ def reproduce(
             where,
             lambda spec: progress.advance(task, spec.cost),
             lambda line: say(f"Warning: {line}", errors),
+            summary,
         )
     rows = [{"figure": name, **each.row()} for name, list_ in claims.items() for each in list_]
     if as_json:

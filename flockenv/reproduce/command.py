@@ -1,6 +1,6 @@
 """`reproduce`: runs what figures need, and writes figures, data, claims and the report."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -9,10 +9,16 @@ from flockenv.engines import Engine, local
 from flockenv.errors import FlockError
 from flockenv.reproduce.catalogue import ALL, load, resolve
 from flockenv.reproduce.claim import CheckedClaim
-from flockenv.reproduce.files import claims_table, write_file, write_outcome, write_table
+from flockenv.reproduce.files import (
+    claims_table,
+    picture_bytes,
+    write_file,
+    write_outcome,
+    write_table,
+)
 from flockenv.reproduce.report import html_report
-from flockenv.reproduce.reproduction import Results, Settings
-from flockenv.reproduce.summary import markdown_summary
+from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
+from flockenv.reproduce.summary import KEY_FIGURES, markdown_summary
 from flockenv.run_store import RunStore, run_missing
 from flockenv.runs import RunSpec
 
@@ -71,6 +77,7 @@ def reproduce(
     engine: Engine = local,
     progress: Callable[[RunSpec], None] = lambda spec: None,
     notify: Callable[[str], None] | None = None,
+    summary: Path | None = None,
 ) -> dict[str, list[CheckedClaim]]:
     """Make the missing runs, then write ``<folder>/<name>/`` for each name.
 
@@ -89,6 +96,9 @@ def reproduce(
         Called with each spec once its run is there.
     notify
         See `RunStore`.
+    summary
+        With `ALL`: where to write ``summary.md`` a second time, its pictures into a folder of the
+        same name beside it.
 
     Returns
     -------
@@ -113,10 +123,26 @@ def reproduce(
         outcome = figure.analyse(plan.settings, Results(store, specs, derived))
         write_outcome(outcome, folder / name)
         finished.append((figure, specs, outcome))
-    claims = {figure.name: outcome.claims for figure, _, outcome in finished}
     if ALL in plan.asked:
-        judged = [claim for each in claims.values() for claim in each]
-        write_table(claims_table(judged), folder / "claims")
-        write_file(folder / "report.html", html_report(plan.settings, finished).encode())
-        write_file(folder / "summary.md", markdown_summary(plan.settings, finished).encode())
-    return claims
+        _write_report(plan, folder, finished, summary)
+    return {figure.name: outcome.claims for figure, _, outcome in finished}
+
+
+def _write_report(
+    plan: Plan,
+    folder: Path,
+    finished: Sequence[tuple[Reproduction, Sequence[RunSpec], Outcome]],
+    summary: Path | None,
+) -> None:
+    judged = [claim for _, _, outcome in finished for claim in outcome.claims]
+    write_table(claims_table(judged), folder / "claims")
+    write_file(folder / "report.html", html_report(plan.settings, finished).encode())
+    write_file(folder / "summary.md", markdown_summary(plan.settings, finished).encode())
+    if summary is None:
+        return
+    for figure, _, outcome in finished:
+        if figure.name in KEY_FIGURES:
+            picture = picture_bytes(outcome.pictures[figure.name], "png")
+            write_file(summary.with_suffix("") / f"{figure.name}.png", picture)
+    page = markdown_summary(plan.settings, finished, f"{summary.stem}/{{name}}.png")
+    write_file(summary, page.encode())

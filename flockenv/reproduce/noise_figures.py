@@ -21,20 +21,19 @@ from flockenv.reproduce.experiment_design import (
 )
 from flockenv.reproduce.order_statistics import OrderStatistics, block_length_s
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
-from flockenv.reproduce.simulation_claims import critical_noise
-from flockenv.reproduce.simulation_figures import (
-    _density_rows,
-    _draw_curve,
-    _map,
-    _series_rows,
+from flockenv.reproduce.series_panels import (
+    density_map,
+    density_rows,
+    draw_curve,
+    series_rows,
 )
+from flockenv.reproduce.simulation_claims import critical_noise
 from flockenv.reproduce.style import column_figure, paper_style
 from flockenv.runs import RunSpec
 
 __all__ = ["REPRODUCTIONS"]
 
 _BW = "backward motion time bw (s)"
-_WIDTH_CM = 15.0
 _DISORDERED_S = 2.4
 Series = dict[Setup, OrderStatistics]
 
@@ -212,15 +211,17 @@ def _figure9(settings: Settings, results: Results) -> Outcome:
     series = _series(settings, results)
     tables = []
     with paper_style():
-        picture = column_figure(6.0, _WIDTH_CM)
+        picture = column_figure(6.0)
         panels = picture.subplots(1, 3, sharex=True, sharey=True)
         for axes, (setup, each) in zip(panels, series.items(), strict=True):
-            mesh = _map(axes, each, "phi_o", 2.0)
+            mesh = density_map(axes, each, "phi_o", 2.0)
             axes.set_title(setup.name)
-            tables.append(_density_rows(each, "phi_o", {"setup": setup.name}, "bw_s"))
+            tables.append(density_rows(each, "phi_o", {"setup": setup.name}, "bw_s"))
         panels[0].set_ylabel(r"$\varphi_o$ (rad)")
         picture.supxlabel(_BW, fontsize=7)
-        bar = picture.colorbar(mesh, ax=panels, extend="max")
+        bar = picture.colorbar(
+            mesh, ax=panels, extend="max", location="bottom", fraction=0.05, aspect=40
+        )
         bar.set_label("probability density (1/rad)")
     claims = _direction_claims(series)
     return Outcome({"fig9": pd.concat(tables)}, {"fig9": picture}, claims, [_note(settings)])
@@ -237,14 +238,14 @@ def _curves(
     series = _series(settings, results)
     tables = []
     with paper_style():
-        picture = column_figure(5.5, _WIDTH_CM)
-        panels = picture.subplots(1, 3, sharex=True, sharey=True)
+        picture = column_figure(11.0)
+        panels = picture.subplots(3, 1, sharex=True, sharey=True)
         for axes, (setup, each) in zip(panels, series.items(), strict=True):
-            _draw_curve(axes, each, quantity, setup.name, int(setup.n_leaders > 0))
+            draw_curve(axes, each, quantity, setup.name, int(setup.n_leaders > 0))
             axes.set_title(setup.name)
-            tables.append(_series_rows(each, [quantity], {"setup": setup.name}, "bw_s"))
-        panels[0].set_ylabel(label)
-        picture.supxlabel(_BW, fontsize=7)
+            tables.append(series_rows(each, [quantity], {"setup": setup.name}, "bw_s"))
+            axes.set_ylabel(label)
+        panels[-1].set_xlabel(_BW)
     notes = [
         _note(settings),
         f"Points and bars: means with their {CONFIDENCE:.0%} intervals. Shaded: the mean plus and "

@@ -15,8 +15,6 @@ __all__ = [
     "PSI_EDGES",
     "OrderStatistics",
     "block_length_s",
-    "is_jammed",
-    "is_rotating",
 ]
 
 PHI_EDGES = np.linspace(-np.pi, np.pi, 37)
@@ -25,22 +23,7 @@ PHI_EDGES = np.linspace(-np.pi, np.pi, 37)
 PSI_EDGES = np.linspace(0.0, 1.0, 26)
 """Edges of the bins of Ψ_o."""
 
-_HIGH_ORDER = 0.8
-_WIDE_ANGLE = np.pi / 4
-_JAMMED_SPEED_CM_S = 5.0
 _PEAK_HALF_WIDTH = np.pi / 12
-
-
-def is_rotating(psi_o: NDArray[np.float64], phi_o: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Where a flock circles in order: Ψ_o > 0.8 and φ_o within π/4 of ±π/2."""
-    return (psi_o > _HIGH_ORDER) & (abs(abs(phi_o) - np.pi / 2) < _WIDE_ANGLE)
-
-
-def is_jammed(
-    psi_o: NDArray[np.float64], phi_o: NDArray[np.float64], psi_v: NDArray[np.float64]
-) -> NDArray[np.bool_]:
-    """Where a flock is jammed: Ψ_o > 0.8, φ_o within π/4 of 0 and Ψ_v below 5 cm/s."""
-    return (psi_o > _HIGH_ORDER) & (abs(phi_o) < _WIDE_ANGLE) & (psi_v < _JAMMED_SPEED_CM_S)
 
 
 def block_length_s(duration_s: float) -> float:
@@ -54,19 +37,18 @@ _PLAIN = ("frames", "psi_o", "psi_o²", "c_v", "c_v²", "rotating", "cw", "jamme
 def _blocks(run: RunResult) -> NDArray[np.float64]:
     """Sum what is counted of a run over its blocks: shape (b, q)."""
     order, used = run.order, run.analysed
-    psi, phi, c_v, psi_v = (
-        values[used] for values in (order.psi_o, order.phi_o, order.c_v, order.psi_v)
-    )
-    rotating = is_rotating(psi, phi)
+    psi, phi, c_v = (values[used] for values in (order.psi_o, order.phi_o, order.c_v))
+    states = order.states(run.spec.parameters.speed_cm_s)[used]
+    cw = states == "ordered cw"
     columns = [
         np.ones(len(psi)),
         psi,
         psi**2,
         c_v,
         c_v**2,
-        rotating,
-        rotating & (phi > 0),
-        is_jammed(psi, phi, psi_v),
+        cw | (states == "ordered ccw"),
+        cw,
+        states == "jamming",
         abs(phi) < _PEAK_HALF_WIDTH,
     ]
     times, length = run.time_s[used], block_length_s(run.spec.duration_s)
@@ -132,8 +114,8 @@ class OrderStatistics:
     def mean(self, name: str) -> NDArray[np.float64]:
         """Return the mean of "psi_o" or "c_v", or a share of the frames.
 
-        Shares are those "rotating" (see `is_rotating`), "jammed" (see `is_jammed`), and
-        "near_zero": with φ_o within π/12 of 0.
+        Shares are those "rotating" and "jammed", the ordered and the jamming states of
+        `flockenv.order_parameters.OrderSeries.states`, and "near_zero": φ_o within π/12 of 0.
         """
         return self._sum(name) / self._sum("frames")
 

@@ -27,20 +27,28 @@ class Settings:
         First seed of every figure's runs.
     minutes : float or None
         Length of a run, None for the paper's own.
+    budget_core_min : float
+        How many minutes of one core ``transition-order`` may take; its design follows from it.
 
     Raises
     ------
     ParameterError
-        For a length below a third of a minute or above 1e5 minutes.
+        For a length below a third of a minute or above 1e5 minutes, and a budget that is not
+        positive.
     """
 
     seed: int = 0
     minutes: float | None = None
+    budget_core_min: float = 40.0
 
     def __post_init__(self) -> None:
         if self.minutes is not None and not 1 / 3 <= self.minutes <= 1e5:
             raise ParameterError(
                 f"minutes = {self.minutes!r} is not accepted: from 1/3 (some cycles) to 1e5"
+            )
+        if not self.budget_core_min > 0:
+            raise ParameterError(
+                f"budget = {self.budget_core_min!r} is not accepted: core-minutes above 0"
             )
 
     def duration_s(self, paper_minutes: float) -> float:

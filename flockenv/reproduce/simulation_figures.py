@@ -2,25 +2,24 @@
 
 from collections.abc import Callable, Sequence
 
-import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from flockenv.analysis import CONFIDENCE
 from flockenv.block_bootstrap import RESAMPLES
-from flockenv.reproduce.order_statistics import (
-    PHI_EDGES,
-    PSI_EDGES,
-    OrderStatistics,
-    block_length_s,
-)
+from flockenv.reproduce.order_statistics import OrderStatistics, block_length_s
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
+from flockenv.reproduce.series_panels import (
+    density_map,
+    density_rows,
+    draw_curve,
+    interval_ends,
+    series_rows,
+)
 from flockenv.reproduce.simulation_claims import Evidence, check
 from flockenv.reproduce.simulation_design import FIGURES, PRESETS
-from flockenv.reproduce.style import COLORS, DENSITY_COLORS, column_figure, paper_style
+from flockenv.reproduce.style import COLORS, column_figure, paper_style
 from flockenv.runs import RunSpec
 
 __all__ = ["REPRODUCTIONS"]
@@ -72,66 +71,6 @@ def _finish(
     return Outcome({name: table}, {name: picture}, claims, notes)
 
 
-def _ends(replicates: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    tail = (1 - CONFIDENCE) / 2
-    low, high = np.quantile(replicates[:, 1:], [tail, 1 - tail], axis=1)
-    return low, high
-
-
-def _series_rows(
-    series: OrderStatistics, quantities: Sequence[str], keys: dict[str, object], x_name: str
-) -> pd.DataFrame:
-    columns: dict[str, object] = {**keys, x_name: series.x}
-    for name in quantities:
-        mean = series.mean(name)
-        low, high = _ends(mean)
-        columns |= {name: mean[:, 0], f"{name}_low": low, f"{name}_high": high}
-        if name in ("psi_o", "c_v"):
-            columns[f"{name}_std"] = series.deviation(name)[:, 0]
-    return pd.DataFrame(columns)
-
-
-def _density_rows(
-    series: OrderStatistics, name: str, keys: dict[str, object], x_name: str
-) -> pd.DataFrame:
-    edges = PHI_EDGES if name == "phi_o" else PSI_EDGES
-    density = series.density(name)
-    low, high = _ends(density)
-    bins = len(edges) - 1
-    return pd.DataFrame(
-        {
-            **keys,
-            x_name: np.repeat(series.x, bins),
-            "quantity": name,
-            "bin_low": np.tile(edges[:-1], len(series.x)),
-            "bin_high": np.tile(edges[1:], len(series.x)),
-            "density": density[:, 0].ravel(),
-            "density_low": low.ravel(),
-            "density_high": high.ravel(),
-        }
-    )
-
-
-def _map(axes: Axes, series: OrderStatistics, name: str, highest: float) -> QuadMesh:
-    """Draw densities as colours, each column a point of the series."""
-    edges = PHI_EDGES if name == "phi_o" else PSI_EDGES
-    half = np.diff(series.x).mean() / 2
-    across = np.append(series.x - half, series.x[-1] + half)
-    mesh = axes.pcolormesh(
-        across,
-        edges,
-        series.density(name)[:, 0].T,
-        vmin=0.0,
-        vmax=highest,
-        cmap=DENSITY_COLORS,
-        rasterized=True,
-    )
-    if name == "phi_o":
-        axes.set_yticks([-np.pi, -np.pi / 2, 0, np.pi / 2, np.pi])
-        axes.set_yticklabels(["−π", "−π/2", "0", "π/2", "π"])
-    return mesh
-
-
 def _figure14(settings: Settings, results: Results) -> Outcome:
     evidence = _evidence(settings, results)
     cases = [(n, led) for n in _SIZES for led in (False, True)]
@@ -144,11 +83,11 @@ def _figure14(settings: Settings, results: Results) -> Outcome:
             for column, each in enumerate(evidence):
                 series = each.noise(n, led)
                 axes = panels[row, column]
-                mesh = _map(axes, series, "phi_o", 2.0)
+                mesh = density_map(axes, series, "phi_o", 2.0)
                 title = f"n = {n}, k = {leaders}"
                 axes.set_title(f"{each.model.name}, {title}" if row == 0 else title)
                 keys = {"preset": each.model.name, "n_boats": n, "n_leaders": leaders}
-                tables.append(_density_rows(series, "phi_o", keys, "bw_s"))
+                tables.append(density_rows(series, "phi_o", keys, "bw_s"))
         for axes in panels[-1]:
             axes.set_xlabel(_BW)
         for axes in panels[:, 0]:
@@ -172,9 +111,9 @@ def _curves(name: str, quantity: str, label: str, settings: Settings, results: R
                 for led in (False, True):
                     leaders = round(0.2 * n) if led else 0
                     series = each.noise(n, led)
-                    _draw_curve(axes, series, quantity, f"k = {leaders}", int(led))
+                    draw_curve(axes, series, quantity, f"k = {leaders}", int(led))
                     keys = {"preset": each.model.name, "n_boats": n, "n_leaders": leaders}
-                    tables.append(_series_rows(series, [quantity], keys, "bw_s"))
+                    tables.append(series_rows(series, [quantity], keys, "bw_s"))
                 axes.set_title(f"{each.model.name}, n = {n}")
                 axes.legend(loc="best", handlelength=1.5)
         for axes in panels[-1]:
@@ -187,16 +126,6 @@ def _curves(name: str, quantity: str, label: str, settings: Settings, results: R
         "minus one standard deviation of the frames."
     )
     return outcome
-
-
-def _draw_curve(axes: Axes, series: OrderStatistics, quantity: str, label: str, place: int) -> None:
-    color, mark = COLORS[place], ("o-", "^--")[place]
-    mean, spread = series.mean(quantity), series.deviation(quantity)[:, 0]
-    low, high = _ends(mean)
-    value = mean[:, 0]
-    axes.fill_between(series.x, value - spread, value + spread, color=color, alpha=0.15, lw=0)
-    bars = np.maximum([value - low, high - value], 0.0)
-    axes.errorbar(series.x, value, bars, fmt=mark, color=color, elinewidth=0.7, label=label)
 
 
 def _figure15(settings: Settings, results: Results) -> Outcome:
@@ -218,14 +147,14 @@ def _figure17(settings: Settings, results: Results) -> Outcome:
             keys: dict[str, object] = {"preset": each.model.name}
             for row, (name, highest) in enumerate((("psi_o", 20.0), ("phi_o", 2.0))):
                 axes = panels[row, column]
-                mesh = _map(axes, series, name, highest)
-                tables.append(_density_rows(series, name, keys, "n_boats"))
+                mesh = density_map(axes, series, name, highest)
+                tables.append(density_rows(series, name, keys, "n_boats"))
                 if column == len(PRESETS) - 1:
                     label = "density" if name == "psi_o" else "density (1/rad)"
                     picture.colorbar(mesh, ax=axes, extend="max").set_label(label)
             panels[0, column].set_title(each.model.name)
             _draw_states(panels[2, column], series)
-            states.append(_series_rows(series, ["jammed", "rotating"], keys, "n_boats"))
+            states.append(series_rows(series, ["jammed", "rotating"], keys, "n_boats"))
         panels[0, 0].set_ylabel(r"$\Psi_o$")
         panels[1, 0].set_ylabel(_PHI_LABEL)
         panels[2, 0].set_ylabel("share of frames")
@@ -241,7 +170,7 @@ def _figure17(settings: Settings, results: Results) -> Outcome:
 def _draw_states(axes: Axes, series: OrderStatistics) -> None:
     for name, color, mark in (("jammed", COLORS[1], "^--"), ("rotating", COLORS[0], "o-")):
         share = series.mean(name)
-        axes.fill_between(series.x, *_ends(share), color=color, alpha=0.2, lw=0)
+        axes.fill_between(series.x, *interval_ends(share), color=color, alpha=0.2, lw=0)
         axes.plot(series.x, share[:, 0], mark, color=color, label=name)
 
 

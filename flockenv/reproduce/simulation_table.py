@@ -12,7 +12,7 @@ from flockenv.reproduce.simulation_design import TABLE, Model
 from flockenv.reproduce.simulation_figures import interval_note
 from flockenv.runs import RunSpec
 
-__all__ = ["REPRODUCTIONS", "dependence"]
+__all__ = ["REPRODUCTIONS", "dependence", "statements"]
 
 _POOLS = ("500-boats", "table-1")
 # (preset that gives the scheme, noise) by name; the first and last are the presets themselves.
@@ -21,6 +21,17 @@ _READINGS = {
     "paper scheme, white noise": ("paper", "white"),
     "leapfrog, per-step noise": ("simulation", "per-step"),
     "leapfrog, white noise": ("simulation", "white"),
+}
+# By whether the claim holds with each reading.
+_PLAIN = {
+    (True, True, True, True): "holds whatever the scheme and the noise convention",
+    (True, True, False, False): "holds only with the paper's scheme",
+    (True, False, True, False): "holds only with the paper's noise convention",
+    (True, False, False, False): "holds only with the paper's scheme and noise together",
+    (False, False, False, True): "holds only with leapfrog and white noise together",
+    (False, True, False, True): "holds only with white noise",
+    (False, False, True, True): "holds only with leapfrog",
+    (False, False, False, False): "holds with none",
 }
 _FIGURES = ("fig14", "fig15", "fig16", "fig17")
 
@@ -45,18 +56,8 @@ def dependence(verdicts: Mapping[str, str]) -> str:
     paper, white, per_step, simulation = (verdicts[name] for name in _READINGS)
     holds = tuple(each == HOLDS for each in (paper, white, per_step, simulation))
     decided = all(each in (HOLDS, DOES_NOT_HOLD) for each in verdicts.values())
-    words = {
-        (True, True, True, True): "holds whatever the scheme and the noise convention",
-        (True, True, False, False): "holds only with the paper's scheme",
-        (True, False, True, False): "holds only with the paper's noise convention",
-        (True, False, False, False): "holds only with the paper's scheme and noise together",
-        (False, False, False, True): "holds only with leapfrog and white noise together",
-        (False, True, False, True): "holds only with white noise",
-        (False, False, True, True): "holds only with leapfrog",
-        (False, False, False, False): "holds with none",
-    }
-    if decided and holds in words:
-        return words[holds]
+    if decided and holds in _PLAIN:
+        return _PLAIN[holds]
     both = "holds with both presets" if paper == simulation == HOLDS else ""
     lists = [
         f"{verdict} with {'; '.join(names)}"
@@ -64,6 +65,34 @@ def dependence(verdicts: Mapping[str, str]) -> str:
         if (names := [name for name, each in verdicts.items() if each == verdict])
     ]
     return ". ".join(filter(None, [both, *lists]))
+
+
+def statements(table: pd.DataFrame) -> list[str]:
+    """Say in plain words which claims hang on what, pool by pool.
+
+    Parameters
+    ----------
+    table
+        With the columns ``claim``, ``pool``, ``conclusion`` and one for each reading.
+    """
+    first, *_, last = _READINGS
+    said = []
+    for pool, rows in table.groupby("pool", sort=False):
+        both = rows[(rows[first] == HOLDS) & (rows[last] == HOLDS)]
+        groups = {"hold with both presets, paper and simulation": list(both["claim"])}
+        for words in _PLAIN.values():
+            alike = rows[(rows["conclusion"] == words) & ~rows.index.isin(both.index)]
+            groups[words.replace("holds", "hold", 1)] = list(alike["claim"])
+        rest = rows[~rows["conclusion"].isin(_PLAIN.values()) & ~rows.index.isin(both.index)]
+        groups["are inconclusive with some reading, or follow no single choice"] = list(
+            rest["claim"]
+        )
+        said += [
+            f"Pool {pool}: {len(names)} of {len(rows)} claims {words}: {'; '.join(names)}."
+            for words, names in groups.items()
+            if names or words == next(iter(groups))
+        ]
+    return said
 
 
 def _summary(claims: dict[tuple[str, str], list[CheckedClaim]]) -> pd.DataFrame:
@@ -85,8 +114,9 @@ def _analyse(settings: Settings, results: Results) -> Outcome:
             evidence = Evidence(settings, results, model, TABLE)
             claims[pool, model.name] = check(evidence, _FIGURES)
     every = [claim for each in claims.values() for claim in each]
-    tables = {"scheme_and_noise": _summary(claims), "measured": claims_table(every)}
-    notes = [interval_note(settings, TABLE.runs)]
+    table = _summary(claims)
+    tables = {"scheme_and_noise": table, "measured": claims_table(every)}
+    notes = [*statements(table), interval_note(settings, TABLE.runs)]
     return Outcome(tables, notes=notes, shown=["scheme_and_noise"])
 
 

@@ -8,7 +8,6 @@ and 2/3, and loops close.
 """
 
 from collections.abc import Sequence
-from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -24,7 +23,7 @@ from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, CheckedClaim, Claim
 from flockenv.reproduce.order_statistics import block_length_s
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
 from flockenv.reproduce.style import COLORS, column_figure, paper_style
-from flockenv.reproduce.transition_design import BUDGET, FULL, WAYS, Growth, TransitionDesign
+from flockenv.reproduce.transition_design import FULL, WAYS, Growth, TransitionDesign, within
 from flockenv.runs import DISCARDED_SHARE, RunResult
 
 __all__ = ["REPRODUCTIONS", "binder", "conclusion", "hysteresis", "transition_order"]
@@ -177,13 +176,22 @@ def _analyse(design: TransitionDesign, settings: Settings, results: Results) -> 
         "Density: boats for each free area of the pool 500-boats. In loops, solid lines: the way "
         "there (density or bw rising); dashed: back. Intervals of loops are Student's over seeds."
     )
-    notes.append(
-        f"Compute budget of the full design: {BUDGET}. Loops take one run's length; a loop that is "
-        "open only because it was run too fast looks the same."
-    )
+    notes.append(_budget_note(design, settings))
     tables = {"transition": _points_table(still), "loops": _loops_table(loops)}
     tables["histograms"] = _histograms(still)
     return Outcome(tables, {"transition": _picture(design, still, loops)}, claims, notes)
+
+
+def _budget_note(design: TransitionDesign, settings: Settings) -> str:
+    still, loop = (settings.duration_s(m) / 60 for m in (design.still_minutes, design.loop_minutes))
+    return (
+        f"Compute budget: {settings.budget_core_min:g} minutes of one core. This design: "
+        f"{design.runs} seeds, {still:g} minutes a run and {loop:g} minutes a loop, "
+        f"{len(design.sizes)} sizes up to {max(design.sizes)} boats, estimated to take "
+        f"{design.core_minutes(settings):.0f}; the full one takes "
+        f"{FULL.core_minutes(settings):.0f} (`--budget`). A loop that is open only because it was "
+        "run too fast looks the same."
+    )
 
 
 def _judge(
@@ -297,15 +305,19 @@ def _draw_openings(
     axes.set_xlabel("boats")
 
 
-def transition_order(design: TransitionDesign) -> Reproduction:
-    """Return the reproduction for a design of one's own, smaller or larger than `FULL`."""
+def transition_order(design: TransitionDesign | None = None) -> Reproduction:
+    """Return the reproduction, by default in the largest design that the budget allows."""
+
+    def chosen(settings: Settings) -> TransitionDesign:
+        return within(settings) if design is None else design
+
     return Reproduction(
         name="transition-order",
         title="Is the jamming–order transition of first order?",
         section="5.2, left open",
-        runs=design.all_runs,
-        analyse=partial(_analyse, design),
+        runs=lambda settings: chosen(settings).all_runs(settings),
+        analyse=lambda settings, results: _analyse(chosen(settings), settings, results),
     )
 
 
-REPRODUCTIONS = (transition_order(FULL),)
+REPRODUCTIONS = (transition_order(),)

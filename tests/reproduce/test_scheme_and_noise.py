@@ -7,8 +7,8 @@ from flockenv.reproduce.catalogue import load
 from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, INCONCLUSIVE
 from flockenv.reproduce.report import html_report
 from flockenv.reproduce.reproduction import Outcome, Settings
-from flockenv.reproduce.simulation_table import dependence
-from flockenv.reproduce.summary import markdown_summary
+from flockenv.reproduce.simulation_table import dependence, statements
+from flockenv.reproduce.summary import command, markdown_summary
 
 READINGS = (
     "paper scheme, per-step noise",
@@ -35,6 +35,29 @@ VERDICTS = {"+": HOLDS, "-": DOES_NOT_HOLD, "?": INCONCLUSIVE}
 def test_the_conclusion(signs: str, words: str) -> None:
     verdicts = {name: VERDICTS[sign] for name, sign in zip(READINGS, signs, strict=True)}
     assert words in dependence(verdicts)
+
+
+def test_the_statements_name_every_claim_once() -> None:
+    rows = []
+    for claim, signs in (("a", "++++"), ("b", "+--+"), ("c", "+-+-"), ("d", "+?--")):
+        verdicts = {name: VERDICTS[sign] for name, sign in zip(READINGS, signs, strict=True)}
+        row = {"claim": claim, "pool": "table-1", **verdicts, "conclusion": dependence(verdicts)}
+        rows.append(row)
+    said = statements(pd.DataFrame(rows))
+    assert said == [
+        "Pool table-1: 2 of 4 claims hold with both presets, paper and simulation: a; b.",
+        "Pool table-1: 1 of 4 claims hold only with the paper's noise convention: c.",
+        "Pool table-1: 1 of 4 claims are inconclusive with some reading, or follow no single "
+        "choice: d.",
+    ]
+
+
+def test_the_summary_tells_the_command_that_made_it() -> None:
+    finished = [(load(name), [], Outcome({})) for name in ("fig17", "transition-order")]
+    words = "flockenv reproduce all transition-order --seed 3 --minutes 2 --budget 7"
+    assert command(Settings(3, 2.0, 7.0), finished) == words
+    assert command(Settings(), finished[:1]) == "flockenv reproduce all --seed 0"
+    assert f"`{words}`" in markdown_summary(Settings(3, 2.0, 7.0), finished)
 
 
 def test_tables_are_shown_in_full() -> None:

@@ -9,7 +9,13 @@ import pytest
 
 import flockenv
 from flockenv.reproduce.reproduction import Results, Settings
-from flockenv.reproduce.transition_design import FULL, Growth, TransitionDesign
+from flockenv.reproduce.transition_design import (
+    DESIGNS,
+    FULL,
+    Growth,
+    TransitionDesign,
+    within,
+)
 from flockenv.reproduce.transition_order import (
     COEXISTENCE,
     HYSTERESIS,
@@ -96,8 +102,22 @@ def test_a_small_design_from_runs_to_tables(tmp_path: object) -> None:
     assert sum("conclus" in note or "first order" in note for note in outcome.notes) == 2
 
 
-def test_the_full_design_reaches_1600_boats() -> None:
-    specs = transition_order(FULL).runs(Settings())
+def test_the_budget_chooses_the_design() -> None:
+    costs = [design.core_minutes(Settings()) for design in DESIGNS]
+    assert costs == sorted(costs)
+    for design, cost in zip(DESIGNS, costs, strict=True):
+        assert within(Settings(budget_core_min=cost + 0.1)) is design
+    assert within(Settings(budget_core_min=1e6)) is FULL
+    assert within(Settings(minutes=1.0, budget_core_min=5.0)) is FULL
+    with pytest.raises(flockenv.ParameterError, match="budget = 1 core-minutes is not enough"):
+        within(Settings(budget_core_min=1.0))
+    with pytest.raises(flockenv.ParameterError, match="budget = nan"):
+        Settings(budget_core_min=float("nan"))
+
+
+@pytest.mark.parametrize("design", DESIGNS)
+def test_every_design_reaches_1600_boats(design: TransitionDesign) -> None:
+    specs = transition_order(design).runs(Settings())
     assert max(spec.parameters.n_boats for spec in specs) == 1600
     assert {spec.protocol for spec in specs} == {
         "law",
