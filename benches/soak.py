@@ -132,6 +132,8 @@ def failures(pools: list[Pool], memory: np.ndarray) -> list[str]:
 def page(pools: list[Pool], memory: np.ndarray, seed: int, wall_s: float) -> str:
     slope, apart = growth(memory)
     steps = sum(pool.steps for pool in pools)
+    places = [round(part * (len(memory) - 1) / 5) for part in range(1, 6)]
+    fifths = ", ".join(f"{memory[place, 1]:.0f}" for place in places)
     load = os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
     rows = {
         "control steps": [f"{pool.steps:,}" for pool in pools],
@@ -142,7 +144,7 @@ def page(pools: list[Pool], memory: np.ndarray, seed: int, wall_s: float) -> str
         "worst residual of a solve, cm/s": [f"{pool.worst_residual_cm_s:.1e}" for pool in pools],
         "worst overlap, cm": [f"{pool.worst_overlap_cm:.1e}" for pool in pools],
         "worst overlap of an episode, mean, cm": [
-            f"{pool.sum_of_worst_overlaps_cm / pool.episodes:.1e}" for pool in pools
+            f"{pool.sum_of_worst_overlaps_cm / max(pool.episodes, 1):.1e}" for pool in pools
         ],
     }
     lines = [
@@ -168,7 +170,8 @@ def page(pools: list[Pool], memory: np.ndarray, seed: int, wall_s: float) -> str
         "ended in a finite state.",
         "",
         f"Resident memory, read {len(memory)} times: {memory[0, 1] / 1024:.1f} MiB at the "
-        f"beginning, {memory[-1, 1] / 1024:.1f} MiB at the end. After the first {SETTLING:.0%} of "
+        f"beginning, {memory[-1, 1] / 1024:.1f} MiB at the end; at 20, 40, 60, "
+        f"80 and 100 % of the steps {fifths} KiB. After the first {SETTLING:.0%} of "
         f"the steps it changes by {slope:+.1f} KiB a million control steps (least squares), and "
         f"all readings lie within {apart:.0f} KiB.",
         "",

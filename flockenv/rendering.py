@@ -132,6 +132,13 @@ class Window:
         Size in pixels.
     fps
         Frames a second of simulated time: what real time is kept against.
+
+    Raises
+    ------
+    ParameterError
+        For a size out of range, and a rate that is not positive and finite.
+    MissingExtraError
+        If the extra ``render`` is not installed.
     """
 
     #: Slowest and fastest speed.
@@ -141,6 +148,8 @@ class Window:
 
     def __init__(self, width: int, height: int, fps: float) -> None:
         self._pygame = require_pygame()
+        if not 0.0 < fps < np.inf:
+            raise ParameterError(f"fps = {fps!r} is not accepted: a positive rate")
         self._renderer = renderer(width, height)
         self._fps = fps
         self._due = self._drawn = -np.inf

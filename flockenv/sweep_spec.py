@@ -81,8 +81,10 @@ def read_sweep(path: str | os.PathLike[str]) -> SweepSpec:
     """
     try:
         text = Path(path).read_text("utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise ParameterError(f"{path} cannot be read: {error}") from error
+    except OSError as error:
+        raise ParameterError(f"{path} cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise ParameterError(f"{path} is no TOML: {error}") from error
     values = read_toml(text, str(path))
     try:
         return _parse(values)

@@ -48,8 +48,14 @@ def main() -> None:
         app()
     except (FlockError, OSError) as error:
         errors.print("[bold red]Error:[/]", end=" ")
-        say(str(error), errors)
+        say(_in_words(error), errors)
         raise SystemExit(2) from error
+
+
+def _in_words(error: FlockError | OSError) -> str:
+    if isinstance(error, OSError) and error.filename is not None:
+        return f"{error.filename}: {error.strerror}"
+    return str(error)
 
 
 @app.callback(invoke_without_command=True)

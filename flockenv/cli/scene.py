@@ -14,6 +14,7 @@ __all__ = [
     "ChangesOption",
     "FileOption",
     "PresetOption",
+    "changed_fields",
     "given_fields",
     "read_scene",
     "save_scene",
@@ -71,7 +72,7 @@ def given_fields(
                 f"--preset {preset} contradicts preset = {fields['preset']!r} in {file}"
             )
         fields["preset"] = preset
-    return fields | _changed_fields(changes or ())
+    return fields | changed_fields(changes or ())
 
 
 def scene_of(fields: Mapping[str, Any]) -> FlockParameters:
@@ -110,7 +111,14 @@ def _file_fields(path: Path) -> dict[str, Any]:
         raise ParameterError(f"--params {path} is no TOML: {error}") from error
 
 
-def _changed_fields(changes: Sequence[str]) -> dict[str, Any]:
+def changed_fields(changes: Sequence[str]) -> dict[str, Any]:
+    """Return what `--set` options ask for: values as in TOML, words also without quotes.
+
+    Raises
+    ------
+    ParameterError
+        For a change without ``=`` or a value, and a field that is changed twice.
+    """
     fields: dict[str, Any] = {}
     for change in changes:
         name, equals, text = (part.strip() for part in change.partition("="))

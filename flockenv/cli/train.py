@@ -2,7 +2,6 @@
 
 import shlex
 import sys
-import tomllib
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,6 +9,8 @@ import typer
 
 from flockenv import ParameterError
 from flockenv.cli.console import console, errors, progress_bar, say
+from flockenv.cli.output import check_folder
+from flockenv.cli.scene import changed_fields
 
 __all__ = ["train"]
 
@@ -20,7 +21,7 @@ def train(
     ] = None,
     change: Annotated[
         list[str] | None,
-        typer.Option("--set", help="Change a setting, repeatable: NAME=VALUE, as in TOML."),
+        typer.Option("--set", metavar="NAME=VALUE", help="Change one setting; may be repeated."),
     ] = None,
     samples: Annotated[
         int | None, typer.Option(min=1, help="When to stop: leaders' control steps.")
@@ -41,7 +42,7 @@ def train(
     `last.npz`, `curve.csv`, `validations.csv`, `settings.toml`, a checkpoint and logs for
     tensorboard. What the TOML file holds is told in `docs/train.md`.
 
-    Example: `flockenv train --set 'pools=["table-1"]' --set 'start="damped law"' --samples 500000`
+    Example: `flockenv train --set 'pools=["table-1"]' --set 'start=damped law' --samples 500000`
     """
     from flockenv import training
 
@@ -65,6 +66,7 @@ def train(
                 result = training.resume(out, samples=samples, report=report)
             else:
                 asked = _settings(settings, change or [], samples, seed)
+                check_folder(out)
                 bar.update(task, total=asked.samples)
                 command = shlex.join(["flockenv", *sys.argv[1:]])
                 result = training.train(asked, out, command=command, report=report)
@@ -88,16 +90,10 @@ def _settings(path: Path | None, change: list[str], samples: int | None, seed: i
     values: dict[str, Any] = {}
     if path is not None:
         try:
-            values = TrainingSettings.from_toml(path.read_text()).to_dict()
+            values = TrainingSettings.from_toml(path.read_text("utf-8")).to_dict()
         except (OSError, UnicodeDecodeError) as error:
             raise ParameterError(f"{path} cannot be read: {error}") from error
-    for each in change:
-        try:
-            values |= tomllib.loads(each)
-        except tomllib.TOMLDecodeError as error:
-            raise ParameterError(
-                f"--set {each!r} is not accepted: NAME=VALUE as in TOML, texts in quotes ({error})"
-            ) from error
+    values |= changed_fields(change)
     given = {"samples": samples, "seed": seed}
     values |= {name: value for name, value in given.items() if value is not None}
     return TrainingSettings.from_dict(values)

@@ -339,7 +339,13 @@ def _start(settings: TrainingSettings, command: str) -> NetworkPolicy | None:
     if not settings.start:
         return None
     if settings.start not in LAWS:
-        return load(settings.start)
+        try:
+            return load(settings.start)
+        except OSError as error:
+            raise ParameterError(
+                f"start = {settings.start!r} is neither {' nor '.join(LAWS)}, and as a policy's "
+                f"file it cannot be read: {error.strerror}"
+            ) from error
     law = LAWS[settings.start](
         observation=settings.observation, mirror_to_target=settings.mirror_to_target
     )

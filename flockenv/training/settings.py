@@ -2,7 +2,6 @@
 
 import difflib
 import math
-import tomllib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any, Self
@@ -13,6 +12,7 @@ from flockenv.errors import FlockError, ParameterError
 from flockenv.options import EnvOptions
 from flockenv.parameters import FlockParameters
 from flockenv.policies.network import ACTIVATIONS
+from flockenv.toml_text import read_toml
 
 __all__ = ["TrainingError", "TrainingSettings"]
 
@@ -201,10 +201,7 @@ class TrainingSettings:
         ParameterError
             For text that is no TOML, and as `from_dict`.
         """
-        try:
-            return cls.from_dict(tomllib.loads(text))
-        except tomllib.TOMLDecodeError as error:
-            raise ParameterError(f"settings are not TOML: {error}") from error
+        return cls.from_dict(read_toml(text, "the text of settings"))
 
 
 #: Settings of their own, and what the network's output does not fit.

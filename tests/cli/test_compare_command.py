@@ -11,7 +11,8 @@ def flockenv(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, timeout=120)
 
 
-SHORT = ["--episodes", "3", "--minutes", "0.5", "--boats", "8", "--most-leaders", "1"]
+BRIEF = ["--episodes", "3", "--minutes", "0.5", "--most-leaders", "1"]
+SHORT = [*BRIEF, "--set", "n_boats=8"]
 
 
 def test_the_table_and_the_files(tmp_path: Path) -> None:
@@ -35,12 +36,12 @@ def test_json_is_all_that_is_printed(tmp_path: Path) -> None:
 
 def test_errors_are_one_line_with_exit_code_2(tmp_path: Path) -> None:
     for arguments, words in (
-        (["--boats", "2000"], "do not fit"),
+        (["--set", "n_boats=2000"], "do not fit"),
         (["--preset", "simulaton"], "simulation"),
-        (["--target", "left"], "ccw"),
-        (["--bw-s", "-1"], "bw_s"),
+        (["--set", "target=left"], "ccw"),
+        (["--set", "bw_s=-1"], "bw_s"),
     ):
-        done = flockenv("compare", *SHORT, *arguments, "--out", str(tmp_path))
+        done = flockenv("compare", *BRIEF, *arguments, "--out", str(tmp_path))
         assert done.returncode == 2
         assert words in done.stderr
         assert "Traceback" not in done.stderr

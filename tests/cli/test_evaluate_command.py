@@ -12,7 +12,7 @@ from flockenv.policies import NetworkPolicy
 
 Run = Callable[..., subprocess.CompletedProcess[str]]
 
-SHORT = ["--episodes", "3", "--minutes", "0.5", "--boats", "8", "--pool", "table-1"]
+SHORT = ["--episodes", "3", "--minutes", "0.5", "--set", "n_boats=8", "--pool", "table-1"]
 
 
 def learned(folder: Path) -> str:

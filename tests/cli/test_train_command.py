@@ -59,7 +59,7 @@ def test_it_trains_and_goes_on(flockenv, tiny: str, tmp_path: Path) -> None:
 def test_errors_are_one_line_with_exit_code_2(flockenv, tiny: str, tmp_path: Path) -> None:
     for arguments, words in (
         (["--settings", tiny, "--set", "net_arc=[4]"], "net_arch"),
-        (["--settings", tiny, "--set", "start=law"], "as in TOML"),
+        (["--settings", tiny, "--set", "start=lore"], "start"),
         (["--settings", str(tmp_path / "none.toml")], "none.toml"),
         (["--resume"], "no checkpoint"),
         (["--resume", "--seed", "3"], "only --samples"),

@@ -58,6 +58,13 @@ def test_window_shows_the_frame(pygame):
     window.close()
 
 
+@pytest.mark.parametrize("fps", [0.0, -1.0, float("nan"), float("inf")])
+def test_rates_that_no_window_can_keep_are_refused(fps):
+    pytest.importorskip("pygame")
+    with pytest.raises(flockenv.ParameterError, match="fps"):
+        rendering.Window(160, 120, fps=fps)
+
+
 def test_keys(pygame):
     scene = flock()
     window = rendering.Window(160, 120, fps=100.0)
