@@ -93,14 +93,16 @@ wheel: $(STAMPS)/venv ## the wheel and the source distribution, into dist
 test-wheel: $(STAMPS)/test wheel ## wheel, source distribution and `pip install .`, each in an empty environment
 	PYTHONS="$(PYTHONS)" $(BIN)/python -m pytest -m wheel tests/package $(PYTEST_ARGS)
 
-# The bounds of pyproject.toml, each at its lowest; what runs the tests is the newest.
+# The bounds of pyproject.toml, each at its lowest; all else is the newest, which old ones may use in ways
+# that it deprecates.
 test-oldest: $(STAMPS)/venv ## the oldest supported versions, in .venv-oldest
 	$(PYTHON) -m venv --clear .venv-oldest
 	VIRTUAL_ENV="$(CURDIR)/.venv-oldest" $(BIN)/uv pip install -r pyproject.toml $(OLDEST_EXTRAS) \
 	  --resolution lowest-direct
 	VIRTUAL_ENV="$(CURDIR)/.venv-oldest" $(BIN)/uv pip install hypothesis pytest pytest-timeout
 	VIRTUAL_ENV="$(CURDIR)/.venv-oldest" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
-	OMP_NUM_THREADS=1 .venv-oldest/bin/python -m pytest tests/boundary tests/env tests/analysis tests/cli
+	OMP_NUM_THREADS=1 .venv-oldest/bin/python -m pytest -W ignore::DeprecationWarning \
+	  tests/boundary tests/env tests/analysis tests/cli $(PYTEST_ARGS)
 
 # Pages with code cells are executed.
 docs: $(STAMPS)/docs $(STAMPS)/core ## build the pages, warnings are errors, into docs/_build/html
