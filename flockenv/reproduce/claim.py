@@ -85,6 +85,13 @@ class CheckedClaim:
     verdict: str
     note: str = ""
 
+    @property
+    def ends(self) -> str:
+        """The interval in words."""
+        if math.isnan(self.low) or math.isnan(self.high):
+            return "none"
+        return f"{self.low:.3g} to {self.high:.3g}"
+
     def row(self) -> dict[str, str | float]:
         """Return the columns of a claims table."""
         return {

@@ -142,7 +142,8 @@ def _figure8(settings: Settings, results: Results) -> Outcome:
                 axes.set_ylim(0.0, 10.5)
         bar = picture.colorbar(points, ax=panels, location="bottom", fraction=0.04, aspect=40)
         bar.set_label(r"mean $\Psi_o$ after ordering")
-        picture.supxlabel("backward motion time bw (s)", fontsize=7)
+        for axes in panels[-1]:
+            axes.set_xlabel("backward motion time bw (s)")
         picture.supylabel("ordering time (min)", fontsize=7)
     table = pd.concat([led, tables[NONE.name]], ignore_index=True)
     notes = [

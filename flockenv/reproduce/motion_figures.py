@@ -61,7 +61,7 @@ def _motion(settings: Settings, results: Results) -> Outcome:
         panels[1, 0].set(xlabel="distance of centres (cm)", ylabel="pairs over\nindependent ones")
         panels[1, 0].axhline(1.0, color="0.6", lw=0.6)
         handles, labels = panels[0, 0].get_legend_handles_labels()
-        picture.legend(handles, labels, loc="outside upper center", ncols=4)
+        picture.legend(handles, labels, loc="outside upper center", ncols=2)
         panels[1, 1].set(
             xlabel="backward motion time bw (s)",
             ylabel="share of boats\non the outer wall",

@@ -218,7 +218,7 @@ def _figure9(settings: Settings, results: Results) -> Outcome:
             axes.set_title(setup.name)
             tables.append(density_rows(each, "phi_o", {"setup": setup.name}, "bw_s"))
         panels[0].set_ylabel(r"$\varphi_o$ (rad)")
-        picture.supxlabel(_BW, fontsize=7)
+        panels[1].set_xlabel(_BW)
         bar = picture.colorbar(
             mesh, ax=panels, extend="max", location="bottom", fraction=0.05, aspect=40
         )

@@ -87,7 +87,7 @@ def _claims(claims: Sequence[CheckedClaim]) -> str:
                 escape(claim.section),
                 escape(checked.scope),
                 f"{checked.measured:.3g}<br><small>{escape(claim.quantity)}</small>",
-                f"{checked.low:.3g} to {checked.high:.3g}",
+                checked.ends,
                 escape(claim.accepted),
                 f'<span class="{kind}">{checked.verdict}</span>',
             ]

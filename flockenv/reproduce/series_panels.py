@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
+from matplotlib.colors import PowerNorm
 from numpy.typing import NDArray
 
 from flockenv.analysis import CONFIDENCE
@@ -60,8 +61,13 @@ def density_rows(
     )
 
 
-def density_map(axes: Axes, series: OrderStatistics, name: str, highest: float) -> QuadMesh:
-    """Draw densities as colours, each column a point of the series."""
+def density_map(
+    axes: Axes, series: OrderStatistics, name: str, highest: float, gamma: float = 1.0
+) -> QuadMesh:
+    """Draw densities as colours, each column a point of the series.
+
+    A `gamma` below 1 spreads the colours of low densities.
+    """
     edges = PHI_EDGES if name == "phi_o" else PSI_EDGES
     half = np.diff(series.x).mean() / 2
     across = np.append(series.x - half, series.x[-1] + half)
@@ -69,8 +75,7 @@ def density_map(axes: Axes, series: OrderStatistics, name: str, highest: float) 
         across,
         edges,
         series.density(name)[:, 0].T,
-        vmin=0.0,
-        vmax=highest,
+        norm=PowerNorm(gamma, 0.0, highest),
         cmap=DENSITY_COLORS,
         rasterized=True,
     )

@@ -145,9 +145,11 @@ def _figure17(settings: Settings, results: Results) -> Outcome:
         for column, each in enumerate(evidence):
             series = each.density
             keys: dict[str, object] = {"preset": each.model.name}
-            for row, (name, highest) in enumerate((("psi_o", 20.0), ("phi_o", 2.0))):
+            for row, (name, highest, gamma) in enumerate(
+                (("psi_o", 20.0, 0.5), ("phi_o", 2.0, 1.0))
+            ):
                 axes = panels[row, column]
-                mesh = density_map(axes, series, name, highest)
+                mesh = density_map(axes, series, name, highest, gamma)
                 tables.append(density_rows(series, name, keys, "n_boats"))
                 if column == len(PRESETS) - 1:
                     label = "density" if name == "psi_o" else "density (1/rad)"

@@ -100,21 +100,16 @@ def _table2(settings: Settings, results: Results) -> Outcome:
     with paper_style():
         picture = column_figure(7.0)
         axes = picture.subplots()
-        bottom = np.zeros(len(LEVELS_S))
-        for place, state in enumerate(STATES):
+        for place, (state, mark) in enumerate(zip(STATES, "^vosDx", strict=True)):
             ends = np.array([interval(drawn(shares[bw_s][:, place])) for bw_s in LEVELS_S])
-            color = COLORS[place] if state != "between" else "0.8"
-            axes.bar(LEVELS_S, ends[:, 0], 0.34, bottom, color=color, label=str(state))
-            # Beside one another, or the bars of stacked shares would hide each other.
-            shown = ends[:, 0] > 0
-            aside = np.array(LEVELS_S) + 0.05 * (place - (len(STATES) - 1) / 2)
-            top = bottom + ends[:, 0]
             bars = np.maximum([ends[:, 0] - ends[:, 1], ends[:, 2] - ends[:, 0]], 0.0)
+            color = COLORS[place] if state != "between" else "0.6"
+            # Side by side, or the bars would hide each other.
+            aside = np.array(LEVELS_S) + 0.03 * (place - (len(STATES) - 1) / 2)
             axes.errorbar(
-                aside[shown], top[shown], bars[:, shown], fmt="none", ecolor="k", elinewidth=0.6
+                aside, ends[:, 0], bars, fmt=f"{mark}-", color=color, elinewidth=0.7, label=state
             )
-            bottom += ends[:, 0]
-        axes.set(xlabel="backward motion time bw (s)", ylabel="share of cycles", ylim=(0, 1.02))
+        axes.set(xlabel="backward motion time bw (s)", ylabel="share of cycles", ylim=(-0.03, 1.03))
         picture.legend(loc="outside upper center", ncols=3)
     notes = [
         "The state of a control cycle is the most frequent one in its analysis window; "
@@ -269,10 +264,21 @@ def _figure4(settings: Settings, results: Results) -> Outcome:
             best = found.get(names)
             axes.set_title(f"({letter}) {title}" + ("" if best else ": not found"))
             if best is None:
+                axes.set_aspect("equal")
+                axes.text(0.5, 0.5, "no frame", ha="center", va="center", color="0.4")
                 notes.append(f"No frame of {title} was found.")
             else:
                 run, sample, frames = best
                 axes.imshow(_image(run, sample))
+                order = f"$\\Psi_o$ = {run.orders['psi_o'][sample]:.2f}"
+                axes.text(
+                    0.5,
+                    0.5,
+                    f"bw = {run.spec.parameters.bw_s} s\n{order}",
+                    transform=axes.transAxes,
+                    ha="center",
+                    va="center",
+                )
                 rows.append(_snapshot_row(title, run, sample, frames))
             here = float(best[2] if best else 0)
             claims.append(
@@ -286,6 +292,7 @@ def _figure4(settings: Settings, results: Results) -> Outcome:
     return Outcome({"fig4": pd.DataFrame(rows)}, {"fig4": picture}, claims, notes)
 
 
+_PIXELS = 600
 Snapshot = tuple[RunResult, int, int]
 
 
@@ -316,7 +323,13 @@ def _image(run: RunResult, sample: int) -> NDArray[np.uint8]:
     velocity = np.asarray(run.velocity, np.float64)[sample]
     # Single precision leaves overlaps of a rounding.
     flock.set_state(pose, velocity, float(run.time_s[sample]), allow_overlap=True)
-    return frame(flock, 600, 600)
+    picture = frame(flock, _PIXELS, _PIXELS)
+    x = np.arange(_PIXELS) - (_PIXELS - 1) / 2
+    from_centre = np.hypot(x, x[:, None]) / _PIXELS
+    # The captions in the corners are too small at a column's width, and there is nobody to have the
+    # target in the middle.
+    picture[(from_centre > 0.485) | (from_centre < 0.22)] = 255
+    return picture
 
 
 def _snapshot_row(title: str, run: RunResult, sample: int, frames: int) -> dict[str, object]:

@@ -83,7 +83,7 @@ def _claims(claims: Sequence[CheckedClaim]) -> list[str]:
                 claim.quantity,
                 claim.accepted,
                 f"{checked.measured:.3g}",
-                f"{checked.low:.3g} to {checked.high:.3g}",
+                checked.ends,
                 f"**{checked.verdict}**",
             ]
         )
