@@ -5,11 +5,16 @@ from dataclasses import dataclass
 
 from flockenv.analysis import CONFIDENCE
 
-__all__ = ["DOES_NOT_HOLD", "HOLDS", "INCONCLUSIVE", "CheckedClaim", "Claim"]
+__all__ = ["DOES_NOT_HOLD", "HOLDS", "INCONCLUSIVE", "CheckedClaim", "Claim", "number"]
 
 HOLDS = "holds"
 DOES_NOT_HOLD = "does not hold"
 INCONCLUSIVE = "inconclusive"
+
+
+def number(value: float) -> str:
+    """Return a number in three significant digits, large ones in full."""
+    return f"{value:.0f}" if abs(value) >= 1000 else f"{value:.3g}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,7 +95,7 @@ class CheckedClaim:
         """The interval in words."""
         if math.isnan(self.low) or math.isnan(self.high):
             return "none"
-        return f"{self.low:.3g} to {self.high:.3g}"
+        return f"{number(self.low)} to {number(self.high)}"
 
     def row(self) -> dict[str, str | float]:
         """Return the columns of a claims table."""

@@ -9,7 +9,7 @@ from typing import Any
 
 from flockenv import _core
 from flockenv.analysis import CONFIDENCE
-from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, CheckedClaim
+from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, CheckedClaim, number
 from flockenv.reproduce.files import picture_bytes
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Settings
 from flockenv.run_store import RESULTS_VERSION
@@ -86,7 +86,7 @@ def _claims(claims: Sequence[CheckedClaim]) -> str:
                 escape(claim.text) + note,
                 escape(claim.section),
                 escape(checked.scope),
-                f"{checked.measured:.3g}<br><small>{escape(claim.quantity)}</small>",
+                f"{number(checked.measured)}<br><small>{escape(claim.quantity)}</small>",
                 checked.ends,
                 escape(claim.accepted),
                 f'<span class="{kind}">{checked.verdict}</span>',

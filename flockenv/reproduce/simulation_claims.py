@@ -336,7 +336,7 @@ CLAIMS: tuple[_Rule, ...] = (
     _Rule(
         "fig16",
         _claim(
-            "that is most so without leaders",
+            "50 boats have low C_v at low noise most so without leaders",
             f"mean C_v in cm²/s² with 10 leaders minus without, n = 50, {_LOW}",
             low=0.0,
         ),
@@ -363,7 +363,7 @@ CLAIMS: tuple[_Rule, ...] = (
     _Rule(
         "fig17",
         _claim(
-            "and sharp: little lies between the two states",
+            "The jamming–order transition is sharp: little lies between the two states",
             "share of frames neither jammed nor rotating, n = 20 to 50, bw = 0",
             high=0.2,
         ),

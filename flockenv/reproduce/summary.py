@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from flockenv import _core
 from flockenv.analysis import CONFIDENCE
 from flockenv.reproduce.catalogue import ALL, resolve
-from flockenv.reproduce.claim import CheckedClaim
+from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, INCONCLUSIVE, CheckedClaim, number
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Settings
 from flockenv.run_store import RESULTS_VERSION
 from flockenv.runs import RunSpec
@@ -38,8 +38,12 @@ def markdown_summary(
     ]
     claims = [claim for _, _, outcome in finished for claim in outcome.claims]
     counts = Counter(claim.verdict for claim in claims)
-    told = ", ".join(f"{count} {verdict}" for verdict, count in counts.most_common())
-    lines += [f"{len(claims)} claims were judged, each for what it was measured for: {told}.", ""]
+    lines += [
+        f"Of {len(claims)} claims, one counted for each preset and setup it was measured with, "
+        f"{counts[HOLDS]} hold, {counts[DOES_NOT_HOLD]} do not hold, and {counts[INCONCLUSIVE]} "
+        "are inconclusive.",
+        "",
+    ]
     for figure, _, _ in finished:
         if figure.name in KEY_FIGURES:
             lines += [f"![{figure.title}]({pictures.format(name=figure.name)})", ""]
@@ -82,7 +86,7 @@ def _claims(claims: Sequence[CheckedClaim]) -> list[str]:
                 checked.scope,
                 claim.quantity,
                 claim.accepted,
-                f"{checked.measured:.3g}",
+                number(checked.measured),
                 checked.ends,
                 f"**{checked.verdict}**",
             ]
