@@ -104,8 +104,9 @@ test-oldest: $(STAMPS)/venv ## the oldest supported versions, in .venv-oldest
 	OMP_NUM_THREADS=1 .venv-oldest/bin/python -m pytest -W ignore::DeprecationWarning \
 	  tests/boundary tests/env tests/analysis tests/cli $(PYTEST_ARGS)
 
-# Pages with code cells are executed.
+# Pages with code cells are executed, and what they trained is trained anew.
 docs: $(STAMPS)/docs $(STAMPS)/core ## build the pages, warnings are errors, into docs/_build/html
+	rm -rf docs/_build/leader
 	OMP_NUM_THREADS=1 $(BIN)/python -m sphinx --fail-on-warning --nitpicky --builder html docs docs/_build/html
 
 # Advisories come from elsewhere than the packages: where that is out of reach, it is said.
