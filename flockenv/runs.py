@@ -176,7 +176,7 @@ class RunResult:
         ParameterError
             For missing, additional or misshapen arrays.
         """
-        expected = _layout(spec, len(arrays["time_s"]) if "time_s" in arrays else 0)
+        expected = _layout(spec, np.size(arrays.get("time_s", ())))
         found = {name: (array.shape, array.dtype) for name, array in arrays.items()}
         if found != expected:
             names = sorted(n for n in found.keys() | expected if found.get(n) != expected.get(n))

@@ -210,6 +210,7 @@ def replaced(blob: bytes, changes) -> bytes:
         st.integers(0, 40), st.one_of(st.none(), st.sampled_from(HOSTILE_ARRAYS)), min_size=1
     ),
 )
+@example("kept run", {0: np.array(1.0)})
 def test_archives_with_foreign_arrays(kind, changes):
     found = read(kind, replaced(written(kind), changes))
     assert not TRAP.exists()
