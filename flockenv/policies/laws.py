@@ -4,16 +4,16 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import NDArray
 
 from flockenv import _core
-from flockenv.observation import observation_entries
-from flockenv.policies.rows import rudders_for
+from flockenv.policies.row_policy import RowPolicy
 
 __all__ = ["DampedLaw", "ObservedPolicy", "SignCorrectedLaw", "SteeringLaw"]
 
 
-class ObservedPolicy:
+class ObservedPolicy(RowPolicy):
     """A closed-form law evaluated from observations, with the interface of an SB3 policy.
 
     Parameters
@@ -38,42 +38,12 @@ class ObservedPolicy:
         observation: Mapping[str, Any] | None,
         mirror_to_target: bool,
     ) -> None:
+        super().__init__(observation, mirror_to_target)
         self.gains = dict(gains)
-        self.observation = dict(observation or {})
-        self.mirror_to_target = mirror_to_target
-        self._size = len(observation_entries(self.observation))
         self._core = _core.ObservedLaw(self._law, self.gains, self.observation, mirror_to_target)
 
-    def predict(
-        self,
-        observation: ArrayLike | Mapping[Any, ArrayLike],
-        state: Any = None,
-        episode_start: Any = None,
-        deterministic: bool = True,
-    ) -> tuple[Any, Any]:
-        """Return rudders for observations.
-
-        Parameters
-        ----------
-        observation
-            Shape (..., m * observation size): m leaders' observations one after another in the
-            last axis, as the environments give them; or a dictionary of such arrays by agent.
-        state, episode_start, deterministic
-            Not used: the law has no memory and no choice.
-
-        Returns
-        -------
-        action : numpy.ndarray or dict
-            Shape (..., m), float32: as the action spaces of the environments are.
-        state
-            As it was given.
-
-        Raises
-        ------
-        ParameterError
-            If the last axis is no multiple of the layout's size.
-        """
-        return rudders_for(observation, self._size, self._core.rudders), state
+    def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
+        return self._core.rudders(rows)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _rebuilt, (type(self), self.gains, self.observation, self.mirror_to_target)

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from flockenv.array_file import read_arrays, write_arrays
 from flockenv.errors import ParameterError
-from flockenv.observation import OBSERVATION_VERSION, observation_entries
-from flockenv.policies.rows import rudders_for
+from flockenv.observation import OBSERVATION_VERSION
+from flockenv.policies.row_policy import RowPolicy
 
 __all__ = ["ACTIVATIONS", "NetworkPolicy", "load"]
 
@@ -32,7 +32,7 @@ ACTIVATIONS: Mapping[str, Callable[[NDArray[np.float32]], NDArray[np.float32]]] 
 _LARGEST_FILE = 5 << 20
 
 
-class NetworkPolicy:
+class NetworkPolicy(RowPolicy):
     """A fully connected network from one leader's observation to its rudder, shared by all leaders.
 
     Parameters
@@ -66,11 +66,9 @@ class NetworkPolicy:
         mirror_to_target: bool = False,
         made: Mapping[str, str] | None = None,
     ) -> None:
-        self.observation = dict(observation or {})
-        self.mirror_to_target = bool(mirror_to_target)
+        super().__init__(observation, mirror_to_target)
         self.activation = activation
         self.made = {str(name): str(text) for name, text in (made or {}).items()}
-        self._size = len(observation_entries(self.observation))
         self._layers = _checked_layers(weights, biases, self._size)
         if activation not in ACTIVATIONS:
             raise ParameterError(
@@ -87,38 +85,7 @@ class NetworkPolicy:
         """Copies of the layers' biases, shape (outputs,)."""
         return [bias.copy() for _, bias in self._layers]
 
-    def predict(
-        self,
-        observation: ArrayLike | Mapping[Any, ArrayLike],
-        state: Any = None,
-        episode_start: Any = None,
-        deterministic: bool = True,
-    ) -> tuple[Any, Any]:
-        """Return rudders for observations.
-
-        Parameters
-        ----------
-        observation
-            Shape (..., m * observation size): m leaders' observations one after another in the last
-            axis; or a dictionary of such arrays by agent.
-        state, episode_start, deterministic
-            Not used: the network has no memory, and what is shipped is its mean.
-
-        Returns
-        -------
-        action : numpy.ndarray or dict
-            Shape (..., m), float32, in [-1, 1].
-        state
-            As it was given.
-
-        Raises
-        ------
-        ParameterError
-            If the last axis is no multiple of the layout's size.
-        """
-        return rudders_for(observation, self._size, self._forward), state
-
-    def _forward(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
+    def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
         between = ACTIVATIONS[self.activation]
         values = rows
         for weight, bias in self._layers[:-1]:

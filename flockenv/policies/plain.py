@@ -4,15 +4,14 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import NDArray
 
-from flockenv.observation import observation_entries
-from flockenv.policies.rows import rudders_for
+from flockenv.policies.row_policy import RowPolicy
 
 __all__ = ["RandomRudders", "StraightAhead"]
 
 
-class StraightAhead:
+class StraightAhead(RowPolicy):
     """Leaders that never steer: rudder 0.
 
     Parameters
@@ -24,25 +23,16 @@ class StraightAhead:
     def __init__(
         self, *, observation: Mapping[str, Any] | None = None, mirror_to_target: bool = False
     ) -> None:
-        self.observation = dict(observation or {})
-        self.mirror_to_target = mirror_to_target
-        self._size = len(observation_entries(self.observation))
+        super().__init__(observation, mirror_to_target)
 
-    def predict(
-        self,
-        observation: ArrayLike | Mapping[Any, ArrayLike],
-        state: Any = None,
-        episode_start: Any = None,
-        deterministic: bool = True,
-    ) -> tuple[Any, Any]:
-        """Return rudders of 0 for observations (..., m * size): shape (..., m), float32."""
-        return rudders_for(observation, self._size, lambda rows: np.zeros(len(rows))), state
+    def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float64]:
+        return np.zeros(len(rows))
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}()"
 
 
-class RandomRudders(StraightAhead):
+class RandomRudders(RowPolicy):
     """Leaders whose rudders are drawn anew for each control step, uniformly from [-1, 1].
 
     Parameters
@@ -60,19 +50,11 @@ class RandomRudders(StraightAhead):
         observation: Mapping[str, Any] | None = None,
         mirror_to_target: bool = False,
     ) -> None:
-        super().__init__(observation=observation, mirror_to_target=mirror_to_target)
+        super().__init__(observation, mirror_to_target)
         self._random = np.random.default_rng(seed)
 
-    def predict(
-        self,
-        observation: ArrayLike | Mapping[Any, ArrayLike],
-        state: Any = None,
-        episode_start: Any = None,
-        deterministic: bool = True,
-    ) -> tuple[Any, Any]:
-        """Return random rudders for observations (..., m * size): shape (..., m), float32."""
+    def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float64]:
+        return self._random.uniform(-1.0, 1.0, len(rows))
 
-        def draw(rows: Any) -> Any:
-            return self._random.uniform(-1.0, 1.0, len(rows))
-
-        return rudders_for(observation, self._size, draw), state
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}()"
