@@ -73,11 +73,12 @@ class GymnasiumVecEnv(VecEnv):
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
         return [getattr(self.env, attr_name)] * len(list(self._get_indices(indices)))
 
+    # SB3 wants these two to be there; PPO never calls them, and one batch has no attributes a slot.
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
-        raise NotImplementedError
+        raise NotImplementedError("the flocks of one batch share their attributes")
 
     def env_method(self, method_name: str, *args: Any, indices: Any = None, **kwargs: Any) -> Any:
-        raise NotImplementedError
+        raise NotImplementedError("the flocks of one batch share their methods")
 
     def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
         return [False] * self.num_envs
