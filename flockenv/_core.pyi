@@ -10,6 +10,8 @@ from flockenv.parameters import FlockParameters
 from flockenv.statistics import Statistics
 
 __all__ = [
+    "ORDERED_WITHIN",
+    "TOWARDS_TARGET",
     "AnimationEncoder",
     "EnvBatch",
     "Flock",
@@ -44,6 +46,8 @@ __all__ = [
 ]
 
 __version__: str
+TOWARDS_TARGET: float
+ORDERED_WITHIN: tuple[float, float]
 
 def preset_names() -> list[str]: ...
 def preset_fields(name: str) -> dict[str, Any]: ...

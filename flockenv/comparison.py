@@ -1,7 +1,6 @@
 """Leader policies against each other: seeded episodes, order by number of leaders (figure 12)."""
 
 import difflib
-import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -12,6 +11,7 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
+from flockenv import _core
 from flockenv.errors import ParameterError
 from flockenv.extras import require
 from flockenv.parameters import FlockParameters
@@ -51,7 +51,9 @@ QUANTITIES = ("psi_o", "signed_order", "share_towards_target")
 which the signed order exceeds 0.5; all over the frames in the analysis window after the first
 tenth."""
 
-ORDERING_TIMES = {"ordering_time_s": math.pi / 20, "ordering_time_wide_s": math.pi / 4}
+ORDERING_TIMES = dict(
+    zip(("ordering_time_s", "ordering_time_wide_s"), _core.ORDERED_WITHIN, strict=True)
+)
 """Ordering times (eq. 7) with the angle as printed and a wider one; NaN where a flock did not
 order."""
 
@@ -240,7 +242,12 @@ def _simulated(
         ordering = [
             order.ordering_time(recording.time_s, within) for within in ORDERING_TIMES.values()
         ]
-        return [order.psi_o[frames].mean(), signed.mean(), (signed > 0.5).mean(), *ordering]
+        return [
+            order.psi_o[frames].mean(),
+            signed.mean(),
+            (signed > _core.TOWARDS_TARGET).mean(),
+            *ordering,
+        ]
 
     # Threads suffice: the simulator lets go of the interpreter while it runs.
     with ThreadPoolExecutor(os.cpu_count()) as pool:

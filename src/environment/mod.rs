@@ -18,4 +18,4 @@ pub use reward::{Reward, RewardTerm, RewardTerms, RewardWeights, TERMS};
 pub use rudder::{RudderSettings, Servo};
 pub use run::Run;
 pub use settings::{Autoreset, EnvSettings};
-pub use totals::EpisodeSummary;
+pub use totals::{EpisodeSummary, ORDERED_WITHIN, TOWARDS_TARGET};

@@ -50,6 +50,11 @@ mod _core {
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         crate::parallel::note_process();
+        module.add("TOWARDS_TARGET", crate::environment::TOWARDS_TARGET)?;
+        module.add(
+            "ORDERED_WITHIN",
+            <(f64, f64)>::from(crate::environment::ORDERED_WITHIN),
+        )?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }
