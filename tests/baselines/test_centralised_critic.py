@@ -1,22 +1,9 @@
 """Law: in the centralised-critic example the critic reads the state, and the actor does not."""
 
-import importlib.util
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 pytest.importorskip("stable_baselines3")
-
-SCRIPT = Path(__file__).parents[2] / "baselines" / "centralised_critic.py"
-
-
-@pytest.fixture(scope="module")
-def script():
-    spec = importlib.util.spec_from_file_location("centralised_critic", SCRIPT)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 def test_a_short_run(script, tmp_path):

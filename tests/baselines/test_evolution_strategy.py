@@ -1,6 +1,6 @@
+# SCRIPT still used
 """Law: the search climbs, goes on exactly where it was, and leaves a policy of core parts alone."""
 
-import importlib.util
 import subprocess
 import sys
 from pathlib import Path
@@ -11,17 +11,7 @@ import pytest
 import flockenv
 from flockenv.policies import load
 
-SCRIPT = Path(__file__).parents[2] / "baselines" / "evolution_strategy.py"
 TINY = ["--pairs", "3", "--flocks", "1", "--episode-s", "5", "--episodes", "4", "--quiet"]
-
-
-@pytest.fixture(scope="module")
-def script():
-    spec = importlib.util.spec_from_file_location("evolution_strategy", SCRIPT)
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.mark.parametrize("hidden", [[], ["--hidden", "4"]])
@@ -72,9 +62,9 @@ def test_other_options_do_not_go_on(script, tmp_path: Path) -> None:
         script.main([*TINY, "--generations", "2", "--seed", "1", "--out", str(tmp_path)])
 
 
-def test_neither_torch_nor_pandas_is_needed(tmp_path: Path) -> None:
+def test_neither_torch_nor_pandas_is_needed(script, tmp_path: Path) -> None:
     forbid = "import sys; sys.modules.update(torch=None, stable_baselines3=None, pandas=None)"
-    run = f"import runpy; runpy.run_path({str(SCRIPT)!r}, run_name='__main__')"
+    run = f"import runpy; runpy.run_path({script.__file__!r}, run_name='__main__')"
     arguments = [*TINY, "--generations", "1", "--out", str(tmp_path)]
     command = [sys.executable, "-c", f"{forbid}; {run}", *arguments]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)

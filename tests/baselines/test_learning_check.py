@@ -1,22 +1,9 @@
 """Law: the learning check runs through every face, and says so when nothing was learned."""
 
-import importlib.util
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 pytest.importorskip("stable_baselines3")
-
-SCRIPT = Path(__file__).parents[2] / "baselines" / "learning_check.py"
-
-
-@pytest.fixture(scope="module")
-def script():
-    spec = importlib.util.spec_from_file_location("learning_check", SCRIPT)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 def test_a_short_run_of_each_face(script, tmp_path):

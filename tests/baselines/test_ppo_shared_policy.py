@@ -1,23 +1,13 @@
 """Law: the script that shipped policies are made with trains with its own settings."""
 
-import importlib.util
 from pathlib import Path
 
 import pytest
 
 pytest.importorskip("stable_baselines3")
 
-SCRIPT = Path(__file__).parents[2] / "baselines" / "ppo_shared_policy.py"
 SHORT = {"n_boats": 8, "num_flocks": 4, "n_steps": 16, "batch_size": 32, "n_epochs": 1}
 QUICK = {"start": "", "validation_episodes": 2, "validation_s": 5.0}
-
-
-@pytest.fixture(scope="module")
-def script():
-    spec = importlib.util.spec_from_file_location("ppo_shared_policy", SCRIPT)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 def test_a_short_run(script, tmp_path: Path, monkeypatch, capsys) -> None:

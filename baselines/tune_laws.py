@@ -1,0 +1,129 @@
+"""Tune the gains of the closed-form laws on training seeds: what learned leaders have to beat.
+
+    python baselines/tune_laws.py                            # both laws in both pools, an hour
+    python baselines/tune_laws.py --law "damped law" --pool table-1 --generations 10
+
+CMA-ES (Hansen's covariance matrix adaptation, from the package cmaes) over logarithms of the gains.
+A candidate's score is the mean signed order of its episodes; all candidates of a generation steer
+the same training episodes, those of the next generation others. The gains that are reported are the
+search's mean at its end, which has seen all episodes, not those of the luckiest candidate.
+Every candidate is written to results/tune_laws, and what was found to gains.toml beside it.
+"""
+
+import argparse
+import math
+import shlex
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import cmaes
+import numpy as np
+import pandas as pd
+import tomli_w
+from rich.progress import Progress
+
+import flockenv
+from flockenv.comparison import run_episodes
+from flockenv.policies import DampedLaw, SignCorrectedLaw
+from flockenv.provenance import made_by
+from flockenv.seeds import training_seed
+from flockenv.whole_file import whole_file
+
+#: Law and its gains, each with the middle and the width (in factors of e) of the first generation.
+LAWS: dict[str, tuple[Any, dict[str, tuple[float, float]]]] = {
+    "sign-corrected law": (SignCorrectedLaw, {"gain": (6.0 / math.pi, 1.0)}),
+    "damped law": (
+        DampedLaw,
+        {
+            "gain": (6.0 / math.pi, 1.0),
+            "backward_gain": (6.0 / math.pi, 1.0),
+            "damping": (6.0, 1.0),
+        },
+    ),
+}
+POOLS = ("500-boats", "table-1")
+SEEDS_OF_A_RUN = 1 << 24
+
+
+def scene(pool: str, options: argparse.Namespace) -> flockenv.FlockParameters:
+    """27 boats at the pool's critical noise, with coarser steps than a comparison has."""
+    preset = flockenv.FlockParameters.preset("simulation")
+    return preset.replace(
+        pool=pool,
+        n_boats=27,
+        n_leaders=options.leaders,
+        bw_s=flockenv.FlockParameters.critical_bw_s("simulation", pool),
+        dt_s=options.dt_s,
+        relinearizations=1,
+    )
+
+
+def tune(law: str, pool: str, options: argparse.Namespace, progress: Progress) -> dict[str, float]:
+    """Return the gains found, having written every candidate."""
+    make, ranges = LAWS[law]
+    middle, widths = np.array(list(ranges.values())).T
+    # The search wants two places at least; of a law with one gain the second does nothing.
+    search = cmaes.CMA(mean=np.zeros(max(2, len(ranges))), sigma=0.5, seed=options.seed)
+    parameters, rows = scene(pool, options), []
+
+    def gains(place: np.ndarray) -> dict[str, float]:
+        values = middle * np.exp(widths * place[: len(ranges)])
+        return {name: float(f"{value:.3g}") for name, value in zip(ranges, values, strict=True)}
+
+    task = progress.add_task(f"{law}, {pool}", total=options.generations)
+    for generation in range(options.generations):
+        first = options.seed * SEEDS_OF_A_RUN + generation * options.episodes
+        seeds = [training_seed(first + episode) for episode in range(options.episodes)]
+        told = []
+        for _ in range(search.population_size):
+            place = search.ask()
+            policy = make(**gains(place))
+            found = run_episodes(parameters, policy, seeds, options.minutes * 60.0)
+            score = float(found["signed_order"].mean())
+            rows.append({"generation": generation, **gains(place), "signed_order": score})
+            told.append((place, -score))
+        search.tell(told)
+        with whole_file(options.out / f"{law.replace(' ', '-')}-{pool}.csv") as file:
+            file.write(pd.DataFrame(rows).to_csv(index=False, lineterminator="\n").encode())
+        progress.advance(task)
+    return gains(search.mean)
+
+
+def main(arguments: list[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--law", choices=LAWS, action="append", help="[both]")
+    parser.add_argument("--pool", choices=POOLS, action="append", help="[both]")
+    parser.add_argument("--leaders", type=int, default=3)
+    parser.add_argument("--generations", type=int, default=20)
+    parser.add_argument("--episodes", type=int, default=64, help="for each candidate")
+    parser.add_argument("--minutes", type=float, default=8.0, help="length of an episode")
+    parser.add_argument("--dt-s", type=float, default=0.1)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--out", type=Path, default=Path("results/tune_laws"))
+    parser.add_argument("--quiet", action="store_true")
+    options = parser.parse_args(arguments)
+    if min(options.generations, options.episodes) < 1:
+        parser.error("generations and episodes are at least 1")
+    given = sys.argv[1:] if arguments is None else arguments
+    command = shlex.join(["python", "baselines/tune_laws.py", *given])
+    begin, tuned = time.perf_counter(), {}
+    try:
+        options.out.mkdir(parents=True, exist_ok=True)
+        with Progress(disable=options.quiet) as progress:
+            for law in options.law or LAWS:
+                for pool in options.pool or POOLS:
+                    tuned.setdefault(law, {})[pool] = tune(law, pool, options, progress)
+        wall_s = time.perf_counter() - begin
+        made = made_by(command, seed=options.seed, samples=0, wall_s=wall_s)
+        with whole_file(options.out / "gains.toml") as file:
+            file.write(tomli_w.dumps({**tuned, "made": made}).encode())
+    except (flockenv.FlockError, OSError) as error:
+        sys.exit(f"Error: {error}")
+    print(tomli_w.dumps(tuned))
+    print(f"written to {options.out}")
+
+
+if __name__ == "__main__":
+    main()

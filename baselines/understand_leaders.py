@@ -1,0 +1,249 @@
+"""Look at what leaders do: their rudders, where they sit, and their tracks, for several policies.
+
+    python baselines/understand_leaders.py --pool table-1 \\
+        --policy "steering law" --policy "damped law" --out results/understand/table-1
+
+Draws rudders.png (mean rudder by time in the control cycle, against the angular velocity of a
+leader that heads nearly right, and against misalignment), places.png (how well leaders head, how
+far out and how far from each other they are) and tracks.png (two minutes of one episode), and
+writes what leaders did on average to means.csv. Critical noise, clockwise targets, paired seeds;
+the first tenth of each episode is left out.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+from rich.progress import Progress
+
+import flockenv
+from flockenv._core import pool_radii_cm
+from flockenv.comparison import named_policy
+from flockenv.observation import observation_entries, state_entries
+from flockenv.reproduce.style import COLORS, column_figure, paper_style
+from flockenv.whole_file import whole_file
+
+CONTROL_HZ = 10.0
+SAMPLED_EVERY = 5
+PHASES = ("fw", "nop1", "bw", "nop2")
+#: Within this of the target's tangent a leader heads nearly right.
+NEARLY_RIGHT_RAD = 0.3
+SPIN_RAD_S, SPEED_CM_S = 2.0, 15.0
+TRACKED_S = 120.0
+
+
+def watch(
+    name: str, scene: flockenv.FlockParameters, options: argparse.Namespace, progress: Progress
+) -> tuple[pd.DataFrame, float]:
+    """Run episodes; return samples, one row a leader and time, and the mean signed order."""
+    policy = named_policy(name)()
+    if isinstance(policy, str):
+        raise flockenv.ParameterError(f"{name!r} sees no observations: name another policy")
+    env = flockenv.LeadersVectorEnv(
+        options.episodes,
+        autoreset_mode="disabled",
+        params=scene,
+        target="cw",
+        mirror_to_target=getattr(policy, "mirror_to_target", False),
+        control_hz=CONTROL_HZ,
+        episode_s=options.minutes * 60.0,
+    )
+    observations, infos = env.reset(seed=list(range(options.seed, options.seed + options.episodes)))
+    steps = round(options.minutes * 60.0 * CONTROL_HZ)
+    task, parts = progress.add_task(name, total=steps), []
+    for step in range(steps):
+        actions, _ = policy.predict(observations)
+        if step >= steps // 10 and step % SAMPLED_EVERY == 0:
+            parts.append(samples(observations, actions, env.state(), scene))
+        observations, _, _, _, infos = env.step(actions)
+        progress.advance(task)
+    return pd.concat(parts, ignore_index=True), float(
+        infos["episode_summary"]["signed_order"].mean()
+    )
+
+
+def samples(
+    observations: np.ndarray,
+    actions: np.ndarray,
+    state: np.ndarray,
+    scene: flockenv.FlockParameters,
+) -> pd.DataFrame:
+    """Take observations (episodes, leaders * size) and global states (episodes, size) apart."""
+    own = {}
+    rows = observations.reshape(actions.size, -1).astype(np.float64)
+    for entry, column in zip(observation_entries(), rows.T, strict=True):
+        own.setdefault(entry.name, column)
+    ends = np.cumsum([getattr(scene, f"{phase}_s") for phase in PHASES])
+    phase = np.argmax([own[each] for each in PHASES], axis=0)
+    orientation = np.arctan2(own["sin_orientation"], own["cos_orientation"])
+    misalignment = np.angle(np.exp(1j * (orientation - np.pi / 2)))
+    return pd.DataFrame(
+        {
+            "cycle_s": ends[phase] - 2.0 * own["time_left"],
+            "misalignment_rad": misalignment,
+            "spin_rad_s": -SPIN_RAD_S * own["clockwise_spin"],
+            "rudder": np.clip(actions.ravel(), -1.0, 1.0),
+            "alignment": np.cos(misalignment),
+            "velocity_cm_s": SPEED_CM_S * own["clockwise_velocity"],
+            "radius_cm": radius_cm(own["radial_position"], scene),
+            "apart_cm": apart_cm(state, scene),
+        }
+    )
+
+
+def radius_cm(radial_position: np.ndarray, scene: flockenv.FlockParameters) -> np.ndarray:
+    """-1 and 1 stand for discs that touch the inner and the outer wall."""
+    outer, inner = pool_radii_cm(scene.pool)
+    most, least = outer - scene.boat_radius_cm, inner + scene.boat_radius_cm
+    return (most + least) / 2 + radial_position * (most - least) / 2
+
+
+def apart_cm(state: np.ndarray, scene: flockenv.FlockParameters) -> np.ndarray:
+    """Distance of each leader to the next other one, from global states (episodes, size)."""
+    width = len(state_entries(1)) - len(state_entries(0))
+    boats = state[:, : width * scene.n_leaders].reshape(len(state), scene.n_leaders, width)
+    names = [entry.name for entry in state_entries(1)]
+    radial, cos, sin = (
+        boats[..., names.index(name)].astype(np.float64)
+        for name in ("radial_position", "cos_polar_angle", "sin_polar_angle")
+    )
+    place = radius_cm(radial, scene) * (cos + 1j * sin)
+    apart = np.abs(place[:, :, None] - place[:, None, :])
+    apart[:, range(scene.n_leaders), range(scene.n_leaders)] = np.inf
+    return apart.min(axis=2).ravel()
+
+
+def draw_rudders(found: dict[str, pd.DataFrame], scene: flockenv.FlockParameters) -> Figure:
+    figure = column_figure(4.2 * len(found), 17.0)
+    panels = figure.subplots(len(found), 2, squeeze=False, sharex=True)
+    for (left, right), (name, rows) in zip(panels, found.items(), strict=True):
+        nearly = rows[rows["misalignment_rad"].abs() < NEARLY_RIGHT_RAD]
+        mean_rudder(left, nearly, "spin_rad_s", 0.8, scene)
+        image = mean_rudder(right, rows, "misalignment_rad", np.pi, scene)
+        left.set_title(f"{name}, heading within {NEARLY_RIGHT_RAD:g} rad of right")
+        right.set_title(f"{name}, all")
+        left.set_ylabel("angular velocity [rad/s]")
+        right.set_ylabel("misalignment [rad]")
+    for axes in panels[-1]:
+        axes.set_xlabel("time in the control cycle [s]")
+    figure.colorbar(image, ax=panels, label="mean rudder", shrink=0.6)
+    return figure
+
+
+def mean_rudder(
+    axes: Axes, rows: pd.DataFrame, against: str, most: float, scene: flockenv.FlockParameters
+) -> object:
+    ends = np.cumsum([getattr(scene, f"{phase}_s") for phase in PHASES])
+    edges = [np.linspace(0.0, ends[-1], 31), np.linspace(-most, most, 26)]
+    weighted, _, _ = np.histogram2d(rows["cycle_s"], rows[against], edges, weights=rows["rudder"])
+    count, _, _ = np.histogram2d(rows["cycle_s"], rows[against], edges)
+    mean = np.where(count >= 20, weighted / np.maximum(count, 1), np.nan)
+    for end in ends[:-1]:
+        axes.axvline(end, color="0.3", linewidth=0.5)
+    for phase, end in zip(PHASES, ends, strict=True):
+        middle = end - getattr(scene, f"{phase}_s") / 2
+        axes.text(middle, 0.93 * most, phase, ha="center", va="top", fontsize=6)
+    return axes.pcolormesh(*edges, mean.T, cmap="PuOr", vmin=-1.0, vmax=1.0, rasterized=True)
+
+
+def draw_places(found: dict[str, pd.DataFrame], scene: flockenv.FlockParameters) -> Figure:
+    outer, inner = pool_radii_cm(scene.pool)
+    shown = {
+        "alignment": ("cos of misalignment", np.linspace(-1.0, 1.0, 41)),
+        "radius_cm": ("distance from the centre [cm]", np.linspace(inner, outer, 31)),
+        "apart_cm": ("distance to the next leader [cm]", np.linspace(0.0, 2.0 * outer, 41)),
+    }
+    figure = column_figure(5.0, 17.0)
+    for axes, (column, (label, edges)) in zip(figure.subplots(1, 3), shown.items(), strict=True):
+        for color, (name, rows) in zip(COLORS, found.items(), strict=False):
+            if np.isfinite(rows[column]).all():
+                axes.hist(
+                    rows[column], edges, density=True, histtype="step", color=color, label=name
+                )
+        axes.set_xlabel(label)
+        axes.set_ylabel("probability density")
+        axes.set_yscale("log" if column == "alignment" else "linear")
+    figure.axes[0].legend(loc="upper left")
+    return figure
+
+
+def draw_tracks(
+    names: list[str], scene: flockenv.FlockParameters, options: argparse.Namespace
+) -> Figure:
+    """Draw two minutes in the middle of one episode; every track begins at its dot."""
+    figure = column_figure(6.5, 6.0 * len(names))
+    outer, inner = pool_radii_cm(scene.pool)
+    middle = options.minutes * 30.0
+    for axes, name in zip(figure.subplots(1, len(names), squeeze=False)[0], names, strict=True):
+        run = flockenv.simulate(
+            scene, options.seed, middle + TRACKED_S, CONTROL_HZ, policy=named_policy(name)()
+        )
+        pose = run.pose[run.time_s >= middle]
+        for radius in (outer, inner):
+            axes.add_patch(Circle((0, 0), radius, fill=False, color="0.3", linewidth=0.6))
+        for boat in range(scene.n_boats - 1, -1, -1):
+            leads = boat < scene.n_leaders
+            style = {
+                "color": COLORS[boat % 6] if leads else "0.85",
+                "linewidth": 0.8 if leads else 0.4,
+            }
+            axes.plot(pose[:, boat, 0], pose[:, boat, 1], **style)
+            if leads:
+                axes.plot(*pose[0, boat, :2], "o", color=COLORS[boat % 6])
+        signed = run.order.signed_order("cw")[run.time_s >= middle].mean()
+        axes.set_title(f"{name}: signed order {signed:.2f}")
+        axes.set_aspect("equal")
+        axes.set_axis_off()
+    return figure
+
+
+def main(arguments: list[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--pool", choices=("500-boats", "table-1"), default="table-1")
+    parser.add_argument("--policy", action="append", help="name or .npz [both laws]")
+    parser.add_argument("--leaders", type=int, default=3)
+    parser.add_argument("--episodes", type=int, default=64)
+    parser.add_argument("--minutes", type=float, default=8.0, help="length of an episode")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--out", type=Path, default=Path("results/understand"))
+    parser.add_argument("--quiet", action="store_true")
+    options = parser.parse_args(arguments)
+    scene = flockenv.FlockParameters.preset("simulation").replace(
+        pool=options.pool,
+        n_boats=27,
+        n_leaders=options.leaders,
+        bw_s=flockenv.FlockParameters.critical_bw_s("simulation", options.pool),
+    )
+    found, means = {}, []
+    try:
+        options.out.mkdir(parents=True, exist_ok=True)
+        with Progress(disable=options.quiet) as progress:
+            for name in options.policy or ["steering law", "damped law"]:
+                label = Path(name).stem
+                found[label], order = watch(name, scene, options, progress)
+                means.append({"policy": label, "signed_order": order, **found[label].mean()})
+        with paper_style():
+            figures = {
+                "rudders": draw_rudders(found, scene),
+                "places": draw_places(found, scene),
+                "tracks": draw_tracks(options.policy or list(found), scene, options),
+            }
+            for name, figure in figures.items():
+                with whole_file(options.out / f"{name}.png") as file:
+                    figure.savefig(file, dpi=200, format="png")
+    except (flockenv.FlockError, OSError) as error:
+        sys.exit(f"Error: {error}")
+    table = pd.DataFrame(means).drop(columns=["cycle_s", "misalignment_rad", "spin_rad_s"])
+    with whole_file(options.out / "means.csv") as file:
+        file.write(table.to_csv(index=False, lineterminator="\n").encode())
+    print(table.round(3).to_string(index=False))
+    print(f"written to {options.out}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,48 @@
+"""Pictures of what leaders do: drawn, and their numbers those of the flock itself."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from PIL import Image
+
+import flockenv
+
+
+def test_it_draws(script, tmp_path: Path, capsys) -> None:
+    arguments = ["--episodes", "2", "--minutes", "0.5", "--quiet", "--out", str(tmp_path)]
+    script.main([*arguments, "--policy", "damped law", "--policy", "straight ahead"])
+    for name in ("rudders", "places", "tracks"):
+        with Image.open(tmp_path / f"{name}.png") as picture:
+            assert picture.width > 800
+    means = pd.read_csv(tmp_path / "means.csv", index_col="policy")
+    assert list(means.index) == ["damped law", "straight ahead"]
+    assert means.loc["straight ahead", "rudder"] == 0.0
+
+
+def test_samples_are_the_flocks_own(script) -> None:
+    scene = flockenv.FlockParameters(n_boats=8, n_leaders=3, pool="table-1", bw_s=0.4)
+    env = flockenv.LeadersVectorEnv(1, params=scene)
+    observations, _ = env.reset(seed=3)
+    actions = np.array([[0.5, -1.0, 0.0]], np.float32)
+    for _ in range(37):
+        observations, *_ = env.step(actions)
+    flock = env._batch.core.flock(0)
+    rows = script.samples(observations, actions, env.state(), scene)
+    place = flock.pose[:3, :2] @ [1, 1j]
+    np.testing.assert_allclose(rows["radius_cm"], abs(place), atol=1e-3)
+    apart = [min(abs(place[i] - place[j]) for j in range(3) if j != i) for i in range(3)]
+    np.testing.assert_allclose(rows["apart_cm"], apart, atol=1e-3)
+    np.testing.assert_allclose(rows["spin_rad_s"], flock.velocity[:3, 2], atol=1e-5)
+    heading = np.exp(1j * flock.pose[:3, 2])
+    np.testing.assert_allclose(
+        rows["alignment"], (heading / (-1j * place / abs(place))).real, atol=1e-5
+    )
+    np.testing.assert_allclose(rows["cycle_s"], 3.7, atol=1e-5)
+    np.testing.assert_allclose(rows["rudder"], [0.5, -1.0, 0.0])
+
+
+def test_policies_without_observations_are_refused(script, tmp_path: Path) -> None:
+    with pytest.raises(SystemExit, match="sees no observations"):
+        script.main(["--policy", "steering law, every substep", "--out", str(tmp_path)])
