@@ -9,7 +9,9 @@ Gaussian perturbations of all weights are tried in pairs of opposite signs, a fl
 each, all in one batch of the simulator. Candidates of a generation steer the same episodes, so that
 they differ by their weights alone; their mean rewards are replaced by ranks; Adam follows the
 estimated gradient. The policy is linear feedback on the observation unless hidden layers are asked
-for. Interrupted, the same command goes on from the last generation. The result is a policy file:
+for; with --form leaning it is a `LeaningLaw`, which begins as the
+damped law. Interrupted, the same command goes on from the last generation. The result is a policy
+file:
 
     flockenv compare --policy "steering law" --policy results/evolution/policy.npz
 """
@@ -30,14 +32,17 @@ from rich.progress import Progress
 
 import flockenv
 from flockenv.array_file import read_arrays, write_arrays
-from flockenv.observation import OBSERVATION_VERSION
-from flockenv.policies import NetworkPolicy
+from flockenv.observation import OBSERVATION_VERSION, observation_entries
+from flockenv.policies import DampedLaw, LeaningLaw, NetworkPolicy
+from flockenv.policies.leaning_law import FEATURES, GAINS, features, leaning_rudders
 from flockenv.provenance import made_by
 from flockenv.reward import TERMS
 from flockenv.seeds import training_seed
 
 SEEDS_OF_A_RUN = 1 << 24
 DECAY_1, DECAY_2 = 0.9, 0.99
+NAMES = [entry.name for entry in observation_entries()]
+LIBERAL_STEPS = {"dt_s": 0.1, "relinearizations": 1}
 
 
 @dataclass
@@ -48,6 +53,7 @@ class State:
     weights: np.ndarray
     moment_1: np.ndarray
     moment_2: np.ndarray
+    average: np.ndarray
     wall_s: float
     curve: np.ndarray
 
@@ -98,13 +104,62 @@ class Shape:
         return np.concatenate(parts)
 
 
-def environment(options: argparse.Namespace, flocks: int) -> flockenv.LeadersVectorEnv:
+class LeaningShape:
+    """A leaning law's numbers within one vector; a step of 1 is worth trying for each of them."""
+
+    size = len(GAINS) + 1 + len(FEATURES)
+    begin = DampedLaw(gain=1.9, backward_gain=3.0, damping=20.0, mirror_to_target=True)
+    log_gain_steps, bias_step_rad, lean_step_rad = np.array([0.3, 0.4, 0.3]), 0.12, 0.1
+
+    def __init__(self, options: argparse.Namespace) -> None:
+        """Look at what the law to begin with sees, so that all features get equal steps."""
+        env = environment(options, 16, options.leaders[0])
+        rows, _ = env.reset(
+            seed=[training_seed(options.seed * SEEDS_OF_A_RUN + i) for i in range(16)]
+        )
+        seen = []
+        for _ in range(round(min(60.0, options.episode_s) * options.control_hz)):
+            rows, *_ = env.step(self.begin.predict(rows)[0])
+            seen.append(features(rows.reshape(-1, len(NAMES)), NAMES))
+        self.usual = np.mean(seen, axis=(0, 1))
+        self.steps = self.lean_step_rad / np.maximum(np.std(seen, axis=(0, 1)), 0.05)
+
+    def split(self, flat: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Gains, biases and weights of vectors (..., size)."""
+        flat = flat.astype(np.float64)
+        begin = np.array([self.begin.gains[name] for name in GAINS])
+        gains = begin * np.exp(self.log_gain_steps * flat[..., : len(GAINS)])
+        weights = self.steps * flat[..., len(GAINS) + 1 :]
+        bias = self.bias_step_rad * flat[..., len(GAINS)] - weights @ self.usual
+        return gains, bias, weights
+
+    def rudders(self, flat: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Rudders (candidates, rows) for vectors (candidates, size)."""
+        return leaning_rudders(*self.split(flat), rows, NAMES)
+
+    def policy(self, flat: np.ndarray, made: dict[str, str]) -> LeaningLaw:
+        gains, bias, weights = self.split(flat)
+        return LeaningLaw(
+            dict(zip(GAINS, gains.tolist(), strict=True)),
+            float(bias),
+            dict(zip(FEATURES, weights.tolist(), strict=True)),
+            made=made,
+        )
+
+    def first(self, random: np.random.Generator) -> np.ndarray:
+        """The law to begin with."""
+        return np.zeros(self.size)
+
+
+def environment(
+    options: argparse.Namespace, flocks: int, leaders: int
+) -> flockenv.LeadersVectorEnv:
     critical = flockenv.FlockParameters.critical_bw_s("simulation", options.pool)
     return flockenv.LeadersVectorEnv(
         flocks,
         autoreset_mode="disabled",
         n_boats=options.boats,
-        n_leaders=options.leaders,
+        n_leaders=leaders,
         pool=options.pool,
         bw_s=options.noise * critical,
         target="random",
@@ -112,6 +167,7 @@ def environment(options: argparse.Namespace, flocks: int) -> flockenv.LeadersVec
         control_hz=options.control_hz,
         episode_s=options.episode_s,
         reward={options.reward: 1.0},
+        **(LIBERAL_STEPS if options.liberal_steps else {}),
     )
 
 
@@ -131,7 +187,10 @@ def mean_rewards(
 
 
 def scores(
-    env: flockenv.LeadersVectorEnv, shape: Shape, candidates: np.ndarray, seeds: list[int]
+    env: flockenv.LeadersVectorEnv,
+    shape: Shape | LeaningShape,
+    candidates: np.ndarray,
+    seeds: list[int],
 ) -> np.ndarray:
     """Mean reward of each candidate; all of them steer the episodes of the same seeds."""
     count, weights = len(candidates), candidates.astype(np.float32)
@@ -152,7 +211,10 @@ def centred_ranks(values: np.ndarray) -> np.ndarray:
 
 
 def next_generation(
-    state: State, env: flockenv.LeadersVectorEnv, shape: Shape, options: argparse.Namespace
+    state: State,
+    env: flockenv.LeadersVectorEnv,
+    shape: Shape | LeaningShape,
+    options: argparse.Namespace,
 ) -> State:
     # A generator of its own for each generation: nothing but the number has to be remembered.
     number = state.generation
@@ -171,8 +233,9 @@ def next_generation(
         np.sqrt(moment_2 / (1 - DECAY_2 ** (number + 1))) + 1e-8
     )
     weights = state.weights + options.rate * direction
+    average = state.average + options.average * (weights - state.average)
     curve = np.append(state.curve, found.mean())
-    return State(number + 1, weights, moment_1, moment_2, state.wall_s, curve)
+    return State(number + 1, weights, moment_1, moment_2, average, state.wall_s, curve)
 
 
 def identity(options: argparse.Namespace) -> str:
@@ -189,7 +252,7 @@ def load_state(path: Path, options: argparse.Namespace) -> State | None:
         raise flockenv.ParameterError(
             f"{path} is of a search with other options: name another folder with --out"
         )
-    numbers = [arrays[name] for name in ("weights", "moment_1", "moment_2")]
+    numbers = [arrays[name] for name in ("weights", "moment_1", "moment_2", "average")]
     wall_s, curve = float(arrays["wall_s"]), arrays["curve"]
     return State(int(arrays["generation"]), *numbers, wall_s, curve)
 
@@ -201,22 +264,30 @@ def save_state(path: Path, state: State, options: argparse.Namespace) -> None:
 
 def samples_of(options: argparse.Namespace, generations: int) -> int:
     steps = round(options.episode_s * options.control_hz)
-    return generations * 2 * options.pairs * options.flocks * options.leaders * steps
+    leaders = sum(leaders_of(options, generation) for generation in range(generations))
+    return 2 * options.pairs * options.flocks * leaders * steps
 
 
-def search(options: argparse.Namespace, command: str) -> NetworkPolicy:
-    env = environment(options, 2 * options.pairs * options.flocks)
-    shape = Shape(env.single_observation_space.shape[0] // options.leaders, options.hidden)
+def leaders_of(options: argparse.Namespace, generation: int) -> int:
+    return options.leaders[generation % len(options.leaders)]
+
+
+def search(options: argparse.Namespace, command: str) -> NetworkPolicy | LeaningLaw:
+    flocks = 2 * options.pairs * options.flocks
+    envs = {leaders: environment(options, flocks, leaders) for leaders in set(options.leaders)}
+    leaning = options.form == "leaning"
+    shape = LeaningShape(options) if leaning else Shape(len(NAMES), options.hidden)
     path = options.out / "state.npz"
     options.out.mkdir(parents=True, exist_ok=True)
     state = load_state(path, options)
     if state is None:
         weights = shape.first(np.random.default_rng(options.seed))
-        state = State(0, weights, 0 * weights, 0 * weights, 0.0, np.empty(0))
+        state = State(0, weights, 0 * weights, 0 * weights, weights, 0.0, np.empty(0))
     begin = time.perf_counter() - state.wall_s
     with Progress(disable=options.quiet) as progress:
         task = progress.add_task("", total=options.generations, completed=state.generation)
         while state.generation < options.generations:
+            env = envs[leaders_of(options, state.generation)]
             state = next_generation(state, env, shape, options)
             state.wall_s = time.perf_counter() - begin
             save_state(path, state, options)
@@ -224,19 +295,19 @@ def search(options: argparse.Namespace, command: str) -> NetworkPolicy:
             progress.update(task, description=words, completed=state.generation)
     samples = samples_of(options, state.generation)
     made = made_by(command, seed=options.seed, samples=samples, wall_s=state.wall_s)
-    policy = shape.policy(state.weights, made)
+    policy = shape.policy(state.average, made)
     policy.save(options.out / "policy.npz")
     return policy
 
 
 def tell_held_out(options: argparse.Namespace, policies: dict[str, Any]) -> None:
     """Print what policies earn in episodes that the search has never seen."""
-    env, root = environment(options, options.episodes), np.sqrt(options.episodes)
+    env = environment(options, options.episodes, options.leaders[0])
     for name, policy in policies.items():
         steer = lambda rows, policy=policy: policy.predict(rows)[0]  # noqa: E731
         found = mean_rewards(env, list(range(options.episodes)), steer)
         for what, values in zip((options.reward, "signed order"), found, strict=True):
-            half = 1.96 * values.std(ddof=1) / root
+            half = 1.96 * values.std(ddof=1) / np.sqrt(options.episodes)
             print(f"{name}: mean {what} {values.mean():.3f} ± {half:.3f}")
 
 
@@ -244,10 +315,14 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--pool", choices=("500-boats", "table-1"), default="500-boats")
     parser.add_argument("--boats", type=int, default=6, help="leaders included")
-    parser.add_argument("--leaders", type=int, default=2)
+    parser.add_argument(
+        "--leaders", type=int, nargs="+", default=[2], help="of the generations in turn"
+    )
     parser.add_argument("--noise", type=float, default=0.3, help="1: the pool's critical noise")
     parser.add_argument("--control-hz", type=float, default=2.0)
     parser.add_argument("--episode-s", type=float, default=60.0)
+    parser.add_argument("--liberal-steps", action="store_true", help="dt_s 0.1, one pass")
+    parser.add_argument("--form", choices=("network", "leaning"), default="network")
     parser.add_argument("--hidden", type=int, nargs="*", default=[], help="hidden layers")
     parser.add_argument("--reward", choices=TERMS, default="leader_velocity")
     parser.add_argument("--generations", type=int, default=50)
@@ -255,13 +330,19 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--flocks", type=int, default=4, help="episodes for each candidate")
     parser.add_argument("--sigma", type=float, default=0.3, help="of the perturbations")
     parser.add_argument("--rate", type=float, default=0.15, help="learning rate of Adam")
+    parser.add_argument(
+        "--average", type=float, default=1.0, help="share of each generation in the result; 1: last"
+    )
     parser.add_argument("--episodes", type=int, default=64, help="held-out episodes at the end")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=Path("results/evolution"))
     parser.add_argument("--quiet", action="store_true")
     options = parser.parse_args(arguments)
-    if min(options.pairs, options.generations, options.flocks, *options.hidden, 1) < 1:
-        parser.error("pairs, generations, flocks and hidden layers are at least 1")
+    if (
+        min(options.pairs, options.generations, options.flocks, *options.hidden, *options.leaders)
+        < 1
+    ):
+        parser.error("pairs, generations, flocks, hidden layers and leaders are at least 1")
     given = sys.argv[1:] if arguments is None else arguments
     command = shlex.join(["python", "baselines/evolution_strategy.py", *given])
     try:

@@ -1,6 +1,5 @@
 """Learned policies: small networks in an ``.npz`` file, evaluated with NumPy alone."""
 
-import json
 import os
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Self
@@ -8,15 +7,11 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flockenv.array_file import read_arrays, write_arrays
 from flockenv.errors import ParameterError
-from flockenv.observation import OBSERVATION_VERSION
+from flockenv.policies.policy_file import write_policy
 from flockenv.policies.row_policy import RowPolicy
 
-__all__ = ["ACTIVATIONS", "NetworkPolicy", "load"]
-
-FORMAT = "flockenv policy 1"
-"""First entry of every policy file."""
+__all__ = ["ACTIVATIONS", "NetworkPolicy"]
 
 
 def _relu(values: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -28,8 +23,6 @@ ACTIVATIONS: Mapping[str, Callable[[NDArray[np.float32]], NDArray[np.float32]]] 
     "relu": _relu,
 }
 """What may stand between two layers."""
-
-_LARGEST_FILE = 5 << 20
 
 
 class NetworkPolicy(RowPolicy):
@@ -103,56 +96,29 @@ class NetworkPolicy(RowPolicy):
             If the file cannot be written; what was there before is still there.
         """
         header = {
-            "format": FORMAT,
-            "observation_version": OBSERVATION_VERSION,
             "observation": self.observation,
             "mirror_to_target": self.mirror_to_target,
             "activation": self.activation,
             "layers": len(self._layers),
             "made": self.made,
         }
-        arrays: dict[str, NDArray[Any]] = {"header": np.array(json.dumps(header, sort_keys=True))}
+        arrays: dict[str, NDArray[Any]] = {}
         for place, (weight, bias) in enumerate(self._layers):
             arrays |= {f"weight_{place}": weight, f"bias_{place}": bias}
-        write_arrays(path, arrays)
+        write_policy(path, header, arrays)
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> Self:
-        """Read a policy; nothing in the file is ever executed.
-
-        Raises
-        ------
-        OSError
-            If the file cannot be opened.
-        ParameterError
-            If it is no policy file, is damaged, or was made for another version of the observation.
-        """
-        if os.path.getsize(path) > _LARGEST_FILE:
-            raise ParameterError(f"{path} is no policy: it is larger than {_LARGEST_FILE} bytes")
-        arrays = read_arrays(path)
-        try:
-            header = json.loads(str(arrays["header"]))
-            if not isinstance(header, dict) or header.get("format") != FORMAT:
-                raise ParameterError(f"{path} is no policy in the format {FORMAT!r}")
-            version = header["observation_version"]
-            if version != OBSERVATION_VERSION:
-                raise ParameterError(
-                    f"{path} was made for version {version} of the observation; this is version "
-                    f"{OBSERVATION_VERSION}: train it anew"
-                )
-            places = range(header["layers"])
-            return cls(
-                [arrays[f"weight_{place}"] for place in places],
-                [arrays[f"bias_{place}"] for place in places],
-                header["activation"],
-                observation=header["observation"],
-                mirror_to_target=header["mirror_to_target"],
-                made=header["made"],
-            )
-        except (KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
-            if isinstance(error, ParameterError):
-                raise
-            raise ParameterError(f"{path} is no whole policy: {error!r}") from error
+    def from_file(cls, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Self:
+        """Return the policy that a file's header and arrays tell of."""
+        places = range(header["layers"])
+        return cls(
+            [arrays[f"weight_{place}"] for place in places],
+            [arrays[f"bias_{place}"] for place in places],
+            header["activation"],
+            observation=header["observation"],
+            mirror_to_target=header["mirror_to_target"],
+            made=header["made"],
+        )
 
     def __repr__(self) -> str:
         sizes = [self._size, *(len(bias) for _, bias in self._layers)]
@@ -180,8 +146,3 @@ def _checked_layers(
         layers.append((matrix, vector))
         inputs = outputs
     return layers
-
-
-def load(path: str | os.PathLike[str]) -> NetworkPolicy:
-    """Read a shipped or trained policy: `NetworkPolicy.load`."""
-    return NetworkPolicy.load(path)

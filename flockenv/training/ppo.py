@@ -188,6 +188,7 @@ class _Run:
             with suppress(OSError):
                 self.log.close()
         best = load(self.folder / "best.npz")
+        assert isinstance(best, NetworkPolicy)
         return TrainingResult(best, self.settings, self.progress, self.folder)
 
     def _iterate(self) -> None:
@@ -340,12 +341,15 @@ def _start(settings: TrainingSettings, command: str) -> NetworkPolicy | None:
         return None
     if settings.start not in LAWS:
         try:
-            return load(settings.start)
+            found = load(settings.start)
         except OSError as error:
             raise ParameterError(
                 f"start = {settings.start!r} is neither {' nor '.join(LAWS)}, and as a policy's "
                 f"file it cannot be read: {error.strerror}"
             ) from error
+        if not isinstance(found, NetworkPolicy):
+            raise ParameterError(f"start = {settings.start!r} is a {found!r}, not a network")
+        return found
     law = LAWS[settings.start](
         observation=settings.observation, mirror_to_target=settings.mirror_to_target
     )

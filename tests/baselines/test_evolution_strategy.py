@@ -14,15 +14,18 @@ from flockenv.policies import load
 TINY = ["--pairs", "3", "--flocks", "1", "--episode-s", "5", "--episodes", "4", "--quiet"]
 
 
-@pytest.mark.parametrize("hidden", [[], ["--hidden", "4"]])
+@pytest.mark.parametrize(
+    "hidden", [[], ["--hidden", "4"], ["--form", "leaning", "--sigma", "1", "--average", "0.3"]]
+)
 def test_resumed_is_uninterrupted(script, tmp_path: Path, hidden: list[str]) -> None:
     whole, parts = tmp_path / "whole", tmp_path / "parts"
     script.main([*TINY, *hidden, "--generations", "3", "--out", str(whole)])
     script.main([*TINY, *hidden, "--generations", "1", "--out", str(parts)])
     script.main([*TINY, *hidden, "--generations", "3", "--out", str(parts)])
     one, other = load(whole / "policy.npz"), load(parts / "policy.npz")
-    for own, resumed in zip(one.weights + one.biases, other.weights + other.biases, strict=True):
-        np.testing.assert_array_equal(own, resumed)
+    size = len(flockenv.observation.observation_entries())
+    rows = np.random.default_rng(0).uniform(-1, 1, (20, size)).astype(np.float32)
+    np.testing.assert_array_equal(one.predict(rows)[0], other.predict(rows)[0])
     # 3 generations, 6 candidates, one flock with 2 leaders, 10 steps.
     assert one.made["samples"] == str(3 * 6 * 2 * 10)
     assert one.made["command"].startswith("python baselines/evolution_strategy.py")
@@ -43,14 +46,43 @@ def test_candidates_steer_as_their_policies_do(script) -> None:
             np.testing.assert_allclose(rudders[candidate], expected, atol=2e-6)
 
 
+def test_leaning_candidates_steer_as_their_policies_do(script, tmp_path: Path) -> None:
+    options = ["--leaders", "2", "--control-hz", "2"]
+    random, seen = np.random.default_rng(0), []
+    script.main(
+        [*TINY, *options, "--form", "leaning", "--generations", "1", "--out", str(tmp_path)]
+    )
+    assert isinstance(load(tmp_path / "policy.npz"), flockenv.policies.LeaningLaw)
+    shape = script.LeaningShape(
+        script.argparse.Namespace(
+            leaders=[2], control_hz=2.0, seed=0, pool="table-1", boats=8, noise=1.0,
+            episode_s=60.0, reward="signed_order", liberal_steps=False,
+        )
+    )  # fmt: skip
+    flat = random.standard_normal((4, shape.size))
+    rows = random.uniform(-1, 1, (4, 7, len(script.NAMES))).astype(np.float32)
+    rudders = shape.rudders(flat, rows)
+    for candidate in range(4):
+        policy = shape.policy(flat[candidate], {})
+        expected = policy.predict(rows[candidate])[0][:, 0]
+        np.testing.assert_allclose(rudders[candidate], expected, atol=1e-6)
+        seen.append(expected)
+    # What it begins as is the damped law.
+    begin = shape.policy(shape.first(random), {})
+    np.testing.assert_allclose(
+        begin.predict(rows)[0][..., 0], shape.begin.predict(rows)[0][..., 0], atol=1e-5
+    )
+    assert np.ptp(seen, axis=0).max() > 0.1
+
+
 def test_it_climbs(script, monkeypatch: pytest.MonkeyPatch) -> None:
     """On rewards that are known, -|w - 1|², instead of the flock's."""
     shape = script.Shape(3, [])
     monkeypatch.setattr(script, "scores", lambda env, shape, w, seeds: -((w - 1) ** 2).sum(axis=1))
-    parser = {"pairs": 8, "flocks": 1, "sigma": 0.1, "rate": 0.1, "seed": 0}
+    parser = {"pairs": 8, "flocks": 1, "sigma": 0.1, "rate": 0.1, "average": 1.0, "seed": 0}
     options = script.argparse.Namespace(**parser)
     zeros = np.zeros(shape.size)
-    state = script.State(0, zeros, zeros, zeros, 0.0, np.empty(0))
+    state = script.State(0, zeros, zeros, zeros, zeros, 0.0, np.empty(0))
     for _ in range(60):
         state = script.next_generation(state, None, shape, options)
     np.testing.assert_allclose(state.weights, 1.0, atol=0.25)

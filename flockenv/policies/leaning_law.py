@@ -1,0 +1,247 @@
+"""`LeaningLaw`: the damped law about a heading that leans outward by what the leader sees."""
+
+import os
+from collections.abc import Mapping
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flockenv.errors import ParameterError
+from flockenv.observation import observation_entries
+from flockenv.policies.policy_file import write_policy
+from flockenv.policies.row_policy import RowPolicy
+
+__all__ = ["FEATURES", "GAINS", "LeaningLaw", "features", "leaning_rudders"]
+
+GAINS = ("gain", "backward_gain", "damping")
+"""As of `DampedLaw`."""
+
+_OWN = ("radial_position", "outward_velocity", "clockwise_velocity", "forward_velocity")
+_ORDER = (
+    "mean_cos_orientation",
+    "mean_sin_orientation",
+    "mean_outward_velocity",
+    "mean_clockwise_velocity",
+)
+
+FEATURES = (
+    *_OWN,
+    "near_outer_wall",
+    *_ORDER,
+    "near",
+    "near_outward",
+    "near_ahead",
+    "near_opposed",
+    "near_turned",
+    "near_outward_velocity",
+    "near_clockwise_velocity",
+    "opposed_outward",
+    "opposed_ahead",
+    "turned_outward",
+    "turned_ahead",
+    "leaders",
+    "leaders_outward",
+    "leaders_ahead",
+)
+"""What a leaning leader looks at.
+
+Entries of the observation by their names there; ``near_outer_wall``, how much the radial position
+exceeds 0.6; and sums over the neighbours seen. Normal boats count with exp(-d²/2), leaders
+(``leaders…``) with exp(-d²/8), d their distance in the observation's unit of 6 boat radii. Summed
+are 1, the places (``outward``, ``ahead``: clockwise), the velocities, how far they head against the
+leader (``opposed``: (1 - cos of the relative heading)/2, ``turned``: its sine) and products.
+"""
+
+_LARGEST_LEAN = 1.2
+_WALL = 0.6
+
+
+def features(rows: NDArray[Any], names: list[str]) -> NDArray[np.float64]:
+    """Return the `FEATURES` of mirrored observations.
+
+    Parameters
+    ----------
+    rows
+        Shape (..., observation size).
+    names
+        The names of an observation's entries, in order.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (..., number of features).
+    """
+    rows = np.asarray(rows, np.float64)
+    first, width = names.index("present"), 8
+    # Own entries come first, those of the order block last: some names stand in both.
+    own = {name: rows[..., names.index(name)] for name in _OWN}
+    order = [rows[..., names.index(name)] for name in _ORDER]
+    neighbors = rows[..., first : first + width * names.count("present")]
+    neighbors = neighbors.reshape(*rows.shape[:-1], -1, width)
+    present, outward, ahead, cos, sin, outward_velocity, velocity, leads = np.moveaxis(
+        neighbors, -1, 0
+    )
+    squared = outward**2 + ahead**2
+    near = present * (1.0 - leads) * np.exp(-squared / 2.0)
+    leaders = present * leads * np.exp(-squared / 8.0)
+    opposed = (1.0 - cos) / 2.0
+    sums = [
+        near,
+        near * outward,
+        near * ahead,
+        near * opposed,
+        near * sin,
+        near * outward_velocity,
+        near * velocity,
+        near * opposed * outward,
+        near * opposed * ahead,
+        near * sin * outward,
+        near * sin * ahead,
+        leaders,
+        leaders * outward,
+        leaders * ahead,
+    ]
+    wall = np.maximum(own["radial_position"] - _WALL, 0.0)
+    columns = [*own.values(), wall, *order, *(each.sum(axis=-1) for each in sums)]
+    return np.stack(columns, axis=-1)
+
+
+def leaning_rudders(
+    gains: NDArray[Any],
+    bias: NDArray[Any],
+    weights: NDArray[Any],
+    rows: NDArray[Any],
+    names: list[str],
+) -> NDArray[np.float64]:
+    """Return rudders in [-1, 1] for mirrored observations.
+
+    Parameters
+    ----------
+    gains, bias, weights
+        Shapes (..., 3), (...) and (..., number of features): one law, or one a stack of rows.
+    rows
+        Shape (..., leaders, observation size).
+    names
+        The names of an observation's entries, in order.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (..., leaders).
+    """
+    rows = np.asarray(rows, np.float64)
+    own = {name: rows[..., names.index(name)] for name in (*_OWN, "clockwise_spin")}
+    orientation = np.arctan2(
+        rows[..., names.index("sin_orientation")], rows[..., names.index("cos_orientation")]
+    )
+    lean = np.asarray(bias)[..., None] + (features(rows, names) @ weights[..., None])[..., 0]
+    lean = _LARGEST_LEAN * np.tanh(lean / _LARGEST_LEAN)
+    # Clockwise is the target; positive turns are counter-clockwise, which lowers the orientation.
+    misalignment = np.angle(np.exp(1j * (orientation + lean - np.pi / 2)))
+    spin = -2.0 * own["clockwise_spin"]
+    gain, backward_gain, damping = np.moveaxis(np.asarray(gains)[..., None, :], -1, 0)
+    backward = damping * spin - backward_gain * misalignment
+    backing = own["forward_velocity"] < 0.0
+    rudders: NDArray[np.float64] = np.where(backing, backward, gain * misalignment)
+    return np.clip(rudders, -1.0, 1.0)
+
+
+class LeaningLaw(RowPolicy):
+    """The damped law about a heading that leans outward by a linear function of what is seen.
+
+    The heading aimed at is the target's tangent, turned outward by 1.2·tanh(lean/1.2) rad with
+    lean = bias + Σ weight·feature (`FEATURES`). About it the leader steers as with `DampedLaw`.
+    Observations have to be mirrored to the target, which the environments' option of that name
+    does.
+
+    Parameters
+    ----------
+    gains
+        The three `GAINS` by name.
+    bias
+        Outward lean in rad where every feature is 0.
+    weights
+        Rad a feature, by its name; 0 for those left out.
+    observation
+        Blocks of the observation that differ from the default layout.
+    made
+        What made it: any short texts by name, such as the command, the seed and the samples.
+
+    Raises
+    ------
+    ParameterError
+        For unknown names, numbers that are not finite, and layouts without the blocks that are
+        looked at.
+    """
+
+    def __init__(
+        self,
+        gains: Mapping[str, float],
+        bias: float,
+        weights: Mapping[str, float],
+        *,
+        observation: Mapping[str, Any] | None = None,
+        made: Mapping[str, str] | None = None,
+    ) -> None:
+        super().__init__(observation, mirror_to_target=True)
+        self.gains = _checked(gains, GAINS)
+        if len(self.gains) < len(GAINS):
+            raise ParameterError(f"gains = {dict(gains)!r} are not accepted: {', '.join(GAINS)}")
+        self.weights = _checked(weights, FEATURES)
+        self.bias = _checked({"bias": bias}, ("bias",))["bias"]
+        self.made = {str(name): str(text) for name, text in (made or {}).items()}
+        self._names = [entry.name for entry in observation_entries(self.observation)]
+        for name in (*_OWN, *_ORDER, "present"):
+            if name not in self._names:
+                raise ParameterError(
+                    f"observation = {self.observation!r} is not accepted: a leaning leader needs "
+                    "the blocks own, neighbors and order"
+                )
+        self._gains = np.array([self.gains[name] for name in GAINS])
+        self._weights = np.array([self.weights.get(name, 0.0) for name in FEATURES])
+
+    def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float64]:
+        bias = np.asarray(self.bias)
+        return leaning_rudders(self._gains, bias, self._weights, rows, self._names)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the law to an ``.npz`` file, whole or not at all.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be written; what was there before is still there.
+        """
+        header = {
+            "kind": "leaning law",
+            "observation": self.observation,
+            "features": FEATURES,
+            "made": self.made,
+        }
+        arrays = {"gains": self._gains, "bias": np.array(self.bias), "weights": self._weights}
+        write_policy(path, header, arrays)
+
+    @classmethod
+    def from_file(cls, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Self:
+        """Return the law that a file's header and arrays tell of."""
+        return cls(
+            dict(zip(GAINS, arrays["gains"].tolist(), strict=True)),
+            arrays["bias"].item(),
+            dict(zip(header["features"], arrays["weights"].tolist(), strict=True)),
+            observation=header["observation"],
+            made=header["made"],
+        )
+
+    def __repr__(self) -> str:
+        gains = ", ".join(f"{name}={value:.3g}" for name, value in self.gains.items())
+        return f"{type(self).__name__}({gains}, bias={self.bias:.3g}, {len(self.weights)} weights)"
+
+
+def _checked(values: Mapping[str, float], known: tuple[str, ...]) -> dict[str, float]:
+    for name, value in values.items():
+        if name not in known:
+            raise ParameterError(f"{name!r} is not accepted: one of {', '.join(known)}")
+        if not np.isfinite(value):
+            raise ParameterError(f"{name} = {value!r} is not accepted: a finite number")
+    return {name: float(value) for name, value in values.items()}
