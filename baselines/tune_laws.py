@@ -1,6 +1,6 @@
 """Tune the gains of the closed-form laws on training seeds: what learned leaders have to beat.
 
-    python baselines/tune_laws.py                            # both laws in both pools, an hour
+    python baselines/tune_laws.py                            # both laws in both pools, half an hour
     python baselines/tune_laws.py --law "damped law" --pool table-1 --generations 10
 
 CMA-ES (Hansen's covariance matrix adaptation, from the package cmaes) over logarithms of the gains.
@@ -48,15 +48,13 @@ SEEDS_OF_A_RUN = 1 << 24
 
 
 def scene(pool: str, options: argparse.Namespace) -> flockenv.FlockParameters:
-    """27 boats at the pool's critical noise, with coarser steps than a comparison has."""
+    """27 boats at the pool's critical noise, as policies are compared."""
     preset = flockenv.FlockParameters.preset("simulation")
     return preset.replace(
         pool=pool,
         n_boats=27,
         n_leaders=options.leaders,
         bw_s=flockenv.FlockParameters.critical_bw_s("simulation", pool),
-        dt_s=options.dt_s,
-        relinearizations=1,
     )
 
 
@@ -96,10 +94,9 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--law", choices=LAWS, action="append", help="[both]")
     parser.add_argument("--pool", choices=POOLS, action="append", help="[both]")
     parser.add_argument("--leaders", type=int, default=3)
-    parser.add_argument("--generations", type=int, default=20)
-    parser.add_argument("--episodes", type=int, default=64, help="for each candidate")
+    parser.add_argument("--generations", type=int, default=10)
+    parser.add_argument("--episodes", type=int, default=48, help="for each candidate")
     parser.add_argument("--minutes", type=float, default=8.0, help="length of an episode")
-    parser.add_argument("--dt-s", type=float, default=0.1)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=Path("results/tune_laws"))
     parser.add_argument("--quiet", action="store_true")
