@@ -95,7 +95,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--pool", choices=POOLS, action="append", help="[both]")
     parser.add_argument("--leaders", type=int, default=3)
     parser.add_argument("--generations", type=int, default=10)
-    parser.add_argument("--episodes", type=int, default=48, help="for each candidate")
+    parser.add_argument("--episodes", type=int, default=32, help="for each candidate")
     parser.add_argument("--minutes", type=float, default=8.0, help="length of an episode")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=Path("results/tune_laws"))

@@ -41,7 +41,7 @@ def watch(
     name: str, scene: flockenv.FlockParameters, options: argparse.Namespace, progress: Progress
 ) -> tuple[pd.DataFrame, float]:
     """Run episodes; return samples, one row a leader and time, and the mean signed order."""
-    policy = named_policy(name)()
+    policy = named_policy(name, scene.pool)()
     if isinstance(policy, str):
         raise flockenv.ParameterError(f"{name!r} sees no observations: name another policy")
     env = flockenv.LeadersVectorEnv(
@@ -181,7 +181,11 @@ def draw_tracks(
     middle = options.minutes * 30.0
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False)[0], names, strict=True):
         run = flockenv.simulate(
-            scene, options.seed, middle + TRACKED_S, CONTROL_HZ, policy=named_policy(name)()
+            scene,
+            options.seed,
+            middle + TRACKED_S,
+            CONTROL_HZ,
+            policy=named_policy(name, scene.pool)(),
         )
         pose = run.pose[run.time_s >= middle]
         for radius in (outer, inner):

@@ -4,6 +4,7 @@ import difflib
 import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +24,7 @@ from flockenv.policies import (
     StraightAhead,
     load,
 )
+from flockenv.policies.shipped import TUNED_GAINS, learned, tuned_law
 from flockenv.seeds import check_evaluation_seeds
 from flockenv.simulation import LeaderPolicy, simulate
 
@@ -34,6 +36,7 @@ __all__ = [
     "NO_LEADERS",
     "ORDERING_TIMES",
     "POLICIES",
+    "POOL_POLICIES",
     "QUANTITIES",
     "compare_leaders",
     "named_policy",
@@ -70,24 +73,41 @@ POLICIES: Mapping[str, Callable[[], LeaderPolicy | str]] = {
 }
 """Policies that can be compared by name."""
 
+POOL_POLICIES: Mapping[str, Callable[[Any], LeaderPolicy]] = {
+    **{f"tuned {law}": partial(tuned_law, law) for law in TUNED_GAINS},
+    "learned": learned,
+}
+"""Policies that can be compared by name, each made for a pool."""
 
-def named_policy(name: str) -> Callable[[], LeaderPolicy | str]:
-    """Return what makes a policy: a name in `POLICIES`, or the path of a policy's ``.npz`` file.
+
+def named_policy(name: str, pool: Any) -> Callable[[], LeaderPolicy | str]:
+    """Return what makes a policy: a name, or the path of a learned policy's ``.npz`` file.
+
+    Parameters
+    ----------
+    name
+        A name in `POLICIES` or `POOL_POLICIES`, or a path.
+    pool
+        The scene's pool.
 
     Raises
     ------
     ParameterError
-        For unknown names and files that are no policy.
+        For unknown names, files that are no policy, and pools that a policy is not made for.
     OSError
         If the file cannot be opened.
     """
     if name in POLICIES:
         return POLICIES[name]
+    if name in POOL_POLICIES:
+        made = POOL_POLICIES[name](pool)
+        return lambda: made
     if name.endswith(".npz"):
-        learned = load(name)
-        return lambda: learned
-    near = difflib.get_close_matches(name, POLICIES, n=1)
-    hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(POLICIES)}"
+        read = load(name)
+        return lambda: read
+    names = [*POLICIES, *POOL_POLICIES]
+    near = difflib.get_close_matches(name, names, n=1)
+    hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(names)}"
     raise ParameterError(f"{name!r} is no policy and no .npz file: {hint}")
 
 

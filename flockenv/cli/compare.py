@@ -1,19 +1,22 @@
 """`flockenv compare`."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from flockenv.cli.console import console, finished_in, progress_bar, say
+from flockenv import ParameterError
+from flockenv.cli.console import console, errors, finished_in, progress_bar, say
 from flockenv.cli.output import check_folder
 from flockenv.cli.pools import PoolOption, pool_name, scenes
 from flockenv.cli.scene import ChangesOption, FileOption, PresetOption
+from flockenv.simulation import LeaderPolicy
 
 __all__ = ["compare"]
 
-DEFAULT_POLICIES = ("steering law",)
+DEFAULT_POLICIES = ("steering law", "tuned damped law", "learned")
 
 
 def compare(
@@ -28,7 +31,7 @@ def compare(
         list[str] | None,
         typer.Option(
             help="Policy to compare, repeatable: a name, or the .npz file of a learned one; "
-            "differences are taken from the first. [steering law]"
+            "differences are taken from the first. [steering law, tuned damped law, learned]"
         ),
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="First seed.")] = 0,
@@ -50,11 +53,16 @@ def compare(
     from flockenv.comparison import named_policy
     from flockenv.comparison_report import ComparisonReport, report
 
-    policies = {name: named_policy(name) for name in policy or DEFAULT_POLICIES}
     found = scenes(preset, params, changes, pool)
+    policies = {
+        pool_name(scene): {name: named_policy(name, scene.pool) for name in policy}
+        if policy
+        else _default_policies(scene.pool)
+        for scene in found
+    }
     check_folder(out)
-    runs = 1 + most_leaders * len(policies)
-    work = len(found) * runs * episodes * minutes * 60
+    runs = sum(1 + most_leaders * len(each) for each in policies.values())
+    work = runs * episodes * minutes * 60
     results: dict[str, ComparisonReport] = {}
     with finished_in(out, results), progress_bar(quiet or as_json) as progress:
         task = progress.add_task("simulating", total=work)
@@ -63,7 +71,7 @@ def compare(
             results[name] = report(
                 scene,
                 range(most_leaders + 1),
-                policies,
+                policies[name],
                 range(seed, seed + episodes),
                 minutes * 60,
                 out / name,
@@ -78,3 +86,16 @@ def compare(
         words = [result.lines_in_words(), result.differences_in_words()]
         say("\n".join(filter(None, words)))
         say(f"Written to {out / name}\n")
+
+
+def _default_policies(pool: Any) -> dict[str, Callable[[], LeaderPolicy | str]]:
+    """Return what is compared unasked: what is made for a pool only where there is such."""
+    from flockenv.comparison import named_policy
+
+    policies = {}
+    for name in DEFAULT_POLICIES:
+        try:
+            policies[name] = named_policy(name, pool)
+        except ParameterError as error:
+            say(f"Left out, {name}: {error}", errors)
+    return policies

@@ -16,7 +16,7 @@ from flockenv.cli.scene import ChangesOption, FileOption, PresetOption
 
 __all__ = ["evaluate"]
 
-REFERENCES = ("steering law", "damped law")
+REFERENCES = ("steering law", "tuned damped law")
 
 
 def evaluate(
@@ -25,7 +25,7 @@ def evaluate(
     ],
     against: Annotated[
         list[str] | None,
-        typer.Option(help="What to compare with, repeatable. [steering law, damped law]"),
+        typer.Option(help="What to compare with, repeatable. [steering law, tuned damped law]"),
     ] = None,
     pool: PoolOption = None,
     preset: PresetOption = None,
@@ -63,7 +63,7 @@ def evaluate(
 
     Example: `flockenv evaluate baselines/policies/table-1.npz --pool table-1 --leaders 3`
     """
-    from flockenv.comparison import named_policy
+    from flockenv.comparison import POOL_POLICIES, named_policy
     from flockenv.comparison_report import ComparisonReport, report
     from flockenv.model_card import model_card
     from flockenv.whole_file import whole_file
@@ -72,7 +72,7 @@ def evaluate(
     if policy in references:
         raise ParameterError(f"{policy!r} is both the policy and one of those it is compared with")
     name = Path(policy).stem if policy.endswith(".npz") else policy
-    policies = {each: named_policy(each) for each in references} | {name: named_policy(policy)}
+    named = {each: each for each in references} | {name: policy}
     options: dict[str, Any] = {"dropout_rate": dropout_rate} if dropout_rate else {}
     if alternate:
         options["target"] = "alternate"
@@ -83,16 +83,22 @@ def evaluate(
         f"{pool_name(each)}-bw-{each.bw_s:g}": each
         for each in scenes(preset, params, changes, pool, bw_s)
     }
+    pools = {each.pool for each in found.values()}
+    if policy in POOL_POLICIES and len(pools) > 1:
+        raise ParameterError(f"{policy!r} is another policy in each pool: ask for one with --pool")
+    policies = {
+        each: {shown: named_policy(given, each) for shown, given in named.items()} for each in pools
+    }
     check_folder(out)
     results: dict[str, ComparisonReport] = {}
     with finished_in(out, results), progress_bar(quiet or as_json) as progress:
-        work = len(found) * len(numbers) * len(policies) * episodes * duration_s
+        work = len(found) * len(numbers) * len(named) * episodes * duration_s
         task = progress.add_task("simulating", total=work)
         for scene_name, scene in found.items():
             results[scene_name] = report(
                 scene,
                 numbers,
-                policies,
+                policies[scene.pool],
                 seeds,
                 duration_s,
                 out / scene_name,
@@ -101,7 +107,7 @@ def evaluate(
             )
     card = model_card(
         name,
-        policies[name](),
+        policies[next(iter(pools))][name](),
         results,
         command=shlex.join(["flockenv", *sys.argv[1:]]),
         seeds=seeds,

@@ -7,11 +7,11 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
-from flockenv import ParameterError, Recording, simulate
+from flockenv import FlockParameters, ParameterError, Recording, simulate
 from flockenv.cli.console import console, interruptible, progress_bar, say
 from flockenv.cli.output import writable
 from flockenv.cli.scene import ChangesOption, FileOption, PresetOption, read_scene, save_scene
-from flockenv.comparison import EVERY_SUBSTEP, POLICIES, named_policy
+from flockenv.comparison import EVERY_SUBSTEP, POLICIES, POOL_POLICIES, named_policy
 from flockenv.simulation import LeaderPolicy
 
 __all__ = ["run"]
@@ -25,7 +25,7 @@ def run(
         str,
         typer.Option(
             help="How leaders steer: law (eq. 10 at every substep); or at 10 Hz, from what they "
-            f"observe, a policy's .npz file or one of: {', '.join(POLICIES)}."
+            f"observe, a policy's .npz file or one of: {', '.join([*POLICIES, *POOL_POLICIES])}."
         ),
     ] = EVERY_SUBSTEP,
     seed: Annotated[int, typer.Option(min=0, help="Seed of placement and noise.")] = 0,
@@ -48,7 +48,7 @@ def run(
     scene = read_scene(preset, params, changes)
     if out.suffix != ".npz":
         raise ParameterError(f"--out {out} is not accepted: a name that ends in .npz")
-    leaders = _policy(policy)
+    leaders = _policy(policy, scene)
     with writable(out):
         pass  # Better told now than after the run.
     with interruptible("Nothing was written."), progress_bar(quiet or as_json) as progress:
@@ -81,11 +81,11 @@ def run(
     say(f"See it: flockenv replay {out}")
 
 
-def _policy(name: str) -> LeaderPolicy | str:
+def _policy(name: str, scene: FlockParameters) -> LeaderPolicy | str:
     if name == EVERY_SUBSTEP:
         return name
     try:
-        return named_policy(name)()
+        return named_policy(name, scene.pool)()
     except OSError as error:
         raise ParameterError(f"--policy {name} cannot be read: {error.strerror}") from error
 

@@ -79,10 +79,10 @@ def test_policies_by_name_and_by_file(tmp_path: Path) -> None:
     size = len(flockenv.observation.observation_entries())
     learned = NetworkPolicy([np.zeros((size, 1))], [[0.5]], mirror_to_target=True)
     learned.save(tmp_path / "left.npz")
-    assert repr(named_policy(str(tmp_path / "left.npz"))()) == repr(learned)
-    assert named_policy("damped law") is POLICIES["damped law"]
+    assert repr(named_policy(str(tmp_path / "left.npz"), "table-1")()) == repr(learned)
+    assert named_policy("damped law", (90.0, 20.0)) is POLICIES["damped law"]
     with pytest.raises(flockenv.ParameterError, match="did you mean 'steering law'"):
-        named_policy("stering law")
+        named_policy("stering law", "table-1")
 
 
 def test_leaders_that_never_steer_are_rudders_of_zero(scene: flockenv.FlockParameters) -> None:

@@ -35,7 +35,7 @@ def test_the_card_tells_what_made_it_and_how_it_compares(flockenv: Run, tmp_path
         "by hand",
         "table-1-bw-0.2",
         "table-1-bw-0.4",
-        "| damped law | 2 |",
+        "| tuned damped law | 2 |",
         "seeds 0 to 2",
     ):
         assert text in card
@@ -56,7 +56,7 @@ def test_errors_are_named(flockenv: Run, tmp_path: Path) -> None:
     (tmp_path / "broken.npz").write_bytes(b"PK nothing")
     for arguments, words in (
         (["dampd law"], "did you mean 'damped law'"),
-        (["damped law"], "both the policy"),
+        (["tuned damped law"], "both the policy"),
         ([str(tmp_path / "broken.npz")], "broken.npz"),
         ([str(tmp_path / "missing.npz")], "missing.npz"),
         (["straight ahead", "--against", "steering law, every substep", "--alternate"], "options"),
@@ -66,3 +66,17 @@ def test_errors_are_named(flockenv: Run, tmp_path: Path) -> None:
         assert words in done.stderr
         assert "Traceback" not in done.stderr
     assert not (tmp_path / "out").exists()
+
+
+def test_what_ships_for_a_pool(flockenv: Run, tmp_path: Path) -> None:
+    out = ["--out", str(tmp_path / "out")]
+    done = flockenv("evaluate", "learned", *out)
+    assert done.returncode == 2
+    assert "another policy in each pool" in done.stderr
+    assert not (tmp_path / "out").exists()
+    done = flockenv("evaluate", "learned", *SHORT, "--leaders", "1", *out)
+    assert done.returncode == 0, done.stderr
+    assert "baselines/" in (tmp_path / "out" / "card.md").read_text("utf-8")
+    done = flockenv("evaluate", "learned", "--set", "pool=[90.0, 20.0]", "--bw-s", "0.3", *out)
+    assert done.returncode == 2
+    assert "tuned and learned leaders are for 500-boats, table-1" in done.stderr

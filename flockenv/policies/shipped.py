@@ -1,0 +1,66 @@
+"""What ships for the named pools: closed-form laws with tuned gains, and learned leaders."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from flockenv.errors import ParameterError
+from flockenv.policies.laws import DampedLaw, ObservedPolicy, SignCorrectedLaw
+from flockenv.policies.leaning_law import LeaningLaw
+from flockenv.policies.loading import load
+from flockenv.policies.network import NetworkPolicy
+
+__all__ = ["TUNED_GAINS", "learned", "tuned_law"]
+
+TUNED_GAINS: Mapping[str, Mapping[str, Mapping[str, float]]] = {
+    "sign-corrected law": {"500-boats": {"gain": 1.91}, "table-1": {"gain": 0.957}},
+    "damped law": {
+        "500-boats": {"gain": 1.42, "backward_gain": 3.28, "damping": 17.0},
+        "table-1": {"gain": 3.02, "backward_gain": 4.1, "damping": 35.6},
+    },
+}
+"""Gains by law and pool: what `python baselines/tune_laws.py` (seed 0) found for three leaders
+among 27 boats at each pool's critical noise, on training seeds."""
+
+
+_LAWS: Mapping[str, Callable[..., ObservedPolicy]] = {
+    "sign-corrected law": SignCorrectedLaw,
+    "damped law": DampedLaw,
+}
+
+
+def tuned_law(law: str, pool: Any) -> ObservedPolicy:
+    """Return a law in `TUNED_GAINS` with the gains tuned in a named pool.
+
+    Raises
+    ------
+    ParameterError
+        For other pools.
+    """
+    return _LAWS[law](**TUNED_GAINS[law][_named(pool)])
+
+
+def learned(pool: Any) -> NetworkPolicy | LeaningLaw:
+    """Return the learned leaders that ship for a named pool, from baselines/policies.
+
+    Raises
+    ------
+    ParameterError
+        For other pools, and where the package is not run from a checkout of the project.
+    """
+    path = Path(__file__).parents[2] / "baselines" / "policies" / f"{_named(pool)}.npz"
+    if not path.is_file():
+        raise ParameterError(
+            "learned leaders come with a checkout of the project, in baselines/policies, and not "
+            "with the installed package: name the .npz file"
+        )
+    return load(path)
+
+
+def _named(pool: Any) -> str:
+    pools = TUNED_GAINS["damped law"]
+    if not isinstance(pool, str) or pool not in pools:
+        raise ParameterError(
+            f"pool = {pool!r} is not accepted: tuned and learned leaders are for {', '.join(pools)}"
+        )
+    return pool
