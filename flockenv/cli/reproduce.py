@@ -29,7 +29,7 @@ def reproduce(
     out: Annotated[Path, typer.Option(help="Folder for results.")] = Path("results/reproduce"),
     summary: Annotated[
         Path | None,
-        typer.Option(help="With all: Markdown file for claims and key figures, as in docs."),
+        typer.Option(help="Markdown file for claims and pictures, as in docs."),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the claims as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no progress.")] = False,

@@ -14,7 +14,17 @@ from flockenv.prepared_start import STARTS
 from flockenv.reproduce.reproduction import Settings
 from flockenv.runs import RunSpec
 
-__all__ = ["DESIGNS", "FULL", "LOOPS", "SLOWER", "WAYS", "Growth", "TransitionDesign", "within"]
+__all__ = [
+    "DESIGNS",
+    "FULL",
+    "LOOPS",
+    "LOOP_BW_S",
+    "SLOWER",
+    "WAYS",
+    "Growth",
+    "TransitionDesign",
+    "within",
+]
 
 WAYS = {"whole pool": False, "circumference": True}
 """Ways of growing: whether the channel keeps its width."""
@@ -25,7 +35,7 @@ LOOPS = ("density", "slow density", "noise")
 SLOWER = 3.0
 """How many times as long a slow loop takes."""
 
-_CORE_S = 0.055
+_CORE_S = 0.035
 """Seconds of one core that an hour of a boat takes: 0.01 in rotation to 0.13 in a dense jam."""
 
 _POOL = "500-boats"
@@ -34,7 +44,8 @@ _DT_S = 0.05
 
 # Poses are not kept, but pass through memory: 1600 boats at 10 Hz would take 1.4 GB a run.
 _SAMPLE_HZ = 1.0
-_LOOP_BW_S = 0.6
+LOOP_BW_S = 0.6
+"""Highest noise of loops in noise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +101,7 @@ class TransitionDesign:
         length = settings.duration_s(self.loop_minutes)
         lowest = self.densities[growth.way][0]
         if kind == "noise":
-            scene, protocol = growth.scene(lowest, _LOOP_BW_S), "rotating-noise-loop"
+            scene, protocol = growth.scene(lowest, LOOP_BW_S), "rotating-noise-loop"
         else:
             scene = growth.scene(lowest)
             protocol = f"rotating-{'length' if WAYS[growth.way] else 'density'}-loop"
@@ -133,11 +144,11 @@ class TransitionDesign:
         )
 
 
-_DENSITIES = {"whole pool": (4, 8, 16), "circumference": (16, 30, 50)}
+_DENSITIES = {"whole pool": (6, 12, 24), "circumference": (20, 40, 80)}
 
 FULL = TransitionDesign(
     sizes=(50, 100, 200, 400, 800, 1600),
-    densities={"whole pool": (3, 4, 6, 8, 16), "circumference": (16, 22, 30, 40, 50)},
+    densities={"whole pool": (4, 6, 10, 16, 24), "circumference": (16, 24, 36, 54, 80)},
     runs=4,
     still_minutes=30.0,
     loop_minutes=20.0,
@@ -152,7 +163,7 @@ DESIGNS = (
     ),
     FULL,
 )
-"""By the time they take: some 11, 30 and 180 minutes of one core."""
+"""By the time they take: some 7, 19 and 98 minutes of one core."""
 
 
 def within(settings: Settings) -> TransitionDesign:

@@ -112,14 +112,20 @@ class Loops:
     ----------
     there, back : float64 array, shape (12,)
         Mean branches.
+    bands : float64 array, shape (2, 2, 12)
+        By way there and back: lowest and highest of the runs.
     openings : float64 array, shape (runs,)
         By how much Ψ_o cos φ_o on the way back exceeds that on the way there, over the loop.
+    at_turn : float64 array, shape (runs,)
+        Mean Ψ_o cos φ_o around the loop's last scene, on both ways.
     """
 
     def __init__(self, runs: Sequence[RunResult]) -> None:
         branches = np.array([hysteresis(run) for run in runs])
         self.there, self.back = _known_mean(branches, 0)
+        self.bands = np.stack([branches.min(axis=0), branches.max(axis=0)], axis=1)
         self.openings = _known_mean(branches[:, 1] - branches[:, 0], 1)
+        self.at_turn = _known_mean(branches[:, :, -1], 1)
 
 
 def _known_mean(values: NDArray[np.float64], axis: int) -> NDArray[np.float64]:

@@ -16,7 +16,7 @@ import pandas as pd
 from flockenv.block_bootstrap import interval
 from flockenv.loops import DENSITY_RATIO
 from flockenv.prepared_start import STARTS
-from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, CheckedClaim, Claim
+from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, CheckedClaim, Claim, number
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
 from flockenv.reproduce.transition_design import (
     FULL,
@@ -48,7 +48,7 @@ __all__ = [
 ]
 
 BISTABILITY = Claim(
-    text="Jam and rotation both last at one density",
+    text="Jam and rotation both last at one density, each from its own start",
     section="5.2, left open",
     quantity="mean Ψ_o cos φ_o of runs begun jammed less that of runs begun rotating, second "
     "halves, at the density where this is largest",
@@ -67,6 +67,25 @@ NO_LAG = Claim(
     low=0.0,
 )
 
+_SIGNS = {
+    BISTABILITY: "that both states last",
+    HYSTERESIS: "that loops stay open",
+    NO_LAG: "that slower loops do not close",
+}
+
+_JAMMED = 0.3
+"""Mean Ψ_o cos φ_o from which a loop has reached the jam at its highest density."""
+
+_CAPTIONS = {
+    "transition-order": "Jam (Ψ_o cos φ_o) of runs begun rotating or jammed, against density; by "
+    "how much loops stay open, against the number of boats",
+    "loops": "Loops in density, run slowly, and in noise; dashed: on the way back; shaded: "
+    "lowest to highest of the runs",
+    "cumulants": "Binder cumulants of m and C_v against the number of boats; dashed: begun jammed",
+    "histograms_m": "Probability density of m; dashed: begun jammed",
+    "histograms_c_v": "Probability density of C_v; dashed: begun jammed",
+}
+
 
 def conclusion(claims: Sequence[CheckedClaim]) -> str:
     """Return what the claims for the larger sizes say: a rule settled before the runs.
@@ -81,16 +100,24 @@ def conclusion(claims: Sequence[CheckedClaim]) -> str:
     states = [claim for claim in claims if claim.claim is not NO_LAG]
     if all(claim.verdict == DOES_NOT_HOLD for claim in states):
         return "not first order: one state outlasts the other and loops close at the larger sizes"
-    missing = "; ".join(
-        f"{claim.claim.text.lower()} {claim.verdict} for {claim.scope}"
-        for claim in claims
-        if claim.verdict != HOLDS
+    told = "; ".join(
+        f"{scope}: "
+        + ", ".join(
+            f"{_SIGNS[claim.claim]} {claim.verdict} ({_told(claim)})"
+            for claim in claims
+            if claim.scope == scope
+        )
+        for scope in dict.fromkeys(claim.scope for claim in claims)
     )
     return (
-        f"inconclusive: {missing}. It would take runs so long that flocks forget their start where "
+        f"inconclusive. {told}. It would take runs so long that flocks forget their start where "
         "they still differ by it, loops slow enough that being slower changes nothing, and more "
         "seeds where an interval is too wide"
     )
+
+
+def _told(claim: CheckedClaim) -> str:
+    return claim.note if claim.ends == "none" else f"{number(claim.measured)}, {claim.ends}"
 
 
 def _analyse(design: TransitionDesign, settings: Settings, results: Results) -> Outcome:
@@ -121,7 +148,7 @@ def _analyse(design: TransitionDesign, settings: Settings, results: Results) -> 
         "loops": _loops_table(measured),
         "histograms": _histograms(measured),
     }
-    return Outcome(tables, pictures(measured), claims, notes)
+    return Outcome(tables, pictures(measured), claims, notes, captions=_CAPTIONS)
 
 
 def _cumulants_note(measured: Measured) -> str:
@@ -166,14 +193,24 @@ def _judge(measured: Measured, growth: Growth) -> tuple[CheckedClaim, ...]:
     # The density is chosen once, by the data as measured.
     densities = measured.design.densities[growth.way]
     gap, density = max((measured.gap(growth, density), density) for density in densities)
-    slow = measured.loops[growth, "slow density"].openings
-    fast = measured.loops[growth, "density"].openings
-    # Loops that never opened cannot close.
-    lag = student(slow - 0.7 * fast) if student(fast)[0] >= HYSTERESIS.low else (float("nan"),) * 3
+    slow, fast = (measured.loops[growth, kind] for kind in ("slow density", "density"))
+    nothing = (float("nan"),) * 3
+    # A loop on which nothing jammed is closed whatever the transition, and one that never opened
+    # cannot close.
+    jammed = bool(slow.at_turn.mean() >= _JAMMED)
+    opened = jammed and student(fast.openings)[0] >= HYSTERESIS.low
     return (
-        BISTABILITY.check(*gap, f"{scope}", f"at density {density}"),
-        HYSTERESIS.check(*student(slow), scope),
-        NO_LAG.check(*lag, scope),
+        BISTABILITY.check(*gap, scope, f"at density {density}"),
+        HYSTERESIS.check(
+            *(student(slow.openings) if jammed else nothing),
+            scope,
+            "" if jammed else "the loop never left rotation",
+        ),
+        NO_LAG.check(
+            *(student(slow.openings - 0.7 * fast.openings) if opened else nothing),
+            scope,
+            "" if opened else "the faster loop did not open",
+        ),
     )
 
 

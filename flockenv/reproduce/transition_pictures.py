@@ -1,6 +1,7 @@
 """The pictures of `transition-order`: colour is the size or the density, the line the start."""
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,11 +13,12 @@ from flockenv.block_bootstrap import interval
 from flockenv.loops import DENSITY_RATIO
 from flockenv.prepared_start import STARTS
 from flockenv.reproduce.style import COLORS, column_figure, paper_style
-from flockenv.reproduce.transition_design import LOOPS, WAYS, Growth, TransitionDesign
+from flockenv.reproduce.transition_design import LOOP_BW_S, LOOPS, WAYS, Growth, TransitionDesign
 from flockenv.reproduce.transition_measured import (
     C_V_EDGES,
     CENTRES,
     M_EDGES,
+    Loops,
     Measured,
     Still,
     student,
@@ -26,6 +28,7 @@ __all__ = ["pictures"]
 
 _LINES = dict(zip(STARTS, ("-", "--"), strict=True))
 _MARKS = ("o", "s", "^", "D", "v", "P")
+_TIGHT: dict[str, Any] = {"columnspacing": 0.8, "handlelength": 1.2, "handletextpad": 0.4}
 _OUTWARD = r"mean $\Psi_o\,\cos\varphi_o$"
 _QUANTITIES = {
     "m": (r"$m = \Psi_o\,\sin\varphi_o$", M_EDGES, ""),
@@ -34,45 +37,60 @@ _QUANTITIES = {
 
 
 def pictures(measured: Measured) -> dict[str, Figure]:
-    """Return the pictures: states and loops, cumulants against size, and histograms."""
+    """Return the pictures: states and openings, loops, cumulants against size, and histograms."""
     with paper_style():
         return {
-            "transition-order": _states_and_loops(measured),
+            "transition-order": _states_and_openings(measured),
+            "loops": _loops(measured),
             "cumulants": _cumulants(measured),
             **{f"histograms_{name}": _histograms(measured, name) for name in _QUANTITIES},
         }
 
 
-def _states_and_loops(measured: Measured) -> Figure:
+def _states_and_openings(measured: Measured) -> Figure:
     design = measured.design
-    picture = column_figure(17.5)
-    panels = picture.subplots(4, len(WAYS), sharey="row")
+    picture = column_figure(10.5)
+    panels = picture.subplots(2, len(WAYS), sharey="row")
     for column, way in enumerate(WAYS):
-        at_rest, density_loops, noise_loops, openings = panels[:, column]
-        at_rest.set_title(f"growing the {way}")
+        states, openings = panels[:, column]
+        states.set_title(f"{way} grows")
+        for place, n in enumerate(design.sizes):
+            for start in STARTS:
+                _draw_states(states, measured, Growth(way, n), start, COLORS[place % len(COLORS)])
+        states.set_xscale("log")
+        _name_ticks(states, design.densities[way])
+        states.set_xlabel("density (boats / pool)")
+        _draw_openings(openings, measured, way)
+        openings.set_xlabel("boats")
+    panels[0, 0].set_ylabel(_OUTWARD)
+    panels[1, 0].set_ylabel("opening of loops")
+    handles = [*_sizes(design), *_styles({f"begun {start}": _LINES[start] for start in STARTS})]
+    picture.legend(handles=handles, loc="outside upper center", ncols=3)
+    picture.legend(*panels[1, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    return picture
+
+
+def _loops(measured: Measured) -> Figure:
+    design = measured.design
+    picture = column_figure(10.0)
+    panels = picture.subplots(2, len(WAYS), sharey="row")
+    for column, way in enumerate(WAYS):
+        density, noise = panels[:, column]
+        density.set_title(f"{way} grows")
         lowest = design.densities[way][0]
         for place, n in enumerate(design.sizes):
-            growth, color = Growth(way, n), COLORS[place % len(COLORS)]
-            for start in STARTS:
-                _draw_states(at_rest, measured, growth, start, color)
-            slow, noise = (measured.loops[growth, kind] for kind in ("slow density", "noise"))
-            _draw_loop(density_loops, lowest * DENSITY_RATIO**CENTRES, slow.there, slow.back, color)
-            _draw_loop(noise_loops, 0.6 * CENTRES, noise.there, noise.back, color)
-        _draw_openings(openings, measured, way)
-        for axes in (at_rest, density_loops):
-            axes.set_xscale("log")
-            _name_ticks(axes, design.densities[way])
-            axes.set_xlabel("density (boats / pool)")
-        noise_loops.set_xlabel("bw (s)")
-        openings.set_xlabel("boats")
-    for axes in panels[:3, 0]:
+            color = COLORS[place % len(COLORS)]
+            loop = measured.loops[Growth(way, n), "slow density"]
+            _draw_loop(density, lowest * DENSITY_RATIO**CENTRES, loop, color)
+            _draw_loop(noise, LOOP_BW_S * CENTRES, measured.loops[Growth(way, n), "noise"], color)
+        density.set_xscale("log")
+        _name_ticks(density, design.densities[way])
+        density.set_xlabel("density (boats / pool)")
+        noise.set_xlabel(f"bw (s) at density {lowest}")
+    for axes in panels[:, 0]:
         axes.set_ylabel(_OUTWARD)
-    panels[3, 0].set_ylabel("opening of loops")
-    panels[3, 0].legend()
-    _size_legend(panels[0, 0], design)
-    _line_legend(panels[0, 1], {f"begun {start}": line for start, line in _LINES.items()})
-    _line_legend(panels[1, 1], {"density rises": "-", "falls (slow loop)": "--"})
-    _line_legend(panels[2, 1], {"bw rises": "-", "falls": "--"})
+    handles = [*_sizes(design), *_styles({"rising": "-", "falling": "--"})]
+    picture.legend(handles=handles, loc="outside upper center", ncols=3)
     return picture
 
 
@@ -86,15 +104,10 @@ def _draw_states(axes: Axes, measured: Measured, growth: Growth, start: str, col
     axes.errorbar(x, ends[:, 0], bars, fmt=f"o{_LINES[start]}", color=color, elinewidth=0.6)
 
 
-def _draw_loop(
-    axes: Axes,
-    x: NDArray[np.float64],
-    there: NDArray[np.float64],
-    back: NDArray[np.float64],
-    color: str,
-) -> None:
-    axes.plot(x, there, "-", color=color)
-    axes.plot(x, back, "--", color=color)
+def _draw_loop(axes: Axes, x: NDArray[np.float64], loop: Loops, color: str) -> None:
+    for branch, band, line in zip((loop.there, loop.back), loop.bands, ("-", "--"), strict=True):
+        axes.plot(x, branch, line, color=color)
+        axes.fill_between(x, *band, color=color, alpha=0.15, lw=0)
 
 
 def _draw_openings(axes: Axes, measured: Measured, way: str) -> None:
@@ -112,37 +125,36 @@ def _draw_openings(axes: Axes, measured: Measured, way: str) -> None:
 
 def _cumulants(measured: Measured) -> Figure:
     design = measured.design
-    picture = column_figure(9.5)
+    picture = column_figure(10.5)
     panels = picture.subplots(2, len(WAYS), sharey="row", sharex=True)
     chosen: tuple[tuple[str, Callable[[Still], NDArray[np.float64]]], ...] = (
-        ("m", lambda still: still.binder_m),
-        (r"$C_v$", lambda still: still.binder_c_v),
+        ("$m$", lambda still: still.binder_m),
+        ("$C_v$", lambda still: still.binder_c_v),
     )
     for column, way in enumerate(WAYS):
-        panels[0, column].set_title(f"growing the {way}")
+        panels[0, column].set_title(f"{way} grows")
         for row, (name, cumulant) in enumerate(chosen):
             axes = panels[row, column]
             for place, density in enumerate(design.densities[way]):
                 for start in STARTS:
-                    ends = np.array(
-                        [
-                            interval(cumulant(measured.still[Growth(way, n), density, start]))
-                            for n in design.sizes
-                        ]
-                    )
+                    values = [
+                        cumulant(measured.still[Growth(way, n), density, start])
+                        for n in design.sizes
+                    ]
                     label = str(density) if start == STARTS[0] else None
                     line = f"{_MARKS[place % len(_MARKS)]}{_LINES[start]}"
+                    ends = np.array([interval(each) for each in values])
                     _draw_cumulant(axes, design, ends, line, place, label)
-            axes.axhline(2 / 3, color="0.6", lw=0.6, zorder=0)
             axes.set_xscale("log")
             _name_ticks(axes, design.sizes)
             panels[row, 0].set_ylabel(f"Binder cumulant of {name}")
-        panels[0, column].legend(title="density", ncols=2, title_fontsize=6.5)
+        panels[0, column].legend(title="density", ncols=3, title_fontsize=6.5, **_TIGHT)
         panels[1, column].set_xlabel("boats")
     # Heavy tails about 0 make cumulants as low as -10, which would hide all others.
-    for axes in panels[:, 0]:
-        axes.set_ylim(-2.0, 0.8)
-    _line_legend(panels[1, 1], {f"begun {start}": line for start, line in _LINES.items()})
+    for axes, lowest in zip(panels[:, 0], (-1.0, -2.0), strict=True):
+        axes.set_ylim(lowest, 0.8)
+    handles = _styles({f"begun {start}": _LINES[start] for start in STARTS})
+    picture.legend(handles=handles, loc="outside upper center", ncols=2)
     return picture
 
 
@@ -166,7 +178,6 @@ def _histograms(measured: Measured, name: str) -> Figure:
     picture = column_figure(3.2 * len(design.sizes) + 1.0)
     panels = picture.subplots(len(design.sizes), len(WAYS), sharex=True, squeeze=False)
     for column, way in enumerate(WAYS):
-        panels[0, column].set_title(f"growing the {way}")
         for row, n in enumerate(design.sizes):
             axes = panels[row, column]
             for place, density in enumerate(design.densities[way]):
@@ -183,10 +194,15 @@ def _histograms(measured: Measured, name: str) -> Figure:
                         label=str(density) if start == STARTS[0] else None,
                     )
             axes.set_yscale("log")
-            axes.text(0.5, 0.97, f"{n} boats", transform=axes.transAxes, ha="center", va="top")
-            panels[row, 0].set_ylabel(f"probability density{unit}")
+            head = f"{way} grows\n" if row == 0 else ""
+            axes.set_title(f"{head}{n} boats")
         panels[-1, column].set_xlabel(label)
-        panels[0, column].legend(title="density", title_fontsize=6.5, loc="upper left")
+        # Room above the bars.
+        panels[0, column].set_ylim(top=50 * panels[0, column].get_ylim()[1])
+        panels[0, column].legend(title="density", ncols=3, title_fontsize=6.5, **_TIGHT)
+    picture.supylabel(f"probability density{unit}", fontsize=7)
+    handles = _styles({f"begun {start}": _LINES[start] for start in STARTS})
+    picture.legend(handles=handles, loc="outside upper center", ncols=2)
     return picture
 
 
@@ -195,14 +211,12 @@ def _name_ticks(axes: Axes, values: Sequence[int]) -> None:
     axes.set_xticks([], minor=True)
 
 
-def _size_legend(axes: Axes, design: TransitionDesign) -> None:
-    handles = [
-        Line2D([], [], color=COLORS[place % len(COLORS)], label=str(n))
+def _sizes(design: TransitionDesign) -> list[Line2D]:
+    return [
+        Line2D([], [], color=COLORS[place % len(COLORS)], label=f"{n} boats")
         for place, n in enumerate(design.sizes)
     ]
-    axes.legend(handles=handles, title="boats", title_fontsize=6.5)
 
 
-def _line_legend(axes: Axes, lines: dict[str, str]) -> None:
-    handles = [Line2D([], [], color="0.3", ls=line, label=label) for label, line in lines.items()]
-    axes.legend(handles=handles)
+def _styles(lines: dict[str, str]) -> list[Line2D]:
+    return [Line2D([], [], color="0.3", ls=line, label=label) for label, line in lines.items()]
