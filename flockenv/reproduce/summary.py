@@ -28,7 +28,8 @@ def markdown_summary(
     """Return the page; `pictures` tells where it finds a picture of a name."""
     hours = sum({spec.key: spec.duration_s for _, specs, _ in finished for spec in specs}.values())
     minutes = settings.minutes
-    length = "of the paper's own length" if minutes is None else f"of {minutes:g} min"
+    own = "of lengths told below" if _is_beyond(finished) else "of the paper's own length"
+    length = own if minutes is None else f"of {minutes:g} min"
     lines = [
         f"# {_title(finished)}",
         "",
@@ -87,6 +88,10 @@ def command(settings: Settings, finished: Finished) -> str:
 
 def _is_all(finished: Finished) -> bool:
     return {figure.name for figure, _, _ in finished} >= set(resolve([ALL]))
+
+
+def _is_beyond(finished: Finished) -> bool:
+    return [figure.name for figure, _, _ in finished] == [BUDGETED]
 
 
 def _title(finished: Finished) -> str:

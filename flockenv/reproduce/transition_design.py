@@ -159,11 +159,11 @@ DESIGNS = (
         sizes=(100, 400, 1600), densities=_DENSITIES, runs=3, still_minutes=6.0, loop_minutes=4.0
     ),
     TransitionDesign(
-        sizes=(100, 400, 1600), densities=_DENSITIES, runs=4, still_minutes=12.0, loop_minutes=9.0
+        sizes=(100, 400, 1600), densities=_DENSITIES, runs=3, still_minutes=12.0, loop_minutes=9.0
     ),
     FULL,
 )
-"""By the time they take: some 7, 19 and 98 minutes of one core."""
+"""By the time they take: some 7, 14 and 98 minutes of one core."""
 
 
 def within(settings: Settings) -> TransitionDesign:

@@ -81,9 +81,11 @@ _CAPTIONS = {
     "how much loops stay open, against the number of boats",
     "loops": "Loops in density, run slowly, and in noise; dashed: on the way back; shaded: "
     "lowest to highest of the runs",
-    "cumulants": "Binder cumulants of m and C_v against the number of boats; dashed: begun jammed",
+    "cumulants": "Binder cumulants of m and C_v against the number of boats, cut off below -1 and "
+    "-2; dashed: begun jammed",
     "histograms_m": "Probability density of m; dashed: begun jammed",
-    "histograms_c_v": "Probability density of C_v; dashed: begun jammed",
+    "histograms_c_v": "Probability density of C_v; dashed: begun jammed; rotation has two peaks, "
+    "the boats' speeds at the end of fw and in nop",
 }
 
 
@@ -103,7 +105,7 @@ def conclusion(claims: Sequence[CheckedClaim]) -> str:
     told = "; ".join(
         f"{scope}: "
         + ", ".join(
-            f"{_SIGNS[claim.claim]} {claim.verdict} ({_told(claim)})"
+            f"{_SIGNS[claim.claim]}: {claim.verdict} ({_told(claim)})"
             for claim in claims
             if claim.scope == scope
         )
@@ -179,7 +181,8 @@ def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
         f"to {DENSITY_RATIO:g} times that and back, loops in noise from bw = 0 to 0.6 s and back "
         "at the lowest density, all from rotation. Preset simulation, dt = 0.05 s. Intervals are "
         "Student's over seeds; those of cumulants a bootstrap over runs and blocks within them, "
-        "too narrow with so few runs.",
+        "too narrow with so few runs. Densities and criteria were settled with shorter runs of "
+        "seeds 0 to 2 and 1000.",
         f"Compute budget: {settings.budget_core_min:g} minutes of one core. This design: "
         f"{design.runs} seeds, {still:g} minutes a run, {loop:g} minutes a loop and "
         f"{SLOWER * loop:g} a slow one, {len(design.sizes)} sizes up to {max(design.sizes)} boats, "

@@ -110,6 +110,8 @@ def test_what_is_not_there_is_refused_before_anything_is_written(tmp_path: Path)
         (["fig17", "--engine", "slurm"], "local, joblib, ray"),
         (["fig17", "--minutes", "0"], "minutes = 0.0"),
         (["fig17", "--seed", str(2**64)], "seed"),
+        (["fig17", "--summary", "page"], "ends in .md"),
+        (["fig17", "--summary", "/dev/null/page.md"], "--summary: folder /dev/null"),
     ):
         done = run(*arguments, "--out", str(tmp_path / "out"))
         assert done.returncode == 2
