@@ -44,6 +44,7 @@ __all__ = [
     "NO_LAG",
     "REPRODUCTIONS",
     "conclusion",
+    "judge",
     "transition_order",
 ]
 
@@ -139,7 +140,7 @@ def _analyse(design: TransitionDesign, settings: Settings, results: Results) -> 
     measured = Measured(design, still, loops)
     notes, claims = [], []
     for way in WAYS:
-        judged = [_judge(measured, Growth(way, n)) for n in design.sizes]
+        judged = [judge(measured, Growth(way, n)) for n in design.sizes]
         larger = judged[len(judged) // 2 :]
         told = conclusion([claim for triple in larger for claim in triple])
         notes.append(f"Growing the {way}: {told}.")
@@ -191,7 +192,8 @@ def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
     ]
 
 
-def _judge(measured: Measured, growth: Growth) -> tuple[CheckedClaim, ...]:
+def judge(measured: Measured, growth: Growth) -> tuple[CheckedClaim, ...]:
+    """Judge all three claims for one size in one way of growing."""
     scope = f"{growth.n_boats} boats, {growth.way}"
     # The density is chosen once, by the data as measured.
     densities = measured.design.densities[growth.way]

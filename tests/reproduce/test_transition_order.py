@@ -22,6 +22,7 @@ from flockenv.reproduce.transition_design import (
 from flockenv.reproduce.transition_measured import (
     M_EDGES,
     Loops,
+    Measured,
     Still,
     binder,
     hysteresis,
@@ -32,6 +33,7 @@ from flockenv.reproduce.transition_order import (
     HYSTERESIS,
     NO_LAG,
     conclusion,
+    judge,
     transition_order,
 )
 from flockenv.run_store import RunStore, run_missing
@@ -178,20 +180,25 @@ def test_every_design_reaches_1600_boats(design: TransitionDesign) -> None:
     assert {spec.protocol for spec in specs} == {*STARTS, *LOOPS}
 
 
-def test_a_loop_that_never_jams_is_no_closed_loop(tmp_path: object) -> None:
-    # Two boats find no one to jam with.
-    densities = {"whole pool": (1,), "circumference": (1,)}
+@pytest.mark.parametrize(
+    ("back", "verdict", "note"),
+    [(0.1, "inconclusive", "the loop never left rotation"), (0.7, "holds", "")],
+)
+def test_a_loop_that_never_jams_is_no_closed_loop(back: float, verdict: str, note: str) -> None:
+    growth = Growth("circumference", 400)
     design = TransitionDesign(
-        sizes=(2,), densities=densities, runs=2, still_minutes=1.0, loop_minutes=1.0
+        sizes=(400,), densities={growth.way: (20,)}, runs=2, still_minutes=1.0, loop_minutes=1.0
     )
-    settings = Settings()
-    reproduction = transition_order(design)
-    store = RunStore(tmp_path)  # type: ignore[arg-type]
-    specs = reproduction.runs(settings)
-    assert run_missing(specs, store) == {}
-    outcome = reproduction.analyse(settings, Results(store, specs))
-    loops = [checked for checked in outcome.claims if checked.claim is HYSTERESIS]
-    assert [(each.verdict, each.note) for each in loops] == [
-        ("inconclusive", "the loop never left rotation")
-    ] * 2
-    assert not any("not first order" in note for note in outcome.notes)
+    steady = np.full(1000, 0.1)
+    still = Still([made(steady, steady, "jammed")] * 2)
+    there = np.arange(1000) < 450
+    loop = Loops([made(np.where(there, 0.1, back), steady, "rotating-length-loop")] * 2)
+    measured = Measured(
+        design,
+        {(growth, 20, start): still for start in STARTS},
+        {(growth, kind): loop for kind in ("density", "slow density")},
+    )
+    _, hysteresis_claim, lag = judge(measured, growth)
+    assert (hysteresis_claim.verdict, hysteresis_claim.note) == (verdict, note)
+    # As open when slower: 0.3 of the opening is left.
+    assert lag.verdict == verdict
