@@ -4,6 +4,7 @@ import importlib
 from importlib.metadata import version
 from types import ModuleType
 
+from flockenv import _compiled as _compiled
 from flockenv import policies
 from flockenv._core import Flock
 from flockenv.contacts import Contacts, ContactSeries

@@ -32,6 +32,7 @@ __all__ = [
     "off_tangent",
     "on_outer_wall",
     "ordering_time",
+    "outward",
     "pair_counts",
     "phase_names",
     "pool_radii_cm",
@@ -91,6 +92,7 @@ def record(
     kept: dict[str, bool],
     progress: Callable[[float], object] | None = None,
 ) -> dict[str, Any]: ...
+def outward(psi_o: NDArray[np.float64], phi_o: NDArray[np.float64]) -> NDArray[np.float64]: ...
 def rotation(psi_o: NDArray[np.float64], phi_o: NDArray[np.float64]) -> NDArray[np.float64]: ...
 def signed_order(
     psi_o: NDArray[np.float64], phi_o: NDArray[np.float64], target: str

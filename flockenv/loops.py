@@ -1,6 +1,7 @@
 """Loops for hysteresis: a run in which the noise or the density goes slowly up and down again.
 
-The loop goes from its first scene to its last and back, in equal steps and equal times; boats keep
+The loop starts with all boats circulating (a big flock that starts at random would not get there),
+and goes from its first scene to its last and back, in equal steps and equal times; boats keep
 their poses and velocities. In a loop of the density it is the pool that changes, and boats move
 with it: each keeps its share of the way between the walls and its angle about the centre. What
 little overlap that makes as the pool shrinks, the contact solver takes out again.
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from flockenv import _core
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
+from flockenv.prepared_start import prepared_flock
 from flockenv.recording import Recording
 from flockenv.simulation import columns_of, sample
 
@@ -27,17 +29,18 @@ __all__ = [
     "radii_cm",
     "resized",
     "simulate_loop",
+    "simulate_prepared",
 ]
 
-LOOPS = ("noise-loop", "density-loop", "length-loop")
+LOOPS = ("rotating-noise-loop", "rotating-density-loop", "rotating-length-loop")
 """A loop of bw from 0 to the scene's and back; of the density from the scene's to `DENSITY_RATIO`
 times that and back, the whole pool scaled; the same, its circumference alone at fixed width."""
 
-DENSITY_RATIO = 2.5
-"""Highest over lowest density of a loop: that of 50 over 20 boats."""
+DENSITY_RATIO = 4.0
+"""Highest over lowest density of a loop."""
 
 _NOISE_STEPS = 20
-_DENSITY_STEPS = 150
+_DENSITY_STEPS = 240
 
 
 def radii_cm(pool: str | tuple[float, float]) -> tuple[float, float]:
@@ -105,7 +108,7 @@ def loop_position(time_s: NDArray[np.float64], duration_s: float) -> NDArray[np.
 def simulate_loop(
     parameters: FlockParameters, seed: int, duration_s: float, sample_hz: float, kind: str
 ) -> Recording:
-    """Run a loop from a random start: a pure function of its arguments.
+    """Run a loop that starts with all boats circulating: a pure function of its arguments.
 
     Parameters
     ----------
@@ -130,14 +133,29 @@ def simulate_loop(
     ParameterError
         For arguments out of range and boats that do not fit the smallest pool.
     """
-    if kind == "noise-loop":
+    if kind == "rotating-noise-loop":
         half = noise_scenes(parameters)
     else:
-        half = density_scenes(parameters, fixed_width=kind == "length-loop")
-    return _recorded([*half, *half[-2::-1]], parameters, seed, duration_s, sample_hz)
+        half = density_scenes(parameters, fixed_width=kind == "rotating-length-loop")
+    scenes = [*half, *half[-2::-1]]
+    flock = prepared_flock(scenes[0], seed, "rotating")
+    return _recorded(flock, scenes, parameters, seed, duration_s, sample_hz)
+
+
+def simulate_prepared(
+    parameters: FlockParameters, seed: int, duration_s: float, sample_hz: float, start: str
+) -> Recording:
+    """Run one scene from a prepared start: a pure function of its arguments.
+
+    Parameters and errors are those of `simulate_loop`, but for `start`, one of
+    `flockenv.prepared_start.STARTS`.
+    """
+    flock = prepared_flock(parameters, seed, start)
+    return _recorded(flock, [parameters], parameters, seed, duration_s, sample_hz)
 
 
 def _recorded(
+    flock: _core.Flock,
     scenes: Sequence[FlockParameters],
     parameters: FlockParameters,
     seed: int,
@@ -146,7 +164,6 @@ def _recorded(
 ) -> Recording:
     count = math.floor(duration_s * sample_hz * (1 + 1e-12))
     turns = [place * len(scenes) // max(count, 1) for place in range(count)]
-    flock = _core.Flock(scenes[0], seed)
     samples = [sample(flock, np.dtype(np.float32))]
     now = 0
     for place, turn in enumerate(turns):

@@ -73,6 +73,13 @@ class OrderSeries:
         """Ψ_o·sin φ_o in [-1, 1], shape (t,): ±1 for rotation in order, 0 for a jam."""
         return _core.rotation(self.psi_o, self.phi_o)
 
+    def outward(self) -> NDArray[np.float64]:
+        """Ψ_o·cos φ_o in [-1, 1], shape (t,): 1 for a jam, near 0 for streams along the pool.
+
+        It is the mean of cos φ over boats, so that opposed streams do not cancel as in `rotation`.
+        """
+        return _core.outward(self.psi_o, self.phi_o)
+
     def off_tangent(self) -> NDArray[np.float64]:
         """||φ_o| - π/2| in [0, π/2] rad, shape (t,): 0 for boats that point along the pool."""
         return _core.off_tangent(self.phi_o)

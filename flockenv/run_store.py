@@ -90,7 +90,13 @@ class RunStore:
             ) from error
 
     def load(self, spec: RunSpec) -> RunResult | None:
-        """Return the kept run of a spec, or None if there is none that can be used."""
+        """Return the kept run of a spec, or None if there is none that can be used.
+
+        Raises
+        ------
+        StorageError
+            If the file is there but cannot be read, for example for want of permission.
+        """
         path = self.path(spec)
         if not path.exists():
             return None
@@ -99,6 +105,8 @@ class RunStore:
         except FlockError as error:
             self._set_aside(path, str(error))
             return None
+        except OSError as error:
+            raise StorageError(f"{path} cannot be read: {error.strerror or error}") from error
 
     def _set_aside(self, path: Path, reason: str) -> None:
         folder = self.folder / "set_aside"

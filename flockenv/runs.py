@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from flockenv.alternation import simulate_alternating
 from flockenv.errors import ParameterError
-from flockenv.loops import LOOPS, simulate_loop
+from flockenv.loops import LOOPS, simulate_loop, simulate_prepared
 from flockenv.order_parameters import OrderSeries
 from flockenv.parameters import FlockParameters
+from flockenv.prepared_start import STARTS
 from flockenv.recording import PHASES, Recording
 from flockenv.simulation import simulate
 
@@ -42,9 +43,16 @@ def _loop(spec: "RunSpec") -> Recording:
     return simulate_loop(spec.parameters, spec.seed, spec.duration_s, spec.sample_hz, spec.protocol)
 
 
+def _prepared(spec: "RunSpec") -> Recording:
+    return simulate_prepared(
+        spec.parameters, spec.seed, spec.duration_s, spec.sample_hz, spec.protocol
+    )
+
+
 PROTOCOLS: Mapping[str, Callable[["RunSpec"], Recording]] = {
     "law": _law,
     "alternating": _alternating,
+    **dict.fromkeys(STARTS, _prepared),
     **dict.fromkeys(LOOPS, _loop),
 }
 """Ways to make a run, by name. They live in this package, so that any worker process finds them."""
@@ -66,8 +74,8 @@ class RunSpec:
         Samples a second.
     protocol : str
         How leaders are led, a name in `PROTOCOLS`; "law": by eq. (10), towards the fixed target;
-        "alternating": by eq. (10), towards directions that alternate every 4 minutes; and the
-        loops of `flockenv.loops`.
+        "alternating": by eq. (10), towards directions that alternate every 4 minutes; the same as
+        "law" from the starts of `flockenv.prepared_start`; and the loops of `flockenv.loops`.
     keep : str
         What is kept of the run, one of `KEEP`.
 

@@ -19,6 +19,9 @@ pub enum Steering<'a> {
     Held(&'a [f64]),
 }
 
+/// Part of `dt_s` below which no substep is cut for the sake of its contacts.
+const SHORTEST_SHARE: f64 = 1.0 / 16.0;
+
 /// One substep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Substep<'a> {
@@ -137,14 +140,19 @@ impl Dynamics {
         }
     }
 
-    /// Takes one substep with the scheme of the parameters.
-    pub fn step(&mut self, substep: &Substep) {
-        match self.parameters.scheme {
+    /// Takes one substep with the scheme of the parameters. Returns `false` if it is too long for its
+    /// contacts: deep overlaps may have been undone then, but no time has passed.
+    pub fn step(&mut self, substep: &Substep) -> bool {
+        let taken = match self.parameters.scheme {
             Scheme::Leapfrog => scheme::leapfrog(self, substep),
             Scheme::Moreau => scheme::moreau(self, substep),
-            Scheme::Paper => scheme::paper(self, substep),
-        }
-        self.statistics.substeps += 1;
+            Scheme::Paper => {
+                scheme::paper(self, substep);
+                true
+            }
+        };
+        self.statistics.substeps += u64::from(taken);
+        taken
     }
 
     /// Puts boats somewhere else; motion so far is forgotten.
@@ -208,9 +216,11 @@ impl Dynamics {
         self.update_boats();
     }
 
-    /// Turns free velocities into velocities that respect the contacts of the next `dt`; returns
-    /// whether there is any contact.
-    pub(crate) fn settle_contacts(&mut self, dt: f64) -> bool {
+    /// Turns free velocities into velocities that respect the contacts of a substep; returns whether
+    /// there is any contact, or `None` if the substep is too long for them.
+    pub(crate) fn settle_contacts(&mut self, substep: &Substep) -> Option<bool> {
+        let dt = seconds(substep.length);
+        let shorter_possible = dt > SHORTEST_SHARE * self.parameters.dt_s;
         let Self {
             contacts,
             poses,
@@ -221,14 +231,15 @@ impl Dynamics {
             ..
         } = self;
         let touches = contacts.find(poses, boats, free, dt, statistics);
-        if touches {
-            contacts.resolve(poses, free, inertia, dt, statistics);
-            self.velocities.copy_from_slice(contacts.velocities());
-        } else {
+        if !touches {
             contacts.clear_loads();
             self.velocities.copy_from_slice(free);
+        } else if contacts.resolve(poses, free, inertia, dt, shorter_possible, statistics) {
+            self.velocities.copy_from_slice(contacts.velocities());
+        } else {
+            return None;
         }
-        touches
+        Some(touches)
     }
 
     /// Preferred speed in a phase, in cm/s, before the spread between boats.

@@ -265,14 +265,16 @@ impl Flock {
         while self.time < end {
             let moment = self.schedule.at(self.time);
             let grid = (self.time / dt + 1) * dt;
-            let stop = end.min(grid).min(self.time + moment.left);
-            self.dynamics.step(&Substep {
+            let mut substep = Substep {
                 start: self.time,
-                length: stop - self.time,
+                length: end.min(grid).min(self.time + moment.left) - self.time,
                 phase: moment.phase,
                 steering,
-            });
-            self.time = stop;
+            };
+            while !self.dynamics.step(&substep) {
+                substep.length = substep.length.div_ceil(2);
+            }
+            self.time += substep.length;
             // Contacts of numbers out of range take long to give up: no more of them.
             if self.dynamics.statistics.unsolved > unsolved && !self.dynamics.is_in_range() {
                 break;

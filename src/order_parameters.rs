@@ -74,6 +74,12 @@ impl OrderParameters {
     pub fn rotation(&self) -> f64 {
         self.psi_o * self.phi_o.sin()
     }
+
+    /// Ψ_o·cos φ_o, the mean over boats of cos φ: 1 in a jam, near 0 for streams along the pool,
+    /// also for opposed ones, which cancel in m.
+    pub fn outward(&self) -> f64 {
+        self.psi_o * self.phi_o.cos()
+    }
 }
 
 /// Mean of a set of vectors, and of the dot products of its pairs.

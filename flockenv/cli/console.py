@@ -1,8 +1,11 @@
 """Where commands print: results to standard output, progress and errors to standard error."""
 
+import signal
 from collections.abc import Collection, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import contextmanager
 from pathlib import Path
+from threading import current_thread, main_thread
+from types import FrameType
 
 import typer
 from rich.console import Console
@@ -64,6 +67,31 @@ def finished_in(folder: Path, parts: Collection[str]) -> Iterator[None]:
         raise typer.Exit(130) from None
 
 
-def resumable(folder: Path) -> AbstractContextManager[None]:
-    """On Ctrl-C within a `with` block, end with exit code 130 and say where work goes on from."""
-    return interruptible(f"Finished runs are kept in {folder}: the same command goes on from them.")
+@contextmanager
+def resumable(folder: Path) -> Iterator[None]:
+    """On Ctrl-C within a `with` block, end with exit code 130 and say where work goes on from.
+
+    Runs under way cannot be stopped in their middle, and long ones take a minute to end: that is
+    said at once.
+    """
+    told = f"Finished runs are kept in {folder}: the same command goes on from them."
+    with interruptible(told), _announced():
+        yield
+
+
+@contextmanager
+def _announced() -> Iterator[None]:
+    def announce(number: int, frame: FrameType | None) -> None:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        say("Waiting for the runs under way to end. Ctrl-C again does not wait.", errors)
+        raise KeyboardInterrupt
+
+    # Elsewhere than in the main thread nothing can be announced, and nothing is interrupted.
+    if current_thread() is not main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, announce)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -24,7 +24,7 @@ def load_recording(path: Path) -> Recording:
         raise ParameterError(f"{path} cannot be read: {error.strerror}") from error
 
 
-def check_folder(folder: Path) -> None:
+def check_folder(folder: Path, option: str = "--out") -> None:
     """Check, before long work, that files can be written into a folder; leaves nothing behind.
 
     Raises
@@ -41,7 +41,7 @@ def check_folder(folder: Path) -> None:
         with TemporaryFile(dir=folder):
             pass
     except OSError as error:
-        raise ParameterError(f"--out {folder} cannot be written: {error.strerror}") from error
+        raise ParameterError(f"{option} {folder} cannot be written: {error.strerror}") from error
     finally:
         for each in reversed(made):
             each.rmdir()

@@ -9,6 +9,7 @@ from rich.table import Table
 from flockenv.cli.console import console, errors, progress_bar, resumable, say
 from flockenv.cli.output import check_folder
 from flockenv.engines import named
+from flockenv.errors import ParameterError
 from flockenv.reproduce import names
 
 __all__ = ["reproduce"]
@@ -29,7 +30,7 @@ def reproduce(
     out: Annotated[Path, typer.Option(help="Folder for results.")] = Path("results/reproduce"),
     summary: Annotated[
         Path | None,
-        typer.Option(help="With all: Markdown file for claims and key figures, as in docs."),
+        typer.Option(help="Markdown file for claims and pictures, as in docs."),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the claims as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no progress.")] = False,
@@ -48,6 +49,8 @@ def reproduce(
     where = named(engine)
     work = plan(what, Settings(seed, minutes, budget))
     check_folder(out)
+    if summary is not None:
+        _check_summary(summary)
     with resumable(out / "runs"), progress_bar(quiet or as_json) as progress:
         task = progress.add_task(f"{len(work.specs)} runs", total=work.cost)
         claims = reproduce(
@@ -65,6 +68,13 @@ def reproduce(
     if rows:
         console.print(_table(rows))
     say(f"Written to {out}")
+
+
+def _check_summary(page: Path) -> None:
+    # Pictures go into a folder of the page's name without its suffix.
+    if page.suffix != ".md":
+        raise ParameterError(f"--summary {page} is not accepted: a file that ends in .md")
+    check_folder(page.parent, "--summary: folder")
 
 
 def _table(rows: list[dict[str, str | float]]) -> Table:

@@ -10,7 +10,7 @@ from flockenv.extras import require
 if TYPE_CHECKING:
     from flockenv.reproduce.reproduction import Reproduction
 
-__all__ = ["ALL", "load", "names", "resolve"]
+__all__ = ["ALL", "BUDGETED", "load", "names", "resolve"]
 
 ALL = "all"
 """The name that stands for everything of the paper."""
@@ -26,7 +26,10 @@ _PAPER: Mapping[str, str] = {
     **dict.fromkeys(("fig14", "fig15", "fig16", "fig17"), "flockenv.reproduce.simulation_figures"),
     "scheme-and-noise": "flockenv.reproduce.simulation_table",
 }
-_BEYOND: Mapping[str, str] = {"transition-order": "flockenv.reproduce.transition_order"}
+BUDGETED = "transition-order"
+"""The name whose runs follow from a budget of computing time."""
+
+_BEYOND: Mapping[str, str] = {BUDGETED: "flockenv.reproduce.transition_order"}
 
 
 def names() -> list[str]:

@@ -13,7 +13,9 @@ INCONCLUSIVE = "inconclusive"
 
 
 def number(value: float) -> str:
-    """Return a number in three significant digits, large ones in full."""
+    """Return a number in three significant digits, large ones in full; "none" for NaN."""
+    if math.isnan(value):
+        return "none"
     return f"{value:.0f}" if abs(value) >= 1000 else f"{value:.3g}"
 
 

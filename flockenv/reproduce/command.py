@@ -1,6 +1,6 @@
 """`reproduce`: runs what figures need, and writes figures, data, claims and the report."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,8 +17,8 @@ from flockenv.reproduce.files import (
     write_table,
 )
 from flockenv.reproduce.report import html_report
-from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
-from flockenv.reproduce.summary import KEY_FIGURES, markdown_summary
+from flockenv.reproduce.reproduction import Results, Settings
+from flockenv.reproduce.summary import Finished, markdown_summary, shown_pictures
 from flockenv.run_store import RunStore, run_missing
 from flockenv.runs import RunSpec
 
@@ -97,8 +97,8 @@ def reproduce(
     notify
         See `RunStore`.
     summary
-        With `ALL`: where to write ``summary.md`` a second time, its pictures into a folder of the
-        same name beside it.
+        Where to write a page of claims and pictures, like ``summary.md``; the pictures go into a
+        folder of the same name beside it.
 
     Returns
     -------
@@ -124,25 +124,27 @@ def reproduce(
         write_outcome(outcome, folder / name)
         finished.append((figure, specs, outcome))
     if ALL in plan.asked:
-        _write_report(plan, folder, finished, summary)
+        _write_report(plan, folder, finished)
+    if summary is not None:
+        _write_summary(plan, finished, summary)
     return {figure.name: outcome.claims for figure, _, outcome in finished}
 
 
 def _write_report(
     plan: Plan,
     folder: Path,
-    finished: Sequence[tuple[Reproduction, Sequence[RunSpec], Outcome]],
-    summary: Path | None,
+    finished: Finished,
 ) -> None:
     judged = [claim for _, _, outcome in finished for claim in outcome.claims]
     write_table(claims_table(judged), folder / "claims")
     write_file(folder / "report.html", html_report(plan.settings, finished).encode())
     write_file(folder / "summary.md", markdown_summary(plan.settings, finished).encode())
-    if summary is None:
-        return
-    for figure, _, outcome in finished:
-        if figure.name in KEY_FIGURES:
-            picture = picture_bytes(outcome.pictures[figure.name], "png")
-            write_file(summary.with_suffix("") / f"{figure.name}.png", picture)
-    page = markdown_summary(plan.settings, finished, f"{summary.stem}/{{name}}.png")
+
+
+def _write_summary(plan: Plan, finished: Finished, summary: Path) -> None:
+    outcomes = {figure.name: outcome for figure, _, outcome in finished}
+    for figure, name, _ in shown_pictures(finished):
+        picture = picture_bytes(outcomes[figure.name].pictures[name], "png")
+        write_file(summary.with_suffix("") / f"{name}.png", picture)
+    page = markdown_summary(plan.settings, finished, f"{summary.stem}/{{picture}}.png")
     write_file(summary, page.encode())

@@ -51,7 +51,10 @@ def _draw_line(axes: Axes, line: Line | None, x: tuple[float, float]) -> None:
     if line is None:
         return
     ends = np.array(x)
-    label = f"{line.intercept:.3g} + {line.slope:.3g} x\nF = {line.f:.3g}, p = {line.p:.1g}"
+    sign = "−" if line.slope < 0 else "+"
+    label = (
+        f"{line.intercept:.3g} {sign} {abs(line.slope):.3g} x\nF = {line.f:.3g}, p = {line.p:.1g}"
+    )
     axes.plot(ends, line.intercept + line.slope * ends, "k--", lw=0.8, label=label)
     axes.legend(loc="upper right")
 
@@ -143,7 +146,7 @@ def _figure8(settings: Settings, results: Results) -> Outcome:
         bar = picture.colorbar(points, ax=panels, location="bottom", fraction=0.04, aspect=40)
         bar.set_label(r"mean $\Psi_o$ after ordering")
         for axes in panels[-1]:
-            axes.set_xlabel("backward motion time bw (s)")
+            axes.set_xlabel("backward time bw (s)")
         picture.supylabel("ordering time (min)", fontsize=7)
     table = pd.concat([led, tables[NONE.name]], ignore_index=True)
     notes = [

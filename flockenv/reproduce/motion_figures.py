@@ -63,7 +63,7 @@ def _motion(settings: Settings, results: Results) -> Outcome:
         handles, labels = panels[0, 0].get_legend_handles_labels()
         picture.legend(handles, labels, loc="outside upper center", ncols=2)
         panels[1, 1].set(
-            xlabel="backward motion time bw (s)",
+            xlabel="backward time bw (s)",
             ylabel="share of boats\non the outer wall",
             ylim=(0, 1),
         )

@@ -62,7 +62,8 @@ def _section(reproduction: Reproduction, specs: Sequence[RunSpec], outcome: Outc
     for name, figure in outcome.pictures.items():
         data = base64.b64encode(picture_bytes(figure, "png")).decode()
         image = f'<img alt="{escape(name)}" src="data:image/png;base64,{data}">'
-        parts.append(f"<figure>{image}<figcaption>{escape(name)}</figcaption></figure>")
+        caption = escape(outcome.captions.get(name, name))
+        parts.append(f"<figure>{image}<figcaption>{caption}</figcaption></figure>")
     parts += [f"<p>{escape(note)}</p>" for note in outcome.notes]
     if outcome.claims:
         parts.append(_claims(outcome.claims))

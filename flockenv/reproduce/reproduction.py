@@ -112,6 +112,8 @@ class Outcome:
         an order of their own, never in that of finishing.
     pictures : dict of matplotlib.figure.Figure
         Each is written as ``<name>.png`` and ``<name>.svg``.
+    captions : dict of str
+        What a picture shows, by its name, where the title of the figure does not tell it.
     claims : list of CheckedClaim
         The paper's claims about the figure, judged.
     notes : list of str
@@ -125,6 +127,7 @@ class Outcome:
     claims: list[CheckedClaim] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     shown: list[str] = field(default_factory=list)
+    captions: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

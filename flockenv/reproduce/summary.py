@@ -5,29 +5,33 @@ from collections.abc import Sequence
 
 from flockenv import _core
 from flockenv.analysis import CONFIDENCE
-from flockenv.reproduce.catalogue import ALL, resolve
+from flockenv.reproduce.catalogue import ALL, BUDGETED, resolve
 from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, INCONCLUSIVE, CheckedClaim, number
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Settings
 from flockenv.run_store import RESULTS_VERSION
 from flockenv.runs import RunSpec
 
-__all__ = ["KEY_FIGURES", "command", "markdown_summary"]
+__all__ = ["KEY_FIGURES", "Finished", "command", "markdown_summary", "shown_pictures"]
 
 KEY_FIGURES = ("fig9", "fig12", "fig14", "fig17")
-"""The figures shown, as far as they are there: two of the experiment, two of the simulation."""
+"""What is shown of all of the paper: two of the experiment, two of the simulation."""
+
+Finished = Sequence[tuple[Reproduction, Sequence[RunSpec], Outcome]]
+"""What was reproduced: each with its runs and what came of it."""
 
 
 def markdown_summary(
     settings: Settings,
-    finished: Sequence[tuple[Reproduction, Sequence[RunSpec], Outcome]],
-    pictures: str = "{name}/{name}.png",
+    finished: Finished,
+    pictures: str = "{name}/{picture}.png",
 ) -> str:
-    """Return the page; `pictures` tells where it finds the picture of a name."""
+    """Return the page; `pictures` tells where it finds a picture of a name."""
     hours = sum({spec.key: spec.duration_s for _, specs, _ in finished for spec in specs}.values())
     minutes = settings.minutes
-    length = "of the paper's own length" if minutes is None else f"of {minutes:g} min"
+    own = "of lengths told below" if _is_beyond(finished) else "of the paper's own length"
+    length = own if minutes is None else f"of {minutes:g} min"
     lines = [
-        "# The paper's figures and claims, reproduced",
+        f"# {_title(finished)}",
         "",
         f"Written by `{command(settings, finished)}` of flockenv {_core.__version__} (results "
         f"version {RESULTS_VERSION}); runs {length}, {hours / 3600:.0f} hours of flock time, first "
@@ -44,10 +48,9 @@ def markdown_summary(
         "are inconclusive.",
         "",
     ]
-    for figure, _, _ in finished:
-        if figure.name in KEY_FIGURES:
-            lines += [f"![{figure.title}]({pictures.format(name=figure.name)})", ""]
-            lines += [f"{figure.name}: {figure.title}.", ""]
+    for figure, picture, caption in shown_pictures(finished):
+        lines += [f"![{caption}]({pictures.format(name=figure.name, picture=picture)})", ""]
+        lines += [f"{figure.name}: {caption}.", ""]
     for figure, _, outcome in finished:
         lines += [f"## {figure.name}: {figure.title}", ""]
         lines += [line for note in outcome.notes for line in (note, "")]
@@ -60,19 +63,41 @@ def markdown_summary(
     return "\n".join(lines)
 
 
-def command(
-    settings: Settings,
-    finished: Sequence[tuple[Reproduction, Sequence[RunSpec], Outcome]],
-) -> str:
+def shown_pictures(finished: Finished) -> list[tuple[Reproduction, str, str]]:
+    """Return figure, picture and caption: of all of the paper the key ones, otherwise every one."""
+    return [
+        (figure, picture, outcome.captions.get(picture, figure.title))
+        for figure, _, outcome in finished
+        for picture in outcome.pictures
+        if figure.name in KEY_FIGURES or not _is_all(finished)
+    ]
+
+
+def command(settings: Settings, finished: Finished) -> str:
     """Return the command that does this again."""
     names = [figure.name for figure, _, _ in finished]
-    rest = [name for name in names if name not in resolve([ALL])]
-    words = ["flockenv reproduce", ALL, *rest, f"--seed {settings.seed}"]
+    if _is_all(finished):
+        names = [ALL, *(name for name in names if name not in resolve([ALL]))]
+    words = ["flockenv reproduce", *names, f"--seed {settings.seed}"]
     if settings.minutes is not None:
         words.append(f"--minutes {settings.minutes:g}")
-    if rest:
+    if BUDGETED in names:
         words.append(f"--budget {settings.budget_core_min:g}")
     return " ".join(words)
+
+
+def _is_all(finished: Finished) -> bool:
+    return {figure.name for figure, _, _ in finished} >= set(resolve([ALL]))
+
+
+def _is_beyond(finished: Finished) -> bool:
+    return [figure.name for figure, _, _ in finished] == [BUDGETED]
+
+
+def _title(finished: Finished) -> str:
+    if len(finished) == 1 and not _is_all(finished):
+        return finished[0][0].title
+    return "The paper's figures and claims, reproduced"
 
 
 def _claims(claims: Sequence[CheckedClaim]) -> list[str]:

@@ -44,7 +44,7 @@ def _cycles(run: RunResult) -> pd.DataFrame:
     window = np.cumsum(np.diff(run.time_s[used], prepend=-1.0) > 1.0)
     order = run.order
     columns = {"time_s": run.time_s, "psi_o": order.psi_o, "psi_v": order.psi_v, "c_v": order.c_v}
-    columns |= {"x": order.psi_o * np.cos(order.phi_o), "y": order.rotation()}
+    columns |= {"x": order.outward(), "y": order.rotation()}
     frame = pd.DataFrame({name: values[used] for name, values in columns.items()})
     means = frame.groupby(window).mean()
     means["phi_o"] = np.arctan2(means["y"], means["x"])

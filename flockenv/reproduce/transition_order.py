@@ -1,133 +1,93 @@
 """Beyond the paper: whether the jamming–order transition is of first order.
 
-The order parameter is m = Ψ_o sin φ_o, 0 in a jam and ±1 in rotation. Two signs of a transition of
-first order are looked for as flocks grow: states that coexist at one density, which make Binder's
-cumulant 1 - <m⁴>/(3<m²>²) negative, and hysteresis: |m| larger as the density rises, out of
-rotation, than as it falls, out of a jam. At a continuous transition the cumulant stays between 0
-and 2/3, and loops close.
+Two numbers tell a jam from rotation. The rotation m = Ψ_o sin φ_o is 0 in a jam and ±1 in rotation
+one way, but also 0 where streams of both ways share a long pool. Ψ_o cos φ_o, the mean of cos φ
+over boats, is near 1 in a jam and near 0 in rotation, whichever ways. Signs of first order are
+looked for in the second: both states last at one density, each from its own start; loops in density
+stay open; and they stay as open when run more slowly, which lag does not. Binder's cumulant
+1 - <m⁴>/(3<m²>²) and that of C_v are shown with these: negative where few of the frames rotate,
+which means coexistence only where runs forget their start.
 """
 
 from collections.abc import Sequence
 
-import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from numpy.typing import NDArray
-from scipy import stats
 
-from flockenv.analysis import CONFIDENCE
-from flockenv.block_bootstrap import block_sums, block_sums_resampled, interval
-from flockenv.loops import loop_position
-from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, CheckedClaim, Claim
-from flockenv.reproduce.order_statistics import block_length_s
+from flockenv.block_bootstrap import interval
+from flockenv.loops import DENSITY_RATIO
+from flockenv.prepared_start import STARTS
+from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, CheckedClaim, Claim, number
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
-from flockenv.reproduce.style import COLORS, column_figure, paper_style
-from flockenv.reproduce.transition_design import FULL, WAYS, Growth, TransitionDesign, within
-from flockenv.runs import DISCARDED_SHARE, RunResult
+from flockenv.reproduce.transition_design import (
+    FULL,
+    LOOPS,
+    SLOWER,
+    WAYS,
+    Growth,
+    TransitionDesign,
+    within,
+)
+from flockenv.reproduce.transition_measured import (
+    C_V_EDGES,
+    CENTRES,
+    M_EDGES,
+    Loops,
+    Measured,
+    Still,
+    student,
+)
+from flockenv.reproduce.transition_pictures import pictures
 
-__all__ = ["REPRODUCTIONS", "binder", "conclusion", "hysteresis", "transition_order"]
+__all__ = [
+    "BISTABILITY",
+    "HYSTERESIS",
+    "NO_LAG",
+    "REPRODUCTIONS",
+    "conclusion",
+    "judge",
+    "transition_order",
+]
 
-M_EDGES = np.linspace(-1.0, 1.0, 42)
-"""Edges of the bins of m."""
-
-_C_V_EDGES = np.linspace(-50.0, 225.0, 45)
-_LOOP_BINS = 15
-CENTRES = (np.arange(_LOOP_BINS) + 0.5) / _LOOP_BINS
-"""Positions in a loop at which its branches are averaged."""
-
-COEXISTENCE = Claim(
-    text="Jam and rotation coexist at one density",
+BISTABILITY = Claim(
+    text="Jam and rotation both last at one density, each from its own start",
     section="5.2, left open",
-    quantity="lowest Binder cumulant of m over densities",
-    high=0.0,
+    quantity="mean Ψ_o cos φ_o of runs begun jammed less that of runs begun rotating, second "
+    "halves, at the density where this is largest",
+    low=0.2,
 )
 HYSTERESIS = Claim(
     text="Loops in density stay open",
     section="5.2, left open",
-    quantity="mean of |m| as density rises minus |m| as it falls, over a loop",
+    quantity="mean Ψ_o cos φ_o as density falls less that as it rises, over a slow loop",
     low=0.1,
 )
+NO_LAG = Claim(
+    text="Loops in density do not close when run more slowly",
+    section="5.2, left open",
+    quantity=f"opening of loops run {SLOWER:g} times as slowly less 0.7 of the faster ones'",
+    low=0.0,
+)
 
+_SIGNS = {
+    BISTABILITY: "that both states last",
+    HYSTERESIS: "that loops stay open",
+    NO_LAG: "that slower loops do not close",
+}
 
-def binder(m2: NDArray[np.float64], m4: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return Binder's cumulant 1 - <m⁴>/(3<m²>²); NaN where <m²> is 0."""
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray(1.0 - m4 / (3.0 * m2**2))
+_JAMMED = 0.3
+"""Mean Ψ_o cos φ_o from which a loop has reached the jam at its highest density."""
 
-
-class _Moments:
-    """Moments of m and C_v over runs at one density, as measured and resampled; and densities."""
-
-    def __init__(self, runs: Sequence[RunResult]) -> None:
-        blocks = []
-        for run in runs:
-            used = run.analysed
-            m, c_v = run.order.rotation()[used], run.order.c_v[used]
-            powers = [np.ones(len(m)), m**2, m**4, c_v**2, c_v**4, abs(m), c_v]
-            length = block_length_s(run.spec.duration_s)
-            blocks.append(block_sums(run.time_s[used], np.stack(powers, axis=1), length))
-        sums = block_sums_resampled(blocks, int(runs[0].spec.key[:8], 16))
-        means = (sums[:, 1:] / sums[:, :1]).T
-        self.binder_m, self.binder_c_v = binder(means[0], means[1]), binder(means[2], means[3])
-        self.m, self.c_v = means[4], means[5]
-        every = [(run.order.rotation()[run.analysed], run.order.c_v[run.analysed]) for run in runs]
-        ms, c_vs = (np.concatenate(each) for each in zip(*every, strict=True))
-        self.m_density = np.histogram(ms, M_EDGES, density=True)[0]
-        self.c_v_density = np.histogram(c_vs, _C_V_EDGES)[0] / len(c_vs) / np.diff(_C_V_EDGES)
-
-
-def hysteresis(run: RunResult) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return mean |m| on the way there and on the way back, by position in the loop.
-
-    Returns
-    -------
-    tuple of float64 arrays, shape (15,)
-        Of analysed frames, from the loop's first scene to its last; NaN in bins without any.
-    """
-    m = abs(run.order.rotation())
-    position = loop_position(run.time_s, run.spec.duration_s)
-    place = np.minimum((position * _LOOP_BINS).astype(int), _LOOP_BINS - 1)
-    there = run.time_s < run.spec.duration_s / 2
-    ways = []
-    for way in (there, ~there):
-        used = run.in_analysis_window & way
-        count = np.bincount(place[used], minlength=_LOOP_BINS)
-        total = np.bincount(place[used], m[used], minlength=_LOOP_BINS)
-        with np.errstate(invalid="ignore"):
-            ways.append(total / count)
-    return ways[0], ways[1]
-
-
-class _Loops:
-    """Loops of some seeds: mean branches, and by how much |m| there exceeds |m| back.
-
-    The part of the loop that the first tenth of the run goes through does not count.
-    """
-
-    def __init__(self, runs: Sequence[RunResult]) -> None:
-        branches = np.array([hysteresis(run) for run in runs])
-        self.there, self.back = _known_mean(branches, 0)
-        settled = CENTRES > 2 * DISCARDED_SHARE
-        openings = (branches[:, 0] - branches[:, 1])[:, settled]
-        self.opening = _student(_known_mean(openings, 1))
-
-
-def _known_mean(values: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
-    """Mean without the undefined values; NaN where all are."""
-    known = np.isfinite(values)
-    with np.errstate(invalid="ignore"):
-        return np.asarray(np.where(known, values, 0.0).sum(axis) / known.sum(axis))
-
-
-def _student(values: NDArray[np.float64]) -> tuple[float, float, float]:
-    """Mean of a few independent values with Student's interval."""
-    mean, count = float(values.mean()), len(values)
-    if count < 2:
-        return mean, float("nan"), float("nan")
-    quantile = float(stats.t.ppf((1 + CONFIDENCE) / 2, count - 1))
-    half = quantile * float(values.std(ddof=1)) / count**0.5
-    return mean, mean - half, mean + half
+_CAPTIONS = {
+    "transition-order": "Jam (Ψ_o cos φ_o) of runs begun rotating or jammed, against density; by "
+    "how much loops stay open, against the number of boats",
+    "loops": "Loops in density, run slowly, and in noise; dashed: on the way back; shaded: "
+    "lowest to highest of the runs",
+    "cumulants": "Binder cumulants of m and C_v against the number of boats, cut off below -1 and "
+    "-2; dashed: begun jammed",
+    "histograms_m": "Probability density of m; dashed: begun jammed",
+    "histograms_c_v": "Probability density of C_v; dashed: begun jammed; rotation has two peaks, "
+    "the boats' speeds at the end of fw and in nop",
+}
 
 
 def conclusion(claims: Sequence[CheckedClaim]) -> str:
@@ -136,173 +96,164 @@ def conclusion(claims: Sequence[CheckedClaim]) -> str:
     Parameters
     ----------
     claims
-        `COEXISTENCE` and `HYSTERESIS` for the larger half of the sizes.
+        `BISTABILITY`, `HYSTERESIS` and `NO_LAG` for the larger half of the sizes.
     """
-    verdicts = {claim.verdict for claim in claims}
-    if verdicts == {HOLDS}:
-        return "first order: states coexist and loops stay open at all of the larger sizes"
-    if verdicts == {DOES_NOT_HOLD}:
-        return "not first order: states do not coexist and loops close at all of the larger sizes"
-    open_for = "; ".join(
-        f"{claim.claim.text.lower()} {claim.verdict} for {claim.scope}"
-        for claim in claims
-        if claim.verdict != HOLDS
+    if all(claim.verdict == HOLDS for claim in claims):
+        return "first order: both states last, and loops stay open, at all of the larger sizes"
+    states = [claim for claim in claims if claim.claim is not NO_LAG]
+    if all(claim.verdict == DOES_NOT_HOLD for claim in states):
+        return "not first order: one state outlasts the other and loops close at the larger sizes"
+    told = "; ".join(
+        f"{scope}: "
+        + ", ".join(
+            f"{_SIGNS[claim.claim]}: {claim.verdict} ({_told(claim)})"
+            for claim in claims
+            if claim.scope == scope
+        )
+        for scope in dict.fromkeys(claim.scope for claim in claims)
     )
     return (
-        f"inconclusive: {open_for}. More seeds narrow the intervals, slower loops tell hysteresis "
-        "from lag, and larger flocks tell a lasting cumulant from one that fades"
+        f"inconclusive. {told}. It would take runs so long that flocks forget their start where "
+        "they still differ by it, loops slow enough that being slower changes nothing, and more "
+        "seeds where an interval is too wide"
     )
+
+
+def _told(claim: CheckedClaim) -> str:
+    return claim.note if claim.ends == "none" else f"{number(claim.measured)}, {claim.ends}"
 
 
 def _analyse(design: TransitionDesign, settings: Settings, results: Results) -> Outcome:
     still = {
-        (growth, density): results.derive(_Moments, design.still(settings, growth, density))
+        (growth, density, start): results.derive(
+            Still, design.still(settings, growth, density, start)
+        )
         for growth in design.growths()
-        for density in design.densities
+        for density in design.densities[growth.way]
+        for start in STARTS
     }
     loops = {
-        (growth, kind): results.derive(_Loops, make(settings, growth))
+        (growth, kind): results.derive(Loops, design.loop(settings, growth, kind))
         for growth in design.growths()
-        for kind, make in (("noise", design.noise_loop), ("density", design.density_loop))
+        for kind in LOOPS
     }
+    measured = Measured(design, still, loops)
     notes, claims = [], []
     for way in WAYS:
-        sizes = [growth for growth in design.growths() if growth.way == way]
-        judged = [_judge(design, still, loops, growth) for growth in sizes]
+        judged = [judge(measured, Growth(way, n)) for n in design.sizes]
         larger = judged[len(judged) // 2 :]
-        notes.append(f"Growing the {way}: {conclusion([c for pair in larger for c in pair])}.")
-        claims += [claim for pair in judged for claim in pair]
-    notes.append(
-        "Density: boats for each free area of the pool 500-boats. In loops, solid lines: the way "
-        "there (density or bw rising); dashed: back. Intervals of loops are Student's over seeds."
-    )
-    notes.append(_budget_note(design, settings))
-    tables = {"transition": _points_table(still), "loops": _loops_table(loops)}
-    tables["histograms"] = _histograms(still)
-    return Outcome(tables, {"transition": _picture(design, still, loops)}, claims, notes)
+        told = conclusion([claim for triple in larger for claim in triple])
+        notes.append(f"Growing the {way}: {told}.")
+        claims += [claim for triple in judged for claim in triple]
+    notes += [_cumulants_note(measured), *_method_notes(design, settings)]
+    tables = {
+        "transition": _points_table(measured),
+        "loops": _loops_table(measured),
+        "histograms": _histograms(measured),
+    }
+    return Outcome(tables, pictures(measured), claims, notes, captions=_CAPTIONS)
 
 
-def _budget_note(design: TransitionDesign, settings: Settings) -> str:
-    still, loop = (settings.duration_s(m) / 60 for m in (design.still_minutes, design.loop_minutes))
+def _cumulants_note(measured: Measured) -> str:
+    told = []
+    for way in WAYS:
+        growth = Growth(way, measured.design.sizes[-1])
+        for start in STARTS:
+            ends = [
+                (*interval(measured.still[growth, density, start].binder_m), density)
+                for density in measured.design.densities[way]
+            ]
+            value, low, high, density = min(ends)
+            told.append(
+                f"{value:.2f} ({low:.2f} to {high:.2f}) at density {density} begun {start}, {way}"
+            )
     return (
-        f"Compute budget: {settings.budget_core_min:g} minutes of one core. This design: "
-        f"{design.runs} seeds, {still:g} minutes a run and {loop:g} minutes a loop, "
-        f"{len(design.sizes)} sizes up to {max(design.sizes)} boats, estimated to take "
-        f"{design.core_minutes(settings):.0f}; the full one takes "
-        f"{FULL.core_minutes(settings):.0f} (`--budget`). A loop that is open only because it was "
-        "run too fast looks the same."
+        f"Lowest Binder cumulant of m with {measured.design.sizes[-1]} boats: {'; '.join(told)}. "
+        "Where the two starts differ it belongs to a state that runs have not left, not to "
+        "equilibrium, and proves nothing."
     )
 
 
-def _judge(
-    design: TransitionDesign,
-    still: dict[tuple[Growth, int], _Moments],
-    loops: dict[tuple[Growth, str], _Loops],
-    growth: Growth,
-) -> tuple[CheckedClaim, CheckedClaim]:
+def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
+    still, loop = (settings.duration_s(m) / 60 for m in (design.still_minutes, design.loop_minutes))
+    return [
+        "Density: boats for each free area of the pool 500-boats. Runs at one density have no "
+        "noise but c4 and count in their second half; loops in density go from the lowest density "
+        f"to {DENSITY_RATIO:g} times that and back, loops in noise from bw = 0 to 0.6 s and back "
+        "at the lowest density, all from rotation. Preset simulation, dt = 0.05 s. Intervals are "
+        "Student's over seeds; those of cumulants a bootstrap over runs and blocks within them, "
+        "too narrow with so few runs. Densities and criteria were settled with shorter runs of "
+        "seeds 0 to 2 and 1000.",
+        f"Compute budget: {settings.budget_core_min:g} minutes of one core. This design: "
+        f"{design.runs} seeds, {still:g} minutes a run, {loop:g} minutes a loop and "
+        f"{SLOWER * loop:g} a slow one, {len(design.sizes)} sizes up to {max(design.sizes)} boats, "
+        f"estimated to take {design.core_minutes(settings):.0f}; the full one takes "
+        f"{FULL.core_minutes(settings):.0f} (`--budget`).",
+    ]
+
+
+def judge(measured: Measured, growth: Growth) -> tuple[CheckedClaim, ...]:
+    """Judge all three claims for one size in one way of growing."""
     scope = f"{growth.n_boats} boats, {growth.way}"
     # The density is chosen once, by the data as measured.
-    lowest = min(
-        (still[growth, density].binder_m for density in design.densities),
-        key=lambda cumulants: np.nan_to_num(cumulants[0], nan=np.inf),
+    densities = measured.design.densities[growth.way]
+    gap, density = max((measured.gap(growth, density), density) for density in densities)
+    slow, fast = (measured.loops[growth, kind] for kind in ("slow density", "density"))
+    nothing = (float("nan"),) * 3
+    # A loop on which nothing jammed is closed whatever the transition, and one that never opened
+    # cannot close.
+    jammed = bool(slow.at_turn.mean() >= _JAMMED)
+    opened = jammed and student(fast.openings)[0] >= HYSTERESIS.low
+    return (
+        BISTABILITY.check(*gap, scope, f"at density {density}"),
+        HYSTERESIS.check(
+            *(student(slow.openings) if jammed else nothing),
+            scope,
+            "" if jammed else "the loop never left rotation",
+        ),
+        NO_LAG.check(
+            *(student(slow.openings - 0.7 * fast.openings) if opened else nothing),
+            scope,
+            "" if opened else "the faster loop did not open",
+        ),
     )
-    opening = loops[growth, "density"].opening
-    return COEXISTENCE.check(*interval(lowest), scope), HYSTERESIS.check(*opening, scope)
 
 
-def _points_table(still: dict[tuple[Growth, int], _Moments]) -> pd.DataFrame:
+def _points_table(measured: Measured) -> pd.DataFrame:
     rows = []
-    for (growth, density), moments in still.items():
-        row: dict[str, object] = {"way": growth.way, "n_boats": growth.n_boats, "density": density}
-        for name in ("m", "c_v", "binder_m", "binder_c_v"):
-            value, low, high = interval(getattr(moments, name))
-            row |= {name: value, f"{name}_low": low, f"{name}_high": high}
+    for (growth, density, start), still in measured.still.items():
+        row: dict[str, object] = {"way": growth.way, "n_boats": growth.n_boats}
+        row |= {"density": density, "start": start}
+        for name, ends in (
+            ("outward", student(still.outward)),
+            ("binder_m", interval(still.binder_m)),
+            ("binder_c_v", interval(still.binder_c_v)),
+        ):
+            row |= dict(zip((name, f"{name}_low", f"{name}_high"), ends, strict=True))
         rows.append(row)
     return pd.DataFrame(rows)
 
 
-def _loops_table(loops: dict[tuple[Growth, str], _Loops]) -> pd.DataFrame:
+def _loops_table(measured: Measured) -> pd.DataFrame:
     tables = []
-    for (growth, kind), loop in loops.items():
+    for (growth, kind), loop in measured.loops.items():
         keys = {"way": growth.way, "n_boats": growth.n_boats, "loop": kind}
-        value, low, high = loop.opening
+        value, low, high = student(loop.openings)
         columns = {"position": CENTRES, "there": loop.there, "back": loop.back}
         ends = {"opening": value, "opening_low": low, "opening_high": high}
         tables.append(pd.DataFrame({**keys, **columns, **ends}))
     return pd.concat(tables)
 
 
-def _histograms(still: dict[tuple[Growth, int], _Moments]) -> pd.DataFrame:
+def _histograms(measured: Measured) -> pd.DataFrame:
     tables = []
-    for (growth, density), moments in still.items():
-        keys = {"way": growth.way, "n_boats": growth.n_boats, "density": density}
-        for name, edges in (("m", M_EDGES), ("c_v", _C_V_EDGES)):
+    for (growth, density, start), still in measured.still.items():
+        keys = {"way": growth.way, "n_boats": growth.n_boats, "density": density, "start": start}
+        for name, edges in (("m", M_EDGES), ("c_v", C_V_EDGES)):
             bins = {"bin_low": edges[:-1], "bin_high": edges[1:]}
-            heights = {"probability_density": getattr(moments, f"{name}_density")}
+            heights = {"probability_density": getattr(still, f"{name}_density")}
             tables.append(pd.DataFrame({**keys, "quantity": name, **bins, **heights}))
     return pd.concat(tables)
-
-
-def _picture(
-    design: TransitionDesign,
-    still: dict[tuple[Growth, int], _Moments],
-    loops: dict[tuple[Growth, str], _Loops],
-) -> Figure:
-    with paper_style():
-        picture = column_figure(16.0)
-        panels = picture.subplots(4, len(WAYS), sharey="row")
-        for column, way in enumerate(WAYS):
-            panels[0, column].set_title(f"growing the {way}")
-            for place, n in enumerate(design.sizes):
-                growth, color = Growth(way, n), COLORS[place % len(COLORS)]
-                _draw_binder(panels[0, column], design, still, growth, color)
-                for row, kind in ((1, "density"), (2, "noise")):
-                    _draw_loop(panels[row, column], loops[growth, kind], color)
-            _draw_openings(panels[3, column], design, loops, way)
-        panels[0, 0].legend(title="boats", ncols=2)
-        panels[0, 0].set_ylabel("Binder cumulant of m")
-        for row, kind in ((1, "density"), (2, "noise")):
-            panels[row, 0].set_ylabel("mean |m|")
-            for axes in panels[row]:
-                axes.set_xlabel(f"place in loop of {kind}")
-        for axes in panels[0]:
-            axes.set_xlabel("density (boats / pool)")
-        panels[3, 0].set_ylabel("opening of loops")
-        panels[3, 0].legend()
-    return picture
-
-
-def _draw_binder(
-    axes: Axes,
-    design: TransitionDesign,
-    still: dict[tuple[Growth, int], _Moments],
-    growth: Growth,
-    color: str,
-) -> None:
-    ends = np.array([interval(still[growth, density].binder_m) for density in design.densities])
-    axes.plot(design.densities, ends[:, 0], "o-", color=color, label=str(growth.n_boats))
-    axes.fill_between(design.densities, ends[:, 1], ends[:, 2], color=color, alpha=0.15, lw=0)
-
-
-def _draw_loop(axes: Axes, loop: _Loops, color: str) -> None:
-    axes.plot(CENTRES, loop.there, "-", color=color)
-    axes.plot(CENTRES, loop.back, "--", color=color)
-
-
-def _draw_openings(
-    axes: Axes,
-    design: TransitionDesign,
-    loops: dict[tuple[Growth, str], _Loops],
-    way: str,
-) -> None:
-    for kind, mark, color in (("density", "o-", COLORS[0]), ("noise", "^--", COLORS[1])):
-        ends = np.array([loops[Growth(way, n), kind].opening for n in design.sizes])
-        bars = [ends[:, 0] - ends[:, 1], ends[:, 2] - ends[:, 0]]
-        axes.errorbar(design.sizes, ends[:, 0], bars, fmt=mark, color=color, label=kind)
-    axes.set_xscale("log")
-    axes.set_xticks(design.sizes, [str(n) for n in design.sizes])
-    axes.set_xticks([], minor=True)
-    axes.set_xlabel("boats")
 
 
 def transition_order(design: TransitionDesign | None = None) -> Reproduction:

@@ -95,6 +95,12 @@ impl FreeMotion {
         self.linear_acceleration(velocity, axis, drive) * (dt * self.linear_mobility(dt))
     }
 
+    /// A bound of the spins at which eq. (9) comes to rest, the roots of c1·w³ = (c2·s − c3·w)·u·ẋ with c1 > 0.
+    fn fastest_turn(&self, along: f64, rudder: f64) -> f64 {
+        let push = along.abs() / self.c1;
+        (self.c3 * push).sqrt() + (self.c2 * rudder.abs() * push).cbrt()
+    }
+
     /// Second order over `dt` with drag, heading drive and angular damping centred in the substep:
     /// Crank–Nicolson, linearised once for the angular velocity. `contact_change` is the change of
     /// velocity that lasting contacts are expected to make in the substep, so that the heading's
@@ -102,7 +108,8 @@ impl FreeMotion {
     ///
     /// The angular rate 3·c1·α̇² + c3·u·ẋ is negative for a backing boat that does not turn yet: the
     /// weight 1 + dt/2·rate is replaced there by 1/(1 − dt/2·rate), equal to second order and positive
-    /// at any dt.
+    /// at any dt. Eq. (9) drives no backing boat past the spin at which it comes to rest; where a step of
+    /// this order would (at 0.1 s and more), it ends there.
     #[inline]
     pub fn centered(
         &self,
@@ -124,7 +131,13 @@ impl FreeMotion {
         } else {
             1.0 - half_rate
         };
-        let torque = self.angular_acceleration(spin, along, drive.rudder) * dt + drive.kick;
+        let mut torque = self.angular_acceleration(spin, along, drive.rudder) * dt;
+        let driven = spin + torque * angular_mobility;
+        if along < 0.0 && torque * self.angular_acceleration(driven, along, drive.rudder) < 0.0 {
+            let most = spin.abs().max(self.fastest_turn(along, drive.rudder));
+            torque = (driven.clamp(-most, most) - spin) / angular_mobility;
+        }
+        torque += drive.kick;
         FreeVelocity {
             velocity: Velocity {
                 linear: velocity.linear + change,

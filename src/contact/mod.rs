@@ -11,6 +11,8 @@ mod contact;
 mod detection;
 mod island;
 mod loads;
+mod pace;
+mod passivity;
 mod problem;
 mod recovery;
 mod resolver;

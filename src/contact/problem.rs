@@ -66,6 +66,13 @@ impl ContactProblem<'_> {
         }
     }
 
+    /// Kinetic energy of a boat in the metric of effective inertia, in cm²/s² (mass 1).
+    pub fn energy(&self, boat: usize, velocities: &[Velocity]) -> f64 {
+        let Velocity { linear, angular } = velocities[boat];
+        let inertia = &self.inertia[boat];
+        0.5 * (linear.norm_squared() / inertia.linear + angular * angular / inertia.angular)
+    }
+
     /// Natural residual max|min(A_kk·λ_k, w_k)| of impulses and the velocities they give, in cm/s: 0
     /// exactly at a solution.
     pub fn natural_residual(&self, impulses: &[f64], velocities: &[Velocity]) -> f64 {

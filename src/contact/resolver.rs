@@ -2,11 +2,13 @@
 //! relinearisation, and what to do where the constraints contradict each other.
 
 use super::loads::{Load, Loads};
+use super::pace::Pace;
+use super::passivity::{self, Passivity};
 use super::recovery::{DEEP, Recovery};
 use super::solver::ContactSolver;
 use super::{Contact, ContactDetector, ContactProblem, InverseInertia};
 use crate::boat::{Pose, Velocity};
-use crate::geometry::{Gap, HullPose, NeighborList, Vec2};
+use crate::geometry::{HullPose, NeighborList, Vec2};
 use crate::parameters::{FlockParameters, Scheme, Solver};
 use crate::phase_schedule::{seconds, ticks};
 use crate::statistics::Statistics;
@@ -26,6 +28,7 @@ pub struct ContactResolver {
     /// Contacts that carried an impulse, in the order of detection.
     loads: Loads,
     recovery: Option<Box<Recovery>>,
+    passivity: Passivity,
     /// Poses and hulls where a solve would move the boats.
     moved: Vec<Pose>,
     trial: Vec<HullPose>,
@@ -49,6 +52,7 @@ impl ContactResolver {
             lasting: Vec::new(),
             loads: Loads::default(),
             recovery: None,
+            passivity: Passivity::default(),
             moved: Vec::new(),
             trial: Vec::new(),
             allowed_overlap: [None, Some(1e-6), Some(1e-9)]
@@ -195,27 +199,27 @@ impl ContactResolver {
 
     /// Solves the contacts found last for free velocities and effective inertia; the result is in
     /// [`Self::velocities`]. Poses are those at the substep's beginning.
+    ///
+    /// Returns `false`, with nothing but the statistics changed, if contacts turn too far within `dt` and a
+    /// shorter one is possible.
     pub fn resolve(
         &mut self,
         poses: &[Pose],
         free: &[Velocity],
         inertia: &[InverseInertia],
         dt: f64,
+        shorter_possible: bool,
         statistics: &mut Statistics,
-    ) {
-        // A substep that a phase or control step cuts to 1 ns would close an overlap at any speed.
-        let closing_s = dt.max(self.whole_substep_s);
+    ) -> bool {
+        let pace = Pace {
+            dt,
+            closing_s: dt.max(self.whole_substep_s),
+            deep: self.deep,
+        };
         self.bounds.clear();
         self.bounds.extend(self.contacts.iter().map(|contact| {
-            let Gap { gap, bend, .. } = contact.gap;
             let spin = free[contact.boat as usize].angular;
-            // What recovery could not undo must not push.
-            if gap < self.deep {
-                0.0
-            } else {
-                let bound = if gap < 0.0 { gap / closing_s } else { gap / dt };
-                bound + 0.5 * bend * dt * spin * spin
-            }
+            pace.bound(&contact.gap) + pace.flank(&contact.gap, spin)
         }));
         self.solver.begin(poses.len(), &self.contacts);
         let mut solved = self.solve(free, inertia, statistics);
@@ -227,9 +231,48 @@ impl ContactResolver {
                 solved = self.solve(free, inertia, statistics);
             }
         }
+        if self.stop_driving(free, inertia, pace) {
+            if shorter_possible {
+                return false;
+            }
+            self.solve(free, inertia, statistics);
+        }
         let impulses = self.solver.impulses.iter().copied();
         self.loads
             .replace(self.contacts.iter().map(Contact::key).zip(impulses));
+        true
+    }
+
+    /// Has bounds follow from the gaps at hand alone in islands that would be driven otherwise; returns
+    /// whether there are any.
+    fn stop_driving(&mut self, free: &[Velocity], inertia: &[InverseInertia], pace: Pace) -> bool {
+        let Self {
+            contacts,
+            bounds,
+            solver,
+            passivity,
+            ..
+        } = self;
+        let (impulses, velocities) = (&solver.impulses, &solver.velocities);
+        let problem = ContactProblem {
+            contacts,
+            inertia,
+            free,
+            bounds,
+        };
+        if !passivity::may_drive(&problem, impulses, pace) {
+            return false;
+        }
+        passivity.begin(free.len());
+        let islands = (0..solver.islands().len()).map(|island| solver.islands().contacts(island));
+        let driven: Vec<_> = islands
+            .filter(|island| passivity.is_driven(island, &problem, impulses, velocities, pace))
+            .flatten()
+            .collect();
+        for &&k in &driven {
+            bounds[k as usize] = pace.bound(&contacts[k as usize].gap);
+        }
+        !driven.is_empty()
     }
 
     fn solve(

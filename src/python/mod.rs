@@ -39,7 +39,7 @@ mod _core {
         PyObservedLaw, nearest_levels, observation_table, observation_version, observe, state_table,
     };
     #[pymodule_export]
-    use super::order::{rotation, signed_order};
+    use super::order::{outward, rotation, signed_order};
     #[pymodule_export]
     use super::parameters::{
         checked_fields, critical_bw_s, pool_radii_cm, preset_fields, preset_names, preset_sources,

@@ -30,6 +30,17 @@ pub fn rotation<'py>(
     Ok(PyArray1::from_vec(py, values))
 }
 
+/// Ψ_o·cos φ_o of a series of (Ψ_o, φ_o).
+#[pyfunction]
+pub fn outward<'py>(
+    py: Python<'py>,
+    psi_o: PyReadonlyArray1<'py, f64>,
+    phi_o: PyReadonlyArray1<'py, f64>,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let values = each(&psi_o, &phi_o, OrderParameters::outward)?;
+    Ok(PyArray1::from_vec(py, values))
+}
+
 fn each(
     psi_o: &PyReadonlyArray1<'_, f64>,
     phi_o: &PyReadonlyArray1<'_, f64>,

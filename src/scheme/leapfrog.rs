@@ -14,8 +14,9 @@ use crate::phase_schedule::{Phase, seconds};
 /// overlaps do not shrink with it. The kick before stands for it then.
 const SHORTEST_TELLING_KICK: f64 = 0.25;
 
-/// One kick and one drift.
-pub fn leapfrog(flock: &mut Dynamics, substep: &Substep) {
+/// One kick and one drift. Returns whether they were taken: not if the substep is too long for its
+/// contacts.
+pub fn leapfrog(flock: &mut Dynamics, substep: &Substep) -> bool {
     let half_ticks = flock.last.length + substep.length;
     let kick = 0.5 * seconds(half_ticks);
     let begin = 2 * substep.start - flock.last.length.min(2 * substep.start);
@@ -26,7 +27,9 @@ pub fn leapfrog(flock: &mut Dynamics, substep: &Substep) {
     centered_velocities(flock, kick);
 
     let dt = seconds(substep.length);
-    let touches = flock.settle_contacts(dt);
+    let Some(touches) = flock.settle_contacts(substep) else {
+        return false;
+    };
     let lasting = &mut flock.last.lasting_acceleration;
     if !touches {
         lasting.clear();
@@ -40,6 +43,7 @@ pub fn leapfrog(flock: &mut Dynamics, substep: &Substep) {
     flock.kick_s = kick;
     flock.drift(dt);
     remember(flock, substep);
+    true
 }
 
 /// Replaces thrust and rudder by their means over the kick where the substep before had others.

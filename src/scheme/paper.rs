@@ -34,7 +34,7 @@ pub fn paper(flock: &mut Dynamics, substep: &Substep) {
     let near = contacts.find(poses, boats, velocities, dt, statistics);
     let allowed = parameters.overlap_tolerance_cm.max(ROUNDING);
     if near && contacts.overlaps_after(poses, velocities, dt, allowed) {
-        contacts.resolve(poses, velocities, inertia, dt, statistics);
+        contacts.resolve(poses, velocities, inertia, dt, false, statistics);
         flock
             .velocities
             .copy_from_slice(flock.contacts.velocities());

@@ -175,6 +175,15 @@ def test_an_unwritable_folder_is_named(spec: RunSpec, tmp_path: Path) -> None:
         RunStore(tmp_path / "file").save(execute(spec))
 
 
+def test_a_run_that_cannot_be_read_is_named_and_stays(spec: RunSpec, tmp_path: Path) -> None:
+    store = RunStore(tmp_path)
+    # Also root may not read a folder as a file.
+    store.path(spec).mkdir(parents=True)
+    with pytest.raises(StorageError, match=f"{spec.key}.*cannot be read"):
+        store.load(spec)
+    assert store.path(spec).is_dir()
+
+
 KILLED = """
 import os, signal, sys
 from flockenv import FlockParameters, whole_file

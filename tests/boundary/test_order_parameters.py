@@ -65,6 +65,7 @@ def test_a_series_compares_and_indexes(parameters):
 
 
 def test_series_of_different_lengths_are_refused():
-    for derive in (lambda *series: _core.signed_order(*series, "cw"), _core.rotation):
+    signed = (lambda *series: _core.signed_order(*series, "cw"), _core.rotation, _core.outward)
+    for derive in signed:
         with pytest.raises(ParameterError, match="phi_o"):
             derive(np.ones(3), np.ones(2))

@@ -1,6 +1,7 @@
 """Law: the installed package is this source tree, and importing it needs no optional library."""
 
 import re
+import shutil
 import subprocess
 import sys
 from importlib.resources import files
@@ -33,6 +34,17 @@ def test_package_is_typed():
 def test_import_needs_no_optional_library():
     blocked = f"import sys; sys.modules.update(dict.fromkeys({OPTIONAL}))"
     subprocess.run([sys.executable, "-c", f"{blocked}; import flockenv"], check=True)
+
+
+def test_sources_without_the_compiled_simulator_say_so(tmp_path):
+    shutil.copytree(
+        REPOSITORY / "flockenv", tmp_path / "flockenv", ignore=shutil.ignore_patterns("_core.*")
+    )
+    failed = subprocess.run(
+        [sys.executable, "-c", "import flockenv"], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert failed.returncode == 1
+    assert "start Python in another folder than the clone's" in failed.stderr
 
 
 def test_core_is_an_extension_module():

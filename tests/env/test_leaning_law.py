@@ -141,6 +141,7 @@ def test_damaged_files(tmp_path, change):
 
 
 def test_training_does_not_start_from_one(tmp_path):
+    pytest.importorskip("torch")
     training = pytest.importorskip("flockenv.training")
     LeaningLaw(GAINS, 0.1, {}).save(tmp_path / "law.npz")
     settings = training.TrainingSettings(start=str(tmp_path / "law.npz"))

@@ -3,26 +3,10 @@
 //!
 //! On paper: nothing, zero bits of difference.
 
-use crate::support::{NOISES, SCHEMES, bits};
-use flockenv::parameters::{Noise, Pool, Preset, Scheme, Solver, Target};
+use crate::support::{NOISES, SCHEMES, bits, busy};
+use flockenv::parameters::{Noise, Scheme, Solver, Target};
 use flockenv::phase_schedule::ticks;
 use flockenv::{Flock, FlockBatch, FlockParameters};
-
-/// A crowded scene with leaders, noise and contacts; phases switch off the grid of dt.
-fn busy(scheme: Scheme, noise: Noise) -> FlockParameters {
-    FlockParameters {
-        n_boats: 27,
-        n_leaders: 3,
-        pool: Pool::TABLE_1,
-        scheme,
-        noise,
-        fw_s: 0.713,
-        nop1_s: 0.2,
-        bw_s: 0.305,
-        nop2_s: 0.1,
-        ..FlockParameters::preset(Preset::Simulation)
-    }
-}
 
 fn all_kinds() -> impl Iterator<Item = FlockParameters> {
     SCHEMES

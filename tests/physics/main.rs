@@ -19,6 +19,7 @@ mod optional_effects;
 mod order_parameters;
 mod overlap;
 mod parameters;
+mod passivity;
 mod phases;
 mod placement;
 mod published;

@@ -3,25 +3,10 @@
 //!
 //! On paper: zero bits of difference.
 
-use crate::support::{NOISES, OPEN_WATER, SCHEMES, bits};
-use flockenv::parameters::{Noise, Pool, Preset, Scheme};
+use crate::support::{NOISES, OPEN_WATER, SCHEMES, bits, busy};
+use flockenv::parameters::{Noise, Scheme};
 use flockenv::phase_schedule::ticks;
 use flockenv::{Flock, FlockBatch, FlockParameters};
-
-fn crowd(scheme: Scheme, noise: Noise) -> FlockParameters {
-    FlockParameters {
-        n_boats: 27,
-        n_leaders: 3,
-        pool: Pool::TABLE_1,
-        scheme,
-        noise,
-        fw_s: 0.713,
-        nop1_s: 0.2,
-        bw_s: 0.305,
-        nop2_s: 0.1,
-        ..FlockParameters::preset(Preset::Simulation)
-    }
-}
 
 fn all_on(scheme: Scheme, noise: Noise) -> FlockParameters {
     FlockParameters {
@@ -29,7 +14,7 @@ fn all_on(scheme: Scheme, noise: Noise) -> FlockParameters {
         speed_spread_cm_s: 4.0,
         current_gain: 0.4,
         current_cap_cm_s: 3.0,
-        ..crowd(scheme, noise)
+        ..busy(scheme, noise)
     }
 }
 
@@ -49,7 +34,7 @@ fn run(p: &FlockParameters, seed: u64, durations: &[f64]) -> Vec<u64> {
 #[test]
 fn a_cap_without_a_current_changes_no_bit() {
     for (scheme, noise) in kinds() {
-        let plain = crowd(scheme, noise);
+        let plain = busy(scheme, noise);
         let capped = FlockParameters {
             current_cap_cm_s: 0.5,
             ..plain.clone()
@@ -71,7 +56,7 @@ fn each_effect_fades_with_its_parameter() {
             n_boats: 1,
             n_leaders: 0,
             pool: OPEN_WATER,
-            ..crowd(scheme, noise)
+            ..busy(scheme, noise)
         };
         let end = |p: &FlockParameters| {
             let mut flock = Flock::new(p.clone(), 2).expect("room");
@@ -98,7 +83,7 @@ fn with_all_effects_on_a_run_is_a_function_of_its_seed() {
         assert_eq!(whole, run(&p, 7, &[4.0]));
         assert_eq!(whole, run(&p, 7, &[1.0, 0.5, 2.5]));
         assert_ne!(whole, run(&p, 8, &[4.0]));
-        assert_ne!(whole, run(&crowd(scheme, noise), 7, &[4.0]));
+        assert_ne!(whole, run(&busy(scheme, noise), 7, &[4.0]));
     }
 }
 

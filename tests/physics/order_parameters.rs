@@ -60,6 +60,7 @@ fn perfect_states() {
             -phi.sin()
         ));
         assert!(near(order.rotation(), phi.sin()));
+        assert!(near(order.outward(), phi.cos()));
     }
 }
 

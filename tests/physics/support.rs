@@ -77,6 +77,22 @@ pub fn inert(scheme: Scheme) -> FlockParameters {
     }
 }
 
+/// A crowded scene with leaders, noise and contacts; phases switch off the grid of dt.
+pub fn busy(scheme: Scheme, noise: Noise) -> FlockParameters {
+    FlockParameters {
+        n_boats: 27,
+        n_leaders: 3,
+        pool: Pool::TABLE_1,
+        scheme,
+        noise,
+        fw_s: 0.713,
+        nop1_s: 0.2,
+        bw_s: 0.305,
+        nop2_s: 0.1,
+        ..FlockParameters::preset(Preset::Simulation)
+    }
+}
+
 /// A flock of boats with these poses [cm, cm, rad] and velocities [cm/s, cm/s, rad/s].
 pub fn flock_of(parameters: &FlockParameters, states: &[([f64; 3], [f64; 3])]) -> Flock {
     let parameters = FlockParameters {

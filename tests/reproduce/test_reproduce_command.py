@@ -90,6 +90,7 @@ def test_ctrl_c_says_that_work_can_go_on(tmp_path: Path) -> None:
     code, said = interrupted(tmp_path, signal.SIGINT)
     assert code == 130
     assert "the same command goes on" in said
+    assert "Waiting for the runs under way" in said
 
 
 def test_a_damaged_run_is_named_and_made_again(uninterrupted: Path) -> None:
@@ -109,6 +110,8 @@ def test_what_is_not_there_is_refused_before_anything_is_written(tmp_path: Path)
         (["fig17", "--engine", "slurm"], "local, joblib, ray"),
         (["fig17", "--minutes", "0"], "minutes = 0.0"),
         (["fig17", "--seed", str(2**64)], "seed"),
+        (["fig17", "--summary", "page"], "ends in .md"),
+        (["fig17", "--summary", "/dev/null/page.md"], "--summary: folder /dev/null"),
     ):
         done = run(*arguments, "--out", str(tmp_path / "out"))
         assert done.returncode == 2
@@ -159,3 +162,18 @@ def test_the_report_is_complete_in_itself(uninterrupted: Path, monkeypatch: obje
     assert "fig17/fig17.png" in summary
     table = pd.read_csv(uninterrupted / "claims.csv")
     assert len(table) == len(claims["fig17"])
+
+
+def test_a_page_of_some_figures(uninterrupted: Path, tmp_path: Path) -> None:
+    page = tmp_path / "docs" / "jamming.md"
+    claims = reproduce(
+        plan(["fig17"], Settings(minutes=0.4)), uninterrupted, summary=page, notify=pytest.fail
+    )
+    text = page.read_text("utf-8")
+    title = load("fig17").title
+    assert text.startswith(f"# {title}\n")
+    assert "`flockenv reproduce fig17 --seed 0 --minutes 0.4`" in text
+    assert "](jamming/fig17.png)" in text
+    picture = page.parent / "jamming" / "fig17.png"
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert all(checked.claim.quantity in text for checked in claims["fig17"])

@@ -6,8 +6,11 @@ p < 1/3. It is 2/3 in one ordered state and 0 for a Gaussian m.
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 import flockenv
+from flockenv.loops import LOOPS
+from flockenv.prepared_start import STARTS
 from flockenv.reproduce.reproduction import Results, Settings
 from flockenv.reproduce.transition_design import (
     DESIGNS,
@@ -16,12 +19,21 @@ from flockenv.reproduce.transition_design import (
     TransitionDesign,
     within,
 )
-from flockenv.reproduce.transition_order import (
-    COEXISTENCE,
-    HYSTERESIS,
+from flockenv.reproduce.transition_measured import (
+    M_EDGES,
+    Loops,
+    Measured,
+    Still,
     binder,
-    conclusion,
     hysteresis,
+    student,
+)
+from flockenv.reproduce.transition_order import (
+    BISTABILITY,
+    HYSTERESIS,
+    NO_LAG,
+    conclusion,
+    judge,
     transition_order,
 )
 from flockenv.run_store import RunStore, run_missing
@@ -37,25 +49,47 @@ def test_binder() -> None:
     assert np.isnan(binder(np.zeros(1), np.zeros(1))).all()
 
 
-def test_an_open_loop() -> None:
-    samples = 1000
+def made(outward: NDArray[np.float64], m: NDArray[np.float64], protocol: str) -> RunResult:
+    """A run of 1000 samples whose Ψ_o cos φ_o and m are these."""
     scene = flockenv.FlockParameters.preset("simulation")
-    spec = RunSpec(parameters=scene, seed=0, duration_s=100.0, protocol="noise-loop", keep="order")
-    time_s = np.arange(samples) / 10
-    there = time_s < 50
+    spec = RunSpec(parameters=scene, seed=0, duration_s=100.0, protocol=protocol, keep="order")
+    samples = 1000
     orders = {name: np.zeros(samples, np.float32) for name in ORDER_NAMES}
-    orders["psi_o"] = np.where(there, 0.9, 0.4).astype(np.float32)
-    orders["phi_o"] = np.full(samples, -np.pi / 2, np.float32)
-    run = RunResult(
+    orders["psi_o"] = np.hypot(outward, m).astype(np.float32)
+    orders["phi_o"] = np.arctan2(m, outward).astype(np.float32)
+    orders["c_v"] = np.full(samples, 100.0, np.float32)
+    return RunResult(
         spec=spec,
-        time_s=time_s,
+        time_s=np.arange(samples) / 10,
         phase=np.zeros(samples, np.uint8),
         in_analysis_window=np.ones(samples, np.bool_),
         orders=orders,
     )
+
+
+def test_an_open_loop() -> None:
+    there = np.arange(1000) < 500
+    run = made(np.where(there, 0.1, 0.7), np.where(there, -0.9, 0.0), "rotating-noise-loop")
     up, down = hysteresis(run)
-    assert up == pytest.approx(0.9)
-    assert down == pytest.approx(0.4)
+    assert up == pytest.approx(0.1)
+    assert down == pytest.approx(0.7)
+    assert Loops([run, run]).openings == pytest.approx([0.6, 0.6])
+
+
+def test_runs_at_one_density_count_in_their_second_half() -> None:
+    late = np.arange(1000) > 500
+    jam = Still([made(np.where(late, 0.8, 0.0), np.where(late, 0.1, 1.0), "jammed")] * 2)
+    assert jam.outward == pytest.approx([0.8, 0.8])
+    # |m| is the same in all that counts, as is C_v.
+    assert jam.binder_m == pytest.approx(2 / 3, abs=1e-6)
+    assert jam.binder_c_v == pytest.approx(2 / 3, abs=1e-6)
+    assert (jam.m_density * np.diff(M_EDGES)).sum() == pytest.approx(1.0)
+
+
+def test_student() -> None:
+    # On paper: s = sqrt(2), t(0.975, 1) = 12.706, so ± 12.706.
+    assert student(np.array([1.0, 3.0])) == pytest.approx((2.0, -10.706, 14.706), abs=1e-3)
+    assert np.isnan(student(np.array([1.0]))[1:]).all()
 
 
 def test_growing_keeps_the_density() -> None:
@@ -73,33 +107,57 @@ def test_growing_keeps_the_density() -> None:
 
 
 def test_the_conclusion_follows_its_rule() -> None:
-    first = [COEXISTENCE.check(-1, -2, -0.5, "a"), HYSTERESIS.check(0.3, 0.2, 0.4, "a")]
+    first = [
+        BISTABILITY.check(0.5, 0.4, 0.6, "a"),
+        HYSTERESIS.check(0.3, 0.2, 0.4, "a"),
+        NO_LAG.check(0.1, 0.05, 0.2, "a"),
+    ]
     assert conclusion(first).startswith("first order")
-    smooth = [COEXISTENCE.check(0.3, 0.2, 0.4, "a"), HYSTERESIS.check(0.02, 0.01, 0.03, "a")]
+    nothing = float("nan")
+    smooth = [
+        BISTABILITY.check(0.05, 0.0, 0.1, "a"),
+        HYSTERESIS.check(0.02, 0.01, 0.03, "a"),
+        NO_LAG.check(nothing, nothing, nothing, "a"),
+    ]
     assert conclusion(smooth).startswith("not first order")
-    mixed = conclusion([first[0], smooth[1]])
-    assert mixed.startswith("inconclusive")
-    assert "loops in density stay open does not hold for a" in mixed
+    # What differs by its start, but closes when run more slowly, is not shown to be of first order.
+    lagging = conclusion([*first[:2], NO_LAG.check(-0.1, -0.2, -0.05, "a")])
+    assert lagging.startswith("inconclusive. a: that both states last: holds (0.5, 0.4 to 0.6)")
+    assert "that slower loops do not close: does not hold (-0.1, -0.2 to -0.05)" in lagging
+    assert conclusion([first[0], *smooth[1:]]).startswith("inconclusive")
 
 
 def test_a_small_design_from_runs_to_tables(tmp_path: object) -> None:
-    design = TransitionDesign(sizes=(20, 40), densities=(20, 40), runs=2)
+    densities = {"whole pool": (5, 10), "circumference": (5, 10)}
+    design = TransitionDesign(
+        sizes=(20, 40), densities=densities, runs=2, still_minutes=1.0, loop_minutes=1.0
+    )
     settings = Settings(minutes=1.0)
     reproduction = transition_order(design)
     specs = reproduction.runs(settings)
-    assert len(specs) == 2 * 2 * (2 + 2) * 2
+    # For each of two sizes in two ways: two densities from two starts, and three kinds of loops.
+    assert len(specs) == 2 * 2 * (2 * 2 + 3) * 2
     store = RunStore(tmp_path)  # type: ignore[arg-type]
     assert run_missing(specs, store) == {}
     outcome = reproduction.analyse(settings, Results(store, specs))
-    assert len(outcome.tables["transition"]) == 2 * 2 * 2
-    assert len(outcome.claims) == 2 * 2 * 2
-    assert outcome.tables["loops"]["there"].between(0, 1).any()
+    assert len(outcome.tables["transition"]) == 2 * 2 * 2 * 2
+    assert len(outcome.claims) == 2 * 2 * 3
+    assert outcome.tables["loops"]["there"].between(-1, 1).any()
     histograms = outcome.tables["histograms"]
     m = histograms[histograms["quantity"] == "m"]
     width = m["bin_high"] - m["bin_low"]
     total = (m["probability_density"] * width).sum()
-    assert total == pytest.approx(8)
-    assert sum("conclus" in note or "first order" in note for note in outcome.notes) == 2
+    assert total == pytest.approx(16)
+    assert set(outcome.pictures) == {
+        "transition-order",
+        "loops",
+        "cumulants",
+        "histograms_m",
+        "histograms_c_v",
+    }
+    verdicts = [note for note in outcome.notes if note.startswith("Growing the ")]
+    assert all("conclus" in note or "first order" in note for note in verdicts)
+    assert len(verdicts) == 2
 
 
 def test_the_budget_chooses_the_design() -> None:
@@ -108,7 +166,7 @@ def test_the_budget_chooses_the_design() -> None:
     for design, cost in zip(DESIGNS, costs, strict=True):
         assert within(Settings(budget_core_min=cost + 0.1)) is design
     assert within(Settings(budget_core_min=1e6)) is FULL
-    assert within(Settings(minutes=1.0, budget_core_min=5.0)) is FULL
+    assert within(Settings(minutes=1.0, budget_core_min=4.0)) is FULL
     with pytest.raises(flockenv.ParameterError, match="budget = 1 core-minutes is not enough"):
         within(Settings(budget_core_min=1.0))
     with pytest.raises(flockenv.ParameterError, match="budget = nan"):
@@ -119,9 +177,28 @@ def test_the_budget_chooses_the_design() -> None:
 def test_every_design_reaches_1600_boats(design: TransitionDesign) -> None:
     specs = transition_order(design).runs(Settings())
     assert max(spec.parameters.n_boats for spec in specs) == 1600
-    assert {spec.protocol for spec in specs} == {
-        "law",
-        "noise-loop",
-        "density-loop",
-        "length-loop",
-    }
+    assert {spec.protocol for spec in specs} == {*STARTS, *LOOPS}
+
+
+@pytest.mark.parametrize(
+    ("back", "verdict", "note"),
+    [(0.1, "inconclusive", "the loop never left rotation"), (0.7, "holds", "")],
+)
+def test_a_loop_that_never_jams_is_no_closed_loop(back: float, verdict: str, note: str) -> None:
+    growth = Growth("circumference", 400)
+    design = TransitionDesign(
+        sizes=(400,), densities={growth.way: (20,)}, runs=2, still_minutes=1.0, loop_minutes=1.0
+    )
+    steady = np.full(1000, 0.1)
+    still = Still([made(steady, steady, "jammed")] * 2)
+    there = np.arange(1000) < 450
+    loop = Loops([made(np.where(there, 0.1, back), steady, "rotating-length-loop")] * 2)
+    measured = Measured(
+        design,
+        {(growth, 20, start): still for start in STARTS},
+        {(growth, kind): loop for kind in ("density", "slow density")},
+    )
+    _, hysteresis_claim, lag = judge(measured, growth)
+    assert (hysteresis_claim.verdict, hysteresis_claim.note) == (verdict, note)
+    # As open when slower: 0.3 of the opening is left.
+    assert lag.verdict == verdict

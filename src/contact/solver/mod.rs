@@ -76,6 +76,11 @@ impl ContactSolver {
         self.pivoting.begin(self.islands.len());
     }
 
+    /// The islands of the contacts taken on last.
+    pub fn islands(&self) -> &Islands {
+        &self.islands
+    }
+
     /// Solves for `impulses` and `velocities`. Solving again with other bounds or free velocities
     /// reuses the factor as far as the active set is the same.
     pub fn solve(&mut self, problem: &ContactProblem) -> SolveReport {
