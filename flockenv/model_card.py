@@ -7,7 +7,7 @@ from flockenv._core import __version__
 from flockenv.analysis import CONFIDENCE
 from flockenv.comparison_report import ComparisonReport
 from flockenv.observation import OBSERVATION_VERSION
-from flockenv.policies import NetworkPolicy
+from flockenv.policies import LeaningLaw, NetworkPolicy
 
 __all__ = ["model_card"]
 
@@ -28,7 +28,7 @@ def model_card(
     name
         Under which name it stands in the results.
     policy
-        The policy itself; of a `NetworkPolicy`, the card tells how it was made.
+        The policy itself; of a learned one, the card tells how it was made.
     results
         Comparisons in which it takes part, by scene.
     command
@@ -37,7 +37,7 @@ def model_card(
         Of their episodes.
     """
     lines = [f"# {name}", ""]
-    if isinstance(policy, NetworkPolicy):
+    if isinstance(policy, NetworkPolicy | LeaningLaw):
         lines += [f"`{policy!r}`, version {OBSERVATION_VERSION} of the observation.", ""]
         lines += ["| made by | |", "| --- | --- |"]
         lines += [f"| {what} | `{text}` |" for what, text in policy.made.items()]

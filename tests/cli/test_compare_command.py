@@ -29,9 +29,20 @@ def test_json_is_all_that_is_printed(tmp_path: Path) -> None:
     arguments = ["--pool", "table-1", "--json", "--out", str(tmp_path)]
     done = flockenv("compare", *SHORT, *arguments)
     means = json.loads(done.stdout)["table-1"]
-    assert [row["leaders"] for row in means] == [0, 1]
+    assert [row["leaders"] for row in means] == [0, 1, 1, 1]
+    policies = [row["policy"] for row in means]
+    assert policies == ["no leaders", "steering law", "tuned damped law", "learned"]
     assert all(row["psi_o_low"] <= row["psi_o"] <= row["psi_o_high"] for row in means)
     assert done.stderr == ""
+
+
+def test_a_pool_that_nothing_was_made_for(tmp_path: Path) -> None:
+    arguments = ["--set", "pool=[90.0, 30.0]", "--set", "bw_s=0.3", "--out", str(tmp_path)]
+    done = flockenv("compare", *SHORT, *arguments, "--quiet")
+    assert done.returncode == 0, done.stderr
+    assert "Left out, learned: pool = (90.0, 30.0)" in done.stderr
+    assert "steering law" in done.stdout
+    assert "tuned" not in done.stdout
 
 
 def test_errors_are_one_line_with_exit_code_2(tmp_path: Path) -> None:
