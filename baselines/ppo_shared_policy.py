@@ -1,12 +1,12 @@
-"""Train the shipped policy: PPO, one network shared by one to four leaders, both pools and ways.
+"""Train one policy for all: PPO, one network shared by one to four leaders, both pools and ways.
 
     python baselines/ppo_shared_policy.py                        # into results/ppo_shared_policy
     python baselines/ppo_shared_policy.py --resume               # goes on after a kill
     flockenv compare --policy "damped law" --policy results/ppo_shared_policy/best.npz
 
 Training starts from a clone of the damped law instead of from nothing. Episodes have between half
-and 1.25 times the critical noise of their pool. What it leaves is told in docs/train.md; a policy
-that is shipped is `best.npz`, copied to baselines/policies, and says in `made` how it came about.
+and 1.25 times the critical noise of their pool. What it leaves is told in docs/train.md; what
+ships in baselines/policies was searched by evolution_strategy.py instead (docs/leaders.md).
 """
 
 import argparse
