@@ -3,7 +3,7 @@
 import pandas as pd
 import pytest
 
-from flockenv.reproduce.catalogue import load
+from flockenv.reproduce.catalogue import load, resolve
 from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, INCONCLUSIVE
 from flockenv.reproduce.report import html_report
 from flockenv.reproduce.reproduction import Outcome, Settings
@@ -53,10 +53,13 @@ def test_the_statements_name_every_claim_once() -> None:
 
 
 def test_the_summary_tells_the_command_that_made_it() -> None:
-    finished = [(load(name), [], Outcome({})) for name in ("fig17", "transition-order")]
+    names = [*resolve(["all"]), "transition-order"]
+    finished = [(load(name), [], Outcome({})) for name in names]
     words = "flockenv reproduce all transition-order --seed 3 --minutes 2 --budget 7"
     assert command(Settings(3, 2.0, 7.0), finished) == words
-    assert command(Settings(), finished[:1]) == "flockenv reproduce all --seed 0"
+    assert command(Settings(), finished[:-1]) == "flockenv reproduce all --seed 0"
+    few = f"flockenv reproduce {names[2]} {names[0]} --seed 0"
+    assert command(Settings(), [finished[2], finished[0]]) == few
     assert f"`{words}`" in markdown_summary(Settings(3, 2.0, 7.0), finished)
 
 
