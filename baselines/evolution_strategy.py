@@ -34,7 +34,7 @@ import flockenv
 from flockenv.array_file import read_arrays, write_arrays
 from flockenv.observation import OBSERVATION_VERSION, observation_entries
 from flockenv.policies import DampedLaw, LeaningLaw, NetworkPolicy
-from flockenv.policies.leaning_law import FEATURES, GAINS, features, leaning_rudders
+from flockenv.policies.leaning_law import FEATURES, GAINS, features, leaned
 from flockenv.provenance import made_by
 from flockenv.reward import TERMS
 from flockenv.seeds import training_seed
@@ -76,13 +76,17 @@ class Shape:
             start += i * o + o
         return parts
 
-    def rudders(self, flat: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """Rudders (candidates, rows) for weights (candidates, size) and rows (..., inputs)."""
-        layers = self.split(flat)
-        for matrix, bias in layers[:-1]:
-            rows = np.tanh(rows @ matrix + bias)
-        matrix, bias = layers[-1]
-        return np.clip(rows @ matrix + bias, -1.0, 1.0)[..., 0]
+    def steering(self, flat: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+        """What maps rows (candidates, rows, inputs) to rudders, for weights (candidates, size)."""
+        layers = self.split(flat.astype(np.float32))
+
+        def steer(rows: np.ndarray) -> np.ndarray:
+            for matrix, bias in layers[:-1]:
+                rows = np.tanh(rows @ matrix + bias)
+            matrix, bias = layers[-1]
+            return np.clip(rows @ matrix + bias, -1.0, 1.0)[..., 0]
+
+        return steer
 
     def policy(self, flat: np.ndarray, made: dict[str, str]) -> NetworkPolicy:
         layers = self.split(flat)
@@ -126,16 +130,23 @@ class LeaningShape:
 
     def split(self, flat: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Gains, biases and weights of vectors (..., size)."""
-        flat = flat.astype(np.float64)
         begin = np.array([self.begin.gains[name] for name in GAINS])
         gains = begin * np.exp(self.log_gain_steps * flat[..., : len(GAINS)])
         weights = self.steps * flat[..., len(GAINS) + 1 :]
         bias = self.bias_step_rad * flat[..., len(GAINS)] - weights @ self.usual
         return gains, bias, weights
 
-    def rudders(self, flat: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """Rudders (candidates, rows) for vectors (candidates, size)."""
-        return leaning_rudders(*self.split(flat), rows, NAMES)
+    def steering(self, flat: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+        """What maps rows (candidates, rows, size) to rudders, for vectors (candidates, size)."""
+        gains, bias, weights = self.split(flat)
+        laws = [DampedLaw(*each, mirror_to_target=True) for each in gains.tolist()]
+
+        def steer(rows: np.ndarray) -> np.ndarray:
+            turned = leaned(rows, bias, weights, NAMES)
+            pairs = zip(laws, turned, strict=True)
+            return np.stack([law.predict(each)[0][:, 0] for law, each in pairs])
+
+        return steer
 
     def policy(self, flat: np.ndarray, made: dict[str, str]) -> LeaningLaw:
         gains, bias, weights = self.split(flat)
@@ -193,11 +204,11 @@ def scores(
     seeds: list[int],
 ) -> np.ndarray:
     """Mean reward of each candidate; all of them steer the episodes of the same seeds."""
-    count, weights = len(candidates), candidates.astype(np.float32)
+    count, rudders = len(candidates), shape.steering(candidates)
 
     def steer(observations: np.ndarray) -> np.ndarray:
         rows = observations.reshape(count, len(seeds) * env.num_leaders, -1)
-        return shape.rudders(weights, rows).reshape(env.num_envs, env.num_leaders)
+        return rudders(rows).reshape(env.num_envs, env.num_leaders)
 
     rewards, _ = mean_rewards(env, seeds * count, steer)
     return rewards.reshape(count, len(seeds)).mean(axis=1)

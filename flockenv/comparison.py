@@ -17,13 +17,11 @@ from flockenv.errors import ParameterError
 from flockenv.extras import require
 from flockenv.parameters import FlockParameters
 from flockenv.policies import (
-    DampedLaw,
     RandomRudders,
-    SignCorrectedLaw,
-    SteeringLaw,
     StraightAhead,
     load,
 )
+from flockenv.policies.laws import LAWS
 from flockenv.policies.shipped import TUNED_GAINS, learned, tuned_law
 from flockenv.seeds import check_evaluation_seeds
 from flockenv.simulation import LeaderPolicy, simulate
@@ -64,10 +62,8 @@ _CONTROL_HZ = 10.0
 
 
 POLICIES: Mapping[str, Callable[[], LeaderPolicy | str]] = {
-    "steering law": SteeringLaw,
+    **LAWS,
     "steering law, every substep": lambda: EVERY_SUBSTEP,
-    "sign-corrected law": SignCorrectedLaw,
-    "damped law": DampedLaw,
     "straight ahead": StraightAhead,
     "random rudders": RandomRudders,
 }

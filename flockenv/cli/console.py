@@ -86,12 +86,13 @@ def _announced() -> Iterator[None]:
         say("Waiting for the runs under way to end. Ctrl-C again does not wait.", errors)
         raise KeyboardInterrupt
 
-    # Elsewhere than in the main thread nothing can be announced, and nothing is interrupted.
-    if current_thread() is not main_thread():
+    # Elsewhere than in the main thread nothing is interrupted, nor where it is ignored (by nohup).
+    ours = signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    if not ours or current_thread() is not main_thread():
         yield
         return
-    before = signal.signal(signal.SIGINT, announce)
+    signal.signal(signal.SIGINT, announce)
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -1,7 +1,7 @@
 """Policies that need no learning. Their formulas live in the Rust core."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from flockenv import _core
 from flockenv.policies.row_policy import RowPolicy
 
-__all__ = ["DampedLaw", "ObservedPolicy", "SignCorrectedLaw", "SteeringLaw"]
+__all__ = ["LAWS", "DampedLaw", "ObservedPolicy", "SignCorrectedLaw", "SteeringLaw"]
 
 
 class ObservedPolicy(RowPolicy):
@@ -137,3 +137,11 @@ class DampedLaw(ObservedPolicy):
     ) -> None:
         gains = {"gain": gain, "backward_gain": backward_gain, "damping": damping}
         super().__init__(gains, observation, mirror_to_target)
+
+
+LAWS: Mapping[str, Callable[..., ObservedPolicy]] = {
+    "steering law": SteeringLaw,
+    "sign-corrected law": SignCorrectedLaw,
+    "damped law": DampedLaw,
+}
+"""The closed-form laws by name."""

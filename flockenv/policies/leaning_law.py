@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from flockenv.errors import ParameterError
 from flockenv.observation import observation_entries
+from flockenv.policies.laws import DampedLaw
 from flockenv.policies.policy_file import write_policy
 from flockenv.policies.row_policy import RowPolicy
 
-__all__ = ["FEATURES", "GAINS", "LeaningLaw", "features", "leaning_rudders"]
+__all__ = ["FEATURES", "GAINS", "LeaningLaw", "features", "leaned"]
 
 GAINS = ("gain", "backward_gain", "damping")
 """As of `DampedLaw`."""
@@ -107,44 +108,35 @@ def features(rows: NDArray[Any], names: list[str]) -> NDArray[np.float64]:
     return np.stack(columns, axis=-1)
 
 
-def leaning_rudders(
-    gains: NDArray[Any],
-    bias: NDArray[Any],
-    weights: NDArray[Any],
-    rows: NDArray[Any],
-    names: list[str],
-) -> NDArray[np.float64]:
-    """Return rudders in [-1, 1] for mirrored observations.
+def leaned(
+    rows: NDArray[np.float32], bias: NDArray[Any], weights: NDArray[Any], names: list[str]
+) -> NDArray[np.float32]:
+    """Return mirrored observations as if leaders headed further outward by their lean.
+
+    What steers such a leader along the target's tangent turns it outward of that by as much.
 
     Parameters
     ----------
-    gains, bias, weights
-        Shapes (..., 3), (...) and (..., number of features): one law, or one a stack of rows.
     rows
         Shape (..., leaders, observation size).
+    bias, weights
+        Shapes (...) and (..., number of features): one law, or one a stack of rows.
     names
         The names of an observation's entries, in order.
 
     Returns
     -------
     numpy.ndarray
-        Shape (..., leaders).
+        Shape (..., leaders, observation size), float32.
     """
-    rows = np.asarray(rows, np.float64)
-    own = {name: rows[..., names.index(name)] for name in (*_OWN, "clockwise_spin")}
-    orientation = np.arctan2(
-        rows[..., names.index("sin_orientation")], rows[..., names.index("cos_orientation")]
-    )
     lean = np.asarray(bias)[..., None] + (features(rows, names) @ weights[..., None])[..., 0]
     lean = _LARGEST_LEAN * np.tanh(lean / _LARGEST_LEAN)
-    # Clockwise is the target; positive turns are counter-clockwise, which lowers the orientation.
-    misalignment = np.angle(np.exp(1j * (orientation + lean - np.pi / 2)))
-    spin = -2.0 * own["clockwise_spin"]
-    gain, backward_gain, damping = np.moveaxis(np.asarray(gains)[..., None, :], -1, 0)
-    backward = damping * spin - backward_gain * misalignment
-    backing = own["forward_velocity"] < 0.0
-    rudders: NDArray[np.float64] = np.where(backing, backward, gain * misalignment)
-    return np.clip(rudders, -1.0, 1.0)
+    cos, sin = names.index("cos_orientation"), names.index("sin_orientation")
+    # The target is clockwise, and so is a growing orientation; 0 is outward.
+    orientation = (rows[..., cos] + 1j * rows[..., sin]) * np.exp(1j * lean)
+    turned = np.array(rows, np.float32)
+    turned[..., cos], turned[..., sin] = orientation.real, orientation.imag
+    return turned
 
 
 class LeaningLaw(RowPolicy):
@@ -198,12 +190,13 @@ class LeaningLaw(RowPolicy):
                     f"observation = {self.observation!r} is not accepted: a leaning leader needs "
                     "the blocks own, neighbors and order"
                 )
-        self._gains = np.array([self.gains[name] for name in GAINS])
+        self._damped = DampedLaw(**self.gains, observation=observation, mirror_to_target=True)
         self._weights = np.array([self.weights.get(name, 0.0) for name in FEATURES])
 
-    def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float64]:
-        bias = np.asarray(self.bias)
-        return leaning_rudders(self._gains, bias, self._weights, rows, self._names)
+    def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
+        turned = leaned(rows, np.asarray(self.bias), self._weights, self._names)
+        rudders: NDArray[np.float32] = self._damped.predict(turned)[0][:, 0]
+        return rudders
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the law to an ``.npz`` file, whole or not at all.
@@ -219,7 +212,11 @@ class LeaningLaw(RowPolicy):
             "features": FEATURES,
             "made": self.made,
         }
-        arrays = {"gains": self._gains, "bias": np.array(self.bias), "weights": self._weights}
+        arrays = {
+            "gains": np.array([self.gains[name] for name in GAINS]),
+            "bias": np.array(self.bias),
+            "weights": self._weights,
+        }
         write_policy(path, header, arrays)
 
     @classmethod

@@ -1,11 +1,11 @@
 """What ships for the named pools: closed-form laws with tuned gains, and learned leaders."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from flockenv.errors import ParameterError
-from flockenv.policies.laws import DampedLaw, ObservedPolicy, SignCorrectedLaw
+from flockenv.policies.laws import LAWS, ObservedPolicy
 from flockenv.policies.leaning_law import LeaningLaw
 from flockenv.policies.loading import load
 from flockenv.policies.network import NetworkPolicy
@@ -23,12 +23,6 @@ TUNED_GAINS: Mapping[str, Mapping[str, Mapping[str, float]]] = {
 among 27 boats at each pool's critical noise, on training seeds."""
 
 
-_LAWS: Mapping[str, Callable[..., ObservedPolicy]] = {
-    "sign-corrected law": SignCorrectedLaw,
-    "damped law": DampedLaw,
-}
-
-
 def tuned_law(law: str, pool: Any) -> ObservedPolicy:
     """Return a law in `TUNED_GAINS` with the gains tuned in a named pool.
 
@@ -37,7 +31,7 @@ def tuned_law(law: str, pool: Any) -> ObservedPolicy:
     ParameterError
         For other pools.
     """
-    return _LAWS[law](**TUNED_GAINS[law][_named(pool)])
+    return LAWS[law](**TUNED_GAINS[law][_named(pool)])
 
 
 def learned(pool: Any) -> NetworkPolicy | LeaningLaw:

@@ -5,8 +5,9 @@ Needs the extra ``train``: ``pip install flockenv[train]``.
 
 # First: it says what to install where stable-baselines3 and torch are missing.
 import flockenv.training.actor  # noqa: F401
+from flockenv.policies.laws import LAWS
 from flockenv.training.checkpoint import Progress
-from flockenv.training.cloning import LAWS, clone_law
+from flockenv.training.cloning import clone_law
 from flockenv.training.ppo import TrainingResult, resume, stored_settings, train
 from flockenv.training.settings import TrainingError, TrainingSettings
 

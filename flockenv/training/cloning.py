@@ -1,7 +1,6 @@
 """Behaviour cloning: a network that steers as a law does, for training to start from."""
 
 import time
-from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -9,21 +8,14 @@ import torch
 from numpy.typing import NDArray
 
 from flockenv.errors import ParameterError
-from flockenv.policies import DampedLaw, NetworkPolicy, SignCorrectedLaw, SteeringLaw
+from flockenv.policies import NetworkPolicy
 from flockenv.policies.laws import ObservedPolicy
 from flockenv.provenance import made_by
 from flockenv.training.actor import ACTIVATION_MODULES, one_thread
 from flockenv.training.pools import PooledVecEnv
 from flockenv.training.settings import TrainingError, TrainingSettings
 
-__all__ = ["LAWS", "clone_law"]
-
-LAWS: Mapping[str, Callable[..., ObservedPolicy]] = {
-    "steering law": SteeringLaw,
-    "sign-corrected law": SignCorrectedLaw,
-    "damped law": DampedLaw,
-}
-"""Laws that can be cloned by name, with their default gains."""
+__all__ = ["clone_law"]
 
 
 def clone_law(

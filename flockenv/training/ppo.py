@@ -21,6 +21,7 @@ from stable_baselines3.common.utils import FloatSchedule
 
 from flockenv.errors import ParameterError
 from flockenv.policies import NetworkPolicy, load
+from flockenv.policies.laws import LAWS
 from flockenv.provenance import made_by
 from flockenv.training import checkpoint
 from flockenv.training.actor import (
@@ -30,7 +31,8 @@ from flockenv.training.actor import (
     one_thread,
 )
 from flockenv.training.checkpoint import Progress
-from flockenv.training.cloning import LAWS, clone_law
+from flockenv.training.cloning import clone_law
+from flockenv.training.interrupts import held_interrupts
 from flockenv.training.pools import PooledVecEnv
 from flockenv.training.settings import TrainingError, TrainingSettings
 from flockenv.training.validation import validation_scores
@@ -173,7 +175,7 @@ class _Run:
     def go_on(self) -> TrainingResult:
         formats: list[KVWriter] = []
         if find_spec("tensorboard") is not None:
-            with _written(self.folder, self.progress):
+            with held_interrupts(), _written(self.folder, self.progress):
                 formats = [TensorBoardOutputFormat(str(self.folder / "tensorboard"))]
         self.log = Logger(None, formats)
         self.model.set_logger(self.log)
@@ -185,10 +187,9 @@ class _Run:
                 self._validate()
         finally:
             # What a full disk kept from the logs has been told already, or hides nothing else.
-            with suppress(OSError):
+            with held_interrupts(), suppress(OSError):
                 self.log.close()
-        best = load(self.folder / "best.npz")
-        assert isinstance(best, NetworkPolicy)
+        best = _network(self.folder / "best.npz")
         return TrainingResult(best, self.settings, self.progress, self.folder)
 
     def _iterate(self) -> None:
@@ -211,12 +212,13 @@ class _Run:
         self.report(progress)
 
     def _rollout_and_update(self) -> dict[str, float]:
-        settings, model, watch = self.settings, self.model, _Watch()
+        settings, model = self.settings, self.model
         model.lr_schedule = FloatSchedule(settings.learning_rate_at(model.num_timesteps))
+        wanted = settings.rollout_samples
         try:
-            model.learn(
-                settings.rollout_samples, watch, log_interval=_NEVER, reset_num_timesteps=False
-            )
+            with held_interrupts() as release:
+                watch = _Watch(release)
+                model.learn(wanted, watch, log_interval=_NEVER, reset_num_timesteps=False)
         except ValueError as error:
             # Torch's distributions refuse the first NaN before the loss is seen.
             if self._finite():
@@ -256,7 +258,7 @@ class _Run:
             self.progress.best_score = score
 
     def _log(self) -> None:
-        with _written(self.folder, self.progress):
+        with held_interrupts(), _written(self.folder, self.progress):
             self.log.dump(self.progress.samples)
 
     def _policy(self) -> NetworkPolicy:
@@ -280,12 +282,14 @@ class _Run:
 class _Watch(BaseCallback):
     """Means over a rollout of what the learner itself does not keep."""
 
-    def __init__(self) -> None:
+    def __init__(self, release: Callable[[], None]) -> None:
         super().__init__()
+        self.release = release
         self.rewards: list[float] = []
         self.orders: list[float] = []
 
     def _on_step(self) -> bool:
+        self.release()
         self.rewards.append(float(self.locals["rewards"].mean()))
         if self.locals["dones"].any():
             summaries = [each.get("episode_summary") for each in self.locals["infos"]]
@@ -341,19 +345,23 @@ def _start(settings: TrainingSettings, command: str) -> NetworkPolicy | None:
         return None
     if settings.start not in LAWS:
         try:
-            found = load(settings.start)
+            return _network(Path(settings.start))
         except OSError as error:
             raise ParameterError(
                 f"start = {settings.start!r} is neither {' nor '.join(LAWS)}, and as a policy's "
                 f"file it cannot be read: {error.strerror}"
             ) from error
-        if not isinstance(found, NetworkPolicy):
-            raise ParameterError(f"start = {settings.start!r} is a {found!r}, not a network")
-        return found
     law = LAWS[settings.start](
         observation=settings.observation, mirror_to_target=settings.mirror_to_target
     )
     return clone_law(law, settings, command=command)
+
+
+def _network(path: Path) -> NetworkPolicy:
+    found = load(path)
+    if not isinstance(found, NetworkPolicy):
+        raise ParameterError(f"{path} is a {found!r}, not a network")
+    return found
 
 
 @contextmanager

@@ -38,7 +38,7 @@ def test_candidates_steer_as_their_policies_do(script) -> None:
         shape = script.Shape(size, hidden)
         flat = random.standard_normal((4, shape.size)).astype(np.float32) / 5
         rows = random.uniform(-1, 1, (4, 7, size)).astype(np.float32)
-        rudders = shape.rudders(flat, rows)
+        rudders = shape.steering(flat)(rows)
         assert (abs(rudders) < 1).any()
         for candidate in range(4):
             policy = shape.policy(flat[candidate], {})
@@ -61,7 +61,7 @@ def test_leaning_candidates_steer_as_their_policies_do(script, tmp_path: Path) -
     )  # fmt: skip
     flat = random.standard_normal((4, shape.size))
     rows = random.uniform(-1, 1, (4, 7, len(script.NAMES))).astype(np.float32)
-    rudders = shape.rudders(flat, rows)
+    rudders = shape.steering(flat)(rows)
     for candidate in range(4):
         policy = shape.policy(flat[candidate], {})
         expected = policy.predict(rows[candidate])[0][:, 0]

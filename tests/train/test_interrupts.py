@@ -1,0 +1,114 @@
+"""Ctrl-C waits until training is between two steps or writes, and is never lost."""
+
+import signal
+from pathlib import Path
+
+import pytest
+
+from flockenv import training
+from flockenv.training import TrainingSettings, ppo
+from flockenv.training.interrupts import held_interrupts
+
+
+def press() -> None:
+    signal.raise_signal(signal.SIGINT)
+
+
+def test_an_interrupt_is_raised_at_the_end_of_the_block() -> None:
+    reached = []
+
+    def held() -> None:
+        with held_interrupts():
+            press()
+            reached.append("the end")
+
+    with pytest.raises(KeyboardInterrupt):
+        held()
+    assert reached == ["the end"]
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_a_block_can_be_left_sooner() -> None:
+    reached = []
+
+    def left() -> None:
+        with held_interrupts() as release:
+            release()
+            reached.append("before")
+            press()
+            release()
+            reached.append("after")
+
+    with pytest.raises(KeyboardInterrupt):
+        left()
+    assert reached == ["before"]
+
+
+def test_a_second_interrupt_is_not_held_back() -> None:
+    reached = []
+
+    def pressed_twice() -> None:
+        with held_interrupts():
+            press()
+            reached.append("once")
+            press()
+            reached.append("twice")
+
+    with pytest.raises(KeyboardInterrupt):
+        pressed_twice()
+    assert reached == ["once"]
+
+
+def test_an_error_is_told_before_a_held_interrupt() -> None:
+    def failing() -> None:
+        with held_interrupts():
+            press()
+            raise OSError("disk full")
+
+    with pytest.raises(OSError, match="disk full"):
+        failing()
+
+
+def test_ignored_interrupts_stay_ignored() -> None:
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        with held_interrupts() as release:
+            press()
+            release()
+        assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.parametrize(("owner", "name"), [(ppo.PPO, "train"), (ppo.Logger, "dump")])
+def test_training_finishes_what_must_not_stop_halfway(
+    tiny: TrainingSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, owner: type, name: str
+) -> None:
+    whole, calls = getattr(owner, name), []
+
+    def pressed(self, *arguments) -> None:
+        press()
+        whole(self, *arguments)
+        calls.append(name)
+
+    monkeypatch.setattr(owner, name, pressed)
+    with pytest.raises(KeyboardInterrupt):
+        training.train(tiny, tmp_path)
+    assert calls == [name]
+
+
+def test_a_rollout_is_left_at_its_next_step(
+    tiny: TrainingSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    steps = []
+    step = ppo.PooledVecEnv.step_wait
+
+    def pressed(self):
+        press()
+        steps.append(1)
+        return step(self)
+
+    monkeypatch.setattr(ppo.PooledVecEnv, "step_wait", pressed)
+    with pytest.raises(KeyboardInterrupt):
+        training.train(tiny, tmp_path)
+    assert len(steps) == 1
