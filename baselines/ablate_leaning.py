@@ -4,7 +4,8 @@
 
 A group that is left out leans as it did on average in the states that the whole law visits, so that
 what is lost is what it told apart. Three leaders among 27 boats, critical noise, training seeds,
-the same for all; differences from the whole law are paired by seed.
+the same for all; differences from the whole law are paired by seed. What each feature is on average
+in those states, and the lean that its weight makes of it (rad), is written to NAME-lean.csv beside.
 """
 
 import argparse
@@ -49,6 +50,14 @@ def usual(law: LeaningLaw, scene: flockenv.FlockParameters) -> dict[str, float]:
     return dict(zip(FEATURES, np.mean(seen, axis=0).tolist(), strict=True))
 
 
+def leans(law: LeaningLaw, means: dict[str, float]) -> pd.DataFrame:
+    """What each weight adds to the lean on average; the first row is the bias."""
+    weights = {"bias": law.bias, **law.weights}
+    found = {"weight": pd.Series(weights), "mean": pd.Series({"bias": 1.0, **means})}
+    table = pd.DataFrame(found).loc[list(weights)]
+    return table.assign(lean_rad=table["weight"] * table["mean"]).rename_axis("feature")
+
+
 def variants(law: LeaningLaw, means: dict[str, float]) -> dict[str, LeaningLaw]:
     def without(*left_out: str) -> LeaningLaw:
         kept = {name: weight for name, weight in law.weights.items() if name not in left_out}
@@ -82,8 +91,8 @@ def main(arguments: list[str] | None = None) -> None:
         if not isinstance(law, LeaningLaw):
             raise flockenv.ParameterError(f"{options.law} is a {law!r}, not a leaning law")
         rows: list[dict[str, object]] = []
-        whole = None
-        for name, each in variants(law, usual(law, scene)).items():
+        whole, means = None, usual(law, scene)
+        for name, each in variants(law, means).items():
             orders = run_episodes(scene, each, seeds, options.minutes * 60.0)["signed_order"]
             whole = orders if whole is None else whole
             beyond = paired_difference(orders, whole)
@@ -93,8 +102,13 @@ def main(arguments: list[str] | None = None) -> None:
             )
             print(f"{name:32s} {orders.mean():.3f}  {beyond.mean:+.3f}", flush=True)
         options.out.parent.mkdir(parents=True, exist_ok=True)
-        with whole_file(options.out) as file:
-            file.write(pd.DataFrame(rows).to_csv(index=False, lineterminator="\n").encode())
+        tables = {
+            options.out: pd.DataFrame(rows).set_index("law"),
+            options.out.with_stem(f"{options.out.stem}-lean"): leans(law, means),
+        }
+        for path, table in tables.items():
+            with whole_file(path) as file:
+                file.write(table.to_csv(lineterminator="\n").encode())
     except (flockenv.FlockError, OSError) as error:
         sys.exit(f"Error: {error}")
     print(f"written to {options.out}")

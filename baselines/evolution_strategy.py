@@ -32,6 +32,7 @@ from rich.progress import Progress
 
 import flockenv
 from flockenv.array_file import read_arrays, write_arrays
+from flockenv.cli.scene import changed_fields
 from flockenv.observation import OBSERVATION_VERSION, observation_entries
 from flockenv.policies import DampedLaw, LeaningLaw, NetworkPolicy
 from flockenv.policies.leaning_law import FEATURES, GAINS, features, leaned
@@ -179,6 +180,7 @@ def environment(
         episode_s=options.episode_s,
         reward={options.reward: 1.0},
         **(LIBERAL_STEPS if options.liberal_steps else {}),
+        **changed_fields(options.set),
     )
 
 
@@ -333,6 +335,9 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--control-hz", type=float, default=2.0)
     parser.add_argument("--episode-s", type=float, default=60.0)
     parser.add_argument("--liberal-steps", action="store_true", help="dt_s 0.1, one pass")
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="FIELD=VALUE", help="of FlockParameters"
+    )
     parser.add_argument("--form", choices=("network", "leaning"), default="network")
     parser.add_argument("--hidden", type=int, nargs="*", default=[], help="hidden layers")
     parser.add_argument("--reward", choices=TERMS, default="leader_velocity")

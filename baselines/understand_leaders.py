@@ -33,7 +33,7 @@ SAMPLED_EVERY = 5
 PHASES = ("fw", "nop1", "bw", "nop2")
 #: Within this of the target's tangent a leader heads nearly right.
 NEARLY_RIGHT_RAD = 0.3
-SPIN_RAD_S, SPEED_CM_S = 2.0, 15.0
+SPIN_RAD_S = 2.0
 TRACKED_S = 120.0
 
 
@@ -82,6 +82,7 @@ def samples(
     phase = np.argmax([own[each] for each in PHASES], axis=0)
     orientation = np.arctan2(own["sin_orientation"], own["cos_orientation"])
     misalignment = np.angle(np.exp(1j * (orientation - np.pi / 2)))
+    speed_cm_s = max(scene.speed_cm_s, scene.reverse_speed_cm_s)
     return pd.DataFrame(
         {
             "cycle_s": ends[phase] - 2.0 * own["time_left"],
@@ -89,7 +90,7 @@ def samples(
             "spin_rad_s": -SPIN_RAD_S * own["clockwise_spin"],
             "rudder": np.clip(actions.ravel(), -1.0, 1.0),
             "alignment": np.cos(misalignment),
-            "velocity_cm_s": SPEED_CM_S * own["clockwise_velocity"],
+            "velocity_cm_s": speed_cm_s * own["clockwise_velocity"],
             "radius_cm": radius_cm(own["radial_position"], scene),
             "apart_cm": apart_cm(state, scene),
         }

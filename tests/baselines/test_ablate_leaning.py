@@ -41,6 +41,12 @@ def test_a_short_run(script, tmp_path: Path, capsys) -> None:
     # A group without weights is nothing to miss.
     assert table.loc["without outer wall", "beyond_whole"] == 0.0
     assert table.loc["no weights", "beyond_whole"] != 0.0
+    lean = pd.read_csv(tmp_path / "a-lean.csv", index_col="feature")
+    assert list(lean.index) == ["bias", *FEATURES]
+    assert lean.loc["bias", "lean_rad"] == 0.1
+    assert lean.loc["near_ahead", "mean"] != 0.0
+    assert lean.loc["near_ahead", "lean_rad"] == 3.0 * lean.loc["near_ahead", "mean"]
+    assert (lean["lean_rad"] != 0.0).sum() == 2
     NetworkPolicy([np.zeros((67, 1))], [[0.0]]).save(tmp_path / "net.npz")
     with pytest.raises(SystemExit, match="not a leaning law"):
         script.main([str(tmp_path / "net.npz"), *arguments, *out])

@@ -56,7 +56,7 @@ def test_leaning_candidates_steer_as_their_policies_do(script, tmp_path: Path) -
     shape = script.LeaningShape(
         script.argparse.Namespace(
             leaders=[2], control_hz=2.0, seed=0, pool="table-1", boats=8, noise=1.0,
-            episode_s=60.0, reward="signed_order", liberal_steps=False,
+            episode_s=60.0, reward="signed_order", liberal_steps=False, set=[],
         )
     )  # fmt: skip
     flat = random.standard_normal((4, shape.size))
@@ -86,6 +86,16 @@ def test_it_climbs(script, monkeypatch: pytest.MonkeyPatch) -> None:
     for _ in range(60):
         state = script.next_generation(state, None, shape, options)
     np.testing.assert_allclose(state.weights, 1.0, atol=0.25)
+
+
+def test_the_scene_can_be_changed(script, tmp_path: Path, capsys) -> None:
+    arguments = [*TINY, "--generations", "1", "--out"]
+    for name, change in (("as-is", []), ("strong", ["--set", "c2=1.0"])):
+        script.main([*arguments, str(tmp_path / name), *change])
+    plain, strong = (load(tmp_path / name / "policy.npz") for name in ("as-is", "strong"))
+    assert not np.array_equal(plain.weights[0], strong.weights[0])
+    with pytest.raises(SystemExit, match="c22"):
+        script.main([*arguments, str(tmp_path / "wrong"), "--set", "c22=1.0"])
 
 
 def test_other_options_do_not_go_on(script, tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Law: the script that shipped policies are made with trains with its own settings."""
+"""The script of PPO trains with its own settings."""
 
 from pathlib import Path
 

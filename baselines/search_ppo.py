@@ -1,0 +1,131 @@
+"""Choose PPO's settings by a recorded search: short runs that differ in nothing else.
+
+    python baselines/search_ppo.py                      # ten runs, half an hour on one core
+    flockenv train --settings results/search_ppo/best.toml --samples 3000000
+
+The settings of ppo_shared_policy.py, with those in RANGES drawn from a Latin hypercube. Each run
+ends with a validation of what it learned, always in the same training episodes; the damped law, as
+a clone of which every run begins, is validated first. Each run's settings and scores are written to
+results/search_ppo/search.csv; interrupted, the same command goes on with the runs that it lacks.
+"""
+
+import argparse
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+from ppo_shared_policy import SETTINGS
+from rich.progress import Progress
+from scipy.stats import qmc
+
+import flockenv
+from flockenv import training
+from flockenv.policies.laws import LAWS
+from flockenv.training.validation import validation_scores
+from flockenv.whole_file import whole_file
+
+
+def log_between(low: float, high: float) -> Callable[[float], float]:
+    return lambda share: float(f"{low * (high / low) ** share:.3g}")
+
+
+def one_of(*values: Any) -> Callable[[float], Any]:
+    return lambda share: values[min(int(share * len(values)), len(values) - 1)]
+
+
+def memory(low: float, high: float) -> Callable[[float], float]:
+    """A decay by the steps that it reaches over."""
+    reach = log_between(low, high)
+    return lambda share: round(1.0 - 1.0 / reach(share), 5)
+
+
+#: What a share in [0, 1) of each setting's range means.
+RANGES: dict[str, Callable[[float], Any]] = {
+    "learning_rate": log_between(3e-5, 1e-3),
+    "gamma": memory(25.0, 1000.0),
+    "gae_lambda": memory(5.0, 200.0),
+    "n_steps": one_of(64, 128, 256, 512),
+    "n_epochs": one_of(2, 4, 8),
+    "clip_range": log_between(0.05, 0.3),
+    "log_std_init": lambda share: round(-2.0 + 1.5 * share, 2),
+    "use_sde": one_of(False, True),
+    "control_hz": one_of(2.5, 5.0, 10.0),
+}
+
+
+def drawn(options: argparse.Namespace) -> list[training.TrainingSettings]:
+    """The settings of all runs."""
+    shares = qmc.LatinHypercube(len(RANGES), rng=options.seed).random(options.runs)
+    base = SETTINGS.replace(
+        samples=options.samples,
+        seed=options.seed,
+        validate_every=options.samples,
+        validation_episodes=options.episodes,
+    )
+    named = (dict(zip(RANGES, each, strict=True)) for each in shares.tolist())
+    values = ({name: RANGES[name](share) for name, share in each.items()} for each in named)
+    return [base.replace(**each, final_learning_rate=each["learning_rate"] / 10) for each in values]
+
+
+def score(settings: training.TrainingSettings, folder: Path) -> dict[str, float]:
+    """Train, or go on, or read what was found; return the final scores."""
+    if (folder / "checkpoint.npz").exists():
+        if training.stored_settings(folder) != settings:
+            raise flockenv.ParameterError(f"{folder} is of another search: name another --out")
+        result = training.resume(folder)
+    else:
+        result = training.train(settings, folder, command="python baselines/search_ppo.py")
+    last = dict(result.progress.validations[-1])
+    return {"wall_s": round(result.progress.wall_s), **last}
+
+
+def search(options: argparse.Namespace) -> pd.DataFrame:
+    """Run all and write the table and the best run's settings."""
+    rows, settings = [], drawn(options)
+    law = LAWS[SETTINGS.start](mirror_to_target=SETTINGS.mirror_to_target)
+    with Progress(disable=options.quiet) as progress:
+        task = progress.add_task(SETTINGS.start, total=1 + len(settings))
+        scores = validation_scores(law, settings[0])
+        rows.append({"run": SETTINGS.start, "mean": sum(scores.values()) / len(scores), **scores})
+        for number, each in enumerate(settings):
+            progress.update(task, description=f"run {number}", completed=1 + number)
+            found = score(each, options.out / f"run-{number}")
+            rows.append({"run": number, **{name: getattr(each, name) for name in RANGES}, **found})
+        progress.update(task, completed=1 + len(settings))
+    # The law has no settings; the columns are those of a run.
+    table = pd.DataFrame(rows)[list(rows[-1])]
+    with whole_file(options.out / "search.csv") as file:
+        text = table.to_csv(index=False, lineterminator="\n", float_format="%.5g")
+        file.write(text.encode())
+    best = settings[int(table["mean"][1:].to_numpy().argmax())]
+    with whole_file(options.out / "best.toml") as file:
+        file.write(best.to_toml().encode())
+    return table
+
+
+def main(arguments: list[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--runs", type=int, default=10)
+    parser.add_argument("--samples", type=int, default=600_000, help="of each run")
+    parser.add_argument("--episodes", type=int, default=64, help="of each scene's validation")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--out", type=Path, default=Path("results/search_ppo"))
+    parser.add_argument("--quiet", action="store_true")
+    options = parser.parse_args(arguments)
+    if options.runs < 1:
+        parser.error("there is at least one run")
+    try:
+        options.out.mkdir(parents=True, exist_ok=True)
+        table = search(options)
+    except KeyboardInterrupt:
+        sys.exit(f"Interrupted: the same command goes on from {options.out}")
+    except (flockenv.FlockError, OSError) as error:
+        sys.exit(f"Error: {error}")
+    print(table.sort_values("mean", ascending=False).to_string(index=False))
+    print(f"written to {options.out}")
+
+
+if __name__ == "__main__":
+    main()
