@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from flockenv.errors import ParameterError
 from flockenv.policies import NetworkPolicy
-from flockenv.policies.laws import ObservedPolicy
+from flockenv.policies.row_policy import RowPolicy
 from flockenv.provenance import made_by
 from flockenv.training.actor import ACTIVATION_MODULES, one_thread
 from flockenv.training.pools import PooledVecEnv
@@ -19,7 +19,7 @@ __all__ = ["clone_law"]
 
 
 def clone_law(
-    law: ObservedPolicy,
+    law: RowPolicy,
     settings: TrainingSettings,
     *,
     samples: int = 100_000,
@@ -31,7 +31,7 @@ def clone_law(
     Parameters
     ----------
     law
-        Any closed-form law with the layout of the settings.
+        Any policy of rows, such as a closed-form law, with the layout of the settings.
     settings
         Where the leaders steer, the network's shape, and the seed.
     samples
@@ -85,7 +85,7 @@ def clone_law(
 
 
 def _visited(
-    law: ObservedPolicy, settings: TrainingSettings, samples: int
+    law: RowPolicy, settings: TrainingSettings, samples: int
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     env = PooledVecEnv(settings)
     random = np.random.default_rng(settings.seed)

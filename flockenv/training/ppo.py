@@ -22,6 +22,7 @@ from stable_baselines3.common.utils import FloatSchedule
 from flockenv.errors import ParameterError
 from flockenv.policies import NetworkPolicy, load
 from flockenv.policies.laws import LAWS
+from flockenv.policies.row_policy import RowPolicy
 from flockenv.provenance import made_by
 from flockenv.training import checkpoint
 from flockenv.training.actor import (
@@ -343,18 +344,22 @@ def _actor(model: PPO) -> ActorCriticPolicy:
 def _start(settings: TrainingSettings, command: str) -> NetworkPolicy | None:
     if not settings.start:
         return None
-    if settings.start not in LAWS:
+    found: RowPolicy
+    if settings.start in LAWS:
+        found = LAWS[settings.start](
+            observation=settings.observation, mirror_to_target=settings.mirror_to_target
+        )
+    else:
         try:
-            return _network(Path(settings.start))
+            found = load(settings.start)
         except OSError as error:
             raise ParameterError(
                 f"start = {settings.start!r} is neither {' nor '.join(LAWS)}, and as a policy's "
                 f"file it cannot be read: {error.strerror}"
             ) from error
-    law = LAWS[settings.start](
-        observation=settings.observation, mirror_to_target=settings.mirror_to_target
-    )
-    return clone_law(law, settings, command=command)
+    if isinstance(found, NetworkPolicy):
+        return found
+    return clone_law(found, settings, command=command)
 
 
 def _network(path: Path) -> NetworkPolicy:

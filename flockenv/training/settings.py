@@ -63,8 +63,9 @@ class TrainingSettings:
     seed
         Number of the training run; the flocks' seeds come from it (`flockenv.seeds.training_seed`).
     start
-        A policy's ``.npz`` file to start from, whose hidden layers and layout these must be; or the
-        name of a closed-form law, which is cloned first; empty: from nothing.
+        A network's ``.npz`` file to start from, whose hidden layers and layout these must be; or a
+        leaning law's file or the name of a closed-form law, which is cloned first; empty: from
+        nothing.
     checkpoint_every
         Samples between checkpoints.
     validate_every, validation_episodes, validation_s, validation_hz

@@ -138,12 +138,3 @@ def test_damaged_files(tmp_path, change):
     write_arrays(tmp_path / "changed.npz", {**arrays, "gains": np.full(3, np.nan)})
     with pytest.raises(flockenv.ParameterError, match="gain = nan"):
         load(tmp_path / "changed.npz")
-
-
-def test_training_does_not_start_from_one(tmp_path):
-    pytest.importorskip("torch")
-    training = pytest.importorskip("flockenv.training")
-    LeaningLaw(GAINS, 0.1, {}).save(tmp_path / "law.npz")
-    settings = training.TrainingSettings(start=str(tmp_path / "law.npz"))
-    with pytest.raises(flockenv.ParameterError, match="not a network"):
-        training.train(settings, tmp_path / "run")

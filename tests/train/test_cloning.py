@@ -1,11 +1,13 @@
 """Law: a clone steers as its law does, on states that it was not fitted to."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from flockenv import ParameterError
-from flockenv.policies import DampedLaw, SignCorrectedLaw
-from flockenv.training import TrainingSettings, clone_law
+from flockenv.policies import DampedLaw, LeaningLaw, SignCorrectedLaw, load
+from flockenv.training import TrainingSettings, clone_law, train
 
 
 def test_a_clone_is_much_nearer_than_going_straight(tiny: TrainingSettings) -> None:
@@ -22,6 +24,16 @@ def test_the_same_seed_clones_the_same_bits(tiny: TrainingSettings) -> None:
     once, again = (clone_law(law, tiny, samples=600, epochs=2) for _ in range(2))
     for own, other in zip(once.weights, again.weights, strict=True):
         np.testing.assert_array_equal(own, other)
+
+
+def test_a_run_starts_from_a_clone_of_a_leaning_law(tiny: TrainingSettings, tmp_path: Path) -> None:
+    gains = {"gain": 1.0, "backward_gain": 2.0, "damping": 9.0}
+    LeaningLaw(gains, 0.1, {"near": 0.2}).save(tmp_path / "law.npz")
+    settings = tiny.replace(start=str(tmp_path / "law.npz"), samples=192)
+    train(settings, tmp_path / "run")
+    start = load(tmp_path / "run" / "start.npz")
+    assert start.made["cloned"].startswith("LeaningLaw")
+    assert [matrix.shape[1] for matrix in start.weights] == [8, 1]
 
 
 def test_another_layout_is_refused(tiny: TrainingSettings) -> None:
