@@ -66,7 +66,10 @@ def drawn(options: argparse.Namespace) -> list[training.TrainingSettings]:
     )
     named = (dict(zip(RANGES, each, strict=True)) for each in shares.tolist())
     values = ({name: RANGES[name](share) for name, share in each.items()} for each in named)
-    return [base.replace(**each, final_learning_rate=each["learning_rate"] / 10) for each in values]
+    return [
+        base.replace(**each, final_learning_rate=float(f"{each['learning_rate'] / 10:.3g}"))
+        for each in values
+    ]
 
 
 def score(settings: training.TrainingSettings, folder: Path) -> dict[str, float]:

@@ -14,11 +14,12 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.support.ui import Select, WebDriverWait
 
 import flockenv
+from flockenv.comparison import named_policy
 from flockenv.replay import write_replay
 
-SCENE = flockenv.FlockParameters(n_boats=27, n_leaders=4, pool="table-1", bw_s=0.2)
+SCENE = flockenv.FlockParameters(n_boats=27, n_leaders=4, pool="500-boats", bw_s=0.3)
 SEED, DURATION_S = 7, 480.0
-POLICIES = {"steering law": None, "damped law": flockenv.policies.DampedLaw()}
+POLICIES = {"steering law": None, "learned": named_policy("learned", SCENE.pool)()}
 SIZE = (900, 638)
 BEGIN_S, STEP_S, FRAMES, FPS = 150.0, 0.4, 60, 10.0
 # A boat is pointed at for some of the frames.
