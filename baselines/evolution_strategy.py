@@ -36,6 +36,7 @@ from flockenv.cli.scene import changed_fields
 from flockenv.observation import OBSERVATION_VERSION, observation_entries
 from flockenv.policies import DampedLaw, LeaningLaw, NetworkPolicy
 from flockenv.policies.leaning_law import FEATURES, GAINS, features, leaned
+from flockenv.policies.shipped import TUNED_GAINS
 from flockenv.provenance import made_by
 from flockenv.reward import TERMS
 from flockenv.seeds import training_seed
@@ -43,6 +44,7 @@ from flockenv.seeds import training_seed
 SEEDS_OF_A_RUN = 1 << 24
 DECAY_1, DECAY_2 = 0.9, 0.99
 NAMES = [entry.name for entry in observation_entries()]
+ROUGH_GAINS = {"gain": 1.9, "backward_gain": 3.0, "damping": 20.0}
 LIBERAL_STEPS = {"dt_s": 0.1, "relinearizations": 1}
 
 
@@ -113,11 +115,12 @@ class LeaningShape:
     """A leaning law's numbers within one vector; a step of 1 is worth trying for each of them."""
 
     size = len(GAINS) + 1 + len(FEATURES)
-    begin = DampedLaw(gain=1.9, backward_gain=3.0, damping=20.0, mirror_to_target=True)
     log_gain_steps, bias_step_rad, lean_step_rad = np.array([0.3, 0.4, 0.3]), 0.12, 0.1
 
     def __init__(self, options: argparse.Namespace) -> None:
         """Look at what the law to begin with sees, so that all features get equal steps."""
+        gains = TUNED_GAINS["damped law"][options.pool] if options.tuned else ROUGH_GAINS
+        self.begin = DampedLaw(**gains, mirror_to_target=True)
         env = environment(options, 16, options.leaders[0])
         rows, _ = env.reset(
             seed=[training_seed(options.seed * SEEDS_OF_A_RUN + i) for i in range(16)]
@@ -339,6 +342,7 @@ def main(arguments: list[str] | None = None) -> None:
         "--set", action="append", default=[], metavar="FIELD=VALUE", help="of FlockParameters"
     )
     parser.add_argument("--form", choices=("network", "leaning"), default="network")
+    parser.add_argument("--tuned", action="store_true", help="begin with the pool's tuned gains")
     parser.add_argument("--hidden", type=int, nargs="*", default=[], help="hidden layers")
     parser.add_argument("--reward", choices=TERMS, default="leader_velocity")
     parser.add_argument("--generations", type=int, default=50)

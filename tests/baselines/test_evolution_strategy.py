@@ -10,6 +10,7 @@ import pytest
 
 import flockenv
 from flockenv.policies import load
+from flockenv.policies.shipped import tuned_law
 
 TINY = ["--pairs", "3", "--flocks", "1", "--episode-s", "5", "--episodes", "4", "--quiet"]
 
@@ -57,6 +58,7 @@ def test_leaning_candidates_steer_as_their_policies_do(script, tmp_path: Path) -
         script.argparse.Namespace(
             leaders=[2], control_hz=2.0, seed=0, pool="table-1", boats=8, noise=1.0,
             episode_s=60.0, reward="signed_order", liberal_steps=False, set=[],
+            tuned=True,
         )
     )  # fmt: skip
     flat = random.standard_normal((4, shape.size))
@@ -68,6 +70,7 @@ def test_leaning_candidates_steer_as_their_policies_do(script, tmp_path: Path) -
         np.testing.assert_allclose(rudders[candidate], expected, atol=1e-6)
         seen.append(expected)
     # What it begins as is the damped law.
+    assert shape.begin.gains == tuned_law("damped law", "table-1").gains
     begin = shape.policy(shape.first(random), {})
     np.testing.assert_allclose(
         begin.predict(rows)[0][..., 0], shape.begin.predict(rows)[0][..., 0], atol=1e-5
