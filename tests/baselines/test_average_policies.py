@@ -1,0 +1,39 @@
+"""The mean of leaning laws: what it steers with, and that it tells how each part was made."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from flockenv.policies import LeaningLaw, NetworkPolicy, load
+
+
+def law(gain: float, bias: float, weights: dict[str, float], seed: int) -> LeaningLaw:
+    gains = {"gain": gain, "backward_gain": 2.0, "damping": 9.0}
+    made = {"seed": str(seed), "samples": "100", "wall_s": "7", "command": f"search {seed}"}
+    return LeaningLaw(gains, bias, weights, made=made)
+
+
+def test_the_mean_of_two(script, tmp_path: Path) -> None:
+    law(1.0, 0.1, {"near": 0.2}, 3).save(tmp_path / "one.npz")
+    law(4.0, 0.3, {"near": 0.4, "leaders": -1.0}, 4).save(tmp_path / "other.npz")
+    out = tmp_path / "new" / "mean.npz"
+    script.main([str(tmp_path / "one.npz"), str(tmp_path / "other.npz"), "--out", str(out)])
+    mean = load(out)
+    assert mean.gains == pytest.approx({"gain": 2.0, "backward_gain": 2.0, "damping": 9.0})
+    assert mean.bias == pytest.approx(0.2)
+    kept = {name: weight for name, weight in mean.weights.items() if weight}
+    assert kept == pytest.approx({"near": 0.3, "leaders": -0.5})
+    assert mean.made["samples"] == "200"
+    assert mean.made["part 1: command"] == "search 4"
+    assert "average_policies.py" in mean.made["command"]
+
+
+def test_only_leaning_laws_have_a_mean(script, tmp_path: Path) -> None:
+    NetworkPolicy([np.zeros((67, 1))], [[0.0]]).save(tmp_path / "net.npz")
+    law(1.0, 0.1, {}, 0).save(tmp_path / "law.npz")
+    with pytest.raises(SystemExit, match="not a leaning law"):
+        script.main([str(tmp_path / "law.npz"), str(tmp_path / "net.npz")])
+    with pytest.raises(SystemExit, match=r"none\.npz"):
+        script.main([str(tmp_path / "none.npz"), "--out", str(tmp_path / "mean.npz")])
+    assert not (tmp_path / "mean.npz").exists()
