@@ -1,10 +1,11 @@
 """Statistics of finished runs: means with intervals, and the straight line of figure 12."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flockenv.extras import require
 
@@ -59,6 +60,9 @@ class Difference:
         Mean difference and its bootstrap interval at level `CONFIDENCE`.
     effect : float
         Cohen's d of paired differences: mean over standard deviation; NaN without spread.
+    ratio, ratio_low, ratio_high : float
+        Ratio of the means and its paired bootstrap interval; NaN where the mean below the line is
+        not clearly above zero.
     n : int
         Number of pairs.
     """
@@ -67,6 +71,9 @@ class Difference:
     low: float
     high: float
     effect: float
+    ratio: float
+    ratio_low: float
+    ratio_high: float
     n: int
 
 
@@ -92,7 +99,18 @@ def paired_difference(ours: Iterable[float], theirs: Iterable[float], seed: int 
     mean, low, high = mean_interval(differences, seed)
     spread = float(differences.std(ddof=1)) if len(differences) > 1 else 0.0
     effect = mean / spread if spread > 0.0 else float("nan")
-    return Difference(mean, low, high, effect, len(differences))
+    _, least, _ = mean_interval(theirs, seed)
+    ratio = (float("nan"),) * 3
+    if np.array_equal(ours, theirs) and least > 0.0:
+        ratio = (1.0, 1.0, 1.0)
+    elif least > 0.0:
+        ratio = _interval((ours, theirs), _ratio_of_means, seed)
+    return Difference(mean, low, high, effect, *ratio, len(differences))
+
+
+def _ratio_of_means(ours: NDArray[Any], theirs: NDArray[Any], axis: int = -1) -> NDArray[Any]:
+    ratio: NDArray[Any] = ours.mean(axis) / theirs.mean(axis)
+    return ratio
 
 
 def fit_line(x: Iterable[float], y: Iterable[float]) -> Line:
@@ -121,22 +139,29 @@ def mean_interval(values: Iterable[float], seed: int = 0) -> tuple[float, float,
     tuple of float
         Mean, lower and upper end (BCa bootstrap, 9999 resamples; NaN ends for a single value).
     """
-    stats = require("scipy.stats", "plot")
     data = np.asarray(list(values), float)
-    mean = float(data.mean())
-    if len(data) < 2:
-        return mean, float("nan"), float("nan")
-    if np.ptp(data) == 0.0:
-        return mean, mean, mean
+    if np.ptp(data) == 0.0 and len(data) > 1:
+        return float(data[0]), float(data[0]), float(data[0])
+    return _interval((data,), np.mean, seed)
+
+
+def _interval(
+    samples: tuple[NDArray[Any], ...], statistic: Callable[..., Any], seed: int
+) -> tuple[float, float, float]:
+    stats = require("scipy.stats", "plot")
+    value = float(statistic(*samples))
+    if len(samples[0]) < 2:
+        return value, float("nan"), float("nan")
     result = stats.bootstrap(
-        (data,),
-        np.mean,
+        samples,
+        statistic,
+        paired=True,
         confidence_level=CONFIDENCE,
         n_resamples=_RESAMPLES,
         rng=np.random.default_rng(seed),
     )
     low, high = result.confidence_interval
-    return mean, float(low), float(high)
+    return value, float(low), float(high)
 
 
 def summarise(runs: "pd.DataFrame", by: list[str], quantities: list[str]) -> "pd.DataFrame":

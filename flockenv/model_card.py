@@ -49,8 +49,8 @@ def model_card(
         "",
         f"`{command}`, flockenv {__version__}: {len(seeds)} episodes of {duration_s:g} s for each "
         f"policy and number of leaders, seeds {seeds[0]} to {seeds[-1]}, the same for all; "
-        f"{CONFIDENCE:.0%} bootstrap intervals. Differences are paired by seed; d is their mean "
-        "over their standard deviation.",
+        f"{CONFIDENCE:.0%} bootstrap intervals. Differences and the ratios of means are paired "
+        "by seed; d is a difference's mean over its standard deviation.",
     ]
     for scene, result in results.items():
         lines += ["", f"### {scene}", "", f"{result.title()}.", "", *_means(result)]
@@ -78,11 +78,15 @@ def _means(result: ComparisonReport) -> list[str]:
 
 def _differences(name: str, result: ComparisonReport) -> list[str]:
     own = result.differences[result.differences["policy"] == name]
-    lines = ["| beyond | leaders | signed order | d |", "| --- " * 4 + "|"]
+    lines = ["| beyond | leaders | signed order | d | ratio |", "| --- " * 5 + "|"]
     for row in own.to_dict("records"):
         interval = f"{row['mean']:+.3f} [{row['low']:+.3f}, {row['high']:+.3f}]"
+        # No ratio to what is not clearly above zero.
+        known = row["ratio"] == row["ratio"]
+        ratio = f"{row['ratio']:.2f} [{row['ratio_low']:.2f}, {row['ratio_high']:.2f}]"
         lines.append(
-            f"| {row['reference']} | {row['leaders']} | {interval} | {row['effect']:.2f} |"
+            f"| {row['reference']} | {row['leaders']} | {interval} | {row['effect']:.2f} "
+            f"| {ratio if known else ''} |"
         )
     return lines if len(own) > 0 else []
 

@@ -72,3 +72,18 @@ def test_pairs_are_compared_seed_by_seed() -> None:
     assert np.isnan(same.effect)
     with pytest.raises(ValueError, match="3 and 2"):
         paired_difference([1, 2, 3], [1, 2])
+
+
+def test_ratios_stand_where_what_divides_is_above_zero() -> None:
+    random = np.random.default_rng(0)
+    theirs = random.normal(0.4, 0.2, 400)
+    ours = 1.5 * theirs + random.normal(0.0, 0.05, 400)
+    found = paired_difference(ours, theirs)
+    assert found.ratio == pytest.approx(ours.mean() / theirs.mean())
+    # Paired, what both share cancels: the ratio's standard error is 0.05/20/0.4.
+    assert found.ratio_low == pytest.approx(found.ratio - 1.96 * 0.00625, abs=0.003)
+    assert found.ratio_high == pytest.approx(found.ratio + 1.96 * 0.00625, abs=0.003)
+    same = paired_difference(theirs, theirs)
+    assert (same.ratio, same.ratio_low, same.ratio_high) == (1.0, 1.0, 1.0)
+    assert np.isnan(paired_difference(ours, theirs - 0.4).ratio)
+    assert np.isnan(paired_difference([1.0], [1.0]).ratio)
