@@ -228,15 +228,17 @@ def main(arguments: list[str] | None = None) -> None:
     try:
         options.out.mkdir(parents=True, exist_ok=True)
         with Progress(disable=options.quiet) as progress:
-            for name in options.policy or ["steering law", "damped law"]:
-                label = Path(name).stem
+            names = list(dict.fromkeys(options.policy or ["steering law", "damped law"]))
+            stems = [Path(name).stem for name in names]
+            labels = stems if len(set(stems)) == len(names) else names
+            for label, name in zip(labels, names, strict=True):
                 found[label], order = watch(name, scene, options, progress)
                 means.append({"policy": label, "signed_order": order, **found[label].mean()})
         with paper_style():
             figures = {
                 "rudders": draw_rudders(found, scene),
                 "places": draw_places(found, scene),
-                "tracks": draw_tracks(options.policy or list(found), scene, options),
+                "tracks": draw_tracks(names, scene, options),
             }
             for name, figure in figures.items():
                 with whole_file(options.out / f"{name}.png") as file:

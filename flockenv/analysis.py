@@ -1,5 +1,6 @@
 """Statistics of finished runs: means with intervals, and the straight line of figure 12."""
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -29,9 +30,10 @@ class Line:
     slope, intercept : float
         In units of y over x, and of y.
     f : float
-        F statistic with 1 and n - 2 degrees of freedom, against no linear dependence.
+        F statistic with 1 and n - 2 degrees of freedom, against no linear dependence; NaN where
+        all y are the same.
     p : float
-        Probability of such an F or a larger one if y did not depend on x.
+        Probability of such an F or a larger one if y did not depend on x; NaN likewise.
     n : int
         Number of points.
     """
@@ -43,6 +45,8 @@ class Line:
     n: int
 
     def __str__(self) -> str:
+        if math.isnan(self.f):
+            return f"{self.intercept:.3f} in all {self.n} runs: no line to fit"
         sign = "-" if self.slope < 0 else "+"
         return (
             f"{self.intercept:.3f} {sign} {abs(self.slope):.4f} k (F = {self.f:.2f}, "
@@ -125,6 +129,8 @@ def fit_line(x: Iterable[float], y: Iterable[float]) -> Line:
     x, y = np.asarray(list(x), float), np.asarray(list(y), float)
     if len(x) < 3 or np.ptp(x) == 0.0:
         raise ValueError("a line needs at least three points at two different x")
+    if np.ptp(y) == 0.0:
+        return Line(0.0, float(y[0]), math.nan, math.nan, len(x))
     fit = stats.linregress(x, y)
     unexplained = 1.0 - fit.rvalue**2
     f = fit.rvalue**2 / unexplained * (len(x) - 2) if unexplained > 0 else np.inf

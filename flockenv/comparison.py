@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 __all__ = [
+    "CONTROL_HZ",
     "EVERY_SUBSTEP",
     "NO_LEADERS",
     "ORDERING_TIMES",
@@ -58,8 +59,8 @@ ORDERING_TIMES = dict(
 """Ordering times (eq. 7) with the angle as printed and a wider one; NaN where a flock did not
 order."""
 
-_CONTROL_HZ = 10.0
-
+CONTROL_HZ = 10.0
+"""Control steps a second, unless the environment has another option."""
 
 POLICIES: Mapping[str, Callable[[], LeaderPolicy | str]] = {
     **LAWS,
@@ -155,10 +156,12 @@ def compare_leaders(
     """
     pandas = require("pandas", "plot")
     check_evaluation_seeds(seeds)
+    _check_leaders(parameters, leaders)
+    if environment:
+        _check_environment(environment, leaders, policies)
     options = {"target": parameters.target, **(environment or {})}
     parts = []
     if 0 in leaders:
-        _refuse_options(environment, NO_LEADERS)
         scene = parameters.replace(n_leaders=0)
         found = _simulated(scene, seeds, duration_s, progress)
         parts.append({"policy": NO_LEADERS, "leaders": 0, "seed": seeds, **found})
@@ -166,7 +169,6 @@ def compare_leaders(
         for k in (k for k in leaders if k > 0):
             scene, policy = parameters.replace(n_leaders=k), make()
             if isinstance(policy, str):
-                _refuse_options(environment, name)
                 found = _simulated(scene, seeds, duration_s, progress)
             else:
                 found = run_episodes(scene, policy, seeds, duration_s, progress, options)
@@ -176,11 +178,28 @@ def compare_leaders(
     return runs
 
 
-def _refuse_options(environment: Mapping[str, Any] | None, policy: str) -> None:
-    if environment:
+def _check_leaders(parameters: FlockParameters, leaders: Sequence[int]) -> None:
+    most = max(leaders, default=0)
+    if most >= parameters.n_boats:
         raise ParameterError(
-            f"{policy!r} runs outside of the environment, which is not accepted with its options "
-            f"{', '.join(environment)}"
+            f"{most} leaders among n_boats = {parameters.n_boats} are not accepted: at least one "
+            "normal boat, as order is theirs (on the command line fewer `--most-leaders` or "
+            "`--leaders`, or more boats)"
+        )
+    parameters.replace(n_leaders=most)
+
+
+def _check_environment(
+    environment: Mapping[str, Any],
+    leaders: Sequence[int],
+    policies: Mapping[str, Callable[[], LeaderPolicy | str]],
+) -> None:
+    outside = [NO_LEADERS] if 0 in leaders else []
+    outside += [name for name, make in policies.items() if isinstance(make(), str)]
+    if outside:
+        raise ParameterError(
+            f"{outside[0]!r} runs outside of the environment, which is not accepted with its "
+            f"options {', '.join(environment)}"
         )
 
 
@@ -217,7 +236,7 @@ def run_episodes(
     while not ended.all():
         actions, state = policy.predict(observations, state)
         observations, _, _, ended, infos = env.step(actions)
-        progress(len(seeds) / options.get("control_hz", _CONTROL_HZ))
+        progress(len(seeds) / options.get("control_hz", CONTROL_HZ))
     summary = infos["episode_summary"]
     names = (*QUANTITIES, *ORDERING_TIMES)
     return {name: np.asarray(summary[name], np.float64) for name in names}
@@ -233,7 +252,7 @@ def _environment(
         params=scene,
         episode_s=duration_s,
         autoreset_mode="disabled",
-        **{"control_hz": _CONTROL_HZ, **options},
+        **{"control_hz": CONTROL_HZ, **options},
     )
 
 
@@ -250,7 +269,7 @@ def _simulated(
     flock_seeds = [int(seed) for seed in infos["flock_seed"]]
 
     def run(seed: int) -> list[float]:
-        recording = simulate(scene, seed, duration_s, _CONTROL_HZ, dtype=np.float32)
+        recording = simulate(scene, seed, duration_s, CONTROL_HZ, dtype=np.float32)
         frames = recording.in_analysis_window & (recording.time_s > 0.1 * duration_s)
         order = recording.order
         signed = order.signed_order(scene.target)[frames]

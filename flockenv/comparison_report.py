@@ -2,10 +2,11 @@
 
 import itertools
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import tomli_w
 from rich.table import Table
 
 from flockenv._core import __version__
@@ -17,7 +18,13 @@ from flockenv.analysis import (
     paired_difference,
     summarise,
 )
-from flockenv.comparison import NO_LEADERS, ORDERING_TIMES, QUANTITIES, compare_leaders
+from flockenv.comparison import (
+    CONTROL_HZ,
+    NO_LEADERS,
+    ORDERING_TIMES,
+    QUANTITIES,
+    compare_leaders,
+)
 from flockenv.extras import require
 from flockenv.parameters import FlockParameters
 from flockenv.simulation import LeaderPolicy
@@ -58,20 +65,31 @@ class ComparisonReport:
     differences : pandas.DataFrame
         How much signed order each policy has beyond each one before it, its ``reference``, seed by
         seed, for each number of leaders; empty for a single policy.
+    environment : dict
+        Options of the environment that differ from its defaults.
     """
 
     scene: FlockParameters
     means: "pd.DataFrame"
     lines: dict[tuple[str, str], Line]
     differences: "pd.DataFrame"
+    environment: Mapping[str, Any] = field(default_factory=dict)
 
     def title(self) -> str:
         """Return what was run, in one line."""
-        scene = self.scene
-        return (
-            f"{scene.n_boats} boats, pool {scene.pool}, bw = {scene.bw_s:g} s, "
-            f"target {scene.target}, {scene.scheme} + {scene.noise}"
-        )
+        scene, options = self.scene, dict(self.environment)
+        target = options.pop("target", scene.target)
+        dropped = options.pop("dropout_rate", 0.0)
+        parts = [
+            f"{scene.n_boats} boats",
+            f"pool {scene.pool}",
+            f"bw = {scene.bw_s:g} s",
+            "alternating targets" if target == "alternate" else f"target {target}",
+            *([f"{100 * dropped:.3g} % of positions dropped"] if dropped else []),
+            *(f"{name} = {value}" for name, value in options.items()),
+            f"{scene.scheme} + {scene.noise}",
+        ]
+        return ", ".join(parts)
 
     def table(self, width: int = _WIDE) -> Table:
         """Return the means as a table for a terminal of so many columns."""
@@ -128,8 +146,9 @@ def report(
 ) -> ComparisonReport:
     """Run a comparison of policies and write its files.
 
-    Writes ``runs.csv``, ``means.csv``, ``lines.csv``, ``differences.csv``, ``leader_curve.png`` and
-    ``parameters.toml`` into `folder`.
+    Writes ``runs.csv``, ``means.csv``, ``lines.csv``, ``differences.csv``, ``leader_curve.png``,
+    ``parameters.toml`` (the scene) and ``run.toml`` (all else that the numbers depend on) into
+    `folder`.
 
     Raises
     ------
@@ -150,7 +169,8 @@ def report(
         own = runs[runs["policy"].isin([policy, NO_LEADERS])]
         for quantity in QUANTITIES if own["leaders"].nunique() > 1 else ():
             lines[policy, quantity] = fit_line(own["leaders"], own[quantity])
-    result = ComparisonReport(scene, means, lines, _differences(runs, list(policies)))
+    differences = _differences(runs, list(policies))
+    result = ComparisonReport(scene, means, lines, differences, environment or {})
     folder.mkdir(parents=True, exist_ok=True)
     for name, table in (
         ("runs", runs),
@@ -160,7 +180,17 @@ def report(
     ):
         with whole_file(folder / f"{name}.csv") as file:
             table.to_csv(file, index=False)
-    header = f"# flockenv {__version__}, seeds {seeds[0]} to {seeds[-1]}, {duration_s:g} s each\n"
+    asked = {
+        "flockenv": __version__,
+        "duration_s": float(duration_s),
+        "leaders": [int(k) for k in leaders],
+        "seeds": {"first": int(seeds[0]), "last": int(seeds[-1]), "number": len(seeds)},
+        "policies": {name: str(make()) for name, make in policies.items()},
+        "environment": {"target": scene.target, "control_hz": CONTROL_HZ, **(environment or {})},
+    }
+    with whole_file(folder / "run.toml") as file:
+        file.write(tomli_w.dumps(asked).encode())
+    header = f"# flockenv {__version__}: the scene; seeds, policies and options in run.toml\n"
     with whole_file(folder / "parameters.toml") as file:
         file.write((header + scene.to_toml()).encode())
     leader_curve(runs, means, lines, result.title(), folder / "leader_curve.png")

@@ -94,4 +94,5 @@ def _draw_policy(axes: Axes, shown: _Shown, line: Line | None, shift: float, col
         return
     x = np.array([shown.k.min(), shown.k.max()])
     y = line.intercept + line.slope * x
-    axes.plot(x, y, "-", lw=1, color=color, label=f"F = {line.f:.1f}, p = {line.p:.1g}")
+    label = "no line to fit" if np.isnan(line.f) else f"F = {line.f:.1f}, p = {line.p:.1g}"
+    axes.plot(x, y, "-", lw=1, color=color, label=label)

@@ -11,6 +11,7 @@ from rich.table import Table
 from flockenv import _core
 from flockenv.experiment_facts import FACTS, NOISE_S
 from flockenv.experiment_fit import HELD_OUT, Fit, Trial, residuals, run_flocks
+from flockenv.extras import require
 from flockenv.parameters import FlockParameters
 from flockenv.whole_file import whole_file
 
@@ -83,7 +84,17 @@ def report(
         Where to write.
     progress
         Called with what was done, in words, and how many steps of `work` that is.
+
+    Raises
+    ------
+    ParameterError
+        If the folder holds another fit's log.
+    MissingExtraError
+        Without the extra ``fit``; nothing is written then.
     """
+    # All of them before hours of trials.
+    for package in ("cmaes", "pandas"):
+        require(package, "fit")
     asked = asdict(fit) | {"scene": fit.scene.to_dict(), "held_out": held_out}
     header = f"# flockenv {_core.__version__}\n"
     _write(folder / "fit.toml", header + tomli_w.dumps(asked))
@@ -106,7 +117,14 @@ def report(
 def check(
     scene: FlockParameters, held_out: int, jobs: int, progress: Callable[[str, float], None]
 ) -> FitReport:
-    """Measure every fact of a scene on held-out seeds, without a fit: `held_out` steps of work."""
+    """Measure every fact of a scene on held-out seeds, without a fit: `held_out` steps of work.
+
+    Raises
+    ------
+    MissingExtraError
+        Without pandas, of the extra ``fit``; nothing is run then.
+    """
+    require("pandas", "fit")
     seeds = range(HELD_OUT, HELD_OUT + held_out)
     return FitReport(scene, _residuals(scene, seeds, jobs, progress))
 

@@ -5,6 +5,7 @@ from typing import Any
 
 from flockenv._core import __version__
 from flockenv.analysis import CONFIDENCE
+from flockenv.comparison import EVERY_SUBSTEP
 from flockenv.comparison_report import ComparisonReport
 from flockenv.observation import OBSERVATION_VERSION
 from flockenv.policies import LeaningLaw, NetworkPolicy
@@ -41,6 +42,8 @@ def model_card(
         lines += [f"`{policy!r}`, version {OBSERVATION_VERSION} of the observation.", ""]
         lines += ["| made by | |", "| --- | --- |"]
         lines += [f"| {what} | `{text}` |" for what, text in policy.made.items()]
+    elif policy == EVERY_SUBSTEP:
+        lines += ["The paper's law, eq. (10), from the pose at every substep: nothing is learned."]
     else:
         lines += [f"`{policy!r}`: nothing in it is learned."]
     lines += [

@@ -188,7 +188,8 @@ class FlockParameters:
             raise ParameterError(
                 f"pool = {pool!r}: the critical noise of preset {preset!r} has not been measured "
                 "there. Choose another pool, or name a noise level yourself (bw_s; on the command "
-                "line `--pool table-1` or `--bw-s 1.0`); baselines/critical_noise.py measures it"
+                "line `--pool table-1` or `--set bw_s=1.0`); baselines/critical_noise.py measures "
+                "it"
             )
         return bw_s
 

@@ -1,14 +1,17 @@
 """The command line: `flockenv COMMAND --help` tells what each command does. One file a command."""
 
 import functools
+import signal
 from collections.abc import Callable
+from threading import current_thread, main_thread
+from threading import enumerate as enumerate_threads
 from typing import Annotated, Any
 
 import typer
 
 from flockenv import FlockError, __version__
 from flockenv.cli.compare import compare
-from flockenv.cli.console import console, errors, interruptible, say
+from flockenv.cli.console import INTERRUPTED, console, errors, interruptible, say
 from flockenv.cli.evaluate import evaluate
 from flockenv.cli.fit import fit
 from flockenv.cli.presets import presets
@@ -50,6 +53,17 @@ def main() -> None:
         errors.print("[bold red]Error:[/]", end=" ")
         say(_in_words(error), errors)
         raise SystemExit(2) from error
+    except SystemExit as ended:
+        if ended.code == INTERRUPTED:
+            _end_in_peace()
+        raise
+
+
+def _end_in_peace() -> None:
+    """Ignore another Ctrl-C, which would only spill tracebacks of packages that are being left."""
+    waited_for = any(not each.daemon for each in enumerate_threads() if each is not main_thread())
+    if not waited_for and current_thread() is main_thread():
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _in_words(error: FlockError | OSError) -> str:

@@ -45,8 +45,8 @@ def compare(
 
     Runs without leaders, and with leaders that follow each policy, on the same seeds: 27 boats in
     both pools, at the critical noise of each, unless the scene says otherwise. Writes `runs.csv`,
-    `means.csv`, `lines.csv`, `differences.csv`, `leader_curve.png` and the exact parameters, which
-    `--params` reads, for each pool.
+    `means.csv`, `lines.csv`, `differences.csv`, `leader_curve.png`, `run.toml` (seeds, policies,
+    environment) and the exact parameters, which `--params` reads, for each pool.
 
     Example: `flockenv compare --pool table-1 --policy "damped law" --set bw_s=0.4`
     """

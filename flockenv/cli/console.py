@@ -1,7 +1,7 @@
 """Where commands print: results to standard output, progress and errors to standard error."""
 
 import signal
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from threading import current_thread, main_thread
@@ -11,7 +11,19 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-__all__ = ["console", "errors", "finished_in", "interruptible", "progress_bar", "resumable", "say"]
+__all__ = [
+    "INTERRUPTED",
+    "console",
+    "errors",
+    "finished_in",
+    "interruptible",
+    "progress_bar",
+    "resumable",
+    "say",
+]
+
+INTERRUPTED = 130
+"""Exit code after Ctrl-C."""
 
 _NOTHING = "Nothing was written."
 
@@ -39,13 +51,20 @@ def progress_bar(disable: bool) -> Progress:
 
 
 @contextmanager
-def interruptible(told: str) -> Iterator[None]:
-    """On Ctrl-C within a `with` block, end with exit code 130 and say what became of the work."""
+def interruptible(told: str | Callable[[], str]) -> Iterator[None]:
+    """On Ctrl-C within a `with` block, end with exit code 130 and say what became of the work.
+
+    Parameters
+    ----------
+    told
+        What is said, or what finds the words then. Another Ctrl-C does not cut it off.
+    """
     try:
         yield
     except KeyboardInterrupt:
-        say(f"Interrupted. {told}", errors)
-        raise typer.Exit(130) from None
+        with _on_interrupt(signal.SIG_IGN):
+            say(f"Interrupted. {told if isinstance(told, str) else told()}", errors)
+        raise typer.Exit(INTERRUPTED) from None
 
 
 @contextmanager
@@ -59,12 +78,12 @@ def finished_in(folder: Path, parts: Collection[str]) -> Iterator[None]:
     parts
         Names of the finished parts, as it grows within the block.
     """
-    try:
+
+    def told() -> str:
+        return f"Finished and kept in {folder}: {', '.join(parts)}." if parts else _NOTHING
+
+    with interruptible(told):
         yield
-    except KeyboardInterrupt:
-        told = f"Finished and kept in {folder}: {', '.join(parts)}." if parts else _NOTHING
-        say(f"Interrupted. {told}", errors)
-        raise typer.Exit(130) from None
 
 
 @contextmanager
@@ -86,12 +105,20 @@ def _announced() -> Iterator[None]:
         say("Waiting for the runs under way to end. Ctrl-C again does not wait.", errors)
         raise KeyboardInterrupt
 
+    with _on_interrupt(announce):
+        yield
+
+
+@contextmanager
+def _on_interrupt(
+    action: Callable[[int, FrameType | None], None] | signal.Handlers,
+) -> Iterator[None]:
     # Elsewhere than in the main thread nothing is interrupted, nor where it is ignored (by nohup).
     ours = signal.getsignal(signal.SIGINT) is signal.default_int_handler
     if not ours or current_thread() is not main_thread():
         yield
         return
-    signal.signal(signal.SIGINT, announce)
+    signal.signal(signal.SIGINT, action)
     try:
         yield
     finally:

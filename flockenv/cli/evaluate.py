@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from flockenv import ParameterError
+from flockenv import FlockParameters, ParameterError
 from flockenv.cli.console import console, finished_in, progress_bar, say
 from flockenv.cli.output import check_folder
 from flockenv.cli.pools import PoolOption, pool_name, scenes
@@ -58,8 +58,8 @@ def evaluate(
     """Compare one policy with others on the same seeds and write its model card.
 
     Runs 27 boats in both pools, at the critical noise of each, unless the scene says otherwise.
-    Writes `card.md` and, for each pool and noise level, a folder with the tables, the picture and
-    the exact parameters, as `flockenv compare` does.
+    Writes `card.md` and, for each pool and noise level, a folder with the tables, the picture,
+    `run.toml` and the exact parameters, as `flockenv compare` does.
 
     Example: `flockenv evaluate baselines/policies/table-1.npz --pool table-1 --leaders 3`
     """
@@ -68,10 +68,12 @@ def evaluate(
     from flockenv.model_card import model_card
     from flockenv.whole_file import whole_file
 
-    references = list(against or REFERENCES)
+    references = list(against or (each for each in REFERENCES if each != policy))
     if policy in references:
         raise ParameterError(f"{policy!r} is both the policy and one of those it is compared with")
     name = Path(policy).stem if policy.endswith(".npz") else policy
+    if name in references:
+        name = policy
     named = {each: each for each in references} | {name: policy}
     options: dict[str, Any] = {"dropout_rate": dropout_rate} if dropout_rate else {}
     if alternate:
@@ -79,10 +81,7 @@ def evaluate(
     duration_s = 60.0 * (minutes if minutes is not None else 16.0 if alternate else 8.0)
     numbers = sorted(set(leaders or (1, 2, 3, 4)))
     seeds = range(seed, seed + episodes)
-    found = {
-        f"{pool_name(each)}-bw-{each.bw_s:g}": each
-        for each in scenes(preset, params, changes, pool, bw_s)
-    }
+    found = _by_folder(scenes(preset, params, changes, pool, bw_s))
     pools = {each.pool for each in found.values()}
     if policy in POOL_POLICIES and len(pools) > 1:
         raise ParameterError(f"{policy!r} is another policy in each pool: ask for one with --pool")
@@ -126,3 +125,17 @@ def evaluate(
         console.print(each.table(console.width))
         say(each.differences_in_words())
     say(f"Written to {out}")
+
+
+def _by_folder(scenes: list[FlockParameters]) -> dict[str, FlockParameters]:
+    """Return the scenes by the name of the folder that each has its results in."""
+    found: dict[str, FlockParameters] = {}
+    for scene in scenes:
+        name = f"{pool_name(scene)}-bw-{scene.bw_s:g}"
+        if name in found:
+            raise ParameterError(
+                f"--bw-s {scene.bw_s!r} is not accepted beside {found[name].bw_s!r}: noise levels "
+                "that differ in six digits"
+            )
+        found[name] = scene
+    return found

@@ -7,7 +7,7 @@ from tempfile import TemporaryFile
 
 from flockenv import ParameterError, Recording
 
-__all__ = ["check_folder", "load_recording", "writable"]
+__all__ = ["check_file", "check_folder", "load_recording", "writable"]
 
 
 def load_recording(path: Path) -> Recording:
@@ -45,6 +45,19 @@ def check_folder(folder: Path, option: str = "--out") -> None:
     finally:
         for each in reversed(made):
             each.rmdir()
+
+
+def check_file(path: Path, option: str = "--out") -> None:
+    """Check, before long work, that a file can be written; leaves nothing behind.
+
+    Raises
+    ------
+    ParameterError
+        If it is a folder, or its folder takes no files.
+    """
+    if path.is_dir():
+        raise ParameterError(f"{option} {path} cannot be written: it is a folder")
+    check_folder(path.parent, f"{option} {path}: folder")
 
 
 @contextmanager

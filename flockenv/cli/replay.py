@@ -7,7 +7,7 @@ import typer
 
 from flockenv import ParameterError
 from flockenv.cli.console import console, interruptible, progress_bar, say
-from flockenv.cli.output import load_recording, writable
+from flockenv.cli.output import check_file, load_recording, writable
 
 __all__ = ["replay"]
 
@@ -45,6 +45,7 @@ def replay(
     page = first.with_suffix(".html") if html is None else html
     if page.suffix not in (".html", ".htm"):
         raise ParameterError(f"--html {page} is not accepted: a name that ends in .html")
+    check_file(page, "--html")
     with interruptible("Nothing was written."), progress_bar(quiet or as_json) as progress:
         task = progress.add_task("writing the page", total=len(paths) + 1)
         recordings = {}

@@ -10,7 +10,7 @@ from flockenv.cli.console import console, errors, progress_bar, resumable, say
 from flockenv.cli.output import check_folder
 from flockenv.engines import named
 from flockenv.errors import ParameterError
-from flockenv.reproduce import names
+from flockenv.reproduce import names, require_packages
 
 __all__ = ["reproduce"]
 
@@ -43,6 +43,7 @@ def reproduce(
 
     Example: `flockenv reproduce fig14 fig17`
     """
+    require_packages()
     from flockenv.reproduce.command import plan, reproduce
     from flockenv.reproduce.reproduction import Settings
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from flockenv import FlockParameters, ParameterError, Recording, simulate
 from flockenv.cli.console import console, interruptible, progress_bar, say
-from flockenv.cli.output import writable
+from flockenv.cli.output import check_file, writable
 from flockenv.cli.scene import ChangesOption, FileOption, PresetOption, read_scene, save_scene
 from flockenv.comparison import EVERY_SUBSTEP, POLICIES, POOL_POLICIES, named_policy
 from flockenv.simulation import LeaderPolicy
@@ -49,8 +49,9 @@ def run(
     if out.suffix != ".npz":
         raise ParameterError(f"--out {out} is not accepted: a name that ends in .npz")
     leaders = _policy(policy, scene)
-    with writable(out):
-        pass  # Better told now than after the run.
+    parameters = out.with_suffix(".toml")
+    for path in (out, parameters):
+        check_file(path)
     with interruptible("Nothing was written."), progress_bar(quiet or as_json) as progress:
         task = progress.add_task("simulating", total=minutes * 60)
         recording = simulate(
@@ -63,7 +64,6 @@ def run(
             progress=lambda seconds: progress.advance(task, seconds),
         )
         progress.update(task, completed=minutes * 60)
-    parameters = out.with_suffix(".toml")
     remark = f"flockenv {recording.version}: seed {seed}, policy {policy}, {minutes:g} min"
     with interruptible(f"{out} may not have been written."):
         with writable(out):

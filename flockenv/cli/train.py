@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from flockenv import ParameterError
-from flockenv.cli.console import console, errors, progress_bar, say
+from flockenv.cli.console import console, interruptible, progress_bar, say
 from flockenv.cli.output import check_folder
 from flockenv.cli.scene import changed_fields
 
@@ -50,8 +50,13 @@ def train(
         raise ParameterError(
             "--resume takes settings from the checkpoint; only --samples may differ"
         )
-    with progress_bar(quiet or as_json) as bar:
-        task = bar.add_task("beginning", total=None)
+    if resume:
+        wanted = training.stored_settings(out, samples)
+    else:
+        wanted = _settings(settings, change or [], samples, seed)
+        check_folder(out)
+    with interruptible(lambda: _kept(out)), progress_bar(quiet or as_json) as bar:
+        task = bar.add_task("beginning", total=wanted.samples)
 
         def report(progress: training.Progress) -> None:
             words = f"{progress.samples} samples"
@@ -59,20 +64,11 @@ def train(
                 words += f", signed order {progress.best_score:.3f}"
             bar.update(task, description=words, completed=progress.samples)
 
-        try:
-            if resume:
-                wanted = training.stored_settings(out, samples)
-                bar.update(task, total=wanted.samples)
-                result = training.resume(out, samples=samples, report=report)
-            else:
-                asked = _settings(settings, change or [], samples, seed)
-                check_folder(out)
-                bar.update(task, total=asked.samples)
-                command = shlex.join(["flockenv", *sys.argv[1:]])
-                result = training.train(asked, out, command=command, report=report)
-        except KeyboardInterrupt:
-            _tell_interrupted(out)
-            raise typer.Exit(130) from None
+        if resume:
+            result = training.resume(out, samples=samples, report=report)
+        else:
+            command = shlex.join(["flockenv", *sys.argv[1:]])
+            result = training.train(wanted, out, command=command, report=report)
     progress = result.progress
     if as_json:
         last = {"samples": progress.samples, "wall_s": round(progress.wall_s, 1)}
@@ -91,17 +87,17 @@ def _settings(path: Path | None, change: list[str], samples: int | None, seed: i
     if path is not None:
         try:
             values = TrainingSettings.from_toml(path.read_text("utf-8")).to_dict()
-        except (OSError, UnicodeDecodeError) as error:
-            raise ParameterError(f"{path} cannot be read: {error}") from error
+        except OSError as error:
+            raise ParameterError(f"--settings {path} cannot be read: {error.strerror}") from error
+        except (ParameterError, UnicodeDecodeError) as error:
+            raise ParameterError(f"--settings {path}: {error}") from error
     values |= changed_fields(change)
     given = {"samples": samples, "seed": seed}
     values |= {name: value for name, value in given.items() if value is not None}
     return TrainingSettings.from_dict(values)
 
 
-def _tell_interrupted(out: Path) -> None:
+def _kept(out: Path) -> str:
     if (out / "checkpoint.npz").exists():
-        words = f"Interrupted. The last checkpoint is kept: flockenv train --resume --out {out}"
-    else:
-        words = "Interrupted before the first checkpoint: start again."
-    say(words, errors)
+        return f"The last checkpoint is kept: flockenv train --resume --out {out}"
+    return "There is no checkpoint yet: start again."

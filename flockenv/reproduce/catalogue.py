@@ -10,7 +10,7 @@ from flockenv.extras import require
 if TYPE_CHECKING:
     from flockenv.reproduce.reproduction import Reproduction
 
-__all__ = ["ALL", "BUDGETED", "load", "names", "resolve"]
+__all__ = ["ALL", "BUDGETED", "load", "names", "require_packages", "resolve"]
 
 ALL = "all"
 """The name that stands for everything of the paper."""
@@ -57,8 +57,8 @@ def resolve(asked: Iterable[str]) -> list[str]:
     return [name for name in names() if name in asked or (ALL in asked and name in _PAPER)]
 
 
-def load(name: str) -> "Reproduction":
-    """Return what a name of the catalogue stands for.
+def require_packages() -> None:
+    """Check that the packages are there that figures and their tables need.
 
     Raises
     ------
@@ -67,6 +67,17 @@ def load(name: str) -> "Reproduction":
     """
     for package in ("pandas", "pyarrow", "scipy", "matplotlib"):
         require(package, "plot")
+
+
+def load(name: str) -> "Reproduction":
+    """Return what a name of the catalogue stands for.
+
+    Raises
+    ------
+    MissingExtraError
+        Without the extra ``plot``.
+    """
+    require_packages()
     module = require({**_PAPER, **_BEYOND}[name], "plot")
     found: Reproduction = next(each for each in module.REPRODUCTIONS if each.name == name)
     return found

@@ -28,6 +28,13 @@ def test_points_on_a_line_leave_no_doubt() -> None:
     assert line.p < 1e-12
 
 
+def test_equal_values_have_no_line() -> None:
+    line = fit_line(range(5), [0.25] * 5)
+    assert (line.slope, line.intercept, line.n) == (0.0, 0.25, 5)
+    assert np.isnan([line.f, line.p]).all()
+    assert str(line) == "0.250 in all 5 runs: no line to fit"
+
+
 @pytest.mark.parametrize(("x", "y"), [([1, 2], [1, 2]), ([1, 1, 1], [1, 2, 3])])
 def test_too_little_for_a_line_is_refused(x: list[float], y: list[float]) -> None:
     with pytest.raises(ValueError, match="three points at two different x"):

@@ -1,6 +1,8 @@
 """A comparison runs every policy on the same seeds, through the environment a learner would use."""
 
+import tomllib
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -66,13 +68,53 @@ def test_the_report_writes_its_files(scene: flockenv.FlockParameters, tmp_path: 
         "lines.csv",
         "means.csv",
         "parameters.toml",
+        "run.toml",
         "runs.csv",
     }
     stored = (folder / "parameters.toml").read_text("utf-8")
     assert flockenv.FlockParameters.from_toml(stored) == scene
+    asked = tomllib.loads((folder / "run.toml").read_text("utf-8"))
+    assert asked["leaders"] == [0, 1, 2]
+    assert asked["duration_s"] == 40.0
+    assert asked["seeds"] == {"first": 0, "last": 1, "number": 2}
+    assert asked["policies"]["damped law"] == repr(POLICIES["damped law"]())
+    assert asked["environment"] == {"target": "cw", "control_hz": 10.0}
     assert len(result.means) == 1 + 3 * 2
     assert len(result.differences) == 3 * 2
     assert (folder / "leader_curve.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_report_tells_the_environment(scene: flockenv.FlockParameters, tmp_path: Path) -> None:
+    options = {"target": "alternate", "dropout_rate": 0.003, "control_hz": 5.0}
+    result = report(scene, [1], LAW, range(2), 20.0, tmp_path, lambda seconds: None, options)
+    for words in ("alternating targets", "0.3 % of positions dropped", "control_hz = 5.0"):
+        assert words in result.title()
+    assert "target cw" not in result.title()
+    asked = tomllib.loads((tmp_path / "run.toml").read_text("utf-8"))
+    assert asked["environment"] == options
+    stored = (tmp_path / "parameters.toml").read_text("utf-8")
+    assert flockenv.FlockParameters.from_toml(stored) == scene
+
+
+@pytest.mark.parametrize(
+    ("leaders", "name", "environment", "words"),
+    [
+        ([1, 9], "straight ahead", {}, "9 leaders among n_boats = 9 .* `--most-leaders`"),
+        ([1], "steering law, every substep", {"target": "alternate"}, "outside"),
+    ],
+)
+def test_what_cannot_be_compared_is_refused_first(
+    scene: flockenv.FlockParameters,
+    leaders: list[int],
+    name: str,
+    environment: dict[str, Any],
+    words: str,
+) -> None:
+    seconds: list[float] = []
+    policies = {"damped law": POLICIES["damped law"], name: POLICIES[name]}
+    with pytest.raises(flockenv.ParameterError, match=words):
+        compare_leaders(scene, leaders, policies, [1], 5.0, seconds.append, environment)
+    assert seconds == []
 
 
 def test_policies_by_name_and_by_file(tmp_path: Path) -> None:

@@ -8,6 +8,8 @@ import pytest
 from PIL import Image
 
 import flockenv
+from flockenv.observation import observation_entries
+from flockenv.policies import NetworkPolicy
 
 
 def test_it_draws(script, tmp_path: Path, capsys) -> None:
@@ -19,6 +21,19 @@ def test_it_draws(script, tmp_path: Path, capsys) -> None:
     means = pd.read_csv(tmp_path / "means.csv", index_col="policy")
     assert list(means.index) == ["damped law", "straight ahead"]
     assert means.loc["straight ahead", "rudder"] == 0.0
+
+
+def test_files_of_one_name_are_told_apart(script, tmp_path: Path) -> None:
+    size, files = len(observation_entries()), []
+    for rudder in (0.5, -0.5):
+        files.append(str(tmp_path / f"{rudder}" / "best.npz"))
+        Path(files[-1]).parent.mkdir()
+        NetworkPolicy([np.zeros((size, 1))], [[rudder]]).save(Path(files[-1]))
+    arguments = ["--episodes", "1", "--minutes", "0.5", "--quiet", "--out", str(tmp_path)]
+    script.main([*arguments, "--policy", files[0], "--policy", files[1]])
+    means = pd.read_csv(tmp_path / "means.csv", index_col="policy")
+    assert list(means.index) == files
+    assert means.loc[files[0], "rudder"] == -means.loc[files[1], "rudder"] != 0.0
 
 
 def test_samples_are_the_flocks_own(script) -> None:

@@ -47,16 +47,45 @@ def test_alternating_targets_and_drop_outs(flockenv: Run, tmp_path: Path) -> Non
     out = ["--against", "straight ahead", "--out", str(tmp_path)]
     done = flockenv("evaluate", "damped law", *SHORT, *arguments, *out)
     assert done.returncode == 0, done.stderr
+    assert "alternating targets, 1 % of positions dropped" in (tmp_path / "card.md").read_text()
     (row,) = json.loads(done.stdout)["table-1-bw-0.45"]
     assert (row["policy"], row["reference"], row["n"]) == ("damped law", "straight ahead", 3)
     assert row["low"] <= row["mean"] <= row["high"]
+
+
+def test_a_policy_that_is_a_default_reference_is_left_out_there(
+    flockenv: Run, tmp_path: Path
+) -> None:
+    arguments = ["--leaders", "1", "--json", "--out", str(tmp_path)]
+    done = flockenv("evaluate", "steering law", *SHORT, *arguments)
+    assert done.returncode == 0, done.stderr
+    (row,) = json.loads(done.stdout)["table-1-bw-0.45"]
+    assert (row["policy"], row["reference"]) == ("steering law", "tuned damped law")
+
+
+def test_a_file_called_like_a_reference_is_not_it(flockenv: Run, tmp_path: Path) -> None:
+    file = Path(learned(tmp_path)).rename(tmp_path / "learned.npz")
+    arguments = ["--against", "learned", "--leaders", "1", "--json", "--out", str(tmp_path)]
+    done = flockenv("evaluate", str(file), *SHORT, *arguments)
+    assert done.returncode == 0, done.stderr
+    (row,) = json.loads(done.stdout)["table-1-bw-0.45"]
+    assert (row["policy"], row["reference"]) == (str(file), "learned")
+
+
+def test_the_card_of_the_law_at_every_substep(flockenv: Run, tmp_path: Path) -> None:
+    arguments = ["--against", "straight ahead", "--leaders", "1", "--out", str(tmp_path)]
+    done = flockenv("evaluate", "steering law, every substep", *SHORT, *arguments)
+    assert done.returncode == 0, done.stderr
+    card = (tmp_path / "card.md").read_text("utf-8")
+    assert "The paper's law, eq. (10), from the pose at every substep: nothing is learned." in card
 
 
 def test_errors_are_named(flockenv: Run, tmp_path: Path) -> None:
     (tmp_path / "broken.npz").write_bytes(b"PK nothing")
     for arguments, words in (
         (["dampd law"], "did you mean 'damped law'"),
-        (["tuned damped law"], "both the policy"),
+        (["damped law", "--against", "damped law"], "both the policy"),
+        (["damped law", "--bw-s", "0.31", "--bw-s", "0.3100000001"], "beside 0.31"),
         ([str(tmp_path / "broken.npz")], "broken.npz"),
         ([str(tmp_path / "missing.npz")], "missing.npz"),
         (["straight ahead", "--against", "steering law, every substep", "--alternate"], "options"),

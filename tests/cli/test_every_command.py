@@ -10,10 +10,12 @@ import time
 from pathlib import Path
 
 import pytest
+import typer
 from typer.testing import CliRunner
 
 import flockenv
 from flockenv.cli import app
+from flockenv.cli.console import finished_in, interruptible, resumable
 from flockenv.cli.presets import ABOUT
 
 COMMAND = [sys.executable, "-c", "from flockenv.cli import main; main()"]
@@ -116,7 +118,8 @@ def test_shells_complete(variable, line, words):
         (["compare", "--set", "n_leaders=3"], "an option of their own"),
         (["compare", "--params", "{}/none.toml"], "cannot be read"),
         (["compare", "--params", "{}/wall.toml", "--pool", "500-boats"], "contradicts"),
-        (["compare", "--set", "pool=[90, 10]"], "critical noise"),
+        (["compare", "--set", "pool=[90, 10]"], "`--set bw_s=1.0`"),
+        (["compare", "--set", "n_boats=4"], "--most-leaders"),
         (["compare", "--out", "{}/file/out"], "cannot be written"),
         (["evaluate", "straight ahead", "--set", "bw_s=1", "--bw-s", "2"], "--bw-s contradicts"),
         (["evaluate", "straight ahead", "--out", "{}/file"], "cannot be written"),
@@ -221,6 +224,62 @@ def test_ctrl_c_says_where_finished_work_is(name, tmp_path):
     assert "left:" in told
     assert "Traceback" not in told
     assert not list(Path(tmp_path).rglob("*.tmp"))
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        lambda: interruptible("All is kept."),
+        lambda: interruptible(lambda: "All is kept."),
+        lambda: finished_in(Path("here"), ["a"]),
+        lambda: resumable(Path("here")),
+    ],
+)
+def test_another_ctrl_c_does_not_cut_off_what_is_told(told, monkeypatch, capsys):
+    console = sys.modules[interruptible.__module__]  # The package has another thing of that name.
+    whole = console.say
+
+    def pressed(text, on):
+        signal.raise_signal(signal.SIGINT)
+        whole(text, on)
+
+    monkeypatch.setattr(console, "say", pressed)
+    with pytest.raises((typer.Exit, KeyboardInterrupt)) as ended, told():
+        raise KeyboardInterrupt
+    assert isinstance(ended.value, typer.Exit)
+    assert ended.value.exit_code == 130
+    assert "kept" in capsys.readouterr().err
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+@pytest.mark.parametrize(("code", "ignored"), [(130, True), (0, False)])
+def test_another_ctrl_c_does_not_disturb_the_end(code, ignored, monkeypatch):
+    monkeypatch.setattr(flockenv.cli, "app", lambda: sys.exit(code))
+    try:
+        with pytest.raises(SystemExit):
+            flockenv.cli.main()
+        assert (signal.getsignal(signal.SIGINT) is signal.SIG_IGN) == ignored
+    finally:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.mark.parametrize(
+    ("package", "extra", "arguments"),
+    [
+        *((each, "plot", ["reproduce", "fig14"]) for each in ("pandas", "matplotlib", "scipy")),
+        ("pyarrow", "plot", ["reproduce", "fig14"]),
+        ("pandas", "fit", ["fit"]),
+        ("cmaes", "fit", ["fit"]),
+        ("pandas", "fit", ["fit", "--check", "experiment"]),
+    ],
+)
+def test_a_missing_extra_is_named_before_any_work(package, extra, arguments, tmp_path):
+    forbid = f"import sys; sys.modules[{package!r}] = None"
+    words = [COMMAND[0], "-c", f"{forbid}; {COMMAND[2]}", *arguments, "--out", str(tmp_path / "a")]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 2
+    assert f"{package} is not installed: pip install 'flockenv[{extra}]'" in done.stderr
+    assert not (tmp_path / "a").exists()
 
 
 def everything(terminal: int) -> str:

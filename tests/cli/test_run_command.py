@@ -1,6 +1,7 @@
 """`flockenv run` and `flockenv replay`: what they write is what was asked for, and whole."""
 
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -79,6 +80,9 @@ def test_replay_writes_a_page_beside_the_recording(run, tmp_path):
         (["run", "--policy", "{}/good.npz"], "good.npz"),
         (["run", "--out", "{}/run.txt"], ".npz"),
         (["run", "--out", "/proc/none/run.npz"], "cannot be written"),
+        (["run", "--minutes", "1e9", "--out", "/proc/run.npz"], "cannot be written"),
+        (["run", "--minutes", "1e9", "--out", "{}/folder.npz"], "it is a folder"),
+        (["run", "--minutes", "1e9", "--out", "{}/a.npz"], "a.toml cannot be written"),
         (["run", "--hz", "0"], "sample_hz"),
         (["run", "--set", "target=[/nothing]"], "target"),
         (["run", "--params", "{}/none.toml"], "cannot be read"),
@@ -86,6 +90,7 @@ def test_replay_writes_a_page_beside_the_recording(run, tmp_path):
         (["replay", "{}/damaged.npz"], "damaged.npz"),
         (["replay", "{}/other.npz", "--html", "{}/x.html"], "other.npz"),
         (["replay", "{}/good.npz", "--html", "{}/page.png"], ".html"),
+        (["replay", "{}/none.npz", "--html", "/proc/page.html"], "cannot be written"),
         (["replay", "{}/good.npz", "--name", "a", "--name", "b"], "2 times for 1"),
     ],
 )
@@ -94,6 +99,8 @@ def test_errors_are_named_with_exit_code_2(arguments, words, run, tmp_path):
     (tmp_path / "good.npz").write_bytes(good)
     (tmp_path / "damaged.npz").write_bytes(good[:3000] + bytes(200) + good[3200:])
     (tmp_path / "other.npz").write_bytes(b"PK\5\6" + bytes(18))
+    (tmp_path / "folder.npz").mkdir()
+    (tmp_path / "a.toml").mkdir()
     before = sorted(tmp_path.iterdir())
     done = command(*(word.replace("{}", str(tmp_path)) for word in arguments), "--quiet")
     assert done.returncode == 2
@@ -107,16 +114,17 @@ def test_ctrl_c_says_what_became_of_the_work(policy, tmp_path):
     out = tmp_path / "sub" / "run.npz"
     long = ["run", "--minutes", "6000", "--hz", "0.01", "--policy", policy, "--set", "n_leaders=1"]
     process = subprocess.Popen(
-        [*COMMAND, *long, "--quiet", "--out", str(out)], stderr=subprocess.PIPE, text=True
+        [*COMMAND, *long, "--out", str(out)],
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "FORCE_COLOR": "1"},
     )
-    # The folder is made right before the run begins.
-    deadline = time.monotonic() + 60.0
-    while not out.parent.exists() and time.monotonic() < deadline:
-        time.sleep(0.05)
+    # The bar, drawn because of FORCE_COLOR, appears when the run begins.
+    assert process.stderr.read(1)
     time.sleep(1.0)
     process.send_signal(signal.SIGINT)
     _, told = process.communicate(timeout=30)
     assert process.returncode == 130
     assert "Nothing was written" in told
     assert "Traceback" not in told
-    assert list(out.parent.iterdir()) == []
+    assert not out.parent.exists()

@@ -57,10 +57,14 @@ def test_it_trains_and_goes_on(flockenv, tiny: str, tmp_path: Path) -> None:
 
 
 def test_errors_are_one_line_with_exit_code_2(flockenv, tiny: str, tmp_path: Path) -> None:
+    (tmp_path / "torn.toml").write_text("samples = ")
+    (tmp_path / "misspelt.toml").write_text("sample = 3")
     for arguments, words in (
         (["--settings", tiny, "--set", "net_arc=[4]"], "net_arch"),
         (["--settings", tiny, "--set", "start=lore"], "start"),
         (["--settings", str(tmp_path / "none.toml")], "none.toml"),
+        (["--settings", str(tmp_path / "torn.toml")], "torn.toml"),
+        (["--settings", str(tmp_path / "misspelt.toml")], "misspelt.toml"),
         (["--resume"], "no checkpoint"),
         (["--resume", "--seed", "3"], "only --samples"),
     ):
@@ -68,6 +72,8 @@ def test_errors_are_one_line_with_exit_code_2(flockenv, tiny: str, tmp_path: Pat
         assert done.returncode == 2, done.stderr
         assert words in done.stderr
         assert "Traceback" not in done.stderr
+        # A policy to start from is read only when training begins.
+        assert done.stderr.startswith("Error:") or words == "start"
 
 
 def test_the_missing_extra_is_named(tmp_path: Path) -> None:
