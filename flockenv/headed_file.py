@@ -5,7 +5,6 @@ import os
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
-import numpy as np
 from numpy.typing import NDArray
 
 from flockenv.array_file import read_arrays

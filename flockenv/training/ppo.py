@@ -31,7 +31,7 @@ from flockenv.training.actor import (
     network_policy,
     one_thread,
 )
-from flockenv.training.checkpoint import Progress
+from flockenv.training.checkpoint import LEARNED, Progress
 from flockenv.training.cloning import clone_law
 from flockenv.training.interrupts import held_interrupts
 from flockenv.training.pools import PooledVecEnv
@@ -230,8 +230,7 @@ class _Run:
             raise self._broken(loss)
         for name, value in watch.means().items():
             self.log.record(f"rollout/{name}", value)
-        learned = ("loss", "approx_kl", "clip_fraction", "explained_variance")
-        told = {name: float(self.log.name_to_value[f"train/{name}"]) for name in learned}
+        told = {name: float(self.log.name_to_value[f"train/{name}"]) for name in LEARNED}
         return {**watch.means(), **told}
 
     def _finite(self) -> bool:
@@ -276,8 +275,8 @@ class _Run:
             self._policy().save(self.folder / "last.npz")
             _write_rows(self.folder / "curve.csv", self.progress.curve)
             _write_rows(self.folder / "validations.csv", self.progress.validations)
-            path = self.folder / "checkpoint.npz"
-            checkpoint.save(path, self.model, self.settings, self.progress)
+            state = checkpoint.state_of(self.model, self.settings, self.progress)
+            checkpoint.save(self.folder / "checkpoint.npz", state)
 
 
 class _Watch(BaseCallback):
