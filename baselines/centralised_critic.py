@@ -8,6 +8,7 @@ the actor is needed afterwards: `predict` never reads the state.
 """
 
 import argparse
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from stable_baselines3 import PPO
 from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.vec_env import VecEnvWrapper, VecMonitor
 
+import flockenv
 from flockenv.sb3 import LeaderVecEnv
 
 
@@ -108,9 +110,17 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=Path("results/centralised_critic"))
     options = parser.parse_args(arguments)
-    model = train(options.samples, options.flocks, options.seed, target="random", episode_s=120.0)
-    options.out.parent.mkdir(parents=True, exist_ok=True)
-    model.save(options.out)
+    if not 0 <= options.seed < 1 << 32:
+        parser.error(f"--seed {options.seed} is not accepted: from 0 to {(1 << 32) - 1}")
+    scene = {"target": "random", "episode_s": 120.0}
+    try:
+        model = train(options.samples, options.flocks, options.seed, **scene)
+        options.out.parent.mkdir(parents=True, exist_ok=True)
+        model.save(options.out)
+    except KeyboardInterrupt:
+        sys.exit("Interrupted: nothing was saved")
+    except (flockenv.FlockError, OSError) as error:
+        sys.exit(f"Error: {error}")
     print(f"saved {options.out}.zip")
 
 

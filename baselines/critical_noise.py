@@ -12,6 +12,7 @@ not taken for order; the disordered level is mean Ψ_o at the highest noise.
 
 import argparse
 import os
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from itertools import product
 from pathlib import Path
@@ -47,7 +48,7 @@ def critical_noise(means: pd.DataFrame) -> float:
     return float(np.interp(-middle, -psi_o[above : above + 2], bw_s[above : above + 2]))
 
 
-def main() -> None:
+def main(arguments: list[str] | None = None) -> None:
     """Run the scan, write one row a run, print the critical noise of each scene."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--boats", type=int, default=27)
@@ -56,7 +57,9 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("results/critical_noise.csv"))
     parser.add_argument("--preset", choices=NOISE_S, action="append")
     parser.add_argument("--pool", choices=POOLS, action="append")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
+    if options.seeds < 1:
+        parser.error("--seeds is at least 1")
 
     cells = [
         cell
@@ -73,9 +76,14 @@ def main() -> None:
         order = order_of_run(scene, seed, options.minutes)
         return {"preset": preset, "pool": pool, "bw_s": bw_s, "seed": seed, **order}
 
-    # Threads suffice: the simulator lets go of the interpreter while it runs.
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        rows = list(track(pool.map(run, cells), "simulating", total=len(cells)))
+    try:
+        # Threads suffice: the simulator lets go of the interpreter while it runs.
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            rows = list(track(pool.map(run, cells), "simulating", total=len(cells)))
+    except KeyboardInterrupt:
+        sys.exit("Interrupted: nothing was written")
+    except flockenv.FlockError as error:
+        sys.exit(f"Error: {error}")
     runs = pd.DataFrame(rows)
     options.out.parent.mkdir(parents=True, exist_ok=True)
     runs.round(4).to_csv(options.out, index=False)

@@ -9,9 +9,8 @@ Gaussian perturbations of all weights are tried in pairs of opposite signs, a fl
 each, all in one batch of the simulator. Candidates of a generation steer the same episodes, so that
 they differ by their weights alone; their mean rewards are replaced by ranks; Adam follows the
 estimated gradient. The policy is linear feedback on the observation unless hidden layers are asked
-for; with --form leaning it is a `LeaningLaw`, which begins as the
-damped law. Interrupted, the same command goes on from the last generation. The result is a policy
-file:
+for; with --form leaning it is a `LeaningLaw`, which begins as the damped law. Interrupted, the same
+command goes on from the last generation. The result is a policy file:
 
     flockenv compare --policy "steering law" --policy results/evolution/policy.npz
 """
@@ -42,10 +41,17 @@ from flockenv.reward import TERMS
 from flockenv.seeds import training_seed
 
 SEEDS_OF_A_RUN = 1 << 24
+MOST_SEEDS = (1 << 63) // SEEDS_OF_A_RUN
 DECAY_1, DECAY_2 = 0.9, 0.99
 NAMES = [entry.name for entry in observation_entries()]
 ROUGH_GAINS = {"gain": 1.9, "backward_gain": 3.0, "damping": 20.0}
 LIBERAL_STEPS = {"dt_s": 0.1, "relinearizations": 1}
+RULED_BY = {
+    "n_boats": "--boats", "n_leaders": "--leaders", "pool": "--pool", "bw_s": "--noise",
+    "control_hz": "--control-hz", "episode_s": "--episode-s", "reward": "--reward",
+}  # fmt: skip
+FIXED = ("target", "mirror_to_target", "observation", "rudder_levels", "params", "num_envs",
+         "autoreset_mode", "render_mode", "render_size")  # fmt: skip
 
 
 @dataclass
@@ -166,25 +172,37 @@ class LeaningShape:
         return np.zeros(self.size)
 
 
+def changes(options: argparse.Namespace) -> dict[str, Any]:
+    """What --set and --liberal-steps ask for; a name that something else rules is refused."""
+    steps, found = LIBERAL_STEPS if options.liberal_steps else {}, changed_fields(options.set)
+    ruled_by = {**RULED_BY, **dict.fromkeys(steps, "--liberal-steps")}
+    for name in found:
+        if name in ruled_by or name in FIXED:
+            ruler = ruled_by.get(name, "the search itself")
+            raise flockenv.ParameterError(f"--set {name} is not accepted: {ruler} rules it")
+    return {**steps, **found}
+
+
 def environment(
     options: argparse.Namespace, flocks: int, leaders: int
 ) -> flockenv.LeadersVectorEnv:
     critical = flockenv.FlockParameters.critical_bw_s("simulation", options.pool)
-    return flockenv.LeadersVectorEnv(
-        flocks,
-        autoreset_mode="disabled",
-        n_boats=options.boats,
-        n_leaders=leaders,
-        pool=options.pool,
-        bw_s=options.noise * critical,
-        target="random",
-        mirror_to_target=True,
-        control_hz=options.control_hz,
-        episode_s=options.episode_s,
-        reward={options.reward: 1.0},
-        **(LIBERAL_STEPS if options.liberal_steps else {}),
-        **changed_fields(options.set),
-    )
+    settings = {
+        "n_boats": options.boats,
+        "n_leaders": leaders,
+        "pool": options.pool,
+        "bw_s": options.noise * critical,
+        "target": "random",
+        "mirror_to_target": True,
+        "control_hz": options.control_hz,
+        "episode_s": options.episode_s,
+        "reward": {options.reward: 1.0},
+        **changes(options),
+    }
+    try:
+        return flockenv.LeadersVectorEnv(flocks, autoreset_mode="disabled", **settings)
+    except TypeError as error:
+        raise flockenv.ParameterError(f"--set: {error}") from error
 
 
 def mean_rewards(
@@ -254,17 +272,22 @@ def next_generation(
     return State(number + 1, weights, moment_1, moment_2, average, state.wall_s, curve)
 
 
-def identity(options: argparse.Namespace) -> str:
-    """What a stored search must have been started with to go on."""
-    own = {k: v for k, v in vars(options).items() if k not in ("out", "generations", "quiet")}
-    return json.dumps({**own, "observation_version": OBSERVATION_VERSION}, sort_keys=True)
+def identity(told: dict[str, Any]) -> dict[str, Any]:
+    """What a stored search must have been started with to go on: most of its options."""
+    free = ("out", "generations", "quiet", "episodes")
+    whole = {"observation_version": OBSERVATION_VERSION, **told}
+    return {name: value for name, value in whole.items() if name not in free}
 
 
 def load_state(path: Path, options: argparse.Namespace) -> State | None:
     if not path.exists():
         return None
     arrays = read_arrays(path)
-    if str(arrays.get("identity")) != identity(options):
+    try:
+        stored = identity(json.loads(str(arrays["identity"])))
+    except (KeyError, TypeError, ValueError) as error:
+        raise flockenv.ParameterError(f"{path} is no state of a search") from error
+    if stored != identity(vars(options)):
         raise flockenv.ParameterError(
             f"{path} is of a search with other options: name another folder with --out"
         )
@@ -275,7 +298,7 @@ def load_state(path: Path, options: argparse.Namespace) -> State | None:
 
 def save_state(path: Path, state: State, options: argparse.Namespace) -> None:
     arrays: dict[str, Any] = {name: np.asarray(value) for name, value in vars(state).items()}
-    write_arrays(path, {**arrays, "identity": np.array(identity(options))})
+    write_arrays(path, {**arrays, "identity": np.array(json.dumps(identity(vars(options))))})
 
 
 def samples_of(options: argparse.Namespace, generations: int) -> int:
@@ -358,11 +381,15 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--out", type=Path, default=Path("results/evolution"))
     parser.add_argument("--quiet", action="store_true")
     options = parser.parse_args(arguments)
-    if (
-        min(options.pairs, options.generations, options.flocks, *options.hidden, *options.leaders)
-        < 1
-    ):
+    counts = (options.pairs, options.generations, options.flocks)
+    if min(*counts, *options.hidden, *options.leaders) < 1:
         parser.error("pairs, generations, flocks, hidden layers and leaders are at least 1")
+    if not 0 <= options.seed < MOST_SEEDS:
+        parser.error(f"--seed {options.seed} is not accepted: from 0 to {MOST_SEEDS - 1}")
+    if options.hidden and options.form != "network":
+        parser.error("--hidden is for --form network")
+    if options.tuned and options.form != "leaning":
+        parser.error("--tuned is for --form leaning")
     given = sys.argv[1:] if arguments is None else arguments
     command = shlex.join(["python", "baselines/evolution_strategy.py", *given])
     try:
@@ -370,7 +397,9 @@ def main(arguments: list[str] | None = None) -> None:
         ahead = flockenv.policies.StraightAhead(mirror_to_target=True)
         tell_held_out(options, {"evolved": policy, "straight ahead": ahead})
     except KeyboardInterrupt:
-        sys.exit(f"Interrupted: the same command goes on from {options.out / 'state.npz'}")
+        path = options.out / "state.npz"
+        kept = f"the same command goes on from {path}" if path.exists() else "nothing is kept yet"
+        sys.exit(f"Interrupted: {kept}")
     except (flockenv.FlockError, OSError) as error:
         sys.exit(f"Error: {error}")
     print(f"written to {options.out / 'policy.npz'}")

@@ -213,12 +213,17 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=RESULTS)
     options = parser.parse_args(arguments)
+    if not 0 <= options.seed < 1 << 32:
+        parser.error(f"--seed {options.seed} is not accepted: from 0 to {(1 << 32) - 1}")
     # Small networks: more threads only wait for each other.
     torch.set_num_threads(1)
     results = []
-    for face in options.faces:
-        results.append(check(face, options.samples, options.seed, options.episodes))
-        print(results[-1], flush=True)
+    try:
+        for face in options.faces:
+            results.append(check(face, options.samples, options.seed, options.episodes))
+            print(results[-1], flush=True)
+    except KeyboardInterrupt:
+        sys.exit("Interrupted: no page was written")
     given = sys.argv[1:] if arguments is None else arguments
     command = shlex.join(["python", "baselines/learning_check.py", *given])
     options.out.parent.mkdir(parents=True, exist_ok=True)

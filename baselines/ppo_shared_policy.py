@@ -77,7 +77,9 @@ def main(arguments: list[str] | None = None) -> None:
             command = shlex.join(["python", "baselines/ppo_shared_policy.py", *given])
             result = training.train(settings, options.out, command=command, report=report)
     except KeyboardInterrupt:
-        sys.exit(f"\nInterrupted: --resume goes on from the last checkpoint in {options.out}")
+        path = options.out / "checkpoint.npz"
+        kept = f"--resume goes on from {path}" if path.exists() else "there is no checkpoint yet"
+        sys.exit(f"\nInterrupted: {kept}")
     except flockenv.FlockError as error:
         sys.exit(f"\nError: {error}")
     for name, value in result.progress.validations[-1].items():

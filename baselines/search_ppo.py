@@ -119,6 +119,8 @@ def main(arguments: list[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     if options.runs < 1:
         parser.error("there is at least one run")
+    if not 0 <= options.seed < 1 << 32:
+        parser.error(f"--seed {options.seed} is not accepted: from 0 to {(1 << 32) - 1}")
     try:
         options.out.mkdir(parents=True, exist_ok=True)
         table = search(options)

@@ -103,6 +103,9 @@ def main(arguments: list[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     if min(options.generations, options.episodes) < 1:
         parser.error("generations and episodes are at least 1")
+    # CMA-ES takes no others; as training seeds they would go on to 2^39 - 1.
+    if not 0 <= options.seed < 1 << 32:
+        parser.error(f"--seed {options.seed} is not accepted: from 0 to {(1 << 32) - 1}")
     given = sys.argv[1:] if arguments is None else arguments
     command = shlex.join(["python", "baselines/tune_laws.py", *given])
     begin, tuned = time.perf_counter(), {}
@@ -116,6 +119,8 @@ def main(arguments: list[str] | None = None) -> None:
         made = made_by(command, seed=options.seed, samples=0, wall_s=wall_s)
         with whole_file(options.out / "gains.toml") as file:
             file.write(tomli_w.dumps({**tuned, "made": made}).encode())
+    except KeyboardInterrupt:
+        sys.exit(f"Interrupted: candidates so far are in {options.out}, but no gains")
     except (flockenv.FlockError, OSError) as error:
         sys.exit(f"Error: {error}")
     print(tomli_w.dumps(tuned))

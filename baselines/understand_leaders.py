@@ -26,6 +26,7 @@ from flockenv._core import pool_radii_cm
 from flockenv.comparison import named_policy
 from flockenv.observation import observation_entries, state_entries
 from flockenv.reproduce.style import COLORS, column_figure, paper_style
+from flockenv.seeds import check_evaluation_seeds
 from flockenv.whole_file import whole_file
 
 CONTROL_HZ = 10.0
@@ -226,6 +227,7 @@ def main(arguments: list[str] | None = None) -> None:
     )
     found, means = {}, []
     try:
+        check_evaluation_seeds(range(options.seed, options.seed + options.episodes))
         options.out.mkdir(parents=True, exist_ok=True)
         with Progress(disable=options.quiet) as progress:
             names = list(dict.fromkeys(options.policy or ["steering law", "damped law"]))
@@ -243,6 +245,8 @@ def main(arguments: list[str] | None = None) -> None:
             for name, figure in figures.items():
                 with whole_file(options.out / f"{name}.png") as file:
                     figure.savefig(file, dpi=200, format="png")
+    except KeyboardInterrupt:
+        sys.exit("Interrupted: means.csv was not written")
     except (flockenv.FlockError, OSError) as error:
         sys.exit(f"Error: {error}")
     table = pd.DataFrame(means).drop(columns=["cycle_s", "misalignment_rad", "spin_rad_s"])

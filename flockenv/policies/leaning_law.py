@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv.errors import ParameterError
+from flockenv.headed_file import array_of, entry_of
 from flockenv.observation import observation_entries
 from flockenv.policies.laws import DampedLaw
 from flockenv.policies.policy_file import write_policy
@@ -221,13 +222,24 @@ class LeaningLaw(RowPolicy):
 
     @classmethod
     def from_file(cls, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Self:
-        """Return the law that a file's header and arrays tell of."""
+        """Return the law that a file's header and arrays tell of.
+
+        Raises
+        ------
+        ParameterError
+            For entries that are missing or not as `save` writes them.
+        """
+        names = header.get("features")
+        if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+            raise ParameterError(f"features = {names!r} is not accepted: a list of names")
+        gains = array_of(arrays, "gains", (len(GAINS),)).tolist()
+        weights = array_of(arrays, "weights", (len(names),)).tolist()
         return cls(
-            dict(zip(GAINS, arrays["gains"].tolist(), strict=True)),
-            arrays["bias"].item(),
-            dict(zip(header["features"], arrays["weights"].tolist(), strict=True)),
-            observation=header["observation"],
-            made=header["made"],
+            dict(zip(GAINS, gains, strict=True)),
+            array_of(arrays, "bias", ()).item(),
+            dict(zip(names, weights, strict=True)),
+            observation=entry_of(header, "observation", dict),
+            made=entry_of(header, "made", dict),
         )
 
     def __repr__(self) -> str:

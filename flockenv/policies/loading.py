@@ -26,9 +26,10 @@ def load(path: str | os.PathLike[str]) -> NetworkPolicy | LeaningLaw:
         If it is no policy file, is damaged, or was made for another version of the observation.
     """
     header, arrays = read_policy(path)
+    kind = header.get("kind", "network")
     try:
-        return _KINDS[header.get("kind", "network")].from_file(header, arrays)
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
-        if isinstance(error, ParameterError):
-            raise
-        raise ParameterError(f"{path} is no whole policy: {error!r}") from error
+        if not isinstance(kind, str) or kind not in _KINDS:
+            raise ParameterError(f"kind = {kind!r} is not accepted: one of {', '.join(_KINDS)}")
+        return _KINDS[kind].from_file(header, arrays)
+    except (TypeError, ValueError) as error:
+        raise ParameterError(f"{path} is no whole policy: {error}") from error

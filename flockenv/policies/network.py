@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv.errors import ParameterError
+from flockenv.headed_file import array_of, entry_of
 from flockenv.policies.policy_file import write_policy
 from flockenv.policies.row_policy import RowPolicy
 
@@ -109,15 +110,21 @@ class NetworkPolicy(RowPolicy):
 
     @classmethod
     def from_file(cls, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Self:
-        """Return the policy that a file's header and arrays tell of."""
-        places = range(header["layers"])
+        """Return the policy that a file's header and arrays tell of.
+
+        Raises
+        ------
+        ParameterError
+            For entries that are missing or not as `save` writes them.
+        """
+        places = range(entry_of(header, "layers", int))
         return cls(
-            [arrays[f"weight_{place}"] for place in places],
-            [arrays[f"bias_{place}"] for place in places],
-            header["activation"],
-            observation=header["observation"],
-            mirror_to_target=header["mirror_to_target"],
-            made=header["made"],
+            [array_of(arrays, f"weight_{place}") for place in places],
+            [array_of(arrays, f"bias_{place}") for place in places],
+            entry_of(header, "activation", str),
+            observation=entry_of(header, "observation", dict),
+            mirror_to_target=entry_of(header, "mirror_to_target", bool),
+            made=entry_of(header, "made", dict),
         )
 
     def __repr__(self) -> str:
@@ -134,7 +141,8 @@ def _checked_layers(
         )
     layers, inputs = [], size
     for place, (weight, bias) in enumerate(zip(weights, biases, strict=True)):
-        matrix, vector = np.array(weight, np.float32), np.array(bias, np.float32)
+        with np.errstate(over="ignore"):  # what is too large is refused below
+            matrix, vector = np.array(weight, np.float32), np.array(bias, np.float32)
         outputs = 1 if place == len(weights) - 1 else vector.size
         if matrix.shape != (inputs, outputs) or vector.shape != (outputs,):
             raise ParameterError(

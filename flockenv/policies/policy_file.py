@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv.array_file import read_arrays, write_arrays
+from flockenv.array_file import write_arrays
 from flockenv.errors import ParameterError
+from flockenv.headed_file import read_headed
 from flockenv.observation import OBSERVATION_VERSION
 
 __all__ = ["read_policy", "write_policy"]
@@ -46,19 +47,4 @@ def read_policy(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str,
     """
     if os.path.getsize(path) > _LARGEST_FILE:
         raise ParameterError(f"{path} is no policy: it is larger than {_LARGEST_FILE} bytes")
-    arrays = read_arrays(path)
-    try:
-        header = json.loads(str(arrays.pop("header")))
-        if not isinstance(header, dict) or header.get("format") != FORMAT:
-            raise ParameterError(f"{path} is no policy in the format {FORMAT!r}")
-        version = header["observation_version"]
-    except (KeyError, ValueError, RecursionError) as error:
-        if isinstance(error, ParameterError):
-            raise
-        raise ParameterError(f"{path} is no whole policy: {error!r}") from error
-    if version != OBSERVATION_VERSION:
-        raise ParameterError(
-            f"{path} was made for version {version} of the observation; this is version "
-            f"{OBSERVATION_VERSION}: train it anew"
-        )
-    return header, arrays
+    return read_headed(path, "policy", FORMAT)

@@ -5,8 +5,11 @@ own ``.zip`` files hold pickles and are never read.
 """
 
 import json
+import math
 import os
-from dataclasses import asdict, dataclass, field
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
 import numpy as np
@@ -14,15 +17,24 @@ import torch
 from numpy.typing import NDArray
 from stable_baselines3 import PPO
 
-from flockenv.array_file import read_arrays, write_arrays
+from flockenv.array_file import write_arrays
 from flockenv.errors import ParameterError
+from flockenv.headed_file import array_of, entry_of, read_headed
 from flockenv.observation import OBSERVATION_VERSION
 from flockenv.training.pools import PooledVecEnv
 from flockenv.training.settings import TrainingSettings
+from flockenv.training.validation import scene_names
 
-__all__ = ["Progress", "read_settings", "restore", "save"]
+__all__ = ["Progress", "State", "read_settings", "restore", "save", "state_of"]
 
 FORMAT = "flockenv checkpoint 1"
+LEARNED = ("loss", "approx_kl", "clip_fraction", "explained_variance")
+CURVE = ("samples", "reward", "signed_order", *LEARNED)
+"""What is told of each rollout; of its update the learned ones."""
+_ADAM = ("step", "exp_avg", "exp_avg_sq")
+
+State = dict[str, NDArray[Any]]
+"""A checkpoint's arrays by name."""
 
 
 @dataclass
@@ -37,16 +49,8 @@ class Progress:
     validations: list[dict[str, float]] = field(default_factory=list)
 
 
-def save(
-    path: str | os.PathLike[str], model: PPO, settings: TrainingSettings, progress: Progress
-) -> None:
-    """Write a checkpoint between two rollouts, whole or not at all.
-
-    Raises
-    ------
-    OSError
-        If it cannot be written; the one that was there before is still there.
-    """
+def state_of(model: PPO, settings: TrainingSettings, progress: Progress) -> State:
+    """Return what a checkpoint holds, as it is between two rollouts; nothing later changes it."""
     env = model.env
     assert isinstance(env, PooledVecEnv)
     header = {
@@ -56,23 +60,35 @@ def save(
         "progress": asdict(progress),
         "updates": model._n_updates,
     }
-    arrays: dict[str, NDArray[Any]] = {"header": np.array(json.dumps(header))}
+    arrays: State = {"header": np.array(json.dumps(header))}
     for name, tensor in model.policy.state_dict().items():
-        arrays[f"parameter:{name}"] = tensor.cpu().numpy()
+        arrays[f"parameter:{name}"] = tensor.cpu().numpy().copy()
     for place, slot in model.policy.optimizer.state_dict()["state"].items():
         for name, tensor in slot.items():
-            arrays[f"optimizer:{place}:{name}"] = tensor.cpu().numpy()
+            arrays[f"optimizer:{place}:{name}"] = tensor.cpu().numpy().copy()
     for place, state in enumerate(env.get_state()):
         arrays[f"environment:{place}"] = np.frombuffer(state, np.uint8)
     assert model._last_episode_starts is not None
-    arrays["episode_starts"] = model._last_episode_starts
-    write_arrays(path, arrays | _random_states(), compressed=True)
+    arrays["episode_starts"] = model._last_episode_starts.copy()
+    return arrays | _random_states()
+
+
+def save(path: str | os.PathLike[str], state: State) -> None:
+    """Write a checkpoint, whole or not at all.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written; the one that was there before is still there.
+    """
+    write_arrays(path, state, compressed=True)
 
 
 def read_settings(path: str | os.PathLike[str]) -> TrainingSettings:
     """Return the settings of a checkpoint's run; see `restore` for the errors."""
-    header, _ = _read(path)
-    return TrainingSettings.from_dict(header["settings"])
+    header, _ = read_headed(path, "checkpoint", FORMAT)
+    with _told(path):
+        return _settings(header)
 
 
 def restore(path: str | os.PathLike[str], model: PPO) -> Progress:
@@ -86,46 +102,105 @@ def restore(path: str | os.PathLike[str], model: PPO) -> Progress:
         If it is no checkpoint, is damaged, or was made with other settings, or for another version
         of the observation.
     """
-    header, arrays = _read(path)
+    header, arrays = read_headed(path, "checkpoint", FORMAT)
     env = model.env
     assert isinstance(env, PooledVecEnv)
-    try:
-        progress = Progress(**header["progress"])
+    with _told(path):
+        progress = _checked_progress(header, _settings(header))
+        updates = _count("updates", header.get("updates"))
+        for name, like in _blank(model).items():
+            _check(array_of(arrays, name, like.shape), name, like)
+        places = range(len(env.parts))
+        flocks = [array_of(arrays, f"environment:{place}").tobytes() for place in places]
+        model._last_obs = env.set_state(flocks)
+        model._last_episode_starts = arrays["episode_starts"]
         policy, optimizer = model.policy, model.policy.optimizer
         parameters = {name: torch.from_numpy(a) for name, a in _named(arrays, "parameter").items()}
         policy.load_state_dict(parameters)
-        slots: dict[int, dict[str, torch.Tensor]] = {}
-        for key, array in _named(arrays, "optimizer").items():
-            place, _, name = key.partition(":")
-            slots.setdefault(int(place), {})[name] = torch.from_numpy(array)
+        slots = {
+            place: {name: torch.from_numpy(arrays[f"optimizer:{place}:{name}"]) for name in _ADAM}
+            for place in range(len(_trained(model)))
+        }
         groups = optimizer.state_dict()["param_groups"]
         optimizer.load_state_dict({"state": slots, "param_groups": groups})
-        states = _named(arrays, "environment")
-        flocks = [states[str(place)].tobytes() for place in range(len(states))]
-        model._last_obs = env.set_state(flocks)
-        model._last_episode_starts = arrays["episode_starts"]
-        model.num_timesteps, model._n_updates = progress.samples, header["updates"]
+        model.num_timesteps, model._n_updates = progress.samples, updates
         _restore_random_states(arrays)
-    except (KeyError, TypeError, ValueError, RuntimeError) as error:
-        raise ParameterError(f"{path} is no whole checkpoint: {error}") from error
     return progress
 
 
-def _read(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-    arrays = read_arrays(path)
+@contextmanager
+def _told(path: str | os.PathLike[str]) -> Iterator[None]:
     try:
-        header = json.loads(str(arrays["header"]))
-        made_for = header["observation_version"] if header["format"] == FORMAT else None
-    except (KeyError, TypeError, ValueError) as error:
-        raise ParameterError(f"{path} is no checkpoint: {error!r}") from error
-    if made_for is None:
-        raise ParameterError(f"{path} is no checkpoint in the format {FORMAT!r}")
-    if made_for != OBSERVATION_VERSION:
-        raise ParameterError(
-            f"{path} was made for version {made_for} of the observation; this is version "
-            f"{OBSERVATION_VERSION}: train anew"
-        )
-    return header, arrays
+        yield
+    except (KeyError, TypeError, ValueError, OverflowError, RuntimeError) as error:
+        reason = " ".join(str(error).split())
+        raise ParameterError(f"{path} is no whole checkpoint: {reason}") from error
+
+
+def _settings(header: dict[str, Any]) -> TrainingSettings:
+    return TrainingSettings.from_dict(entry_of(header, "settings", dict))
+
+
+def _checked_progress(header: dict[str, Any], settings: TrainingSettings) -> Progress:
+    told, names = entry_of(header, "progress", dict), [each.name for each in fields(Progress)]
+    if sorted(told) != sorted(names):
+        raise ParameterError(f"progress has {', '.join(told)}: not {', '.join(names)}")
+    entry_of(told, "command", str)
+    _count("samples", told["samples"])
+    if not _is_number(told["wall_s"]) or not 0 <= told["wall_s"] < math.inf:
+        raise ParameterError(f"wall_s = {told['wall_s']!r} is not accepted: a number of seconds")
+    columns = {"curve": CURVE, "validations": ("samples", "mean", *scene_names(settings))}
+    for name, wanted in columns.items():
+        rows = told[name]
+        if not isinstance(rows, list) or not all(_is_row(row, wanted) for row in rows):
+            raise ParameterError(f"{name} is not accepted: rows of numbers, {', '.join(wanted)}")
+    best = told["best_score"]
+    fits = _is_number(best) and math.isfinite(best) if told["validations"] else best is None
+    if not fits:
+        raise ParameterError(f"best_score = {best!r} is not accepted: the best of the validations")
+    return Progress(**told)
+
+
+def _count(name: str, value: Any) -> int:
+    if type(value) is not int or not 0 <= value < 1 << 53:
+        raise ParameterError(f"{name} = {value!r} is not accepted: a whole number of at least 0")
+    return value
+
+
+def _is_number(value: Any) -> bool:
+    return type(value) is float or (type(value) is int and abs(value) < 1 << 53)
+
+
+def _is_row(row: Any, wanted: Sequence[str]) -> bool:
+    return (
+        isinstance(row, dict)
+        and sorted(row) == sorted(wanted)
+        and all(_is_number(value) for value in row.values())
+    )
+
+
+def _blank(model: PPO) -> State:
+    """Arrays of the shapes and types that a checkpoint of this model has, but for its flocks."""
+    blank: State = {"episode_starts": np.zeros(model.n_envs, np.bool_)}
+    for name, tensor in model.policy.state_dict().items():
+        blank[f"parameter:{name}"] = tensor.cpu().numpy()
+    for place, tensor in enumerate(_trained(model)):
+        shapes = {"step": (), "exp_avg": tensor.shape, "exp_avg_sq": tensor.shape}
+        for name in _ADAM:
+            blank[f"optimizer:{place}:{name}"] = np.zeros(shapes[name], np.float32)
+    states = _random_states()
+    return blank | {name: states[name] for name in ("numpy_keys", "numpy_rest", "torch_random")}
+
+
+def _trained(model: PPO) -> list[torch.Tensor]:
+    return [each for group in model.policy.optimizer.param_groups for each in group["params"]]
+
+
+def _check(array: NDArray[Any], name: str, like: NDArray[Any]) -> None:
+    if array.dtype != like.dtype:
+        raise ParameterError(f"{name} holds {array.dtype}, which is not accepted: {like.dtype}")
+    if not np.isfinite(array).all():
+        raise ParameterError(f"{name} holds numbers that are not finite")
 
 
 def _named(arrays: dict[str, NDArray[Any]], kind: str) -> dict[str, NDArray[Any]]:
@@ -148,9 +223,11 @@ def _random_states() -> dict[str, NDArray[Any]]:
 
 
 def _restore_random_states(arrays: dict[str, NDArray[Any]]) -> None:
-    place, has_gauss, gauss = arrays["numpy_rest"].tolist()
-    state = ("MT19937", arrays["numpy_keys"], int(place), int(has_gauss), gauss)
-    np.random.set_state(state)  # noqa: NPY002
+    keys, (place, has_gauss, gauss) = arrays["numpy_keys"], arrays["numpy_rest"].tolist()
+    # NumPy would take any place, and read beyond its keys.
+    if place not in range(len(keys) + 1) or has_gauss not in (0, 1):
+        raise ParameterError(f"numpy_rest = {[place, has_gauss, gauss]} is not accepted")
+    np.random.set_state(("MT19937", keys, int(place), int(has_gauss), gauss))  # noqa: NPY002
     torch.set_rng_state(torch.from_numpy(arrays["torch_random"]))
     on_gpu = _named(arrays, "cuda_random")
     if torch.cuda.is_available() and on_gpu:

@@ -1,7 +1,5 @@
 """The training run: PPO of stable-baselines3, checkpoints, validations, the best policy kept."""
 
-import csv
-import io
 import math
 import time
 import warnings
@@ -31,9 +29,10 @@ from flockenv.training.actor import (
     network_policy,
     one_thread,
 )
-from flockenv.training.checkpoint import Progress
+from flockenv.training.checkpoint import LEARNED, Progress
 from flockenv.training.cloning import clone_law
 from flockenv.training.interrupts import held_interrupts
+from flockenv.training.kept import Kept
 from flockenv.training.pools import PooledVecEnv
 from flockenv.training.settings import TrainingError, TrainingSettings
 from flockenv.training.validation import validation_scores
@@ -172,6 +171,7 @@ class _Run:
         self.progress, self.report = progress, report
         self.begin = time.perf_counter() - progress.wall_s
         self.log = Logger(None, [])
+        self.kept: Kept | None = None
 
     def go_on(self) -> TrainingResult:
         formats: list[KVWriter] = []
@@ -186,6 +186,10 @@ class _Run:
                 self._iterate()
             if self.progress.best_score is None:  # resumed, to stop before any validation
                 self._validate()
+        except KeyboardInterrupt:
+            with held_interrupts():
+                self._write_kept()
+            raise
         finally:
             # What a full disk kept from the logs has been told already, or hides nothing else.
             with held_interrupts(), suppress(OSError):
@@ -208,8 +212,10 @@ class _Run:
 
         if due(settings.validate_every):
             self._validate()
+        # An interrupt in the middle of the next rollout goes back to here.
+        self.kept = Kept.of(self.model, settings, progress, self._policy({}))
         if due(settings.checkpoint_every) or due(settings.validate_every):
-            self._checkpoint()
+            self._write_kept()
         self.report(progress)
 
     def _rollout_and_update(self) -> dict[str, float]:
@@ -230,8 +236,7 @@ class _Run:
             raise self._broken(loss)
         for name, value in watch.means().items():
             self.log.record(f"rollout/{name}", value)
-        learned = ("loss", "approx_kl", "clip_fraction", "explained_variance")
-        told = {name: float(self.log.name_to_value[f"train/{name}"]) for name in learned}
+        told = {name: float(self.log.name_to_value[f"train/{name}"]) for name in LEARNED}
         return {**watch.means(), **told}
 
     def _finite(self) -> bool:
@@ -244,7 +249,7 @@ class _Run:
         )
 
     def _validate(self) -> None:
-        policy = self._policy()
+        policy = self._policy(self._made(self.progress))
         scores = validation_scores(policy, self.settings)
         score = sum(scores.values()) / len(scores)
         for name, value in {**scores, "mean": score}.items():
@@ -260,24 +265,30 @@ class _Run:
 
     def _log(self) -> None:
         with held_interrupts(), _written(self.folder, self.progress):
-            self.log.dump(self.progress.samples)
+            try:
+                self.log.dump(self.progress.samples)
+            except KeyboardInterrupt:
+                # A second one, in the writing itself: closing that might wait for ever.
+                self.log = Logger(None, [])
+                raise
 
-    def _policy(self) -> NetworkPolicy:
-        made = made_by(
-            self.progress.command,
-            seed=self.settings.seed,
-            samples=self.progress.samples,
-            wall_s=self.progress.wall_s,
-        )
+    def _policy(self, made: dict[str, str]) -> NetworkPolicy:
         return network_policy(_actor(self.model), self.settings, made)
 
-    def _checkpoint(self) -> None:
-        with _written(self.folder, self.progress):
-            self._policy().save(self.folder / "last.npz")
-            _write_rows(self.folder / "curve.csv", self.progress.curve)
-            _write_rows(self.folder / "validations.csv", self.progress.validations)
-            path = self.folder / "checkpoint.npz"
-            checkpoint.save(path, self.model, self.settings, self.progress)
+    def _made(self, progress: Progress) -> dict[str, str]:
+        return made_by(
+            progress.command,
+            seed=self.settings.seed,
+            samples=progress.samples,
+            wall_s=progress.wall_s,
+        )
+
+    def _write_kept(self) -> None:
+        if self.kept is not None:
+            self.kept.policy.made.update(self._made(self.kept.progress))
+            with _written(self.folder, self.kept.progress):
+                self.kept.write(self.folder)
+            self.kept = None
 
 
 class _Watch(BaseCallback):
@@ -383,13 +394,3 @@ def _written(folder: Path, progress: Progress) -> Iterator[None]:
 def _last_good(folder: Path) -> str:
     path = folder / "checkpoint.npz"
     return f"the last good checkpoint is {path}" if path.exists() else "there is no checkpoint yet"
-
-
-def _write_rows(path: Path, rows: list[dict[str, float]]) -> None:
-    if rows:
-        text = io.StringIO(newline="")
-        writer = csv.DictWriter(text, rows[0].keys(), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-        with whole_file(path) as file:
-            file.write(text.getvalue().encode())

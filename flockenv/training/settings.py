@@ -1,15 +1,14 @@
 """`TrainingSettings`: everything that a training run depends on."""
 
-import difflib
-import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any, Self
 
 import tomli_w
 
+from flockenv.batch import LeaderBatch
 from flockenv.errors import FlockError, ParameterError
-from flockenv.options import EnvOptions
+from flockenv.options import EnvOptions, refuse_unknown
 from flockenv.parameters import FlockParameters
 from flockenv.policies.network import ACTIVATIONS
 from flockenv.toml_text import read_toml
@@ -129,7 +128,11 @@ class TrainingSettings:
             if name in _NOT_OPTIONS:
                 raise ParameterError(f"options: {name!r} is not accepted: another setting rules it")
         for pool in self.pools:
-            EnvOptions.parse({**self.environment(pool), "n_leaders": max(self.n_leaders)})
+            options = {**self.environment(pool), "n_leaders": max(self.n_leaders)}
+            try:
+                LeaderBatch(EnvOptions.parse(options), self.n_leaders, "same_step")
+            except TypeError as error:
+                raise ParameterError(str(error)) from error
 
     @property
     def leaders(self) -> int:
@@ -182,11 +185,7 @@ class TrainingSettings:
             For unknown names, with the nearest one, and values out of range.
         """
         names = [each.name for each in fields(cls)]
-        for name in values:
-            if name not in names:
-                near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
-                hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(names)}"
-                raise ParameterError(f"{name!r} is no setting of the training: {hint}")
+        refuse_unknown(values, names, "setting of the training")
         return cls(**values)
 
     def to_toml(self) -> str:
@@ -284,12 +283,7 @@ def _checked_list(name: str, value: Any, default: tuple[Any, ...]) -> tuple[Any,
 def _checked_number(name: str, value: Any, whole: bool) -> Any:
     low, high = _RANGES[name]
     kinds = int if whole else int | float
-    if (
-        isinstance(value, bool)
-        or not isinstance(value, kinds)
-        or not math.isfinite(value)
-        or not low <= value <= high
-    ):
+    if isinstance(value, bool) or not isinstance(value, kinds) or not low <= value <= high:
         what = "a whole number" if whole else "a number"
         raise ParameterError(f"{name} = {value!r} is not accepted: {what} in [{low:g}, {high:g}]")
     return value if whole else float(value)

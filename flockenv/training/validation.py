@@ -10,7 +10,7 @@ from flockenv.seeds import training_seed
 from flockenv.simulation import LeaderPolicy
 from flockenv.training.settings import TrainingSettings
 
-__all__ = ["validation_scores"]
+__all__ = ["scene_names", "validation_scores"]
 
 # The best policy is chosen by these, so they are training seeds; no training run reaches them.
 _FIRST_NUMBER = 1 << 62
@@ -32,6 +32,11 @@ def validation_scores(policy: LeaderPolicy, settings: TrainingSettings) -> dict[
         found = run_episodes(scene, policy, seeds, settings.validation_s, options=options)
         scores[name] = float(np.mean(found["signed_order"]))
     return scores
+
+
+def scene_names(settings: TrainingSettings) -> list[str]:
+    """Return the names of the scores, in order."""
+    return [name for name, _ in _scenes(settings)]
 
 
 def _scenes(settings: TrainingSettings) -> Iterator[tuple[str, FlockParameters]]:

@@ -47,6 +47,13 @@ def test_a_short_run(script, tmp_path: Path, capsys) -> None:
     assert lean.loc["near_ahead", "mean"] != 0.0
     assert lean.loc["near_ahead", "lean_rad"] == 3.0 * lean.loc["near_ahead", "mean"]
     assert (lean["lean_rad"] != 0.0).sum() == 2
+    assert "whole" in capsys.readouterr().out
+    other = tmp_path / "other.csv"
+    script.main(
+        [str(tmp_path / "law.npz"), *arguments, "--seed", "1", "--quiet", "--out", str(other)]
+    )
+    again = pd.read_csv(other, index_col="law")
+    assert again.loc["whole", "signed_order"] != table.loc["whole", "signed_order"]
     NetworkPolicy([np.zeros((67, 1))], [[0.0]]).save(tmp_path / "net.npz")
     with pytest.raises(SystemExit, match="not a leaning law"):
         script.main([str(tmp_path / "net.npz"), *arguments, *out])

@@ -1,6 +1,7 @@
 # SCRIPT still used
 """Law: the search climbs, goes on exactly where it was, and leaves a policy of core parts alone."""
 
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 import flockenv
+from flockenv.array_file import read_arrays, write_arrays
 from flockenv.policies import load
 from flockenv.policies.shipped import tuned_law
 
@@ -105,6 +107,88 @@ def test_other_options_do_not_go_on(script, tmp_path: Path) -> None:
     script.main([*TINY, "--generations", "1", "--out", str(tmp_path)])
     with pytest.raises(SystemExit, match="other options"):
         script.main([*TINY, "--generations", "2", "--seed", "1", "--out", str(tmp_path)])
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ("bw_s=0.2", "--noise rules it"),
+        ("n_boats=8", "--boats rules it"),
+        ("n_leaders=1", "--leaders rules it"),
+        ("pool=table-1", "--pool rules it"),
+        ("reward={signed_order=1.0}", "--reward rules it"),
+        ("episode_s=5.0", "--episode-s rules it"),
+        ("control_hz=5.0", "--control-hz rules it"),
+        ("target=cw", "the search itself rules it"),
+        ("observation={order=false}", "the search itself rules it"),
+        ("autoreset_mode=same_step", "the search itself rules it"),
+        ("dt_s=0.05", "--liberal-steps rules it"),
+        ("c2=strong", "--set: c2 must be a number"),
+    ],
+)
+@pytest.mark.parametrize("form", ["network", "leaning"])
+def test_what_something_else_rules_is_not_set(
+    script, tmp_path: Path, change: str, words: str, form: str
+) -> None:
+    arguments = [*TINY, "--form", form, "--liberal-steps", "--out", str(tmp_path / "out")]
+    with pytest.raises(SystemExit, match=f"Error: .*{words}"):
+        script.main([*arguments, "--set", change])
+    assert not (tmp_path / "out" / "state.npz").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--form", "leaning", "--hidden", "8"], "--hidden is for --form network"),
+        (["--tuned"], "--tuned is for --form leaning"),
+        (["--seed", "-1"], "--seed -1 is not accepted: from 0 to 549755813887"),
+        (["--seed", str(2**39)], "is not accepted: from 0 to 549755813887"),
+    ],
+)
+def test_options_that_do_not_fit(script, tmp_path: Path, capsys, arguments, words: str) -> None:
+    with pytest.raises(SystemExit) as ended:
+        script.main([*TINY, *arguments, "--out", str(tmp_path)])
+    assert ended.value.code == 2
+    assert words in capsys.readouterr().err
+
+
+def test_the_last_seed(script, tmp_path: Path) -> None:
+    arguments = [*TINY, "--generations", "1", "--seed", str(2**39 - 1)]
+    script.main([*arguments, "--out", str(tmp_path)])
+
+
+def test_how_many_are_held_out_is_no_other_search(script, tmp_path: Path) -> None:
+    arguments = [*TINY, "--generations", "1", "--out", str(tmp_path)]
+    script.main(arguments)
+    # Earlier states name them.
+    arrays = read_arrays(tmp_path / "state.npz")
+    stored = {**json.loads(str(arrays["identity"])), "episodes": 4}
+    write_arrays(tmp_path / "state.npz", {**arrays, "identity": np.array(json.dumps(stored))})
+    script.main([*arguments, "--episodes", "3"])
+
+
+def test_a_foreign_state_is_refused(script, tmp_path: Path) -> None:
+    for identity in ("[]", "no JSON"):
+        write_arrays(tmp_path / "state.npz", {"identity": np.array(identity)})
+        with pytest.raises(SystemExit, match=r"state\.npz is no state of a search"):
+            script.main([*TINY, "--out", str(tmp_path)])
+
+
+@pytest.mark.parametrize(
+    ("generations", "words"), [(0, "nothing is kept yet"), (1, "goes on from")]
+)
+def test_an_interrupt_tells_what_is_kept(
+    script, tmp_path: Path, monkeypatch, generations: int, words: str
+) -> None:
+    def interrupted(state, *arguments):
+        if state.generation == generations:
+            raise KeyboardInterrupt
+        return whole(state, *arguments)
+
+    whole = script.next_generation
+    monkeypatch.setattr(script, "next_generation", interrupted)
+    with pytest.raises(SystemExit, match=f"Interrupted: .*{words}"):
+        script.main([*TINY, "--generations", "2", "--out", str(tmp_path)])
 
 
 def test_neither_torch_nor_pandas_is_needed(script, tmp_path: Path) -> None:

@@ -116,25 +116,33 @@ def test_layouts_that_lack_what_it_looks_at(blocks):
 
 
 @pytest.mark.parametrize(
-    "change",
+    ("change", "message"),
     [
-        {"features": ["near"]},
-        {"features": None},
-        {"kind": "pickle"},
-        {"kind": ["leaning law"]},
-        {"made": 3},
-        {"observation": {"order": False}},
+        ({"features": ["near"]}, r"weights has shape .* is not accepted: \(1,\)"),
+        ({"features": None}, "features = None is not accepted: a list of names"),
+        ({"features": ["far", *FEATURES[1:]]}, "'far' is not accepted"),
+        ({"features": [[], *FEATURES[1:]]}, "a list of names"),
+        ({"kind": "pickle"}, "kind = 'pickle' is not accepted: one of network, leaning law"),
+        ({"kind": ["leaning law"]}, "kind = "),
+        ({"made": 3}, "made = 3 is not accepted"),
+        ({"observation": {"order": False}}, "own, neighbors and order"),
+        ({"observation_version": "1"}, "observation_version = '1' is not accepted"),
+        ({"gains": np.full(3, np.nan)}, "gain = nan"),
+        ({"gains": np.full(3, 1e300)}, "gain"),
+        ({"gains": np.ones(2)}, r"gains has shape \(2,\), which is not accepted: \(3,\)"),
+        ({"bias": np.zeros(2)}, "bias has shape"),
+        ({"bias": np.array("0.1")}, "bias holds <U3"),
+        ({"weights": None}, "the array weights is missing"),
     ],
 )
-def test_damaged_files(tmp_path, change):
+def test_damaged_files(tmp_path, change, message):
     LeaningLaw(GAINS, 0.1, {"near": 0.2}).save(tmp_path / "law.npz")
     arrays = read_arrays(tmp_path / "law.npz")
     header = json.loads(str(arrays["header"]))
-    arrays["header"] = np.array(json.dumps({**header, **change}))
-    write_arrays(tmp_path / "changed.npz", arrays)
-    with pytest.raises(flockenv.ParameterError):
+    for name, value in change.items():
+        (arrays if name in arrays else header)[name] = value
+    arrays = {name: array for name, array in arrays.items() if array is not None}
+    write_arrays(tmp_path / "changed.npz", {**arrays, "header": np.array(json.dumps(header))})
+    with pytest.raises(flockenv.ParameterError, match=message) as raised:
         load(tmp_path / "changed.npz")
-    arrays["header"] = np.array(json.dumps(header))
-    write_arrays(tmp_path / "changed.npz", {**arrays, "gains": np.full(3, np.nan)})
-    with pytest.raises(flockenv.ParameterError, match="gain = nan"):
-        load(tmp_path / "changed.npz")
+    assert str(raised.value).startswith(f"{tmp_path / 'changed.npz'} is no whole policy: ")

@@ -97,7 +97,7 @@ def changed(policy, tmp_path, **entries):
     arrays = read_arrays(tmp_path / "policy.npz")
     header = json.loads(str(arrays["header"]))
     for name, value in entries.items():
-        if name in header:
+        if name in header or name == "kind":
             header[name] = value
         else:
             arrays[name] = value
@@ -110,25 +110,32 @@ def changed(policy, tmp_path, **entries):
     ("entries", "message"),
     [
         ({"observation_version": OBSERVATION_VERSION + 1}, "version .* of the observation"),
+        ({"observation_version": str(OBSERVATION_VERSION)}, "observation_version = '1' is not"),
+        ({"kind": "foo"}, "kind = 'foo' is not accepted: one of network, leaning law"),
         ({"format": "something else"}, "no policy in the format"),
         ({"layers": 2}, "layer 1 has weights"),
-        ({"layers": 4}, "no whole policy"),
-        ({"layers": "3"}, "no whole policy"),
+        ({"layers": 4}, "no whole policy: the array weight_3 is missing"),
+        ({"layers": "3"}, "no whole policy: layers = '3' is not accepted: a whole number"),
+        ({"layers": 10**400}, "no whole policy"),
         ({"layers": 0}, "0 weights"),
         ({"activation": "exec"}, "tanh, relu"),
-        ({"activation": ["tanh"]}, "no whole policy"),
+        ({"activation": ["tanh"]}, r"activation = \['tanh'\] is not accepted: a text"),
         ({"observation": {"neighbours": 3}}, "neighbours"),
         ({"observation": {"neighbors": 3}}, "layer 0"),
-        ({"observation": 3}, "no whole policy"),
-        ({"made": 3}, "no whole policy"),
+        ({"observation": 3}, "observation = 3 is not accepted: a table"),
+        ({"made": 3}, "made = 3 is not accepted: a table"),
+        ({"mirror_to_target": "no"}, "mirror_to_target = 'no' is not accepted: true or false"),
         ({"weight_0": np.full((SIZE, 8), np.nan)}, "not finite"),
+        ({"weight_0": np.full((SIZE, 8), 1e300)}, "not finite"),
+        ({"weight_0": np.full((SIZE, 8), "fw")}, "weight_0 holds <U2, which is not accepted: numb"),
         ({"bias_0": np.zeros(9)}, "layer 0"),
     ],
 )
 def test_files_that_are_no_policy_are_named(tmp_path, entries, message):
     path = changed(network(), tmp_path, **entries)
-    with pytest.raises(flockenv.ParameterError, match=message):
+    with pytest.raises(flockenv.ParameterError, match=message) as raised:
         load(path)
+    assert str(raised.value).startswith(str(path))
 
 
 def test_damaged_and_foreign_files(tmp_path):
@@ -142,7 +149,7 @@ def test_damaged_and_foreign_files(tmp_path):
     with pytest.raises(FileNotFoundError):
         load(tmp_path / "nowhere.npz")
     flockenv.simulate(flockenv.FlockParameters(), 1, 1.0).save(tmp_path / "run.npz")
-    with pytest.raises(flockenv.ParameterError, match=r"no policy|no whole policy"):
+    with pytest.raises(flockenv.ParameterError, match=r"run\.npz is no policy: it has no header"):
         load(tmp_path / "run.npz")
 
 

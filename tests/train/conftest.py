@@ -26,6 +26,6 @@ TINY = {
 }
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def tiny() -> TrainingSettings:
     return TrainingSettings.from_dict(TINY)

@@ -19,6 +19,8 @@ def test_toml_round_trip(tiny: TrainingSettings) -> None:
     ("change", "words"),
     [
         ({"learning_rte": 1e-3}, "did you mean 'learning_rate'"),
+        ({"foo": 1}, "'foo' is no setting of the training: there are preset"),
+        ({"samples": 10**400}, "samples = 1000"),
         ({"learning_rate": -1.0}, "learning_rate = -1.0"),
         ({"learning_rate": float("nan")}, "learning_rate = nan"),
         ({"samples": 1.5}, "samples = 1.5"),
@@ -33,6 +35,8 @@ def test_toml_round_trip(tiny: TrainingSettings) -> None:
         ({"reward": {"order": 1.0}}, "order"),
         ({"reward": 1.0}, "a table"),
         ({"options": {"delay": 1}}, "delay"),
+        ({"options": {"delay_frames": "one"}}, "delay_frames must be an integer, not 'one'"),
+        ({"observation": {"neighbors": "a"}}, "observation neighbors must be an integer"),
         ({"options": {"rudder_levels": 3}}, "rudder_levels"),
         ({"options": {"episode_s": 3.0}}, "another setting"),
         ({"activation": "gelu"}, "tanh"),
@@ -72,3 +76,7 @@ def test_seeds_are_training_seeds_and_differ(tiny: TrainingSettings) -> None:
         # 1 and 2 leaders in the flocks of each pool: six slots of four flocks.
         assert len(set(told)) == 4
     assert len(set(seeds)) == 12
+
+
+def test_one_leader_of_two_boats(tiny: TrainingSettings) -> None:
+    assert tiny.replace(n_boats=2, n_leaders=[1]).leaders == 4
