@@ -42,7 +42,7 @@ def average(laws: list[LeaningLaw], command: str) -> LeaningLaw:
         for name in TOLD
     }
     made = made_by(command, seed=0, samples=total(laws, "samples"), wall_s=total(laws, "wall_s"))
-    del made["seed"]  # The parts have theirs.
+    made["seed"] = ", ".join(law.made.get("seed", "unknown") for law in laws)
     return LeaningLaw(
         dict(zip(GAINS, np.exp(logs.mean(axis=0)).tolist(), strict=True)),
         float(np.mean([law.bias for law in laws])),

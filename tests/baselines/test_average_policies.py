@@ -25,6 +25,7 @@ def test_the_mean_of_two(script, tmp_path: Path) -> None:
     kept = {name: weight for name, weight in mean.weights.items() if weight}
     assert kept == pytest.approx({"near": 0.3, "leaders": -0.5})
     assert mean.made["samples"] == "200"
+    assert mean.made["seed"] == "3, 4"
     assert mean.made["part 1: command"] == "search 4"
     assert "average_policies.py" in mean.made["command"]
 
