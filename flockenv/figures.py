@@ -47,7 +47,7 @@ def leader_curve(
     """
     policies = [name for name in runs["policy"].unique() if name != NO_LEADERS]
     with mpl.rc_context({"font.size": 9, "axes.spines.top": False, "axes.spines.right": False}):
-        figure = Figure(figsize=(7.5, 3.6), layout="constrained")
+        figure = Figure(figsize=(7.5, 4.0), layout="constrained")
         for axes, quantity in zip(figure.subplots(1, 2), _LABELS, strict=True):
             for place, policy in enumerate(policies):
                 shown = _Shown(runs, means, [policy, NO_LEADERS], quantity)
@@ -57,7 +57,8 @@ def leader_curve(
             axes.set_xlabel("number of leaders k")
             axes.set_ylabel(_LABELS[quantity])
             axes.set_xticks(sorted(runs["leaders"].unique()))
-            axes.legend(frameon=False, loc="upper left", fontsize=8)
+            # Below: the episodes fill the panel.
+            axes.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.16), fontsize=8)
         figure.suptitle(title, fontsize=9)
         figure.savefig(path, dpi=200)
 
@@ -88,11 +89,11 @@ def _draw_policy(axes: Axes, shown: _Shown, line: Line | None, shift: float, col
         lw=1,
         capsize=3,
         color=color,
-        label=shown.label,
+        label=shown.label if line is None else None,
     )
     if line is None:
         return
     x = np.array([shown.k.min(), shown.k.max()])
     y = line.intercept + line.slope * x
-    label = "no line to fit" if np.isnan(line.f) else f"F = {line.f:.1f}, p = {line.p:.1g}"
-    axes.plot(x, y, "-", lw=1, color=color, label=label)
+    told = "no line to fit" if np.isnan(line.f) else f"F = {line.f:.1f}, p = {line.p:.1g}"
+    axes.plot(x, y, "-", lw=1, color=color, label=f"{shown.label}: {told}")
