@@ -1,7 +1,7 @@
 """Choose PPO's settings by a recorded search: short runs that differ in nothing else.
 
     python baselines/search_ppo.py                      # ten runs, half an hour on one core
-    flockenv train --settings results/search_ppo/best.toml --samples 3000000
+    flockenv train --settings results/search_ppo/best.toml --samples 4000000
 
 The settings of ppo_shared_policy.py, with those in RANGES drawn from a Latin hypercube. Each run
 ends with a validation of what it learned, always in the same training episodes; the damped law, as
@@ -10,6 +10,7 @@ results/search_ppo/search.csv; interrupted, the same command goes on with the ru
 """
 
 import argparse
+import shlex
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -72,19 +73,19 @@ def drawn(options: argparse.Namespace) -> list[training.TrainingSettings]:
     ]
 
 
-def score(settings: training.TrainingSettings, folder: Path) -> dict[str, float]:
+def score(settings: training.TrainingSettings, folder: Path, command: str) -> dict[str, float]:
     """Train, or go on, or read what was found; return the final scores."""
     if (folder / "checkpoint.npz").exists():
         if training.stored_settings(folder) != settings:
             raise flockenv.ParameterError(f"{folder} is of another search: name another --out")
         result = training.resume(folder)
     else:
-        result = training.train(settings, folder, command="python baselines/search_ppo.py")
+        result = training.train(settings, folder, command=command)
     last = dict(result.progress.validations[-1])
     return {"wall_s": round(result.progress.wall_s), **last}
 
 
-def search(options: argparse.Namespace) -> pd.DataFrame:
+def search(options: argparse.Namespace, command: str) -> pd.DataFrame:
     """Run all and write the table and the best run's settings."""
     rows, settings = [], drawn(options)
     law = LAWS[SETTINGS.start](mirror_to_target=SETTINGS.mirror_to_target)
@@ -94,7 +95,7 @@ def search(options: argparse.Namespace) -> pd.DataFrame:
         rows.append({"run": SETTINGS.start, "mean": sum(scores.values()) / len(scores), **scores})
         for number, each in enumerate(settings):
             progress.update(task, description=f"run {number}", completed=1 + number)
-            found = score(each, options.out / f"run-{number}")
+            found = score(each, options.out / f"run-{number}", command)
             rows.append({"run": number, **{name: getattr(each, name) for name in RANGES}, **found})
         progress.update(task, completed=1 + len(settings))
     # The law has no settings; the columns are those of a run.
@@ -121,9 +122,11 @@ def main(arguments: list[str] | None = None) -> None:
         parser.error("there is at least one run")
     if not 0 <= options.seed < 1 << 32:
         parser.error(f"--seed {options.seed} is not accepted: from 0 to {(1 << 32) - 1}")
+    given = sys.argv[1:] if arguments is None else arguments
+    command = shlex.join(["python", "baselines/search_ppo.py", *given])
     try:
         options.out.mkdir(parents=True, exist_ok=True)
-        table = search(options)
+        table = search(options, command)
     except KeyboardInterrupt:
         sys.exit(f"Interrupted: the same command goes on from {options.out}")
     except (flockenv.FlockError, OSError) as error:

@@ -65,8 +65,8 @@ class Difference:
     effect : float
         Cohen's d of paired differences: mean over standard deviation; NaN without spread.
     ratio, ratio_low, ratio_high : float
-        Ratio of the means and its paired bootstrap interval; NaN where the mean below the line is
-        not clearly above zero.
+        Ratio of the means and its paired bootstrap interval; NaN where the interval of
+        the mean that divides is not above zero.
     n : int
         Number of pairs.
     """
@@ -102,9 +102,9 @@ def paired_difference(ours: Iterable[float], theirs: Iterable[float], seed: int 
     differences = ours - theirs
     mean, low, high = mean_interval(differences, seed)
     spread = float(differences.std(ddof=1)) if len(differences) > 1 else 0.0
-    effect = mean / spread if spread > 0.0 else float("nan")
+    effect = mean / spread if spread > 0.0 else math.nan
     _, least, _ = mean_interval(theirs, seed)
-    ratio = (float("nan"),) * 3
+    ratio = (math.nan,) * 3
     if np.array_equal(ours, theirs) and least > 0.0:
         ratio = (1.0, 1.0, 1.0)
     elif least > 0.0:
@@ -157,7 +157,7 @@ def _interval(
     stats = require("scipy.stats", "plot")
     value = float(statistic(*samples))
     if len(samples[0]) < 2:
-        return value, float("nan"), float("nan")
+        return value, math.nan, math.nan
     result = stats.bootstrap(
         samples,
         statistic,

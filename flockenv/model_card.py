@@ -1,5 +1,6 @@
 """A policy's model card: what it is, how it was made and how it compares, in Markdown."""
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -85,7 +86,7 @@ def _differences(name: str, result: ComparisonReport) -> list[str]:
     for row in own.to_dict("records"):
         interval = f"{row['mean']:+.3f} [{row['low']:+.3f}, {row['high']:+.3f}]"
         # No ratio to what is not clearly above zero.
-        known = row["ratio"] == row["ratio"]
+        known = not math.isnan(row["ratio"])
         ratio = f"{row['ratio']:.2f} [{row['ratio_low']:.2f}, {row['ratio_high']:.2f}]"
         lines.append(
             f"| {row['reference']} | {row['leaders']} | {interval} | {row['effect']:.2f} "

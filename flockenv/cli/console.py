@@ -4,12 +4,13 @@ import signal
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from threading import current_thread, main_thread
 from types import FrameType
 
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from flockenv.interrupts import on_interrupt
 
 __all__ = [
     "INTERRUPTED",
@@ -62,7 +63,7 @@ def interruptible(told: str | Callable[[], str]) -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt:
-        with _on_interrupt(signal.SIG_IGN):
+        with on_interrupt(signal.SIG_IGN):
             say(f"Interrupted. {told if isinstance(told, str) else told()}", errors)
         raise typer.Exit(INTERRUPTED) from None
 
@@ -105,21 +106,5 @@ def _announced() -> Iterator[None]:
         say("Waiting for the runs under way to end. Ctrl-C again does not wait.", errors)
         raise KeyboardInterrupt
 
-    with _on_interrupt(announce):
+    with on_interrupt(announce):
         yield
-
-
-@contextmanager
-def _on_interrupt(
-    action: Callable[[int, FrameType | None], None] | signal.Handlers,
-) -> Iterator[None]:
-    # Elsewhere than in the main thread nothing is interrupted, nor where it is ignored (by nohup).
-    ours = signal.getsignal(signal.SIGINT) is signal.default_int_handler
-    if not ours or current_thread() is not main_thread():
-        yield
-        return
-    signal.signal(signal.SIGINT, action)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, signal.default_int_handler)

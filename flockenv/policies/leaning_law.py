@@ -112,9 +112,9 @@ def features(rows: NDArray[Any], names: list[str]) -> NDArray[np.float64]:
 def leaned(
     rows: NDArray[np.float32], bias: NDArray[Any], weights: NDArray[Any], names: list[str]
 ) -> NDArray[np.float32]:
-    """Return mirrored observations as if leaders headed further outward by their lean.
+    """Return mirrored observations as if leaders headed further inward than they do, by their lean.
 
-    What steers such a leader along the target's tangent turns it outward of that by as much.
+    Steering that along the target's tangent turns a leader outward of the tangent by as much.
 
     Parameters
     ----------

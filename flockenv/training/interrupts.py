@@ -3,8 +3,9 @@
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from threading import current_thread, main_thread
 from types import FrameType
+
+from flockenv.interrupts import on_interrupt
 
 __all__ = ["held_interrupts"]
 
@@ -37,15 +38,6 @@ def held_interrupts() -> Iterator[Callable[[], None]]:
         if held:
             raise KeyboardInterrupt
 
-    # No interrupt arrives elsewhere than in the main thread; and who ignores them (as nohup does)
-    # or handles them goes on doing so.
-    ours = signal.getsignal(signal.SIGINT) is signal.default_int_handler
-    if not ours or current_thread() is not main_thread():
+    with on_interrupt(hold):
         yield release
-        return
-    signal.signal(signal.SIGINT, hold)
-    try:
-        yield release
-    finally:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
     release()
