@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from rich.progress import Progress
+from run_number import run_number
 
 import flockenv
 from flockenv.analysis import paired_difference
@@ -107,7 +108,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--pool", choices=("500-boats", "table-1"), required=True)
     parser.add_argument("--episodes", type=int, default=128)
     parser.add_argument("--minutes", type=float, default=8.0, help="length of an episode")
-    parser.add_argument("--seed", type=int, default=0, help="which training seeds")
+    parser.add_argument("--seed", type=run_number, default=0, help="which training seeds")
     parser.add_argument("--out", type=Path, default=Path("results/ablation.csv"))
     parser.add_argument("--quiet", action="store_true")
     options = parser.parse_args(arguments)
@@ -119,8 +120,6 @@ def main(arguments: list[str] | None = None) -> None:
     )
     if options.episodes < 2:
         parser.error("--episodes is at least 2")
-    if not 0 <= options.seed < 1 << 32:
-        parser.error(f"--seed {options.seed} is not accepted: from 0 to {(1 << 32) - 1}")
     first = FIRST_SEED + options.seed * SEEDS_OF_A_RUN
     seeds = [training_seed(first + 1000 + i) for i in range(options.episodes)]
     try:

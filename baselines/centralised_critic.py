@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import torch
 from gymnasium.spaces import Box
+from run_number import run_number
 from stable_baselines3 import PPO
 from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.vec_env import VecEnvWrapper, VecMonitor
@@ -107,11 +108,9 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--samples", type=int, default=200_000)
     parser.add_argument("--flocks", type=int, default=16)
-    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--seed", type=run_number, default=0)
     parser.add_argument("--out", type=Path, default=Path("results/centralised_critic"))
     options = parser.parse_args(arguments)
-    if not 0 <= options.seed < 1 << 32:
-        parser.error(f"--seed {options.seed} is not accepted: from 0 to {(1 << 32) - 1}")
     scene = {"target": "random", "episode_s": 120.0}
     try:
         model = train(options.samples, options.flocks, options.seed, **scene)

@@ -16,7 +16,6 @@ command goes on from the last generation. The result is a policy file:
 """
 
 import argparse
-import itertools
 import json
 import shlex
 import sys
@@ -27,31 +26,24 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from policy_forms import NAMES, LeaningShape, Shape
 from rich.progress import Progress
+from run_number import run_number
 
 import flockenv
 from flockenv.array_file import read_arrays, write_arrays
 from flockenv.cli.scene import changed_fields
-from flockenv.observation import OBSERVATION_VERSION, observation_entries
+from flockenv.observation import OBSERVATION_VERSION
 from flockenv.policies import DampedLaw, LeaningLaw, NetworkPolicy
-from flockenv.policies.leaning_law import FEATURES, GAINS, features, leaned
 from flockenv.policies.shipped import TUNED_GAINS
 from flockenv.provenance import made_by
 from flockenv.reward import TERMS
 from flockenv.seeds import training_seed
 
 SEEDS_OF_A_RUN = 1 << 24
-MOST_SEEDS = (1 << 63) // SEEDS_OF_A_RUN
 DECAY_1, DECAY_2 = 0.9, 0.99
-NAMES = [entry.name for entry in observation_entries()]
 ROUGH_GAINS = {"gain": 1.9, "backward_gain": 3.0, "damping": 20.0}
 LIBERAL_STEPS = {"dt_s": 0.1, "relinearizations": 1}
-RULED_BY = {
-    "n_boats": "--boats", "n_leaders": "--leaders", "pool": "--pool", "bw_s": "--noise",
-    "control_hz": "--control-hz", "episode_s": "--episode-s", "reward": "--reward",
-}  # fmt: skip
-FIXED = ("target", "mirror_to_target", "observation", "rudder_levels", "params", "num_envs",
-         "autoreset_mode", "render_mode", "render_size")  # fmt: skip
 
 
 @dataclass
@@ -67,142 +59,53 @@ class State:
     curve: np.ndarray
 
 
-class Shape:
-    """A network's layers within one vector of weights."""
-
-    def __init__(self, inputs: int, hidden: list[int]) -> None:
-        sizes = [inputs, *hidden, 1]
-        self.layers = list(itertools.pairwise(sizes))
-        self.size = sum(i * o + o for i, o in self.layers)
-
-    def split(self, flat: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Matrices and biases of vectors (..., size)."""
-        parts, start = [], 0
-        for i, o in self.layers:
-            matrix = flat[..., start : start + i * o].reshape(*flat.shape[:-1], i, o)
-            bias = flat[..., start + i * o : start + i * o + o]
-            parts.append((matrix, bias[..., None, :]))
-            start += i * o + o
-        return parts
-
-    def steering(self, flat: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-        """What maps rows (candidates, rows, inputs) to rudders, for weights (candidates, size)."""
-        layers = self.split(flat.astype(np.float32))
-
-        def steer(rows: np.ndarray) -> np.ndarray:
-            for matrix, bias in layers[:-1]:
-                rows = np.tanh(rows @ matrix + bias)
-            matrix, bias = layers[-1]
-            return np.clip(rows @ matrix + bias, -1.0, 1.0)[..., 0]
-
-        return steer
-
-    def policy(self, flat: np.ndarray, made: dict[str, str]) -> NetworkPolicy:
-        layers = self.split(flat)
-        return NetworkPolicy(
-            [matrix for matrix, _ in layers],
-            [bias[0] for _, bias in layers],
-            "tanh",
-            mirror_to_target=True,
-            made=made,
-        )
-
-    def first(self, random: np.random.Generator) -> np.ndarray:
-        """Small random hidden layers; an output layer of zeros: leaders that go straight ahead."""
-        parts = [
-            np.concatenate([random.standard_normal(i * o) / np.sqrt(i), np.zeros(o)])
-            for i, o in self.layers
-        ]
-        parts[-1][:] = 0.0
-        return np.concatenate(parts)
-
-
-class LeaningShape:
-    """A leaning law's numbers within one vector; a step of 1 is worth trying for each of them."""
-
-    size = len(GAINS) + 1 + len(FEATURES)
-    log_gain_steps, bias_step_rad, lean_step_rad = np.array([0.3, 0.4, 0.3]), 0.12, 0.1
-
-    def __init__(self, options: argparse.Namespace) -> None:
-        """Look at what the law to begin with sees, so that all features get equal steps."""
-        gains = TUNED_GAINS["damped law"][options.pool] if options.tuned else ROUGH_GAINS
-        self.begin = DampedLaw(**gains, mirror_to_target=True)
-        env = environment(options, 16, options.leaders[0])
-        rows, _ = env.reset(
-            seed=[training_seed(options.seed * SEEDS_OF_A_RUN + i) for i in range(16)]
-        )
-        seen = []
-        for _ in range(round(min(60.0, options.episode_s) * options.control_hz)):
-            rows, *_ = env.step(self.begin.predict(rows)[0])
-            seen.append(features(rows.reshape(-1, len(NAMES)), NAMES))
-        self.usual = np.mean(seen, axis=(0, 1))
-        self.steps = self.lean_step_rad / np.maximum(np.std(seen, axis=(0, 1)), 0.05)
-
-    def split(self, flat: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Gains, biases and weights of vectors (..., size)."""
-        begin = np.array([self.begin.gains[name] for name in GAINS])
-        gains = begin * np.exp(self.log_gain_steps * flat[..., : len(GAINS)])
-        weights = self.steps * flat[..., len(GAINS) + 1 :]
-        bias = self.bias_step_rad * flat[..., len(GAINS)] - weights @ self.usual
-        return gains, bias, weights
-
-    def steering(self, flat: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-        """What maps rows (candidates, rows, size) to rudders, for vectors (candidates, size)."""
-        gains, bias, weights = self.split(flat)
-        laws = [DampedLaw(*each, mirror_to_target=True) for each in gains.tolist()]
-
-        def steer(rows: np.ndarray) -> np.ndarray:
-            turned = leaned(rows, bias, weights, NAMES)
-            pairs = zip(laws, turned, strict=True)
-            return np.stack([law.predict(each)[0][:, 0] for law, each in pairs])
-
-        return steer
-
-    def policy(self, flat: np.ndarray, made: dict[str, str]) -> LeaningLaw:
-        gains, bias, weights = self.split(flat)
-        return LeaningLaw(
-            dict(zip(GAINS, gains.tolist(), strict=True)),
-            float(bias),
-            dict(zip(FEATURES, weights.tolist(), strict=True)),
-            made=made,
-        )
-
-    def first(self, random: np.random.Generator) -> np.ndarray:
-        """The law to begin with."""
-        return np.zeros(self.size)
-
-
-def changes(options: argparse.Namespace) -> dict[str, Any]:
-    """What --set and --liberal-steps ask for; a name that something else rules is refused."""
-    steps, found = LIBERAL_STEPS if options.liberal_steps else {}, changed_fields(options.set)
-    ruled_by = {**RULED_BY, **dict.fromkeys(steps, "--liberal-steps")}
-    for name in found:
-        if name in ruled_by or name in FIXED:
-            ruler = ruled_by.get(name, "the search itself")
+def scene(options: argparse.Namespace, leaders: int) -> flockenv.FlockParameters:
+    """Where a generation steers; --set takes what no other option rules."""
+    critical = flockenv.FlockParameters.critical_bw_s("simulation", options.pool)
+    ruled = {
+        "pool": ("--pool", options.pool),
+        "n_boats": ("--boats", options.boats),
+        "n_leaders": ("--leaders", leaders),
+        "bw_s": ("--noise", options.noise * critical),
+        # Mirrored, both directions are this one.
+        "target": ("the search itself", "cw"),
+    }
+    if options.liberal_steps:
+        ruled |= {name: ("--liberal-steps", value) for name, value in LIBERAL_STEPS.items()}
+    changes = changed_fields(options.set)
+    for name in changes:
+        if name in ruled:
+            ruler = ruled[name][0]
             raise flockenv.ParameterError(f"--set {name} is not accepted: {ruler} rules it")
-    return {**steps, **found}
+    fields = {name: value for name, (_, value) in ruled.items()} | changes
+    try:
+        return flockenv.FlockParameters.preset("simulation").replace(**fields)
+    except TypeError as error:
+        raise flockenv.ParameterError(f"--set: {error}") from error
+
+
+def leaning_shape(options: argparse.Namespace) -> LeaningShape:
+    """The form of a leaning law, measured in the scene of the search."""
+    gains = TUNED_GAINS["damped law"][options.pool] if options.tuned else ROUGH_GAINS
+    seeds = [training_seed(options.seed * SEEDS_OF_A_RUN + i) for i in range(16)]
+    env = environment(options, len(seeds), options.leaders[0])
+    steps = round(min(60.0, options.episode_s) * options.control_hz)
+    return LeaningShape(DampedLaw(**gains, mirror_to_target=True), env, seeds, steps)
 
 
 def environment(
     options: argparse.Namespace, flocks: int, leaders: int
 ) -> flockenv.LeadersVectorEnv:
-    critical = flockenv.FlockParameters.critical_bw_s("simulation", options.pool)
-    settings = {
-        "n_boats": options.boats,
-        "n_leaders": leaders,
-        "pool": options.pool,
-        "bw_s": options.noise * critical,
-        "target": "random",
-        "mirror_to_target": True,
-        "control_hz": options.control_hz,
-        "episode_s": options.episode_s,
-        "reward": {options.reward: 1.0},
-        **changes(options),
-    }
-    try:
-        return flockenv.LeadersVectorEnv(flocks, autoreset_mode="disabled", **settings)
-    except TypeError as error:
-        raise flockenv.ParameterError(f"--set: {error}") from error
+    return flockenv.LeadersVectorEnv(
+        flocks,
+        autoreset_mode="disabled",
+        params=scene(options, leaders),
+        target="random",
+        mirror_to_target=True,
+        control_hz=options.control_hz,
+        episode_s=options.episode_s,
+        reward={options.reward: 1.0},
+    )
 
 
 def mean_rewards(
@@ -315,7 +218,7 @@ def search(options: argparse.Namespace, command: str) -> NetworkPolicy | Leaning
     flocks = 2 * options.pairs * options.flocks
     envs = {leaders: environment(options, flocks, leaders) for leaders in set(options.leaders)}
     leaning = options.form == "leaning"
-    shape = LeaningShape(options) if leaning else Shape(len(NAMES), options.hidden)
+    shape = leaning_shape(options) if leaning else Shape(len(NAMES), options.hidden)
     path = options.out / "state.npz"
     options.out.mkdir(parents=True, exist_ok=True)
     state = load_state(path, options)
@@ -377,15 +280,13 @@ def main(arguments: list[str] | None = None) -> None:
         "--average", type=float, default=1.0, help="share of each generation in the result; 1: last"
     )
     parser.add_argument("--episodes", type=int, default=64, help="held-out episodes at the end")
-    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--seed", type=run_number, default=0)
     parser.add_argument("--out", type=Path, default=Path("results/evolution"))
     parser.add_argument("--quiet", action="store_true")
     options = parser.parse_args(arguments)
     counts = (options.pairs, options.generations, options.flocks)
     if min(*counts, *options.hidden, *options.leaders) < 1:
         parser.error("pairs, generations, flocks, hidden layers and leaders are at least 1")
-    if not 0 <= options.seed < MOST_SEEDS:
-        parser.error(f"--seed {options.seed} is not accepted: from 0 to {MOST_SEEDS - 1}")
     if options.hidden and options.form != "network":
         parser.error("--hidden is for --form network")
     if options.tuned and options.form != "leaning":

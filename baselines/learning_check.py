@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 import torch
 from gymnasium.vector import AutoresetMode
+from run_number import run_number
 from stable_baselines3 import PPO
 from stable_baselines3.common.vec_env import DummyVecEnv, VecEnv
 
@@ -210,11 +211,9 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--faces", nargs="+", choices=FACES, default=list(FACES))
     parser.add_argument("--samples", type=int, default=500_000)
     parser.add_argument("--episodes", type=int, default=128)
-    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--seed", type=run_number, default=0)
     parser.add_argument("--out", type=Path, default=RESULTS)
     options = parser.parse_args(arguments)
-    if not 0 <= options.seed < 1 << 32:
-        parser.error(f"--seed {options.seed} is not accepted: from 0 to {(1 << 32) - 1}")
     # Small networks: more threads only wait for each other.
     torch.set_num_threads(1)
     results = []

@@ -19,6 +19,7 @@ from typing import Any
 import pandas as pd
 from ppo_shared_policy import SETTINGS
 from rich.progress import Progress
+from run_number import run_number
 from scipy.stats import qmc
 
 import flockenv
@@ -114,14 +115,12 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--runs", type=int, default=10)
     parser.add_argument("--samples", type=int, default=600_000, help="of each run")
     parser.add_argument("--episodes", type=int, default=64, help="of each scene's validation")
-    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--seed", type=run_number, default=0)
     parser.add_argument("--out", type=Path, default=Path("results/search_ppo"))
     parser.add_argument("--quiet", action="store_true")
     options = parser.parse_args(arguments)
     if options.runs < 1:
         parser.error("there is at least one run")
-    if not 0 <= options.seed < 1 << 32:
-        parser.error(f"--seed {options.seed} is not accepted: from 0 to {(1 << 32) - 1}")
     given = sys.argv[1:] if arguments is None else arguments
     command = shlex.join(["python", "baselines/search_ppo.py", *given])
     try:

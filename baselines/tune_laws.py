@@ -23,6 +23,7 @@ import numpy as np
 import pandas as pd
 import tomli_w
 from rich.progress import Progress
+from run_number import run_number
 
 import flockenv
 from flockenv.comparison import run_episodes
@@ -97,15 +98,12 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--generations", type=int, default=10)
     parser.add_argument("--episodes", type=int, default=32, help="for each candidate")
     parser.add_argument("--minutes", type=float, default=8.0, help="length of an episode")
-    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--seed", type=run_number, default=0)
     parser.add_argument("--out", type=Path, default=Path("results/tune_laws"))
     parser.add_argument("--quiet", action="store_true")
     options = parser.parse_args(arguments)
     if min(options.generations, options.episodes) < 1:
         parser.error("generations and episodes are at least 1")
-    # CMA-ES takes no others; as training seeds they would go on to 2^39 - 1.
-    if not 0 <= options.seed < 1 << 32:
-        parser.error(f"--seed {options.seed} is not accepted: from 0 to {(1 << 32) - 1}")
     given = sys.argv[1:] if arguments is None else arguments
     command = shlex.join(["python", "baselines/tune_laws.py", *given])
     begin, tuned = time.perf_counter(), {}
