@@ -30,6 +30,26 @@ def test_the_mean_of_two(script, tmp_path: Path) -> None:
     assert "average_policies.py" in mean.made["command"]
 
 
+def test_parts_and_mean_lead_in_episodes_for_training(
+    script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys
+) -> None:
+    seen = []
+
+    def noted(scene, policy, seeds, duration_s):
+        seen.append((policy.gains["gain"], seeds))
+        return {"signed_order": np.full(len(seeds), policy.gains["gain"])}
+
+    monkeypatch.setattr(script, "run_episodes", noted)
+    law(1.0, 0.1, {}, 3).save(tmp_path / "one.npz")
+    law(4.0, 0.3, {}, 4).save(tmp_path / "other.npz")
+    files = [str(tmp_path / "one.npz"), str(tmp_path / "other.npz")]
+    out = ["--out", str(tmp_path / "mean.npz")]
+    script.main([*files, *out, "--pool", "table-1", "--episodes", "3"])
+    assert [gain for gain, _ in seen] == pytest.approx([1.0, 4.0, 2.0, 3.02])
+    assert all(seeds == seen[0][1] and min(seeds) >= 2**32 for _, seeds in seen)
+    assert "their mean: signed order 2.000 [2.000, 2.000]" in capsys.readouterr().out
+
+
 def test_only_leaning_laws_have_a_mean(script, tmp_path: Path) -> None:
     NetworkPolicy([np.zeros((67, 1))], [[0.0]]).save(tmp_path / "net.npz")
     law(1.0, 0.1, {}, 0).save(tmp_path / "law.npz")
