@@ -6,8 +6,9 @@
 Draws rudders.png (mean rudder by time in the control cycle, against the angular velocity of a
 leader that heads nearly right, and against misalignment), places.png (how well leaders head, how
 far out and how far from each other they are) and tracks.png (two minutes of one episode), and
-writes what leaders did on average to means.csv. Critical noise, clockwise targets, paired seeds;
-the first tenth of each episode is left out.
+writes what leaders did on average to means.csv (at_wall, beside_wall and beside_leader are shares
+of the time). Critical noise, clockwise targets, paired seeds; the first tenth of each episode is
+left out.
 """
 
 import argparse
@@ -36,6 +37,8 @@ PHASES = ("fw", "nop1", "bw", "nop2")
 NEARLY_RIGHT_RAD = 0.3
 SPIN_RAD_S = 2.0
 TRACKED_S = 120.0
+#: What counts as in the row on the outer wall, in the lane beside that row, and next to a leader.
+NEAR_WALL_CM, FAR_FROM_WALL_CM, BESIDE_CM = 8.0, 22.0, 20.0
 
 
 def watch(
@@ -84,6 +87,8 @@ def samples(
     orientation = np.arctan2(own["sin_orientation"], own["cos_orientation"])
     misalignment = np.angle(np.exp(1j * (orientation - np.pi / 2)))
     speed_cm_s = max(scene.speed_cm_s, scene.reverse_speed_cm_s)
+    radius, apart = radius_cm(own["radial_position"], scene), apart_cm(state, scene)
+    outer, _ = pool_radii_cm(scene.pool)
     return pd.DataFrame(
         {
             "cycle_s": ends[phase] - 2.0 * own["time_left"],
@@ -92,8 +97,11 @@ def samples(
             "rudder": np.clip(actions.ravel(), -1.0, 1.0),
             "alignment": np.cos(misalignment),
             "velocity_cm_s": speed_cm_s * own["clockwise_velocity"],
-            "radius_cm": radius_cm(own["radial_position"], scene),
-            "apart_cm": apart_cm(state, scene),
+            "radius_cm": radius,
+            "apart_cm": apart,
+            "at_wall": radius > outer - NEAR_WALL_CM,
+            "beside_wall": (radius > outer - FAR_FROM_WALL_CM) & (radius <= outer - NEAR_WALL_CM),
+            "beside_leader": apart < BESIDE_CM,
         }
     )
 

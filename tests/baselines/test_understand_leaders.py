@@ -19,6 +19,9 @@ def test_it_draws(script, tmp_path: Path, capsys) -> None:
         with Image.open(tmp_path / f"{name}.png") as picture:
             assert picture.width > 800
     means = pd.read_csv(tmp_path / "means.csv", index_col="policy")
+    for share in ("at_wall", "beside_wall", "beside_leader"):
+        assert means[share].between(0.0, 1.0).all()
+    assert (means["at_wall"] + means["beside_wall"]).max() > 0.0
     assert list(means.index) == ["damped law", "straight ahead"]
     assert means.loc["straight ahead", "rudder"] == 0.0
 
