@@ -1,0 +1,117 @@
+"""Law: what an earlier version wrote is read as it was written.
+
+`tests/fixtures/<version>` holds files of every stored format, written by that version, and
+`facts.json` what was in them (SHA-256 of arrays, numbers of policies). A format that moves gets a
+further folder; the folders that are there never change.
+"""
+
+import hashlib
+import json
+import pickle
+import shutil
+from pathlib import Path
+
+import gymnasium
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv import Flock, FlockParameters, Recording
+from flockenv.run_store import RunStore
+from flockenv.runs import RunSpec
+
+FIXTURES = Path(__file__).parents[1] / "fixtures"
+VERSIONS = sorted(path.name for path in FIXTURES.iterdir())
+SMALL = {"n_boats": 6, "n_leaders": 2, "episode_s": 8.0}
+
+
+@pytest.fixture(params=VERSIONS)
+def folder(request):
+    return FIXTURES / request.param
+
+
+@pytest.fixture
+def facts(folder):
+    return json.loads((folder / "facts.json").read_text())
+
+
+def sha(array):
+    return hashlib.sha256(np.ascontiguousarray(array).tobytes()).hexdigest()
+
+
+def test_there_is_a_folder_of_an_earlier_version():
+    assert "v0.1.0" in VERSIONS
+
+
+def test_parameters(folder, facts):
+    from_toml = FlockParameters.from_toml((folder / "parameters.toml").read_text())
+    assert FlockParameters.from_dict(facts["parameters"]) == from_toml
+    assert pickle.loads((folder / "parameters.pickle").read_bytes()) == from_toml
+
+
+@pytest.mark.parametrize("name", ["recording", "recording_contacts"])
+def test_recordings(folder, facts, name):
+    recording, known = Recording.load(folder / f"{name}.npz"), facts[name]
+    assert (len(recording), recording.seed) == (known["samples"], known["seed"])
+    assert sha(recording.pose) == known["pose"]
+    assert sha(recording.velocity) == known["velocity"]
+    assert sha(recording.order.psi_o) == known["psi_o"]
+    if "impulses" in known:
+        assert sha(recording.contacts.force) == known["impulses"]
+
+
+def test_snapshots(folder, facts):
+    flock, known = Flock.from_snapshot((folder / "flock.snapshot").read_bytes()), facts["snapshot"]
+    assert (flock.time_s, flock.phase) == (known["time_s"], known["phase"])
+    assert sha(flock.pose) == known["pose"]
+    assert sha(flock.velocity) == known["velocity"]
+    flock.advance(1.0)
+    assert np.isfinite(flock.pose).all()
+
+
+def test_states_of_an_environment(folder, facts):
+    env, known = gymnasium.make("flockenv/Leaders-v0", **SMALL).unwrapped, facts["environment"]
+    env.reset(seed=1)
+    env.set_state((folder / "environment.state").read_bytes())
+    assert sha(env.flock.pose) == known["pose"]
+    assert known["episode"].items() <= env.episode().items()
+    env.step(np.zeros(2, np.float32))
+
+
+def test_states_of_a_vector_environment(folder, facts):
+    env, known = gymnasium.make_vec("flockenv/Leaders-v0", num_envs=2, **SMALL), facts["vector"]
+    env.reset(seed=1)
+    env.set_state((folder / "vector.state").read_bytes())
+    assert sha(env.state()) == known["state"]
+    env.step(np.zeros((2, 2), np.float32))
+
+
+def test_keys_of_runs(facts):
+    scene = FlockParameters.from_dict(facts["parameters"])
+    for protocol, key in facts["run_keys"].items():
+        assert RunSpec(parameters=scene, seed=3, duration_s=30.0, protocol=protocol).key == key
+
+
+@pytest.mark.parametrize("keep", ["window", "order", "poses"])
+def test_kept_runs(folder, facts, keep, tmp_path):
+    scene, known = FlockParameters.from_dict(facts["parameters"]), facts["runs"][keep]
+    spec = RunSpec(parameters=scene, seed=3, duration_s=10.0, keep=keep)
+    assert spec.key == known["key"]
+    shutil.copytree(folder / "runs", tmp_path / "runs")
+    result = RunStore(tmp_path / "runs", pytest.fail).load(spec)
+    assert {name: sha(array) for name, array in result.arrays().items()} == known["arrays"]
+
+
+@pytest.mark.parametrize("name", ["network", "leaning"])
+def test_policies(folder, facts, name):
+    policy = flockenv.policies.load(folder / f"{name}.npz")
+    rudders, _ = policy.predict(np.load(folder / "rows.npy"))
+    assert rudders.ravel() == pytest.approx(facts[name]["rudders"], abs=1e-5)
+
+
+def test_checkpoints(folder):
+    pytest.importorskip("stable_baselines3")
+    from flockenv.training.checkpoint import read_settings
+
+    settings = read_settings(folder / "checkpoint.npz")
+    assert (settings.n_boats, settings.net_arch) == (6, (8,))
