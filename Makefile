@@ -42,7 +42,7 @@ TEST_EXTRAS := --extra train --extra plot --extra fit --extra render --extra swe
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .PHONY: help setup build compare test lint format test-rust test-python test-browser test-wheel test-oldest \
-        test-rllib test-ray validate docs wheel audit licences pages replay-animation \
+        test-rllib test-ray validate docs wheel audit licences pages tables replay-animation \
         learning-check throughput soak fuzz speed-vs-error lint-benches clean
 
 help: ## list the commands
@@ -124,6 +124,9 @@ licences: ## collect the notices of the crates that are compiled in, into LICENS
 validate: $(STAMPS)/test $(STAMPS)/core ## the slow tests and the published curves
 	cargo test --locked -- --ignored
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) -m "slow or validation" --timeout 3600 $(PYTEST_ARGS)
+
+tables: $(STAMPS)/compare ## fill the tables of README and docs from the committed data
+	$(BIN)/python docs/tables.py
 
 pages: $(STAMPS)/test $(STAMPS)/core ## write docs/environments from the docstrings
 	$(BIN)/python docs/environment_pages.py

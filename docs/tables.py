@@ -1,0 +1,335 @@
+"""Fill the marked tables of the pages from committed data: `make tables`.
+
+A table stands between ``<!-- table: NAME -->`` and ``<!-- end -->``; `TABLES` says how NAME is made
+and from which file. tests/docs/test_tables.py fails where a page differs from its data.
+"""
+
+import csv
+import re
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+
+DOCS = Path(__file__).parent
+PAGES = (DOCS.parent / "README.md", *sorted(DOCS.glob("*.md")))
+MARKED = re.compile(r"(<!-- table: (\S+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+
+Row = dict[str, str]
+
+
+def main() -> None:
+    """Rewrite every page in which a table differs from its data."""
+    for page in PAGES:
+        text = page.read_text(encoding="utf-8")
+        new = filled(text)
+        if new != text:
+            page.write_text(new, encoding="utf-8")
+
+
+def filled(text: str) -> str:
+    """Return a page with each marked table made anew."""
+    return MARKED.sub(lambda found: f"{found[1]}\n{TABLES[found[2]]()}\n\n{found[4]}", text)
+
+
+def rows(file: str, **wanted: str) -> list[Row]:
+    """Return the rows of a CSV file below docs that have these values."""
+    with (DOCS / file).open(encoding="utf-8", newline="") as lines:
+        found = [
+            row
+            for row in csv.DictReader(lines)
+            if all(row[name] == value for name, value in wanted.items())
+        ]
+    if not found:
+        raise LookupError(f"docs/{file} holds no row with {wanted}")
+    return found
+
+
+def one(file: str, **wanted: str) -> Row:
+    """Return the only row that has these values."""
+    (row,) = rows(file, **wanted)
+    return row
+
+
+def markdown(header: Sequence[str], body: Iterable[Sequence[str]]) -> str:
+    """Return a table in Markdown."""
+    lines = [header, ["---"] * len(header), *body]
+    return "\n".join(
+        "|" + "".join(f" {cell} |" if cell else " |" for cell in line) for line in lines
+    )
+
+
+def interval(row: Row, middle: str, low: str, high: str, form: str = ".3f") -> str:
+    """Return a value with its interval in brackets."""
+    value, least, most = (f"{float(row[name]):{form}}" for name in (middle, low, high))
+    return f"{value} [{least}, {most}]"
+
+
+def order(row: Row) -> str:
+    """Return a mean signed order with its interval."""
+    return interval(row, "signed_order", "signed_order_low", "signed_order_high")
+
+
+def difference(row: Row) -> str:
+    """Return a paired difference of signed orders with its interval."""
+    return interval(row, "mean", "low", "high", "+.3f")
+
+
+def ratio(row: Row) -> str:
+    """Return a paired ratio of signed orders with its interval."""
+    return interval(row, "ratio", "ratio_low", "ratio_high", ".2f")
+
+
+# --- the leaders ----------------------------------------------------------------------------------
+
+MEANS = "leaders/means.csv"
+DIFFERENCES = "leaders/differences.csv"
+POOLS = ("500-boats", "table-1")
+
+
+def leader_count() -> str:
+    """Return what `make compare` prints."""
+    file = "leaders/leader_count.csv"
+    policies = ("steering law", "tuned damped law", "learned")
+    columns = [(pool, policy) for pool in POOLS for policy in policies]
+    none = {pool: order(one(file, pool=pool, policy="no leaders", leaders="0")) for pool in POOLS}
+    body = [
+        ["0", *(none[pool] if policy == policies[0] else "" for pool, policy in columns)],
+        *(
+            [k, *(order(one(file, pool=pool, policy=name, leaders=k)) for pool, name in columns)]
+            for k in ("1", "2", "3", "4")
+        ),
+    ]
+    slopes = [one(file, pool=pool, policy=name, leaders="slope") for pool, name in columns]
+    body.append(["slope per leader", *(f"{float(row['signed_order']):.3f}" for row in slopes)])
+    titles = {"steering law": "paper's law"}
+    header = [f"`{pool}`: {titles[name]}" if name in titles else name for pool, name in columns]
+    return markdown(["leaders", *header], body)
+
+
+def leaders_of(pool: str, policies: Sequence[str]) -> str:
+    """Return the order with each policy in a pool, and what learning adds to the best law."""
+    body = []
+    for k in ("1", "2", "3", "4"):
+        means = (one(MEANS, comparison=pool, policy=name, leaders=k) for name in policies)
+        added = one(
+            DIFFERENCES,
+            comparison=pool,
+            policy="learned",
+            reference="tuned damped law",
+            leaders=k,
+        )
+        body.append([k, *(order(row) for row in means), difference(added)])
+    return markdown(["leaders", *policies, "learned minus tuned damped law"], body)
+
+
+def other_scenes() -> str:
+    """Return the order with three leaders in scenes that no search has used."""
+    scenes = {
+        "`500-boats`, bw = 0.15 s": ("less-noise", "500-boats-bw-0.15"),
+        "`500-boats`, bw = 0.25 s": ("less-noise", "500-boats-bw-0.25"),
+        "`500-boats`, alternating target": ("alternating-500-boats", "500-boats-bw-0.31"),
+        "`500-boats`, 0.3 % of positions dropped": ("drop-outs-500-boats", "500-boats-bw-0.31"),
+        "`table-1`, alternating target": ("alternating-table-1", "table-1-bw-0.45"),
+        "`table-1`, 0.3 % of positions dropped": ("drop-outs-table-1", "table-1-bw-0.45"),
+    }
+    body = []
+    for title, (comparison, scene) in scenes.items():
+        mean = one(MEANS, comparison=comparison, scene=scene, policy="learned")
+        gains = [
+            one(DIFFERENCES, comparison=comparison, scene=scene, policy="learned", reference=law)
+            for law in ("steering law", "tuned damped law")
+        ]
+        body.append([title, mean["runs"], order(mean), *(difference(row) for row in gains)])
+    header = ["scene", "episodes", "learned", "minus the paper's law", "minus the tuned damped law"]
+    return markdown(header, body)
+
+
+def strong_rudders() -> str:
+    """Return the order in table-1 with ten times the rudder."""
+    file = "leaders/strong_rudders.csv"
+    body = []
+    for k in ("1", "3"):
+        law = one(MEANS, comparison="table-1", policy="tuned damped law", leaders=k)
+        cells = [order(law)]
+        for policy in ("tuned damped law", "policy"):
+            mean = one(MEANS, comparison="strong-rudders", policy=policy, leaders=k)
+            gain = one(file, policy=policy, leaders=k)
+            cells += [order(mean), ratio(gain)]
+        body.append([k, *cells])
+    strong = "with ten times the rudder"
+    header = [
+        "leaders",
+        "tuned damped law",
+        f"tuned damped law {strong}",
+        "ratio",
+        f"law searched {strong}",
+        "ratio",
+    ]
+    return markdown(header, body)
+
+
+def other_policies() -> str:
+    """Return the order with other policies."""
+    names = {
+        "no leaders": "no leaders",
+        "straight ahead": "straight ahead",
+        "random rudders": "random rudders",
+        "steering law, every substep": "steering law, every substep",
+        "linear-table-1.npz": "linear feedback",
+    }
+    body = []
+    for policy, name in names.items():
+        for k in ("0",) if policy == "no leaders" else ("1", "3"):
+            means = [
+                one(MEANS, comparison=f"others-{pool}", policy=policy, leaders=k) for pool in POOLS
+            ]
+            body.append([name, k, *(order(row) for row in means)])
+    return markdown(["policy", "leaders", *(f"`{pool}`" for pool in POOLS)], body)
+
+
+def ablation() -> str:
+    """Return the change of order when weights of the pretrained leaders are left out."""
+    found = {row["law"]: row for row in rows("leaders/ablation-500-boats.csv")}
+
+    def change(name: str) -> str:
+        return interval(found[name], "beyond_whole", "low", "high", "+.3f")
+
+    groups = {
+        "normal neighbours": "normal neighbors",
+        "order of the flock": "order of the flock",
+        "outer wall": "outer wall",
+        "own velocity": "the leader's own velocity",
+        "other leaders": "other leaders",
+    }
+    body = [["all weights", change("no weights"), ""]]
+    body += [
+        [title, change(f"without {name}"), change(f"{name} alone")]
+        for name, title in groups.items()
+    ]
+    return markdown(["group of weights", "left out", "kept alone"], body)
+
+
+def leader_motion() -> str:
+    """Return how leaders head and where they are."""
+    body = [
+        [
+            f"`{row['pool']}`",
+            row["policy"],
+            f"{float(row['alignment']):.3f}",
+            f"{float(row['velocity_cm_s']):.2f}",
+            f"{float(row['radius_cm']):.1f}",
+            f"{float(row['apart_cm']):.1f}",
+            *(
+                f"{100 * float(row[name]):.0f} %"
+                for name in ("at_wall", "beside_wall", "beside_leader")
+            ),
+        ]
+        for row in rows("leaders/motion.csv")
+    ]
+    header = [
+        "pool",
+        "policy",
+        "mean cosine of misalignment",
+        "velocity towards the target, cm/s",
+        "distance from the center, cm",
+        "distance to the next leader, cm",
+        "time in the row at the wall",
+        "time beside that row",
+        "time within 20 cm of a leader",
+    ]
+    return markdown(header, body)
+
+
+def ppo_comparison() -> str:
+    """Return the order with PPO's best policy and three leaders."""
+    body = []
+    for pool, scene in zip(POOLS, ("500-boats-bw-0.31", "table-1-bw-0.45"), strict=True):
+        mean = one(MEANS, comparison="ppo", scene=scene, policy="best")
+        gains = [
+            one(DIFFERENCES, comparison="ppo", scene=scene, policy="best", reference=law)
+            for law in ("damped law", "tuned damped law")
+        ]
+        body.append([f"`{pool}`", order(mean), *(difference(row) for row in gains)])
+    header = ["pool", "PPO", "minus the damped law", "minus the tuned damped law"]
+    return markdown(header, body)
+
+
+def ppo_search() -> str:
+    """Return the runs of the search of PPO's settings, best first."""
+    found = rows("leaders/ppo_search.csv")
+    found.sort(key=lambda row: -float(row["mean"]))
+    body = []
+    for row in found:
+        known = row["learning_rate"] != ""
+        body.append(
+            [
+                f"run {row['run']}" if known else row["run"],
+                f"{float(row['learning_rate']):.1e}" if known else "",
+                row["log_std_init"],
+                {"True": "yes", "False": "no"}.get(row["use_sde"], ""),
+                row["control_hz"],
+                f"{float(row['mean']):.3f}",
+            ]
+        )
+    header = ["", "learning rate", "`log_std_init`", "gSDE", "decisions per second", "signed order"]
+    return markdown(header, body)
+
+
+# --- the fit --------------------------------------------------------------------------------------
+
+
+def fit_targets() -> str:
+    """Return what the preset `experiment` was fitted to and what it reaches."""
+    body = []
+    for row in rows("results/experiment_fit.csv"):
+        low, high = (f"{float(row[f'target_{end}']):.3g}" for end in ("low", "high"))
+        value, least, most, best = (
+            f"{float(row[name]):.3g}" for name in ("value", "value_low", "value_high", "best_seen")
+        )
+        inside = "yes" if row["met"] == "True" else "**no**"
+        accepted = f"≥ {low}" if high == "inf" else f"{low} to {high}"
+        name = f"{row['fact']} ({row['source']})"
+        body.append([name, accepted, value, f"{least} to {most}", inside, best])
+    header = ["quantity", "paper", "fitted", "95 % interval", "in range", "nearest of any trial"]
+    return markdown(header, body)
+
+
+def fit_variants() -> str:
+    """Return what the fitted constants reach with one other choice at a time."""
+    file = "results/experiment_variants.csv"
+    keys = {
+        "critical_bw_0": "critical bw, 0 leaders, s",
+        "critical_bw_3": "critical bw, 3 leaders, s",
+        "low_noise_0": "Ψ_o at low noise, 0 leaders",
+        "ordered": "time in ordered motion, 0 leaders",
+    }
+    body = []
+    for variant in dict.fromkeys(row["variant"] for row in rows(file)):
+        found = [one(file, variant=variant, key=key) for key in keys]
+        cells = (interval(row, "value", "value_low", "value_high", ".2f") for row in found)
+        body.append([variant, *cells])
+    return markdown(["variant", *keys.values()], body)
+
+
+TABLES: dict[str, Callable[[], str]] = {
+    "leader-count": leader_count,
+    "leaders-500-boats": lambda: leaders_of(
+        "500-boats", ("steering law", "tuned damped law", "learned")
+    ),
+    "leaders-table-1": lambda: leaders_of(
+        "table-1", ("steering law", "tuned sign-corrected law", "tuned damped law", "learned")
+    ),
+    "leader-motion": leader_motion,
+    "ablation": ablation,
+    "strong-rudders": strong_rudders,
+    "other-scenes": other_scenes,
+    "other-policies": other_policies,
+    "ppo-comparison": ppo_comparison,
+    "ppo-search": ppo_search,
+    "fit-targets": fit_targets,
+    "fit-variants": fit_variants,
+}
+"""How each table is made."""
+
+
+if __name__ == "__main__":
+    main()
