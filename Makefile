@@ -12,6 +12,8 @@ PYTEST_ARGS ?=
 COMPARE_ARGS ?=
 THROUGHPUT_ARGS ?=
 SOAK_ARGS ?=
+# `make instructions INSTRUCTIONS=--strict`: fails where there is no valgrind.
+INSTRUCTIONS ?=
 # Of each kind of hostile input in `make fuzz`.
 FUZZ_EXAMPLES ?= 2000
 # `make speed-vs-error SPEED_ARGS=--trial`: everything, but too short to mean anything, outside docs.
@@ -43,7 +45,7 @@ TEST_EXTRAS := --extra train --extra plot --extra fit --extra render --extra swe
 .NOTPARALLEL:
 .PHONY: help setup build compare test lint format test-rust test-python test-browser test-wheel test-oldest \
         test-rllib test-ray validate docs wheel audit licences pages tables replay-animation \
-        learning-check throughput soak fuzz speed-vs-error lint-benches clean
+        instructions learning-check throughput soak fuzz speed-vs-error lint-benches clean
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-18s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -161,6 +163,11 @@ throughput: $(STAMPS)/test $(STAMPS)/core ## measure speed beside VMAS and MPE2,
 
 soak: $(STAMPS)/test $(STAMPS)/core ## ten million control steps with random rudders, write docs/soak.md (minutes)
 	$(BIN)/python benches/soak.py $(SOAK_ARGS)
+
+# Counts hold on a busy machine, unlike times. INSTRUCTIONS=--write pins them anew.
+instructions: ## count instructions of substeps and control steps, compare with benches/instructions.csv
+	@benches/need_valgrind.sh || true
+	cargo bench --locked --bench instructions -- $(INSTRUCTIONS)
 
 # Timed parts run one after another, the rest on all cores. Measure on a machine that does nothing else.
 speed-vs-error: $(STAMPS)/compare $(STAMPS)/peers ## measure speed and error against other engines, into docs (minutes)

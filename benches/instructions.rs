@@ -1,0 +1,328 @@
+//! Instructions of a substep and of a control step, counted by valgrind's callgrind and held against
+//! `instructions.csv`: counts do not depend on what else the machine does.
+//!
+//! `cargo bench --bench instructions` compares, `-- --write` measures anew, `-- --strict` fails where valgrind
+//! is missing. Callgrind's own files stay in `target/instructions`, for `callgrind_annotate`.
+
+use flockenv::Flock;
+use flockenv::environment::{BatchRows, EnvBatch, EnvSettings, ResetRequest};
+use flockenv::parameters::{FlockParameters, Pool, Preset};
+use flockenv::statistics::Statistics;
+use std::fmt::Write as _;
+use std::fs;
+use std::hint::black_box;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+/// Part by which a count may differ from the one that is pinned: compilers, memcpy of other processors.
+const TOLERANCE: f64 = 0.03;
+const PINNED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/instructions.csv");
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/target/instructions");
+const HEADER: &str = "scene,instructions per step,per boat and substep,per contact and substep";
+
+type Failure = Box<dyn std::error::Error>;
+
+/// What is counted: substeps of a flock, or control steps of an environment.
+enum Scene {
+    Flock(FlockParameters),
+    Environment(FlockParameters),
+}
+
+/// What a measured stretch did.
+struct Done {
+    steps: u64,
+    boats: u64,
+    statistics: Statistics,
+}
+
+fn scene(name: &str) -> Option<Scene> {
+    let flock = |boats, is_jam, relinearizations| {
+        let parameters = FlockParameters {
+            relinearizations,
+            ..flock_parameters(boats, is_jam)
+        };
+        Some(Scene::Flock(parameters))
+    };
+    match name {
+        "jam of 27" => flock(27, true, 0),
+        "jam of 27, 1 relinearization" => flock(27, true, 1),
+        "jam of 27, 2 relinearizations" => flock(27, true, 2),
+        "cycle of 27" => flock(27, false, 0),
+        "cycle of 27, 1 relinearization" => flock(27, false, 1),
+        "jam of 1000" => flock(1000, true, 0),
+        "control step in 500-boats" => Some(environment(Pool::FIVE_HUNDRED_BOATS, 0.3)),
+        "control step in table-1" => Some(environment(Pool::TABLE_1, 0.4)),
+        _ => None,
+    }
+}
+
+const SCENES: [&str; 8] = [
+    "jam of 27",
+    "jam of 27, 1 relinearization",
+    "jam of 27, 2 relinearizations",
+    "cycle of 27",
+    "cycle of 27, 1 relinearization",
+    "jam of 1000",
+    "control step in 500-boats",
+    "control step in table-1",
+];
+
+/// The scenes of the comparison with other engines, `benches/src/scene.rs`.
+fn flock_parameters(boats: usize, is_jam: bool) -> FlockParameters {
+    let scale = (boats as f64 / 50.0).sqrt().max(1.0);
+    let rest = if is_jam { 0.0 } else { 1.0 };
+    FlockParameters {
+        n_boats: boats,
+        pool: Pool {
+            outer_radius_cm: Pool::TABLE_1.outer_radius_cm * scale,
+            inner_radius_cm: Pool::TABLE_1.inner_radius_cm * scale,
+        },
+        nop1_s: rest,
+        bw_s: 2.0 * rest,
+        nop2_s: rest,
+        dt_s: 0.01,
+        ..FlockParameters::preset(Preset::Simulation)
+    }
+}
+
+fn environment(pool: Pool, bw_s: f64) -> Scene {
+    Scene::Environment(FlockParameters {
+        n_boats: 27,
+        n_leaders: 4,
+        pool,
+        bw_s,
+        ..FlockParameters::preset(Preset::Simulation)
+    })
+}
+
+/// Seeds that a count is the mean of.
+const SEEDS: u64 = 4;
+
+impl Scene {
+    /// States after 20 s, one a seed: what callgrind would take minutes for.
+    fn warmed_up(&self, seed: u64) -> Result<Vec<u8>, Failure> {
+        match self {
+            Self::Flock(parameters) => {
+                let mut flock = Flock::new(parameters.clone(), seed)?;
+                flock.advance(20.0, None)?;
+                Ok(flock.snapshot())
+            }
+            Self::Environment(parameters) => {
+                let mut batch = EnvBatch::new(EnvSettings::default(), vec![parameters.clone()])?;
+                let request = ResetRequest {
+                    seed: Some(seed),
+                    ..ResetRequest::default()
+                };
+                batch.reset(&[Some(request)])?;
+                control(&mut batch, 200)?;
+                Ok(batch.to_bytes())
+            }
+        }
+    }
+
+    /// Goes on from a state: a little uncounted, then one cycle of phases (in a large flock half a second).
+    fn count(&self, state: &[u8]) -> Result<Done, Failure> {
+        match self {
+            Self::Flock(parameters) => {
+                let mut flock = Flock::from_snapshot(state)?;
+                flock.advance(0.05, None)?;
+                let before = *flock.statistics();
+                let duration_s = if parameters.n_boats > 100 { 0.5 } else { 6.0 };
+                counted(|| flock.advance(black_box(duration_s), None))?;
+                let statistics = difference(flock.statistics(), &before);
+                Ok(Done {
+                    steps: statistics.substeps,
+                    boats: parameters.n_boats as u64,
+                    statistics,
+                })
+            }
+            Self::Environment(parameters) => {
+                let mut batch = EnvBatch::from_bytes(state)?;
+                control(&mut batch, 2)?;
+                let statistics = |batch: &EnvBatch| {
+                    let flock = batch.envs()[0].run().map(|run| run.flock());
+                    flock.map(|flock| *flock.statistics()).unwrap_or_default()
+                };
+                let before = statistics(&batch);
+                let cycle_s =
+                    parameters.fw_s + parameters.nop1_s + parameters.bw_s + parameters.nop2_s;
+                let steps = (10.0 * cycle_s).round() as u64;
+                counted(|| control(&mut batch, steps))?;
+                Ok(Done {
+                    steps,
+                    boats: parameters.n_boats as u64,
+                    statistics: difference(&statistics(&batch), &before),
+                })
+            }
+        }
+    }
+}
+
+fn difference(now: &Statistics, before: &Statistics) -> Statistics {
+    Statistics {
+        substeps: now.substeps - before.substeps,
+        contacts: now.contacts - before.contacts,
+        ..*now
+    }
+}
+
+/// Control steps with the rudders held.
+fn control(batch: &mut EnvBatch, steps: u64) -> Result<(), Failure> {
+    let actions = vec![0.5; batch.rows()];
+    let mut observations = vec![0.0; batch.rows() * batch.observation_size()];
+    let mut rewards = vec![0.0; batch.rows()];
+    for _ in 0..steps {
+        let rows = BatchRows {
+            observations: &mut observations,
+            rewards: &mut rewards,
+            truncated: &mut [false],
+        };
+        batch.step(&actions, rows)?;
+    }
+    black_box(&observations);
+    Ok(())
+}
+
+/// Callgrind counts what happens in here, and nothing else.
+#[inline(never)]
+fn counted<R>(work: impl FnOnce() -> R) -> R {
+    black_box(work())
+}
+
+/// Instructions and what they did, summed over the seeds of a scene.
+fn measure(name: &str) -> Result<String, Failure> {
+    let (mut instructions, mut sums) = (0, [0; 4]);
+    for seed in 1..=SEEDS {
+        let file = |kind: &str| PathBuf::from(FOLDER).join(format!("{name}.{seed}.{kind}"));
+        let (state, profile) = (file("state"), file("callgrind"));
+        let warmed_up = scene(name).ok_or("no such scene")?.warmed_up(seed)?;
+        fs::write(&state, warmed_up)?;
+        let output = Command::new("valgrind")
+            .args([
+                "--tool=callgrind",
+                "--toggle-collect=*instructions*counted*",
+            ])
+            .arg(format!("--callgrind-out-file={}", profile.display()))
+            .arg(std::env::current_exe()?)
+            .args(["--count", name])
+            .arg(&state)
+            .output()?;
+        if !output.status.success() {
+            return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
+        }
+        instructions += total(&profile)?;
+        let told = String::from_utf8(output.stdout)?;
+        for (sum, word) in sums.iter_mut().zip(told.split_whitespace()) {
+            *sum += word.parse::<u64>()?;
+        }
+    }
+    let [steps, substeps, boats, contacts] = sums.map(|sum| sum as f64);
+    let all = instructions as f64;
+    let per_boat = all * SEEDS as f64 / (substeps * boats);
+    Ok(format!(
+        "\"{name}\",{:.0},{per_boat:.1},{:.0}",
+        all / steps,
+        all / contacts
+    ))
+}
+
+/// The whole count of a callgrind file.
+fn total(profile: &Path) -> Result<u64, Failure> {
+    let text = fs::read_to_string(profile)?;
+    let mut lines = text.lines();
+    let line = lines.find_map(|line| {
+        line.strip_prefix("totals: ")
+            .or(line.strip_prefix("summary: "))
+    });
+    Ok(line.ok_or("no totals")?.trim().parse()?)
+}
+
+/// Runs in valgrind: tells steps, substeps, boats and contacts.
+fn count(name: &str, state: &str) -> Result<(), Failure> {
+    let done = scene(name)
+        .ok_or("no such scene")?
+        .count(&fs::read(state)?)?;
+    let statistics = done.statistics;
+    let numbers = [
+        done.steps,
+        statistics.substeps,
+        done.boats,
+        statistics.contacts,
+    ];
+    say(&numbers.map(|number| number.to_string()).join(" "));
+    Ok(())
+}
+
+#[allow(clippy::print_stdout, reason = "a command's output")]
+fn say(line: &str) {
+    println!("{line}");
+}
+
+/// The first number of a row, and the name before it.
+fn row(line: &str) -> Option<(&str, f64)> {
+    let (name, numbers) = line.strip_prefix('"')?.split_once("\",")?;
+    Some((name, numbers.split(',').next()?.parse().ok()?))
+}
+
+/// How a row differs from the pinned one; `None` where it does not.
+fn mismatch(line: &str, pinned: &str) -> Option<String> {
+    let (name, now) = row(line)?;
+    let Some((_, then)) = pinned
+        .lines()
+        .filter_map(row)
+        .find(|(known, _)| *known == name)
+    else {
+        return Some(format!("{name}: nothing is pinned"));
+    };
+    let change = now / then - 1.0;
+    (change.abs() > TOLERANCE).then(|| {
+        let percent = 100.0 * change;
+        format!("{name}: {now} instructions per step, {percent:+.1} % from the pinned {then}")
+    })
+}
+
+fn run(arguments: &[String]) -> Result<ExitCode, Failure> {
+    if let [first, name, state] = arguments
+        && first == "--count"
+    {
+        count(name, state)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let has = |option: &str| arguments.iter().any(|argument| argument == option);
+    if Command::new("valgrind").arg("--version").output().is_err() {
+        say(
+            "NOT COUNTED: there is no valgrind here (on Debian and Ubuntu: apt-get install valgrind)",
+        );
+        return Ok(ExitCode::from(u8::from(has("--strict"))));
+    }
+    fs::create_dir_all(FOLDER)?;
+    let mut table = format!("{HEADER}\n");
+    say(HEADER);
+    for name in SCENES {
+        let line = measure(name)?;
+        say(&line);
+        writeln!(table, "{line}")?;
+    }
+    if has("--write") {
+        fs::write(PINNED, table)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let pinned = fs::read_to_string(PINNED)?;
+    let mismatches: Vec<_> = table
+        .lines()
+        .filter_map(|line| mismatch(line, &pinned))
+        .collect();
+    for line in &mismatches {
+        say(line);
+    }
+    Ok(ExitCode::from(u8::from(!mismatches.is_empty())))
+}
+
+fn main() -> Result<ExitCode, Failure> {
+    // Cargo adds `--bench`.
+    let arguments: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|a| a != "--bench")
+        .collect();
+    run(&arguments)
+}
