@@ -5,7 +5,7 @@
 //! is missing. Callgrind's own files stay in `target/instructions`, for `callgrind_annotate`.
 
 use flockenv::Flock;
-use flockenv::environment::{BatchRows, EnvBatch, EnvSettings, ResetRequest};
+use flockenv::environment::{BatchRows, EnvBatch, EnvSettings, ResetRequest, Run};
 use flockenv::parameters::{FlockParameters, Pool, Preset};
 use flockenv::statistics::Statistics;
 use std::fmt::Write as _;
@@ -140,7 +140,7 @@ impl Scene {
                 let mut batch = EnvBatch::from_bytes(state)?;
                 control(&mut batch, 2)?;
                 let statistics = |batch: &EnvBatch| {
-                    let flock = batch.envs()[0].run().map(|run| run.flock());
+                    let flock = batch.envs()[0].run().map(Run::flock);
                     flock.map(|flock| *flock.statistics()).unwrap_or_default()
                 };
                 let before = statistics(&batch);
