@@ -44,7 +44,7 @@ TEST_EXTRAS := --extra train --extra plot --extra fit --extra render --extra swe
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .PHONY: help setup build compare test lint format test-rust test-python test-browser test-wheel test-oldest \
-        test-rllib test-ray validate docs wheel audit licences pages tables replay-animation \
+        test-rllib test-ray validate docs wheel audit licenses pages tables replay-animation \
         instructions learning-check throughput soak fuzz speed-vs-error lint-benches clean
 
 help: ## list the commands
@@ -112,14 +112,14 @@ docs: $(STAMPS)/docs $(STAMPS)/core ## build the pages, warnings are errors, int
 	OMP_NUM_THREADS=1 $(BIN)/python -m sphinx --fail-on-warning --nitpicky --builder html docs docs/_build/html
 
 # Advisories come from elsewhere than the packages: where that is out of reach, it is said.
-audit: $(STAMPS)/audit ## licences, sources and known vulnerabilities of what this depends on
+audit: $(STAMPS)/audit ## licenses, sources and known vulnerabilities of what this depends on
 	cargo deny --locked --all-features check licenses bans sources
 	if cargo deny --locked fetch db; then cargo deny --locked --all-features check advisories; \
 	  else echo "NOT CHECKED: advisories on crates, their database is out of reach"; test -z "$(AUDIT)"; fi
 	$(UV) pip compile --quiet --universal pyproject.toml $(AUDIT_EXTRAS) --output-file $(STAMPS)/requirements.txt
 	$(BIN)/pip-audit $(AUDIT) --disable-pip --no-deps --requirement $(STAMPS)/requirements.txt
 
-licences: ## collect the notices of the crates that are compiled in, into LICENSES
+licenses: ## collect the notices of the crates that are compiled in, into LICENSES
 	cargo about --version || cargo install --locked cargo-about --features cli
 	cargo about generate --locked --all-features about.hbs --output-file LICENSES/crates.txt
 

@@ -147,9 +147,9 @@ def test_wheel_holds_all_that_it_should():
     assert set(tracked.stdout.split()) <= set(names)
     assert {"flockenv/py.typed", "flockenv/_core.pyi"} <= set(names)
     assert len([name for name in names if name.endswith((".so", ".pyd", ".dylib"))]) == 1
-    licences = [name.partition("/licenses/")[2] for name in names if "/licenses/" in name]
+    licenses = [name.partition("/licenses/")[2] for name in names if "/licenses/" in name]
     wanted = {"LICENSE", *(f"LICENSES/{path.name}" for path in REPOSITORY.glob("LICENSES/*"))}
-    assert set(licences) == wanted
+    assert set(licenses) == wanted
 
 
 @pytest.mark.parametrize("interpreter", os.environ.get("PYTHONS", "").split() or [None])

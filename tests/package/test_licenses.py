@@ -21,9 +21,9 @@ def noticed() -> set[tuple[str, str]]:
 def test_notices_are_of_the_locked_versions():
     lock = tomllib.loads((REPOSITORY / "Cargo.lock").read_text())
     locked = {(each["name"], each["version"]) for each in lock["package"]}
-    assert noticed() - locked == set(), "run `make licences`"
+    assert noticed() - locked == set(), "run `make licenses`"
 
 
 def test_every_dependency_has_a_notice():
     wanted = set(tomllib.loads((REPOSITORY / "Cargo.toml").read_text())["dependencies"])
-    assert wanted - {name for name, _ in noticed()} == set(), "run `make licences`"
+    assert wanted - {name for name, _ in noticed()} == set(), "run `make licenses`"
