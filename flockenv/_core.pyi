@@ -1,4 +1,4 @@
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Self, final
 
 import numpy as np
@@ -33,6 +33,7 @@ __all__ = [
     "on_outer_wall",
     "ordering_time",
     "outward",
+    "oversized_shape",
     "pair_counts",
     "phase_names",
     "pool_radii_cm",
@@ -98,6 +99,7 @@ def signed_order(
     psi_o: NDArray[np.float64], phi_o: NDArray[np.float64], target: str
 ) -> NDArray[np.float64]: ...
 def nearest_levels(rudders: NDArray[np.float64], rudder_levels: int) -> NDArray[np.int64]: ...
+def oversized_shape(values: Any, expected: Sequence[int]) -> str | None: ...
 def env_defaults() -> dict[str, Any]: ...
 def reward_terms() -> list[tuple[str, str]]: ...
 

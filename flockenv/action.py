@@ -6,6 +6,7 @@ import gymnasium
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from flockenv import _core
 from flockenv.errors import ParameterError
 
 __all__ = ["flat_actions", "joint_action_space", "leader_action_space"]
@@ -40,6 +41,9 @@ def flat_actions(
     TypeError
         For anything that is not made of real numbers.
     """
+    oversized = _core.oversized_shape(actions, shape)
+    if oversized is not None:
+        raise ParameterError(f"{name}: shape {oversized} is not accepted, expected {shape}")
     try:
         array = np.asarray(actions)
     except ValueError as error:

@@ -7,7 +7,7 @@ use numpy::{
 };
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyFloat;
+use pyo3::types::{PyBytes, PyFloat, PySequence, PyString};
 
 /// Arguments that know their name, for signatures.
 macro_rules! named_arguments {
@@ -80,14 +80,89 @@ pub fn text(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<String> {
     given.map_err(|_| wrong_type(object, name, "a string"))
 }
 
-/// The numbers of an array-like of a given shape, row by row. The shape is checked before anything
-/// is copied: a broadcast view may claim far more than there is memory.
+/// What an argument may claim beyond its expected size before its dtype is looked at.
+const HARMLESS: usize = 1 << 16;
+/// How deep NumPy stacks sequences.
+const DEEPEST: usize = 64;
+
+/// The shape that an array-like suggests, if it would stack to far more numbers than expected. NumPy
+/// copies nested sequences before it shows their shape, and a short tuple of broadcast views or a
+/// `range` may claim more than there is memory.
+#[pyfunction]
+pub fn oversized_shape(values: &Bound<'_, PyAny>, expected: Vec<usize>) -> Option<String> {
+    let most = expected.iter().product::<usize>().max(HARMLESS);
+    let oversized = claimed(values, most, DEEPEST) > most;
+    oversized.then(|| shape_text(&outer_shape(values)))
+}
+
+/// How many numbers an array-like would stack to, counted until there are more than `most`.
+fn claimed(object: &Bound<'_, PyAny>, most: usize, depth: usize) -> usize {
+    if let Some(shape) = array_shape(object) {
+        return shape.into_iter().fold(1, usize::saturating_mul);
+    }
+    let Some(length) = sequence_length(object).filter(|_| depth > 0) else {
+        return 1;
+    };
+    if length > most {
+        return length;
+    }
+    let mut total = 0_usize;
+    for place in 0..length {
+        let Ok(item) = object.get_item(place) else {
+            break;
+        };
+        total = total.saturating_add(claimed(&item, most, depth - 1));
+        if total > most {
+            break;
+        }
+    }
+    total
+}
+
+/// The shape that the first items of an array-like suggest.
+fn outer_shape(object: &Bound<'_, PyAny>) -> Vec<usize> {
+    let mut shape = Vec::new();
+    let mut item = object.clone();
+    while shape.len() < DEEPEST {
+        if let Some(inner) = array_shape(&item) {
+            shape.extend(inner);
+            break;
+        }
+        let Some(length) = sequence_length(&item) else {
+            break;
+        };
+        shape.push(length);
+        match item.get_item(0) {
+            Ok(first) => item = first,
+            Err(_) => break,
+        }
+    }
+    shape
+}
+
+/// The shape of whatever has one: arrays of any library.
+fn array_shape(object: &Bound<'_, PyAny>) -> Option<Vec<usize>> {
+    object.getattr("shape").ok()?.extract().ok()
+}
+
+/// The length of what NumPy stacks: sequences other than strings and mappings.
+fn sequence_length(object: &Bound<'_, PyAny>) -> Option<usize> {
+    let text = object.is_instance_of::<PyString>() || object.is_instance_of::<PyBytes>();
+    let is_sequence = !text && object.cast::<PySequence>().is_ok();
+    is_sequence.then(|| object.len().ok()).flatten()
+}
+
+/// The numbers of an array-like of a given shape, row by row. Its size is checked before anything is
+/// copied.
 pub fn floats(
     object: &Bound<'_, PyAny>,
     name: &'static str,
     expected: &[usize],
 ) -> PyResult<Vec<f64>> {
     let py = object.py();
+    if let Some(found) = oversized_shape(object, expected.to_vec()) {
+        return Err(wrong_shape(name, found, expected));
+    }
     let array = numpy::get_array_module(py)?
         .call_method1("asarray", (object,))
         .map_err(|error| refuse_ragged(object, name, error))?;
@@ -100,16 +175,21 @@ pub fn floats(
         return Err(PyTypeError::new_err(message));
     }
     if array.shape() != expected {
-        return Err(FlockError::Shape {
-            field: name,
-            found: shape_text(array.shape()),
-            expected: shape_text(expected),
-        }
-        .into());
+        return Err(wrong_shape(name, shape_text(array.shape()), expected));
     }
     let array = array.call_method1("astype", (numpy::dtype::<f64>(py),))?;
     let array = array.cast::<PyArrayDyn<f64>>()?.readonly();
     Ok(array.as_array().iter().copied().collect())
+}
+
+fn wrong_shape(field: &'static str, found: String, expected: &[usize]) -> PyErr {
+    let expected = shape_text(expected);
+    FlockError::Shape {
+        field,
+        found,
+        expected,
+    }
+    .into()
 }
 
 fn refuse_ragged(object: &Bound<'_, PyAny>, name: &'static str, error: PyErr) -> PyErr {

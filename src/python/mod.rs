@@ -21,6 +21,8 @@ mod _core {
     use super::*;
 
     #[pymodule_export]
+    use super::arguments::oversized_shape;
+    #[pymodule_export]
     use super::arrangement::{lagged_motion, largest_cluster, on_outer_wall, pair_counts};
     #[pymodule_export]
     use super::collective_state::{

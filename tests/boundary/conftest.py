@@ -1,13 +1,8 @@
 """A small scene that every file here starts from."""
 
-import hypothesis
 import pytest
 
 import flockenv
-
-# A busy machine makes an example slow, not wrong.
-hypothesis.settings.register_profile("boundary", deadline=None)
-hypothesis.settings.load_profile("boundary")
 
 
 @pytest.fixture

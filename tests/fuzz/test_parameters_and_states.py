@@ -19,6 +19,10 @@ FIELDS = list(FlockParameters().to_dict())
 TOML = FlockParameters.preset("paper").to_toml()
 SMALL = FlockParameters(n_boats=6, n_leaders=2, pool="table-1")
 
+#: Numbers that claim petabytes: a view, and nested sequences that would stack to as many.
+VIEW = np.broadcast_to(1.0, (10**7, 10**7, 3))
+OVERSIZED = [VIEW, (VIEW, VIEW), [[VIEW] * 3] * 3, range(10**15), [range(10**15)] * 6]
+
 plain = st.one_of(
     st.none(),
     st.booleans(),
@@ -39,7 +43,7 @@ hostile = st.recursive(
         st.tuples(inner, inner),
         st.dictionaries(st.text(max_size=5), inner, max_size=3),
         st.lists(st.floats(), max_size=4).map(np.array),
-        st.sampled_from([np.broadcast_to(1.0, (10**7, 10**7, 3)), np.array([["a"]]), object()]),
+        st.sampled_from([VIEW, np.array([["a"]]), object()]),
     ),
     max_leaves=4,
 )
@@ -141,6 +145,30 @@ extreme = st.fixed_dictionaries(
         "target": st.sampled_from(["cw", "ccw"]),
     },
 )
+
+
+@pytest.mark.parametrize("values", OVERSIZED, ids=range(len(OVERSIZED)))
+def test_claims_larger_than_memory_are_refused_by_shape(values):
+    flock, env = Flock(SMALL, 1), flockenv.LeadersEnv(n_boats=6, n_leaders=2)
+    env.reset(seed=1)
+    before = flock.snapshot()
+    for call in (
+        lambda: flock.set_state(values, flock.velocity),
+        lambda: flock.set_state(flock.pose, values),
+        lambda: flock.advance(0.1, values),
+        lambda: env.step(values),
+        lambda: env.reset(options={"state": {"pose": values}}),
+    ):
+        with pytest.raises(flockenv.ParameterError, match=r"shape \(\d+"):
+            call()
+    assert flock.snapshot() == before
+
+
+def test_sequences_that_hold_themselves_are_refused():
+    endless = []
+    endless.append(endless)
+    with pytest.raises(NAMED):
+        Flock(SMALL, 1).advance(0.1, endless)
 
 
 def goes_on_finite(flock, seconds, rudder=None):
