@@ -129,6 +129,8 @@ validate: $(STAMPS)/test $(STAMPS)/core ## the slow tests and the published curv
 
 tables: $(STAMPS)/compare ## fill the tables of README and docs from the committed data
 	$(BIN)/python docs/tables.py
+	$(BIN)/python benches/report docs
+	$(BIN)/python benches/throughput.py --page
 
 pages: $(STAMPS)/test $(STAMPS)/core ## write docs/environments from the docstrings
 	$(BIN)/python docs/environment_pages.py

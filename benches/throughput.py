@@ -1,7 +1,8 @@
-"""Environment steps a second, ours and others', on this machine in one run: `make throughput`.
+"""Environment steps per second of flockenv and of others, in one run: `make throughput`.
 
-Every row is measured in a process of its own, in turn, several rounds of them; the median counts.
-The page goes to docs/throughput.md.
+Every row is measured in a process of its own, in turn, in several rounds; the median counts. The
+numbers go to docs/throughput.toml and the page to docs/throughput.md, which `--page` writes anew
+from the numbers.
 """
 
 import argparse
@@ -13,11 +14,14 @@ import statistics
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+import tomllib
+from collections.abc import Callable, Mapping
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import tomli_w
 
 ROOT = Path(__file__).parents[1]
 PEERS_PYTHON = ROOT / ".venv-peers" / "bin" / "python"
@@ -34,7 +38,7 @@ def vector_env(num_envs: int, pool: str):
 
 
 def control_step_us(pool: str, seconds: float) -> float:
-    """Microseconds a flock control step on one thread, flocks 30 s into their episode."""
+    """Return microseconds per control step of a flock on one thread, flocks 30 s into their episode."""
     env = vector_env(64, pool)
     env.reset(seed=0)
     actions = np.random.default_rng(0).uniform(-1, 1, (300, *env.action_space.shape))
@@ -48,14 +52,14 @@ def control_step_us(pool: str, seconds: float) -> float:
 
 
 def batch_steps_per_s(pool: str, seconds: float) -> float:
-    """Flock control steps a second by Gymnasium's own benchmark, 64 flocks, all threads."""
+    """Return flock control steps per second by Gymnasium's own benchmark, 64 flocks, all threads."""
     from gymnasium.utils.performance import benchmark_vector_step
 
     return benchmark_vector_step(vector_env(64, pool), target_duration=seconds, seed=0)
 
 
 class Canned:
-    """A core that returns what it returned once: what is left is the interface around it."""
+    """A core that returns one stored result, so that the time is that of the interface around it."""
 
     def __init__(self, core) -> None:
         self.core = core
@@ -69,7 +73,7 @@ class Canned:
 
 
 def vec_env_overhead_us(seconds: float) -> float:
-    """Microseconds a sample that LeaderVecEnv adds to the core's own step, at 64 slots."""
+    """Return microseconds per sample that LeaderVecEnv adds to the core's own step, at 64 slots."""
     from flockenv.sb3 import LeaderVecEnv
 
     env = LeaderVecEnv(16, **SCENE)
@@ -87,7 +91,7 @@ def vec_env_overhead_us(seconds: float) -> float:
 
 
 def ppo_environment_share(seconds: float) -> float:
-    """Part of PPO's time in the environment, in %: 64 slots, 64 steps, batch 512, 10 epochs."""
+    """Return the share of the environment in PPO's time, in %: 64 slots, 64 steps, batch 512, 10 epochs."""
     from stable_baselines3 import PPO
 
     from flockenv.sb3 import LeaderVecEnv
@@ -124,7 +128,7 @@ OWN: dict[str, tuple[Callable[[float], float], str | None]] = {
 
 
 def measure(row: str, seconds: float) -> float:
-    """One measurement in a process of its own."""
+    """Take one measurement in a process of its own."""
     environment = dict(os.environ)
     if row in OWN:
         command = [sys.executable, __file__, "--row", row, "--seconds", str(seconds)]
@@ -151,110 +155,136 @@ def processor() -> str:
     return named[0] if named else platform.processor()
 
 
-def page(found: dict[str, list[float]], seconds: float) -> str:
-    """The results as a page."""
-    median = {row: statistics.median(values) for row, values in found.items()}
-    spread = {row: f"{min(values):.3g}-{max(values):.3g}" for row, values in found.items()}
-
-    def line(row: str, what: str, unit: str, bar: str) -> str:
-        return f"| {what} | {median[row]:,.4g} {unit} | {spread[row]} | {bar} |"
-
-    batch = median["batch 500-boats"]
+def results(found: dict[str, list[float]], seconds: float) -> dict[str, Any]:
+    """Return the medians and ranges of the measured values, and what they were measured with."""
     load = os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
+    return {
+        "made": {
+            "date": time.strftime("%Y-%m-%d"),
+            "machine": f"{processor()}, {os.cpu_count()} cores, {platform.system()} "
+            f"{platform.machine()}, Python {platform.python_version()}, "
+            f"flockenv {version('flockenv')}",
+            "load": round(load, 1),
+            "rounds": len(found["vmas"]),
+            "seconds": seconds,
+            "vmas": peer_version("vmas"),
+            "mpe2": peer_version("mpe2"),
+        },
+        **{
+            row: {
+                "median": statistics.median(values),
+                "least": min(values),
+                "most": max(values),
+            }
+            for row, values in found.items()
+        },
+    }
+
+
+def page(found: Mapping[str, Any]) -> str:
+    """Return the page of the results."""
+    made = found["made"]
+
+    def line(row: str, what: str, unit: str) -> str:
+        return f"| {what} | {number(found[row]['median'])} {unit} | {spread(found[row])} |"
+
+    batch = found["batch 500-boats"]
+    step, table_1 = found["step 500-boats"]["median"], found["step table-1"]["median"]
+    benchmark = "`gymnasium.utils.performance.benchmark_vector_step`"
+    settings = "64 slots, 64 steps, batch 512, 10 epochs, MlpPolicy"
     lines = [
         "# Throughput",
         "",
-        f"Measured by `make throughput` on {time.strftime('%Y-%m-%d')}: {processor()}, "
-        f"{os.cpu_count()} cores, {platform.system()} {platform.machine()}, Python "
-        f"{platform.python_version()}, flockenv {version('flockenv')}; load average at the end "
-        f"{load:.1f}. Every number is the median of {len(found['vmas'])} processes of "
-        f"{seconds:g} s each, which took turns; the range is over them.",
+        f"A control step of one flock takes {step:.3g} µs of one core in the pool `500-boats` and "
+        f"{table_1:.3g} µs in `table-1`. A batch of 64 flocks advances by {number(batch['median'], 3)} "
+        f"flock control steps per second on {os_cores(made)}.",
         "",
-        "27 boats, 4 of them leaders, 10 control steps a second of five substeps of 0.02 s each "
-        "(`leapfrog`, white noise, exact contacts), default observation and reward.",
+        f"`make throughput` measured all numbers of this page on {made['date']}: "
+        f"{made['machine']}; load average at the end {made['load']:.1f}. Every number is the "
+        f"median of {made['rounds']} processes of {made['seconds']:g} s each, which took turns. "
+        "The range is over these processes, and `docs/throughput.toml` holds the numbers.",
         "",
-        "| what | median | range | bar |",
+        "A flock has 27 boats, 4 of them leaders. It runs 10 control steps per second of five "
+        "substeps of 0.02 s each (`leapfrog`, white noise, exact contacts), with the default "
+        "observation and reward.",
+        "",
+        "| quantity | median | range |",
+        "| --- | --- | --- |",
+        line("step 500-boats", "control step of a flock, one core, `500-boats`, bw 0.3 s", "µs"),
+        line("step table-1", "control step of a flock, one core, `table-1`, bw 0.4 s", "µs"),
+        line("batch 500-boats", f"64 flocks, {benchmark}, `500-boats`", "flock steps/s"),
+        line("batch table-1", f"64 flocks, {benchmark}, `table-1`", "flock steps/s"),
+        line("vec env overhead", "overhead of `LeaderVecEnv` at 64 slots", "µs per sample"),
+        line("ppo share", f"share of the environment in the time of SB3's PPO ({settings})", "%"),
+        "",
+        "## Other environments",
+        "",
+        "The peers have the same number of agents in comparable tasks. An environment step moves "
+        "all 27 agents.",
+        "",
+        "| environment | environment steps/s | range | flockenv over peer |",
         "| --- | --- | --- | --- |",
-        line(
-            "step 500-boats",
-            "a flock control step on one core, `500-boats`, bw 0.3 s",
-            "µs",
-            "≤ 20 (goal 7)",
-        ),
-        line("step table-1", "the same in `table-1`, bw 0.4 s", "µs", "≤ 20 (goal 7)"),
-        line(
-            "batch 500-boats",
-            "64 flocks, `gymnasium.utils.performance.benchmark_vector_step`, `500-boats`",
-            "flock steps/s",
-            "≥ 80,000 (goal 250,000)",
-        ),
-        line("batch table-1", "the same in `table-1`", "flock steps/s", ""),
-        line("vec env overhead", "what `LeaderVecEnv` adds at 64 slots", "µs a sample", "≤ 0.2"),
-        line(
-            "ppo share",
-            "SB3 PPO's time in the environment (64 slots, 64 steps, batch 512, "
-            "10 epochs, MlpPolicy)",
-            "%",
-            "≤ 10",
-        ),
-        "",
-        "## Peers",
-        "",
-        "The same number of agents in comparable tasks; an environment step moves all 27 of them.",
-        "",
-        "| environment | environment steps/s | range | ours over theirs | bar |",
-        "| --- | --- | --- | --- | --- |",
-        f"| flockenv, 64 flocks, `500-boats` | {batch:,.4g} | {spread['batch 500-boats']} | 1 | |",
+        f"| flockenv, 64 flocks, `500-boats` | {number(batch['median'])} | {spread(batch)} | 1 |",
     ]
-    for row, name, bar in (
-        ("vmas", f"VMAS {peer_version('vmas')} `flocking`, 27 agents, 64 environments", "≥ 100"),
-        ("mpe2", f"MPE2 {peer_version('mpe2')} `simple_spread`, 27 agents", "≥ 500"),
+    for row, name in (
+        ("vmas", f"VMAS {made['vmas']} `flocking`, 27 agents, 64 environments"),
+        ("mpe2", f"MPE2 {made['mpe2']} `simple_spread`, 27 agents"),
     ):
-        ratio = batch / median[row]
-        lines.append(f"| {name} | {median[row]:,.4g} | {spread[row]} | {ratio:,.0f} | {bar} |")
+        median = found[row]["median"]
+        ratio = batch["median"] / median
+        lines.append(f"| {name} | {number(median)} | {spread(found[row])} | {ratio:,.0f} |")
     lines += ["", choices()]
     return "\n".join(lines)
 
 
-#: What is read of the speed-against-error report: file, scene and number, and its heading here.
+def spread(row: Mapping[str, float]) -> str:
+    """Return the range of a row's values."""
+    return f"{number(row['least'], 3)}-{number(row['most'], 3)}"
+
+
+def number(value: float, digits: int = 4) -> str:
+    """Return a number of so many significant digits, without an exponent."""
+    return f"{float(f'{value:.{digits}g}'):,g}"
+
+
+def os_cores(made: Mapping[str, Any]) -> str:
+    """Return the number of cores that the machine's description names."""
+    return next(part for part in made["machine"].split(", ") if part.endswith(" cores"))
+
+
+#: Columns from the speed-against-error report: heading, file, scene and number.
 ERRORS = {
-    "jam, µs a substep": ("speed", "jam", "us_per_step"),
-    "cycle, µs a substep": ("speed", "cycle", "us_per_step"),
+    "jam, µs per substep": ("speed", "jam", "us_per_step"),
+    "cycle, µs per substep": ("speed", "cycle", "us_per_step"),
     "deepest overlap in the jam, cm": ("overlap", "jam", "overlap_max_cm"),
-    "sliding for 2 s, cm off": ("slide", None, "slide_median_cm"),
-    "Ψ_o off its reference": ("order", None, "psi_o_error"),
-    "(95 %)": ("order", None, "psi_o_half_width"),
+    "error after sliding for 2 s, cm": ("slide", None, "slide_median_cm"),
+    "error of Ψ_o": ("order", None, "psi_o_error"),
+    "its 95 % half-width": ("order", None, "psi_o_half_width"),
 }
 
 
 def choices() -> str:
-    """How dt and the control rate were chosen, with what the report says of other steps."""
+    """Return how dt and the control rate were chosen, with the errors of other steps."""
     lines = [
-        "## How dt and the control rate were chosen",
+        "## Choice of dt and the control rate",
         "",
-        "Ten control steps a second are the camera's frame rate (Section 2.4), which no leader of "
-        "the experiment could exceed. A substep of 0.02 s divides them and the phases evenly. From "
-        "the [speed-against-error report](speed_vs_error.md), `leapfrog` with 27 boats:",
+        "The control rate of 10 Hz is the camera's frame rate (Section 2.4), which no leader of "
+        "the experiment could exceed. A substep of 0.02 s divides control steps and phases evenly. "
+        "It is the longest substep below that keeps overlaps under 0.01 cm without "
+        "relinearization, and its Ψ_o cannot be distinguished from the reference's. The numbers "
+        "for `leapfrog` with 27 boats are from [Speed against error](speed_vs_error.md):",
         "",
-        f"| dt, s | relinearisations | {' | '.join(ERRORS)} |",
+        f"| dt, s | relinearizations | {' | '.join(ERRORS)} |",
         "| ---: " * (2 + len(ERRORS)) + "|",
     ]
     for passes, dt in ((0, 0.01), (0, 0.02), (0, 0.05), (0, 0.1), (1, 0.1)):
         cells = [f"{reported(*where, passes, dt):.2g}" for where in ERRORS.values()]
         lines.append(f"| {dt:g} | {passes} | {' | '.join(cells)} |")
-    return "\n".join(
-        [
-            *lines,
-            "",
-            "0.02 s is the longest of them that keeps overlaps below 0.01 cm in one pass, and its "
-            "order cannot be told from the reference's.",
-            "",
-        ]
-    )
+    return "\n".join([*lines, ""])
 
 
 def reported(file: str, scene: str | None, number: str, passes: int, dt: float) -> float:
-    """A number of the speed-against-error report for `leapfrog` with the exact solver."""
+    """Return a number of the speed-against-error report for `leapfrog` with the exact solver."""
     path = ROOT / "docs" / "speed_vs_error" / f"{file}.csv"
     with path.open(encoding="utf-8", newline="") as lines:
         for row in csv.DictReader(lines):
@@ -270,19 +300,24 @@ def main() -> None:
     parser.add_argument("--row", choices=OWN, help="measure one row and print it as JSON")
     parser.add_argument("--seconds", type=float, default=5.0)
     parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--out", type=Path, default=ROOT / "docs" / "throughput.md")
+    parser.add_argument("--docs", type=Path, default=ROOT / "docs", help="folder of the page")
+    parser.add_argument("--page", action="store_true", help="write the page anew, measure nothing")
     options = parser.parse_args()
     if options.row:
         print(json.dumps({"value": OWN[options.row][0](options.seconds)}))
         return
-    found: dict[str, list[float]] = {row: [] for row in (*OWN, "vmas", "mpe2")}
-    for _ in range(options.rounds):
-        for row, values in found.items():
-            values.append(measure(row, options.seconds))
-            print(f"{row:>18}: {values[-1]:,.4g}", flush=True)
-    options.out.parent.mkdir(parents=True, exist_ok=True)
-    options.out.write_text(page(found, options.seconds))
-    print(f"written to {options.out}")
+    data = options.docs / "throughput.toml"
+    if not options.page:
+        found: dict[str, list[float]] = {row: [] for row in (*OWN, "vmas", "mpe2")}
+        for _ in range(options.rounds):
+            for row, values in found.items():
+                values.append(measure(row, options.seconds))
+                print(f"{row:>18}: {values[-1]:,.4g}", flush=True)
+        options.docs.mkdir(parents=True, exist_ok=True)
+        data.write_text(tomli_w.dumps(results(found, options.seconds)), encoding="utf-8")
+    text = page(tomllib.loads(data.read_text(encoding="utf-8")))
+    (options.docs / "throughput.md").write_text(text, encoding="utf-8")
+    print(f"written to {options.docs / 'throughput.md'}")
 
 
 if __name__ == "__main__":

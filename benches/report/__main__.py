@@ -1,44 +1,50 @@
-"""Writes the report from the tables of one run: ``python benches/report DOCS FILES``.
+"""Write the report from the tables of one run: ``python benches/report DOCS FILES``.
 
-DOCS is the folder that ``speed_vs_error.md`` goes to, with the tables in ``speed_vs_error`` beside
-it; FILES is where the peers' versions lie.
+DOCS is the folder of ``speed_vs_error.md``, with the tables in ``speed_vs_error`` beside it. FILES
+is the folder with the peers' versions; after a measurement it is given, figures are drawn, and
+``made.toml`` beside the tables stores the date, the machine and the versions. Without FILES only
+the page is written anew, from the committed tables.
 """
 
 from __future__ import annotations
 
 import argparse
-from datetime import UTC, datetime
 from pathlib import Path
 
 import sections
-from bars import bars_table, headline
-from machine import machine, versions
+from machine import made, read_made, write_made
 from measurements import Measurements
 from plots import draw_all
 from recommendation import recommendation
+from summary import headline, summary
 
 TEMPLATE = Path(__file__).parent / "template.md"
 
 
 def main() -> None:
-    """Reads the tables, draws the figures, fills the template."""
+    """Read the tables, draw the figures, fill the template."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("docs", type=Path)
-    parser.add_argument("files", type=Path)
+    parser.add_argument("files", type=Path, nargs="?")
     parser.add_argument("--trial", action="store_true")
     arguments = parser.parse_args()
     folder = arguments.docs / "speed_vs_error"
     m = Measurements.read(folder)
-    draw_all(m, folder)
-    warning = "**This is a trial run: too short to mean anything.**\n\n" if arguments.trial else ""
+    if arguments.files is not None:
+        draw_all(m, folder)
+        write_made(folder, made(Path(__file__).parents[1], arguments.files))
+    origin = read_made(folder)
+    warning = (
+        "**This is a trial run, which is too short for results.**\n\n" if arguments.trial else ""
+    )
     text = TEMPLATE.read_text().format(
         trial=warning,
         headline=headline(m),
-        date=datetime.now(UTC).date(),
-        machine=machine(),
-        versions=versions(Path(__file__).parents[1], arguments.files),
+        date=origin["date"],
+        machine=origin["machine"],
+        versions=origin["versions"],
         spread=sections.spread(m),
-        bars=bars_table(m),
+        summary=summary(m),
         call_only=sections.call_only(m),
         recommendation=recommendation(m),
         speeds=sections.speeds(m),

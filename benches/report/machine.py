@@ -1,4 +1,4 @@
-"""What the numbers were measured on and with, in words: no names of hosts, no paths."""
+"""The machine and the versions of a measurement, in words: no names of hosts, no paths."""
 
 from __future__ import annotations
 
@@ -7,11 +7,33 @@ import os
 import platform
 import subprocess
 import tomllib
+from datetime import UTC, datetime
 from pathlib import Path
 
+MADE = "made.toml"
 
-def machine() -> str:
-    """Processor, cores and operating system."""
+
+def made(benches: Path, files: Path) -> dict[str, str]:
+    """Return the date, the machine and the versions of a measurement that has just ended."""
+    return {
+        "date": str(datetime.now(UTC).date()),
+        "machine": _machine(),
+        "versions": _versions(benches, files),
+    }
+
+
+def write_made(folder: Path, found: dict[str, str]) -> None:
+    """Store them beside the tables."""
+    lines = [f"{name} = {json.dumps(text, ensure_ascii=False)}\n" for name, text in found.items()]
+    (folder / MADE).write_text("".join(lines), encoding="utf-8")
+
+
+def read_made(folder: Path) -> dict[str, str]:
+    """Return what `write_made` stored."""
+    return tomllib.loads((folder / MADE).read_text(encoding="utf-8"))
+
+
+def _machine() -> str:
     model = platform.processor() or platform.machine()
     cpuinfo = Path("/proc/cpuinfo")
     if cpuinfo.exists():
@@ -20,8 +42,8 @@ def machine() -> str:
     return f"{model}, {os.cpu_count()} cores, {platform.system()} on {platform.machine()}"
 
 
-def versions(benches: Path, files: Path) -> str:
-    """Of compiler and engines, as locked or installed."""
+def _versions(benches: Path, files: Path) -> str:
+    # Of compiler and engines, as locked or installed.
     command = ["rustc", "--version"]
     rustc = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     lock = tomllib.loads((benches / "Cargo.lock").read_text())

@@ -8,7 +8,7 @@ from pathlib import Path
 import pandas as pd
 
 KEY = ["engine", "setting", "scheme", "solver", "relinearizations", "dt_s"]
-# The step and setting that bars and ratios refer to.
+# The step and setting that ratios refer to.
 STEP_S = 0.01
 RAPIER = ("rapier2d-f64", "4 iterations / unit 10 cm")
 TIGHT_RAPIER = ("rapier2d-f64", "4 iterations / unit 1 cm")
@@ -34,7 +34,7 @@ class Measurements:
 
     @classmethod
     def read(cls, folder: Path) -> Measurements:
-        """Reads every table, with what other programs contributed appended."""
+        """Read every table, and append the tables of other programs."""
         tables = {}
         for name in cls.__dataclass_fields__:
             frames = [pd.read_csv(folder / f"{name}.csv")]
@@ -46,7 +46,7 @@ class Measurements:
         return cls(**tables)
 
     def settings(self) -> pd.DataFrame:
-        """One row for each engine, setting and step: the scene of 27 boats and the exact laws."""
+        """Return one row per engine, setting and step: the scene of 27 boats and the exact laws."""
         joined = None
         for scene in ("jam", "cycle"):
             for table, columns in [
@@ -74,7 +74,7 @@ def _join(
 
 
 def pick(table: pd.DataFrame, who: tuple[str, str], **fields: object) -> pd.Series:
-    """The one row of an engine and setting, at the step of the bars unless told otherwise."""
+    """Return the one row of an engine and setting, at the reference step unless another is given."""
     wanted = {"engine": who[0], "setting": who[1], "dt_s": STEP_S, **fields}
     rows = table
     for name, value in wanted.items():

@@ -1,4 +1,4 @@
-"""The figures. Colours are Okabe and Ito's, told apart by every kind of eye; shapes differ too."""
+"""The figures. Colors are Okabe and Ito's, which every kind of eye distinguishes; shapes differ too."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ import matplotlib.pyplot as plt
 import pandas as pd
 from measurements import BOX2D, RAPIER, Measurements, ours
 
-# Name: engine and setting, colour, marker, whether filled.
+# Name: engine and setting, color, marker, whether filled.
 SERIES = {
     "flockenv leapfrog": (ours("leapfrog", 0), "#0072B2", "o", True),
-    "flockenv leapfrog, 1 relinearisation": (ours("leapfrog", 1), "#56B4E9", "o", False),
-    "flockenv leapfrog, 2 relinearisations": (ours("leapfrog", 2), "#009E73", "o", False),
+    "flockenv leapfrog, 1 relinearization": (ours("leapfrog", 1), "#56B4E9", "o", False),
+    "flockenv leapfrog, 2 relinearizations": (ours("leapfrog", 2), "#009E73", "o", False),
     "flockenv moreau": (ours("moreau", 0), "#E69F00", "s", True),
     "flockenv paper": (ours("paper", 0), "#CC79A7", "^", True),
     "rapier2d-f64": (RAPIER, "#D55E00", "D", True),

@@ -9,7 +9,7 @@ from measurements import OURS, RAPIER, STEP_S, Measurements, ours
 
 
 def _at_step(m: Measurements) -> list[tuple]:
-    """Every engine and solver at the step of the bars, ours first."""
+    """Return every engine and solver at the reference step, flockenv first."""
     rows = m.settings()
     rows = rows[rows.dt_s == STEP_S].copy()
     rows["place"] = rows.engine.ne("flockenv")
@@ -22,7 +22,7 @@ def _name(row: tuple) -> str:
 
 
 def speeds(m: Measurements) -> str:
-    """How fast everyone is at the step of the bars."""
+    """Return the speed of every engine at the reference step."""
 
     def with_spread(middle: float, low: float, high: float) -> str:
         return f"{plain(middle)} ({plain(low)} – {plain(high)})"
@@ -39,7 +39,7 @@ def speeds(m: Measurements) -> str:
         ]
         for row in _at_step(m)
     ]
-    half = ["µs a step (middle half)", "speed", "× real time"]
+    half = ["µs per step (middle half)", "speed", "× real time"]
     header = ["engine, setting", *(f"jam: {name}" for name in half)]
     return table([*header, *(f"cycle: {name}" for name in half)], rows)
 
@@ -51,7 +51,7 @@ ERRORS = [
 
 
 def errors(m: Measurements) -> str:
-    """How far off everyone is at the step of the bars."""
+    """Return the errors of every engine at the reference step."""
     rows = ([_name(row), *_errors_of(row)] for row in _at_step(m))
     return table(["engine, setting", *ERRORS], rows)
 
@@ -72,7 +72,7 @@ def _errors_of(row: tuple) -> list[str]:
 
 
 def every_setting(m: Measurements) -> str:
-    """Every setting at every step."""
+    """Return every setting at every step."""
     header = ["engine, setting", "dt s", "jam µs", "cycle µs", "jam speed", "cycle speed"]
     rows = [
         [
@@ -90,7 +90,7 @@ def every_setting(m: Measurements) -> str:
 
 
 def larger_flocks(m: Measurements) -> str:
-    """Jams of up to 1000 boats at the step of the bars."""
+    """Return jams of up to 1000 boats at the reference step."""
     jam = m.speed[(m.speed.scene == "jam") & (m.speed.dt_s == STEP_S)]
     deep = m.overlap[(m.overlap.scene == "jam") & (m.overlap.dt_s == STEP_S)]
     sizes = sorted(jam.n.unique())
@@ -103,7 +103,7 @@ def larger_flocks(m: Measurements) -> str:
             cells.append(f"{plain(row.us_per_step)} ({times(row.faster)})")
         cells.append(plain(_only(deep, who, max(sizes)).overlap_mean_cm))
         rows.append(cells)
-    header = ["µs a step (speed against rapier2d-f64)", *(f"n = {n}" for n in sizes)]
+    header = ["µs per step (speed against rapier2d-f64)", *(f"n = {n}" for n in sizes)]
     return table([*header, f"overlap at n = {max(sizes)}, cm"], rows)
 
 
@@ -113,20 +113,20 @@ def _only(rows: pd.DataFrame, who: tuple, boats: int) -> pd.Series:
 
 
 def solvers(m: Measurements) -> str:
-    """The contact problem alone."""
+    """Return the times and residuals of the contact problem alone."""
     rows = []
     for solver in m.solvers.solver.unique():
         own = m.solvers[m.solvers.solver == solver]
         rows.append([solver, *(plain(value) for value in own.us_per_solve)])
         worst = (f"{plain(row.residual_worst)}" for row in own.itertuples())
-        rows.append(["… its worst residual, cm/s", *worst])
+        rows.append([f"{solver}: worst residual, cm/s", *worst])
     exact = m.solvers[m.solvers.solver == "block-pivoting"]
     rows.append(["contacts and near-contacts", *(plain(value, 3) for value in exact.contacts)])
-    return table(["µs a solve", *(f"n = {n}" for n in exact.n)], rows)
+    return table(["µs per solve", *(f"n = {n}" for n in exact.n)], rows)
 
 
 def profile(m: Measurements) -> str:
-    """Where the time of a step goes, and what is the least it could take this way."""
+    """Return the parts of a step's time, and a lower bound for this algorithm."""
     rows = []
     for row in m.profile.itertuples():
         parts = [row.noise_us, row.free_us, row.find_us, row.solve_us]
@@ -134,11 +134,11 @@ def profile(m: Measurements) -> str:
         least = row.whole_us - row.solve_us + row.solve_known_us
         rows.append([str(row.n), *(plain(value) for value in [row.whole_us, *parts, rest, least])])
     header = ["boats", "whole step", "noise", "free motion", "finding contacts", "contact problem"]
-    return table([*header, "rest", "floor"], rows)
+    return table([*header, "rest", "with known contacts"], rows)
 
 
 def parts(m: Measurements) -> str:
-    """What each part of a scene costs."""
+    """Return the cost of each part of a scene."""
     whole = m.parts.set_index("scene").us_per_step["both walls"]
     rows = [
         [
@@ -150,12 +150,12 @@ def parts(m: Measurements) -> str:
         ]
         for row in m.parts.itertuples()
     ]
-    header = ["scene", "µs a step", "middle half", "of the whole scene", "contacts a step"]
+    header = ["scene", "µs per step", "middle half", "of the whole scene", "contacts per step"]
     return table(header, rows)
 
 
 def growth(m: Measurements) -> str:
-    """Time and memory against the number of boats."""
+    """Return time and memory against the number of boats."""
     rows = [
         [
             str(row.n),
@@ -170,15 +170,15 @@ def growth(m: Measurements) -> str:
         for row in m.growth.itertuples()
     ]
     header = [
-        "boats", "µs a step", "× real time", "contacts a step",
-        "bytes a boat in use, without factor", "bytes a boat held", "factor entries",
-        "factor bytes a boat",
+        "boats", "µs per step", "× real time", "contacts per step",
+        "bytes per boat in use, without factor", "bytes per boat held", "factor entries",
+        "factor bytes per boat",
     ]  # fmt: skip
     return table(header, rows)
 
 
 def order_parameters(m: Measurements) -> str:
-    """Means of Ψ_o and C_v, and their errors."""
+    """Return means of Ψ_o and C_v, and their errors."""
 
     def interval(value: float, width: float) -> str:
         if width == 0:
@@ -210,7 +210,7 @@ def order_parameters(m: Measurements) -> str:
 
 
 def order_of_schemes(m: Measurements) -> str:
-    """Exponents of errors in the step, over the smallest steps there are."""
+    """Return the exponents of errors in the step, over the smallest steps."""
     settings = m.settings()
     found = []
     for scheme in ("leapfrog", "moreau", "paper"):
@@ -237,19 +237,19 @@ def _exponent(rows: pd.DataFrame, column: str) -> str:
 
 
 def lost(m: Measurements) -> str:
-    """Settings whose motion blew up."""
+    """Return the settings whose motion diverged."""
     rows = m.speed[m.speed.lost > 0]
     if rows.empty:
-        return "No run left the range of sensible numbers."
+        return "No run diverged."
     names = [f"{row.setting} at {row.dt_s:g} s ({row.scene})" for row in rows.itertuples()]
     return (
-        "A dash among the times: the motion left the range of sensible numbers on at least one "
-        f"seed, which is an error that names the step: {', '.join(names)}."
+        "A dash among the times marks a setting whose motion diverged on at least one seed, which "
+        f"raises an error that names the step: {', '.join(names)}."
     )
 
 
 def spread(m: Measurements) -> str:
-    """How far apart the turns of the reference lay."""
+    """Return the spread of the turns of the reference."""
     rows = m.speed[(m.speed.engine == RAPIER[0]) & (m.speed.setting == RAPIER[1])]
     row = rows[(rows.dt_s == STEP_S) & (rows.scene == "jam") & (rows.n == 27)].iloc[0]
     share = 100 * (row.us_q3 - row.us_q1) / row.us_per_step
@@ -257,7 +257,7 @@ def spread(m: Measurements) -> str:
 
 
 def call_only(m: Measurements) -> str:
-    """The ratios against nothing but rapier's step call."""
+    """Return the ratios against rapier's step call alone."""
     cells = []
     for scene, boats in [("jam", 27), ("cycle", 27), ("jam", 1000)]:
         rows = m.speed[(m.speed.engine == OURS[0]) & (m.speed.setting == OURS[1])]

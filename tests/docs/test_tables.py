@@ -1,6 +1,9 @@
 """Law: a table of a page that quotes data is what the committed data give."""
 
 import importlib.util
+import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -29,3 +32,21 @@ def test_a_changed_number_is_put_back():
     changed = text.replace("0.222 [0.145, 0.295]", "0.999 [0.145, 0.295]")
     assert changed != text
     assert tables.filled(changed) == text
+
+
+MEASURED = {
+    "speed_vs_error": ["benches/report", "DOCS"],
+    "throughput": ["benches/throughput.py", "--page", "--docs", "DOCS"],
+}
+
+
+@pytest.mark.parametrize("page", MEASURED)
+def test_measured_pages_show_the_committed_data(page, tmp_path):
+    docs = REPOSITORY / "docs"
+    shutil.copytree(docs / "speed_vs_error", tmp_path / "speed_vs_error")
+    shutil.copy(docs / "throughput.toml", tmp_path)
+    program, *options = MEASURED[page]
+    given = [str(tmp_path) if option == "DOCS" else option for option in options]
+    subprocess.run([sys.executable, REPOSITORY / program, *given], check=True, timeout=120)
+    written = (tmp_path / f"{page}.md").read_text(encoding="utf-8")
+    assert written == (docs / f"{page}.md").read_text(encoding="utf-8"), "run `make tables`"
