@@ -38,7 +38,7 @@ def vector_env(num_envs: int, pool: str):
 
 
 def control_step_us(pool: str, seconds: float) -> float:
-    """Return microseconds per control step of a flock on one thread, flocks 30 s into their episode."""
+    """Return microseconds per control step of a flock on one thread, 30 s into the episode."""
     env = vector_env(64, pool)
     env.reset(seed=0)
     actions = np.random.default_rng(0).uniform(-1, 1, (300, *env.action_space.shape))
@@ -52,14 +52,14 @@ def control_step_us(pool: str, seconds: float) -> float:
 
 
 def batch_steps_per_s(pool: str, seconds: float) -> float:
-    """Return flock control steps per second by Gymnasium's own benchmark, 64 flocks, all threads."""
+    """Return flock control steps per second by Gymnasium's benchmark: 64 flocks, all threads."""
     from gymnasium.utils.performance import benchmark_vector_step
 
     return benchmark_vector_step(vector_env(64, pool), target_duration=seconds, seed=0)
 
 
 class Canned:
-    """A core that returns one stored result, so that the time is that of the interface around it."""
+    """A core that returns one stored result, which leaves the time of the interface around it."""
 
     def __init__(self, core) -> None:
         self.core = core
@@ -91,7 +91,10 @@ def vec_env_overhead_us(seconds: float) -> float:
 
 
 def ppo_environment_share(seconds: float) -> float:
-    """Return the share of the environment in PPO's time, in %: 64 slots, 64 steps, batch 512, 10 epochs."""
+    """Return the share of the environment in PPO's time, in %.
+
+    PPO has 64 slots, 64 steps, batch 512 and 10 epochs.
+    """
     from stable_baselines3 import PPO
 
     from flockenv.sb3 import LeaderVecEnv
@@ -196,8 +199,8 @@ def page(found: Mapping[str, Any]) -> str:
         "# Throughput",
         "",
         f"A control step of one flock takes {step:.3g} µs of one core in the pool `500-boats` and "
-        f"{table_1:.3g} µs in `table-1`. A batch of 64 flocks advances by {number(batch['median'], 3)} "
-        f"flock control steps per second on {os_cores(made)}.",
+        f"{table_1:.3g} µs in `table-1`. A batch of 64 flocks advances by "
+        f"{number(batch['median'], 3)} flock control steps per second on {os_cores(made)}.",
         "",
         f"`make throughput` measured all numbers of this page on {made['date']}: "
         f"{made['machine']}; load average at the end {made['load']:.1f}. Every number is the "

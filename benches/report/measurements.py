@@ -74,7 +74,7 @@ def _join(
 
 
 def pick(table: pd.DataFrame, who: tuple[str, str], **fields: object) -> pd.Series:
-    """Return the one row of an engine and setting, at the reference step unless another is given."""
+    """Return the one row of an engine and setting, by default at the reference step."""
     wanted = {"engine": who[0], "setting": who[1], "dt_s": STEP_S, **fields}
     rows = table
     for name, value in wanted.items():

@@ -1,4 +1,4 @@
-"""The figures. Colors are Okabe and Ito's, which every kind of eye distinguishes; shapes differ too."""
+"""The figures. The colors, Okabe and Ito's, suit every kind of eye; shapes differ too."""
 
 from __future__ import annotations
 
