@@ -104,7 +104,8 @@ test-oldest: $(STAMPS)/venv ## the oldest supported versions, in .venv-oldest
 	VIRTUAL_ENV="$(CURDIR)/.venv-oldest" $(BIN)/uv pip install hypothesis pytest pytest-timeout
 	VIRTUAL_ENV="$(CURDIR)/.venv-oldest" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
 	OMP_NUM_THREADS=1 .venv-oldest/bin/python -m pytest -W ignore::DeprecationWarning \
-	  tests/boundary tests/env tests/analysis tests/cli $(PYTEST_ARGS)
+	  tests/boundary tests/envs tests/policies tests/rendering tests/runs tests/statistics \
+	  tests/comparison tests/calibration tests/cli $(PYTEST_ARGS)
 
 # Pages with code cells are executed, and what they trained is trained anew.
 docs: $(STAMPS)/docs $(STAMPS)/core ## build the pages, warnings are errors, into docs/_build/html
@@ -148,14 +149,14 @@ test-rllib: $(STAMPS)/test ## RLlib on the parallel environment, in .venv-rllib
 	VIRTUAL_ENV="$(CURDIR)/.venv-rllib" $(BIN)/uv pip install -r pyproject.toml --extra ray pytest \
 	  pytest-timeout "torch>=2.5" --excludes requirements-excluded.txt
 	VIRTUAL_ENV="$(CURDIR)/.venv-rllib" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
-	OMP_NUM_THREADS=1 .venv-rllib/bin/python -m pytest -m rllib tests/env/test_rllib.py
+	OMP_NUM_THREADS=1 .venv-rllib/bin/python -m pytest -m rllib tests/envs/test_rllib.py
 
 # Ray core without RLlib pins nothing, but what it starts outlives a test that fails: kept apart.
 test-ray: $(STAMPS)/test ## the ray engine on a real local Ray, in .venv-ray
 	$(PYTHON) -m venv .venv-ray
 	VIRTUAL_ENV="$(CURDIR)/.venv-ray" $(BIN)/uv pip install -r pyproject.toml --extra sweep "ray>=2.40" pytest pytest-timeout
 	VIRTUAL_ENV="$(CURDIR)/.venv-ray" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
-	.venv-ray/bin/python -m pytest -m ray tests/analysis/test_engines.py
+	.venv-ray/bin/python -m pytest -m ray tests/runs/test_executors.py
 
 throughput: $(STAMPS)/test $(STAMPS)/core ## measure speed beside VMAS and MPE2, write docs/throughput.md
 	$(PYTHON) -m venv .venv-peers

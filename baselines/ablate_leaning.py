@@ -18,13 +18,13 @@ from rich.progress import Progress
 from run_number import run_number
 
 import flockenv
-from flockenv.analysis import paired_difference
+from flockenv._io.atomic_write import whole_file
 from flockenv.comparison import run_episodes
-from flockenv.observation import observation_entries
+from flockenv.envs.observation import observation_entries
 from flockenv.policies import LeaningLaw, load
 from flockenv.policies.leaning_law import FEATURES, features
-from flockenv.seeds import training_seed
-from flockenv.whole_file import whole_file
+from flockenv.runs.seeds import training_seed
+from flockenv.statistics.intervals import paired_difference
 
 GROUPS = {
     "outer wall": ("radial_position", "near_outer_wall"),

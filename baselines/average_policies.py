@@ -20,13 +20,13 @@ from typing import Any
 import numpy as np
 
 import flockenv
-from flockenv.analysis import mean_interval
+from flockenv._io.provenance import made_by
 from flockenv.comparison import run_episodes
 from flockenv.policies import LeaningLaw, load
 from flockenv.policies.leaning_law import FEATURES, GAINS
-from flockenv.policies.shipped import tuned_law
-from flockenv.provenance import made_by
-from flockenv.seeds import training_seed
+from flockenv.policies.pretrained import tuned_law
+from flockenv.runs.seeds import training_seed
+from flockenv.statistics.intervals import mean_interval
 
 #: Beyond what searches and ablate_leaning.py reach with ordinary seeds.
 FIRST_SEED = 1 << 42

@@ -31,14 +31,14 @@ from rich.progress import Progress
 from run_number import run_number
 
 import flockenv
-from flockenv.array_file import read_arrays, write_arrays
+from flockenv._io.array_file import read_arrays, write_arrays
+from flockenv._io.provenance import made_by
 from flockenv.cli.scene import changed_fields
-from flockenv.observation import OBSERVATION_VERSION
+from flockenv.envs.observation import OBSERVATION_VERSION
+from flockenv.envs.reward import TERMS
 from flockenv.policies import DampedLaw, LeaningLaw, NetworkPolicy
-from flockenv.policies.shipped import TUNED_GAINS
-from flockenv.provenance import made_by
-from flockenv.reward import TERMS
-from flockenv.seeds import training_seed
+from flockenv.policies.pretrained import TUNED_GAINS
+from flockenv.runs.seeds import training_seed
 
 SEEDS_OF_A_RUN = 1 << 24
 DECAY_1, DECAY_2 = 0.9, 0.99

@@ -189,7 +189,7 @@ def report(results: list[dict[str, Any]], command: str, seed: int, episodes: int
         "random rudders steer the same episodes.",
         "",
         f"Command: `{command}`; seed {seed}; flockenv {flockenv.__version__}, observation version "
-        f"{flockenv.observation.OBSERVATION_VERSION}, torch {torch.__version__}.",
+        f"{flockenv.envs.observation.OBSERVATION_VERSION}, torch {torch.__version__}.",
         "",
         "| face | samples | training | learned | random rudders | intervals apart |",
         "| --- | --- | --- | --- | --- | --- |",

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 
 import flockenv
-from flockenv.observation import observation_entries
+from flockenv.envs.observation import observation_entries
 from flockenv.policies import DampedLaw, LeaningLaw, NetworkPolicy
 from flockenv.policies.leaning_law import FEATURES, GAINS, features, leaned
 

@@ -24,9 +24,9 @@ from scipy.stats import qmc
 
 import flockenv
 from flockenv import training
+from flockenv._io.atomic_write import whole_file
 from flockenv.policies.laws import LAWS
 from flockenv.training.validation import validation_scores
-from flockenv.whole_file import whole_file
 
 
 def log_between(low: float, high: float) -> Callable[[float], float]:

@@ -26,11 +26,11 @@ from rich.progress import Progress
 from run_number import run_number
 
 import flockenv
+from flockenv._io.atomic_write import whole_file
+from flockenv._io.provenance import made_by
 from flockenv.comparison import run_episodes
 from flockenv.policies import DampedLaw, SignCorrectedLaw
-from flockenv.provenance import made_by
-from flockenv.seeds import training_seed
-from flockenv.whole_file import whole_file
+from flockenv.runs.seeds import training_seed
 
 #: Law and its gains, each with the middle and the width (in factors of e) of the first generation.
 LAWS: dict[str, tuple[Any, dict[str, tuple[float, float]]]] = {

@@ -24,11 +24,11 @@ from rich.progress import Progress
 
 import flockenv
 from flockenv._core import pool_radii_cm
+from flockenv._io.atomic_write import whole_file
 from flockenv.comparison import named_policy
-from flockenv.observation import observation_entries, state_entries
+from flockenv.envs.observation import observation_entries, state_entries
 from flockenv.reproduce.style import COLORS, column_figure, paper_style
-from flockenv.seeds import check_evaluation_seeds
-from flockenv.whole_file import whole_file
+from flockenv.runs.seeds import check_evaluation_seeds
 
 CONTROL_HZ = 10.0
 SAMPLED_EVERY = 5

@@ -19,7 +19,7 @@ from rich.progress import Progress
 from throughput import processor
 
 import flockenv
-from flockenv.whole_file import whole_file
+from flockenv._io.atomic_write import whole_file
 
 ROOT = Path(__file__).parents[1]
 SCENE = {"n_boats": 27, "n_leaders": 4, "bw_s": (0.0, 1.0), "target": "random", "episode_s": 48.0}

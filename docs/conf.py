@@ -47,7 +47,7 @@ nitpick_ignore_regex = [
     (r"py:.*", r"type\[.*"),
     # Internal modules and type variables of public signatures.
     (r"py:.*", r"(flockenv\.)?_core(\..*)?"),
-    (r"py:.*", r"flockenv\.engines\.(Item|Value)"),
+    (r"py:.*", r"flockenv\.runs\.executors\.(Item|Value)"),
 ]
 
 myst_enable_extensions = ["dollarmath", "deflist"]

@@ -2,22 +2,19 @@
 
 import importlib
 from importlib.metadata import version
-from types import ModuleType
+from typing import Any
 
-from flockenv import _compiled as _compiled
 from flockenv import policies
-from flockenv._core import Flock
-from flockenv.contacts import Contacts, ContactSeries
+from flockenv._io.moved_modules import keep_old_names
+from flockenv.envs.parallel import LeadersParallelEnv, parallel_env
+from flockenv.envs.registration import register
+from flockenv.envs.single import LeadersEnv
+from flockenv.envs.vector import LeadersVectorEnv
 from flockenv.errors import EpisodeError, FlockError, ParameterError, SolverError
-from flockenv.order_parameters import OrderParameters, OrderSeries
-from flockenv.parallel_env import LeadersParallelEnv, parallel_env
+from flockenv.flock import Contacts, ContactSeries, Flock, OrderParameters, OrderSeries, Statistics
 from flockenv.parameters import FlockParameters
 from flockenv.recording import Recording
-from flockenv.registration import register
 from flockenv.simulation import simulate
-from flockenv.single_env import LeadersEnv
-from flockenv.statistics import Statistics
-from flockenv.vector_env import LeadersVectorEnv
 
 __all__ = [
     "ContactSeries",
@@ -45,9 +42,13 @@ __version__ = version("flockenv")
 
 register()
 
+_moved = keep_old_names(__name__)
 
-def __getattr__(name: str) -> ModuleType:
+
+def __getattr__(name: str) -> Any:
     # stable-baselines3 takes seconds to import: only for those who use it.
     if name == "sb3":
         return importlib.import_module("flockenv.sb3")
+    if name in _moved:
+        return _moved[name]
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -4,10 +4,8 @@ from typing import Any, Self, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flockenv.contacts import Contacts
-from flockenv.order_parameters import OrderParameters
+from flockenv.flock import Contacts, OrderParameters, Statistics
 from flockenv.parameters import FlockParameters
-from flockenv.statistics import Statistics
 
 __all__ = [
     "ORDERED_WITHIN",

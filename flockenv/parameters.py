@@ -8,8 +8,8 @@ from typing import Any, Self
 import tomli_w
 
 from flockenv import _core
+from flockenv._io.toml import read_toml
 from flockenv.errors import ParameterError
-from flockenv.toml_text import read_toml
 
 __all__ = ["FlockParameters"]
 

@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv import _core
-from flockenv.array_file import read_arrays, write_arrays
-from flockenv.contacts import ContactSeries
+from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv.errors import ParameterError
-from flockenv.order_parameters import OrderSeries
+from flockenv.flock import ContactSeries, OrderSeries
 from flockenv.parameters import FlockParameters
 
 __all__ = ["PHASES", "PRECISIONS", "Recording"]

@@ -10,15 +10,16 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv.action import flat_actions, leader_action_space
-from flockenv.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
+from flockenv._io.extras import require
+from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
+from flockenv.envs.docs import specified
+from flockenv.envs.observation import observation_space
+from flockenv.envs.options import EnvOptions
+from flockenv.envs.render_mode import Screen
+from flockenv.envs.spaces import flat_actions, leader_action_space
 from flockenv.errors import EpisodeError, ParameterError
-from flockenv.extras import require
-from flockenv.observation import observation_space
-from flockenv.options import EnvOptions
 from flockenv.parameters import FlockParameters
-from flockenv.screen import DEFAULT_SIZE, Screen
-from flockenv.specification import specified
+from flockenv.rendering.frames import DEFAULT_SIZE
 
 require("stable_baselines3", "train")
 

@@ -8,10 +8,8 @@ import numpy as np
 from numpy.typing import DTypeLike
 
 from flockenv import _core
-from flockenv.contacts import ContactSeries
 from flockenv.errors import ParameterError
-from flockenv.observation import observe
-from flockenv.order_parameters import OrderSeries
+from flockenv.flock import ContactSeries, OrderSeries
 from flockenv.parameters import FlockParameters
 from flockenv.recording import PHASES, PRECISIONS, Recording
 
@@ -136,7 +134,7 @@ def _steered(
             if contacts:
                 touching.append(flock.contacts())
         if is_control and parameters.n_leaders > 0:
-            seen = observe(flock, layout, mirror_to_target=mirrored, rudder=rudder)
+            seen = _core.observe(flock, dict(layout or {}), mirrored, rudder)
             actions, state = policy.predict(seen, state)
             rudder = sign * np.clip(np.asarray(actions, np.float64).reshape(-1), -1.0, 1.0)
     series = ContactSeries.of(touching) if contacts else None

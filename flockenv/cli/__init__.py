@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from flockenv import FlockError, __version__
+from flockenv._core import __version__
 from flockenv.cli.compare import compare
 from flockenv.cli.console import INTERRUPTED, console, errors, interruptible, say
 from flockenv.cli.evaluate import evaluate
@@ -20,6 +20,7 @@ from flockenv.cli.reproduce import reproduce
 from flockenv.cli.run import run
 from flockenv.cli.sweep import sweep
 from flockenv.cli.train import train
+from flockenv.errors import FlockError
 
 __all__ = ["app", "main"]
 

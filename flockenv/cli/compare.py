@@ -7,11 +7,11 @@ from typing import Annotated, Any
 
 import typer
 
-from flockenv import ParameterError
 from flockenv.cli.console import console, errors, finished_in, progress_bar, say
 from flockenv.cli.output import check_folder
 from flockenv.cli.pools import PoolOption, pool_name, scenes
 from flockenv.cli.scene import ChangesOption, FileOption, PresetOption
+from flockenv.errors import ParameterError
 from flockenv.simulation import LeaderPolicy
 
 __all__ = ["compare"]
@@ -50,8 +50,8 @@ def compare(
 
     Example: `flockenv compare --pool table-1 --policy "damped law" --set bw_s=0.4`
     """
-    from flockenv.comparison import named_policy
-    from flockenv.comparison_report import ComparisonReport, report
+    from flockenv.comparison.episodes import named_policy
+    from flockenv.comparison.report import ComparisonReport, report
 
     found = scenes(preset, params, changes, pool)
     policies = {
@@ -90,7 +90,7 @@ def compare(
 
 def _default_policies(pool: Any) -> dict[str, Callable[[], LeaderPolicy | str]]:
     """Return what is compared unasked: what is made for a pool only where there is such."""
-    from flockenv.comparison import named_policy
+    from flockenv.comparison.episodes import named_policy
 
     policies = {}
     for name in DEFAULT_POLICIES:

@@ -10,7 +10,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from flockenv.interrupts import on_interrupt
+from flockenv._io.interrupts import on_interrupt
 
 __all__ = [
     "INTERRUPTED",

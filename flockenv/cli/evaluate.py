@@ -8,11 +8,12 @@ from typing import Annotated, Any
 
 import typer
 
-from flockenv import FlockParameters, ParameterError
 from flockenv.cli.console import console, finished_in, progress_bar, say
 from flockenv.cli.output import check_folder
 from flockenv.cli.pools import PoolOption, pool_name, scenes
 from flockenv.cli.scene import ChangesOption, FileOption, PresetOption
+from flockenv.errors import ParameterError
+from flockenv.parameters import FlockParameters
 
 __all__ = ["evaluate"]
 
@@ -63,10 +64,10 @@ def evaluate(
 
     Example: `flockenv evaluate baselines/policies/table-1.npz --pool table-1 --leaders 3`
     """
-    from flockenv.comparison import POOL_POLICIES, named_policy
-    from flockenv.comparison_report import ComparisonReport, report
-    from flockenv.model_card import model_card
-    from flockenv.whole_file import whole_file
+    from flockenv._io.atomic_write import whole_file
+    from flockenv.comparison.episodes import POOL_POLICIES, named_policy
+    from flockenv.comparison.model_card import model_card
+    from flockenv.comparison.report import ComparisonReport, report
 
     references = list(against or (each for each in REFERENCES if each != policy))
     if policy in references:

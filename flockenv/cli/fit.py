@@ -6,10 +6,10 @@ from typing import Annotated
 
 import typer
 
-from flockenv import FlockParameters
+from flockenv.calibration.search import BOUNDS, MODEL_CONSTANTS
 from flockenv.cli.console import console, interruptible, progress_bar, say
 from flockenv.cli.output import check_folder
-from flockenv.experiment_fit import BOUNDS, MODEL_CONSTANTS
+from flockenv.parameters import FlockParameters
 
 __all__ = ["fit"]
 
@@ -45,8 +45,8 @@ def fit(
 
     Example: `flockenv fit --trials 60 --jobs 2`
     """
-    from flockenv import fit_report
-    from flockenv.experiment_fit import Fit, experiment_scene
+    from flockenv.calibration import report as fit_report
+    from flockenv.calibration.search import Fit, experiment_scene
 
     given = {"scheme": scheme, "noise": noise, "dt_s": dt_s}
     changes = {name: value for name, value in given.items() if value is not None}

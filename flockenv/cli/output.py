@@ -5,7 +5,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryFile
 
-from flockenv import ParameterError, Recording
+from flockenv.errors import ParameterError
+from flockenv.recording import Recording
 
 __all__ = ["check_file", "check_folder", "load_recording", "writable"]
 

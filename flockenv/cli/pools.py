@@ -7,8 +7,9 @@ from typing import Annotated, Any
 
 import typer
 
-from flockenv import FlockParameters, ParameterError
 from flockenv.cli.scene import given_fields, scene_of
+from flockenv.errors import ParameterError
+from flockenv.parameters import FlockParameters
 
 __all__ = ["PoolChoice", "PoolOption", "pool_name", "scenes"]
 

@@ -5,8 +5,8 @@ from typing import Annotated
 import typer
 from rich.table import Table
 
-from flockenv import FlockParameters
 from flockenv.cli.console import console, say
+from flockenv.parameters import FlockParameters
 
 __all__ = ["ABOUT", "presets"]
 

@@ -5,9 +5,9 @@ from typing import Annotated
 
 import typer
 
-from flockenv import ParameterError
 from flockenv.cli.console import console, interruptible, progress_bar, say
 from flockenv.cli.output import check_file, load_recording, writable
+from flockenv.errors import ParameterError
 
 __all__ = ["replay"]
 

@@ -8,9 +8,9 @@ from rich.table import Table
 
 from flockenv.cli.console import console, errors, progress_bar, resumable, say
 from flockenv.cli.output import check_folder
-from flockenv.engines import named
 from flockenv.errors import ParameterError
 from flockenv.reproduce import names, require_packages
+from flockenv.runs.executors import named
 
 __all__ = ["reproduce"]
 

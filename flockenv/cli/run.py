@@ -7,12 +7,14 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
-from flockenv import FlockParameters, ParameterError, Recording, simulate
 from flockenv.cli.console import console, interruptible, progress_bar, say
 from flockenv.cli.output import check_file, writable
 from flockenv.cli.scene import ChangesOption, FileOption, PresetOption, read_scene, save_scene
-from flockenv.comparison import EVERY_SUBSTEP, POLICIES, POOL_POLICIES, named_policy
-from flockenv.simulation import LeaderPolicy
+from flockenv.comparison.episodes import EVERY_SUBSTEP, POLICIES, POOL_POLICIES, named_policy
+from flockenv.errors import ParameterError
+from flockenv.parameters import FlockParameters
+from flockenv.recording import Recording
+from flockenv.simulation import LeaderPolicy, simulate
 
 __all__ = ["run"]
 

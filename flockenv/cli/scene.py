@@ -6,9 +6,10 @@ from typing import Annotated, Any
 
 import typer
 
-from flockenv import FlockParameters, ParameterError
-from flockenv.toml_text import read_toml
-from flockenv.whole_file import whole_file
+from flockenv._io.atomic_write import whole_file
+from flockenv._io.toml import read_toml
+from flockenv.errors import ParameterError
+from flockenv.parameters import FlockParameters
 
 __all__ = [
     "ChangesOption",

@@ -6,10 +6,10 @@ from typing import Annotated
 
 import typer
 
+from flockenv._io.atomic_write import whole_file
 from flockenv.cli.console import console, errors, progress_bar, resumable, say
 from flockenv.cli.output import check_folder, writable
-from flockenv.engines import named
-from flockenv.whole_file import whole_file
+from flockenv.runs.executors import named
 
 __all__ = ["sweep"]
 
@@ -25,15 +25,15 @@ def sweep(
 ) -> None:
     """Run a grid of parameters and seeds, as one table.
 
-    Writes `sweep.csv` and `sweep.parquet`, one row a run, which `flockenv.sweep.load_sweep` reads,
-    and beside them the TOML file as `sweep.toml`.
+    Writes `sweep.csv` and `sweep.parquet`, one row a run, which `flockenv.runs.sweep.load_sweep`
+    reads, and beside them the TOML file as `sweep.toml`.
     Finished runs are kept in `runs/`: interrupted, the same command goes on where it was. What the
     TOML file holds is told in `docs/sweep.md`.
 
     Example: `flockenv sweep docs/sweep-example.toml`
     """
-    from flockenv.sweep import run_sweep
-    from flockenv.sweep_spec import read_sweep
+    from flockenv.runs.sweep import run_sweep
+    from flockenv.runs.sweep_spec import read_sweep
 
     where = named(engine)
     work = read_sweep(spec)

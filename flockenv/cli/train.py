@@ -7,10 +7,10 @@ from typing import Annotated, Any
 
 import typer
 
-from flockenv import ParameterError
 from flockenv.cli.console import console, interruptible, progress_bar, say
 from flockenv.cli.output import check_folder
 from flockenv.cli.scene import changed_fields
+from flockenv.errors import ParameterError
 
 __all__ = ["train"]
 

@@ -1,11 +1,11 @@
 """Leader policies: closed-form laws, learned networks and plain ones to compare with."""
 
+from flockenv.policies.constant import RandomRudders, StraightAhead
+from flockenv.policies.discrete import WithLevels
 from flockenv.policies.laws import DampedLaw, ObservedPolicy, SignCorrectedLaw, SteeringLaw
 from flockenv.policies.leaning_law import LeaningLaw
-from flockenv.policies.levels import WithLevels
-from flockenv.policies.loading import load
 from flockenv.policies.network import NetworkPolicy
-from flockenv.policies.plain import RandomRudders, StraightAhead
+from flockenv.policies.pretrained import load
 
 __all__ = [
     "DampedLaw",

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv import _core
-from flockenv.policies.row_policy import RowPolicy
+from flockenv.policies.base import RowPolicy
 
 __all__ = ["LAWS", "DampedLaw", "ObservedPolicy", "SignCorrectedLaw", "SteeringLaw"]
 

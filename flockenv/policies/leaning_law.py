@@ -7,12 +7,12 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from flockenv._io.npz_header import array_of, entry_of
+from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError
-from flockenv.headed_file import array_of, entry_of
-from flockenv.observation import observation_entries
+from flockenv.policies.base import RowPolicy
+from flockenv.policies.files import write_policy
 from flockenv.policies.laws import DampedLaw
-from flockenv.policies.policy_file import write_policy
-from flockenv.policies.row_policy import RowPolicy
 
 __all__ = ["FEATURES", "GAINS", "LeaningLaw", "features", "leaned"]
 

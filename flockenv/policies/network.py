@@ -7,10 +7,10 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from flockenv._io.npz_header import array_of, entry_of
 from flockenv.errors import ParameterError
-from flockenv.headed_file import array_of, entry_of
-from flockenv.policies.policy_file import write_policy
-from flockenv.policies.row_policy import RowPolicy
+from flockenv.policies.base import RowPolicy
+from flockenv.policies.files import write_policy
 
 __all__ = ["ACTIVATIONS", "NetworkPolicy"]
 

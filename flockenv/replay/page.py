@@ -17,12 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv import _core
-from flockenv.contacts import ContactSeries
+from flockenv._io.atomic_write import whole_file
 from flockenv.errors import ParameterError
+from flockenv.flock import ContactSeries
 from flockenv.parameters import FlockParameters
 from flockenv.recording import PHASES, Recording
 from flockenv.replay.packing import Packer
-from flockenv.whole_file import whole_file
 
 __all__ = ["MOST_BYTES", "Replay", "write_replay"]
 

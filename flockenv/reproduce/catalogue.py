@@ -4,8 +4,8 @@ import difflib
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
+from flockenv._io.extras import require
 from flockenv.errors import ParameterError
-from flockenv.extras import require
 
 if TYPE_CHECKING:
     from flockenv.reproduce.reproduction import Reproduction
@@ -17,19 +17,19 @@ ALL = "all"
 
 # Modules are loaded when asked for: they need the extra `plot`.
 _PAPER: Mapping[str, str] = {
-    **dict.fromkeys(("fig4", "table2"), "flockenv.reproduce.state_figures"),
-    **dict.fromkeys(("fig5", "fig6", "fig7"), "flockenv.reproduce.time_figures"),
-    "fig8": "flockenv.reproduce.leader_figures",
-    **dict.fromkeys(("fig9", "fig10", "fig11"), "flockenv.reproduce.noise_figures"),
-    "fig12": "flockenv.reproduce.leader_figures",
-    "motion": "flockenv.reproduce.motion_figures",
-    **dict.fromkeys(("fig14", "fig15", "fig16", "fig17"), "flockenv.reproduce.simulation_figures"),
-    "scheme-and-noise": "flockenv.reproduce.simulation_table",
+    **dict.fromkeys(("fig4", "table2"), "flockenv.reproduce.experiment.state_figures"),
+    **dict.fromkeys(("fig5", "fig6", "fig7"), "flockenv.reproduce.experiment.time_figures"),
+    "fig8": "flockenv.reproduce.experiment.leader_figures",
+    **dict.fromkeys(("fig9", "fig10", "fig11"), "flockenv.reproduce.experiment.noise_figures"),
+    "fig12": "flockenv.reproduce.experiment.leader_figures",
+    "motion": "flockenv.reproduce.experiment.motion_figures",
+    **dict.fromkeys(("fig14", "fig15", "fig16", "fig17"), "flockenv.reproduce.simulation.figures"),
+    "scheme-and-noise": "flockenv.reproduce.simulation.table",
 }
 BUDGETED = "transition-order"
 """The name whose runs follow from a budget of computing time."""
 
-_BEYOND: Mapping[str, str] = {BUDGETED: "flockenv.reproduce.transition_order"}
+_BEYOND: Mapping[str, str] = {BUDGETED: "flockenv.reproduce.transition.order"}
 
 
 def names() -> list[str]:

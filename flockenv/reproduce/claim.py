@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from flockenv.analysis import CONFIDENCE
+from flockenv.statistics.intervals import CONFIDENCE
 
 __all__ = ["DOES_NOT_HOLD", "HOLDS", "INCONCLUSIVE", "CheckedClaim", "Claim", "number"]
 
@@ -77,7 +77,7 @@ class CheckedClaim:
     scope : str
         For what it was measured, such as a preset and a pool.
     measured, low, high : float
-        The quantity and the ends of its interval, at level `flockenv.analysis.CONFIDENCE`.
+        The quantity and the ends of its interval, at level `statistics.intervals.CONFIDENCE`.
     verdict : str
         `HOLDS`, `DOES_NOT_HOLD` or `INCONCLUSIVE`.
     note : str

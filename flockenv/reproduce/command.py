@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from flockenv.engines import Engine, local
 from flockenv.errors import FlockError
 from flockenv.reproduce.catalogue import ALL, load, resolve
 from flockenv.reproduce.claim import CheckedClaim
@@ -19,8 +18,9 @@ from flockenv.reproduce.files import (
 from flockenv.reproduce.report import html_report
 from flockenv.reproduce.reproduction import Results, Settings
 from flockenv.reproduce.summary import Finished, markdown_summary, shown_pictures
-from flockenv.run_store import RunStore, run_missing
-from flockenv.runs import RunSpec
+from flockenv.runs.executors import Engine, local
+from flockenv.runs.spec import RunSpec
+from flockenv.runs.store import RunStore, run_missing
 
 __all__ = ["RUNS_FOLDER", "Plan", "plan", "reproduce"]
 

@@ -7,11 +7,11 @@ from pathlib import Path
 import pandas as pd
 from matplotlib.figure import Figure
 
+from flockenv._io.atomic_write import whole_file
 from flockenv.reproduce.claim import CheckedClaim
 from flockenv.reproduce.reproduction import Outcome
 from flockenv.reproduce.style import paper_style
-from flockenv.run_store import StorageError
-from flockenv.whole_file import whole_file
+from flockenv.runs.store import StorageError
 
 __all__ = ["PNG_DPI", "claims_table", "picture_bytes", "write_file", "write_outcome", "write_table"]
 

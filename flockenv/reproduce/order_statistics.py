@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv.block_bootstrap import block_places, block_sums, block_sums_resampled
 from flockenv.reproduce.reproduction import Results
-from flockenv.runs import RunResult, RunSpec
+from flockenv.runs.spec import RunResult, RunSpec
+from flockenv.statistics.block_bootstrap import block_places, block_sums, block_sums_resampled
 
 __all__ = [
     "PHI_EDGES",
@@ -83,7 +83,7 @@ class OrderStatistics:
     """Sums over the analysed frames of a series of p points, each of some runs.
 
     Every method's result has r replicates along axis 1: first as measured, then as resampled by
-    `flockenv.block_bootstrap`, independently at each point.
+    `flockenv.statistics.block_bootstrap`, independently at each point.
 
     Attributes
     ----------
@@ -115,7 +115,7 @@ class OrderStatistics:
         """Return the mean of "psi_o" or "c_v", or a share of the frames.
 
         Shares are those "rotating" and "jammed", the ordered and the jamming states of
-        `flockenv.order_parameters.OrderSeries.states`, and "near_zero": φ_o within π/12 of 0.
+        `flockenv.flock.OrderSeries.states`, and "near_zero": φ_o within π/12 of 0.
         """
         return self._sum(name) / self._sum("frames")
 

@@ -8,12 +8,12 @@ from importlib.metadata import version
 from typing import Any
 
 from flockenv import _core
-from flockenv.analysis import CONFIDENCE
 from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, CheckedClaim, number
 from flockenv.reproduce.files import picture_bytes
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Settings
-from flockenv.run_store import RESULTS_VERSION
-from flockenv.runs import RunSpec
+from flockenv.runs.spec import RunSpec
+from flockenv.runs.store import RESULTS_VERSION
+from flockenv.statistics.intervals import CONFIDENCE
 
 __all__ = ["html_report"]
 

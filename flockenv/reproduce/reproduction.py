@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 
 from flockenv.errors import FlockError, ParameterError
 from flockenv.reproduce.claim import CheckedClaim
-from flockenv.run_store import RunStore
-from flockenv.runs import RunResult, RunSpec
+from flockenv.runs.spec import RunResult, RunSpec
+from flockenv.runs.store import RunStore
 
 Derived = TypeVar("Derived")
 

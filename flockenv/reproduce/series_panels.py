@@ -9,9 +9,9 @@ from matplotlib.collections import QuadMesh
 from matplotlib.colors import PowerNorm
 from numpy.typing import NDArray
 
-from flockenv.analysis import CONFIDENCE
 from flockenv.reproduce.order_statistics import PHI_EDGES, PSI_EDGES, OrderStatistics
 from flockenv.reproduce.style import COLORS, DENSITY_COLORS
+from flockenv.statistics.intervals import CONFIDENCE
 
 __all__ = ["density_map", "density_rows", "draw_curve", "interval_ends", "series_rows"]
 

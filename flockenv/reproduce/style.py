@@ -8,7 +8,7 @@ import matplotlib as mpl
 from cycler import cycler
 from matplotlib.figure import Figure
 
-from flockenv.figures import COLORS
+from flockenv.comparison.figure import COLORS
 
 __all__ = ["COLORS", "COLUMN_CM", "DENSITY_COLORS", "column_figure", "paper_style"]
 

@@ -4,12 +4,12 @@ from collections import Counter
 from collections.abc import Sequence
 
 from flockenv import _core
-from flockenv.analysis import CONFIDENCE
 from flockenv.reproduce.catalogue import ALL, BUDGETED, resolve
 from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, INCONCLUSIVE, CheckedClaim, number
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Settings
-from flockenv.run_store import RESULTS_VERSION
-from flockenv.runs import RunSpec
+from flockenv.runs.spec import RunSpec
+from flockenv.runs.store import RESULTS_VERSION
+from flockenv.statistics.intervals import CONFIDENCE
 
 __all__ = ["KEY_FIGURES", "Finished", "command", "markdown_summary", "shown_pictures"]
 

@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
+from flockenv._io.extras import require
 from flockenv.errors import ParameterError
-from flockenv.extras import require
 from flockenv.policies import NetworkPolicy
 from flockenv.training.settings import TrainingSettings
 

@@ -17,10 +17,10 @@ import torch
 from numpy.typing import NDArray
 from stable_baselines3 import PPO
 
-from flockenv.array_file import write_arrays
+from flockenv._io.array_file import write_arrays
+from flockenv._io.npz_header import array_of, entry_of, read_headed
+from flockenv.envs.observation import OBSERVATION_VERSION
 from flockenv.errors import ParameterError
-from flockenv.headed_file import array_of, entry_of, read_headed
-from flockenv.observation import OBSERVATION_VERSION
 from flockenv.training.pools import PooledVecEnv
 from flockenv.training.settings import TrainingSettings
 from flockenv.training.validation import scene_names

@@ -7,10 +7,10 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from flockenv._io.provenance import made_by
 from flockenv.errors import ParameterError
 from flockenv.policies import NetworkPolicy
-from flockenv.policies.row_policy import RowPolicy
-from flockenv.provenance import made_by
+from flockenv.policies.base import RowPolicy
 from flockenv.training.actor import ACTIVATION_MODULES, one_thread
 from flockenv.training.pools import PooledVecEnv
 from flockenv.training.settings import TrainingError, TrainingSettings

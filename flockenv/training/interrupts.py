@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-from flockenv.interrupts import on_interrupt
+from flockenv._io.interrupts import on_interrupt
 
 __all__ = ["held_interrupts"]
 

@@ -9,11 +9,11 @@ from typing import Self
 
 from stable_baselines3 import PPO
 
+from flockenv._io.atomic_write import whole_file
 from flockenv.policies import NetworkPolicy
 from flockenv.training import checkpoint
 from flockenv.training.checkpoint import Progress
 from flockenv.training.settings import TrainingSettings
-from flockenv.whole_file import whole_file
 
 __all__ = ["Kept"]
 

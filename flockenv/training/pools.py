@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv.errors import ParameterError
+from flockenv.runs.seeds import training_seed
 from flockenv.sb3 import LeaderVecEnv
-from flockenv.seeds import training_seed
 from flockenv.training.settings import TrainingSettings
 
 # After flockenv.sb3, which says what to install where it is missing.

@@ -17,11 +17,12 @@ from stable_baselines3.common.logger import KVWriter, Logger, TensorBoardOutputF
 from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.utils import FloatSchedule
 
+from flockenv._io.atomic_write import whole_file
+from flockenv._io.provenance import made_by
 from flockenv.errors import ParameterError
 from flockenv.policies import NetworkPolicy, load
+from flockenv.policies.base import RowPolicy
 from flockenv.policies.laws import LAWS
-from flockenv.policies.row_policy import RowPolicy
-from flockenv.provenance import made_by
 from flockenv.training import checkpoint
 from flockenv.training.actor import (
     ACTIVATION_MODULES,
@@ -36,7 +37,6 @@ from flockenv.training.kept import Kept
 from flockenv.training.pools import PooledVecEnv
 from flockenv.training.settings import TrainingError, TrainingSettings
 from flockenv.training.validation import validation_scores
-from flockenv.whole_file import whole_file
 
 __all__ = ["TrainingResult", "resume", "stored_settings", "train"]
 

@@ -6,12 +6,12 @@ from typing import Any, Self
 
 import tomli_w
 
-from flockenv.batch import LeaderBatch
+from flockenv._io.toml import read_toml
+from flockenv.envs.batch import LeaderBatch
+from flockenv.envs.options import EnvOptions, refuse_unknown
 from flockenv.errors import FlockError, ParameterError
-from flockenv.options import EnvOptions, refuse_unknown
 from flockenv.parameters import FlockParameters
 from flockenv.policies.network import ACTIVATIONS
-from flockenv.toml_text import read_toml
 
 __all__ = ["TrainingError", "TrainingSettings"]
 
@@ -60,7 +60,7 @@ class TrainingSettings:
         Exploration: logarithm of the first standard deviation, whether it depends on the state
         (gSDE), and control steps after which that is drawn anew.
     seed
-        Number of the training run; the flocks' seeds come from it (`flockenv.seeds.training_seed`).
+        Number of the training run; the flocks' seeds come from it (`runs.seeds.training_seed`).
     start
         A network's ``.npz`` file to start from, whose hidden layers and layout these must be; or a
         leaning law's file or the name of a closed-form law, which is cloned first; empty: from

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from flockenv.comparison import run_episodes
+from flockenv.comparison.episodes import run_episodes
 from flockenv.parameters import FlockParameters
-from flockenv.seeds import training_seed
+from flockenv.runs.seeds import training_seed
 from flockenv.simulation import LeaderPolicy
 from flockenv.training.settings import TrainingSettings
 

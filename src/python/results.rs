@@ -24,7 +24,7 @@ pub fn order_parameters<'py>(
         c_v,
     } = *order;
     let class = py
-        .import("flockenv.order_parameters")?
+        .import("flockenv.flock")?
         .getattr("OrderParameters")?;
     class.call1((psi_o, phi_o, c_o, psi_v, phi_v, c_v))
 }
@@ -35,7 +35,7 @@ pub fn order_series<'py>(
     series: &[OrderParameters],
 ) -> PyResult<Bound<'py, PyAny>> {
     let class = py
-        .import("flockenv.order_parameters")?
+        .import("flockenv.flock")?
         .getattr("OrderSeries")?;
     let column = |value: fn(&OrderParameters) -> f64| {
         PyArray1::from_vec(py, series.iter().map(value).collect())
@@ -52,7 +52,7 @@ pub fn order_series<'py>(
 
 /// A `flockenv.Contacts`; walls are numbered −1 (outer) and −2 (inner).
 pub fn contacts<'py>(py: Python<'py>, contacts: &[ContactForce]) -> PyResult<Bound<'py, PyAny>> {
-    let class = py.import("flockenv.contacts")?.getattr("Contacts")?;
+    let class = py.import("flockenv.flock")?.getattr("Contacts")?;
     let each = contacts.iter();
     class.call1((
         PyArray1::from_iter(py, each.clone().map(|c| i64::from(c.contact.boat))),
@@ -69,7 +69,7 @@ pub fn contact_series<'py>(
     py: Python<'py>,
     samples: &ContactSamples,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let class = py.import("flockenv.contacts")?.getattr("ContactSeries")?;
+    let class = py.import("flockenv.flock")?.getattr("ContactSeries")?;
     let contacts = &samples.contacts[..];
     let each = contacts.iter();
     class.call1((
@@ -112,7 +112,7 @@ macro_rules! statistics_fields {
             let Statistics { $($name),+ } = *statistics;
             let fields = PyDict::new(py);
             $(fields.set_item(stringify!($name), $name)?;)+
-            let class = py.import("flockenv.statistics")?.getattr("Statistics")?;
+            let class = py.import("flockenv.flock")?.getattr("Statistics")?;
             class.call((), Some(&fields))
         }
     };

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv.array_file import read_arrays, write_arrays
+from flockenv._io.array_file import read_arrays, write_arrays
+from flockenv.envs.observation import observation_entries
 from flockenv.policies import load
-from flockenv.policies.shipped import tuned_law
+from flockenv.policies.pretrained import tuned_law
 
 TINY = ["--pairs", "3", "--flocks", "1", "--episode-s", "5", "--episodes", "4", "--quiet"]
 
@@ -26,7 +27,7 @@ def test_resumed_is_uninterrupted(script, tmp_path: Path, hidden: list[str]) -> 
     script.main([*TINY, *hidden, "--generations", "1", "--out", str(parts)])
     script.main([*TINY, *hidden, "--generations", "3", "--out", str(parts)])
     one, other = load(whole / "policy.npz"), load(parts / "policy.npz")
-    size = len(flockenv.observation.observation_entries())
+    size = len(observation_entries())
     rows = np.random.default_rng(0).uniform(-1, 1, (20, size)).astype(np.float32)
     np.testing.assert_array_equal(one.predict(rows)[0], other.predict(rows)[0])
     # 3 generations, 6 candidates, one flock with 2 leaders, 10 steps.
@@ -36,7 +37,7 @@ def test_resumed_is_uninterrupted(script, tmp_path: Path, hidden: list[str]) -> 
 
 def test_candidates_steer_as_their_policies_do(script) -> None:
     random = np.random.default_rng(0)
-    size = len(flockenv.observation.observation_entries())
+    size = len(observation_entries())
     for hidden in ([], [5, 3]):
         shape = script.Shape(size, hidden)
         flat = random.standard_normal((4, shape.size)).astype(np.float32) / 5

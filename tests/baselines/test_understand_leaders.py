@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 
 import flockenv
-from flockenv.observation import observation_entries
+from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from flockenv.observation import observation_entries
+from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy
 
 Run = Callable[..., subprocess.CompletedProcess[str]]

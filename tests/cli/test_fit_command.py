@@ -6,7 +6,7 @@ import pytest
 from typer.testing import CliRunner
 
 import flockenv
-from flockenv import experiment_fit
+from flockenv.calibration import search as experiment_fit
 from flockenv.cli import app
 
 

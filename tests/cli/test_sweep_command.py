@@ -5,7 +5,7 @@ import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
-from flockenv.sweep import load_sweep
+from flockenv.runs.sweep import load_sweep
 
 Run = Callable[..., subprocess.CompletedProcess[str]]
 

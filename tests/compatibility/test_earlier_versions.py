@@ -17,8 +17,8 @@ import pytest
 
 import flockenv
 from flockenv import Flock, FlockParameters, Recording
-from flockenv.run_store import RunStore
-from flockenv.runs import RunSpec
+from flockenv.runs.spec import RunSpec
+from flockenv.runs.store import RunStore
 
 FIXTURES = Path(__file__).parents[1] / "fixtures"
 VERSIONS = sorted(path.name for path in FIXTURES.iterdir())

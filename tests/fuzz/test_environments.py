@@ -10,7 +10,7 @@ from hypothesis.extra import numpy as arrays
 
 import flockenv
 from flockenv import FlockError
-from flockenv.options import _NAMES
+from flockenv.envs.options import _NAMES
 
 FUZZ = settings.get_profile("fuzz")
 NAMED = (FlockError, ValueError, TypeError)

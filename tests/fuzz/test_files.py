@@ -17,15 +17,15 @@ from hypothesis import strategies as st
 
 import flockenv
 from flockenv import FlockError, FlockParameters, ParameterError, Recording, simulate
-from flockenv.array_file import read_arrays
+from flockenv._io.array_file import read_arrays
 from flockenv.cli.scene import read_scene, save_scene
-from flockenv.observation import observation_entries
+from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy, load
 from flockenv.rendering import save_animation
 from flockenv.replay import write_replay
-from flockenv.run_store import RunStore, StoreWarning
-from flockenv.runs import RunSpec, execute
-from flockenv.sweep_spec import read_sweep
+from flockenv.runs.spec import RunSpec, execute
+from flockenv.runs.store import RunStore, StoreWarning
+from flockenv.runs.sweep_spec import read_sweep
 
 FUZZ = settings.get_profile("fuzz")
 PARAMETERS = FlockParameters(n_boats=4, n_leaders=1, pool="table-1")

@@ -4,14 +4,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from flockenv.block_bootstrap import RESAMPLES, interval
 from flockenv.reproduce.catalogue import load
 from flockenv.reproduce.command import plan, reproduce
-from flockenv.reproduce.experiment_design import LEVELS_S, SETUPS, noise_series
-from flockenv.reproduce.experiment_runs import line_or_none, resampled
+from flockenv.reproduce.experiment.design import LEVELS_S, SETUPS, noise_series
+from flockenv.reproduce.experiment.runs import line_or_none, resampled
+from flockenv.reproduce.experiment.state_figures import drawn
+from flockenv.reproduce.experiment.time_figures import _flips, _longest
 from flockenv.reproduce.reproduction import Settings
-from flockenv.reproduce.state_figures import drawn
-from flockenv.reproduce.time_figures import _flips, _longest
+from flockenv.statistics.block_bootstrap import RESAMPLES, interval
 
 SHORT = Settings(minutes=1 / 3)
 FIGURES = ("fig4", "fig5", "fig6", "fig7", "fig8", "fig9", "fig10", "fig11", "fig12")

@@ -8,9 +8,9 @@ import pytest
 import flockenv
 from flockenv.reproduce.order_statistics import PHI_EDGES, PSI_EDGES, OrderStatistics
 from flockenv.reproduce.reproduction import Results
-from flockenv.reproduce.simulation_claims import critical_noise
-from flockenv.run_store import RunStore
-from flockenv.runs import ORDER_NAMES, RunResult, RunSpec
+from flockenv.reproduce.simulation.claims import critical_noise
+from flockenv.runs.spec import ORDER_NAMES, RunResult, RunSpec
+from flockenv.runs.store import RunStore
 
 SCENE = flockenv.FlockParameters.preset("simulation")
 

@@ -145,7 +145,7 @@ def test_the_report_is_complete_in_itself(uninterrupted: Path, monkeypatch: obje
     from flockenv.reproduce import catalogue
 
     monkeypatch.setattr(  # type: ignore[attr-defined]
-        catalogue, "_PAPER", {"fig17": "flockenv.reproduce.simulation_figures"}
+        catalogue, "_PAPER", {"fig17": "flockenv.reproduce.simulation.figures"}
     )
     work = plan(["all"], Settings(minutes=0.4))
     claims = reproduce(work, uninterrupted)

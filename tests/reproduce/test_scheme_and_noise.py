@@ -7,7 +7,7 @@ from flockenv.reproduce.catalogue import load, resolve
 from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, INCONCLUSIVE
 from flockenv.reproduce.report import html_report
 from flockenv.reproduce.reproduction import Outcome, Settings
-from flockenv.reproduce.simulation_table import dependence, statements
+from flockenv.reproduce.simulation.table import dependence, statements
 from flockenv.reproduce.summary import command, markdown_summary
 
 READINGS = (

@@ -9,17 +9,15 @@ import pytest
 from numpy.typing import NDArray
 
 import flockenv
-from flockenv.loops import LOOPS
-from flockenv.prepared_start import STARTS
 from flockenv.reproduce.reproduction import Results, Settings
-from flockenv.reproduce.transition_design import (
+from flockenv.reproduce.transition.design import (
     DESIGNS,
     FULL,
     Growth,
     TransitionDesign,
     within,
 )
-from flockenv.reproduce.transition_measured import (
+from flockenv.reproduce.transition.measured import (
     M_EDGES,
     Loops,
     Measured,
@@ -28,7 +26,7 @@ from flockenv.reproduce.transition_measured import (
     hysteresis,
     student,
 )
-from flockenv.reproduce.transition_order import (
+from flockenv.reproduce.transition.order import (
     BISTABILITY,
     HYSTERESIS,
     NO_LAG,
@@ -36,8 +34,10 @@ from flockenv.reproduce.transition_order import (
     judge,
     transition_order,
 )
-from flockenv.run_store import RunStore, run_missing
-from flockenv.runs import ORDER_NAMES, RunResult, RunSpec
+from flockenv.runs.protocols.hysteresis import LOOPS
+from flockenv.runs.protocols.initial_state import STARTS
+from flockenv.runs.spec import ORDER_NAMES, RunResult, RunSpec
+from flockenv.runs.store import RunStore, run_missing
 
 
 def test_binder() -> None:

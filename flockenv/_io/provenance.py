@@ -1,0 +1,44 @@
+"""What made a file: version, commit, command."""
+
+import platform
+import subprocess
+from pathlib import Path
+
+from flockenv import _core
+
+__all__ = ["commit", "made_by"]
+
+
+def commit() -> str:
+    """Return the commit that flockenv runs from, with a + where files differ from it; or unknown.
+
+    Only a checkout knows its commit: an installed package has its version.
+    """
+    root = Path(__file__).parents[2]
+    if not (root / ".git").exists():
+        return "unknown"
+
+    def git(*arguments: str) -> str:
+        done = subprocess.run(["git", "-C", root, *arguments], capture_output=True, text=True)
+        done.check_returncode()
+        return done.stdout.strip()
+
+    try:
+        changed = "+" if git("status", "--porcelain", "--untracked-files=no") else ""
+        return git("rev-parse", "--short=12", "HEAD") + changed
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"
+
+
+def made_by(command: str, *, seed: int, samples: int, wall_s: float) -> dict[str, str]:
+    """Return what a policy's file tells of its making, all as short texts."""
+    return {
+        "command": command,
+        "flockenv": _core.__version__,
+        "commit": commit(),
+        "observation_version": str(_core.observation_version()),
+        "python": platform.python_version(),
+        "seed": str(seed),
+        "samples": str(samples),
+        "wall_s": f"{wall_s:.0f}",
+    }

@@ -1,0 +1,290 @@
+"""Leader policies against each other: seeded episodes, order by number of leaders (figure 12)."""
+
+import difflib
+import os
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import gymnasium
+import numpy as np
+from numpy.typing import NDArray
+
+from flockenv import _core
+from flockenv._io.extras import require
+from flockenv.errors import ParameterError
+from flockenv.parameters import FlockParameters
+from flockenv.policies import (
+    RandomRudders,
+    StraightAhead,
+    load,
+)
+from flockenv.policies.laws import LAWS
+from flockenv.policies.pretrained import TUNED_GAINS, learned, tuned_law
+from flockenv.runs.seeds import check_evaluation_seeds
+from flockenv.simulation import LeaderPolicy, simulate
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = [
+    "CONTROL_HZ",
+    "EVERY_SUBSTEP",
+    "NO_LEADERS",
+    "ORDERING_TIMES",
+    "POLICIES",
+    "POOL_POLICIES",
+    "QUANTITIES",
+    "compare_leaders",
+    "named_policy",
+    "run_episodes",
+]
+
+NO_LEADERS = "no leaders"
+"""Name under which runs without leaders are listed."""
+
+EVERY_SUBSTEP = "law"
+"""Stands for the paper's law evaluated at every substep, from the pose: what `simulate` does."""
+
+QUANTITIES = ("psi_o", "signed_order", "share_towards_target")
+"""What is compared: mean Ψ_o and mean signed order of the normal boats, and the part of the time in
+which the signed order exceeds 0.5; all over the frames in the analysis window after the first
+tenth."""
+
+ORDERING_TIMES = dict(
+    zip(("ordering_time_s", "ordering_time_wide_s"), _core.ORDERED_WITHIN, strict=True)
+)
+"""Ordering times (eq. 7) with the angle as printed and a wider one; NaN where a flock did not
+order."""
+
+CONTROL_HZ = 10.0
+"""Control steps a second, unless the environment has another option."""
+
+POLICIES: Mapping[str, Callable[[], LeaderPolicy | str]] = {
+    **LAWS,
+    "steering law, every substep": lambda: EVERY_SUBSTEP,
+    "straight ahead": StraightAhead,
+    "random rudders": RandomRudders,
+}
+"""Policies that can be compared by name."""
+
+POOL_POLICIES: Mapping[str, Callable[[Any], LeaderPolicy]] = {
+    **{f"tuned {law}": partial(tuned_law, law) for law in TUNED_GAINS},
+    "learned": learned,
+}
+"""Policies that can be compared by name, each made for a pool."""
+
+
+def named_policy(name: str, pool: Any) -> Callable[[], LeaderPolicy | str]:
+    """Return what makes a policy: a name, or the path of a learned policy's ``.npz`` file.
+
+    Parameters
+    ----------
+    name
+        A name in `POLICIES` or `POOL_POLICIES`, or a path.
+    pool
+        The scene's pool.
+
+    Raises
+    ------
+    ParameterError
+        For unknown names, files that are no policy, and pools that a policy is not made for.
+    OSError
+        If the file cannot be opened.
+    """
+    if name in POLICIES:
+        return POLICIES[name]
+    if name in POOL_POLICIES:
+        made = POOL_POLICIES[name](pool)
+        return lambda: made
+    if name.endswith(".npz"):
+        read = load(name)
+        return lambda: read
+    names = [*POLICIES, *POOL_POLICIES]
+    near = difflib.get_close_matches(name, names, n=1)
+    hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(names)}"
+    raise ParameterError(f"{name!r} is no policy and no .npz file: {hint}")
+
+
+def compare_leaders(
+    parameters: FlockParameters,
+    leaders: Sequence[int],
+    policies: Mapping[str, Callable[[], LeaderPolicy | str]],
+    seeds: Sequence[int],
+    duration_s: float,
+    progress: Callable[[float], None] = lambda flock_seconds: None,
+    environment: Mapping[str, Any] | None = None,
+) -> "pd.DataFrame":
+    """Run seeded episodes for every policy and number of leaders.
+
+    Flocks with leaders are stepped through the Gymnasium vector environment with its default
+    observation; flocks without run in `simulate`. Seed i gives the same initial placement and the
+    same noise whatever the leaders do.
+
+    Parameters
+    ----------
+    parameters
+        The scene; its number of leaders is replaced.
+    leaders
+        Numbers of leaders; 0 is run once, whatever the policies.
+    policies
+        What makes each policy, by the name to list it under: `POLICIES` or a part of it, others of
+        your own. Each is made anew for each number of leaders.
+    seeds
+        One episode each; below `flockenv.runs.seeds.FIRST_TRAINING_SEED`.
+    duration_s
+        Length of an episode in s.
+    progress
+        Called with flock-seconds as they are simulated.
+    environment
+        Options of the environment that differ from its defaults, such as ``target="alternate"`` or
+        ``dropout_rate=0.003``. What runs in `simulate` (no leaders, the law at every substep) has
+        none of them and is refused then.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row an episode: ``policy``, ``leaders``, ``seed``, the `QUANTITIES` and the
+        `ORDERING_TIMES`.
+
+    Raises
+    ------
+    ParameterError
+        For parameters, options and durations out of range, and for training seeds.
+    """
+    pandas = require("pandas", "plot")
+    check_evaluation_seeds(seeds)
+    _check_leaders(parameters, leaders)
+    if environment:
+        _check_environment(environment, leaders, policies)
+    options = {"target": parameters.target, **(environment or {})}
+    parts = []
+    if 0 in leaders:
+        scene = parameters.replace(n_leaders=0)
+        found = _simulated(scene, seeds, duration_s, progress)
+        parts.append({"policy": NO_LEADERS, "leaders": 0, "seed": seeds, **found})
+    for name, make in policies.items():
+        for k in (k for k in leaders if k > 0):
+            scene, policy = parameters.replace(n_leaders=k), make()
+            if isinstance(policy, str):
+                found = _simulated(scene, seeds, duration_s, progress)
+            else:
+                found = run_episodes(scene, policy, seeds, duration_s, progress, options)
+            parts.append({"policy": name, "leaders": k, "seed": seeds, **found})
+    tables = [pandas.DataFrame(part) for part in parts]
+    runs: pd.DataFrame = pandas.concat(tables, ignore_index=True)
+    return runs
+
+
+def _check_leaders(parameters: FlockParameters, leaders: Sequence[int]) -> None:
+    most = max(leaders, default=0)
+    if most >= parameters.n_boats:
+        raise ParameterError(
+            f"{most} leaders among n_boats = {parameters.n_boats} are not accepted: at least one "
+            "normal boat, as order is theirs (on the command line fewer `--most-leaders` or "
+            "`--leaders`, or more boats)"
+        )
+    parameters.replace(n_leaders=most)
+
+
+def _check_environment(
+    environment: Mapping[str, Any],
+    leaders: Sequence[int],
+    policies: Mapping[str, Callable[[], LeaderPolicy | str]],
+) -> None:
+    outside = [NO_LEADERS] if 0 in leaders else []
+    outside += [name for name, make in policies.items() if isinstance(make(), str)]
+    if outside:
+        raise ParameterError(
+            f"{outside[0]!r} runs outside of the environment, which is not accepted with its "
+            f"options {', '.join(environment)}"
+        )
+
+
+def run_episodes(
+    scene: FlockParameters,
+    policy: LeaderPolicy,
+    seeds: Sequence[int],
+    duration_s: float,
+    progress: Callable[[float], None] = lambda flock_seconds: None,
+    options: Mapping[str, Any] = MappingProxyType({}),
+) -> dict[str, NDArray[np.float64]]:
+    """Run one episode a seed with leaders that follow a policy, whatever range the seeds are of.
+
+    Parameters
+    ----------
+    scene, policy, seeds, duration_s, progress
+        As for `compare_leaders`, for one policy and number of leaders.
+    options
+        Further options of the environment.
+
+    Returns
+    -------
+    dict
+        The `QUANTITIES` and `ORDERING_TIMES` by name, one number an episode.
+    """
+    layout = {
+        "observation": getattr(policy, "observation", {}),
+        "mirror_to_target": getattr(policy, "mirror_to_target", False),
+    }
+    env = _environment(scene, len(seeds), duration_s, {**options, **layout})
+    observations, _ = env.reset(seed=list(seeds))
+    state, ended = None, np.zeros(len(seeds), np.bool_)
+    infos: dict[str, Any] = {}
+    while not ended.all():
+        actions, state = policy.predict(observations, state)
+        observations, _, _, ended, infos = env.step(actions)
+        progress(len(seeds) / options.get("control_hz", CONTROL_HZ))
+    summary = infos["episode_summary"]
+    names = (*QUANTITIES, *ORDERING_TIMES)
+    return {name: np.asarray(summary[name], np.float64) for name in names}
+
+
+def _environment(
+    scene: FlockParameters, num_envs: int, duration_s: float, options: Mapping[str, Any]
+) -> Any:
+    return gymnasium.make_vec(
+        "flockenv/Leaders-v0",
+        num_envs=num_envs,
+        vectorization_mode="vector_entry_point",
+        params=scene,
+        episode_s=duration_s,
+        autoreset_mode="disabled",
+        **{"control_hz": CONTROL_HZ, **options},
+    )
+
+
+def _simulated(
+    scene: FlockParameters,
+    seeds: Sequence[int],
+    duration_s: float,
+    progress: Callable[[float], None],
+) -> dict[str, NDArray[np.float64]]:
+    # The environment derives a flock's seed from its own: ask it, to pair the runs.
+    some = scene.replace(n_leaders=max(1, scene.n_leaders))
+    env = _environment(some, len(seeds), duration_s, {})
+    _, infos = env.reset(seed=list(seeds))
+    flock_seeds = [int(seed) for seed in infos["flock_seed"]]
+
+    def run(seed: int) -> list[float]:
+        recording = simulate(scene, seed, duration_s, CONTROL_HZ, dtype=np.float32)
+        frames = recording.in_analysis_window & (recording.time_s > 0.1 * duration_s)
+        order = recording.order
+        signed = order.signed_order(scene.target)[frames]
+        progress(duration_s)
+        ordering = [
+            order.ordering_time(recording.time_s, within) for within in ORDERING_TIMES.values()
+        ]
+        return [
+            order.psi_o[frames].mean(),
+            signed.mean(),
+            (signed > _core.TOWARDS_TARGET).mean(),
+            *ordering,
+        ]
+
+    # Threads suffice: the simulator lets go of the interpreter while it runs.
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        means = np.array(list(pool.map(run, flock_seeds)))
+    return dict(zip((*QUANTITIES, *ORDERING_TIMES), means.T, strict=True))

@@ -1,0 +1,99 @@
+"""Figures. Nothing upstream imports this module."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from flockenv.comparison.episodes import NO_LEADERS
+from flockenv.statistics.intervals import Line
+
+__all__ = ["leader_curve"]
+
+COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
+"""Okabe and Ito's colours, told apart by all."""
+
+_LABELS = {
+    "psi_o": r"mean $\Psi_o$",
+    "signed_order": r"mean signed order $\Psi_o\,\cos(\varphi_o-\varphi_\mathrm{target})$",
+}
+
+
+def leader_curve(
+    runs: pd.DataFrame,
+    means: pd.DataFrame,
+    lines: Mapping[tuple[str, str], Line],
+    title: str,
+    path: Path,
+) -> None:
+    """Draw order against the number of leaders, as figure 12 does.
+
+    Parameters
+    ----------
+    runs
+        One row an episode, of `compare_leaders`.
+    means
+        Its means and intervals by policy and number of leaders, of `summarise`.
+    lines
+        The fitted line for each (policy, quantity) that has one.
+    title
+        What was run.
+    path
+        Where to write the picture; the suffix decides its format.
+    """
+    policies = [name for name in runs["policy"].unique() if name != NO_LEADERS]
+    with mpl.rc_context({"font.size": 9, "axes.spines.top": False, "axes.spines.right": False}):
+        figure = Figure(figsize=(7.5, 4.0), layout="constrained")
+        for axes, quantity in zip(figure.subplots(1, 2), _LABELS, strict=True):
+            for place, policy in enumerate(policies):
+                shown = _Shown(runs, means, [policy, NO_LEADERS], quantity)
+                shift = 0.1 * (place - (len(policies) - 1) / 2)
+                line = lines.get((policy, quantity))
+                _draw_policy(axes, shown, line, shift, COLORS[place % len(COLORS)])
+            axes.set_xlabel("number of leaders k")
+            axes.set_ylabel(_LABELS[quantity])
+            axes.set_xticks(sorted(runs["leaders"].unique()))
+            # Below: the episodes fill the panel.
+            axes.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.16), fontsize=8)
+        figure.suptitle(title, fontsize=9)
+        figure.savefig(path, dpi=200)
+
+
+class _Shown:
+    """One quantity of one policy: episodes, means by number of leaders, and their intervals."""
+
+    def __init__(
+        self, runs: pd.DataFrame, means: pd.DataFrame, policies: list[str], quantity: str
+    ) -> None:
+        self.label = policies[0]
+        runs = runs[runs["policy"].isin(policies)]
+        means = means[means["policy"].isin(policies)].sort_values("leaders")
+        self.leaders, self.values = runs["leaders"].to_numpy(), runs[quantity].to_numpy()
+        self.k, self.mean = means["leaders"].to_numpy(), means[quantity].to_numpy()
+        ends = means[[f"{quantity}_low", f"{quantity}_high"]].to_numpy().T
+        self.spread = abs(ends - self.mean)
+
+
+def _draw_policy(axes: Axes, shown: _Shown, line: Line | None, shift: float, color: str) -> None:
+    axes.plot(shown.leaders + shift, shown.values, ".", ms=3, alpha=0.3, color=color, mew=0)
+    axes.errorbar(
+        shown.k + shift,
+        shown.mean,
+        shown.spread,
+        fmt="o",
+        ms=4,
+        lw=1,
+        capsize=3,
+        color=color,
+        label=shown.label if line is None else None,
+    )
+    if line is None:
+        return
+    x = np.array([shown.k.min(), shown.k.max()])
+    y = line.intercept + line.slope * x
+    told = "no line to fit" if np.isnan(line.f) else f"F = {line.f:.1f}, p = {line.p:.1g}"
+    axes.plot(x, y, "-", lw=1, color=color, label=f"{shown.label}: {told}")

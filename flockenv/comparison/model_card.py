@@ -1,0 +1,104 @@
+"""A policy's model card: what it is, how it was made and how it compares, in Markdown."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from flockenv._core import __version__
+from flockenv.comparison.episodes import EVERY_SUBSTEP
+from flockenv.comparison.report import ComparisonReport
+from flockenv.envs.observation import OBSERVATION_VERSION
+from flockenv.policies import LeaningLaw, NetworkPolicy
+from flockenv.statistics.intervals import CONFIDENCE
+
+__all__ = ["model_card"]
+
+
+def model_card(
+    name: str,
+    policy: Any,
+    results: Mapping[str, ComparisonReport],
+    *,
+    command: str,
+    seeds: Sequence[int],
+    duration_s: float,
+) -> str:
+    """Return the card of a policy as Markdown.
+
+    Parameters
+    ----------
+    name
+        Under which name it stands in the results.
+    policy
+        The policy itself; of a learned one, the card tells how it was made.
+    results
+        Comparisons in which it takes part, by scene.
+    command
+        What made the results.
+    seeds, duration_s
+        Of their episodes.
+    """
+    lines = [f"# {name}", ""]
+    if isinstance(policy, NetworkPolicy | LeaningLaw):
+        lines += [f"`{policy!r}`, version {OBSERVATION_VERSION} of the observation.", ""]
+        lines += ["| made by | |", "| --- | --- |"]
+        lines += [f"| {what} | `{text}` |" for what, text in policy.made.items()]
+    elif policy == EVERY_SUBSTEP:
+        lines += ["The paper's law, eq. (10), from the pose at every substep: nothing is learned."]
+    else:
+        lines += [f"`{policy!r}`: nothing in it is learned."]
+    lines += [
+        "",
+        "## Comparison",
+        "",
+        f"`{command}`, flockenv {__version__}: {len(seeds)} episodes of {duration_s:g} s for each "
+        f"policy and number of leaders, seeds {seeds[0]} to {seeds[-1]}, the same for all; "
+        f"{CONFIDENCE:.0%} bootstrap intervals. Differences and the ratios of means are paired "
+        "by seed; d is a difference's mean over its standard deviation.",
+    ]
+    for scene, result in results.items():
+        lines += ["", f"### {scene}", "", f"{result.title()}.", "", *_means(result)]
+        lines += ["", *_differences(name, result), "", *_lines(result)]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def _interval(row: Mapping[Any, Any], quantity: str) -> str:
+    return f"{row[quantity]:.3f} [{row[f'{quantity}_low']:.3f}, {row[f'{quantity}_high']:.3f}]"
+
+
+def _means(result: ComparisonReport) -> list[str]:
+    lines = [
+        "| policy | leaders | signed order | Ψ_o | time towards target | ordered (π/4) |",
+        "| --- " * 6 + "|",
+    ]
+    for row in result.means.to_dict("records"):
+        cells = [_interval(row, q) for q in ("signed_order", "psi_o", "share_towards_target")]
+        ordered = f"{row['ordered']:.0%}"
+        if row["ordered"] > 0:
+            ordered += f", median {row['ordering_time_wide_s']:.0f} s"
+        lines.append(f"| {row['policy']} | {row['leaders']} | {' | '.join(cells)} | {ordered} |")
+    return lines
+
+
+def _differences(name: str, result: ComparisonReport) -> list[str]:
+    own = result.differences[result.differences["policy"] == name]
+    lines = ["| beyond | leaders | signed order | d | ratio |", "| --- " * 5 + "|"]
+    for row in own.to_dict("records"):
+        interval = f"{row['mean']:+.3f} [{row['low']:+.3f}, {row['high']:+.3f}]"
+        # No ratio to what is not clearly above zero.
+        known = not math.isnan(row["ratio"])
+        ratio = f"{row['ratio']:.2f} [{row['ratio_low']:.2f}, {row['ratio_high']:.2f}]"
+        lines.append(
+            f"| {row['reference']} | {row['leaders']} | {interval} | {row['effect']:.2f} "
+            f"| {ratio if known else ''} |"
+        )
+    return lines if len(own) > 0 else []
+
+
+def _lines(result: ComparisonReport) -> list[str]:
+    fits = [
+        f"- {policy}: signed order = {line}"
+        for (policy, quantity), line in result.lines.items()
+        if quantity == "signed_order"
+    ]
+    return ["Straight lines in the number of leaders k:", "", *fits] if fits else []

@@ -1,0 +1,234 @@
+"""The report of `flockenv compare`: means, straight lines, files."""
+
+import itertools
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import tomli_w
+from rich.table import Table
+
+from flockenv._core import __version__
+from flockenv._io.atomic_write import whole_file
+from flockenv._io.extras import require
+from flockenv.comparison.episodes import (
+    CONTROL_HZ,
+    NO_LEADERS,
+    ORDERING_TIMES,
+    QUANTITIES,
+    compare_leaders,
+)
+from flockenv.parameters import FlockParameters
+from flockenv.simulation import LeaderPolicy
+from flockenv.statistics.intervals import (
+    CONFIDENCE,
+    Difference,
+    Line,
+    fit_line,
+    paired_difference,
+    summarise,
+)
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["ComparisonReport", "report"]
+
+
+# A table of one line a row needs so many columns.
+_WIDE = 132
+# That of "[-0.123, 0.045]".
+_INTERVAL_WIDTH = 15
+
+NAMES = {
+    "psi_o": "Ψ_o",
+    "signed_order": "signed order",
+    "share_towards_target": "time towards target",
+}
+"""What the `QUANTITIES` are called in print."""
+
+
+@dataclass(frozen=True, slots=True)
+class ComparisonReport:
+    """Means of a comparison by policy and number of leaders, and the fitted lines.
+
+    Attributes
+    ----------
+    scene : FlockParameters
+        What was run, but for the number of leaders.
+    means : pandas.DataFrame
+        One row for each policy and number of leaders.
+    lines : dict
+        The line for each (policy, quantity), over all its runs and those without leaders;
+        empty for a single number of leaders.
+    differences : pandas.DataFrame
+        How much signed order each policy has beyond each one before it, its ``reference``, seed by
+        seed, for each number of leaders; empty for a single policy.
+    environment : dict
+        Options of the environment that differ from its defaults.
+    """
+
+    scene: FlockParameters
+    means: "pd.DataFrame"
+    lines: dict[tuple[str, str], Line]
+    differences: "pd.DataFrame"
+    environment: Mapping[str, Any] = field(default_factory=dict)
+
+    def title(self) -> str:
+        """Return what was run, in one line."""
+        scene, options = self.scene, dict(self.environment)
+        target = options.pop("target", scene.target)
+        dropped = options.pop("dropout_rate", 0.0)
+        parts = [
+            f"{scene.n_boats} boats",
+            f"pool {scene.pool}",
+            f"bw = {scene.bw_s:g} s",
+            "alternating targets" if target == "alternate" else f"target {target}",
+            *([f"{100 * dropped:.3g} % of positions dropped"] if dropped else []),
+            *(f"{name} = {value}" for name, value in options.items()),
+            f"{scene.scheme} + {scene.noise}",
+        ]
+        return ", ".join(parts)
+
+    def table(self, width: int = _WIDE) -> Table:
+        """Return the means as a table for a terminal of so many columns."""
+        is_wide = width >= _WIDE
+        table = Table(title=self.title(), title_justify="left", caption_justify="left")
+        table.caption = (
+            f"means over {self.means['runs'].max()} runs with {CONFIDENCE:.0%} intervals"
+        )
+        if not is_wide:
+            table.box, table.padding, table.pad_edge = None, (0, 1, 0, 0), False
+        table.add_column("policy", no_wrap=is_wide)
+        table.add_column("leaders", no_wrap=True)
+        for quantity in QUANTITIES:
+            table.add_column(NAMES[quantity], no_wrap=is_wide, min_width=_INTERVAL_WIDTH)
+        table.add_column("ordered", no_wrap=True)
+        for row in self.means.to_dict("records"):
+            cells = [
+                f"{row[q]:6.3f}{' ' if is_wide else chr(10)}"
+                f"[{row[f'{q}_low']:.3f}, {row[f'{q}_high']:.3f}]"
+                for q in QUANTITIES
+            ]
+            ordered = f"{row['ordered']:4.0%}"
+            table.add_row(row["policy"], str(row["leaders"]), *cells, ordered)
+        return table
+
+    def differences_in_words(self) -> str:
+        """Return the differences from the first policy, one a row of text."""
+        shown = self.differences
+        if len(shown) > 0:
+            shown = shown[shown["reference"] == shown["reference"].iloc[0]]
+        return "\n".join(
+            f"{row['policy']} - {row['reference']}, {row['leaders']} leaders: signed order "
+            f"{row['mean']:+.3f} [{row['low']:+.3f}, {row['high']:+.3f}], d = {row['effect']:.2f}"
+            for row in shown.to_dict("records")
+        )
+
+    def lines_in_words(self) -> str:
+        """Return the fitted lines, one a row of text."""
+        return "\n".join(
+            f"{policy}: {NAMES[quantity]} = {line}"
+            for (policy, quantity), line in self.lines.items()
+        )
+
+
+def report(
+    scene: FlockParameters,
+    leaders: Sequence[int],
+    policies: Mapping[str, Callable[[], LeaderPolicy | str]],
+    seeds: Sequence[int],
+    duration_s: float,
+    folder: Path,
+    progress: Callable[[float], None],
+    environment: Mapping[str, Any] | None = None,
+) -> ComparisonReport:
+    """Run a comparison of policies and write its files.
+
+    Writes ``runs.csv``, ``means.csv``, ``lines.csv``, ``differences.csv``, ``leader_curve.png``,
+    ``parameters.toml`` (the scene) and ``run.toml`` (all else that the numbers depend on) into
+    `folder`.
+
+    Raises
+    ------
+    ParameterError
+        For parameters, seeds and durations out of range; nothing is written then.
+    MissingExtraError
+        Without the extra ``plot``.
+    """
+    # All of them before hours of runs.
+    for package in ("matplotlib", "pandas", "scipy"):
+        require(package, "plot")
+    from flockenv.comparison.figure import leader_curve
+
+    runs = compare_leaders(scene, leaders, policies, seeds, duration_s, progress, environment)
+    means = _means(runs)
+    lines = {}
+    for policy in policies:
+        own = runs[runs["policy"].isin([policy, NO_LEADERS])]
+        for quantity in QUANTITIES if own["leaders"].nunique() > 1 else ():
+            lines[policy, quantity] = fit_line(own["leaders"], own[quantity])
+    differences = _differences(runs, list(policies))
+    result = ComparisonReport(scene, means, lines, differences, environment or {})
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, table in (
+        ("runs", runs),
+        ("means", means),
+        ("lines", _lines_table(lines)),
+        ("differences", result.differences),
+    ):
+        with whole_file(folder / f"{name}.csv") as file:
+            table.to_csv(file, index=False)
+    asked = {
+        "flockenv": __version__,
+        "duration_s": float(duration_s),
+        "leaders": [int(k) for k in leaders],
+        "seeds": {"first": int(seeds[0]), "last": int(seeds[-1]), "number": len(seeds)},
+        "policies": {name: str(make()) for name, make in policies.items()},
+        "environment": {"target": scene.target, "control_hz": CONTROL_HZ, **(environment or {})},
+    }
+    with whole_file(folder / "run.toml") as file:
+        file.write(tomli_w.dumps(asked).encode())
+    header = f"# flockenv {__version__}: the scene; seeds, policies and options in run.toml\n"
+    with whole_file(folder / "parameters.toml") as file:
+        file.write((header + scene.to_toml()).encode())
+    leader_curve(runs, means, lines, result.title(), folder / "leader_curve.png")
+    return result
+
+
+def _means(runs: "pd.DataFrame") -> "pd.DataFrame":
+    """Return means and intervals, and how many runs ordered, and how soon (medians)."""
+    by = ["policy", "leaders"]
+    means = summarise(runs, by, list(QUANTITIES))
+    groups = runs.groupby(by, sort=False)
+    columns = groups[list(ORDERING_TIMES)].median()
+    columns["ordered"] = groups["ordering_time_wide_s"].count() / groups.size()
+    merged: pd.DataFrame = means.merge(columns.reset_index(), on=by, validate="one_to_one")
+    return merged
+
+
+def _differences(runs: "pd.DataFrame", policies: Sequence[str]) -> "pd.DataFrame":
+    """Return what each policy has beyond each one before it, seed by seed."""
+    pandas = require("pandas", "plot")
+    runs = runs[runs["leaders"] > 0]
+    orders = runs.pivot_table(index=["leaders", "seed"], columns="policy", values="signed_order")
+    rows = [
+        {"policy": policy, "reference": reference, "leaders": k}
+        | asdict(paired_difference(orders.loc[k][policy], orders.loc[k][reference]))
+        for reference, policy in itertools.combinations(policies, 2)
+        for k in sorted(runs["leaders"].unique())
+    ]
+    columns = ["policy", "reference", "leaders", *(each.name for each in fields(Difference))]
+    table: pd.DataFrame = pandas.DataFrame(rows, columns=columns)
+    return table
+
+
+def _lines_table(lines: Mapping[tuple[str, str], Line]) -> "pd.DataFrame":
+    pandas = require("pandas", "plot")
+    rows = [
+        {"policy": policy, "quantity": quantity} | asdict(line)
+        for (policy, quantity), line in lines.items()
+    ]
+    table: pd.DataFrame = pandas.DataFrame(rows).rename(columns={"n": "runs"})
+    return table

@@ -1,0 +1,1 @@
+"""Environments: one batch of flocks in the core, under four interfaces."""

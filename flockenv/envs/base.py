@@ -1,0 +1,72 @@
+"""What the environments with one flock have in common: everything but the form of their steps."""
+
+import copy
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flockenv import _core
+from flockenv.envs.batch import LeaderBatch
+from flockenv.envs.options import EnvOptions
+from flockenv.envs.render_mode import Screen
+
+__all__ = ["OneFlock"]
+
+
+class OneFlock:
+    """One flock with its episodes and its screen, to be mixed into an interface's class."""
+
+    metadata: dict[str, Any]
+
+    def _set_up(self, options: dict[str, Any], render_mode: str | None, render_size: Any) -> None:
+        parsed = EnvOptions.parse(options)
+        self.parameters = parsed.parameters
+        self.num_leaders = parsed.parameters.n_leaders
+        self._batch = LeaderBatch(parsed, [self.num_leaders], "disabled")
+        self.state_space = self._batch.state_space
+        fps = self._batch.settings["control_hz"]
+        self.render_mode = render_mode
+        self._screen = Screen(render_mode, render_size, fps)
+        self.metadata = {**self.metadata, "render_fps": fps}
+
+    def state(self) -> NDArray[np.float32]:
+        """Return the global state for centralised critics, shape (state size,), float32."""
+        return self._batch.core.state(0)
+
+    def episode(self) -> dict[str, Any]:
+        """Return target, noise level, seed and step of the episode."""
+        return self._batch.core.episode(0)
+
+    @property
+    def flock(self) -> _core.Flock:
+        """A copy of the flock as it is now."""
+        return self._batch.core.flock(0)
+
+    def get_state(self) -> bytes:
+        """Return everything that the future depends on, as bytes."""
+        return self._batch.core.to_bytes()
+
+    def set_state(self, state: bytes) -> None:
+        """Continue from `get_state` of an environment with the same options, bit for bit."""
+        self._batch.core.restore(state)
+
+    def clone(self) -> Self:
+        """Return an independent copy that goes on exactly as this one."""
+        return copy.deepcopy(self)
+
+    def _show(self) -> None:
+        if self._screen.is_live:
+            self._screen.show(self.flock)
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """Return a frame, (height, width, 3) uint8, where `render_mode` is "rgb_array".
+
+        With "human" every reset and step shows itself in a window (see `rendering.Window` for its
+        keys), and nothing is returned.
+        """
+        return None if self.render_mode is None else self._screen.render(self.flock)
+
+    def close(self) -> None:
+        """Close the window, if there is one; it stays closed."""
+        self._screen.close()

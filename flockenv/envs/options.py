@@ -1,0 +1,144 @@
+"""Options of the environments: one flat set of names, checked once, for all faces."""
+
+import difflib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields
+from typing import Any, Self
+
+from flockenv import _core
+from flockenv.envs.observation import BLOCKS
+from flockenv.envs.reward import TERMS
+from flockenv.errors import ParameterError
+from flockenv.parameters import FlockParameters
+from flockenv.rendering.frames import DEFAULT_SIZE
+
+__all__ = ["RESET_OPTIONS", "EnvOptions"]
+
+#: What ``reset(options=...)`` understands, besides ``reset_mask`` in the vector environment.
+RESET_OPTIONS = ("target", "bw_s", "state", "snapshot")
+
+#: What the options mean that are not fields of `FlockParameters`.
+_MEANINGS = {
+    "preset": "named parameters of the scene, see `FlockParameters.presets`",
+    "params": "parameters of the scene, `FlockParameters` or a dictionary, instead of a preset",
+    "n_boats": "number of boats, leaders included",
+    "n_leaders": "number of leaders k",
+    "bw_s": "length of the backward phase in s, the noise level; a pair (low, high) draws it "
+    "uniformly for each episode",
+    "target": '"cw", "ccw", "random" (drawn for each episode) or "alternate" (ccw, cw, ccw, cw, a '
+    "quarter of the episode each)",
+    "episode_s": "length of an episode in s, rounded to whole control steps; None: 480, and 960 "
+    "where targets alternate",
+    "control_hz": "control steps a second",
+    "observation": "blocks that differ from the default layout, such as `{'order': False, "
+    "'neighbors': 4}`",
+    "mirror_to_target": "reflect observation, state and action where the target is ccw, so that "
+    "both directions are one task",
+    "dropout_rate": "chance that the camera misses a boat in a frame and shows where it was before",
+    "delay_frames": "frames that the leaders' picture is late, 0 or 1",
+    "reward": "weights of the reward's terms; terms that are not named weigh nothing",
+    "rudder_levels": "number of levels of the discrete action, 2 to 1001; None: continuous",
+    "rudder_lag_s": "time constant of the rudder servo in s",
+    "rudder_rate_per_s": "fastest change of the rudder in 1/s; None: any",
+    "render_mode": 'None, "rgb_array" (`render` returns a frame) or, for environments with one '
+    'flock, "human" (a window, extra `render`)',
+    "render_size": "width and height of a frame in pixels, 64 to 4096",
+}
+
+_FIELDS = tuple(each.name for each in fields(FlockParameters))
+_SETTINGS = tuple(
+    name for name in _core.env_defaults() if name not in ("bw_range_s", "autoreset_mode")
+)
+_NAMES = ("preset", "params", *_FIELDS, *(name for name in _SETTINGS if name not in _FIELDS))
+#: Where neither ``params`` nor these fields are given: the paper's 27 boats, three of them leaders.
+_SCENE = {"n_boats": 27, "n_leaders": 3}
+
+
+@dataclass(frozen=True)
+class EnvOptions:
+    """Checked options: the scene and the settings of the environment."""
+
+    parameters: FlockParameters
+    settings: dict[str, Any]
+
+    @classmethod
+    def parse(cls, options: Mapping[str, Any]) -> Self:
+        """Return options from keyword arguments.
+
+        Raises
+        ------
+        ParameterError
+            For unknown names, with the nearest known one, and for values out of range.
+        """
+        refuse_unknown(options, _NAMES, "option of the environment")
+        given = dict(options)
+        settings = {name: given.pop(name) for name in _SETTINGS if name in given}
+        if isinstance(given.get("bw_s"), tuple | list):
+            settings["bw_range_s"] = tuple(given.pop("bw_s"))
+        for name, known in (("observation", BLOCKS), ("reward", TERMS)):
+            if isinstance(settings.get(name), Mapping):
+                settings[name] = dict(settings[name])
+                refuse_unknown(settings[name], known, f"part of {name}")
+        parameters = _parameters(given)
+        target = settings.setdefault("target", parameters.target)
+        if isinstance(target, str) and target in ("cw", "ccw"):
+            parameters = parameters.replace(target=target)
+        return cls(parameters, settings)
+
+
+def _parameters(given: dict[str, Any]) -> FlockParameters:
+    params, preset = given.pop("params", None), given.pop("preset", None)
+    if params is None:
+        base = FlockParameters.preset("simulation" if preset is None else preset)
+        return base.replace(**{**_SCENE, **given})
+    if preset is not None:
+        raise ParameterError("params and preset are both given: one of them names the scene")
+    if isinstance(params, Mapping):
+        params = FlockParameters.from_dict(params)
+    if not isinstance(params, FlockParameters):
+        raise TypeError(f"params must be FlockParameters, not {type(params).__name__}")
+    return params.replace(**given)
+
+
+def refuse_unknown(names: Iterable[str], known: Iterable[str], what: str) -> None:
+    """Raise a `ParameterError` for the first name that is not known."""
+    known = tuple(known)
+    for name in names:
+        if name in known:
+            continue
+        near = difflib.get_close_matches(str(name), known, n=1, cutoff=0.6)
+        hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(known)}"
+        raise ParameterError(f"{name!r} is no {what}: {hint}")
+
+
+def known_reset_options(options: Mapping[str, Any] | None) -> dict[str, Any]:
+    """Return the reset options that are ours.
+
+    Others may be meant for a wrapper and are left alone, unless they look like ours misspelt.
+    """
+    if options is None:
+        return {}
+    if not isinstance(options, Mapping):
+        raise TypeError(f"reset options must be a dictionary, not {type(options).__name__}")
+    for name in options:
+        near = difflib.get_close_matches(str(name), (*RESET_OPTIONS, "reset_mask"), 1, 0.7)
+        if near and name != near[0]:
+            raise ParameterError(f"{name!r} is no reset option: did you mean {near[0]!r}?")
+    return {name: options[name] for name in RESET_OPTIONS if name in options}
+
+
+def arguments_table() -> str:
+    """Return the options as a Markdown table."""
+    scene = FlockParameters().replace(**_SCENE).to_dict()
+    defaults = {
+        **scene,
+        **_core.env_defaults(),
+        "preset": "simulation",
+        "target": scene["target"],
+        "render_size": DEFAULT_SIZE,
+    }
+    lines = ["| option | default | meaning |", "| --- | --- | --- |"]
+    for name, meaning in _MEANINGS.items():
+        lines.append(f"| `{name}` | `{defaults.get(name)!r}` | {meaning} |")
+    lines.append("| any other field of `FlockParameters` | the preset's | see there |")
+    return "\n".join(lines)

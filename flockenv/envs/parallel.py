@@ -1,0 +1,216 @@
+"""`LeadersParallelEnv`: each leader an agent, behind PettingZoo's parallel interface."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import gymnasium
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from pettingzoo import ParallelEnv
+
+from flockenv.envs.base import OneFlock
+from flockenv.envs.batch import drawn_seed
+from flockenv.envs.docs import specified
+from flockenv.envs.observation import observation_space
+from flockenv.envs.render_mode import RENDER_MODES
+from flockenv.envs.spaces import flat_actions, leader_action_space
+from flockenv.errors import EpisodeError, ParameterError
+from flockenv.rendering.frames import DEFAULT_SIZE
+
+__all__ = ["LeadersParallelEnv", "parallel_env"]
+
+Observations = dict[str, NDArray[np.float32]]
+Infos = dict[str, dict[str, Any]]
+
+
+@specified
+class LeadersParallelEnv(
+    OneFlock, ParallelEnv[str, NDArray[np.float32], NDArray[np.float32] | int]
+):
+    """Lead a flock of boats around a ring-shaped pool: each leader is an agent.
+
+    ``flockenv.parallel_env(**options)``
+
+    ## Description
+    {task}
+
+    Agents are `leader_0` to `leader_{k-1}`, boats 0 to k - 1. All act at once and live until the
+    time limit; `agents` is empty from then on.
+
+    ## Action space
+    An agent's is `Box(-1, 1, (1,), float32)`, its rudder; `Discrete(n)` with `rudder_levels=n`.
+    {rudder}
+
+    ## Observation space
+    An agent's is a `Box` of shape (observation size,), float32. {frame}
+
+    {observation_table}
+
+    `state()` gives the global state, for critics: the entries of `boat` for each boat in order,
+    then the rest.
+
+    {state_table}
+
+    ## Rewards
+    Each agent gets the weighted sum of the terms below, its own where they are a leader's own;
+    `signed_order` with weight 1 unless `reward` says otherwise. Each step's infos have the agent's
+    `"reward_terms"`, the last ones the `"episode_summary"`; those of a reset are empty.
+
+    {reward_table}
+
+    ## Starting state
+    {starting_state}
+
+    ## Episode end
+    {episode_end}
+
+    ## Arguments
+    {arguments_table}
+
+    ## Version history
+    {version_history}
+    """
+
+    metadata: dict[str, Any] = {  # noqa: RUF012 - PettingZoo's own declaration
+        "name": "leaders_v0",
+        "render_modes": list(RENDER_MODES),
+        "render_fps": 10.0,
+        "is_parallelizable": True,
+    }
+
+    def __init__(
+        self,
+        *,
+        render_mode: str | None = None,
+        render_size: tuple[int, int] = DEFAULT_SIZE,
+        **options: Any,
+    ) -> None:
+        self._set_up(options, render_mode, render_size)
+        settings = self._batch.settings
+        self.possible_agents = [f"leader_{leader}" for leader in range(self.num_leaders)]
+        self.agents: list[str] = []
+        self.observation_spaces = {
+            agent: observation_space(settings["observation"]) for agent in self.possible_agents
+        }
+        self.action_spaces = {
+            agent: leader_action_space(settings["rudder_levels"]) for agent in self.possible_agents
+        }
+        self._random = np.random.default_rng()
+
+    def observation_space(self, agent: str) -> gymnasium.spaces.Space[NDArray[np.float32]]:
+        """Return the observation space of an agent, always the same object."""
+        return self.observation_spaces[agent]
+
+    def action_space(self, agent: str) -> gymnasium.spaces.Space[Any]:
+        """Return the action space of an agent, always the same object."""
+        return self.action_spaces[agent]
+
+    def reset(
+        self, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observations, Infos]:
+        """Begin an episode.
+
+        Parameters
+        ----------
+        seed
+            Fixes the start, the noise and what is drawn for the episode, and those of the episodes
+            that follow without a seed. None goes on to the next episode.
+        options
+            ``target``, ``bw_s``, ``state`` and ``snapshot`` as in `LeadersEnv.reset`.
+
+        Returns
+        -------
+        observations, infos : dict
+            By agent; observations have shape (observation size,), float32, infos are empty. What
+            was drawn for the episode is told by `episode`.
+        """
+        self._batch.reset([seed], options, lambda: drawn_seed(self._random))
+        self.agents = self.possible_agents[:]
+        self._show()
+        # Empty: TorchRL expects every later info to look like those of the reset.
+        return self.observe(), {agent: {} for agent in self.agents}
+
+    def step(
+        self, actions: Mapping[str, ArrayLike]
+    ) -> tuple[Observations, dict[str, float], dict[str, bool], dict[str, bool], Infos]:
+        """Take one control step.
+
+        Parameters
+        ----------
+        actions
+            One an agent: a rudder of shape (1,), clipped to [-1, 1], or the number of a level.
+
+        Returns
+        -------
+        observations, rewards, terminations, truncations, infos : dict
+            By agent. Each info has the agent's ``"reward_terms"``, and at the end the episode's
+            ``"episode_summary"``.
+
+        Raises
+        ------
+        ParameterError
+            For NaN, wrong shapes, missing agents and agents that are not there; nothing has moved.
+        EpisodeError
+            Before the first reset and after the end.
+        """
+        flat = self._flat(actions)
+        rows, rewards, truncated = self._batch.core.step(flat)
+        agents, over = self.agents, bool(truncated[0])
+        infos = self._infos(over)
+        if over:
+            self.agents = []
+        self._show()
+        return (
+            dict(zip(agents, rows, strict=True)),
+            dict(zip(agents, rewards.tolist(), strict=True)),
+            dict.fromkeys(agents, False),
+            dict.fromkeys(agents, over),
+            infos,
+        )
+
+    def _flat(self, actions: Mapping[str, ArrayLike]) -> NDArray[np.float64]:
+        if not self.agents:
+            raise EpisodeError("step was called before a reset or after the episode's end")
+        if not isinstance(actions, Mapping):
+            raise TypeError(f"actions must be a dictionary, not {type(actions).__name__}")
+        if actions.keys() != set(self.agents):
+            wrong = sorted(set(self.agents).symmetric_difference(actions), key=str)
+            raise ParameterError(
+                f"actions are for other agents than {', '.join(self.agents)}: see {wrong}"
+            )
+        levels = self._batch.settings["rudder_levels"]
+        shape = (1,) if levels is None else ()
+        each = [
+            flat_actions(actions[agent], shape, levels, f"the action of {agent}")
+            for agent in self.agents
+        ]
+        return np.concatenate(each)
+
+    def _infos(self, over: bool) -> Infos:
+        terms = self._batch.reward_terms()
+        names, rows = tuple(terms), np.stack(list(terms.values()), axis=1).tolist()
+        infos: Infos = {
+            agent: {"reward_terms": dict(zip(names, row, strict=True))}
+            for agent, row in zip(self.agents, rows, strict=True)
+        }
+        if over:
+            for info in infos.values():
+                info.update(self._batch.end_info(0))
+        return infos
+
+    def _by_agent(self, rows: NDArray[np.float32]) -> Observations:
+        return dict(zip(self.possible_agents, rows, strict=True))
+
+    def observe(self) -> Observations:
+        """Return the observations as they are now, by agent."""
+        return self._by_agent(self._batch.core.observe())
+
+    def set_state(self, state: bytes) -> None:
+        """Continue from `get_state` of an environment with the same options, bit for bit."""
+        super().set_state(state)
+        self.agents = self.possible_agents[:] if self._batch.core.is_running(0) else []
+
+
+def parallel_env(*, render_mode: str | None = None, **options: Any) -> LeadersParallelEnv:
+    """Return a `LeadersParallelEnv`; see there."""
+    return LeadersParallelEnv(render_mode=render_mode, **options)

@@ -1,0 +1,93 @@
+"""What the environments' `render` goes through."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from flockenv.errors import ParameterError
+from flockenv.rendering.frames import frame, renderer
+from flockenv.rendering.window import Window, require_pygame
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from flockenv._core import Flock
+
+__all__ = ["RENDER_MODES", "Screen"]
+
+#: Render modes of the environments with one flock; those with many have "rgb_array" alone.
+RENDER_MODES = ("human", "rgb_array")
+
+
+class Screen:
+    """The render mode of an environment, the size of its frames, and its window if it has one.
+
+    Copies and pickles have the same mode and size, and no window until they render.
+    """
+
+    def __init__(
+        self,
+        mode: str | None,
+        size: Any,
+        fps: float,
+        modes: tuple[str, ...] = RENDER_MODES,
+    ) -> None:
+        if mode is not None and mode not in modes:
+            names = ", ".join(repr(name) for name in modes)
+            raise ParameterError(f"render_mode = {mode!r} is not accepted: None, {names}")
+        if not isinstance(size, tuple | list) or len(size) != 2:
+            raise ParameterError(f"render_size = {size!r} is not accepted: (width, height)")
+        self.mode = mode
+        self.size = (size[0], size[1])
+        self.fps = fps
+        self._window: Window | None = None
+        self._shown_s: float | None = None
+        self._closed = False
+        if mode is not None:
+            self._check_now()
+
+    def _check_now(self) -> None:
+        """Refuse sizes and name missing extras before anything is simulated."""
+        renderer(*self.size)
+        if self.mode == "human":
+            require_pygame()
+
+    @property
+    def is_live(self) -> bool:
+        """Whether every step is to be shown."""
+        return self.mode == "human" and not self._closed
+
+    def frame(self, flock: Flock) -> NDArray[np.uint8]:
+        """Return a flock's frame, (height, width, 3)."""
+        return frame(flock, *self.size)
+
+    def show(self, flock: Flock) -> None:
+        """Show a flock in the window, which is opened now if need be, unless it was closed."""
+        if self._closed:
+            return
+        if self._window is None:
+            self._window = Window(*self.size, fps=self.fps)
+        self._window.show(flock)
+        self._shown_s = flock.time_s
+        if not self._window.is_open:
+            self.close()
+
+    def render(self, flock: Flock) -> NDArray[np.uint8] | None:
+        """Do what `render` of an environment with one flock does."""
+        if self.mode == "rgb_array":
+            return self.frame(flock)
+        # What a step has shown already takes no time again.
+        if self._window is None or flock.time_s != self._shown_s:
+            self.show(flock)
+        return None
+
+    def close(self) -> None:
+        """Close the window, for good."""
+        self._closed = True
+        if self._window is not None:
+            self._window.close()
+            self._window = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_window": None}

@@ -1,0 +1,291 @@
+"""`LeadersVectorEnv`: many flocks behind Gymnasium's vector interface, stepped at once in Rust."""
+
+import copy
+from collections.abc import Mapping, Sequence
+from typing import Any, Self
+
+import gymnasium
+import numpy as np
+from gymnasium.vector import AutoresetMode
+from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
+
+from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
+from flockenv.envs.docs import specified
+from flockenv.envs.observation import observation_space
+from flockenv.envs.options import EnvOptions
+from flockenv.envs.render_mode import Screen
+from flockenv.envs.spaces import flat_actions, joint_action_space
+from flockenv.errors import ParameterError
+from flockenv.rendering.frames import DEFAULT_SIZE
+
+__all__ = ["LeadersVectorEnv"]
+
+
+@specified
+class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], NDArray[Any]]):
+    """Lead many flocks at once, one policy steering all leaders of a flock.
+
+    ``gymnasium.make_vec("flockenv/Leaders-v0", num_envs=64, **options)``
+
+    ## Description
+    {task}
+
+    Flocks are stepped in parallel in Rust; results depend neither on `num_envs` nor on the number
+    of threads. Arrays that are returned are never written to again.
+
+    ## Action space
+    For each flock `Box(-1, 1, (k,), float32)`, the rudders of leaders 0 to k - 1;
+    `MultiDiscrete([n] * k)` with `rudder_levels=n`. {rudder}
+
+    ## Observation space
+    For each flock a `Box` of shape (k * observation size,), float32: what leader 0 observes, then
+    leader 1, and so on. {frame}
+
+    {observation_table}
+
+    `state()` gives the global state of every flock, for critics: the entries of `boat` for each
+    boat in order, then the rest.
+
+    {state_table}
+
+    ## Rewards
+    The weighted sum of the terms below, mean over a flock's leaders; `signed_order` with weight 1
+    unless `reward` says otherwise. `reward_terms()` tells those of the last step.
+
+    {reward_table}
+
+    ## Starting state
+    {starting_state} Here `seed=s` seeds flock i with s + i, a list gives each flock its own, and an
+    option that is a list has one entry a flock. `reset(options={"reset_mask": mask})` resets some
+    flocks.
+
+    ## Episode end
+    {episode_end} At the end `infos["episode_summary"]` has means over the episode. With
+    `autoreset_mode="next_step"` the next step begins the next episode and ignores its action, with
+    `"same_step"` the step itself does (`infos["final_obs"]` and `infos["final_info"]` have what was
+    last), with `"disabled"` flocks wait for a reset with a mask.
+
+    ## Arguments
+    `num_envs`: number of flocks; `autoreset_mode`: one of Gymnasium's `AutoresetMode` or its name;
+    and:
+
+    {arguments_table}
+
+    ## Version history
+    {version_history}
+    """
+
+    metadata: dict[str, Any] = {  # noqa: RUF012 - Gymnasium's own declaration
+        "render_modes": ["rgb_array"],
+        "render_fps": 10.0,
+    }
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        *,
+        autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
+        render_mode: str | None = None,
+        render_size: tuple[int, int] = DEFAULT_SIZE,
+        **options: Any,
+    ) -> None:
+        self.autoreset_mode = _autoreset_mode(autoreset_mode)
+        num_envs = at_least_one(num_envs, "num_envs")
+        parsed = EnvOptions.parse(options)
+        self.num_envs = num_envs
+        self.num_leaders = parsed.parameters.n_leaders
+        self._batch = LeaderBatch(
+            parsed, [self.num_leaders] * num_envs, _CORE_NAMES[self.autoreset_mode]
+        )
+        levels, blocks = self._batch.settings["rudder_levels"], self._batch.settings["observation"]
+        self.render_mode = render_mode
+        fps = self._batch.settings["control_hz"]
+        self._screen = Screen(render_mode, render_size, fps, ("rgb_array",))
+        self.metadata = {
+            **self.metadata,
+            "autoreset_mode": self.autoreset_mode,
+            "render_fps": fps,
+        }
+        self.single_observation_space = observation_space(blocks, self.num_leaders)
+        self.single_action_space = joint_action_space(levels, self.num_leaders)
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self.single_state_space = self._batch.state_space
+        self._actions_shape = (num_envs, self.num_leaders)
+
+    def reset(
+        self,
+        *,
+        seed: int | Sequence[int | None] | None = None,
+        options: dict[str, Any] | None = None,
+    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+        """Begin episodes in all flocks, or in those of ``options["reset_mask"]``.
+
+        Parameters
+        ----------
+        seed
+            One for flock 0, each following flock having the next; or one a flock; None goes on to
+            the next episode.
+        options
+            ``target`` ("cw", "ccw", "random", "alternate"), ``bw_s`` (s), ``state`` (a dictionary
+            with pose, velocity, time_s and allow_overlap as in `Flock.set_state`) or ``snapshot``
+            (bytes of `Flock.snapshot`), for the episodes that begin; ``reset_mask`` (num_envs,)
+            bool.
+
+        Returns
+        -------
+        observations : numpy.ndarray
+            Shape (num_envs, k * observation size), float32, of all flocks.
+        infos : dict
+            Of the flocks that were reset.
+        """
+        seeds = _seed_each(seed, self.num_envs)
+        mask = None
+        if isinstance(options, Mapping):
+            mask = _checked_mask(options.get("reset_mask"), self.num_envs)
+        self._batch.reset(seeds, options, lambda: drawn_seed(self.np_random), mask)
+        if isinstance(seed, int | np.integer):
+            super().reset(seed=int(seed))
+        infos: dict[str, Any] = {}
+        for flock in range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist():
+            infos = self._add_info(infos, self._batch.begin_info(flock), flock)
+        return self._shaped(self._batch.core.observe()), infos
+
+    def step(
+        self, actions: NDArray[Any]
+    ) -> tuple[
+        NDArray[np.float32],
+        NDArray[np.float64],
+        NDArray[np.bool_],
+        NDArray[np.bool_],
+        dict[str, Any],
+    ]:
+        """Take one control step in every flock.
+
+        Parameters
+        ----------
+        actions
+            Shape (num_envs, k): rudders, clipped to [-1, 1], or numbers of levels.
+
+        Returns
+        -------
+        observations, rewards, terminations, truncations, infos
+            Rewards are means over a flock's leaders; episodes are truncated, never terminated.
+
+        Raises
+        ------
+        ParameterError
+            For NaN and wrong shapes; nothing has moved then.
+        EpisodeError
+            Before the first reset, and after an episode's end with ``"disabled"``.
+        """
+        flat = flat_actions(actions, self._actions_shape, self._batch.settings["rudder_levels"])
+        observations, rewards, truncated = self._batch.core.step(flat)
+        infos = self._end_infos(truncated) if truncated.any() else {}
+        return (
+            self._shaped(observations),
+            rewards.reshape(self._actions_shape).mean(axis=1),
+            np.zeros(self.num_envs, np.bool_),
+            truncated,
+            infos,
+        )
+
+    def _shaped(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
+        return rows.reshape(self.num_envs, -1)
+
+    def _end_infos(self, truncated: NDArray[np.bool_]) -> dict[str, Any]:
+        infos: dict[str, Any] = {}
+        for flock in np.flatnonzero(truncated).tolist():
+            info = self._batch.end_info(flock)
+            if self.autoreset_mode == AutoresetMode.SAME_STEP:
+                last = self._batch.core.final_observation(flock).reshape(-1)
+                infos = self._add_info(infos, {"final_obs": last, "final_info": info}, flock)
+                info = self._batch.begin_info(flock)
+            infos = self._add_info(infos, info, flock)
+        return infos
+
+    def state(self) -> NDArray[np.float32]:
+        """Return the global state of every flock, shape (num_envs, state size)."""
+        return np.stack([self._batch.core.state(flock) for flock in range(self.num_envs)])
+
+    def reward_terms(self) -> dict[str, NDArray[np.float64]]:
+        """Return each term of the last step's reward, shape (num_envs,), mean over leaders."""
+        terms = self._batch.reward_terms()
+        return {
+            name: rows.reshape(self._actions_shape).mean(axis=1) for name, rows in terms.items()
+        }
+
+    def order_parameters(self) -> NDArray[np.float64]:
+        """Return order parameters of the normal boats now.
+
+        Shape (num_envs, 6): psi_o, phi_o, c_o, psi_v, phi_v, c_v as in `OrderParameters`.
+        """
+        return self._batch.core.order_parameters()
+
+    def in_analysis_window(self) -> NDArray[np.bool_]:
+        """Return which flocks are in the paper's analysis window now."""
+        return self._batch.core.in_analysis_window()
+
+    def get_state(self) -> bytes:
+        """Return everything that the future depends on, as bytes."""
+        return self._batch.core.to_bytes()
+
+    def set_state(self, state: bytes) -> None:
+        """Continue from `get_state` of an environment with the same options, bit for bit."""
+        self._batch.core.restore(state)
+
+    def observe(self) -> NDArray[np.float32]:
+        """Return the observations as they are now."""
+        return self._shaped(self._batch.core.observe())
+
+    def clone(self) -> Self:
+        """Return an independent copy that goes on exactly as this one."""
+        return copy.deepcopy(self)
+
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
+        """Return a frame of each flock, (height, width, 3) uint8, if that is the render mode."""
+        if self.render_mode is None:
+            return None
+        flocks = map(self._batch.core.flock, range(self.num_envs))
+        return tuple(map(self._screen.frame, flocks))
+
+
+_CORE_NAMES = {
+    AutoresetMode.NEXT_STEP: "next_step",
+    AutoresetMode.SAME_STEP: "same_step",
+    AutoresetMode.DISABLED: "disabled",
+}
+
+
+def _autoreset_mode(mode: str | AutoresetMode) -> AutoresetMode:
+    for known, name in _CORE_NAMES.items():
+        if mode in (known, name, known.value):
+            return known
+    names = ", ".join(repr(name) for name in _CORE_NAMES.values())
+    raise ParameterError(f"autoreset_mode = {mode!r} is not accepted: one of {names}")
+
+
+def _checked_mask(mask: Any, num_envs: int) -> NDArray[np.bool_] | None:
+    if mask is None:
+        return None
+    if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_:
+        raise TypeError("options['reset_mask'] must be a numpy array of bools")
+    if mask.shape != (num_envs,):
+        raise ParameterError(
+            f"options['reset_mask'] has shape {mask.shape}, expected ({num_envs},)"
+        )
+    if not mask.any():
+        raise ParameterError("options['reset_mask'] is False everywhere: at least one flock")
+    return mask
+
+
+def _seed_each(seed: Any, num_envs: int) -> Sequence[int | None]:
+    if seed is None:
+        return [None] * num_envs
+    seeds = seed.tolist() if isinstance(seed, np.ndarray) else seed
+    if not isinstance(seeds, Sequence) or isinstance(seeds, str):
+        return seeds_from(seeds, num_envs)
+    if len(seeds) != num_envs:
+        raise ParameterError(f"seed lists {len(seeds)} seeds, expected {num_envs}")
+    return list(seeds)

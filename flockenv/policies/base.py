@@ -1,0 +1,79 @@
+"""What policies share that steer each leader by its own observation, whatever form it comes in."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from flockenv.envs.observation import observation_entries
+from flockenv.errors import ParameterError
+
+__all__ = ["RowPolicy"]
+
+
+class RowPolicy(ABC):
+    """A policy that maps one leader's observation to its rudder, with the interface of SB3's.
+
+    Parameters
+    ----------
+    observation
+        Blocks of the observation that differ from the default layout, as in the environments'
+        option of that name.
+    mirror_to_target
+        The environments' option of that name.
+    """
+
+    def __init__(self, observation: Mapping[str, Any] | None, mirror_to_target: bool) -> None:
+        self.observation = dict(observation or {})
+        self.mirror_to_target = bool(mirror_to_target)
+        self._size = len(observation_entries(self.observation))
+
+    @abstractmethod
+    def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.floating[Any]]:
+        """Return the rudders of rows (leaders, size): as many numbers in [-1, 1]."""
+
+    def predict(
+        self,
+        observation: ArrayLike | Mapping[Any, ArrayLike],
+        state: Any = None,
+        episode_start: Any = None,
+        deterministic: bool = True,
+    ) -> tuple[Any, Any]:
+        """Return rudders for observations.
+
+        Parameters
+        ----------
+        observation
+            Shape (..., m * observation size): m leaders' observations one after another in the
+            last axis, as the environments give them; or a dictionary of such arrays by agent.
+        state, episode_start, deterministic
+            Not used: no memory, and one way to act.
+
+        Returns
+        -------
+        action : numpy.ndarray or dict
+            Shape (..., m), float32, in [-1, 1].
+        state
+            As it was given.
+
+        Raises
+        ------
+        ParameterError
+            If the last axis is no multiple of the layout's size.
+        """
+        if isinstance(observation, Mapping):
+            return {agent: self._rudders(each) for agent, each in observation.items()}, state
+        return self._rudders(observation), state
+
+    def _rudders(self, observation: ArrayLike) -> NDArray[np.float32]:
+        array = np.ascontiguousarray(observation, np.float32)
+        width = array.shape[-1] if array.ndim else 0
+        if width == 0 or width % self._size != 0:
+            raise ParameterError(
+                f"observation has shape {array.shape}, which is not accepted: its last axis must "
+                f"be a multiple of {self._size}, the size of a leader's observation"
+            )
+        rudders = np.asarray(self._steer(array.reshape(-1, self._size)), np.float32)
+        return rudders.reshape(*array.shape[:-1], width // self._size)

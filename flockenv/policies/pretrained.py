@@ -1,0 +1,86 @@
+"""Policies from files, and what ships for the named pools: tuned gains and learned leaders."""
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from flockenv.errors import ParameterError
+from flockenv.policies.files import read_policy
+from flockenv.policies.laws import LAWS, ObservedPolicy
+from flockenv.policies.leaning_law import LeaningLaw
+from flockenv.policies.network import NetworkPolicy
+
+__all__ = ["TUNED_GAINS", "learned", "load", "tuned_law"]
+
+_KINDS: dict[str, type[NetworkPolicy] | type[LeaningLaw]] = {
+    "network": NetworkPolicy,
+    "leaning law": LeaningLaw,
+}
+
+TUNED_GAINS: Mapping[str, Mapping[str, Mapping[str, float]]] = {
+    "sign-corrected law": {"500-boats": {"gain": 1.91}, "table-1": {"gain": 0.957}},
+    "damped law": {
+        "500-boats": {"gain": 1.42, "backward_gain": 3.28, "damping": 17.0},
+        "table-1": {"gain": 3.02, "backward_gain": 4.1, "damping": 35.6},
+    },
+}
+"""Gains by law and pool: what `python baselines/tune_laws.py` (seed 0) found for three leaders
+among 27 boats at each pool's critical noise, on training seeds."""
+
+
+def load(path: str | os.PathLike[str]) -> NetworkPolicy | LeaningLaw:
+    """Read a shipped or trained policy; nothing in the file is ever executed.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be opened.
+    ParameterError
+        If it is no policy file, is damaged, or was made for another version of the observation.
+    """
+    header, arrays = read_policy(path)
+    kind = header.get("kind", "network")
+    try:
+        if not isinstance(kind, str) or kind not in _KINDS:
+            raise ParameterError(f"kind = {kind!r} is not accepted: one of {', '.join(_KINDS)}")
+        return _KINDS[kind].from_file(header, arrays)
+    except (TypeError, ValueError) as error:
+        raise ParameterError(f"{path} is no whole policy: {error}") from error
+
+
+def tuned_law(law: str, pool: Any) -> ObservedPolicy:
+    """Return a law in `TUNED_GAINS` with the gains tuned in a named pool.
+
+    Raises
+    ------
+    ParameterError
+        For other pools.
+    """
+    return LAWS[law](**TUNED_GAINS[law][_named(pool)])
+
+
+def learned(pool: Any) -> NetworkPolicy | LeaningLaw:
+    """Return the learned leaders that ship for a named pool, from baselines/policies.
+
+    Raises
+    ------
+    ParameterError
+        For other pools, and where the package is not run from a checkout of the project.
+    """
+    path = Path(__file__).parents[2] / "baselines" / "policies" / f"{_named(pool)}.npz"
+    if not path.is_file():
+        raise ParameterError(
+            "learned leaders come with a checkout of the project, in baselines/policies, and not "
+            "with the installed package: name the .npz file"
+        )
+    return load(path)
+
+
+def _named(pool: Any) -> str:
+    pools = TUNED_GAINS["damped law"]
+    if not isinstance(pool, str) or pool not in pools:
+        raise ParameterError(
+            f"pool = {pool!r} is not accepted: tuned and learned leaders are for {', '.join(pools)}"
+        )
+    return pool

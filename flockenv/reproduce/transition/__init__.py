@@ -1,0 +1,1 @@
+"""The order of the transition between rotation and disorder."""

@@ -1,0 +1,169 @@
+"""What `transition-order` measures: runs at one density from two starts, and loops."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from flockenv.reproduce.order_statistics import block_length_s
+from flockenv.reproduce.transition.design import Growth, TransitionDesign
+from flockenv.runs.protocols.hysteresis import loop_position
+from flockenv.runs.protocols.initial_state import STARTS
+from flockenv.runs.spec import RunResult
+from flockenv.statistics.block_bootstrap import block_sums, block_sums_resampled
+from flockenv.statistics.intervals import CONFIDENCE
+
+__all__ = [
+    "CENTRES",
+    "C_V_EDGES",
+    "M_EDGES",
+    "Loops",
+    "Measured",
+    "Still",
+    "binder",
+    "hysteresis",
+    "student",
+]
+
+Ends = tuple[float, float, float]
+"""A value and the ends of its interval."""
+
+M_EDGES = np.linspace(-1.0, 1.0, 42)
+"""Edges of the bins of m."""
+
+C_V_EDGES = np.linspace(-50.0, 225.0, 45)
+"""Edges of the bins of C_v in cm²/s²."""
+
+_LOOP_BINS = 12
+CENTRES = (np.arange(_LOOP_BINS) + 0.5) / _LOOP_BINS
+"""Positions in a loop at which its branches are averaged."""
+
+
+def binder(m2: NDArray[np.float64], m4: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return Binder's cumulant 1 - <m⁴>/(3<m²>²); NaN where <m²> is 0."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.asarray(1.0 - m4 / (3.0 * m2**2))
+
+
+class Still:
+    """Runs at one density from one start, over the second half of each.
+
+    Attributes
+    ----------
+    outward : float64 array, shape (runs,)
+        Mean Ψ_o cos φ_o of each run.
+    binder_m, binder_c_v : float64 array, shape (resamples + 1,)
+        Binder's cumulants of m and C_v over all runs, as measured and as resampled.
+    m_density, c_v_density : float64 array
+        Histograms over `M_EDGES` and `C_V_EDGES`.
+    """
+
+    def __init__(self, runs: Sequence[RunResult]) -> None:
+        outward, blocks, ms, c_vs = [], [], [], []
+        for run in runs:
+            used = run.in_analysis_window & (run.time_s > run.spec.duration_s / 2)
+            m, c_v = run.order.rotation()[used], run.order.c_v[used]
+            outward.append(run.order.outward()[used].mean())
+            powers = np.stack([np.ones(len(m)), m**2, m**4, c_v**2, c_v**4], axis=1)
+            length = block_length_s(run.spec.duration_s)
+            blocks.append(block_sums(run.time_s[used], powers, length))
+            ms.append(m)
+            c_vs.append(c_v)
+        sums = block_sums_resampled(blocks, int(runs[0].spec.key[:8], 16))
+        means = (sums[:, 1:] / sums[:, :1]).T
+        self.outward = np.array(outward)
+        self.binder_m, self.binder_c_v = binder(means[0], means[1]), binder(means[2], means[3])
+        self.m_density = _density(np.concatenate(ms), M_EDGES)
+        self.c_v_density = _density(np.concatenate(c_vs), C_V_EDGES)
+
+
+def _density(values: NDArray[np.float64], edges: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(np.histogram(values, edges)[0] / len(values) / np.diff(edges))
+
+
+def hysteresis(run: RunResult) -> NDArray[np.float64]:
+    """Return mean Ψ_o cos φ_o on the way there and on the way back, by position in the loop.
+
+    Returns
+    -------
+    float64 array, shape (2, 12)
+        Of analysed frames, from the loop's first scene to its last; NaN in bins without any.
+    """
+    position = loop_position(run.time_s, run.spec.duration_s)
+    place = np.minimum((position * _LOOP_BINS).astype(int), _LOOP_BINS - 1)
+    there = run.time_s < run.spec.duration_s / 2
+    outward = run.order.outward()
+    ways = []
+    for way in (there, ~there):
+        used = run.in_analysis_window & way
+        count = np.bincount(place[used], minlength=_LOOP_BINS)
+        total = np.bincount(place[used], outward[used], minlength=_LOOP_BINS)
+        with np.errstate(invalid="ignore"):
+            ways.append(total / count)
+    return np.array(ways)
+
+
+class Loops:
+    """Loops of some seeds.
+
+    Attributes
+    ----------
+    there, back : float64 array, shape (12,)
+        Mean branches.
+    bands : float64 array, shape (2, 2, 12)
+        By way there and back: lowest and highest of the runs.
+    openings : float64 array, shape (runs,)
+        By how much Ψ_o cos φ_o on the way back exceeds that on the way there, over the loop.
+    at_turn : float64 array, shape (runs,)
+        Mean Ψ_o cos φ_o around the loop's last scene, on both ways.
+    """
+
+    def __init__(self, runs: Sequence[RunResult]) -> None:
+        branches = np.array([hysteresis(run) for run in runs])
+        self.there, self.back = _known_mean(branches, 0)
+        self.bands = np.stack([branches.min(axis=0), branches.max(axis=0)], axis=1)
+        self.openings = _known_mean(branches[:, 1] - branches[:, 0], 1)
+        self.at_turn = _known_mean(branches[:, :, -1], 1)
+
+
+def _known_mean(values: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
+    """Mean without the undefined values; NaN where all are."""
+    known = np.isfinite(values)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.where(known, values, 0.0).sum(axis) / known.sum(axis))
+
+
+def student(values: NDArray[np.float64]) -> Ends:
+    """Return the mean of a few independent values with Student's interval."""
+    mean, count = float(values.mean()), len(values)
+    if count < 2:
+        return mean, float("nan"), float("nan")
+    quantile = float(stats.t.ppf((1 + CONFIDENCE) / 2, count - 1))
+    half = quantile * float(values.std(ddof=1)) / count**0.5
+    return mean, mean - half, mean + half
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """What was measured of a design.
+
+    Attributes
+    ----------
+    design : TransitionDesign
+        What was run.
+    still : dict of Still
+        By size, density and start.
+    loops : dict of Loops
+        By size and kind.
+    """
+
+    design: TransitionDesign
+    still: dict[tuple[Growth, int, str], Still]
+    loops: dict[tuple[Growth, str], Loops]
+
+    def gap(self, growth: Growth, density: int) -> Ends:
+        """Return the difference of Ψ_o cos φ_o between the two starts, seed by seed."""
+        rotating, jammed = (self.still[growth, density, start].outward for start in STARTS)
+        return student(jammed - rotating)

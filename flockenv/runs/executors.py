@@ -1,0 +1,123 @@
+"""Engines: where many independent runs are made. A spec goes to each of them unchanged.
+
+All share one form, `Engine`: a function of (function, items, workers) that yields the place of each
+item and the function's value of it, as they are finished and so in any order. What they are given
+must be pure and, but for `local`, picklable: then results do not depend on the engine.
+"""
+
+import os
+from collections.abc import Callable, Generator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from typing import Any, Protocol, TypeVar
+
+from flockenv._io.extras import require
+from flockenv.errors import ParameterError
+
+__all__ = ["ENGINES", "Engine", "joblib", "local", "named", "ray"]
+
+Item = TypeVar("Item")
+Value = TypeVar("Value")
+
+
+class Engine(Protocol):
+    """Anything that maps a function over items in parallel."""
+
+    def __call__(
+        self, function: Callable[[Item], Value], items: Sequence[Item], workers: int | None = None
+    ) -> Generator[tuple[int, Value], None, None]:
+        """Yield (place, function(items[place])) as they are finished."""
+
+
+def local(
+    function: Callable[[Item], Value], items: Sequence[Item], workers: int | None = None
+) -> Generator[tuple[int, Value], None, None]:
+    """Run in threads of this process: the simulator lets go of the interpreter while it runs.
+
+    On Ctrl-C runs under way are waited for, all others are dropped.
+    """
+    pool = ThreadPoolExecutor(workers or os.cpu_count())
+    try:
+        places = {pool.submit(function, item): place for place, item in enumerate(items)}
+        for future in as_completed(places):
+            yield places.pop(future), future.result()
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def joblib(
+    function: Callable[[Item], Value], items: Sequence[Item], workers: int | None = None
+) -> Generator[tuple[int, Value], None, None]:
+    """Run in joblib's worker processes, or on the backend chosen by `joblib.parallel_config`.
+
+    Raises
+    ------
+    MissingExtraError
+        Without the extra ``sweep``.
+    """
+    package = require("joblib", "sweep")
+    parallel = package.Parallel(n_jobs=workers or -1, return_as="generator_unordered")
+    task = package.delayed(_numbered)
+    yield from parallel(task(function, place, item) for place, item in enumerate(items))
+
+
+def _numbered(
+    function: Callable[[Item], Value], place: int, item: Item
+) -> tuple[int, Value]:  # a module's function: worker processes find it by name
+    return place, function(item)
+
+
+def ray(
+    function: Callable[[Item], Value], items: Sequence[Item], workers: int | None = None
+) -> Generator[tuple[int, Value], None, None]:
+    """Run as Ray tasks of one core each.
+
+    On the cluster that is connected already or that ``RAY_ADDRESS`` names; otherwise on a local
+    Ray of `workers` cores, which is started and stopped here. Every node needs flockenv.
+
+    Raises
+    ------
+    MissingExtraError
+        Without the extra ``ray``.
+    """
+    package = require("ray", "ray")
+    started = not package.is_initialized()
+    if started:
+        _start_ray(package, workers)
+    tasks: dict[Any, int] = {}
+    try:
+        remote = package.remote(num_cpus=1)(function)
+        tasks = {remote.remote(item): place for place, item in enumerate(items)}
+        while tasks:
+            finished, _ = package.wait(list(tasks), num_returns=1)
+            for task in finished:
+                place = tasks.pop(task)
+                yield place, package.get(task)
+    finally:
+        for task in tasks:
+            package.cancel(task)
+        if started:
+            package.shutdown()
+
+
+def _start_ray(package: Any, workers: int | None) -> None:
+    options: dict[str, Any] = {"log_to_driver": False}
+    if not os.environ.get("RAY_ADDRESS"):
+        options |= {"num_cpus": workers or os.cpu_count(), "include_dashboard": False}
+    package.init(**options)
+
+
+ENGINES: Mapping[str, Engine] = {"local": local, "joblib": joblib, "ray": ray}
+"""Engines by name."""
+
+
+def named(name: str) -> Engine:
+    """Return an engine by its name.
+
+    Raises
+    ------
+    ParameterError
+        For an unknown name; the message lists those there are.
+    """
+    if name not in ENGINES:
+        raise ParameterError(f"engine = {name!r} is not accepted: {', '.join(ENGINES)}")
+    return ENGINES[name]

@@ -1,0 +1,188 @@
+"""Loops for hysteresis: a run in which the noise or the density goes slowly up and down again.
+
+The loop starts with all boats circulating (a big flock that starts at random would not get there),
+and goes from its first scene to its last and back, in equal steps and equal times; boats keep
+their poses and velocities. In a loop of the density it is the pool that changes, and boats move
+with it: each keeps its share of the way between the walls and its angle about the centre. What
+little overlap that makes as the pool shrinks, the contact solver takes out again.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flockenv import _core
+from flockenv.errors import ParameterError
+from flockenv.parameters import FlockParameters
+from flockenv.recording import Recording
+from flockenv.runs.protocols.initial_state import prepared_flock
+from flockenv.simulation import columns_of, sample
+
+__all__ = [
+    "DENSITY_RATIO",
+    "LOOPS",
+    "density_scenes",
+    "loop_position",
+    "noise_scenes",
+    "radii_cm",
+    "resized",
+    "simulate_loop",
+    "simulate_prepared",
+]
+
+LOOPS = ("rotating-noise-loop", "rotating-density-loop", "rotating-length-loop")
+"""A loop of bw from 0 to the scene's and back; of the density from the scene's to `DENSITY_RATIO`
+times that and back, the whole pool scaled; the same, its circumference alone at fixed width."""
+
+DENSITY_RATIO = 4.0
+"""Highest over lowest density of a loop."""
+
+_NOISE_STEPS = 20
+_DENSITY_STEPS = 240
+
+
+def radii_cm(pool: str | tuple[float, float]) -> tuple[float, float]:
+    """Return outer and inner radius of a pool in cm.
+
+    Raises
+    ------
+    ParameterError
+        For an unknown pool.
+    """
+    return _core.pool_radii_cm(pool)
+
+
+def resized(
+    pool: str | tuple[float, float], area_ratio: float, fixed_width: bool
+) -> tuple[float, float]:
+    """Return the radii of a pool of `area_ratio` times the free area.
+
+    Parameters
+    ----------
+    pool
+        A name, or (outer_radius_cm, inner_radius_cm).
+    area_ratio
+        New over old free area.
+    fixed_width
+        False: both radii grow; True: the channel keeps its width, and its circumference grows.
+
+    Raises
+    ------
+    ParameterError
+        For open water, and where the inner wall would vanish.
+    """
+    outer, inner = radii_cm(pool)
+    if math.isinf(outer):
+        raise ParameterError("pool: open water has no size")
+    if not fixed_width:
+        factor = math.sqrt(area_ratio)
+        return outer * factor, inner * factor
+    width, total = outer - inner, (outer + inner) * area_ratio
+    if total <= width:
+        raise ParameterError(f"pool {pool!r} of {area_ratio:g} times the area has no inner wall")
+    return (total + width) / 2, (total - width) / 2
+
+
+def noise_scenes(parameters: FlockParameters) -> list[FlockParameters]:
+    """Return the scenes of half a loop of the noise, from bw = 0 to the scene's."""
+    steps = np.linspace(0.0, parameters.bw_s, _NOISE_STEPS + 1)
+    return [parameters.replace(bw_s=float(bw_s)) for bw_s in steps]
+
+
+def density_scenes(parameters: FlockParameters, fixed_width: bool) -> list[FlockParameters]:
+    """Return the scenes of half a loop of the density, from the scene's up."""
+    ratios = np.geomspace(1.0, 1 / DENSITY_RATIO, _DENSITY_STEPS + 1)
+    return [
+        parameters.replace(pool=resized(parameters.pool, float(ratio), fixed_width))
+        for ratio in ratios
+    ]
+
+
+def loop_position(time_s: NDArray[np.float64], duration_s: float) -> NDArray[np.float64]:
+    """Return how far a loop is at each time: 0 at its ends, 1 in its middle."""
+    return np.asarray(1.0 - abs(2.0 * time_s / duration_s - 1.0))
+
+
+def simulate_loop(
+    parameters: FlockParameters, seed: int, duration_s: float, sample_hz: float, kind: str
+) -> Recording:
+    """Run a loop that starts with all boats circulating: a pure function of its arguments.
+
+    Parameters
+    ----------
+    parameters
+        The scene; see `LOOPS` for what of it changes.
+    seed
+        Seed of all random streams.
+    duration_s
+        Length of the whole loop in s.
+    sample_hz
+        Samples a second.
+    kind
+        One of `LOOPS`.
+
+    Returns
+    -------
+    Recording
+        With the first scene's parameters; `loop_position` tells where a sample lies.
+
+    Raises
+    ------
+    ParameterError
+        For arguments out of range and boats that do not fit the smallest pool.
+    """
+    if kind == "rotating-noise-loop":
+        half = noise_scenes(parameters)
+    else:
+        half = density_scenes(parameters, fixed_width=kind == "rotating-length-loop")
+    scenes = [*half, *half[-2::-1]]
+    flock = prepared_flock(scenes[0], seed, "rotating")
+    return _recorded(flock, scenes, parameters, seed, duration_s, sample_hz)
+
+
+def simulate_prepared(
+    parameters: FlockParameters, seed: int, duration_s: float, sample_hz: float, start: str
+) -> Recording:
+    """Run one scene from a prepared start: a pure function of its arguments.
+
+    Parameters and errors are those of `simulate_loop`, but for `start`, one of
+    `flockenv.runs.protocols.initial_state.STARTS`.
+    """
+    flock = prepared_flock(parameters, seed, start)
+    return _recorded(flock, [parameters], parameters, seed, duration_s, sample_hz)
+
+
+def _recorded(
+    flock: _core.Flock,
+    scenes: Sequence[FlockParameters],
+    parameters: FlockParameters,
+    seed: int,
+    duration_s: float,
+    sample_hz: float,
+) -> Recording:
+    count = math.floor(duration_s * sample_hz * (1 + 1e-12))
+    turns = [place * len(scenes) // max(count, 1) for place in range(count)]
+    samples = [sample(flock, np.dtype(np.float32))]
+    now = 0
+    for place, turn in enumerate(turns):
+        if turn != now:
+            flock, now = _moved(flock, scenes[turn], seed), turn
+        flock.advance((place + 1) / sample_hz - flock.time_s)
+        samples.append(sample(flock, np.dtype(np.float32)))
+    return Recording(
+        **columns_of(samples), parameters=parameters, seed=seed, version=_core.__version__
+    )
+
+
+def _moved(flock: _core.Flock, scene: FlockParameters, seed: int) -> _core.Flock:
+    pose, velocity = flock.pose, flock.velocity
+    old, new = radii_cm(flock.parameters.pool), radii_cm(scene.pool)
+    if old != new:
+        distance = np.hypot(pose[:, 0], pose[:, 1])
+        share = (distance - old[1]) / (old[0] - old[1])
+        pose[:, :2] *= ((new[1] + share * (new[0] - new[1])) / distance)[:, None]
+    moved = _core.Flock(scene, seed)
+    moved.set_state(pose, velocity, flock.time_s, allow_overlap=True)
+    return moved

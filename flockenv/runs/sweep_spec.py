@@ -1,0 +1,201 @@
+"""What a sweep runs: a TOML file of grids of parameters and seeds.
+
+```toml
+preset = "simulation"     # what the fields not named below are
+minutes = 60              # length of a run
+seeds = 4                 # 0, 1, 2, 3; or a list: [7, 8, 11]
+sample_hz = 10            # may be left out: 10
+protocol = "law"          # may be left out: leaders follow eq. (10)
+keep = "window"           # may be left out: what the store keeps, see flockenv.runs.spec.KEEP
+
+[fixed]                   # may be left out: fields that every run has
+pool = "table-1"
+
+[[grid]]                  # every combination of these lists
+n_boats = [20]
+n_leaders = [0, 4]
+bw_s = [0.0, 0.2, 0.4, 0.6]
+
+[[grid]]                  # one more grid; its runs are added
+n_boats = [50]
+n_leaders = [0, 10]
+bw_s = [0.0, 0.2, 0.4, 0.6]
+```
+
+Fields are those of `flockenv.FlockParameters`. A field in a grid must be a list, also of one value,
+and all grids must name the same fields.
+"""
+
+import difflib
+import itertools
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from flockenv._io.toml import read_toml
+from flockenv.errors import FlockError, ParameterError
+from flockenv.parameters import FlockParameters
+from flockenv.runs.spec import RunSpec
+
+__all__ = ["MOST_RUNS", "SweepSpec", "read_sweep"]
+
+MOST_RUNS = 1_000_000
+"""A sweep of more runs is refused: it is a mistake in a list, or needs to be split."""
+
+_KEYS = ("preset", "minutes", "seeds", "sample_hz", "protocol", "keep", "fixed", "grid")
+
+
+@dataclass(frozen=True, slots=True)
+class SweepSpec:
+    """A checked sweep.
+
+    Attributes
+    ----------
+    axes : tuple of str
+        The fields that vary, in the file's order.
+    points : tuple
+        The values of the axes of each combination.
+    runs : tuple of RunSpec
+        For each point one run a seed, in the order of points, then seeds.
+    seeds : tuple of int
+        The seeds of every point.
+    """
+
+    axes: tuple[str, ...]
+    points: tuple[tuple[Any, ...], ...]
+    runs: tuple[RunSpec, ...]
+    seeds: tuple[int, ...]
+
+
+def read_sweep(path: str | os.PathLike[str]) -> SweepSpec:
+    """Read and check a sweep's file; every value is checked before anything runs.
+
+    Raises
+    ------
+    ParameterError
+        For a file that cannot be read or is no TOML, unknown keys and fields (with the nearest
+        name), axes that are no lists, and values that `FlockParameters` or `RunSpec` refuse. The
+        message names the file.
+    """
+    try:
+        text = Path(path).read_text("utf-8")
+    except OSError as error:
+        raise ParameterError(f"{path} cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise ParameterError(f"{path} is no TOML: {error}") from error
+    values = read_toml(text, str(path))
+    try:
+        return _parse(values)
+    except (FlockError, TypeError) as error:
+        raise ParameterError(f"{path}: {error}") from error
+
+
+def _parse(values: Mapping[str, Any]) -> SweepSpec:
+    _refuse_unknown(values)
+    grids = _grids(values)
+    seeds = _seeds(values.get("seeds"))
+    fixed = _table("fixed", values.get("fixed", {}))
+    axes = tuple(grids[0])
+    _check_axes(grids, axes, fixed)
+    _check_size(grids, len(seeds))
+    base = FlockParameters.from_dict({"preset": values.get("preset", "simulation"), **fixed})
+    points = tuple(
+        dict.fromkeys(
+            tuple(_plain(value) for value in point)
+            for grid in grids
+            for point in itertools.product(*(grid[axis] for axis in axes))
+        )
+    )
+    run = {
+        "duration_s": 60.0 * _number("minutes", values.get("minutes")),
+        "sample_hz": _number("sample_hz", values.get("sample_hz", 10)),
+        **{name: values[name] for name in ("protocol", "keep") if name in values},
+    }
+    scenes = [base.replace(**dict(zip(axes, point, strict=True))) for point in points]
+    runs = tuple(RunSpec(parameters=each, seed=seed, **run) for each in scenes for seed in seeds)
+    return SweepSpec(axes, points, runs, seeds)
+
+
+def _refuse_unknown(values: Mapping[str, Any]) -> None:
+    for key in values:
+        if key in _KEYS:
+            continue
+        near = difflib.get_close_matches(key, _KEYS, n=1, cutoff=0.5)
+        if key in FlockParameters.__dataclass_fields__:
+            hint = "it is a field of the scene, which belongs under [fixed] or [[grid]]"
+        else:
+            hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(_KEYS)}"
+        raise ParameterError(f"{key!r} is no key of a sweep: {hint}")
+
+
+def _grids(values: Mapping[str, Any]) -> list[dict[str, list[Any]]]:
+    grids = values.get("grid")
+    grids = [grids] if isinstance(grids, dict) else grids
+    if not isinstance(grids, list) or not grids or not all(isinstance(g, dict) for g in grids):
+        raise ParameterError("grid is missing: a table [[grid]] of fields and lists of values")
+    for grid in grids:
+        for name, axis in grid.items():
+            if not isinstance(axis, list) or not axis:
+                raise ParameterError(
+                    f"{name} = {axis!r} is not accepted in a grid: a list of one or more values "
+                    "(a field that does not vary belongs under [fixed])"
+                )
+    return grids
+
+
+def _check_axes(
+    grids: list[dict[str, list[Any]]], axes: tuple[str, ...], fixed: Mapping[str, Any]
+) -> None:
+    # Unknown fields are told here, before a value of theirs is looked at.
+    for name in itertools.chain(fixed, *grids):
+        if name not in FlockParameters.__dataclass_fields__:
+            FlockParameters.from_dict({name: None})
+    for grid in grids:
+        if grid.keys() != set(axes):
+            different = ", ".join(sorted(grid.keys() ^ set(axes)))
+            raise ParameterError(f"all grids must name the same fields; these differ: {different}")
+    for name in axes:
+        if name in fixed:
+            raise ParameterError(f"{name!r} is both under [fixed] and in a grid")
+
+
+def _check_size(grids: list[dict[str, list[Any]]], seeds: int) -> None:
+    count = seeds * sum(_product(map(len, grid.values())) for grid in grids)
+    if count > MOST_RUNS:
+        raise ParameterError(f"the sweep has {count} runs; at most {MOST_RUNS} are accepted")
+
+
+def _product(lengths: Iterable[int]) -> int:
+    product = 1
+    for length in lengths:
+        product *= length
+    return product
+
+
+def _seeds(seeds: Any) -> tuple[int, ...]:
+    if isinstance(seeds, int) and not isinstance(seeds, bool) and 1 <= seeds <= MOST_RUNS:
+        return tuple(range(seeds))
+    if isinstance(seeds, list) and seeds and len(set(map(repr, seeds))) == len(seeds):
+        return tuple(seeds)
+    raise ParameterError(
+        f"seeds = {seeds!r} is not accepted: how many (1 or more), or a list of different seeds"
+    )
+
+
+def _number(name: str, value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ParameterError(f"{name} = {value!r} is not accepted: a number")
+    return float(value)
+
+
+def _table(name: str, value: Any) -> Mapping[str, Any]:
+    if not isinstance(value, dict):
+        raise ParameterError(f"{name} = {value!r} is not accepted: a table [{name}]")
+    return value
+
+
+def _plain(value: Any) -> Any:
+    # A pool may be a list of two radii; points must be hashable.
+    return tuple(value) if isinstance(value, list) else value

@@ -1,0 +1,1 @@
+"""Statistics of finished runs: intervals, structure, dwell times."""

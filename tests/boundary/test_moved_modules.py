@@ -1,0 +1,36 @@
+"""Law: an old name of a module answers with the same objects, and warns of where they are."""
+
+import importlib
+import subprocess
+import sys
+
+import pytest
+
+from flockenv._io.moved_modules import MOVED
+
+
+@pytest.mark.parametrize("old", MOVED)
+def test_old_names_answer_and_warn(old):
+    new = importlib.import_module(f"flockenv.{MOVED[old]}")
+    moved = importlib.import_module(f"flockenv.{old}")
+    name = new.__all__[0]
+    with pytest.warns(
+        DeprecationWarning, match=f"flockenv.{old} has moved to flockenv.{MOVED[old]}"
+    ):
+        assert getattr(moved, name) is getattr(new, name)
+    with pytest.raises(AttributeError, match="nothing_of_it"):
+        moved.nothing_of_it  # noqa: B018
+
+
+def test_old_names_are_imported_as_before():
+    code = (
+        "import flockenv.arrangement; from flockenv import arrangement; "
+        "from flockenv.arrangement import largest_cluster; "
+        "assert largest_cluster is arrangement.largest_cluster; "
+        "assert largest_cluster is flockenv.arrangement.largest_cluster"
+    )
+    subprocess.run([sys.executable, "-W", "ignore", "-c", code], check=True)
+
+
+def test_importing_flockenv_warns_of_nothing():
+    subprocess.run([sys.executable, "-W", "error", "-c", "import flockenv"], check=True)

@@ -1,0 +1,106 @@
+"""Law: with mirror_to_target both directions are one task, by the physics' mirror symmetry."""
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv.envs.observation import observation_entries, state_entries
+
+QUIET = {"n_boats": 12, "n_leaders": 3, "c4": 0.0, "episode_s": 20.0, "mirror_to_target": True}
+FLIP = np.array([1.0, -1.0, -1.0])
+
+
+def start():
+    """A moving flock, some of it in contact, and its mirror image in the x axis."""
+    env = flockenv.LeadersEnv(**QUIET)
+    env.reset(seed=4)
+    for _ in range(40):
+        env.step(np.array([0.5, -0.5, 1.0]))
+    state = {"pose": env.flock.pose, "velocity": env.flock.velocity, "time_s": env.flock.time_s}
+    mirrored = {**state, "pose": state["pose"] * FLIP, "velocity": state["velocity"] * FLIP}
+    return state, mirrored
+
+
+def pair(**options):
+    """The clockwise task, and the counter-clockwise one from the mirror image."""
+    envs = [flockenv.LeadersEnv(**{**QUIET, **options}) for _ in range(2)]
+    observations = [
+        env.reset(seed=0, options={"state": state, "target": target})[0]
+        for env, state, target in zip(envs, start(), ("cw", "ccw"), strict=True)
+    ]
+    return envs, observations
+
+
+@pytest.mark.parametrize("options", [{}, {"rudder_levels": 7}, {"rudder_lag_s": 0.2}])
+def test_mirror_images_are_one_task(options):
+    envs, observations = pair(**options)
+    envs[0].action_space.seed(1)
+    touched = 0
+    for _ in range(100):
+        np.testing.assert_allclose(*observations, atol=2e-5)
+        np.testing.assert_allclose(envs[0].state(), envs[1].state(), atol=2e-5)
+        action = envs[0].action_space.sample()
+        results = [env.step(action) for env in envs]
+        observations = [result[0] for result in results]
+        assert results[0][1] == pytest.approx(results[1][1], abs=1e-6)
+        touched += len(envs[0].flock.contacts().force.nonzero()[0])
+    assert touched > 50
+    np.testing.assert_allclose(envs[0].flock.pose * FLIP, envs[1].flock.pose, atol=1e-5)
+
+
+def test_target_reads_clockwise_throughout():
+    envs, observations = pair()
+    for env, observation in zip(envs, observations, strict=True):
+        place = [entry.name for entry in observation_entries()].index("target")
+        assert (observation.reshape(3, -1)[:, place] == 1.0).all()
+        assert env.flock.parameters.target in ("cw", "ccw")
+
+
+def test_clockwise_is_left_as_it_is():
+    plain = flockenv.LeadersEnv(**{**QUIET, "mirror_to_target": False})
+    mirrored = flockenv.LeadersEnv(**QUIET)
+    np.testing.assert_array_equal(plain.reset(seed=1)[0], mirrored.reset(seed=1)[0])
+    np.testing.assert_array_equal(plain.step(np.ones(3))[0], mirrored.step(np.ones(3))[0])
+
+
+def test_counter_clockwise_actions_are_reflected():
+    env = flockenv.LeadersEnv(**QUIET, target="ccw")
+    env.reset(seed=0)
+    env.step(np.array([1.0, -0.25, 0.0]))
+    np.testing.assert_array_equal(env._batch.core.rudders(), [-1.0, 0.25, 0.0])
+
+
+SIGNS = np.array([-1.0 if each.mirrored else 1.0 for each in observation_entries()], np.float32)
+STATE_SIGNS = np.array([-1.0 if each.mirrored else 1.0 for each in state_entries(12)], np.float32)
+TERMS = {"signed_order": 1.0, "leader_velocity": 0.25, "rudder_effort": 0.125, "jam": 2.0}
+
+
+@pytest.mark.parametrize("target", ["ccw", "random", "alternate"])
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"rudder_levels": 4},
+        {"rudder_lag_s": 0.3, "rudder_rate_per_s": 2.0},
+        {"dropout_rate": 0.3, "delay_frames": 1},
+    ],
+)
+def test_mirroring_reflects_what_its_table_says_bit_for_bit(target, options):
+    scene = {"n_boats": 12, "n_leaders": 3, "episode_s": 8.0, "reward": TERMS, "target": target}
+    plain = flockenv.LeadersEnv(**scene, **options)
+    mirrored = flockenv.LeadersEnv(**scene, **options, mirror_to_target=True)
+    seen, _ = plain.reset(seed=3)
+    reflected, _ = mirrored.reset(seed=3)
+    mirrored.action_space.seed(0)
+    for _ in range(80):
+        turn = plain.episode()["target"] == "ccw"
+        signs, state_signs = (SIGNS, STATE_SIGNS) if turn else (1.0, 1.0)
+        np.testing.assert_array_equal(seen.reshape(3, -1) * signs, reflected.reshape(3, -1))
+        np.testing.assert_array_equal(plain.state() * state_signs, mirrored.state())
+        action = mirrored.action_space.sample()
+        other_side = 3 - action if "rudder_levels" in options else -action
+        seen, reward, _, _, info = plain.step(other_side if turn else action)
+        reflected, *rest, mirrored_info = mirrored.step(action)
+        assert reward == rest[0]
+        assert info == mirrored_info or "episode_summary" in info
+    assert plain.flock.snapshot() == mirrored.flock.snapshot()

@@ -1,0 +1,140 @@
+"""Law: camera and servo do what real ones do, and nothing while they are switched off."""
+
+import math
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv.envs.observation import observe
+
+OPTIONS = {"n_boats": 10, "n_leaders": 3, "episode_s": 60.0}
+# What the camera shows; phase, target and rudder are known without it.
+SEEN = {"phase": False, "target": False}
+
+
+def roll(env, steps=100, seed=0):
+    """Observations of an episode under fixed actions, and the flock's poses."""
+    observations, poses = [env.reset(seed=seed)[0]], [env.flock.pose]
+    for step in range(steps):
+        observations.append(env.step(np.sin(step + np.arange(3)))[0])
+        poses.append(env.flock.pose)
+    return np.array(observations), np.array(poses)
+
+
+def without_rudder(observations, size):
+    rows = observations.reshape(len(observations), 3, size).copy()
+    rows[..., 7] = 0.0
+    return rows
+
+
+def test_delay_shows_the_frame_before():
+    sharp, poses = roll(flockenv.LeadersEnv(**OPTIONS, observation=SEEN))
+    late, same_poses = roll(flockenv.LeadersEnv(**OPTIONS, observation=SEEN, delay_frames=1))
+    np.testing.assert_array_equal(poses, same_poses)
+    size = sharp.shape[1] // 3
+    np.testing.assert_array_equal(without_rudder(late, size)[1:], without_rudder(sharp, size)[:-1])
+    np.testing.assert_array_equal(late[0], sharp[0])
+    # The rudder itself is known at once.
+    np.testing.assert_array_equal(
+        late.reshape(-1, 3, size)[..., 7], sharp.reshape(-1, 3, size)[..., 7]
+    )
+
+
+def test_reward_is_that_of_the_true_flock():
+    sharp = flockenv.LeadersEnv(**OPTIONS)
+    blurred = flockenv.LeadersEnv(**OPTIONS, delay_frames=1, dropout_rate=0.5)
+    sharp.reset(seed=0)
+    blurred.reset(seed=0)
+    for _ in range(50):
+        assert sharp.step(np.ones(3))[1] == blurred.step(np.ones(3))[1]
+
+
+def test_dropped_boats_stay_where_they_were_seen():
+    blocks = {**SEEN, "neighbors": 0, "order": False}
+    options = {**OPTIONS, "observation": blocks}
+    sharp, _ = roll(flockenv.LeadersEnv(**options), steps=500)
+    dropped, _ = roll(flockenv.LeadersEnv(**options, dropout_rate=0.3), steps=500)
+    sharp, dropped = without_rudder(sharp, 8), without_rudder(dropped, 8)
+    held, count = 0, 0
+    for leader in range(3):
+        shown = sharp[0, leader]
+        for step in range(1, 501):
+            now = dropped[step, leader]
+            if (now == sharp[step, leader]).all():
+                shown = sharp[step, leader]
+            else:
+                np.testing.assert_array_equal(now, shown)
+                held += 1
+            count += 1
+    assert held / count == pytest.approx(0.3, abs=4 * math.sqrt(0.3 * 0.7 / count))
+
+
+def test_dropouts_do_not_depend_on_the_policy():
+    def gaps(rudder):
+        env = flockenv.LeadersEnv(
+            **OPTIONS, dropout_rate=0.3, observation={**SEEN, "neighbors": 0, "order": False}
+        )
+        env.reset(seed=3)
+        shown = [env.observe()]
+        missed = []
+        for _ in range(50):
+            observation = env.step(np.full(3, rudder))[0].reshape(3, 8)[:, 3:7]
+            missed.append((observation == shown[-1]).all(axis=1) if len(shown) > 1 else None)
+            shown.append(observation)
+        return np.array(missed[1:])
+
+    np.testing.assert_array_equal(gaps(1.0), gaps(-1.0))
+
+
+def test_camera_off_is_the_flock_itself():
+    env = flockenv.LeadersEnv(**OPTIONS)
+    env.reset(seed=0)
+    for _ in range(20):
+        observation = env.step(np.zeros(3))[0]
+    np.testing.assert_array_equal(
+        observation.reshape(3, -1), observe(env.flock, rudder=np.zeros(3))
+    )
+
+
+def rudders(env, commands):
+    env.reset(seed=0)
+    found = []
+    for command in commands:
+        env.step(np.array(command))
+        found.append(env._batch.core.rudders().copy())
+    return np.array(found)
+
+
+def test_rate_limit():
+    env = flockenv.LeadersEnv(**OPTIONS, rudder_rate_per_s=3.0)
+    found = rudders(env, [[1.0, -1.0, 0.2]] * 4 + [[-1.0, -1.0, 0.2]] * 2)
+    np.testing.assert_allclose(found[:, 0], [0.3, 0.6, 0.9, 1.0, 0.7, 0.4], atol=1e-12)
+    np.testing.assert_allclose(found[:, 1], [-0.3, -0.6, -0.9, -1.0, -1.0, -1.0], atol=1e-12)
+    np.testing.assert_allclose(found[:, 2], 0.2, atol=1e-12)
+
+
+def test_lag_follows_an_exponential_whatever_the_control_rate():
+    for control_hz in (5.0, 10.0, 50.0):
+        env = flockenv.LeadersEnv(**OPTIONS, rudder_lag_s=0.4, control_hz=control_hz)
+        steps = int(2 * control_hz)
+        found = rudders(env, [[1.0, -0.5, 0.0]] * steps)
+        time = np.arange(1, steps + 1) / control_hz
+        np.testing.assert_allclose(found[:, 0], 1 - np.exp(-time / 0.4), atol=1e-9)
+        np.testing.assert_allclose(found[:, 1], -0.5 * (1 - np.exp(-time / 0.4)), atol=1e-9)
+
+
+def test_the_rudder_that_stands_is_observed():
+    env = flockenv.LeadersEnv(**OPTIONS, rudder_rate_per_s=1.0, rudder_lag_s=0.1)
+    env.reset(seed=0)
+    for _ in range(3):
+        observation = env.step(np.array([1.0, 0.5, -1.0]))[0]
+    np.testing.assert_allclose(
+        observation.reshape(3, -1)[:, 7], env._batch.core.rudders(), atol=1e-7
+    )
+
+
+def test_levels_are_spread_evenly():
+    env = flockenv.LeadersEnv(**OPTIONS, rudder_levels=5)
+    found = rudders(env, [[0, 1, 2], [3, 4, 4]])
+    np.testing.assert_array_equal(found, [[-1.0, -0.5, 0.0], [0.5, 1.0, 1.0]])

@@ -1,0 +1,159 @@
+"""Learned networks: w·tanh(W·x + b) + c clipped to [-1, 1], the same from NumPy as from torch.
+
+On paper: a network without hidden layers whose weights are 0 steers by its bias.
+"""
+
+import itertools
+import json
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv._io.array_file import read_arrays, write_arrays
+from flockenv.envs.observation import OBSERVATION_VERSION, observation_entries
+from flockenv.policies import NetworkPolicy, RandomRudders, StraightAhead, load
+
+SIZE = len(observation_entries())
+
+
+def network(hidden: int = 8, seed: int = 0, **kwargs) -> NetworkPolicy:
+    random = np.random.default_rng(seed)
+    sizes = [SIZE, hidden, hidden, 1]
+    weights = [random.normal(0, 0.3, pair) for pair in itertools.pairwise(sizes)]
+    return NetworkPolicy(weights, [random.normal(0, 0.1, n) for n in sizes[1:]], **kwargs)
+
+
+def test_without_weights_the_bias_steers():
+    policy = NetworkPolicy([np.zeros((SIZE, 1))], [[0.25]])
+    rudders, state = policy.predict(np.ones((5, 3 * SIZE)), state="kept")
+    assert rudders.dtype == np.float32
+    assert state == "kept"
+    np.testing.assert_array_equal(rudders, np.full((5, 3), 0.25, np.float32))
+    beyond = NetworkPolicy([np.zeros((SIZE, 1))], [[-7.0]])
+    assert beyond.predict(np.ones(SIZE))[0] == -1.0
+
+
+@pytest.mark.parametrize("activation", ["tanh", "relu"])
+def test_numpy_and_torch_agree_to_rounding(activation):
+    torch = pytest.importorskip("torch")
+    policy = network(hidden=32, activation=activation)
+    observations = np.random.default_rng(1).uniform(-2, 2, (1000, SIZE)).astype(np.float32)
+    values = torch.from_numpy(observations)
+    for place, (weight, bias) in enumerate(zip(policy.weights, policy.biases, strict=True)):
+        values = values @ torch.from_numpy(weight) + torch.from_numpy(bias)
+        if place < 2:
+            values = getattr(torch, activation)(values)
+    expected = values.clamp(-1, 1).numpy()[:, 0]
+    np.testing.assert_allclose(policy.predict(observations)[0][:, 0], expected, atol=2e-6)
+
+
+@pytest.mark.parametrize("policy", [network(), StraightAhead(), RandomRudders(3)])
+def test_every_form_of_observation(policy):
+    for shape, rudders in [((SIZE,), (1,)), ((3 * SIZE,), (3,)), ((4, 2 * SIZE), (4, 2))]:
+        actions, _ = policy.predict(np.zeros(shape, np.float32))
+        assert actions.shape == rudders
+        assert actions.dtype == np.float32
+        assert (np.abs(actions) <= 1).all()
+    actions, _ = policy.predict({"leader_0": np.zeros(SIZE), "leader_1": np.zeros(SIZE)})
+    assert {name: each.shape for name, each in actions.items()} == {
+        "leader_0": (1,),
+        "leader_1": (1,),
+    }
+    with pytest.raises(flockenv.ParameterError, match=f"multiple of {SIZE}, "):
+        policy.predict(np.zeros(SIZE + 1))
+
+
+def test_a_file_keeps_every_bit(tmp_path):
+    policy = network(
+        mirror_to_target=True, activation="relu", made={"command": "train", "seed": "1"}
+    )
+    policy.save(tmp_path / "policy.npz")
+    again = load(tmp_path / "policy.npz")
+    observations = np.random.default_rng(2).uniform(-1, 1, (50, SIZE))
+    np.testing.assert_array_equal(again.predict(observations)[0], policy.predict(observations)[0])
+    assert again.mirror_to_target
+    assert again.made == {"command": "train", "seed": "1"}
+    assert again.activation == "relu"
+
+
+def test_a_smaller_layout(tmp_path):
+    blocks = {"neighbors": 0, "order": False}
+    size = len(observation_entries(blocks))
+    policy = NetworkPolicy([np.zeros((size, 1))], [[0.5]], observation=blocks)
+    policy.save(tmp_path / "policy.npz")
+    run = flockenv.simulate(
+        flockenv.FlockParameters(n_boats=4, n_leaders=1),
+        1,
+        1.0,
+        policy=load(tmp_path / "policy.npz"),
+    )
+    assert np.isfinite(run.pose).all()
+
+
+def changed(policy, tmp_path, **entries):
+    """The policy's file with other entries in its header, or other arrays."""
+    policy.save(tmp_path / "policy.npz")
+    arrays = read_arrays(tmp_path / "policy.npz")
+    header = json.loads(str(arrays["header"]))
+    for name, value in entries.items():
+        if name in header or name == "kind":
+            header[name] = value
+        else:
+            arrays[name] = value
+    arrays["header"] = np.array(json.dumps(header))
+    write_arrays(tmp_path / "changed.npz", arrays)
+    return tmp_path / "changed.npz"
+
+
+@pytest.mark.parametrize(
+    ("entries", "message"),
+    [
+        ({"observation_version": OBSERVATION_VERSION + 1}, "version .* of the observation"),
+        ({"observation_version": str(OBSERVATION_VERSION)}, "observation_version = '1' is not"),
+        ({"kind": "foo"}, "kind = 'foo' is not accepted: one of network, leaning law"),
+        ({"format": "something else"}, "no policy in the format"),
+        ({"layers": 2}, "layer 1 has weights"),
+        ({"layers": 4}, "no whole policy: the array weight_3 is missing"),
+        ({"layers": "3"}, "no whole policy: layers = '3' is not accepted: a whole number"),
+        ({"layers": 10**400}, "no whole policy"),
+        ({"layers": 0}, "0 weights"),
+        ({"activation": "exec"}, "tanh, relu"),
+        ({"activation": ["tanh"]}, r"activation = \['tanh'\] is not accepted: a text"),
+        ({"observation": {"neighbours": 3}}, "neighbours"),
+        ({"observation": {"neighbors": 3}}, "layer 0"),
+        ({"observation": 3}, "observation = 3 is not accepted: a table"),
+        ({"made": 3}, "made = 3 is not accepted: a table"),
+        ({"mirror_to_target": "no"}, "mirror_to_target = 'no' is not accepted: true or false"),
+        ({"weight_0": np.full((SIZE, 8), np.nan)}, "not finite"),
+        ({"weight_0": np.full((SIZE, 8), 1e300)}, "not finite"),
+        ({"weight_0": np.full((SIZE, 8), "fw")}, "weight_0 holds <U2, which is not accepted: numb"),
+        ({"bias_0": np.zeros(9)}, "layer 0"),
+    ],
+)
+def test_files_that_are_no_policy_are_named(tmp_path, entries, message):
+    path = changed(network(), tmp_path, **entries)
+    with pytest.raises(flockenv.ParameterError, match=message) as raised:
+        load(path)
+    assert str(raised.value).startswith(str(path))
+
+
+def test_damaged_and_foreign_files(tmp_path):
+    network().save(tmp_path / "policy.npz")
+    data = (tmp_path / "policy.npz").read_bytes()
+    for place, damaged in enumerate([b"", data[:100], data[:-50], b"PK" + bytes(1000)]):
+        path = tmp_path / f"{place}.npz"
+        path.write_bytes(damaged)
+        with pytest.raises(flockenv.ParameterError, match=path.name):
+            load(path)
+    with pytest.raises(FileNotFoundError):
+        load(tmp_path / "nowhere.npz")
+    flockenv.simulate(flockenv.FlockParameters(), 1, 1.0).save(tmp_path / "run.npz")
+    with pytest.raises(flockenv.ParameterError, match=r"run\.npz is no policy: it has no header"):
+        load(tmp_path / "run.npz")
+
+
+def test_random_rudders_are_seeded():
+    first, again = (RandomRudders(7).predict(np.zeros((9, SIZE)))[0] for _ in range(2))
+    np.testing.assert_array_equal(first, again)
+    assert len(np.unique(first)) == 9

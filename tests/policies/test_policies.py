@@ -1,0 +1,203 @@
+"""Law: closed-form laws read the observation that a learner gets; eq. (10) comes out to 1e-6."""
+
+import copy
+import math
+import pickle
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv.envs.observation import observation_entries, observe
+from flockenv.policies import DampedLaw, SignCorrectedLaw, SteeringLaw, WithLevels
+
+LAWS = (SteeringLaw, SignCorrectedLaw, DampedLaw)
+
+
+@pytest.mark.parametrize("target", ["cw", "ccw", "alternate"])
+@pytest.mark.parametrize("pool", ["500-boats", "table-1"])
+def test_steering_law_from_the_observation(target, pool):
+    env = flockenv.LeadersEnv(n_leaders=4, target=target, pool=pool, episode_s=240.0, bw_s=0.4)
+    law = SteeringLaw()
+    observation, _ = env.reset(seed=2)
+    worst, over = 0.0, False
+    while not over:
+        action, _ = law.predict(observation)
+        worst = max(worst, np.abs(action - env.flock.steering_law()).max())
+        observation, _, _, over, _ = env.step(action)
+    assert worst < 1e-6
+
+
+def test_steering_law_agrees_at_its_jump():
+    # A boat that heads exactly the wrong way turns left, by the pose and by the observation.
+    for target, wrong in (("cw", math.pi / 2), ("ccw", -math.pi / 2)):
+        for nudge in (0.0, 1e-15, -1e-15, 1e-9, -1e-9):
+            for angle in np.linspace(0, 2 * math.pi, 25):
+                parameters = flockenv.FlockParameters(n_boats=2, n_leaders=1, target=target)
+                flock = flockenv.Flock(parameters, 0)
+                pose = [
+                    [140 * math.cos(angle), 140 * math.sin(angle), angle + wrong + nudge],
+                    [-140 * math.cos(angle), -140 * math.sin(angle), 0],
+                ]
+                flock.set_state(np.array(pose), np.zeros((2, 3)))
+                action, _ = SteeringLaw().predict(observe(flock))
+                assert action[0, 0] == pytest.approx(flock.steering_law()[0], abs=1e-6)
+
+
+def test_mirrored_observations_give_the_mirrored_rudder():
+    env = flockenv.LeadersEnv(target="ccw", mirror_to_target=True, episode_s=60.0)
+    law = SteeringLaw(mirror_to_target=True)
+    observation, _ = env.reset(seed=0)
+    for _ in range(600):
+        action, _ = law.predict(observation)
+        np.testing.assert_allclose(-action, env.flock.steering_law(), atol=1e-6)
+        observation, *_ = env.step(action)
+    np.testing.assert_allclose(env._batch.core.rudders(), -action, atol=1e-6)
+
+
+def random_observations(count):
+    env = flockenv.LeadersVectorEnv(count, n_leaders=3, target="random")
+    env.reset(seed=0)
+    for _ in range(35):
+        observations, *_ = env.step(env.action_space.sample())
+    return observations
+
+
+def read(observation, name, block="own"):
+    names = [(entry.block, entry.name) for entry in observation_entries()]
+    return float(observation[names.index((block, name))])
+
+
+def expected_rudder(law, observation):
+    target = read(observation, "target", "target")
+    phi = math.atan2(read(observation, "sin_orientation"), read(observation, "cos_orientation"))
+    delta = math.remainder(phi - target * math.pi / 2, 2 * math.pi)
+    forward, spin = read(observation, "forward_velocity"), -2 * read(observation, "clockwise_spin")
+    if isinstance(law, SteeringLaw):
+        rudder = 6 * delta / math.pi
+    elif isinstance(law, SignCorrectedLaw):
+        rudder = law.gains["gain"] * delta * (-1 if forward < 0 else 1)
+    elif forward < 0:
+        rudder = law.gains["damping"] * spin - law.gains["backward_gain"] * delta
+    else:
+        rudder = law.gains["gain"] * delta
+    return max(-1.0, min(1.0, rudder))
+
+
+@pytest.mark.parametrize(
+    "law", [SteeringLaw(), SignCorrectedLaw(), SignCorrectedLaw(0.7), DampedLaw(0.5, 0.2, 0.3)]
+)
+def test_formulas(law):
+    observations = random_observations(40).reshape(120, -1)
+    expected = [expected_rudder(law, observation) for observation in observations]
+    np.testing.assert_allclose(law.predict(observations)[0][:, 0], expected, atol=1e-6)
+    assert len(np.unique(np.round(expected, 3))) > 5
+
+
+@pytest.mark.parametrize("kind", LAWS)
+def test_shapes_follow_the_action_spaces(kind):
+    law, size = kind(), len(observation_entries())
+    observations = random_observations(5)
+    assert observations.shape == (5, 3 * size)
+    rudders, state = law.predict(observations, state="kept", episode_start=None)
+    assert rudders.shape == (5, 3)
+    assert rudders.dtype == np.float32
+    assert state == "kept"
+    split = observations.reshape(5, 3, size)
+    np.testing.assert_array_equal(law.predict(split)[0], rudders[..., None])
+    np.testing.assert_array_equal(law.predict(split[0])[0], rudders[0][:, None])
+    np.testing.assert_array_equal(law.predict(split[0, 0])[0], rudders[0, :1])
+    by_agent = {f"leader_{leader}": split[0, leader] for leader in range(3)}
+    found, _ = law.predict(by_agent)
+    assert {agent: float(each[0]) for agent, each in found.items()} == {
+        f"leader_{leader}": rudders[0, leader] for leader in range(3)
+    }
+
+
+@pytest.mark.parametrize("kind", LAWS)
+def test_a_block_that_is_off_is_named(kind):
+    for block in ("own", "target"):
+        with pytest.raises(flockenv.ParameterError, match=block):
+            kind(observation={block: False})
+    kind(observation={"target": False}, mirror_to_target=True)
+    env = flockenv.LeadersEnv(observation={"order": False, "neighbors": 2})
+    observation, _ = env.reset(seed=0)
+    action, _ = kind(observation={"order": False, "neighbors": 2}).predict(observation)
+    assert action in env.action_space
+    for wrong in (observation[:-1], observation.reshape(-1)[:5], np.float32(1.0), np.zeros((2, 0))):
+        with pytest.raises(flockenv.ParameterError, match="observation has shape"):
+            kind(observation={"order": False, "neighbors": 2}).predict(wrong)
+
+
+def test_gains_are_checked():
+    with pytest.raises(flockenv.ParameterError, match="damping"):
+        DampedLaw(damping=math.nan)
+
+
+def test_laws_survive_pickles():
+    law = DampedLaw(1.0, 0.3, 2.0, observation={"order": False}, mirror_to_target=True)
+    for again in (pickle.loads(pickle.dumps(law)), copy.deepcopy(law)):
+        assert (again.gains, again.observation) == (law.gains, law.observation)
+        assert again.mirror_to_target
+    assert "damping=2" in repr(law)
+
+
+@pytest.mark.parametrize("kind", LAWS)
+def test_levels_are_the_nearest_ones(kind):
+    observations = random_observations(40)
+    rudders, _ = kind().predict(observations)
+    for count in (2, 3, 8, 1001):
+        law = pickle.loads(pickle.dumps(WithLevels(kind(), count)))
+        levels, _ = law.predict(observations)
+        assert levels.dtype == np.int64
+        assert levels.shape == rudders.shape
+        nearest = np.linspace(-1, 1, count)[levels]
+        assert np.abs(nearest - rudders).max() <= 1 / (count - 1) + 1e-6
+
+
+@pytest.mark.parametrize("kind", LAWS)
+def test_laws_drive_environments_with_levels(kind):
+    options = {"n_boats": 6, "n_leaders": 2, "rudder_levels": 5, "episode_s": 3.0}
+    law = WithLevels(kind(), 5)
+    env = flockenv.LeadersEnv(**options)
+    venv = flockenv.LeadersVectorEnv(2, **options)
+    parallel = flockenv.parallel_env(**options)
+    rows, _ = env.reset(seed=0)
+    batch, _ = venv.reset(seed=0)
+    by_agent, _ = parallel.reset(seed=0)
+    for _ in range(30):
+        action, actions = law.predict(rows)[0], law.predict(by_agent)[0]
+        assert action in env.action_space
+        assert all(actions[agent] in parallel.action_space(agent) for agent in parallel.agents)
+        rows, *_ = env.step(action)
+        batch, *_ = venv.step(law.predict(batch)[0])
+        by_agent, *_ = parallel.step(actions)
+        np.testing.assert_array_equal(rows, np.concatenate(list(by_agent.values())))
+        np.testing.assert_array_equal(rows, batch[0])
+
+
+def test_rudders_of_a_law_are_no_levels():
+    env = flockenv.LeadersEnv(n_boats=6, n_leaders=2, rudder_levels=3)
+    observation, _ = env.reset(seed=0)
+    with pytest.raises(flockenv.ParameterError, match="whole numbers from 0 to 2"):
+        env.step(SteeringLaw().predict(observation)[0])
+    with pytest.raises(flockenv.ParameterError, match="rudder_levels = 1"):
+        WithLevels(SteeringLaw(), 1)
+    with pytest.raises(flockenv.ParameterError, match="NaN"):
+        WithLevels(SteeringLaw(), 3).predict(np.full_like(observation, np.nan))
+    with pytest.raises(flockenv.ParameterError, match="NaN"):
+        SteeringLaw().predict(np.full_like(observation, np.nan))
+
+
+def test_sign_correction_helps():
+    # The head-room of the issue, in the small: paired episodes at the critical noise of `table-1`.
+    means = {}
+    for law in (SteeringLaw(), SignCorrectedLaw()):
+        venv = flockenv.LeadersVectorEnv(
+            16, pool="table-1", bw_s=0.4, episode_s=240.0, autoreset_mode="same_step"
+        )
+        observations, _ = venv.reset(seed=0)
+        for _ in range(2400):
+            observations, _, _, _, infos = venv.step(law.predict(observations)[0])
+        means[type(law)] = infos["final_info"]["episode_summary"]["signed_order"].mean()
+    assert means[SignCorrectedLaw] > means[SteeringLaw] + 0.03

@@ -1,0 +1,227 @@
+"""Law: pictures are a function of the flock alone, in every face, and need no screen."""
+
+import copy
+import subprocess
+import sys
+import warnings
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.wrappers import RecordVideo
+from pettingzoo.test import render_test
+from pettingzoo.utils.conversions import parallel_to_aec
+
+import flockenv
+from flockenv import rendering
+
+SHORT = {"n_boats": 8, "n_leaders": 2, "episode_s": 3.0}
+SMALL = {**SHORT, "render_size": (160, 120)}
+POOLS = ["500-boats", "table-1", (100.0, 0.0), (float("inf"), 0.0), (float("inf"), 30.0)]
+
+
+def flock(**fields):
+    given = {"n_boats": 8, "n_leaders": 2, **fields}
+    return flockenv.Flock(flockenv.FlockParameters().replace(**given), seed=3)
+
+
+@pytest.mark.parametrize("pool", POOLS, ids=str)
+@pytest.mark.parametrize("target", ["cw", "ccw"])
+def test_frames_of_every_pool(pool, target):
+    scene = flock(pool=pool, target=target)
+    scene.advance(5.0)
+    picture = rendering.frame(scene, 320, 240)
+    assert picture.shape == (240, 320, 3)
+    assert picture.dtype == np.uint8
+    assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 20
+    np.testing.assert_array_equal(picture, rendering.frame(copy.copy(scene), 320, 240))
+    scene.advance(1.0)
+    assert (picture != rendering.frame(scene, 320, 240)).any()
+
+
+def test_a_returned_frame_is_never_written_to_again():
+    scene = flock()
+    first = rendering.frame(scene, 100, 100)
+    kept = first.copy()
+    scene.advance(3.0)
+    rendering.frame(scene, 100, 100)
+    np.testing.assert_array_equal(first, kept)
+
+
+@pytest.mark.parametrize("size", [(63, 100), (100, 4097), (-1, 100), (2**40, 100)])
+def test_wrong_sizes(size):
+    with pytest.raises(flockenv.ParameterError, match=r"width|height"):
+        rendering.frame(flock(), *size)
+    with pytest.raises(flockenv.ParameterError, match=r"width|height"):
+        flockenv.LeadersEnv(render_mode="rgb_array", render_size=size, **SHORT)
+
+
+@pytest.mark.parametrize("size", [(100.5, 100), ("a", 100), (None, 100), (True, 100)])
+def test_sizes_of_wrong_type(size):
+    with pytest.raises((TypeError, flockenv.ParameterError), match="width"):
+        rendering.frame(flock(), *size)
+
+
+@pytest.mark.parametrize("size", [600, (600,), (1, 2, 3), None])
+def test_render_size_is_a_pair(size):
+    with pytest.raises(flockenv.ParameterError, match="render_size"):
+        flockenv.LeadersEnv(render_mode="rgb_array", render_size=size, **SHORT)
+
+
+def test_faces_show_the_same_flock():
+    single = gymnasium.make("flockenv/Leaders-v0", render_mode="rgb_array", **SMALL)
+    parallel = flockenv.parallel_env(render_mode="rgb_array", **SMALL)
+    vector = gymnasium.make_vec("flockenv/Leaders-v0", num_envs=2, render_mode="rgb_array", **SMALL)
+    for env in (single, parallel, vector):
+        env.reset(seed=5)
+    picture, frames = single.render(), vector.render()
+    assert picture.shape == (120, 160, 3)
+    np.testing.assert_array_equal(picture, parallel.render())
+    assert isinstance(frames, tuple)
+    assert len(frames) == 2
+    np.testing.assert_array_equal(picture, frames[0])
+    assert (frames[0] != frames[1]).any()
+
+
+def test_faces_agree_with_the_flock_and_the_default_size():
+    env = flockenv.LeadersEnv(render_mode="rgb_array", **SHORT)
+    env.reset(seed=5)
+    picture = env.render()
+    assert picture.shape == (600, 600, 3)
+    np.testing.assert_array_equal(picture, rendering.frame(env.flock))
+
+
+def test_rendering_changes_nothing():
+    seen, unseen = (flockenv.LeadersEnv(render_mode=mode, **SMALL) for mode in ("rgb_array", None))
+    for env in (seen, unseen):
+        env.reset(seed=1)
+    for _ in range(10):
+        seen.render()
+        for env in (seen, unseen):
+            env.step([0.5, -0.5])
+    assert seen.get_state() == unseen.get_state()
+
+
+def test_before_a_reset_and_after_the_end():
+    env = flockenv.parallel_env(render_mode="rgb_array", **SMALL)
+    with pytest.raises(flockenv.EpisodeError):
+        env.render()
+    env.reset(seed=0)
+    while env.agents:
+        env.step({agent: [0.0] for agent in env.agents})
+    assert env.render().shape == (120, 160, 3)
+
+
+def test_without_a_render_mode_nothing_is_drawn():
+    for env in (flockenv.LeadersEnv(**SHORT), flockenv.LeadersVectorEnv(2, **SHORT)):
+        env.reset(seed=0)
+        assert env.render() is None
+
+
+@pytest.mark.parametrize(
+    ("face", "modes"),
+    [
+        (flockenv.LeadersEnv, ["human", "rgb_array"]),
+        (flockenv.parallel_env, ["human", "rgb_array"]),
+        (flockenv.LeadersVectorEnv, ["rgb_array"]),
+    ],
+)
+def test_metadata(face, modes):
+    env = face(control_hz=20.0, **SHORT)
+    assert env.metadata["render_modes"] == modes
+    assert env.metadata["render_fps"] == 20.0
+    assert type(env).metadata["render_fps"] == 10.0
+    for wrong in {"ansi", "human"} - set(modes):
+        with pytest.raises(flockenv.ParameterError, match=f"render_mode = '{wrong}'"):
+            face(render_mode=wrong, **SHORT)
+
+
+def test_pettingzoo_render_test():
+    render_test(lambda **mode: parallel_to_aec(flockenv.parallel_env(**SMALL, **mode)))
+
+
+def test_gymnasium_records_a_video(tmp_path):
+    moviepy = pytest.importorskip("moviepy")
+    env = gymnasium.make("flockenv/Leaders-v0", render_mode="rgb_array", **SMALL)
+    env = RecordVideo(env, str(tmp_path / "videos"), disable_logger=True)
+    env.reset(seed=0)
+    over = False
+    while not over:
+        over = env.step(np.zeros(2, np.float32))[3]
+    env.close()
+    (path,) = tmp_path.glob("videos/*.mp4")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        clip = moviepy.VideoFileClip(str(path))
+    assert clip.size == [160, 120]
+    assert clip.fps == pytest.approx(10.0)
+    # 30 steps and the start, at 10 frames a second.
+    assert clip.duration == pytest.approx(3.1, abs=0.15)
+    assert np.ptp(clip.get_frame(1.0)) > 100
+    clip.close()
+
+
+@pytest.mark.parametrize("suffix", [".gif", ".png", ".apng"])
+def test_animation_files(tmp_path, suffix):
+    image = pytest.importorskip("PIL.Image")
+    scene, frames = flock(), []
+    for _ in range(4):
+        frames.append(rendering.frame(scene, 120, 100))
+        scene.advance(0.5)
+    path = tmp_path / f"run{suffix}"
+    rendering.save_animation(path, iter(frames), fps=10)
+    with image.open(path) as file:
+        assert file.n_frames == 4
+        assert file.info["loop"] == 0
+        for index, frame in enumerate(frames):
+            file.seek(index)
+            shown = np.asarray(file.convert("RGB"))
+            error = np.abs(shown.astype(float) - frame).mean()
+            assert error == 0.0 if suffix != ".gif" else error < 2.0
+        assert file.info["duration"] == 100
+    assert [each.name for each in tmp_path.iterdir()] == [path.name]
+
+
+@pytest.mark.parametrize(
+    ("name", "frames", "fps", "error"),
+    [
+        ("run.mp4", [np.zeros((4, 4, 3), np.uint8)], 10, flockenv.ParameterError),
+        ("run.gif", [], 10, flockenv.ParameterError),
+        ("run.gif", [np.zeros((4, 4, 3), np.uint8)], 0, flockenv.ParameterError),
+        ("run.gif", [np.zeros((4, 4, 3), np.uint8)], float("nan"), flockenv.ParameterError),
+        ("run.gif", [np.zeros((4, 4, 3), np.uint8)], "fast", TypeError),
+        ("run.png", [np.zeros((4, 4, 3), np.float64)], 10, TypeError),
+        ("run.png", [np.zeros((4, 4), np.uint8)], 10, TypeError),
+        ("run.png", [np.zeros((4, 4, 4), np.uint8)], 10, flockenv.ParameterError),
+        ("run.png", [None], 10, TypeError),
+        (
+            "run.png",
+            [np.zeros((4, 4, 3), np.uint8), np.zeros((4, 5, 3), np.uint8)],
+            10,
+            flockenv.ParameterError,
+        ),
+    ],
+)
+def test_animations_that_cannot_be(tmp_path, name, frames, fps, error):
+    path = tmp_path / name
+    path.write_bytes(b"what was there before")
+    with pytest.raises(error):
+        rendering.save_animation(path, frames, fps)
+    assert path.read_bytes() == b"what was there before"
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_frames_in_any_memory_layout(tmp_path):
+    frame = rendering.frame(flock(), 64, 80)
+    for name, each in (("a.png", frame), ("b.png", np.asfortranarray(frame))):
+        rendering.save_animation(tmp_path / name, [each, each], 10)
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+
+
+def test_import_needs_no_drawing():
+    code = (
+        "import sys, flockenv; flockenv.LeadersEnv().reset(seed=0); "
+        "loaded = {'pygame', 'moviepy', 'PIL'} & set(sys.modules); "
+        "sys.exit(str(loaded) if loaded else 0)"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)

@@ -1,0 +1,87 @@
+"""Every engine gives the same bits, and each result as soon as it is finished."""
+
+import os
+import threading
+from pathlib import Path
+
+import pytest
+
+import flockenv
+from flockenv.runs.executors import ENGINES, Engine, joblib, local, named
+from flockenv.runs.spec import RunSpec
+from flockenv.runs.store import RunStore, run_missing
+
+SCENE = flockenv.FlockParameters.preset("paper").replace(n_boats=8)
+SPECS = [RunSpec(parameters=SCENE, seed=seed, duration_s=20.0) for seed in range(4)]
+
+
+def files(folder: Path, engine: Engine) -> dict[str, bytes]:
+    assert run_missing(SPECS, RunStore(folder), engine, workers=2) == {}
+    return {path.name: path.read_bytes() for path in folder.rglob("*.npz")}
+
+
+def check_same_files(engine: Engine, folder: Path) -> None:
+    expected = files(folder / "one", local)
+    assert len(expected) == len(SPECS)
+    assert files(folder / "other", engine) == expected
+
+
+def test_joblib_writes_the_files_of_local(tmp_path: Path) -> None:
+    check_same_files(joblib, tmp_path)
+
+
+@pytest.mark.ray
+def test_ray_writes_the_files_of_local(tmp_path: Path) -> None:
+    import ray
+
+    check_same_files(named("ray"), tmp_path)
+    assert not ray.is_initialized()
+
+
+@pytest.mark.ray
+def test_a_connected_ray_is_used_and_left_running(tmp_path: Path) -> None:
+    import ray
+
+    ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
+    try:
+        check_same_files(named("ray"), tmp_path)
+        assert ray.is_initialized()
+    finally:
+        ray.shutdown()
+
+
+def test_local_yields_what_is_finished_while_others_run() -> None:
+    gate = threading.Event()
+
+    def work(item: int) -> int:
+        if item == 0:
+            assert gate.wait(timeout=60)
+        return 10 * item
+
+    found = []
+    for place, value in local(work, [0, 1, 2], workers=2):
+        found.append((place, value))
+        if len(found) == 2:
+            gate.set()
+    assert found == [(1, 10), (2, 20), (0, 0)]
+
+
+def test_an_error_in_an_item_ends_the_work() -> None:
+    with pytest.raises(ZeroDivisionError):
+        list(local(lambda item: 1 // item, [1, 0, 1], workers=1))
+
+
+def process(item: int) -> int:
+    return os.getpid()
+
+
+def test_joblib_runs_in_other_processes() -> None:
+    places, pids = zip(*joblib(process, range(3), workers=2), strict=True)
+    assert sorted(places) == [0, 1, 2]
+    assert os.getpid() not in pids
+
+
+def test_an_unknown_engine_is_refused() -> None:
+    with pytest.raises(flockenv.ParameterError, match="local, joblib, ray"):
+        named("slurm")
+    assert set(ENGINES) == {"local", "joblib", "ray"}

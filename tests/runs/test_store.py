@@ -1,0 +1,243 @@
+"""A finished run is kept whole and comes back bit for bit; whatever else lies there is named."""
+
+import os
+import resource
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv.runs import store as run_store
+from flockenv.runs.executors import local
+from flockenv.runs.spec import KEEP, ORDER_NAMES, RunResult, RunSpec, execute
+from flockenv.runs.store import RunStore, StorageError, StoreWarning, run_missing
+
+
+@pytest.fixture
+def scene() -> flockenv.FlockParameters:
+    return flockenv.FlockParameters.preset("simulation").replace(n_boats=6, pool="table-1")
+
+
+@pytest.fixture
+def spec(scene: flockenv.FlockParameters) -> RunSpec:
+    return RunSpec(parameters=scene, seed=3, duration_s=30.0)
+
+
+def same(one: RunResult, other: RunResult) -> bool:
+    mine, theirs = one.arrays(), other.arrays()
+    return mine.keys() == theirs.keys() and all(
+        mine[name].dtype == theirs[name].dtype and np.array_equal(mine[name], theirs[name])
+        for name in mine
+    )
+
+
+@pytest.mark.parametrize("keep", KEEP)
+def test_a_kept_run_comes_back(scene: flockenv.FlockParameters, tmp_path: Path, keep: str) -> None:
+    spec = RunSpec(parameters=scene, seed=3, duration_s=30.0, keep=keep)
+    store = RunStore(tmp_path)
+    assert store.load(spec) is None
+    result = execute(spec)
+    store.save(result)
+    loaded = store.load(spec)
+    assert loaded is not None
+    assert same(loaded, result)
+    recording = flockenv.simulate(scene, 3, 30.0)
+    frames = np.ones(301, bool)
+    if keep == "window":
+        frames = recording.in_analysis_window & (recording.time_s > 3.0)
+        assert loaded.analysed.all()
+    assert (loaded.time_s == recording.time_s[frames]).all()
+    for name in ORDER_NAMES:
+        single = getattr(recording.order, name)[frames].astype(np.float32)
+        assert (getattr(loaded.order, name) == single).all()
+    if keep == "poses":
+        assert loaded.pose is not None
+        assert (loaded.pose == recording.pose.astype(np.float32)).all()
+
+
+def test_all_that_a_result_depends_on_is_in_the_key(spec: RunSpec) -> None:
+    base = {name: getattr(spec, name) for name in ("parameters", "seed", "duration_s", "sample_hz")}
+    changes = [
+        {},
+        {"seed": 4},
+        {"duration_s": 31.0},
+        {"sample_hz": 5.0},
+        {"keep": "order"},
+        {"parameters": spec.parameters.replace(c4=0.11)},
+    ]
+    assert len({RunSpec(**base | change).key for change in changes}) == len(changes)
+    assert RunSpec(**base).key == spec.key
+
+
+@pytest.mark.parametrize("damage", ["cut", "flip", "nonsense", "empty"])
+def test_damage_is_named_and_kept(spec: RunSpec, tmp_path: Path, damage: str) -> None:
+    store = RunStore(tmp_path)
+    store.save(execute(spec))
+    whole = store.path(spec).read_bytes()
+    middle = len(whole) // 2
+    flipped = whole[:middle] + bytes([whole[middle] ^ 1]) + whole[middle + 1 :]
+    broken = {"cut": whole[:middle], "flip": flipped, "nonsense": b"no run", "empty": b""}[damage]
+    store.path(spec).write_bytes(broken)
+    with pytest.warns(StoreWarning, match=spec.key):
+        assert store.load(spec) is None
+    (aside,) = (tmp_path / "set_aside").iterdir()
+    assert aside.read_bytes() == broken
+    assert run_missing([spec], store) == {}
+    assert store.path(spec).read_bytes() == whole
+
+
+@pytest.mark.parametrize("name", ["RESULTS_VERSION", "__version__"])
+def test_another_version_is_named_and_kept(
+    spec: RunSpec, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    lines: list[str] = []
+    store = RunStore(tmp_path, lines.append)
+    with monkeypatch.context() as patched:
+        patched.setattr(run_store if name.isupper() else run_store._core, name, "0.0.7")
+        store.save(execute(spec))
+    assert store.load(spec) is None
+    assert "another version" in lines[0]
+    assert "0.0.7" in lines[0]
+    assert len(list((tmp_path / "set_aside").iterdir())) == 1
+    run_missing([spec], store)
+    assert store.load(spec) is not None
+    assert len(lines) == 1
+
+
+def test_a_run_under_a_wrong_name_is_not_taken(spec: RunSpec, tmp_path: Path) -> None:
+    store = RunStore(tmp_path)
+    other = RunSpec(parameters=spec.parameters, seed=4, duration_s=30.0)
+    store.save(execute(other))
+    store.path(spec).parent.mkdir(exist_ok=True)
+    store.path(other).rename(store.path(spec))
+    with pytest.warns(StoreWarning, match="another run"):
+        assert store.load(spec) is None
+
+
+def test_only_missing_runs_are_made_and_failures_cost_no_others(
+    spec: RunSpec, tmp_path: Path
+) -> None:
+    store = RunStore(tmp_path)
+    impossible = RunSpec(parameters=spec.parameters.replace(n_boats=900), seed=0, duration_s=30.0)
+    seen: list[RunSpec] = []
+    failures = run_missing([impossible, spec, spec], store, progress=seen.append)
+    assert list(failures) == [impossible]
+    assert "fit" in str(failures[impossible])
+    assert set(seen) == {spec, impossible}
+    before = store.path(spec).stat().st_mtime_ns
+    assert run_missing([spec], store) == {}
+    assert store.path(spec).stat().st_mtime_ns == before
+
+
+def test_an_interruption_keeps_what_was_finished(spec: RunSpec, tmp_path: Path) -> None:
+    store = RunStore(tmp_path)
+    specs = [RunSpec(parameters=spec.parameters, seed=seed, duration_s=30.0) for seed in range(6)]
+    finished: list[RunSpec] = []
+
+    def interrupt(spec: RunSpec) -> None:
+        finished.append(spec)
+        if len(finished) == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run_missing(specs, store, local, interrupt, workers=1)
+    assert all(store.load(spec) is not None for spec in finished)
+    assert sum(store.path(spec).exists() for spec in specs) == 2
+    run_missing(specs, store)
+    assert all(same(store.load(spec), execute(spec)) for spec in specs)  # type: ignore[arg-type]
+
+
+def test_a_full_disk_is_named_and_leaves_no_half_file(spec: RunSpec, tmp_path: Path) -> None:
+    store = RunStore(tmp_path)
+    result = execute(spec)
+    # What a full disk does, for this process only: writes beyond 1 kB fail.
+    kept = resource.getrlimit(resource.RLIMIT_FSIZE)
+    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1024, kept[1]))
+    try:
+        with pytest.raises(StorageError, match=r"cannot be written.*goes on"):
+            store.save(result)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, kept)
+        signal.signal(signal.SIGXFSZ, handler)
+    assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
+    store.save(result)
+    assert store.load(spec) is not None
+
+
+def test_an_unwritable_folder_is_named(spec: RunSpec, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(StorageError, match="file"):
+        RunStore(tmp_path / "file").save(execute(spec))
+
+
+def test_a_run_that_cannot_be_read_is_named_and_stays(spec: RunSpec, tmp_path: Path) -> None:
+    store = RunStore(tmp_path)
+    # Also root may not read a folder as a file.
+    store.path(spec).mkdir(parents=True)
+    with pytest.raises(StorageError, match=f"{spec.key}.*cannot be read"):
+        store.load(spec)
+    assert store.path(spec).is_dir()
+
+
+KILLED = """
+import os, signal, sys
+from flockenv import FlockParameters
+from flockenv._io import atomic_write
+from flockenv.runs.store import RunStore
+from flockenv.runs.spec import RunSpec, execute
+scene = FlockParameters.preset("simulation").replace(n_boats=6, pool="table-1")
+result = execute(RunSpec(parameters=scene, seed=3, duration_s=30.0))
+atomic_write.os.fsync = lambda number: os.kill(os.getpid(), signal.SIGKILL)
+RunStore(sys.argv[1]).save(result)
+"""
+
+
+def test_a_kill_in_the_middle_of_writing_leaves_nothing_to_be_taken(
+    spec: RunSpec, tmp_path: Path
+) -> None:
+    done = subprocess.run([sys.executable, "-c", KILLED, str(tmp_path)], timeout=60, check=False)
+    assert done.returncode == -signal.SIGKILL
+    (left,) = (path for path in tmp_path.rglob("*") if path.is_file())
+    assert left.suffix == ".tmp"
+    assert os.fspath(left.parent) == os.fspath(RunStore(tmp_path).path(spec).parent)
+    assert RunStore(tmp_path).load(spec) is None
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"keep": "all"}, "window, order, poses"),
+        ({"protocol": "lore"}, "law"),
+        ({"seed": -1}, "seed"),
+        ({"duration_s": float("nan")}, "duration_s"),
+        ({"sample_hz": 0}, "sample_hz"),
+    ],
+)
+def test_a_spec_is_checked(
+    scene: flockenv.FlockParameters, change: dict[str, object], words: str
+) -> None:
+    values = {"parameters": scene, "seed": 1, "duration_s": 30.0} | change
+    with pytest.raises(flockenv.ParameterError, match=words):
+        RunSpec(**values)  # type: ignore[arg-type]
+
+
+PINNED = {
+    "leapfrog": (0.3018484613, -0.4432550827),
+    "moreau": (0.2903342327, -0.4254435937),
+    "paper": (0.1727562860, -0.5191166660),
+}
+"""Ψ_o and φ_o of one run at RESULTS_VERSION 1."""
+
+
+def test_the_numbers_belong_to_this_results_version() -> None:
+    """If the physics changed on purpose: raise RESULTS_VERSION, then pin the new numbers."""
+    scene = flockenv.FlockParameters.preset("simulation").replace(n_boats=20, pool="table-1")
+    for scheme, numbers in PINNED.items():
+        order = flockenv.simulate(scene.replace(scheme=scheme), seed=5, duration_s=6.0).order
+        assert (order.psi_o[-1], order.phi_o[-1]) == pytest.approx(numbers, abs=1e-6)
+    assert run_store.RESULTS_VERSION == 1

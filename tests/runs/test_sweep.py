@@ -1,0 +1,153 @@
+"""A sweep's table has one row a run, of the numbers that run has, whoever made it and when."""
+
+import textwrap
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv.runs.executors import joblib
+from flockenv.runs.sweep import load_sweep, run_sweep, to_xarray
+from flockenv.runs.sweep_spec import SweepSpec, read_sweep
+
+SPEC = """
+preset = "paper"
+minutes = 0.5
+seeds = 2
+
+[fixed]
+c4 = 0.05
+
+[[grid]]
+n_boats = [6]
+pool = ["table-1", [120, 20]]
+bw_s = [0, 0.5]
+
+[[grid]]
+n_boats = [8]
+pool = ["table-1"]
+bw_s = [0.5]
+"""
+
+
+def read(tmp_path: Path, text: str) -> SweepSpec:
+    path = tmp_path / "spec.toml"
+    path.write_text(textwrap.dedent(text), encoding="utf-8")
+    return read_sweep(path)
+
+
+def test_every_combination_once(tmp_path: Path) -> None:
+    sweep = read(tmp_path, SPEC)
+    assert sweep.axes == ("n_boats", "pool", "bw_s")
+    assert sweep.points == (
+        (6, "table-1", 0),
+        (6, "table-1", 0.5),
+        (6, (120, 20), 0),
+        (6, (120, 20), 0.5),
+        (8, "table-1", 0.5),
+    )
+    assert [spec.seed for spec in sweep.runs] == [0, 1] * 5
+    base = flockenv.FlockParameters.preset("paper").replace(c4=0.05)
+    scene = base.replace(n_boats=8, pool="table-1", bw_s=0.5)
+    assert sweep.runs[-1].parameters == scene
+    assert sweep.runs[-1].duration_s == 30.0
+
+
+def test_the_table_holds_what_the_runs_have(tmp_path: Path) -> None:
+    sweep = read(tmp_path, SPEC)
+    seen: list[object] = []
+    table = run_sweep(sweep, tmp_path / "out", progress=seen.append)
+    assert set(seen) == set(sweep.runs)
+    assert len(table) == len(sweep.runs)
+    assert table["pool"].tolist() == ["table-1"] * 4 + ["120x20"] * 4 + ["table-1"] * 2
+    spec = sweep.runs[3]
+    row = table.iloc[3]
+    recording = flockenv.simulate(spec.parameters, spec.seed, 30.0)
+    used = recording.in_analysis_window & (recording.time_s > 3.0)
+    assert row["frames"] == used.sum()
+    assert row["psi_o_mean"] == pytest.approx(recording.order.psi_o[used].mean(), abs=1e-6)
+    assert row["c_v_std"] == pytest.approx(recording.order.c_v[used].std(), rel=1e-4)
+    assert row["rotation_mean"] == pytest.approx(recording.order.rotation()[used].mean(), abs=1e-6)
+    assert load_sweep(tmp_path / "out").equals(table)
+
+
+def test_a_sweep_resumes_and_engines_agree(tmp_path: Path) -> None:
+    sweep = read(tmp_path, SPEC)
+    run_sweep(sweep, tmp_path / "one")
+    half = SweepSpec(sweep.axes, sweep.points, sweep.runs[:5], sweep.seeds)
+    run_sweep(half, tmp_path / "other", joblib)
+    kept = {path: path.stat().st_mtime_ns for path in (tmp_path / "other").rglob("*.npz")}
+    assert len(kept) == 5
+    run_sweep(sweep, tmp_path / "other", joblib)
+    assert all(path.stat().st_mtime_ns == time for path, time in kept.items())
+    for name in ("sweep.csv", "sweep.parquet"):
+        one, other = ((tmp_path / folder / name).read_bytes() for folder in ("one", "other"))
+        assert one == other
+
+
+def test_as_xarray(tmp_path: Path) -> None:
+    table = run_sweep(read(tmp_path, SPEC), tmp_path / "out")
+    dataset = to_xarray(table)
+    assert dict(dataset.sizes) == {"n_boats": 2, "pool": 2, "bw_s": 2, "seed": 2}
+    point = {"n_boats": 8, "pool": "table-1", "bw_s": 0.5, "seed": 1}
+    assert float(dataset["psi_o_mean"].sel(point)) == table["psi_o_mean"].iloc[-1]
+    assert np.isnan(dataset["psi_o_mean"].sel(n_boats=8, pool="120x20")).all()
+
+
+def test_a_run_that_fails_is_a_row_that_says_why(tmp_path: Path) -> None:
+    text = "minutes = 0.5\nseeds = 1\n[grid]\nn_boats = [6, 900]\npool = ['table-1']\n"
+    table = run_sweep(read(tmp_path, text), tmp_path / "out")
+    assert table["failure"].iloc[0] == ""
+    assert "fit" in table["failure"].iloc[1]
+    assert np.isfinite(table["psi_o_mean"].iloc[0])
+    assert np.isnan(table["psi_o_mean"].iloc[1])
+    assert load_sweep(tmp_path / "out").equals(table)
+
+
+GRID = "[[grid]]\nbw_s = [0.1]\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("minutes = 1\nseeds = 1\n[[grid]]\nbw = [0.1]", "bw_s"),
+        ("minutes = 1\nseeds = 1\n[fixed]\nn_bots = 3\n" + GRID, "n_boats"),
+        ("minutes = 1\nseeds = 1\n[[grid]]\nbw_s = 0.1", "a list of one or more values"),
+        ("minutes = 1\nseeds = 1\n[[grid]]\nbw_s = []", "a list of one or more values"),
+        ("minutes = 1\nseeds = 1\n", "grid is missing"),
+        ("minutes = 1\nseeds = 0\n" + GRID, "seeds = 0"),
+        ("minutes = 1\nseeds = [1, 1]\n" + GRID, "different seeds"),
+        ("minutes = 1\nseeds = [-1]\n" + GRID, "seed = -1"),
+        ("seeds = 1\n" + GRID, "minutes = None"),
+        ("minutes = -1\nseeds = 1\n" + GRID, "duration_s"),
+        ("minutes = 1\nseeds = 1\nseedz = 1\n" + GRID, "did you mean 'seeds'"),
+        ("minutes = 1\nseeds = 1\nc4 = 1\n" + GRID, r"\[fixed\]"),
+        ("preset = 'papr'\nminutes = 1\nseeds = 1\n" + GRID, "paper"),
+        ("minutes = 1\nseeds = 1\nkeep = 'all'\n" + GRID, "window"),
+        ("minutes = 1\nseeds = 1\n[fixed]\nbw_s = 0.2\n" + GRID, "both under"),
+        ("minutes = 1\nseeds = 1\n" + GRID + "[[grid]]\nc4 = [0.1]", "same fields.*bw_s, c4"),
+        ("minutes = 1\nseeds = 1\n[[grid]]\nbw_s = [-0.1]", "bw_s"),
+        ("minutes = 1\nseeds = 1000000\n[[grid]]\nbw_s = [0.1, 0.2]", "2000000 runs"),
+        ("minutes = \n", "no TOML"),
+    ],
+)
+def test_mistakes_are_named(tmp_path: Path, text: str, words: str) -> None:
+    with pytest.raises(flockenv.ParameterError, match=words) as caught:
+        read(tmp_path, text)
+    assert "spec.toml" in str(caught.value)
+
+
+def test_a_missing_or_foreign_table_is_named(tmp_path: Path) -> None:
+    with pytest.raises(flockenv.ParameterError, match=r"cannot be read"):
+        read_sweep(tmp_path / "none.toml")
+    with pytest.raises(flockenv.ParameterError, match=r"sweep\.parquet"):
+        load_sweep(tmp_path)
+    (tmp_path / "sweep.parquet").write_bytes(b"PAR1 nonsense")
+    with pytest.raises(flockenv.ParameterError, match="no table of a sweep"):
+        load_sweep(tmp_path)
+
+
+def test_the_example_of_the_docs_is_accepted() -> None:
+    sweep = read_sweep(Path(__file__).parents[2] / "docs" / "sweep-example.toml")
+    assert len(sweep.runs) == 2 * 2 * 5 * 4

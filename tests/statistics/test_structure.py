@@ -1,0 +1,68 @@
+"""Law: arrangements of recorded boats are the core's; shapes are checked."""
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv.statistics import structure
+
+SCENE = flockenv.FlockParameters.preset("experiment").replace(n_boats=3)
+# Two boats in touch side by side, one apart at the wall (outer radius 90 cm).
+POSE = np.array([[[60.0, 0.0, 0.0], [60.0, 10.2, 0.0], [-82.4, 0.0, np.pi]]] * 4)
+
+
+def test_clusters_and_the_wall_are_shares_of_the_boats():
+    assert structure.largest_cluster(SCENE, POSE) == pytest.approx([2 / 3] * 4)
+    assert structure.on_outer_wall(SCENE, POSE) == pytest.approx([1 / 3] * 4)
+
+
+def test_displacement_and_turns_by_lag():
+    pose = np.zeros((5, 1, 3))
+    pose[:, 0, 0] = 2.0 * np.arange(5)
+    pose[:, 0, 2] = 0.1 * np.arange(5)
+    lags = [0, 1, 4, 5]
+    assert structure.mean_square_displacement(pose, lags)[:3] == pytest.approx([0, 4, 64])
+    assert structure.heading_correlation(pose, lags)[:3] == pytest.approx(np.cos([0, 0.1, 0.4]))
+    assert np.isnan(structure.mean_square_displacement(pose, lags)[3])
+
+
+def test_pairs_that_cannot_be_are_nan():
+    found = structure.pair_distribution(POSE, [0.0, 20.0, 120.0, 300.0])
+    assert found[0] > 1.0
+    assert found[2] == pytest.approx(3 * 0.5 / 1.5, rel=2.0)
+    assert np.isnan(structure.pair_distribution(POSE, [300.0, 400.0])[0])
+
+
+@pytest.mark.parametrize("pose", [np.zeros((3, 3)), np.zeros((2, 3, 2)), np.zeros((2, 0, 3))])
+def test_other_shapes_are_refused(pose):
+    with pytest.raises(flockenv.ParameterError, match="pose"):
+        structure.on_outer_wall(SCENE, pose)
+    with pytest.raises(flockenv.ParameterError, match="pose"):
+        structure.mean_square_displacement(pose, [1])
+
+
+def test_other_arguments_are_refused():
+    for edges in ([1.0], [2.0, 1.0], [0.0, np.nan]):
+        with pytest.raises(flockenv.ParameterError, match="edges"):
+            structure.pair_distribution(POSE, edges)
+    with pytest.raises(flockenv.ParameterError, match="lags"):
+        structure.heading_correlation(POSE, [-1])
+
+
+def test_states_and_ordering_times_of_a_recording():
+    run = flockenv.simulate(SCENE.replace(n_boats=12, n_leaders=2, bw_s=1.0), 3, 240.0)
+    states = run.order.states(15.0)
+    assert states.shape == run.time_s.shape
+    ordered = np.char.startswith(states, "ordered")
+    assert (run.order.psi_o[ordered] > 0.8).all()
+    assert (run.order.off_tangent()[ordered] < np.pi / 4).all()
+    clusters = structure.largest_cluster(run.parameters, run.pose)
+    clustering = run.order.states(15.0, clusters) == "clustering"
+    assert (states[clustering] == "disordered").all()
+    printed = run.order.ordering_time(run.time_s)
+    wider = run.order.ordering_time(run.time_s, np.pi / 4)
+    assert np.isnan(printed) or wider <= printed
+    with pytest.raises(flockenv.ParameterError, match="time_s"):
+        run.order.ordering_time(run.time_s[1:])
+    with pytest.raises(flockenv.ParameterError, match="largest_cluster"):
+        run.order.states(15.0, clusters[1:])

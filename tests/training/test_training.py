@@ -1,0 +1,257 @@
+"""Law: a run that was killed and resumed leaves the same bytes as one that never stopped."""
+
+import errno
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+import flockenv
+from flockenv import training
+from flockenv._io.atomic_write import whole_file
+from flockenv.envs.observation import observation_entries
+from flockenv.policies import NetworkPolicy, load
+from flockenv.runs.seeds import FIRST_TRAINING_SEED
+from flockenv.training import TrainingError, TrainingSettings, checkpoint, ppo, validation
+from flockenv.training.actor import copy_into_actor, network_policy
+
+EVERY_FILE = ("best.npz", "last.npz", "checkpoint.npz", "curve.csv", "validations.csv")
+
+
+class Killed(BaseException):
+    """Stands for a kill: nothing catches it."""
+
+
+@pytest.fixture(autouse=True)
+def no_clock(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Wall time is the one thing in the files that two equal runs do not share."""
+    monkeypatch.setattr(ppo.time, "perf_counter", lambda: 0.0)
+
+
+def killed_after(samples: int):
+    def report(progress: checkpoint.Progress) -> None:
+        if progress.samples == samples:
+            raise Killed
+
+    return report
+
+
+@pytest.mark.parametrize("use_sde", [False, True])
+def test_resumed_is_uninterrupted(tiny: TrainingSettings, tmp_path: Path, use_sde: bool) -> None:
+    # Checkpoints every other rollout, a kill after the third: one rollout is done again. Lost
+    # frames make sure that the camera goes on where it was, too.
+    settings = tiny.replace(
+        checkpoint_every=384,
+        validate_every=768,
+        use_sde=use_sde,
+        sde_sample_freq=4,
+        final_learning_rate=1e-5,
+        options={"dropout_rate": 0.2, "delay_frames": 1},
+    )
+    training.train(settings, tmp_path / "whole", command="train")
+    with pytest.raises(Killed):
+        training.train(settings, tmp_path / "killed", command="train", report=killed_after(576))
+    torch.manual_seed(99)
+    np.random.seed(99)  # noqa: NPY002 - the generator that PPO shuffles with
+    result = training.resume(tmp_path / "killed")
+    assert result.progress.samples == 768
+    for name in EVERY_FILE:
+        whole, resumed = (tmp_path / run / name for run in ("whole", "killed"))
+        assert whole.read_bytes() == resumed.read_bytes(), name
+
+
+def test_another_seed_is_another_run(tiny: TrainingSettings, tmp_path: Path) -> None:
+    first = training.train(tiny.replace(samples=192), tmp_path / "first")
+    other = training.train(tiny.replace(samples=192, seed=1), tmp_path / "other")
+    assert first.progress.curve != other.progress.curve
+
+
+def test_learning_goes_on_past_the_end(tiny: TrainingSettings, tmp_path: Path) -> None:
+    training.train(tiny.replace(samples=192), tmp_path)
+    assert training.resume(tmp_path).progress.samples == 192
+    assert training.resume(tmp_path, samples=384).progress.samples == 384
+    assert len((tmp_path / "curve.csv").read_text().splitlines()) == 3
+
+
+@pytest.mark.parametrize(
+    ("net_arch", "activation"), [([], "tanh"), ([16], "relu"), ([32, 16], "tanh")]
+)
+def test_the_exported_mean_is_torchs(
+    tiny: TrainingSettings, net_arch: list[int], activation: str
+) -> None:
+    settings = tiny.replace(net_arch=net_arch, activation=activation)
+    model = ppo._model(settings)
+    with torch.no_grad():
+        # Larger than SB3 starts with, so that the ends of the range are met.
+        model.policy.action_net.weight.mul_(300.0)
+    policy = network_policy(model.policy, settings, {})
+    rows = model.observation_space.low + np.random.default_rng(0).random(
+        (500, policy.weights[0].shape[0]), np.float32
+    ) * (model.observation_space.high - model.observation_space.low)
+    expected, _ = model.predict(rows, deterministic=True)
+    assert (abs(expected) == 1.0).any()
+    assert (abs(expected) < 1.0).any()
+    np.testing.assert_allclose(policy.predict(rows)[0], expected, atol=2e-6, rtol=0)
+
+
+def test_start_from_a_policy(tiny: TrainingSettings, tmp_path: Path) -> None:
+    start = training.train(tiny.replace(samples=192, seed=3), tmp_path / "start").policy
+    path = str(tmp_path / "start" / "best.npz")
+    model = ppo._model(tiny)
+    copy_into_actor(start, model.policy, tiny)
+    copied = network_policy(model.policy, tiny, {})
+    for own, other in zip(
+        copied.weights + copied.biases, start.weights + start.biases, strict=True
+    ):
+        np.testing.assert_array_equal(own, other)
+    still = tiny.replace(samples=192, start=path, learning_rate=0.0, final_learning_rate=0.0)
+    untrained = training.train(still, tmp_path / "still").policy
+    for own, other in zip(untrained.weights, start.weights, strict=True):
+        np.testing.assert_array_equal(own, other)
+
+
+def test_a_start_that_does_not_fit_is_refused(tiny: TrainingSettings, tmp_path: Path) -> None:
+    size = len(observation_entries())
+    path = tmp_path / "linear.npz"
+    NetworkPolicy([np.zeros((size, 1))], [[0.0]], mirror_to_target=True).save(path)
+    with pytest.raises(flockenv.ParameterError, match="net_arch"):
+        training.train(tiny.replace(start=str(path)), tmp_path / "run")
+    NetworkPolicy([np.zeros((size, 1))], [[0.0]]).save(path)
+    with pytest.raises(flockenv.ParameterError, match="mirror_to_target"):
+        training.train(tiny.replace(start=str(path), net_arch=[]), tmp_path / "run")
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_start_of_another_observation_version_is_refused(
+    tiny: TrainingSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    size = len(observation_entries())
+    path = tmp_path / "old.npz"
+    monkeypatch.setattr("flockenv.policies.files.OBSERVATION_VERSION", 0)
+    NetworkPolicy([np.zeros((size, 1))], [[0.0]], mirror_to_target=True).save(path)
+    monkeypatch.undo()
+    with pytest.raises(flockenv.ParameterError, match="version 0 of the observation"):
+        training.train(tiny.replace(start=str(path)), tmp_path / "run")
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_full_disk_leaves_the_last_checkpoint(
+    tiny: TrainingSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class FullDisk:
+        """Takes the first bytes of a checkpoint's third version, then no more."""
+
+        versions = 0
+
+    def full(path, arrays, **options):
+        FullDisk.versions += 1
+        if FullDisk.versions < 3:
+            return write_arrays(path, arrays, **options)
+        with whole_file(path) as file:
+            file.write(b"PK the beginning")
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    write_arrays = checkpoint.write_arrays
+    monkeypatch.setattr(checkpoint, "write_arrays", full)
+    with pytest.raises(TrainingError, match=r"No space left.*last good checkpoint is .*npz"):
+        training.train(tiny, tmp_path / "full")
+    monkeypatch.undo()
+    monkeypatch.setattr(ppo.time, "perf_counter", lambda: 0.0)
+    assert not list((tmp_path / "full").glob(".*.tmp"))
+    training.resume(tmp_path / "full")
+    training.train(tiny, tmp_path / "whole")
+    for name in EVERY_FILE:
+        whole, resumed = (tmp_path / run / name for run in ("whole", "full"))
+        assert whole.read_bytes() == resumed.read_bytes(), name
+
+
+def test_a_loss_that_is_no_number_stops_before_the_next_checkpoint(
+    tiny: TrainingSettings, tmp_path: Path
+) -> None:
+    training.train(tiny.replace(samples=192), tmp_path)
+    before = (tmp_path / "checkpoint.npz").read_bytes()
+
+    restore = checkpoint.restore
+
+    def spoiled(path, model):
+        progress = restore(path, model)
+        with torch.no_grad():
+            model.policy.value_net.bias.fill_(math.nan)
+        return progress
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(checkpoint, "restore", spoiled)
+        with pytest.raises(TrainingError, match=r"loss is nan.*last good checkpoint"):
+            training.resume(tmp_path, samples=384)
+    assert (tmp_path / "checkpoint.npz").read_bytes() == before
+    assert training.resume(tmp_path, samples=384).progress.samples == 384
+
+
+def test_validations_use_the_same_seeds_and_none_that_claims_are_made_with(
+    tiny: TrainingSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen = []
+    run_episodes = validation.run_episodes
+
+    def watched(scene, policy, seeds, *arguments, **options):
+        seen.append((scene.pool, scene.n_leaders, tuple(seeds)))
+        return run_episodes(scene, policy, seeds, *arguments, **options)
+
+    monkeypatch.setattr(validation, "run_episodes", watched)
+    training.train(tiny, tmp_path)
+    assert seen[:4] == seen[4:]
+    assert len(set(seen)) == 4
+    seeds = {seed for _, _, each in seen for seed in each}
+    assert len(seeds) == tiny.validation_episodes
+    # Neither those of evaluations nor those of any training run.
+    assert min(seeds) > FIRST_TRAINING_SEED + 2**32 * 2**20
+
+
+def test_folders_are_not_mixed_up(tiny: TrainingSettings, tmp_path: Path) -> None:
+    with pytest.raises(flockenv.ParameterError, match="no checkpoint"):
+        training.resume(tmp_path)
+    training.train(tiny.replace(samples=192), tmp_path)
+    with pytest.raises(flockenv.ParameterError, match="holds a run already"):
+        training.train(tiny, tmp_path)
+
+
+@pytest.mark.parametrize("kept", [0, 100, 5000])
+def test_damaged_checkpoints_are_refused(tiny: TrainingSettings, tmp_path: Path, kept: int) -> None:
+    training.train(tiny.replace(samples=192), tmp_path)
+    path = tmp_path / "checkpoint.npz"
+    path.write_bytes(path.read_bytes()[:kept])
+    with pytest.raises(flockenv.ParameterError, match=r"checkpoint\.npz"):
+        training.resume(tmp_path)
+
+
+def test_a_policy_is_no_checkpoint(tiny: TrainingSettings, tmp_path: Path) -> None:
+    training.train(tiny.replace(samples=192), tmp_path)
+    (tmp_path / "best.npz").replace(tmp_path / "checkpoint.npz")
+    with pytest.raises(flockenv.ParameterError, match="no checkpoint in the format"):
+        training.resume(tmp_path)
+
+
+def test_a_run_that_is_cut_short_has_its_policy(tiny: TrainingSettings, tmp_path: Path) -> None:
+    with pytest.raises(Killed):
+        training.train(tiny, tmp_path, report=killed_after(192))
+    assert not (tmp_path / "best.npz").exists()
+    result = training.resume(tmp_path, samples=192)
+    assert result.progress.samples == 192
+    assert result.policy.made["samples"] == "192"
+
+
+def test_what_a_run_leaves(tiny: TrainingSettings, tmp_path: Path) -> None:
+    result = training.train(tiny, tmp_path, command="the command")
+    best = load(tmp_path / "best.npz")
+    assert best.made["command"] == "the command"
+    assert best.made["seed"] == "0"
+    assert set(best.made) >= {"commit", "flockenv", "samples", "wall_s", "validation"}
+    assert TrainingSettings.from_toml((tmp_path / "settings.toml").read_text()) == tiny
+    rows = result.progress.validations
+    assert [row["samples"] for row in rows] == [384, 768]
+    cells = {"500-boats k=1", "500-boats k=2", "table-1 k=1", "table-1 k=2"}
+    assert set(rows[0]) == {"samples", "mean", *cells}
+    assert result.progress.best_score == max(row["mean"] for row in rows)
+    assert any((tmp_path / "tensorboard").iterdir())

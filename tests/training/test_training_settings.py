@@ -1,0 +1,82 @@
+"""Law: settings survive TOML, and nonsense is refused in words before anything runs."""
+
+import re
+
+import pytest
+
+from flockenv import ParameterError
+from flockenv.runs.seeds import FIRST_TRAINING_SEED
+from flockenv.training import TrainingSettings
+from flockenv.training.pools import PooledVecEnv
+
+
+def test_toml_round_trip(tiny: TrainingSettings) -> None:
+    for settings in (TrainingSettings(), tiny, tiny.replace(observation={"order": False})):
+        assert TrainingSettings.from_toml(settings.to_toml()) == settings
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"learning_rte": 1e-3}, "did you mean 'learning_rate'"),
+        ({"foo": 1}, "'foo' is no setting of the training: there are preset"),
+        ({"samples": 10**400}, "samples = 1000"),
+        ({"learning_rate": -1.0}, "learning_rate = -1.0"),
+        ({"learning_rate": float("nan")}, "learning_rate = nan"),
+        ({"samples": 1.5}, "samples = 1.5"),
+        ({"samples": True}, "samples = True"),
+        ({"n_leaders": []}, "n_leaders"),
+        ({"n_leaders": [0]}, "n_leaders"),
+        ({"n_leaders": [30]}, "n_leaders"),
+        ({"noise": [1.0]}, "noise"),
+        ({"noise": [1.0, 0.5]}, "lowest, highest"),
+        ({"pools": ["bath", "table-1"]}, "bath"),
+        ({"preset": "simulatoin"}, "simulation"),
+        ({"reward": {"order": 1.0}}, "order"),
+        ({"reward": 1.0}, "a table"),
+        ({"options": {"delay": 1}}, "delay"),
+        ({"options": {"delay_frames": "one"}}, "delay_frames must be an integer, not 'one'"),
+        ({"observation": {"neighbors": "a"}}, "observation neighbors must be an integer"),
+        ({"options": {"rudder_levels": 3}}, "rudder_levels"),
+        ({"options": {"episode_s": 3.0}}, "another setting"),
+        ({"activation": "gelu"}, "tanh"),
+        ({"use_sde": 1}, "true or false"),
+        ({"start": 3}, "a text"),
+        ({"batch_size": 77}, "samples of a rollout"),
+        ({"device": "tpu"}, "auto"),
+    ],
+)
+def test_nonsense_is_refused(tiny: TrainingSettings, change: dict, words: str) -> None:
+    with pytest.raises(ParameterError, match=re.escape(words)):
+        tiny.replace(**change)
+
+
+def test_the_batch_must_divide_a_rollout(tiny: TrainingSettings) -> None:
+    # Two pools, two flocks with one and two leaders, 32 steps.
+    assert tiny.leaders == 6
+    assert tiny.rollout_samples == 192
+
+
+def test_the_learning_rate_falls_with_the_samples(tiny: TrainingSettings) -> None:
+    settings = tiny.replace(samples=100, learning_rate=0.3, final_learning_rate=0.1)
+    assert settings.learning_rate_at(0) == 0.3
+    assert settings.learning_rate_at(50) == pytest.approx(0.2)
+    assert settings.learning_rate_at(500) == pytest.approx(0.1)
+
+
+def test_seeds_are_training_seeds_and_differ(tiny: TrainingSettings) -> None:
+    seeds: list[int] = []
+    for number in range(3):
+        env = PooledVecEnv(tiny.replace(seed=number))
+        env.reset()
+        episodes = env.env_method("episode")
+        told = [int(episode["flock_seed"]) for episode in episodes]
+        seeds += told
+        assert min(told) >= FIRST_TRAINING_SEED
+        # 1 and 2 leaders in the flocks of each pool: six slots of four flocks.
+        assert len(set(told)) == 4
+    assert len(set(seeds)) == 12
+
+
+def test_one_leader_of_two_boats(tiny: TrainingSettings) -> None:
+    assert tiny.replace(n_boats=2, n_leaders=[1]).leaders == 4
