@@ -59,12 +59,13 @@ setup: $(STAMPS)/test
 
 build: $(STAMPS)/core ## build the simulator and install the package, editable, into .venv
 
-lint: $(STAMPS)/test $(STAMPS)/core ## formatting, clippy, ruff, mypy, stubs
+lint: $(STAMPS)/test $(STAMPS)/core ## formatting, clippy, ruff, import layers, mypy, stubs
 	cargo fmt --check
 	$(BIN)/ruff format --check
 	cargo clippy --locked --all-targets -- -D warnings
 	PYO3_PYTHON="$(CURDIR)/$(BIN)/python" cargo clippy --locked --all-targets --features python -- -D warnings
 	$(BIN)/ruff check
+	$(BIN)/lint-imports --no-logo --no-cache
 	$(BIN)/mypy
 	$(if $(wildcard $(STUBS)),$(BIN)/stubtest flockenv._core --mypy-config-file pyproject.toml)
 
