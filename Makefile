@@ -141,7 +141,7 @@ replay-animation: $(STAMPS)/browser $(STAMPS)/core ## photograph the replay page
 	@tests/browser/need_chromium.sh
 	$(BIN)/python docs/replay_animation.py
 
-learning-check: $(STAMPS)/test $(STAMPS)/core ## train 500 000 samples through each face, write docs/learning-check.md
+learning-check: $(STAMPS)/test $(STAMPS)/core ## train 500 000 samples through each interface, write docs/learning-check.md
 	$(BIN)/python baselines/learning_check.py
 
 # RLlib pins an older gymnasium, and the peers pin other things: environments of their own.

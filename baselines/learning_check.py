@@ -1,13 +1,13 @@
-"""Does a learner learn through each face of the environment? PPO on an easy scene.
+"""Check that PPO learns through each interface of the environment, on an easy scene.
 
-    python baselines/learning_check.py                      # all faces, 500 000 samples each
-    python baselines/learning_check.py --faces vector --samples 20000
+    python baselines/learning_check.py                      # all interfaces, 500 000 samples each
+    python baselines/learning_check.py --interfaces vector --samples 20000
 
-The scene is easy on purpose: four normal boats, little noise, each leader is paid for its own
-tangential velocity towards the target, and two decisions a second (at ten, exploring rudders
-cancel out before a boat has turned, and learning takes several times as long). Random rudders earn
-about nothing; what has been learned is compared with them on the same held-out seeds. The table
-goes to docs/learning-check.md.
+The scene is easy on purpose: it has four normal boats and little noise, each leader is rewarded for
+its own tangential velocity towards the target, and leaders decide twice per second (at ten
+decisions per second, exploring rudders cancel out before a boat has turned, and learning takes
+several times as long). Random rudders have a mean reward near zero. The learned policy is compared
+with them on the same held-out seeds. The table goes to docs/learning-check.md.
 """
 
 import argparse
@@ -39,7 +39,7 @@ EASY: dict[str, Any] = {
     "episode_s": 60.0,
     "reward": {"leader_velocity": 1.0},
 }
-#: Training seeds begin here, far from those of the evaluation, which begin at 0.
+#: Training seeds start here, far from those of the evaluation, which start at 0.
 TRAINING_SEEDS = 1_000_000
 RESULTS = Path(__file__).parents[1] / "docs" / "learning-check.md"
 
@@ -74,7 +74,7 @@ class GymnasiumVecEnv(VecEnv):
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
         return [getattr(self.env, attr_name)] * len(list(self._get_indices(indices)))
 
-    # SB3 wants these two to be there; PPO never calls them, and one batch has no attributes a slot.
+    # SB3 requires these two; PPO never calls them, and one batch has no attributes per slot.
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
         raise NotImplementedError("the flocks of one batch share their attributes")
 
@@ -85,31 +85,31 @@ class GymnasiumVecEnv(VecEnv):
         return [False] * self.num_envs
 
 
-def parallel_face() -> VecEnv:
+def parallel_interface() -> VecEnv:
     """The parallel environment's agents through LeaderVecEnv: a sample is a leader's step."""
     return LeaderVecEnv(16, **EASY)
 
 
-def single_face() -> VecEnv:
+def single_interface() -> VecEnv:
     """Gymnasium environments one by one: a sample is a flock's step."""
     return DummyVecEnv([lambda: flockenv.LeadersEnv(**EASY)] * 16)
 
 
-def vector_face() -> VecEnv:
+def vector_interface() -> VecEnv:
     """The native Gymnasium vector environment: a sample is a flock's step."""
     return GymnasiumVecEnv(flockenv.LeadersVectorEnv(16, autoreset_mode="same_step", **EASY))
 
 
-FACES: dict[str, Callable[[], VecEnv]] = {
-    "parallel": parallel_face,
-    "single": single_face,
-    "vector": vector_face,
+INTERFACES: dict[str, Callable[[], VecEnv]] = {
+    "parallel": parallel_interface,
+    "single": single_interface,
+    "vector": vector_interface,
 }
 
 
-def train(face: str, samples: int, seed: int) -> tuple[PPO, float]:
-    """Return a policy trained through a face, and the seconds it took."""
-    env = FACES[face]()
+def train(interface: str, samples: int, seed: int) -> tuple[PPO, float]:
+    """Return a policy trained through a interface, and the seconds it took."""
+    env = INTERFACES[interface]()
     env.seed(TRAINING_SEEDS + seed)
     model = PPO(
         "MlpPolicy",
@@ -132,14 +132,17 @@ def train(face: str, samples: int, seed: int) -> tuple[PPO, float]:
 
 
 def mean_rewards(
-    face: str, episodes: int, act: Callable[[np.ndarray, np.random.Generator], np.ndarray]
+    interface: str, episodes: int, act: Callable[[np.ndarray, np.random.Generator], np.ndarray]
 ) -> np.ndarray:
-    """Mean reward a step of each held-out episode; `act` sees (rows, size) observations."""
+    """Return the mean reward per step of each held-out episode.
+
+    `act` takes observations of shape (rows, size).
+    """
     leaders = EASY["n_leaders"]
     env = flockenv.LeadersVectorEnv(episodes, autoreset_mode="disabled", **EASY)
     observations, _ = env.reset(seed=0)
     random, ended = np.random.default_rng(0), np.zeros(episodes, bool)
-    rows = (episodes * leaders, -1) if face == "parallel" else (episodes, -1)
+    rows = (episodes * leaders, -1) if interface == "parallel" else (episodes, -1)
     total, steps = np.zeros(episodes), 0
     while not ended.all():
         actions = act(observations.reshape(rows), random).reshape(episodes, leaders)
@@ -150,24 +153,24 @@ def mean_rewards(
 
 
 def summary(values: np.ndarray) -> tuple[float, float, float]:
-    """The mean and its 95 % interval, by the normal approximation."""
+    """Return the mean and its 95 % interval, by the normal approximation."""
     mean, half = values.mean(), 1.96 * values.std(ddof=1) / np.sqrt(len(values))
     return float(mean), float(mean - half), float(mean + half)
 
 
-def check(face: str, samples: int, seed: int, episodes: int) -> dict[str, Any]:
-    """Train through a face and compare with random rudders on the same episodes."""
-    model, seconds = train(face, samples, seed)
+def check(interface: str, samples: int, seed: int, episodes: int) -> dict[str, Any]:
+    """Train through a interface and compare with random rudders on the same episodes."""
+    model, seconds = train(interface, samples, seed)
     learned = mean_rewards(
-        face, episodes, lambda rows, _: model.predict(rows, deterministic=True)[0]
+        interface, episodes, lambda rows, _: model.predict(rows, deterministic=True)[0]
     )
     random = mean_rewards(
-        face,
+        interface,
         episodes,
         lambda rows, rng: rng.uniform(-1, 1, (episodes, EASY["n_leaders"])).astype(np.float32),
     )
     return {
-        "face": face,
+        "interface": interface,
         "samples": model.num_timesteps,
         "seconds": round(seconds, 1),
         "learned": summary(learned),
@@ -176,22 +179,30 @@ def check(face: str, samples: int, seed: int, episodes: int) -> dict[str, Any]:
     }
 
 
+def _conclusion(results: list[dict[str, Any]]) -> str:
+    learned = sum(each["clear"] for each in results)
+    return (
+        f"PPO of stable-baselines3 learns through {learned} of the {len(results)} interfaces of "
+        "the environment: its interval lies above that of random rudders."
+    )
+
+
 def report(results: list[dict[str, Any]], command: str, seed: int, episodes: int) -> str:
-    """The results as a page."""
+    """Return the results as a page."""
     lines = [
         "# Learning check",
         "",
-        "PPO of stable-baselines3 through each face of the environment, on the easy scene of",
-        "`baselines/learning_check.py`: "
+        f"{_conclusion(results)} The easy scene of `baselines/learning_check.py` has "
         + ", ".join(f"`{k}={v!r}`" for k, v in EASY.items())
         + ".",
-        f"Mean reward a control step over {episodes} held-out episodes, with 95 % intervals; the",
-        "random rudders steer the same episodes.",
         "",
-        f"Command: `{command}`; seed {seed}; flockenv {flockenv.__version__}, observation version "
-        f"{flockenv.envs.observation.OBSERVATION_VERSION}, torch {torch.__version__}.",
+        f"The table holds the mean reward per control step over {episodes} held-out episodes, with "
+        "95 % intervals. Random rudders steer the same episodes.",
         "",
-        "| face | samples | training | learned | random rudders | intervals apart |",
+        f"`{command}` wrote this page: seed {seed}, flockenv {flockenv.__version__}, observation "
+        f"version {flockenv.envs.observation.OBSERVATION_VERSION}, torch {torch.__version__}.",
+        "",
+        "| interface | samples | training | learned | random rudders | intervals apart |",
         "| --- | --- | --- | --- | --- | --- |",
     ]
     for each in results:
@@ -200,7 +211,7 @@ def report(results: list[dict[str, Any]], command: str, seed: int, episodes: int
             for mean, low, high in (each["learned"], each["random"])
         )
         lines.append(
-            f"| {each['face']} | {each['samples']} | {each['seconds']:.0f} s | {learned} "
+            f"| {each['interface']} | {each['samples']} | {each['seconds']:.0f} s | {learned} "
             f"| {random} | {'yes' if each['clear'] else 'no'} |"
         )
     return "\n".join(lines) + "\n"
@@ -208,7 +219,7 @@ def report(results: list[dict[str, Any]], command: str, seed: int, episodes: int
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--faces", nargs="+", choices=FACES, default=list(FACES))
+    parser.add_argument("--interfaces", nargs="+", choices=INTERFACES, default=list(INTERFACES))
     parser.add_argument("--samples", type=int, default=500_000)
     parser.add_argument("--episodes", type=int, default=128)
     parser.add_argument("--seed", type=run_number, default=0)
@@ -218,8 +229,8 @@ def main(arguments: list[str] | None = None) -> int:
     torch.set_num_threads(1)
     results = []
     try:
-        for face in options.faces:
-            results.append(check(face, options.samples, options.seed, options.episodes))
+        for interface in options.interfaces:
+            results.append(check(interface, options.samples, options.seed, options.episodes))
             print(results[-1], flush=True)
     except KeyboardInterrupt:
         sys.exit("Interrupted: no page was written")

@@ -1,4 +1,4 @@
-"""Ten million control steps with random rudders: memory, NaN, overlaps, residuals: `make soak`.
+"""Run ten million control steps with random rudders, and check the results: `make soak`.
 
 Two batches, one a pool, take turns. Noise levels and target directions are drawn for each episode;
 episodes begin anew by themselves. Ends with exit code 1 if anything is not as it must be. The page
@@ -30,12 +30,12 @@ SETTLING, SAMPLES = 0.2, 200
 #: Steps between two round trips through bytes, and until an average leader moves its rudder.
 STORED_EVERY, RUDDER_HELD = 1000, 5
 MOST_GROWTH_KIB = 1024.0
-BARS = {"worst_residual_cm_s": 1e-8, "worst_overlap_cm": 0.1}
+BOUNDS = {"worst_residual_cm_s": 1e-8, "worst_overlap_cm": 0.1}
 
 
 @dataclass
 class Pool:
-    """A batch and what was seen of it."""
+    """A batch and its extreme values."""
 
     name: str
     env: flockenv.LeadersVectorEnv
@@ -85,7 +85,7 @@ def make(name: str, seed: int) -> Pool:
 
 
 def resident_kib() -> float:
-    """Memory of this process that is in use, in KiB."""
+    """Return the resident memory of this process in KiB."""
     lines = Path("/proc/self/status").read_text().splitlines()
     return float(next(line.split()[1] for line in lines if line.startswith("VmRSS")))
 
@@ -111,7 +111,7 @@ def soak(total: int, seed: int) -> tuple[list[Pool], np.ndarray]:
 
 
 def growth(memory: np.ndarray) -> tuple[float, float]:
-    """KiB a million control steps by least squares, and KiB by which all samples lie apart."""
+    """Return KiB per million control steps (least squares) and the range of all samples in KiB."""
     late = memory[memory[:, 0] >= SETTLING * memory[-1, 0]]
     return 1e6 * np.polyfit(*late.T, 1)[0], np.ptp(late[:, 1])
 
@@ -122,10 +122,10 @@ def failures(pools: list[Pool], memory: np.ndarray) -> list[str]:
     found = [f"memory grew by {grown:.0f} KiB"] if grown > MOST_GROWTH_KIB else []
     for pool in pools:
         if pool.unsolved:
-            found.append(f"{pool.name}: {pool.unsolved} solves missed their residual")
-        for name, bar in BARS.items():
-            if not getattr(pool, name) <= bar:
-                found.append(f"{pool.name}: {name} = {getattr(pool, name):.2g}, above {bar:g}")
+            found.append(f"{pool.name}: {pool.unsolved} solves exceeded their residual")
+        for name, bound in BOUNDS.items():
+            if not getattr(pool, name) <= bound:
+                found.append(f"{pool.name}: {name} = {getattr(pool, name):.2g}, above {bound:g}")
     return found
 
 
@@ -137,10 +137,10 @@ def page(pools: list[Pool], memory: np.ndarray, seed: int, wall_s: float) -> str
     load = os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
     rows = {
         "control steps": [f"{pool.steps:,}" for pool in pools],
-        "episodes, begun anew by themselves": [f"{pool.episodes:,}" for pool in pools],
+        "episodes, reset automatically": [f"{pool.episodes:,}" for pool in pools],
         "substeps": [f"{pool.substeps:,}" for pool in pools],
         "contacts, summed over substeps": [f"{pool.contacts:,}" for pool in pools],
-        "solves that missed their residual": [f"{pool.unsolved}" for pool in pools],
+        "solves that exceeded their residual": [f"{pool.unsolved}" for pool in pools],
         "worst residual of a solve, cm/s": [f"{pool.worst_residual_cm_s:.1e}" for pool in pools],
         "worst overlap, cm": [f"{pool.worst_overlap_cm:.1e}" for pool in pools],
         "worst overlap of an episode, mean, cm": [
@@ -150,35 +150,35 @@ def page(pools: list[Pool], memory: np.ndarray, seed: int, wall_s: float) -> str
     lines = [
         "# Soak",
         "",
-        f"Written by `{shlex.join(['python', *sys.argv])}` (`make soak`), seed {seed}, on "
+        f"All {steps:,} control steps with random rudders gave finite observations and rewards, "
+        "and every episode ended in a finite state.",
+        "",
+        f"`{shlex.join(['python', *sys.argv])}` (`make soak`) wrote this page with seed {seed} on "
         f"{time.strftime('%Y-%m-%d')}: {processor()}, {os.cpu_count()} cores, {platform.system()} "
         f"{platform.machine()}, Python {platform.python_version()}, flockenv "
         f"{flockenv.__version__}; {wall_s:.0f} s, load average at the end {load:.1f}.",
         "",
-        f"{FLOCKS} flocks of {SCENE['n_boats']} boats, {SCENE['n_leaders']} of them leaders, half "
-        f"in each pool, episodes of {SCENE['episode_s']:g} s at 10 control steps a second of five "
-        "substeps each. For every episode a noise level (bw from 0 to 1 s) and a target direction "
-        f"are drawn. Leaders hold random rudders from -1.2 to 1.2 (clipped at 1) for "
-        f"{RUDDER_HELD} steps on average. Every {STORED_EVERY} steps the whole batch goes through "
-        "bytes and back.",
+        f"The soak runs {FLOCKS} flocks of {SCENE['n_boats']} boats, {SCENE['n_leaders']} of them "
+        f"leaders, half in each pool. Episodes last {SCENE['episode_s']:g} s, at 10 control steps "
+        "per second of five substeps each. Every episode draws a backward duration (bw from 0 to "
+        "1 s) and a target direction. Leaders hold random rudders from -1.2 to 1.2 (clipped at 1) "
+        f"for {RUDDER_HELD} steps on average. Every {STORED_EVERY} steps the whole batch is "
+        "stored as bytes and restored.",
         "",
         f"| | {' | '.join(f'`{pool.name}`' for pool in pools)} |",
         f"| --- |{' --- |' * len(pools)}",
         *(f"| {name} | {' | '.join(cells)} |" for name, cells in rows.items()),
         "",
-        f"All {steps:,} control steps gave finite observations and rewards, and every episode "
-        "ended in a finite state.",
-        "",
-        f"Resident memory, read {len(memory)} times: {memory[0, 1] / 1024:.1f} MiB at the "
-        f"beginning, {memory[-1, 1] / 1024:.1f} MiB at the end; at 20, 40, 60, "
-        f"80 and 100 % of the steps {fifths} KiB. After the first {SETTLING:.0%} of "
-        f"the steps it changes by {slope:+.1f} KiB a million control steps (least squares), and "
-        f"all readings lie within {apart:.0f} KiB.",
+        f"The resident memory is {memory[0, 1] / 1024:.1f} MiB at the beginning and "
+        f"{memory[-1, 1] / 1024:.1f} MiB at the end. At 20, 40, 60, 80 and 100 % of the steps it "
+        f"is {fifths} KiB. After the first {SETTLING:.0%} of the steps it changes by "
+        f"{slope:+.1f} KiB per million control steps (least squares of {len(memory)} readings), "
+        f"and all readings lie within {apart:.0f} KiB.",
         "",
         f"The run fails for NaN, for memory that grows by more than {MOST_GROWTH_KIB:.0f} KiB, for "
-        "any solve that misses its residual, for a residual above "
-        f"{BARS['worst_residual_cm_s']:g} cm/s and for an overlap above "
-        f"{BARS['worst_overlap_cm']:g} cm.",
+        "any solve that exceeds its residual, for a residual above "
+        f"{BOUNDS['worst_residual_cm_s']:g} cm/s and for an overlap above "
+        f"{BOUNDS['worst_overlap_cm']:g} cm.",
     ]
     return "\n".join(lines) + "\n"
 

@@ -1,4 +1,4 @@
-"""Law: the learning check runs through every face, and says so when nothing was learned."""
+"""Law: the learning check runs through every interface, and says so when nothing was learned."""
 
 import numpy as np
 import pytest
@@ -6,18 +6,18 @@ import pytest
 pytest.importorskip("stable_baselines3")
 
 
-def test_a_short_run_of_each_face(script, tmp_path):
+def test_a_short_run_of_each_interface(script, tmp_path):
     out = tmp_path / "docs" / "check.md"
     arguments = ["--samples", "500", "--episodes", "4", "--out", str(out)]
     assert script.main(arguments) in (0, 1)
     page = out.read_text()
-    for face in script.FACES:
-        assert f"| {face} |" in page
+    for interface in script.INTERFACES:
+        assert f"| {interface} |" in page
     assert "baselines/learning_check.py --samples 500" in page
 
 
-def test_faces_train_on_other_seeds_than_those_of_the_evaluation(script):
-    for make in script.FACES.values():
+def test_interfaces_train_on_other_seeds_than_those_of_the_evaluation(script):
+    for make in script.INTERFACES.values():
         env = make()
         env.seed(script.TRAINING_SEEDS)
         first = env.reset()
@@ -28,5 +28,5 @@ def test_faces_train_on_other_seeds_than_those_of_the_evaluation(script):
 
 @pytest.mark.slow
 @pytest.mark.timeout(3600)
-def test_every_face_learns(script, tmp_path):
+def test_every_interface_learns(script, tmp_path):
     assert script.main(["--out", str(tmp_path / "check.md")]) == 0
