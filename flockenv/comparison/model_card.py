@@ -40,21 +40,24 @@ def model_card(
     """
     lines = [f"# {name}", ""]
     if isinstance(policy, NetworkPolicy | LeaningLaw):
-        lines += [f"`{policy!r}`, version {OBSERVATION_VERSION} of the observation.", ""]
-        lines += ["| made by | |", "| --- | --- |"]
+        takes = f"It takes version {OBSERVATION_VERSION} of the observation."
+        lines += [f"The policy is `{policy!r}`. {takes}", ""]
+        lines += ["| provenance | |", "| --- | --- |"]
         lines += [f"| {what} | `{text}` |" for what, text in policy.made.items()]
     elif policy == EVERY_SUBSTEP:
-        lines += ["The paper's law, eq. (10), from the pose at every substep: nothing is learned."]
+        law = "The policy is the paper's law, eq. (10), from the pose at every substep."
+        lines += [f"{law} It has no learned parameters."]
     else:
-        lines += [f"`{policy!r}`: nothing in it is learned."]
+        lines += [f"The policy is `{policy!r}`. It has no learned parameters."]
     lines += [
         "",
         "## Comparison",
         "",
-        f"`{command}`, flockenv {__version__}: {len(seeds)} episodes of {duration_s:g} s for each "
-        f"policy and number of leaders, seeds {seeds[0]} to {seeds[-1]}, the same for all; "
-        f"{CONFIDENCE:.0%} bootstrap intervals. Differences and the ratios of means are paired "
-        "by seed; d is a difference's mean over its standard deviation.",
+        f"`{command}` made the tables with flockenv {__version__}. Each row is over {len(seeds)} "
+        f"episodes of {duration_s:g} s, with the same seeds {seeds[0]} to {seeds[-1]} for every "
+        f"policy and number of leaders. Brackets hold {CONFIDENCE:.0%} bootstrap intervals. "
+        "Differences and the ratios of means are paired by seed, and d is a difference's mean over "
+        "its standard deviation.",
     ]
     for scene, result in results.items():
         lines += ["", f"### {scene}", "", f"{result.title()}.", "", *_means(result)]
@@ -82,7 +85,10 @@ def _means(result: ComparisonReport) -> list[str]:
 
 def _differences(name: str, result: ComparisonReport) -> list[str]:
     own = result.differences[result.differences["policy"] == name]
-    lines = ["| beyond | leaders | signed order | d | ratio |", "| --- " * 5 + "|"]
+    lines = [
+        "| reference | leaders | difference of the signed order | d | ratio |",
+        "| --- " * 5 + "|",
+    ]
     for row in own.to_dict("records"):
         interval = f"{row['mean']:+.3f} [{row['low']:+.3f}, {row['high']:+.3f}]"
         # No ratio to what is not clearly above zero.
@@ -101,4 +107,4 @@ def _lines(result: ComparisonReport) -> list[str]:
         for (policy, quantity), line in result.lines.items()
         if quantity == "signed_order"
     ]
-    return ["Straight lines in the number of leaders k:", "", *fits] if fits else []
+    return ["Linear regressions in the number of leaders k:", "", *fits] if fits else []

@@ -77,7 +77,7 @@ def test_the_card_of_the_law_at_every_substep(flockenv: Run, tmp_path: Path) -> 
     done = flockenv("evaluate", "steering law, every substep", *SHORT, *arguments)
     assert done.returncode == 0, done.stderr
     card = (tmp_path / "card.md").read_text("utf-8")
-    assert "The paper's law, eq. (10), from the pose at every substep: nothing is learned." in card
+    assert "The policy is the paper's law, eq. (10), from the pose at every substep." in card
 
 
 def test_errors_are_named(flockenv: Run, tmp_path: Path) -> None:
