@@ -5,9 +5,9 @@
 //! is missing. Callgrind's own files stay in `target/instructions`, for `callgrind_annotate`.
 
 use flockenv::Flock;
+use flockenv::contact::Statistics;
 use flockenv::environment::{BatchRows, EnvBatch, EnvSettings, ResetRequest, Run};
 use flockenv::parameters::{FlockParameters, Pool, Preset};
-use flockenv::statistics::Statistics;
 use std::fmt::Write as _;
 use std::fs;
 use std::hint::black_box;

@@ -1,8 +1,8 @@
 //! Quick looks while developing: `cargo bench`. What is published comes from `make speed-vs-error`.
 
 use divan::{Bencher, black_box};
+use flockenv::clock::ticks;
 use flockenv::parameters::{Pool, Preset, Scheme};
-use flockenv::phase_schedule::ticks;
 use flockenv::{Flock, FlockBatch, FlockParameters};
 
 /// Boats in pool `table-1`, scaled by sqrt(n/50) beyond 50; engines always forward if it is a jam.

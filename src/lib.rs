@@ -2,7 +2,8 @@
 //! inelastic collisions alone, with a few steerable leaders among them (Tarcai et al. 2011).
 //!
 //! # Flow
-//! parameters → [`Flock`] → order parameters and observations → (Python) environment → policy.
+//! [`parameters`] → [`geometry`] → [`boat`] → [`contact`] → [`integrator`] → [`flock`] → [`environment`] →
+//! policy (Python). What is measured stands in [`analysis`], pictures in [`draw`].
 //!
 //! # Units
 //! | quantity | unit |
@@ -19,42 +20,26 @@
 //! solver (how the contact problem is solved), phase, LAP frame, order parameter, rudder command,
 //! control step (policy) and substep (physics), flock batch.
 
-pub mod animation;
-pub mod arrangement;
+pub mod analysis;
 pub mod boat;
-pub mod collective_state;
+pub mod clock;
 pub mod contact;
-pub mod dynamics;
+pub mod draw;
 pub mod environment;
 pub mod error;
 pub mod flock;
-pub mod flock_batch;
-pub mod frame_image;
 pub mod geometry;
-pub mod lap_frame;
-mod names;
-pub mod observation;
-pub mod observed_law;
-pub mod order_parameters;
+pub mod integrator;
 mod parallel;
 pub mod parameters;
-pub mod phase_schedule;
-pub mod placement;
-pub mod pool;
-pub mod preset;
-pub mod random_streams;
-pub mod recording;
-pub mod scheme;
+pub mod random;
 mod sealed_bytes;
-pub mod snapshot;
-pub mod statistics;
 
 #[cfg(feature = "python")]
 mod python;
 
+pub use analysis::OrderParameters;
+pub use draw::FrameRenderer;
 pub use error::{FlockError, Result};
-pub use flock::Flock;
-pub use flock_batch::FlockBatch;
-pub use frame_image::FrameRenderer;
-pub use order_parameters::OrderParameters;
+pub use flock::{Flock, FlockBatch};
 pub use parameters::FlockParameters;

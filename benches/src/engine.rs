@@ -1,7 +1,7 @@
 //! What every engine has in common.
 
-use flockenv::boat::{Pose, Velocity};
-use flockenv::statistics::Statistics;
+use flockenv::contact::Statistics;
+use flockenv::geometry::{Pose, Velocity};
 use std::time::Duration;
 
 /// A scene in motion.

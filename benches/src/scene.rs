@@ -1,8 +1,8 @@
 //! The scenes that everything is measured on.
 
-use flockenv::boat::{Pose, Velocity};
-use flockenv::parameters::{Pool, Preset};
 use flockenv::{Flock, FlockParameters};
+use flockenv::geometry::{Pose, Velocity};
+use flockenv::parameters::{Pool, Preset};
 
 /// Where a run begins.
 #[derive(Debug, Clone)]

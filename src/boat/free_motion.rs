@@ -4,8 +4,7 @@
 //! paper's own description (a stopped boat does not steer, a moving one prefers a nonzero turning
 //! rate) and steers neither way.
 
-use super::Velocity;
-use crate::geometry::Vec2;
+use crate::geometry::{Vec2, Velocity};
 use crate::parameters::FlockParameters;
 
 /// What acts on a boat during a substep.

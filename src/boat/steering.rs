@@ -1,9 +1,9 @@
-//! The paper's fixed steering law, eq. (10).
+//! Steering laws of leaders: the paper's fixed one, eq. (10), and closed forms beyond it.
 
+use crate::error::{FlockError, Result};
 use crate::geometry::{Vec2, wrap_angle};
-use std::f64::consts::{FRAC_PI_2, PI};
-
 use crate::parameters::Target;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Rudder command of eq. (10): s = clamp(6·(β − α)/π, −1, 1), with β − α wrapped into (−π, π];
 /// proportional up to 30° of misalignment, constant beyond.
@@ -16,4 +16,85 @@ pub fn steering_law(misalignment: f64) -> f64 {
 pub fn misalignment(position: Vec2, heading: f64, target: Target) -> f64 {
     let polar_angle = position.y.atan2(position.x);
     wrap_angle(polar_angle - target.sign() * FRAC_PI_2 - heading)
+}
+
+/// A steering law. Misalignment δ = β − α is how far counter-clockwise the leader has to turn to head
+/// along the target's tangent, wrapped into (−π, π].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Law {
+    /// Eq. (10): s = clamp(6·δ/π, −1, 1).
+    Steering,
+    /// s = sign(u·ẋ)·clamp(gain·δ, −1, 1): a rudder works in reverse on a boat that moves backward.
+    SignCorrected {
+        /// Rudder per rad of misalignment; 6/π in eq. (10).
+        gain: f64,
+    },
+    /// Forward as `SignCorrected`; backward s = clamp(−backward_gain·δ + damping·α̇, −1, 1), which also
+    /// counters the turning that makes backing boats spin.
+    Damped {
+        /// Rudder per rad of misalignment while moving forward.
+        gain: f64,
+        /// Rudder per rad of misalignment while moving backward.
+        backward_gain: f64,
+        /// Rudder per rad/s of angular velocity while moving backward.
+        damping: f64,
+    },
+}
+
+/// The gain of eq. (10) in 1/rad: full rudder from 30° of misalignment on.
+pub const PAPER_GAIN: f64 = 6.0 / PI;
+
+impl Law {
+    /// Checks the gains.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for gains that are not finite.
+    pub fn check(&self) -> Result<()> {
+        let gains = match *self {
+            Self::Steering => [("gain", PAPER_GAIN), ("", 0.0), ("", 0.0)],
+            Self::SignCorrected { gain } => [("gain", gain), ("", 0.0), ("", 0.0)],
+            Self::Damped {
+                gain,
+                backward_gain,
+                damping,
+            } => [
+                ("gain", gain),
+                ("backward_gain", backward_gain),
+                ("damping", damping),
+            ],
+        };
+        match gains
+            .iter()
+            .find(|(_, value)| value.is_nan() || value.abs() > 1e9)
+        {
+            Some(&(name, value)) => Err(FlockError::parameter(name, value, "a finite number")),
+            None => Ok(()),
+        }
+    }
+
+    /// The rudder in [−1, 1] for a misalignment in rad, a velocity along the heading (its sign counts)
+    /// and an angular velocity in rad/s, counter-clockwise.
+    pub fn rudder(&self, misalignment: f64, forward: f64, angular: f64) -> f64 {
+        let backing = forward < 0.0;
+        match *self {
+            Self::Steering => steering_law(misalignment),
+            Self::SignCorrected { gain } => {
+                let turn = (gain * wrap_angle(misalignment)).clamp(-1.0, 1.0);
+                if backing { -turn } else { turn }
+            }
+            Self::Damped {
+                gain,
+                backward_gain,
+                damping,
+            } => {
+                let misalignment = wrap_angle(misalignment);
+                let rudder = if backing {
+                    damping * angular - backward_gain * misalignment
+                } else {
+                    gain * misalignment
+                };
+                rudder.clamp(-1.0, 1.0)
+            }
+        }
+    }
 }

@@ -1,7 +1,6 @@
 //! One place where a hull is near another hull or a wall.
 
-use crate::boat::Velocity;
-use crate::geometry::{Gap, Hull, HullPose, PairFeature, Vec2, cross};
+use crate::geometry::{Gap, Hull, HullPose, PairFeature, Vec2, Velocity, cross};
 
 /// What a boat is near to.
 #[derive(

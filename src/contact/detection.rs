@@ -1,10 +1,9 @@
 //! Finds the contacts of a flock: candidate pairs from the neighbour list, walls, exact gaps.
 
 use super::{Contact, Partner};
-use crate::boat::Velocity;
 use crate::geometry::{
-    Gap, Hull, HullPose, NeighborList, PairFeature, inner_wall_gap, outer_wall_gap, pair_gap,
-    pair_gaps,
+    Gap, Hull, HullPose, NeighborList, PairFeature, Velocity, inner_wall_gap, outer_wall_gap,
+    pair_gap, pair_gaps,
 };
 use crate::parameters::{FlockParameters, Pool};
 use std::ops::RangeInclusive;

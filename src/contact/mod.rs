@@ -3,25 +3,27 @@
 //! Post-contact motion minimises Σ|Δv|² + ρ²ΣΔω² (eqs A.1 and A.2) over the velocities for which no
 //! linearised gap closes beyond zero in the substep.
 
+mod bounds;
 #[allow(
     clippy::module_inception,
     reason = "the file is named after the noun it owns"
 )]
 mod contact;
+mod depenetration;
 mod detection;
 mod island;
-mod loads;
-mod pace;
 mod passivity;
 mod problem;
-mod recovery;
 mod resolver;
 pub mod solver;
+mod statistics;
+mod warm_start;
 
 pub use contact::{Contact, ContactKey, Partner};
+pub use depenetration::push_apart;
 pub use detection::ContactDetector;
 pub use island::Islands;
-pub use loads::Load;
 pub use problem::{ContactProblem, InverseInertia};
-pub use recovery::push_apart;
-pub use resolver::ContactResolver;
+pub use resolver::{ContactOutcome, ContactResolver};
+pub use statistics::Statistics;
+pub use warm_start::Load;

@@ -7,8 +7,8 @@
 //! other, and pushing as at the substep's beginning opens nothing.
 
 use super::ContactProblem;
-use super::pace::Pace;
-use crate::boat::Velocity;
+use super::bounds::Pace;
+use crate::geometry::Velocity;
 
 /// Part of an island's energy that a curve may seem to add. Its true share is of third order in dt: in
 /// 500-boats and `table-1`, free or jammed, below 0.01 at dt = 0.01 to 0.05 s in all but 6 of

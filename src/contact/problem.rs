@@ -2,7 +2,7 @@
 //! inertia, after which no gap closes beyond zero.
 
 use super::Contact;
-use crate::boat::Velocity;
+use crate::geometry::Velocity;
 
 /// One over the effective inertia of a boat in this substep.
 #[derive(Debug, Clone, Copy, PartialEq)]

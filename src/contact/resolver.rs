@@ -1,20 +1,29 @@
 //! From free velocities to velocities that respect the contacts: detection, warm start, solve,
 //! relinearisation, and what to do where the constraints contradict each other.
 
-use super::loads::{Load, Loads};
-use super::pace::Pace;
+use super::bounds::Pace;
+use super::depenetration::{DEEP, Recovery};
 use super::passivity::{self, Passivity};
-use super::recovery::{DEEP, Recovery};
 use super::solver::ContactSolver;
-use super::{Contact, ContactDetector, ContactProblem, InverseInertia};
-use crate::boat::{Pose, Velocity};
-use crate::geometry::{HullPose, NeighborList, Vec2};
+use super::warm_start::{Load, Loads};
+use super::{Contact, ContactDetector, ContactProblem, InverseInertia, Statistics};
+use crate::clock::{seconds, ticks};
+use crate::geometry::{HullPose, NeighborList, Pose, Vec2, Velocity};
 use crate::parameters::{FlockParameters, Scheme, Solver};
-use crate::phase_schedule::{seconds, ticks};
-use crate::statistics::Statistics;
 
 /// Relinearisation passes after which a substep is taken as it is.
 const MOST_PASSES: u32 = 20;
+
+/// What the contacts of a substep came to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ContactOutcome {
+    /// Nothing is near enough to touch within the substep.
+    Untouched,
+    /// The contacts have been solved.
+    Solved,
+    /// Contacts turn too far within the substep, and a shorter one is possible.
+    TooLong,
+}
 
 /// Finds and solves the contacts of a flock, substep after substep.
 #[derive(Debug, Clone)]
@@ -200,8 +209,7 @@ impl ContactResolver {
     /// Solves the contacts found last for free velocities and effective inertia; the result is in
     /// [`Self::velocities`]. Poses are those at the substep's beginning.
     ///
-    /// Returns `false`, with nothing but the statistics changed, if contacts turn too far within `dt` and a
-    /// shorter one is possible.
+    /// [`ContactOutcome::TooLong`] changes nothing but the statistics.
     pub fn resolve(
         &mut self,
         poses: &[Pose],
@@ -210,7 +218,7 @@ impl ContactResolver {
         dt: f64,
         shorter_possible: bool,
         statistics: &mut Statistics,
-    ) -> bool {
+    ) -> ContactOutcome {
         let pace = Pace {
             dt,
             closing_s: dt.max(self.whole_substep_s),
@@ -233,14 +241,14 @@ impl ContactResolver {
         }
         if self.stop_driving(free, inertia, pace) {
             if shorter_possible {
-                return false;
+                return ContactOutcome::TooLong;
             }
             self.solve(free, inertia, statistics);
         }
         let impulses = self.solver.impulses.iter().copied();
         self.loads
             .replace(self.contacts.iter().map(Contact::key).zip(impulses));
-        true
+        ContactOutcome::Solved
     }
 
     /// Has bounds follow from the gaps at hand alone in islands that would be driven otherwise; returns

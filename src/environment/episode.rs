@@ -1,201 +1,267 @@
-//! Episodes: how long they last, which direction is wanted when, and what a seed fixes.
+//! One episode under way: the flock, its leaders' rudders, what was observed and rewarded so far.
 
+use super::observation::{Camera, CameraState, FlockView, Observer, StateObserver};
+use super::reset::flock_from;
+use super::statistics::EpisodeStatistics;
+use super::{EnvSettings, EpisodeSchedule, EpisodeSummary, Reward, RewardTerms, Servo, TERMS};
+use crate::analysis::OrderParameters;
+use crate::clock::seconds;
 use crate::error::{FlockError, Result};
-use crate::names::named_choice;
-use crate::parameters::Target;
-use crate::phase_schedule::{Ticks, ticks};
-use crate::random_streams::Stream;
-use rand::RngExt;
-use rand_chacha::rand_core::Rng;
+use crate::flock::Flock;
+use crate::integrator::Steering;
+use crate::parameters::FlockParameters;
 
-named_choice! {
-    /// Which direction an episode's target is.
-    pub enum TargetChoice ("target") {
-        /// Clockwise throughout.
-        Clockwise = "cw",
-        /// Counter-clockwise throughout.
-        CounterClockwise = "ccw",
-        /// One of the two, drawn for the episode.
-        Random = "random",
-        /// Counter-clockwise, clockwise, counter-clockwise, clockwise, a quarter of the episode each
-        /// (figure 7).
-        Alternate = "alternate",
-    }
+/// What observations and rewards are computed from.
+#[derive(Debug, Clone)]
+struct EpisodeState {
+    flock: Flock,
+    schedule: EpisodeSchedule,
+    /// The leaders' rudders as they stand, positive counter-clockwise.
+    rudders: Vec<f64>,
+    /// Of the normal boats; `None` where there is none.
+    order: Option<OrderParameters>,
 }
 
-/// How episodes are made.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct EpisodeSettings {
-    /// Length in s; `None`: 480 s, and 960 s where targets alternate.
-    pub episode_s: Option<f64>,
-    /// Control steps a second.
-    pub control_hz: f64,
-    /// The direction to lead in.
-    pub target: TargetChoice,
-    /// Range that bw_s is drawn from, uniformly, for each episode; `None`: the parameters' own.
-    pub bw_range_s: Option<(f64, f64)>,
-}
-
-impl Default for EpisodeSettings {
-    fn default() -> Self {
-        Self {
-            episode_s: None,
-            control_hz: 10.0,
-            target: TargetChoice::Clockwise,
-            bw_range_s: None,
+impl EpisodeState {
+    fn view(&self) -> FlockView<'_> {
+        FlockView {
+            poses: self.flock.poses(),
+            hulls: self.flock.hulls(),
+            velocities: self.flock.velocities(),
+            leaders: self.rudders.len(),
+            phase: self.flock.phase(),
+            bw_s: self.schedule.bw_s,
+            target: self.schedule.target(),
+            rudders: &self.rudders,
+            order: self.order.as_ref(),
         }
     }
 }
 
-impl EpisodeSettings {
-    /// Checks the settings.
-    ///
-    /// # Errors
-    /// [`FlockError::Parameter`].
-    pub fn check(&self) -> Result<()> {
-        if !(0.1..=1000.0).contains(&self.control_hz) {
-            let accepted = "0.1 to 1000 control steps a second";
-            return Err(FlockError::parameter(
-                "control_hz",
-                self.control_hz,
-                accepted,
-            ));
-        }
-        let duration = self.duration_s();
-        let steps = duration * self.control_hz;
-        if !(duration <= 1e6 && (0.5..=1e9).contains(&steps)) {
-            let accepted = "at least one control step, at most 1e6 s";
-            return Err(FlockError::parameter("episode_s", duration, accepted));
-        }
-        match self.bw_range_s {
-            Some((low, high)) if !(0.0 <= low && low <= high && high <= 1e6) => {
-                Err(FlockError::parameter(
-                    "bw_s",
-                    format!("({low}, {high})"),
-                    "a range (low, high) with 0 <= low <= high <= 1e6",
-                ))
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// Length of an episode in s.
-    pub fn duration_s(&self) -> f64 {
-        self.episode_s.unwrap_or(match self.target {
-            TargetChoice::Alternate => 960.0,
-            _ => 480.0,
-        })
-    }
-
-    /// Length of an episode in control steps.
-    pub fn steps(&self) -> u32 {
-        (self.duration_s() * self.control_hz).round() as u32
-    }
-
-    /// Time from an episode's start to the end of so many control steps, to the nearest tick: where a
-    /// period is no whole number of ticks, rounding does not add up.
-    pub fn time_of(&self, steps: u32) -> Ticks {
-        ticks(f64::from(steps) / self.control_hz)
-    }
+/// What is stored of an episode.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub struct StoredEpisode {
+    flock: Vec<u8>,
+    schedule: EpisodeSchedule,
+    rudders: Vec<f64>,
+    camera: Option<CameraState>,
+    terms: Vec<RewardTerms>,
+    statistics: EpisodeStatistics,
+    ended: bool,
 }
 
-/// One episode: what was drawn for it and how far it is.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+/// An episode under way.
+#[derive(Debug, Clone)]
 pub struct Episode {
-    /// Seed of the flock: of its start, its noise, what is drawn for the episode, and the camera.
-    pub flock_seed: u64,
-    /// Control steps taken.
-    pub step: u32,
-    /// Control steps until the time limit.
-    pub steps: u32,
-    /// Length of the backward phase in s.
-    pub bw_s: f64,
-    target: EpisodeTarget,
-}
-
-/// The target of an episode as a function of its steps.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-enum EpisodeTarget {
-    Constant(Target),
-    Alternating,
+    state: EpisodeState,
+    observer: Observer,
+    camera: Option<Camera>,
+    terms: Vec<RewardTerms>,
+    statistics: EpisodeStatistics,
+    ended: bool,
 }
 
 impl Episode {
-    /// Draws an episode. bw and target are drawn from the flock's seed whether they are used or not, so
-    /// that neither depends on the other being fixed.
-    pub fn new(settings: &EpisodeSettings, flock_seed: u64, own_bw_s: f64) -> Self {
-        let mut rng = Stream::Episode.rng(flock_seed);
-        let share: f64 = rng.random_range(0.0..1.0);
-        let drawn = if rng.next_u64() & 1 == 0 {
-            Target::Clockwise
-        } else {
-            Target::CounterClockwise
-        };
+    /// An episode that begins with this flock.
+    pub fn new(settings: &EnvSettings, schedule: EpisodeSchedule, flock: Flock) -> Self {
+        let leaders = flock.parameters().n_leaders;
+        let camera = settings.camera.is_active().then(|| {
+            let (poses, velocities) = (flock.poses(), flock.velocities());
+            Camera::new(
+                settings.camera,
+                schedule.flock_seed,
+                leaders,
+                poses,
+                velocities,
+            )
+        });
         Self {
-            flock_seed,
-            step: 0,
-            steps: settings.steps(),
-            bw_s: settings
-                .bw_range_s
-                .map_or(own_bw_s, |(low, high)| low + share * (high - low)),
-            target: match settings.target {
-                TargetChoice::Clockwise => EpisodeTarget::Constant(Target::Clockwise),
-                TargetChoice::CounterClockwise => EpisodeTarget::Constant(Target::CounterClockwise),
-                TargetChoice::Random => EpisodeTarget::Constant(drawn),
-                TargetChoice::Alternate => EpisodeTarget::Alternating,
+            observer: Observer::new(settings.observation, flock.parameters()),
+            camera,
+            terms: vec![[0.0; TERMS]; leaders],
+            statistics: EpisodeStatistics::default(),
+            ended: false,
+            state: EpisodeState {
+                order: flock.order_parameters(false).ok(),
+                rudders: vec![0.0; leaders],
+                schedule,
+                flock,
             },
         }
     }
 
-    /// The target of the control step that comes next; after the last one, that of the last.
-    pub fn target(&self) -> Target {
-        match self.target {
-            EpisodeTarget::Constant(target) => target,
-            EpisodeTarget::Alternating => {
-                let step = u64::from(self.step.min(self.steps.saturating_sub(1)));
-                if (4 * step / u64::from(self.steps.max(1))).is_multiple_of(2) {
-                    Target::CounterClockwise
-                } else {
-                    Target::Clockwise
-                }
+    /// The flock.
+    pub fn flock(&self) -> &Flock {
+        &self.state.flock
+    }
+
+    /// What was drawn for the episode, and how far it is.
+    pub fn schedule(&self) -> &EpisodeSchedule {
+        &self.state.schedule
+    }
+
+    /// Whether the episode has ended.
+    pub fn has_ended(&self) -> bool {
+        self.ended
+    }
+
+    /// Order parameters of the normal boats now; `None` where there is none.
+    pub fn order(&self) -> Option<&OrderParameters> {
+        self.state.order.as_ref()
+    }
+
+    /// Each leader's reward terms in the last control step.
+    pub fn terms(&self) -> &[RewardTerms] {
+        &self.terms
+    }
+
+    /// The leaders' rudders as they stand, positive counter-clockwise.
+    pub fn rudders(&self) -> &[f64] {
+        &self.state.rudders
+    }
+
+    /// What there is to tell about the episode so far.
+    pub fn summary(&self) -> EpisodeSummary {
+        self.statistics.summary(&self.state.schedule)
+    }
+
+    /// Writes what leaders see now; returns how many numbers were clipped.
+    pub fn observe(&mut self, out: &mut [f32]) -> u32 {
+        let mut view = self.state.view();
+        if let Some(camera) = &self.camera {
+            view.poses = &camera.seen().poses;
+            view.velocities = &camera.seen().velocities;
+            view.hulls = camera.hulls();
+            view.order = camera.order();
+        }
+        self.observer.observe(&view, out)
+    }
+
+    /// Writes what leaders see in the course of the episode, and counts what was clipped.
+    pub fn observe_and_count(&mut self, out: &mut [f32]) {
+        let clipped = self.observe(out);
+        self.statistics.count_clipped(clipped, out.len());
+    }
+
+    /// Writes the global state, which no camera stands before.
+    pub fn observe_state(&self, observer: &StateObserver, out: &mut [f32]) {
+        observer.observe(&self.state.view(), self.state.schedule.elapsed(), out);
+    }
+
+    /// Takes one control step with checked actions, one a leader, and writes the rewards.
+    ///
+    /// # Errors
+    /// [`FlockError::Solver`]; the flock stays where it was, and the episode is over.
+    pub fn step(
+        &mut self,
+        settings: &EnvSettings,
+        servo: &Servo,
+        actions: &[f64],
+        rewards: &mut [f64],
+    ) -> Result<()> {
+        let state = &mut self.state;
+        let target = state.schedule.target();
+        let mirrored = settings.observation.mirror_to_target && target.sign() < 0.0;
+        for (rudder, &action) in state.rudders.iter_mut().zip(actions) {
+            let command = settings.rudder.command(action);
+            *rudder = servo.moved(*rudder, if mirrored { -command } else { command });
+        }
+        let (plan, step) = (&settings.episode, state.schedule.step);
+        let end = state.flock.time() + plan.time_of(step + 1) - plan.time_of(step);
+        if let Err(error) = state.flock.advance_to(end, Steering::Held(&state.rudders)) {
+            self.ended = true;
+            return Err(error);
+        }
+        state.order = state.flock.order_parameters(false).ok();
+        self.compute_rewards(settings, rewards);
+        self.advance_schedule();
+        Ok(())
+    }
+
+    /// Rewards of the step just taken, with the target that held in it.
+    fn compute_rewards(&mut self, settings: &EnvSettings, rewards: &mut [f64]) {
+        let view = self.state.view();
+        let reward = Reward::new(self.state.flock.parameters(), &view);
+        let share = 1.0 / rewards.len() as f64;
+        for (leader, (terms, paid)) in self.terms.iter_mut().zip(rewards).enumerate() {
+            *terms = reward.terms(&view, leader);
+            *paid = settings.reward.total(terms);
+            self.statistics.add_reward(share, terms, *paid);
+        }
+        let (flock, schedule) = (&self.state.flock, &self.state.schedule);
+        let settled = 10 * (u64::from(schedule.step) + 1) > u64::from(schedule.steps);
+        if let Some(order) = &self.state.order {
+            let time_s = seconds(settings.episode.time_of(schedule.step + 1));
+            let is_late = 2 * (u64::from(schedule.step) + 1) >= u64::from(schedule.steps);
+            self.statistics.watch_order(order, time_s, is_late);
+            if settled && flock.schedule().in_analysis_window(flock.time()) {
+                self.statistics.add_window(order, view.target);
             }
         }
     }
 
-    /// Part of the episode that is over, in [0, 1].
-    pub fn elapsed(&self) -> f64 {
-        f64::from(self.step) / f64::from(self.steps)
-    }
-
-    /// Whether the time limit is reached.
-    pub fn is_over(&self) -> bool {
-        self.step >= self.steps
-    }
-}
-
-/// The seeds of an environment's episodes: the first is the environment's own, the others follow from it
-/// and their number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub struct EpisodeSeeds {
-    seed: u64,
-    next: u64,
-}
-
-impl EpisodeSeeds {
-    /// Episodes of an environment with this seed.
-    pub fn new(seed: u64) -> Self {
-        Self { seed, next: 0 }
-    }
-
-    /// The seed of the next episode's flock.
-    pub fn next_seed(&mut self) -> u64 {
-        let episode = self.next;
-        self.next += 1;
-        if episode == 0 {
-            return self.seed;
+    /// Moves the episode's clock on: targets change, the camera takes its picture.
+    fn advance_schedule(&mut self) {
+        let state = &mut self.state;
+        state.schedule.step += 1;
+        self.ended = state.schedule.is_over();
+        state.flock.set_target(state.schedule.target());
+        if let Some(camera) = &mut self.camera {
+            let (poses, velocities) = (state.flock.poses(), state.flock.velocities());
+            camera.expose(state.rudders.len(), poses, velocities);
         }
-        let mut rng = Stream::EpisodeSeeds.rng(self.seed);
-        rng.set_stream(episode);
-        rng.next_u64()
+    }
+
+    /// The episode, to be stored.
+    pub fn stored(&self) -> StoredEpisode {
+        StoredEpisode {
+            flock: self.state.flock.snapshot(),
+            schedule: self.state.schedule.clone(),
+            rudders: self.state.rudders.clone(),
+            camera: self.camera.as_ref().map(Camera::state),
+            terms: self.terms.clone(),
+            statistics: self.statistics,
+            ended: self.ended,
+        }
+    }
+
+    /// The episode that was stored, in an environment with these settings and parameters.
+    ///
+    /// # Errors
+    /// [`FlockError::Snapshot`] if it does not belong there.
+    pub fn restored(
+        settings: &EnvSettings,
+        parameters: &FlockParameters,
+        stored: StoredEpisode,
+    ) -> Result<Self> {
+        let (leaders, boats) = (parameters.n_leaders, parameters.n_boats);
+        let flock = flock_from(&stored.flock, parameters)?;
+        let fits = stored.rudders.len() == leaders
+            && stored.rudders.iter().all(|rudder| rudder.abs() <= 1.0)
+            && stored.terms.len() == leaders
+            && stored.schedule.steps == settings.episode.steps()
+            && stored.schedule.bw_s == flock.parameters().bw_s
+            && stored.camera.is_some() == settings.camera.is_active()
+            && stored
+                .camera
+                .as_ref()
+                .is_none_or(|state| Camera::fits(state, boats));
+        if !fits {
+            return Err(FlockError::Snapshot(
+                "the state holds an episode that this environment cannot have".to_owned(),
+            ));
+        }
+        let seed = stored.schedule.flock_seed;
+        let mut episode = Self::new(settings, stored.schedule, flock);
+        episode.state.rudders = stored.rudders;
+        episode.camera = stored.camera.map(|state| {
+            let mut camera = Camera::unexposed(settings.camera, seed);
+            camera.set_state(state, leaders);
+            camera
+        });
+        episode.terms = stored.terms;
+        episode.statistics = stored.statistics;
+        episode.ended = stored.ended;
+        Ok(episode)
     }
 }

@@ -1,16 +1,16 @@
 //! One flock as an environment: an episode after another, each seeded.
 
-use super::run::StoredRun;
-use super::{Autoreset, EnvSettings, EpisodeSeeds, EpisodeSummary, ResetRequest, Run, Servo};
+use super::episode::StoredEpisode;
+use super::observation::StateObserver;
+use super::{Autoreset, EnvSettings, Episode, EpisodeSeeds, EpisodeSummary, ResetRequest, Servo};
 use crate::error::{FlockError, Result};
-use crate::observation::StateObserver;
 use crate::parameters::FlockParameters;
 
 /// What is stored of an environment.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct StoredEnv {
     seeds: Option<EpisodeSeeds>,
-    run: Option<StoredRun>,
+    episode: Option<StoredEpisode>,
     finished: Option<EpisodeSummary>,
     final_observation: Vec<f32>,
     final_state: Vec<f32>,
@@ -23,7 +23,7 @@ pub struct FlockEnv {
     servo: Servo,
     state_observer: StateObserver,
     seeds: Option<EpisodeSeeds>,
-    run: Option<Run>,
+    episode: Option<Episode>,
     finished: Option<EpisodeSummary>,
     final_observation: Vec<f32>,
     final_state: Vec<f32>,
@@ -36,7 +36,7 @@ impl FlockEnv {
             servo: settings.rudder.servo(1.0 / settings.episode.control_hz),
             state_observer: StateObserver::new(&parameters, settings.observation.mirror_to_target),
             seeds: None,
-            run: None,
+            episode: None,
             finished: None,
             final_observation: Vec::new(),
             final_state: Vec::new(),
@@ -50,8 +50,8 @@ impl FlockEnv {
     }
 
     /// The episode under way, or that has ended last; `None` before the first reset.
-    pub fn run(&self) -> Option<&Run> {
-        self.run.as_ref()
+    pub fn episode(&self) -> Option<&Episode> {
+        self.episode.as_ref()
     }
 
     /// Whether a reset has ever given a seed.
@@ -74,7 +74,7 @@ impl FlockEnv {
         &self.final_state
     }
 
-    /// The next episode, begun but not entered yet.
+    /// The next episode, not started yet.
     ///
     /// # Errors
     /// [`FlockError::Episode`] without any seed yet, and errors of the request.
@@ -82,19 +82,19 @@ impl FlockEnv {
         &self,
         settings: &EnvSettings,
         request: &ResetRequest,
-    ) -> Result<(EpisodeSeeds, Run)> {
+    ) -> Result<(EpisodeSeeds, Episode)> {
         let Some(mut seeds) = request.seed.map(EpisodeSeeds::new).or(self.seeds) else {
             let message = "the first reset of an environment needs a seed";
             return Err(FlockError::Episode(message.to_owned()));
         };
         let flock_seed = seeds.next_seed();
-        let (episode, flock) = request.begin(settings, &self.parameters, flock_seed)?;
-        Ok((seeds, Run::new(settings, episode, flock)))
+        let (schedule, flock) = request.build(settings, &self.parameters, flock_seed)?;
+        Ok((seeds, Episode::new(settings, schedule, flock)))
     }
 
-    /// Enters a prepared episode.
-    pub fn enter(&mut self, (seeds, run): (EpisodeSeeds, Run)) {
-        (self.seeds, self.run) = (Some(seeds), Some(run));
+    /// Starts a prepared episode.
+    pub fn start(&mut self, (seeds, episode): (EpisodeSeeds, Episode)) {
+        (self.seeds, self.episode) = (Some(seeds), Some(episode));
     }
 
     /// Whether a step is due, be it one that only starts the next episode.
@@ -102,9 +102,9 @@ impl FlockEnv {
     /// # Errors
     /// [`FlockError::Episode`] if the environment has to be reset first.
     pub fn check_ready(&self, autoreset: Autoreset) -> Result<()> {
-        let message = match &self.run {
+        let message = match &self.episode {
             None => "step was called before the first reset",
-            Some(run) if run.has_ended() && autoreset == Autoreset::Disabled => {
+            Some(episode) if episode.has_ended() && autoreset == Autoreset::Disabled => {
                 "step was called after the episode's end; call reset first"
             }
             Some(_) => return Ok(()),
@@ -126,24 +126,24 @@ impl FlockEnv {
     ) -> Result<bool> {
         rewards.fill(0.0);
         self.check_ready(settings.autoreset)?;
-        if self.run.as_ref().is_some_and(Run::has_ended) {
-            self.go_on(settings, observations)?;
+        if self.episode.as_ref().is_some_and(Episode::has_ended) {
+            self.start_next(settings, observations)?;
             return Ok(false);
         }
-        let Some(run) = &mut self.run else {
+        let Some(episode) = &mut self.episode else {
             return Ok(false);
         };
-        run.step(settings, &self.servo, actions, rewards)?;
-        run.observe_and_count(observations);
-        if !run.has_ended() {
+        episode.step(settings, &self.servo, actions, rewards)?;
+        episode.observe_and_count(observations);
+        if !episode.has_ended() {
             return Ok(false);
         }
-        self.finished = Some(run.summary());
+        self.finished = Some(episode.summary());
         if settings.autoreset == Autoreset::SameStep {
             self.final_observation.clear();
             self.final_observation.extend_from_slice(observations);
             self.keep_final_state();
-            self.go_on(settings, observations)?;
+            self.start_next(settings, observations)?;
         }
         Ok(true)
     }
@@ -155,24 +155,24 @@ impl FlockEnv {
         self.final_state = state;
     }
 
-    fn go_on(&mut self, settings: &EnvSettings, observations: &mut [f32]) -> Result<()> {
-        self.enter(self.prepare(settings, &ResetRequest::default())?);
-        self.begin_observing(observations);
+    fn start_next(&mut self, settings: &EnvSettings, observations: &mut [f32]) -> Result<()> {
+        self.start(self.prepare(settings, &ResetRequest::default())?);
+        self.observe_start(observations);
         Ok(())
     }
 
     /// Writes the first observations of an episode.
-    pub fn begin_observing(&mut self, out: &mut [f32]) {
-        if let Some(run) = &mut self.run {
-            run.observe_and_count(out);
+    pub fn observe_start(&mut self, out: &mut [f32]) {
+        if let Some(episode) = &mut self.episode {
+            episode.observe_and_count(out);
         }
     }
 
     /// Writes the observations as they are now, zeros before the first reset.
     pub fn observe(&mut self, out: &mut [f32]) {
-        match &mut self.run {
-            Some(run) => {
-                run.observe(out);
+        match &mut self.episode {
+            Some(episode) => {
+                episode.observe(out);
             }
             None => out.fill(0.0),
         }
@@ -185,8 +185,8 @@ impl FlockEnv {
 
     /// Writes the global state, zeros before the first reset.
     pub fn observe_state(&self, out: &mut [f32]) {
-        match &self.run {
-            Some(run) => run.observe_state(&self.state_observer, out),
+        match &self.episode {
+            Some(episode) => episode.observe_state(&self.state_observer, out),
             None => out.fill(0.0),
         }
     }
@@ -195,7 +195,7 @@ impl FlockEnv {
     pub fn stored(&self) -> StoredEnv {
         StoredEnv {
             seeds: self.seeds,
-            run: self.run.as_ref().map(Run::stored),
+            episode: self.episode.as_ref().map(Episode::stored),
             finished: self.finished,
             final_observation: self.final_observation.clone(),
             final_state: self.final_state.clone(),
@@ -208,14 +208,14 @@ impl FlockEnv {
     /// [`FlockError::Snapshot`] if the state does not belong to such an environment.
     pub fn restored(&self, settings: &EnvSettings, stored: StoredEnv) -> Result<Self> {
         let whole = self.parameters.n_leaders * settings.observation.size();
-        let run = stored
-            .run
-            .map(|run| Run::restored(settings, &self.parameters, run))
+        let episode = stored
+            .episode
+            .map(|episode| Episode::restored(settings, &self.parameters, episode))
             .transpose()?;
         let whole_or_none = |kept: &[f32], whole| kept.is_empty() || kept.len() == whole;
         if !whole_or_none(&stored.final_observation, whole)
             || !whole_or_none(&stored.final_state, self.state_size())
-            || (run.is_some() && stored.seeds.is_none())
+            || (episode.is_some() && stored.seeds.is_none())
         {
             return Err(FlockError::Snapshot(
                 "the state is of another environment".to_owned(),
@@ -223,7 +223,7 @@ impl FlockEnv {
         }
         let mut restored = Self::new(settings, self.parameters.clone());
         restored.seeds = stored.seeds;
-        restored.run = run;
+        restored.episode = episode;
         restored.finished = stored.finished;
         restored.final_observation = stored.final_observation;
         restored.final_state = stored.final_state;

@@ -1,21 +1,22 @@
 //! The task that leaders are trained on: episodes, observations, rewards, many flocks at once.
 
-mod env_batch;
+mod batch;
 mod episode;
 mod flock_env;
+pub mod observation;
 mod reset;
 mod reward;
 mod rudder;
-mod run;
+mod schedule;
 mod settings;
-mod totals;
+mod statistics;
 
-pub use env_batch::{BatchRows, EnvBatch};
-pub use episode::{Episode, EpisodeSeeds, EpisodeSettings, TargetChoice};
+pub use batch::{BatchRows, EnvBatch};
+pub use episode::Episode;
 pub use flock_env::FlockEnv;
 pub use reset::{ResetRequest, Start};
 pub use reward::{Reward, RewardTerm, RewardTerms, RewardWeights, TERMS};
 pub use rudder::{RudderSettings, Servo};
-pub use run::Run;
+pub use schedule::{EpisodeSchedule, EpisodeSeeds, EpisodeSettings, TargetChoice};
 pub use settings::{Autoreset, EnvSettings};
-pub use totals::{EpisodeSummary, ORDERED_WITHIN, TOWARDS_TARGET};
+pub use statistics::{EpisodeSummary, ORDERED_WITHIN, TOWARDS_TARGET};

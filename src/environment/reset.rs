@@ -1,9 +1,9 @@
 //! What a reset may ask for, and the flock that an episode begins with.
 
-use super::{EnvSettings, Episode, TargetChoice};
-use crate::boat::{Pose, Velocity};
+use super::{EnvSettings, EpisodeSchedule, TargetChoice};
 use crate::error::{FlockError, Result};
 use crate::flock::{Flock, LATEST};
+use crate::geometry::{Pose, Velocity};
 use crate::parameters::FlockParameters;
 
 /// Where an episode begins.
@@ -45,23 +45,23 @@ impl ResetRequest {
     ///
     /// # Errors
     /// [`FlockError`] for a request that cannot be met.
-    pub fn begin(
+    pub fn build(
         &self,
         settings: &EnvSettings,
         parameters: &FlockParameters,
         flock_seed: u64,
-    ) -> Result<(Episode, Flock)> {
+    ) -> Result<(EpisodeSchedule, Flock)> {
         let mut plan = settings.episode;
         // The length belongs to the environment, whatever the target of this episode.
         plan.episode_s = Some(plan.duration_s());
         plan.target = self.target.unwrap_or(plan.target);
-        let mut episode = Episode::new(&plan, flock_seed, parameters.bw_s);
-        episode.bw_s = self.bw_s.unwrap_or(episode.bw_s);
+        let mut schedule = EpisodeSchedule::new(&plan, flock_seed, parameters.bw_s);
+        schedule.bw_s = self.bw_s.unwrap_or(schedule.bw_s);
         let mut flock = match &self.start {
             Start::Snapshot(bytes) => flock_from(bytes, parameters)?,
             Start::Random | Start::State { .. } => {
                 let own = FlockParameters {
-                    bw_s: episode.bw_s,
+                    bw_s: schedule.bw_s,
                     ..parameters.clone()
                 };
                 Flock::new(own, flock_seed)?
@@ -76,13 +76,13 @@ impl ResetRequest {
         {
             flock.set_state(poses, velocities, *time_s, *allow_overlap)?;
         }
-        if flock.time() + plan.time_of(episode.steps) > LATEST {
+        if flock.time() + plan.time_of(schedule.steps) > LATEST {
             let accepted = "a time at least an episode's length before 1e9 s";
             return Err(FlockError::parameter("time_s", flock.time_s(), accepted));
         }
-        episode.bw_s = flock.parameters().bw_s;
-        flock.set_target(episode.target());
-        Ok((episode, flock))
+        schedule.bw_s = flock.parameters().bw_s;
+        flock.set_target(schedule.target());
+        Ok((schedule, flock))
     }
 }
 

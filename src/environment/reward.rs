@@ -1,11 +1,10 @@
 //! The reward: named terms, each larger for better, and their weights.
 
+use super::observation::{FlockView, speed_scale_cm_s};
+use crate::analysis::OrderParameters;
 use crate::error::{FlockError, Result};
-use crate::lap_frame::LapFrame;
-use crate::names::named_choice;
-use crate::observation::{FlockView, speed_scale_cm_s};
-use crate::order_parameters::OrderParameters;
-use crate::parameters::FlockParameters;
+use crate::geometry::LapFrame;
+use crate::parameters::{FlockParameters, named_choice};
 
 named_choice! {
     /// A term of the reward.

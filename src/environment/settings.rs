@@ -1,10 +1,9 @@
 //! Everything about an environment that is not the flock's own parameters.
 
+use super::observation::{CameraSettings, ObservationLayout};
 use super::{EpisodeSettings, RewardWeights, RudderSettings};
 use crate::error::{FlockError, Result};
-use crate::names::named_choice;
-use crate::observation::{CameraSettings, ObservationLayout};
-use crate::parameters::FlockParameters;
+use crate::parameters::{FlockParameters, named_choice};
 
 named_choice! {
     /// What happens when an episode has ended.

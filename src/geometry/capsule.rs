@@ -1,7 +1,6 @@
 //! The hull of a boat: a segment swept by a disc (Section 5.1, figure 13).
 
-use super::Vec2;
-use crate::boat::Pose;
+use super::{Pose, Vec2};
 use crate::parameters::FlockParameters;
 use wide::f64x4;
 

@@ -1,14 +1,18 @@
-//! Hulls, walls and the distances between them.
+//! Poses, hulls, walls and the distances between them.
 
 mod annulus;
 mod capsule;
 mod gap;
+pub mod lap_frame;
 mod neighbors;
+mod pose;
 
 pub use annulus::{inner_wall_gap, outer_wall_gap};
 pub use capsule::{Hull, HullPose};
 pub use gap::{Gap, PairFeature, crossed_gap, pair_gap, pair_gaps};
+pub use lap_frame::LapFrame;
 pub use neighbors::NeighborList;
+pub use pose::{LARGEST, Pose, Velocity};
 
 /// A vector in the plane, in cm or cm/s.
 pub type Vec2 = nalgebra::Vector2<f64>;

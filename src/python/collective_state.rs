@@ -1,9 +1,11 @@
 //! Collective states and ordering times of whole series.
 
 use super::arguments::real;
-use crate::collective_state::{CollectiveState, off_tangent, ordering_time as ordering_time_of};
+use crate::analysis::OrderParameters;
+use crate::analysis::collective_state::{
+    CollectiveState, off_tangent, ordering_time as ordering_time_of,
+};
 use crate::error::FlockError;
-use crate::order_parameters::OrderParameters;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 

@@ -3,11 +3,11 @@
 use super::arguments::{Seconds, Seed, TimeS, floats, text};
 use super::parameters::to_python;
 use super::results;
-use crate::boat::{Pose, Velocity};
-use crate::dynamics::Steering;
+use crate::clock::{Ticks, seconds};
 use crate::flock::Flock;
+use crate::geometry::{Pose, Velocity};
+use crate::integrator::Steering;
 use crate::parameters::FlockParameters;
-use crate::phase_schedule::{Ticks, seconds};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyType};

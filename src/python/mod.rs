@@ -1,18 +1,18 @@
 //! The Python module `flockenv._core`: call, convert, return. The only place that names pyo3 and numpy.
 
 pub mod arguments;
-pub mod arrangement;
+pub mod batch;
 pub mod collective_state;
-pub mod env_batch;
-pub mod env_settings;
+pub mod draw;
 pub mod error;
 pub mod flock;
-pub mod frame_image;
 pub mod observation;
-pub mod order;
+pub mod order_parameters;
 pub mod parameters;
 pub mod recording;
 pub mod results;
+pub mod settings;
+pub mod structure;
 
 use pyo3::prelude::*;
 
@@ -23,31 +23,31 @@ mod _core {
     #[pymodule_export]
     use super::arguments::oversized_shape;
     #[pymodule_export]
-    use super::arrangement::{lagged_motion, largest_cluster, on_outer_wall, pair_counts};
+    use super::batch::PyEnvBatch;
     #[pymodule_export]
     use super::collective_state::{
         collective_state_names, collective_states, off_tangents, ordering_time,
     };
     #[pymodule_export]
-    use super::env_batch::PyEnvBatch;
-    #[pymodule_export]
-    use super::env_settings::{env_defaults, reward_terms};
+    use super::draw::{PyAnimationEncoder, PyFrameRenderer};
     #[pymodule_export]
     use super::flock::PyFlock;
-    #[pymodule_export]
-    use super::frame_image::{PyAnimationEncoder, PyFrameRenderer};
     #[pymodule_export]
     use super::observation::{
         PyObservedLaw, nearest_levels, observation_table, observation_version, observe, state_table,
     };
     #[pymodule_export]
-    use super::order::{outward, rotation, signed_order};
+    use super::order_parameters::{outward, rotation, signed_order};
     #[pymodule_export]
     use super::parameters::{
         checked_fields, critical_bw_s, pool_radii_cm, preset_fields, preset_names, preset_sources,
     };
     #[pymodule_export]
     use super::recording::{phase_names, record};
+    #[pymodule_export]
+    use super::settings::{env_defaults, reward_terms};
+    #[pymodule_export]
+    use super::structure::{lagged_motion, largest_cluster, on_outer_wall, pair_counts};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -1,12 +1,14 @@
 //! Observations outside environments: the table, a flock observed, laws evaluated.
 
 use super::arguments::{floats, real, text};
-use super::env_settings::{count, layout_from};
 use super::flock::PyFlock;
+use super::settings::{count, layout_from};
+use crate::boat::Law;
 use crate::environment::RudderSettings;
+use crate::environment::observation::{
+    BOAT, Entry, FlockView, OBSERVATION_VERSION, ObservedLaw, Observer, state_entries,
+};
 use crate::error::FlockError;
-use crate::observation::{BOAT, Entry, FlockView, OBSERVATION_VERSION, Observer, state_entries};
-use crate::observed_law::{Law, ObservedLaw};
 use crate::parameters::FlockParameters;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;

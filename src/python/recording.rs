@@ -3,10 +3,9 @@
 use super::arguments::{DurationS, SampleHz, Seed};
 use super::flock::BOAT_SUBSTEPS_A_PIECE;
 use super::results;
-use crate::flock::Flock;
+use crate::flock::{Flock, Real, Recorder, Recording, Sampling};
+use crate::integrator::Phase;
 use crate::parameters::FlockParameters;
-use crate::phase_schedule::Phase;
-use crate::recording::{Real, Recorder, Recording, Sampling};
 use numpy::{Element, PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

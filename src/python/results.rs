@@ -1,11 +1,9 @@
 //! What a flock reports, as the dataclasses of the Python package.
 
-use crate::contact::Partner;
-use crate::flock::ContactForce;
+use crate::analysis::OrderParameters;
+use crate::contact::{Partner, Statistics};
+use crate::flock::{ContactForce, ContactSamples};
 use crate::geometry::Vec2;
-use crate::order_parameters::OrderParameters;
-use crate::recording::ContactSamples;
-use crate::statistics::Statistics;
 use numpy::{Element, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -1,7 +1,7 @@
 //! Law: an animation decodes to the frames that went in: exactly as PNG, closely as GIF.
 
 use flockenv::FlockError;
-use flockenv::animation::{AnimationEncoder, AnimationFormat};
+use flockenv::draw::{AnimationEncoder, AnimationFormat};
 
 const WIDTH: usize = 40;
 const HEIGHT: usize = 30;

@@ -3,14 +3,15 @@
 use crate::support::{batch, parameters, settings, step};
 use flockenv::Flock;
 use flockenv::environment::{
-    Autoreset, EnvSettings, Episode, EpisodeSeeds, EpisodeSettings, RudderSettings, TargetChoice,
+    Autoreset, EnvSettings, EpisodeSchedule, EpisodeSeeds, EpisodeSettings, RudderSettings,
+    TargetChoice,
 };
 use flockenv::parameters::Target;
 
 #[test]
 fn the_first_episode_has_the_seed_itself() {
     let batch = batch(settings(30), &[2], 17);
-    let own = batch.envs()[0].run().unwrap().flock();
+    let own = batch.envs()[0].episode().unwrap().flock();
     let flock = Flock::new(parameters(2), 17).unwrap();
     assert_eq!(own.poses(), flock.poses());
     let mut seeds = EpisodeSeeds::new(17);
@@ -30,7 +31,7 @@ fn targets_alternate_by_quarters() {
         ..EpisodeSettings::default()
     };
     assert_eq!(plan.steps(), 9600);
-    let mut episode = Episode::new(&plan, 0, 0.3);
+    let mut episode = EpisodeSchedule::new(&plan, 0, 0.3);
     for (step, target) in [
         (0, Target::CounterClockwise),
         (2399, Target::CounterClockwise),
@@ -51,8 +52,8 @@ fn random_targets_are_even_and_noise_levels_uniform() {
         bw_range_s: Some((0.2, 0.6)),
         ..EpisodeSettings::default()
     };
-    let episodes: Vec<Episode> = (0..4000)
-        .map(|seed| Episode::new(&plan, seed, 0.3))
+    let episodes: Vec<EpisodeSchedule> = (0..4000)
+        .map(|seed| EpisodeSchedule::new(&plan, seed, 0.3))
         .collect();
     let clockwise = episodes
         .iter()
@@ -67,8 +68,9 @@ fn random_targets_are_even_and_noise_levels_uniform() {
         bw_range_s: None,
         ..plan
     };
-    let same =
-        |seed: u64| Episode::new(&fixed, seed, 0.3).target() == episodes[seed as usize].target();
+    let same = |seed: u64| {
+        EpisodeSchedule::new(&fixed, seed, 0.3).target() == episodes[seed as usize].target()
+    };
     assert!((0..100).all(same));
 }
 

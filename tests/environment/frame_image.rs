@@ -1,6 +1,6 @@
 //! Law: a frame is a function of the flock and the frame's size, byte for byte, whatever was drawn before.
 
-use flockenv::boat::{Pose, Velocity};
+use flockenv::geometry::{Pose, Velocity};
 use flockenv::parameters::{FlockParameters, Pool, Preset, Target};
 use flockenv::{Flock, FlockError, FrameRenderer};
 

@@ -1,9 +1,9 @@
 //! Observations stay inside their bounds, the table describes them, and eq. (10) can be read from them.
 
 use crate::support::{batch, settings, step};
+use flockenv::boat::Law;
 use flockenv::environment::EnvSettings;
-use flockenv::observation::{Block, ObservationLayout};
-use flockenv::observed_law::{Law, ObservedLaw};
+use flockenv::environment::observation::{Block, ObservationLayout, ObservedLaw};
 
 #[test]
 fn layout_adds_up() {
@@ -40,7 +40,7 @@ fn every_number_is_inside_its_bounds() {
     }
     // Some of nine boats are beyond 120 cm, where distances are clipped.
     for env in batch.envs() {
-        assert!(env.run().unwrap().summary().clip_rate < 0.03);
+        assert!(env.episode().unwrap().summary().clip_rate < 0.03);
     }
 }
 
@@ -57,11 +57,11 @@ fn steering_law_can_be_read_from_the_observation() {
         let mut actions = vec![0.0; 4];
         for _ in 0..3999 {
             let written = step(&mut batch, &actions).unwrap();
-            let run = batch.envs()[0].run().unwrap();
-            let reflected = mirror_to_target && run.episode().target().sign() < 0.0;
+            let episode = batch.envs()[0].episode().unwrap();
+            let reflected = mirror_to_target && episode.schedule().target().sign() < 0.0;
             for (leader, row) in written.observations.chunks_exact(size).enumerate() {
                 actions[leader] = law.rudder(row);
-                let expected = run.flock().steering_law(leader);
+                let expected = episode.flock().steering_law(leader);
                 let expected = if reflected { -expected } else { expected };
                 worst = worst.max((actions[leader] - expected).abs());
             }

@@ -1,8 +1,8 @@
 //! Bytes of a batch continue bit for bit, and no bytes at all reach a panic.
 
 use crate::support::{batch, settings, step};
+use flockenv::environment::observation::CameraSettings;
 use flockenv::environment::{EnvBatch, EnvSettings};
-use flockenv::observation::CameraSettings;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 

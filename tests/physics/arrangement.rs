@@ -3,10 +3,10 @@
 //! On paper: a boat that goes straight is displaced by (v·t)², one that circles by 4R²·sin²(w·t/2);
 //! independent boats have the pair distribution 1.
 
-use flockenv::arrangement::{
+use flockenv::analysis::structure::{
     PairCounts, heading_correlation, largest_cluster, mean_square_displacement, on_outer_wall,
 };
-use flockenv::boat::Pose;
+use flockenv::geometry::Pose;
 use flockenv::parameters::{Pool, Preset};
 use flockenv::{Flock, FlockParameters};
 use std::f64::consts::FRAC_PI_2;

@@ -3,9 +3,9 @@
 //! On paper: a snapshot taken before a refused call equals the one taken after it, byte for byte.
 
 use crate::support::{bits, driven, flock_of};
-use flockenv::boat::{Pose, Velocity};
+use flockenv::clock::ticks;
+use flockenv::geometry::{Pose, Velocity};
 use flockenv::parameters::{Preset, Scheme, Solver, Target};
-use flockenv::phase_schedule::ticks;
 use flockenv::{Flock, FlockBatch, FlockError, FlockParameters};
 
 fn table_3() -> FlockParameters {

@@ -4,7 +4,7 @@
 //! without a common direction is disordered, or clusters if it sticks together.
 
 use flockenv::OrderParameters;
-use flockenv::collective_state::{CollectiveState, off_tangent, ordering_time};
+use flockenv::analysis::collective_state::{CollectiveState, off_tangent, ordering_time};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 const SPEED: f64 = 15.0;

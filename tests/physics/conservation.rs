@@ -7,8 +7,8 @@ use crate::support::{
     OPEN_WATER, R, SCHEMES, VELOCITY_SCHEMES, angular_momentum, cases, core_distance,
     deepest_overlap, disc, flock_of, inert, kinetic_energy, momentum, take_substeps,
 };
-use flockenv::boat::{Pose, Velocity};
 use flockenv::contact::Partner;
+use flockenv::geometry::{Pose, Velocity};
 use flockenv::parameters::{Pool, Scheme};
 use flockenv::{Flock, FlockParameters};
 use proptest::prelude::*;

@@ -4,8 +4,8 @@
 //! With x = M^½·(v − v_free) the problem is min ½|x|² subject to G·x ≥ h, where G = J·M^−½ and
 //! h = −(J·v_free + bound).
 
-use flockenv::boat::Velocity;
 use flockenv::contact::ContactProblem;
+use flockenv::geometry::Velocity;
 use nalgebra::{DMatrix, DVector};
 
 /// The problem in scaled coordinates.

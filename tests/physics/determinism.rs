@@ -4,8 +4,8 @@
 //! On paper: nothing, zero bits of difference.
 
 use crate::support::{NOISES, SCHEMES, bits, busy};
+use flockenv::clock::ticks;
 use flockenv::parameters::{Noise, Scheme, Solver, Target};
-use flockenv::phase_schedule::ticks;
 use flockenv::{Flock, FlockBatch, FlockParameters};
 
 fn all_kinds() -> impl Iterator<Item = FlockParameters> {

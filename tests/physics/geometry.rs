@@ -4,9 +4,9 @@
 //! On paper: boats nose to tail, side by side, crossed and at right angles.
 
 use crate::support::{H, R, cases, core_distance};
-use flockenv::boat::Pose;
 use flockenv::geometry::{
-    Gap, Hull, HullPose, PairFeature, Vec2, inner_wall_gap, outer_wall_gap, pair_gap, pair_gaps,
+    Gap, Hull, HullPose, PairFeature, Pose, Vec2, inner_wall_gap, outer_wall_gap, pair_gap,
+    pair_gaps,
 };
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};

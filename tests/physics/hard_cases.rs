@@ -6,9 +6,8 @@ use crate::support::{
     H, R, RHO, SCHEMES, VELOCITY_SCHEMES, crowded, deepest_overlap, disc, driven, flock_of, inert,
     root, take_substeps,
 };
-use flockenv::boat::{Pose, Velocity};
 use flockenv::contact::{Contact, ContactDetector};
-use flockenv::geometry::HullPose;
+use flockenv::geometry::{HullPose, Pose, Velocity};
 use flockenv::parameters::{Scheme, Solver};
 use flockenv::{Flock, FlockParameters};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};

@@ -8,8 +8,7 @@
 use crate::support::{
     H, R, RHO, SCHEMES, disc, flock_of, inert, kinetic_energy, momentum, take_substeps,
 };
-use flockenv::boat::Velocity;
-use flockenv::geometry::Vec2;
+use flockenv::geometry::{Vec2, Velocity};
 
 /// Rounding of poses that touch, about 1e-14 cm, over dt = 0.02 s.
 const ROUNDING: f64 = 1e-11;

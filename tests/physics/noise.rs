@@ -7,7 +7,7 @@
 
 use crate::support::{NOISES, SCHEMES, driven, flock_of, inert};
 use flockenv::parameters::{Noise, Scheme};
-use flockenv::random_streams::BrownianPaths;
+use flockenv::random::BrownianPaths;
 use flockenv::{Flock, FlockParameters};
 
 /// Boats far apart, all at rest or all moving along.
@@ -21,8 +21,8 @@ fn spread_out(p: &FlockParameters, boats: usize, speed: f64, seed: u64) -> Flock
         .map(|i| {
             let (row, column) = ((i / 50) as f64, (i % 50) as f64);
             (
-                flockenv::boat::Pose::new(60.0 * column, 60.0 * row, 0.0),
-                flockenv::boat::Velocity::new(speed, 0.0, 0.0),
+                flockenv::geometry::Pose::new(60.0 * column, 60.0 * row, 0.0),
+                flockenv::geometry::Velocity::new(speed, 0.0, 0.0),
             )
         })
         .unzip();

@@ -4,8 +4,8 @@
 //! On paper: zero bits of difference.
 
 use crate::support::{NOISES, OPEN_WATER, SCHEMES, bits, busy};
+use flockenv::clock::ticks;
 use flockenv::parameters::{Noise, Scheme};
-use flockenv::phase_schedule::ticks;
 use flockenv::{Flock, FlockBatch, FlockParameters};
 
 fn all_on(scheme: Scheme, noise: Noise) -> FlockParameters {

@@ -5,8 +5,8 @@
 //! always C = (N·Ψ² − mean|·|²)/(N − 1), which is (N·Ψ_o² − 1)/(N − 1) for unit vectors.
 
 use crate::support::cases;
-use flockenv::boat::{Pose, Velocity};
-use flockenv::lap_frame::{orientation, orientation_vector, velocity_vector};
+use flockenv::geometry::lap_frame::{orientation, orientation_vector, velocity_vector};
+use flockenv::geometry::{Pose, Velocity};
 use flockenv::parameters::{Preset, Target};
 use flockenv::{Flock, FlockError, FlockParameters, OrderParameters};
 use proptest::prelude::*;

@@ -8,7 +8,7 @@ use crate::support::{
     RHO, SCHEMES, VELOCITY_SCHEMES, crowded, deepest_overlap, disc, driven, inert, kinetic_energy,
     take_substeps,
 };
-use flockenv::boat::{Pose, Velocity};
+use flockenv::geometry::{Pose, Velocity};
 use flockenv::parameters::Scheme;
 use flockenv::{Flock, FlockParameters};
 use std::f64::consts::TAU;

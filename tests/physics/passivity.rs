@@ -11,7 +11,7 @@ use crate::support::{
     OPEN_WATER, VELOCITY_SCHEMES, deepest_overlap, driven, flock_of, inert, kinetic_energy,
     take_substeps,
 };
-use flockenv::boat::Velocity;
+use flockenv::geometry::Velocity;
 use flockenv::parameters::{Pool, Preset, Scheme};
 use flockenv::{Flock, FlockParameters};
 

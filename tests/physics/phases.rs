@@ -6,8 +6,9 @@
 
 use crate::support::{SCHEMES, driven, flock_of};
 use flockenv::FlockParameters;
+use flockenv::clock::ticks;
+use flockenv::integrator::{Phase, PhaseSchedule};
 use flockenv::parameters::{Preset, Scheme};
-use flockenv::phase_schedule::{Phase, PhaseSchedule, ticks};
 
 fn cycle(durations: [f64; 4], scheme: Scheme) -> FlockParameters {
     let [fw_s, nop1_s, bw_s, nop2_s] = durations;

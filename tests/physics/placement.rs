@@ -4,8 +4,8 @@
 //! On paper: no two cores nearer than 2r, every core end within R_out − r and beyond R_in + r.
 
 use crate::support::{OPEN_WATER, deepest_overlap};
-use flockenv::boat::Velocity;
-use flockenv::lap_frame::orientation;
+use flockenv::geometry::Velocity;
+use flockenv::geometry::lap_frame::orientation;
 use flockenv::parameters::{Pool, Preset};
 use flockenv::{Flock, FlockError, FlockParameters};
 

@@ -4,8 +4,8 @@
 //!
 //! On paper: 20 boats without any order have Ψ_o = 0.886/sqrt(20) = 0.198.
 
+use flockenv::clock::ticks;
 use flockenv::parameters::{Noise, Preset, Scheme, Target};
-use flockenv::phase_schedule::ticks;
 use flockenv::{Flock, FlockParameters, OrderParameters};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};

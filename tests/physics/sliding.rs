@@ -9,8 +9,7 @@
 //!   N·h·sin ψ/ρ² = c1·Ω³ + c3·Ω²·Q·sin ψ.
 
 use crate::support::{H, R, RHO, SCHEMES, disc, driven, flock_of, root, runge_kutta};
-use flockenv::boat::Pose;
-use flockenv::geometry::{Vec2, cross, wrap_angle};
+use flockenv::geometry::{Pose, Vec2, cross, wrap_angle};
 use flockenv::parameters::Scheme;
 use flockenv::{Flock, FlockParameters};
 

@@ -6,10 +6,9 @@
 
 use crate::dense_reference::{Dense, Reference};
 use crate::support::{RHO, cases};
-use flockenv::boat::Velocity;
 use flockenv::contact::solver::{ContactSolver, SolveReport};
 use flockenv::contact::{Contact, ContactProblem, InverseInertia, Partner};
-use flockenv::geometry::{Gap, Vec2};
+use flockenv::geometry::{Gap, Vec2, Velocity};
 use flockenv::parameters::Solver;
 use nalgebra::DVector;
 use proptest::prelude::*;

@@ -7,9 +7,8 @@
 use crate::dense_reference::Dense;
 use crate::solver::{Owned, PLAIN};
 use crate::support::driven;
-use flockenv::boat::Velocity;
 use flockenv::contact::ContactDetector;
-use flockenv::geometry::HullPose;
+use flockenv::geometry::{HullPose, Velocity};
 use flockenv::parameters::{Pool, Scheme, Solver};
 use flockenv::{Flock, FlockParameters};
 

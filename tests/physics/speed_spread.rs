@@ -5,7 +5,7 @@
 //! a straight line; its mean is 1 and its variance (spread/v0)²/3.
 
 use crate::support::{SCHEMES, driven};
-use flockenv::boat::{Pose, Velocity};
+use flockenv::geometry::{Pose, Velocity};
 use flockenv::parameters::Scheme;
 use flockenv::{Flock, FlockParameters};
 

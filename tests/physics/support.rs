@@ -1,10 +1,9 @@
 //! Small scenes to check laws on, what is measured of them, and a Runge–Kutta reference.
 
-use flockenv::boat::{Pose, Velocity};
-use flockenv::geometry::{Vec2, cross};
+use flockenv::contact::Statistics;
+use flockenv::flock::Snapshot;
+use flockenv::geometry::{Pose, Vec2, Velocity, cross};
 use flockenv::parameters::{Noise, Pool, Preset, Scheme};
-use flockenv::snapshot::Snapshot;
-use flockenv::statistics::Statistics;
 use flockenv::{Flock, FlockParameters};
 use proptest::test_runner::{Config as ProptestConfig, RngSeed};
 

@@ -4,8 +4,7 @@
 //! On paper: a boat aimed at the wall from the right and its turned copy from above meet it alike.
 
 use crate::support::{SCHEMES, driven, farthest_apart, flock_of, take_substeps};
-use flockenv::boat::{Pose, Velocity};
-use flockenv::geometry::Vec2;
+use flockenv::geometry::{Pose, Vec2, Velocity};
 use flockenv::parameters::{Pool, Scheme};
 use flockenv::{Flock, FlockParameters};
 use std::f64::consts::FRAC_PI_2;

@@ -5,8 +5,8 @@
 //! contact alone in its island needs no guess and no factor.
 
 use crate::support::{disc, driven, flock_of, inert, take_substeps};
+use flockenv::contact::Statistics;
 use flockenv::parameters::{Pool, Preset, Scheme};
-use flockenv::statistics::Statistics;
 use flockenv::{Flock, FlockParameters};
 
 #[test]

@@ -1,10 +1,11 @@
 //! Eqs (8) and (9) applied by hand, for engines that only know forces.
 
 use flockenv::FlockParameters;
-use flockenv::boat::{Drive, FreeMotion, Velocity};
-use flockenv::geometry::Vec2;
-use flockenv::phase_schedule::{Phase, PhaseSchedule, Ticks, ticks};
-use flockenv::random_streams::BrownianPaths;
+use flockenv::boat::{Drive, FreeMotion};
+use flockenv::clock::{Ticks, ticks};
+use flockenv::geometry::{Vec2, Velocity};
+use flockenv::integrator::{Phase, PhaseSchedule};
+use flockenv::random::BrownianPaths;
 
 /// What drives one boat in one step.
 #[derive(Debug, Clone, Copy)]

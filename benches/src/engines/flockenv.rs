@@ -1,12 +1,11 @@
 //! flockenv itself.
 
 use crate::{Engine, Start};
-use flockenv::boat::{Pose, Velocity};
-use flockenv::contact::Partner;
-use flockenv::dynamics::Steering;
-use flockenv::phase_schedule::{Ticks, ticks};
-use flockenv::statistics::Statistics;
 use flockenv::{Flock, FlockParameters};
+use flockenv::clock::{Ticks, ticks};
+use flockenv::contact::{Partner, Statistics};
+use flockenv::geometry::{Pose, Velocity};
+use flockenv::integrator::Steering;
 
 /// A flock.
 pub struct Ours {

@@ -7,11 +7,10 @@
 )]
 
 use super::{Real, rapier};
-use crate::engines::{Driver, Side, circle};
 use crate::{Engine, Start};
+use crate::engines::{Driver, Side, circle};
 use flockenv::FlockParameters;
-use flockenv::boat::{Pose, Velocity};
-use flockenv::geometry::{Hull, Vec2};
+use flockenv::geometry::{Hull, Pose, Vec2, Velocity};
 use rapier::parry::mass_properties::MassProperties;
 use rapier::prelude::*;
 use std::time::{Duration, Instant};

@@ -1,11 +1,10 @@
 //! What engines in other languages are asked to simulate.
 
+use crate::{Scene, Start};
 use crate::configuration::STEP_S;
 use crate::measure::{Effort, horizon, momentum, order, slide, speed, wall_push};
-use crate::{Scene, Start};
 use flockenv::FlockParameters;
-use flockenv::boat::{Pose, Velocity};
-use flockenv::geometry::Hull;
+use flockenv::geometry::{Hull, Pose, Velocity};
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;

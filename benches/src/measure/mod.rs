@@ -14,8 +14,7 @@ pub mod wall_push;
 use crate::Configuration;
 use crate::table::Table;
 use flockenv::FlockParameters;
-use flockenv::boat::Pose;
-use flockenv::geometry::wrap_angle;
+use flockenv::geometry::{Pose, wrap_angle};
 use rayon::prelude::*;
 
 /// How much to measure.

@@ -2,11 +2,10 @@
 //! angular momentum about any point.
 
 use super::{on_all_cores, push_row, table};
-use crate::table::{Table, number};
 use crate::{Configuration, Scene, Start};
+use crate::table::{Table, number};
 use flockenv::FlockParameters;
-use flockenv::boat::{Pose, Velocity};
-use flockenv::geometry::{Vec2, cross};
+use flockenv::geometry::{Pose, Vec2, Velocity, cross};
 use flockenv::parameters::Pool;
 
 /// How long the boats fly, in s: through the collisions in the middle.

@@ -2,13 +2,11 @@
 //! and for flockenv what the solver did and left.
 
 use super::{Effort, on_all_cores, push_row, speed, table};
-use crate::table::{Table, number, text};
 use crate::{Configuration, Scene, Start};
+use crate::table::{Table, number, text};
 use flockenv::FlockParameters;
-use flockenv::boat::Pose;
-use flockenv::contact::{Contact, ContactDetector};
-use flockenv::geometry::HullPose;
-use flockenv::statistics::Statistics;
+use flockenv::contact::{Contact, ContactDetector, Statistics};
+use flockenv::geometry::{HullPose, Pose};
 
 /// Follows the deepest overlap of a run.
 pub struct Overlap {

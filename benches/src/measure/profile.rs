@@ -7,13 +7,12 @@ use super::solvers::{Problem, jam, without_contacts};
 use crate::configuration::STEP_S;
 use crate::table::{Table, median, number, text};
 use flockenv::Flock;
-use flockenv::boat::Velocity;
-use flockenv::contact::solver::ContactSolver;
+use flockenv::clock::{Ticks, ticks};
 use flockenv::contact::{Contact, ContactDetector};
-use flockenv::geometry::HullPose;
+use flockenv::contact::solver::ContactSolver;
+use flockenv::geometry::{HullPose, Velocity};
 use flockenv::parameters::Solver;
-use flockenv::phase_schedule::{Ticks, ticks};
-use flockenv::random_streams::BrownianPaths;
+use flockenv::random::BrownianPaths;
 use std::hint::black_box;
 use std::time::Instant;
 

@@ -7,8 +7,8 @@ mod descent;
 use super::envelope::{ABSENT, EnvelopeFactor};
 use super::matrix::ContactMatrix;
 use super::{EXACT, SolveReport};
-use crate::boat::Velocity;
 use crate::contact::{ContactProblem, Islands};
+use crate::geometry::Velocity;
 use std::ops::Range;
 
 /// Signs are judged with this tolerance in cm/s, well below [`EXACT`].

@@ -5,8 +5,8 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 
 use super::SolveReport;
-use crate::boat::Velocity;
 use crate::contact::ContactProblem;
+use crate::geometry::Velocity;
 
 /// Residual in cm/s that counts as solved here.
 const GOOD: f64 = 1e-3;

@@ -1,8 +1,8 @@
 //! Projected Gauss–Seidel: one contact after another, until nothing changes. For comparison.
 
 use super::{EXACT, SolveReport};
-use crate::boat::Velocity;
 use crate::contact::ContactProblem;
+use crate::geometry::Velocity;
 
 /// Sweeps after which the solver gives up.
 const MOST_SWEEPS: u64 = 20_000;

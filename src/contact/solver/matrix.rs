@@ -1,8 +1,7 @@
 //! The contact matrix A = J·M⁻¹·Jᵀ, laid out island by island: what block pivoting works on.
 
-use crate::boat::Velocity;
 use crate::contact::{ContactProblem, Islands};
-use crate::geometry::Vec2;
+use crate::geometry::{Vec2, Velocity};
 
 const NONE: u32 = u32::MAX;
 

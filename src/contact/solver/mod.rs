@@ -7,7 +7,7 @@ mod gauss_seidel;
 mod matrix;
 
 use super::{Contact, ContactProblem, Islands};
-use crate::boat::Velocity;
+use crate::geometry::Velocity;
 use crate::parameters::Solver;
 
 use block_pivoting::BlockPivoting;

@@ -1,0 +1,104 @@
+//! The collective states of Table 2, told from order parameters, and the ordering time of eq. (7).
+
+use super::OrderParameters;
+use crate::parameters::named_choice;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+named_choice! {
+    /// What a flock does at one time (Table 2; ordered motion by its direction).
+    pub enum CollectiveState ("state") {
+        /// Boats point at the outer wall together and stand still.
+        Jamming = "jamming",
+        /// Most boats stick together in one cluster without a common direction: momentary.
+        Clustering = "clustering",
+        /// Boats move clockwise together.
+        OrderedClockwise = "ordered cw",
+        /// Boats move counter-clockwise together.
+        OrderedCounterClockwise = "ordered ccw",
+        /// Boats have no common direction.
+        Disordered = "disordered",
+        /// None of these: on the way from one to another.
+        Between = "between",
+    }
+}
+
+/// Ψ_o above this is high: the level of eq. (7).
+pub const HIGH_ORDER: f64 = 0.8;
+/// Ψ_o below this is low: about the middle between an ordered and a disordered flock of 27.
+pub const LOW_ORDER: f64 = 0.5;
+/// Mean velocities above this part of the preferred forward speed are collective motion. In the
+/// analysis window a boat from rest has 0.5 to 0.9 of it, a jammed one less than 0.1.
+pub const MOVING: f64 = 0.25;
+/// A cluster that holds at least this part of the boats is the flock.
+pub const CLUSTERED: f64 = 0.75;
+
+impl CollectiveState {
+    /// The state of a flock in the analysis window with these order parameters, whose boats prefer
+    /// the forward speed `speed_cm_s`, and of which the largest cluster holds this part.
+    pub fn of(order: &OrderParameters, speed_cm_s: f64, largest_cluster: f64) -> Self {
+        let moving = order.psi_v >= MOVING * speed_cm_s;
+        if order.psi_o > HIGH_ORDER {
+            let tangential = off_tangent(order.phi_o) < FRAC_PI_4;
+            return match (tangential, moving) {
+                (true, true) if order.phi_o > 0.0 => Self::OrderedClockwise,
+                (true, true) => Self::OrderedCounterClockwise,
+                (false, false) if order.phi_o.abs() <= FRAC_PI_4 => Self::Jamming,
+                _ => Self::Between,
+            };
+        }
+        if order.psi_o >= LOW_ORDER {
+            return Self::Between;
+        }
+        if largest_cluster >= CLUSTERED {
+            Self::Clustering
+        } else {
+            Self::Disordered
+        }
+    }
+}
+
+/// ||φ| − π/2|: how far an orientation is from tangential, in rad.
+pub fn off_tangent(phi: f64) -> f64 {
+    (phi.abs() - FRAC_PI_2).abs()
+}
+
+/// Waits for a flock to order: τ of eq. (7), sample by sample.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct OrderingWatch {
+    late_samples: u32,
+    late_order: f64,
+    first_s: Option<f64>,
+}
+
+impl OrderingWatch {
+    /// Takes note of the order at a time since the run began. `is_late` tells the second half of the
+    /// run; an orientation is tangential that is less than `within` (rad) off.
+    pub fn note(&mut self, time_s: f64, order: &OrderParameters, within: f64, is_late: bool) {
+        if is_late {
+            self.late_samples += 1;
+            self.late_order += order.psi_o;
+        }
+        let is_ordered = order.psi_o > HIGH_ORDER && off_tangent(order.phi_o) < within;
+        if is_ordered && self.first_s.is_none() {
+            self.first_s = Some(time_s);
+        }
+    }
+
+    /// The first time in s at which Ψ_o > 0.8 and ||φ_o| − π/2| was less than `within`, if mean Ψ_o
+    /// over the second half exceeds 0.8; otherwise none.
+    pub fn ordering_time_s(&self) -> Option<f64> {
+        let stays = self.late_order > HIGH_ORDER * f64::from(self.late_samples);
+        self.first_s.filter(|_| stays)
+    }
+}
+
+/// Ordering time τ (eq. 7) of a series of samples. The slices are of equal length, the times
+/// increasing; the run lasts until the last of them.
+pub fn ordering_time(time_s: &[f64], order: &[OrderParameters], within: f64) -> Option<f64> {
+    let half = time_s.last()? / 2.0;
+    let mut watch = OrderingWatch::default();
+    for (&time, order) in time_s.iter().zip(order) {
+        watch.note(time, order, within, time >= half);
+    }
+    watch.ordering_time_s()
+}

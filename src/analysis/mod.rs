@@ -1,0 +1,9 @@
+//! What is measured of boats: order parameters, collective states, and where boats are relative to each
+//! other and to the wall.
+
+pub mod collective_state;
+mod order_parameters;
+pub mod structure;
+
+pub use collective_state::CollectiveState;
+pub use order_parameters::OrderParameters;

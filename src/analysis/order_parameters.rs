@@ -1,0 +1,113 @@
+//! Order parameters of Section 3.2, in the LAP frame.
+
+use crate::error::{FlockError, Result};
+use crate::geometry::{HullPose, LapFrame, Pose, Vec2, Velocity};
+use crate::parameters::Target;
+use std::f64::consts::FRAC_PI_2;
+
+/// Alignment of a set of boats at one time.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct OrderParameters {
+    /// Ψ_o = |mean o_i| in [0, 1] (eq. 1).
+    pub psi_o: f64,
+    /// φ_o = arg mean o_i in (−π, π]: 0 jammed outward, +π/2 clockwise (eq. 3).
+    pub phi_o: f64,
+    /// C_o: mean of o_i·o_j over unordered pairs in [−1, 1] (eq. 2, where the printed sum counts
+    /// pairs twice); NaN for a single boat.
+    pub c_o: f64,
+    /// Ψ_v = |mean v_i| in cm/s (eq. 4).
+    pub psi_v: f64,
+    /// φ_v = arg mean v_i in (−π, π] (eq. 6).
+    pub phi_v: f64,
+    /// C_v: mean of v_i·v_j over unordered pairs in cm²/s² (eq. 5); NaN for a single boat.
+    pub c_v: f64,
+}
+
+impl OrderParameters {
+    /// Of boats with these poses and velocities (two slices of equal length).
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] if there is no boat.
+    pub fn of(poses: &[Pose], velocities: &[Velocity]) -> Result<Self> {
+        let mut hulls = Vec::with_capacity(poses.len());
+        HullPose::replace_all(&mut hulls, poses);
+        Self::of_hulls(&hulls, velocities)
+    }
+
+    /// The same for poses whose direction vectors are worked out already.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] if there is no boat.
+    pub fn of_hulls(hulls: &[HullPose], velocities: &[Velocity]) -> Result<Self> {
+        if hulls.is_empty() {
+            return Err(FlockError::parameter(
+                "n_boats - n_leaders",
+                0,
+                "order parameters need at least one normal boat; pass include_leaders=True",
+            ));
+        }
+        let (mut orientations, mut motions) = (VectorSum::default(), VectorSum::default());
+        for (hull, velocity) in hulls.iter().zip(velocities) {
+            let frame = LapFrame::at(hull.center);
+            orientations.add(frame.components(hull.axis));
+            motions.add(frame.components(velocity.linear));
+        }
+        let (orientations, motions) = (orientations.mean(), motions.mean());
+        Ok(Self {
+            psi_o: orientations.length,
+            phi_o: orientations.angle,
+            c_o: orientations.pair_mean,
+            psi_v: motions.length,
+            phi_v: motions.angle,
+            c_v: motions.pair_mean,
+        })
+    }
+
+    /// Signed order towards a target, Ψ_o·cos(φ_o − φ_target) in [−1, 1]: the reward.
+    pub fn signed_order(&self, target: Target) -> f64 {
+        self.psi_o * (self.phi_o - target.sign() * FRAC_PI_2).cos()
+    }
+
+    /// m = Ψ_o·sin φ_o: tells order (±1) from jam (0).
+    pub fn rotation(&self) -> f64 {
+        self.psi_o * self.phi_o.sin()
+    }
+
+    /// Ψ_o·cos φ_o, the mean over boats of cos φ: 1 in a jam, near 0 for streams along the pool,
+    /// also for opposed ones, which cancel in m.
+    pub fn outward(&self) -> f64 {
+        self.psi_o * self.phi_o.cos()
+    }
+}
+
+/// Mean of a set of vectors, and of the dot products of its pairs.
+struct VectorMean {
+    length: f64,
+    angle: f64,
+    pair_mean: f64,
+}
+
+#[derive(Default)]
+struct VectorSum {
+    count: f64,
+    sum: Vec2,
+    squares: f64,
+}
+
+impl VectorSum {
+    fn add(&mut self, vector: Vec2) {
+        self.count += 1.0;
+        self.sum += vector;
+        self.squares += vector.norm_squared();
+    }
+
+    fn mean(&self) -> VectorMean {
+        let mean = self.sum / self.count;
+        VectorMean {
+            length: mean.norm(),
+            angle: mean.y.atan2(mean.x),
+            // Σ_{i<j} v_i·v_j = (|Σv|² − Σ|v|²)/2; 0/0 for one boat.
+            pair_mean: (self.sum.norm_squared() - self.squares) / (self.count * (self.count - 1.0)),
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! Where boats are relative to each other, to the wall and to where they were.
+
+use crate::geometry::{Hull, HullPose, Pose, outer_wall_gap, pair_gaps};
+use crate::parameters::FlockParameters;
+use std::f64::consts::PI;
+
+/// Hulls with a smaller gap than this (cm) count as in touch.
+pub const IN_TOUCH_CM: f64 = 0.5;
+
+/// Part of the boats that the largest cluster holds: boats joined by gaps below [`IN_TOUCH_CM`].
+pub fn largest_cluster(poses: &[Pose], parameters: &FlockParameters) -> f64 {
+    let hull = Hull::new(parameters);
+    let hulls: Vec<HullPose> = poses.iter().map(HullPose::new).collect();
+    let mut clusters = Clusters::new(hulls.len());
+    for (i, a) in hulls.iter().enumerate() {
+        for (j, b) in hulls.iter().enumerate().take(i) {
+            pair_gaps(a, b, hull, IN_TOUCH_CM, |_, _| clusters.join(i, j));
+        }
+    }
+    clusters.largest() as f64 / hulls.len() as f64
+}
+
+/// Part of the boats within [`IN_TOUCH_CM`] of the outer wall.
+pub fn on_outer_wall(poses: &[Pose], parameters: &FlockParameters) -> f64 {
+    let hull = Hull::new(parameters);
+    let radius = parameters.pool.outer_radius_cm;
+    let at_wall = poses.iter().map(HullPose::new).filter(|boat| {
+        [-1.0, 1.0]
+            .iter()
+            .any(|&side| outer_wall_gap(boat, side, hull, radius).gap < IN_TOUCH_CM)
+    });
+    at_wall.count() as f64 / poses.len() as f64
+}
+
+/// Pairs by the distance of their centres, beside those expected of independent boats.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairCounts {
+    /// Edges of the bins in cm, increasing.
+    pub edges: Vec<f64>,
+    /// Pairs found in each bin.
+    pub found: Vec<f64>,
+    /// Pairs that boats at the same radii would have there on average, were their polar angles
+    /// independent and uniform.
+    pub expected: Vec<f64>,
+}
+
+impl PairCounts {
+    /// No pairs yet.
+    pub fn new(edges: Vec<f64>) -> Self {
+        let zeros = vec![0.0; edges.len().saturating_sub(1)];
+        Self {
+            edges,
+            found: zeros.clone(),
+            expected: zeros,
+        }
+    }
+
+    /// Adds the pairs of boats at one time.
+    pub fn add(&mut self, poses: &[Pose]) {
+        for (i, a) in poses.iter().enumerate() {
+            for b in &poses[..i] {
+                let distance = (a.position - b.position).norm();
+                let place = self.edges.partition_point(|&edge| edge <= distance);
+                if (1..self.edges.len()).contains(&place) {
+                    self.found[place - 1] += 1.0;
+                }
+                let (ra, rb) = (a.position.norm(), b.position.norm());
+                let below = |edge: f64| chance_below(edge, ra, rb);
+                let mut last = below(self.edges[0]);
+                for (bin, &edge) in self.expected.iter_mut().zip(&self.edges[1..]) {
+                    let next = below(edge);
+                    *bin += next - last;
+                    last = next;
+                }
+            }
+        }
+    }
+}
+
+/// Chance that points at two radii and independent angles are nearer than a distance: the law of
+/// cosines, solved for the angle.
+fn chance_below(distance: f64, ra: f64, rb: f64) -> f64 {
+    let cosine = (ra * ra + rb * rb - distance * distance) / (2.0 * ra * rb);
+    if cosine.is_nan() {
+        // Both at the centre.
+        return f64::from(u8::from(distance > 0.0));
+    }
+    cosine.clamp(-1.0, 1.0).acos() / PI
+}
+
+/// Mean over boats and starting samples of the squared displacement after `lag` samples, in cm².
+/// Samples are of equally many boats; NaN for a lag that no two samples are apart.
+pub fn mean_square_displacement(samples: &[&[Pose]], lag: usize) -> f64 {
+    lagged_mean(samples, lag, |then, now| {
+        (now.position - then.position).norm_squared()
+    })
+}
+
+/// Mean over boats and starting samples of cos(α(t + lag) − α(t)): 1 while boats keep their heading.
+pub fn heading_correlation(samples: &[&[Pose]], lag: usize) -> f64 {
+    lagged_mean(samples, lag, |then, now| (now.heading - then.heading).cos())
+}
+
+fn lagged_mean(samples: &[&[Pose]], lag: usize, value: impl Fn(&Pose, &Pose) -> f64) -> f64 {
+    let pairs = samples.iter().zip(samples.iter().skip(lag));
+    let (mut sum, mut count) = (0.0, 0.0);
+    for (then, now) in pairs {
+        for (then, now) in then.iter().zip(now.iter()) {
+            sum += value(then, now);
+            count += 1.0;
+        }
+    }
+    sum / count
+}
+
+/// Disjoint sets.
+struct Clusters(Vec<usize>);
+
+impl Clusters {
+    fn new(count: usize) -> Self {
+        Self((0..count).collect())
+    }
+
+    fn root(&mut self, mut of: usize) -> usize {
+        while self.0[of] != of {
+            self.0[of] = self.0[self.0[of]];
+            of = self.0[of];
+        }
+        of
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.0[a.max(b)] = a.min(b);
+    }
+
+    fn largest(&mut self) -> usize {
+        let mut sizes = vec![0; self.0.len()];
+        for boat in 0..self.0.len() {
+            sizes[self.root(boat)] += 1;
+        }
+        sizes.into_iter().max().unwrap_or(0)
+    }
+}

@@ -1,0 +1,118 @@
+//! Moves overlapping hulls apart without giving them any speed.
+//!
+//! A gap far below zero must not enter the velocities: g + dt·J·v ≥ 0 would eject a 5 cm overlap at
+//! 500 cm/s. Deep overlaps are therefore undone by displacing poses alone, by the least
+//! Σ|Δx|² + ρ²ΣΔα² for which the linearised gaps open.
+
+use super::solver::ContactSolver;
+use super::{Contact, ContactDetector, ContactProblem, InverseInertia};
+use crate::geometry::{HullPose, Pose, Velocity};
+
+/// Gaps below this (cm) are recovered by displacement; smaller overlaps are left to the velocities.
+pub const DEEP: f64 = -0.01;
+/// The most that one pass opens a gap by, in cm: beyond it the linearisation means little.
+const LARGEST_STEP: f64 = 1.0;
+
+/// A projection of poses, with its scratch space.
+#[derive(Debug, Clone)]
+pub struct Recovery {
+    solver: ContactSolver,
+    contacts: Vec<Contact>,
+    bounds: Vec<f64>,
+    rest: Vec<Velocity>,
+    inertia: Vec<InverseInertia>,
+    /// Passes made so far.
+    pub passes: u64,
+}
+
+impl Recovery {
+    /// For `boats` boats of radius of gyration ρ.
+    pub fn new(boats: usize, gyration_radius: f64) -> Self {
+        let inertia = InverseInertia {
+            linear: 1.0,
+            angular: 1.0 / (gyration_radius * gyration_radius),
+        };
+        Self {
+            // Soft, since a packing may leave no way out; it is then shared evenly.
+            solver: ContactSolver::soft(1e-4),
+            contacts: Vec::new(),
+            bounds: Vec::new(),
+            rest: vec![Velocity::default(); boats],
+            inertia: vec![inertia; boats],
+            passes: 0,
+        }
+    }
+
+    /// Displaces poses until no overlap exceeds `allowed` (cm, positive) or `most_passes` are made;
+    /// returns the smallest gap seen last.
+    pub fn run(
+        &mut self,
+        detector: &mut ContactDetector,
+        poses: &mut [Pose],
+        boats: &mut Vec<HullPose>,
+        allowed: f64,
+        most_passes: u32,
+    ) -> f64 {
+        let margin = 0.5 * detector.hull().radius;
+        for _ in 0..most_passes {
+            detector.detect(boats, margin, &mut self.contacts);
+            let smallest = self.smallest_gap();
+            if smallest >= -allowed {
+                return smallest;
+            }
+            self.passes += 1;
+            self.displace(poses);
+            HullPose::replace_all(boats, poses);
+        }
+        detector.detect(boats, margin, &mut self.contacts);
+        self.smallest_gap()
+    }
+
+    fn smallest_gap(&self) -> f64 {
+        self.contacts
+            .iter()
+            .map(|contact| contact.gap.gap)
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    fn displace(&mut self, poses: &mut [Pose]) {
+        self.bounds.clear();
+        self.bounds.extend(
+            self.contacts
+                .iter()
+                .map(|contact| contact.gap.gap.max(-LARGEST_STEP)),
+        );
+        self.solver.active.clear();
+        self.solver
+            .active
+            .extend(self.bounds.iter().map(|&gap| gap < 0.0));
+        self.solver.impulses.clear();
+        self.solver.impulses.resize(self.contacts.len(), 0.0);
+        self.solver.begin(poses.len(), &self.contacts);
+        let problem = ContactProblem {
+            contacts: &self.contacts,
+            inertia: &self.inertia,
+            free: &self.rest,
+            bounds: &self.bounds,
+        };
+        self.solver.solve(&problem);
+        for (pose, step) in poses.iter_mut().zip(&self.solver.velocities) {
+            let length = step.linear.norm().max(step.angular.abs());
+            if length.is_finite() {
+                *pose = pose.moved(step, (LARGEST_STEP / length.max(LARGEST_STEP)).min(1.0));
+            }
+        }
+    }
+}
+
+/// Moves hulls apart until none overlaps, for placement; returns the smallest gap reached.
+pub fn push_apart(
+    detector: &mut ContactDetector,
+    poses: &mut [Pose],
+    gyration_radius: f64,
+    most_passes: u32,
+) -> f64 {
+    let mut boats = Vec::with_capacity(poses.len());
+    HullPose::replace_all(&mut boats, poses);
+    Recovery::new(poses.len(), gyration_radius).run(detector, poses, &mut boats, 0.0, most_passes)
+}

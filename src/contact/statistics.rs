@@ -1,0 +1,45 @@
+//! What a flock's substeps did: work counts and worst cases.
+
+use super::solver::SolveReport;
+
+/// Running totals since the flock was made or reset; a snapshot carries them along.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct Statistics {
+    /// Substeps taken.
+    pub substeps: u64,
+    /// Contact problems solved, relinearisation passes included; substeps without a contact have none.
+    pub solves: u64,
+    /// Contacts and near-contacts, summed over substeps.
+    pub contacts: u64,
+    /// Islands with contacts, summed over solves.
+    pub islands: u64,
+    /// Solver iterations, summed over solves and islands.
+    pub solver_iterations: u64,
+    /// Rows of Cholesky factors computed.
+    pub factored_rows: u64,
+    /// Most numbers that the Cholesky factors of one solve held.
+    pub most_factor_entries: u64,
+    /// Solves whose constraints contradicted each other or that missed their residual; velocities
+    /// are then those of the nearest problem that can be solved.
+    pub unsolved: u64,
+    /// Passes that moved deeply overlapping hulls apart.
+    pub recovery_passes: u64,
+    /// Times a substep had to build the neighbour list anew.
+    pub neighbor_builds: u64,
+    /// Largest natural residual of a solve in cm/s.
+    pub worst_residual_cm_s: f64,
+    /// Deepest overlap met at the beginning of a substep in cm, positive.
+    pub worst_overlap_cm: f64,
+}
+
+impl Statistics {
+    /// Counts one solve.
+    pub fn count(&mut self, report: &SolveReport) {
+        self.solves += 1;
+        self.islands += report.islands;
+        self.solver_iterations += report.iterations;
+        self.factored_rows += report.factored_rows;
+        self.most_factor_entries = self.most_factor_entries.max(report.factor_entries);
+        self.worst_residual_cm_s = self.worst_residual_cm_s.max(report.residual);
+    }
+}

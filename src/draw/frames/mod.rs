@@ -1,0 +1,126 @@
+//! Pictures of a flock, drawn without a screen: pool, hulls with a direction mark, leaders in their own
+//! colour and a legend. A frame depends on the flock and the frame's size alone.
+
+mod boats;
+mod legend;
+mod palette;
+mod text;
+mod view;
+mod water;
+
+use crate::error::{FlockError, Result};
+use crate::flock::Flock;
+use crate::parameters::{Pool, Target};
+use legend::Legend;
+use tiny_skia::Pixmap;
+use view::View;
+
+/// Draws frames of one size; what lies under the boats is drawn once and kept.
+#[derive(Debug, Clone)]
+pub struct FrameRenderer {
+    canvas: Pixmap,
+    legend: Legend,
+    kept: Vec<Background>,
+}
+
+/// Water and walls of a pool, as they look with a target.
+#[derive(Debug, Clone)]
+struct Background {
+    pool: Pool,
+    target: Target,
+    image: Pixmap,
+}
+
+impl FrameRenderer {
+    /// The shortest side of a frame, in pixels.
+    pub const SHORTEST: u32 = 64;
+    /// The longest side of a frame, in pixels.
+    pub const LONGEST: u32 = 4096;
+    /// Backgrounds that are kept: both targets of two pools.
+    const MOST_KEPT: usize = 4;
+
+    /// For frames of this size in pixels.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for a side outside [`Self::SHORTEST`] to [`Self::LONGEST`].
+    pub fn new(width: u32, height: u32) -> Result<Self> {
+        for (field, side) in [("width", width), ("height", height)] {
+            if !(Self::SHORTEST..=Self::LONGEST).contains(&side) {
+                let accepted = format!("{} to {} pixels", Self::SHORTEST, Self::LONGEST);
+                return Err(FlockError::parameter(field, side, accepted));
+            }
+        }
+        let canvas = Pixmap::new(width, height)
+            .ok_or_else(|| FlockError::parameter("width", width, "a size that fits memory"))?;
+        Ok(Self {
+            legend: Legend::new(width, height),
+            canvas,
+            kept: Vec::new(),
+        })
+    }
+
+    /// Width of a frame in pixels.
+    pub fn width(&self) -> u32 {
+        self.canvas.width()
+    }
+
+    /// Height of a frame in pixels.
+    pub fn height(&self) -> u32 {
+        self.canvas.height()
+    }
+
+    /// Bytes of a frame: red, green and blue of each pixel, row by row from the top left.
+    pub fn frame_len(&self) -> usize {
+        self.canvas.pixels().len() * 3
+    }
+
+    /// A flock as it is now, as [`Self::frame_len`] bytes.
+    pub fn draw(&mut self, flock: &Flock) -> Vec<u8> {
+        let mut frame = vec![0; self.frame_len()];
+        self.draw_into(flock, &mut frame);
+        frame
+    }
+
+    /// The same into a buffer of [`Self::frame_len`] bytes.
+    ///
+    /// # Panics
+    /// If the buffer has another length.
+    pub fn draw_into(&mut self, flock: &Flock, frame: &mut [u8]) {
+        assert_eq!(frame.len(), self.frame_len(), "a buffer of one frame");
+        let view = View::of(flock, self.width(), self.height());
+        self.draw_background(flock, &view);
+        boats::draw(&mut self.canvas, flock, &view);
+        let open = !flock.parameters().pool.has_outer_wall();
+        let grid_cm = open.then(|| water::grid_spacing(&view));
+        self.legend.draw(&mut self.canvas, flock, grid_cm);
+        // The canvas is opaque throughout, so that premultiplied colours are plain ones.
+        for (rgb, pixel) in frame
+            .chunks_exact_mut(3)
+            .zip(self.canvas.data().chunks_exact(4))
+        {
+            rgb.copy_from_slice(&pixel[..3]);
+        }
+    }
+
+    fn draw_background(&mut self, flock: &Flock, view: &View) {
+        let (pool, target) = (flock.parameters().pool, flock.parameters().target);
+        if !pool.has_outer_wall() {
+            water::draw(&mut self.canvas, &pool, target, view);
+            return;
+        }
+        let same = |kept: &Background| kept.pool == pool && kept.target == target;
+        if let Some(kept) = self.kept.iter().find(|kept| same(kept)) {
+            self.canvas.data_mut().copy_from_slice(kept.image.data());
+            return;
+        }
+        water::draw(&mut self.canvas, &pool, target, view);
+        if self.kept.len() == Self::MOST_KEPT {
+            self.kept.remove(0);
+        }
+        self.kept.push(Background {
+            pool,
+            target,
+            image: self.canvas.clone(),
+        });
+    }
+}

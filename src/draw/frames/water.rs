@@ -1,0 +1,163 @@
+//! What lies under the boats: ground, walls and water, and the arrow that shows the target.
+
+use super::palette::{GRID, GROUND, Rgb, TARGET, WALL, WATER};
+use super::view::View;
+use crate::geometry::Vec2;
+use crate::parameters::{Pool, Target};
+use std::f64::consts::PI;
+use tiny_skia::{FillRule, LineCap, Path, PathBuilder, Pixmap, Point, Rect, Stroke, Transform};
+
+/// Pixels between lines of open water's grid, at least.
+const LEAST_SPACING: f64 = 60.0;
+/// The obstacle's radius from which on the arrow fits, in pixels.
+const LEAST_ISLAND: f32 = 24.0;
+
+/// Draws all of it.
+pub fn draw(canvas: &mut Pixmap, pool: &Pool, target: Target, view: &View) {
+    let wall = wall_width(canvas);
+    if pool.has_outer_wall() {
+        canvas.fill(GROUND.color());
+        let radius = view.length(pool.outer_radius_cm);
+        disc(canvas, view, radius + wall, WALL);
+        disc(canvas, view, radius, WATER);
+    } else {
+        canvas.fill(WATER.color());
+        grid(canvas, view);
+    }
+    if pool.has_inner_wall() {
+        let radius = view.length(pool.inner_radius_cm);
+        disc(canvas, view, radius, WALL);
+        disc(canvas, view, radius - wall, GROUND);
+        if radius >= LEAST_ISLAND {
+            arrow(canvas, view.pixel(Vec2::zeros()), 0.66 * radius, target);
+        }
+    } else {
+        cross(canvas, view.pixel(Vec2::zeros()), 2.5 * wall);
+    }
+}
+
+/// Width of walls in pixels.
+fn wall_width(canvas: &Pixmap) -> f32 {
+    (canvas.width().min(canvas.height()) as f32 / 200.0).max(1.0)
+}
+
+/// A disc about the world's origin.
+fn disc(canvas: &mut Pixmap, view: &View, radius: f32, color: Rgb) {
+    let center = view.pixel(Vec2::zeros());
+    let in_reach = radius.is_finite() && center.x.abs().max(center.y.abs()) < 1e6 && radius < 1e6;
+    if !in_reach {
+        return;
+    }
+    if let Some(path) = PathBuilder::from_circle(center.x, center.y, radius) {
+        fill(canvas, &path, color);
+    }
+}
+
+/// A small cross: the origin, which outward and clockwise refer to.
+fn cross(canvas: &mut Pixmap, center: Point, half: f32) {
+    let near = |x: f32, most: u32| (-half..most as f32 + half).contains(&x);
+    if !near(center.x, canvas.width()) || !near(center.y, canvas.height()) {
+        return;
+    }
+    let mut path = PathBuilder::new();
+    for (x, y) in [(half, 0.0), (0.0, half)] {
+        path.move_to(center.x - x, center.y - y);
+        path.line_to(center.x + x, center.y + y);
+    }
+    stroke(canvas, path, half / 3.0, TARGET);
+}
+
+/// Lines at round distances from the world's origin, so that motion shows in open water.
+fn grid(canvas: &mut Pixmap, view: &View) {
+    let spacing = grid_spacing(view);
+    let (width, height) = (canvas.width() as f32, canvas.height() as f32);
+    let first = |center: f64, size: f32| {
+        let edge = center - f64::from(size) / 2.0 / view.scale;
+        (edge / spacing).ceil() * spacing
+    };
+    let (left, bottom) = (first(view.center.x, width), first(view.center.y, height));
+    let lines = (f64::from(width.max(height)) / LEAST_SPACING) as u32 + 2;
+    for line in 0..lines {
+        let at = view.pixel(Vec2::new(left, bottom) + Vec2::repeat(f64::from(line) * spacing));
+        for (x, y, w, h) in [
+            (at.x.round(), 0.0, 1.0, height),
+            (0.0, at.y.round(), width, 1.0),
+        ] {
+            if let Some(rect) = Rect::from_xywh(x, y, w, h) {
+                canvas.fill_rect(rect, &GRID.paint(), Transform::identity(), None);
+            }
+        }
+    }
+}
+
+/// Distance of grid lines in cm: 1, 2, 5, 10, 20, …
+pub fn grid_spacing(view: &View) -> f64 {
+    let least = LEAST_SPACING / view.scale;
+    // Whole powers as text are exact, and print as people write them.
+    let decade = least.log10().floor() as i32;
+    let rounded = |step: u8, decade: i32| format!("{step}e{decade}").parse().unwrap_or(least);
+    let steps = [1, 2, 5].map(|step| rounded(step, decade));
+    let found = steps.into_iter().find(|&spacing| spacing >= least);
+    found.unwrap_or_else(|| rounded(1, decade + 1))
+}
+
+/// Most of a circle with a head at its end, turning towards the target.
+fn arrow(canvas: &mut Pixmap, center: Point, radius: f32, target: Target) {
+    const SEGMENTS: u32 = 64;
+    let (width, head) = ((radius / 24.0).max(1.5), (radius / 6.0).max(5.0));
+    // Pixel rows run down: growing angles are clockwise on the frame.
+    let turn = target.sign();
+    let at = |angle: f64, radius: f32| {
+        let (sin, cos) = angle.sin_cos();
+        (
+            center.x + radius * cos as f32,
+            center.y + radius * sin as f32,
+        )
+    };
+    let (start, end) = (-0.5 * PI + turn * 0.25 * PI, -0.5 * PI + turn * 1.8 * PI);
+    let mut path = PathBuilder::new();
+    for step in 0..=SEGMENTS {
+        let (x, y) = at(
+            start + (end - start) * f64::from(step) / f64::from(SEGMENTS),
+            radius,
+        );
+        if step == 0 {
+            path.move_to(x, y);
+        } else {
+            path.line_to(x, y);
+        }
+    }
+    stroke(canvas, path, width, TARGET);
+    let mut tip = PathBuilder::new();
+    let (x, y) = at(end + turn * f64::from(head / radius), radius);
+    tip.move_to(x, y);
+    for side in [0.6, -0.6] {
+        let (x, y) = at(end - turn * 0.02, radius + side * head);
+        tip.line_to(x, y);
+    }
+    tip.close();
+    if let Some(tip) = tip.finish() {
+        fill(canvas, &tip, TARGET);
+    }
+}
+
+fn stroke(canvas: &mut Pixmap, path: PathBuilder, width: f32, color: Rgb) {
+    let stroke = Stroke {
+        width,
+        line_cap: LineCap::Round,
+        ..Stroke::default()
+    };
+    if let Some(path) = path.finish() {
+        canvas.stroke_path(&path, &color.paint(), &stroke, Transform::identity(), None);
+    }
+}
+
+fn fill(canvas: &mut Pixmap, path: &Path, color: Rgb) {
+    canvas.fill_path(
+        path,
+        &color.paint(),
+        FillRule::Winding,
+        Transform::identity(),
+        None,
+    );
+}

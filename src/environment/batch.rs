@@ -1,0 +1,247 @@
+//! Many environments stepped in parallel. Each one's bits are its own: they depend neither on the batch
+//! it is in nor on the number of threads.
+
+use super::flock_env::StoredEnv;
+use super::{EnvSettings, FlockEnv, ResetRequest};
+use crate::error::{FlockError, Result};
+use crate::parallel;
+use crate::parameters::FlockParameters;
+use crate::sealed_bytes::{seal, unseal};
+
+const MAGIC: [u8; 8] = *b"flocken1";
+
+/// Where a step writes: one row a leader, flock after flock, and one flag a flock.
+#[derive(Debug)]
+pub struct BatchRows<'a> {
+    /// Observations, `rows × observation size`.
+    pub observations: &'a mut [f32],
+    /// Rewards, one a row.
+    pub rewards: &'a mut [f64],
+    /// Whether each flock's episode has just reached its time limit.
+    pub truncated: &'a mut [bool],
+}
+
+/// A batch of environments with the same settings; their flocks may differ in parameters.
+#[derive(Debug, Clone)]
+pub struct EnvBatch {
+    settings: EnvSettings,
+    envs: Vec<FlockEnv>,
+    rows: usize,
+}
+
+/// One flock's part of a step.
+struct Share<'a> {
+    env: &'a mut FlockEnv,
+    actions: &'a [f64],
+    observations: &'a mut [f32],
+    rewards: &'a mut [f64],
+    truncated: &'a mut bool,
+}
+
+impl EnvBatch {
+    /// One environment for each set of parameters, to be reset before a step.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for settings or parameters that are not accepted.
+    pub fn new(settings: EnvSettings, members: Vec<FlockParameters>) -> Result<Self> {
+        if members.is_empty() {
+            return Err(FlockError::parameter("num_envs", 0, "at least 1"));
+        }
+        for parameters in &members {
+            parameters.check()?;
+            settings.check(parameters)?;
+        }
+        Ok(Self {
+            rows: members.iter().map(|p| p.n_leaders).sum(),
+            envs: members
+                .into_iter()
+                .map(|parameters| FlockEnv::new(&settings, parameters))
+                .collect(),
+            settings,
+        })
+    }
+
+    /// The settings.
+    pub fn settings(&self) -> &EnvSettings {
+        &self.settings
+    }
+
+    /// The environments.
+    pub fn envs(&self) -> &[FlockEnv] {
+        &self.envs
+    }
+
+    /// Leaders of all flocks together.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// How many numbers a leader observes.
+    pub fn observation_size(&self) -> usize {
+        self.settings.observation.size()
+    }
+
+    /// Checks actions and turn, so that a step either happens as a whole or not at all.
+    ///
+    /// # Errors
+    /// [`FlockError::Shape`], [`FlockError::Parameter`] or [`FlockError::Episode`].
+    pub fn check_step(&self, actions: &[f64]) -> Result<()> {
+        if actions.len() != self.rows {
+            return Err(FlockError::Shape {
+                field: "actions",
+                found: format!("({},)", actions.len()),
+                expected: format!("({},), one a leader", self.rows),
+            });
+        }
+        for &action in actions {
+            self.settings.rudder.check_action(action)?;
+        }
+        self.envs
+            .iter()
+            .try_for_each(|env| env.check_ready(self.settings.autoreset))
+    }
+
+    /// One control step of every flock, or the start of its next episode where one is due.
+    ///
+    /// # Errors
+    /// Those of [`Self::check_step`], before anything moves; [`FlockError::Solver`] and
+    /// [`FlockError::Placement`] after the other flocks have moved.
+    ///
+    /// # Panics
+    /// If the rows have other lengths than the batch.
+    pub fn step(&mut self, actions: &[f64], out: BatchRows) -> Result<()> {
+        self.check_step(actions)?;
+        let settings = &self.settings;
+        let shares = shares(&mut self.envs, settings.observation.size(), actions, out);
+        let step = |share: Share| {
+            let (actions, observations) = (share.actions, share.observations);
+            *share.truncated = share
+                .env
+                .step(settings, actions, observations, share.rewards)?;
+            Ok(())
+        };
+        parallel::map(shares, step).into_iter().collect()
+    }
+
+    /// Starts new episodes: one request a flock, `None` leaves it as it is. Either all requests are met
+    /// or nothing changes.
+    ///
+    /// # Errors
+    /// The first error of a request; [`FlockError::Shape`] for another number of requests.
+    pub fn reset(&mut self, requests: &[Option<ResetRequest>]) -> Result<()> {
+        if requests.len() != self.envs.len() {
+            return Err(FlockError::Shape {
+                field: "reset requests",
+                found: format!("({},)", requests.len()),
+                expected: format!("({},), one a flock", self.envs.len()),
+            });
+        }
+        let settings = &self.settings;
+        let prepare = |(env, request): (&FlockEnv, &Option<ResetRequest>)| {
+            let request = request.as_ref();
+            request
+                .map(|request| env.prepare(settings, request))
+                .transpose()
+        };
+        let pairs: Vec<_> = self.envs.iter().zip(requests).collect();
+        let prepared: Result<Vec<_>> = parallel::map(pairs, prepare).into_iter().collect();
+        let size = settings.observation.size();
+        for (env, next) in self.envs.iter_mut().zip(prepared?) {
+            if let Some(next) = next {
+                env.start(next);
+                env.observe_start(&mut vec![0.0; size * env.parameters().n_leaders]);
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes the observations as they are now, zeros before the first reset.
+    ///
+    /// # Panics
+    /// If `out` has another length than `rows × observation size`.
+    pub fn observe(&mut self, out: &mut [f32]) {
+        let size = self.observation_size();
+        assert_eq!(out.len(), self.rows * size, "one row a leader");
+        let mut rest = out;
+        for env in &mut self.envs {
+            let (own, others) = rest.split_at_mut(env.parameters().n_leaders * size);
+            env.observe(own);
+            rest = others;
+        }
+    }
+
+    /// The whole batch as bytes: settings, parameters and state.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let members: Vec<_> = self.envs.iter().map(FlockEnv::parameters).collect();
+        let states: Vec<_> = self.envs.iter().map(FlockEnv::stored).collect();
+        seal(MAGIC, &(self.settings, members, states))
+    }
+
+    /// A batch from its bytes.
+    ///
+    /// # Errors
+    /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed batch.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
+        type Stored = (EnvSettings, Vec<FlockParameters>, Vec<StoredEnv>);
+        let (settings, members, states) = unseal::<Stored>(MAGIC, bytes)?;
+        let mut batch = Self::new(settings, members)?;
+        if states.len() != batch.envs.len() {
+            return Err(FlockError::Snapshot("the batch is not whole".to_owned()));
+        }
+        for (env, stored) in batch.envs.iter_mut().zip(states) {
+            *env = env.restored(&settings, stored)?;
+        }
+        Ok(batch)
+    }
+
+    /// Continues from the bytes of a batch with the same settings and parameters.
+    ///
+    /// # Errors
+    /// [`FlockError::Snapshot`]; the batch is unchanged then.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
+        let restored = Self::from_bytes(bytes)?;
+        let members = |batch: &Self| -> Vec<FlockParameters> {
+            batch
+                .envs
+                .iter()
+                .map(|env| env.parameters().clone())
+                .collect()
+        };
+        if restored.settings != self.settings || members(&restored) != members(self) {
+            return Err(FlockError::Snapshot(
+                "the state is of an environment with other options".to_owned(),
+            ));
+        }
+        *self = restored;
+        Ok(())
+    }
+}
+
+/// Cuts the rows into one share a flock.
+fn shares<'a>(
+    envs: &'a mut [FlockEnv],
+    size: usize,
+    mut actions: &'a [f64],
+    out: BatchRows<'a>,
+) -> Vec<Share<'a>> {
+    let (mut observations, mut rewards) = (out.observations, out.rewards);
+    assert_eq!(observations.len(), actions.len() * size, "one row a leader");
+    assert_eq!(rewards.len(), actions.len(), "one reward a leader");
+    assert_eq!(out.truncated.len(), envs.len(), "one flag a flock");
+    let mut shares = Vec::with_capacity(envs.len());
+    for (env, truncated) in envs.iter_mut().zip(out.truncated) {
+        let leaders = env.parameters().n_leaders;
+        let (own_actions, other_actions) = actions.split_at(leaders);
+        let (own_rows, other_rows) = observations.split_at_mut(leaders * size);
+        let (own_rewards, other_rewards) = rewards.split_at_mut(leaders);
+        shares.push(Share {
+            env,
+            actions: own_actions,
+            observations: own_rows,
+            rewards: own_rewards,
+            truncated,
+        });
+        (actions, observations, rewards) = (other_actions, other_rows, other_rewards);
+    }
+    shares
+}

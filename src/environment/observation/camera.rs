@@ -1,0 +1,176 @@
+//! The camera between flock and leaders: frames with drop-outs, and one frame late, as in the experiment
+//! (0.3 % of the boats were not recognised in a frame, Section 3.1). Off by default and free then.
+
+use crate::analysis::OrderParameters;
+use crate::error::{FlockError, Result};
+use crate::geometry::{HullPose, Pose, Velocity};
+use crate::random::{Stream, StreamRng};
+use rand_chacha::rand_core::Rng;
+
+/// What the camera does to the leaders' picture of the flock.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct CameraSettings {
+    /// Chance that a boat is not recognised in a frame, and stays in the picture as it was in the last
+    /// one; in [0, 1).
+    pub dropout_rate: f64,
+    /// Frames that the picture is late: 0 or 1.
+    pub delay_frames: usize,
+}
+
+impl CameraSettings {
+    /// Checks the settings.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`].
+    pub fn check(&self) -> Result<()> {
+        if !(0.0..1.0).contains(&self.dropout_rate) {
+            let accepted = "a chance of at least 0, below 1";
+            return Err(FlockError::parameter(
+                "dropout_rate",
+                self.dropout_rate,
+                accepted,
+            ));
+        }
+        if self.delay_frames > 1 {
+            return Err(FlockError::parameter(
+                "delay_frames",
+                self.delay_frames,
+                "0 or 1",
+            ));
+        }
+        Ok(())
+    }
+
+    /// Whether the picture differs from the flock at all.
+    pub fn is_active(&self) -> bool {
+        self.dropout_rate > 0.0 || self.delay_frames > 0
+    }
+}
+
+/// Poses and velocities as seen in one frame.
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct Frame {
+    /// Poses of all boats.
+    pub poses: Vec<Pose>,
+    /// Velocities of all boats.
+    pub velocities: Vec<Velocity>,
+}
+
+impl Frame {
+    fn copy_from(&mut self, other: &Self) {
+        self.poses.clone_from(&other.poses);
+        self.velocities.clone_from(&other.velocities);
+    }
+}
+
+/// The frames of one episode.
+#[derive(Debug, Clone)]
+pub struct Camera {
+    settings: CameraSettings,
+    rng: StreamRng,
+    frame: u64,
+    now: Frame,
+    before: Frame,
+    hulls: Vec<HullPose>,
+    order: Option<OrderParameters>,
+}
+
+/// What a camera holds, to be stored.
+pub type CameraState = (u64, Frame, Frame);
+
+impl Camera {
+    /// A camera that sees the whole flock in its first frame.
+    pub fn new(
+        settings: CameraSettings,
+        seed: u64,
+        leaders: usize,
+        poses: &[Pose],
+        velocities: &[Velocity],
+    ) -> Self {
+        let now = Frame {
+            poses: poses.to_vec(),
+            velocities: velocities.to_vec(),
+        };
+        let mut camera = Self::unexposed(settings, seed);
+        camera.set_state((0, now.clone(), now), leaders);
+        camera
+    }
+
+    /// A camera without a picture yet.
+    pub fn unexposed(settings: CameraSettings, seed: u64) -> Self {
+        Self {
+            settings,
+            rng: Stream::Sensing.rng(seed),
+            frame: 0,
+            now: Frame::default(),
+            before: Frame::default(),
+            hulls: Vec::new(),
+            order: None,
+        }
+    }
+
+    /// Takes the next frame. Which boats drop out depends on the seed and the frame's number alone.
+    pub fn expose(&mut self, leaders: usize, poses: &[Pose], velocities: &[Velocity]) {
+        self.frame += 1;
+        self.rng.set_stream(self.frame);
+        self.rng.set_word_pos(0);
+        self.before.copy_from(&self.now);
+        for boat in 0..poses.len() {
+            // 53 random bits as a number in [0, 1).
+            let draw = (self.rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+            if draw >= self.settings.dropout_rate {
+                self.now.poses[boat] = poses[boat];
+                self.now.velocities[boat] = velocities[boat];
+            }
+        }
+        self.develop(leaders);
+    }
+
+    fn develop(&mut self, leaders: usize) {
+        let mut hulls = std::mem::take(&mut self.hulls);
+        let seen = self.seen();
+        HullPose::replace_all(&mut hulls, &seen.poses);
+        let order = OrderParameters::of_hulls(&hulls[leaders..], &seen.velocities[leaders..]).ok();
+        (self.hulls, self.order) = (hulls, order);
+    }
+
+    /// The frame that leaders see now.
+    pub fn seen(&self) -> &Frame {
+        if self.settings.delay_frames > 0 {
+            &self.before
+        } else {
+            &self.now
+        }
+    }
+
+    /// Direction vectors of the frame that leaders see.
+    pub fn hulls(&self) -> &[HullPose] {
+        &self.hulls
+    }
+
+    /// Order parameters of that frame.
+    pub fn order(&self) -> Option<&OrderParameters> {
+        self.order.as_ref()
+    }
+
+    /// Whether a stored state is one of a camera on so many boats.
+    pub fn fits((_, now, before): &CameraState, boats: usize) -> bool {
+        [now, before].into_iter().all(|frame| {
+            frame.poses.len() == boats
+                && frame.velocities.len() == boats
+                && frame.poses.iter().all(Pose::is_finite)
+                && frame.velocities.iter().all(Velocity::is_finite)
+        })
+    }
+
+    /// The frames, to be stored.
+    pub fn state(&self) -> CameraState {
+        (self.frame, self.now.clone(), self.before.clone())
+    }
+
+    /// Puts back what [`Self::state`] gave, for as many boats.
+    pub fn set_state(&mut self, state: CameraState, leaders: usize) {
+        (self.frame, self.now, self.before) = state;
+        self.develop(leaders);
+    }
+}

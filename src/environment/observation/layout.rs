@@ -1,0 +1,152 @@
+//! Which entries a leader observes, and in which order.
+
+use super::entry::{BOAT, CLOCK, Entry, NEIGHBOR, ORDER, OWN, PHASE, TARGET};
+use crate::error::{FlockError, Result};
+use crate::parameters::named_choice;
+
+/// Version of the observation: of the entries, their order, scales and bounds. A policy belongs to one.
+pub const OBSERVATION_VERSION: u32 = 1;
+
+/// The most neighbours that a leader may observe.
+pub const MOST_NEIGHBORS: usize = 64;
+
+named_choice! {
+    /// A part of the observation that can be switched off.
+    pub enum Block ("observation") {
+        /// The leader itself.
+        Own = "own",
+        /// Where in the fw-nop-bw-nop cycle the flock is.
+        Phase = "phase",
+        /// The direction to lead the flock in.
+        Target = "target",
+        /// The nearest boats.
+        Neighbors = "neighbors",
+        /// Order parameters of the normal boats.
+        Order = "order",
+    }
+}
+
+/// Which blocks are on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct ObservationLayout {
+    /// The leader itself.
+    pub own: bool,
+    /// The phase.
+    pub phase: bool,
+    /// The target direction.
+    pub target: bool,
+    /// How many of the nearest boats; 0: off.
+    pub neighbors: usize,
+    /// Order parameters.
+    pub order: bool,
+    /// Whether observation and action are reflected where the target is counter-clockwise, so that
+    /// both directions are one task, the clockwise one.
+    pub mirror_to_target: bool,
+}
+
+impl Default for ObservationLayout {
+    fn default() -> Self {
+        Self {
+            own: true,
+            phase: true,
+            target: true,
+            neighbors: 6,
+            order: true,
+            mirror_to_target: false,
+        }
+    }
+}
+
+impl ObservationLayout {
+    /// Checks the layout.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] if nothing is observed, or too many neighbours.
+    pub fn check(&self) -> Result<()> {
+        if self.neighbors > MOST_NEIGHBORS {
+            let accepted = format!("0 (off) to {MOST_NEIGHBORS}");
+            return Err(FlockError::parameter(
+                "observation neighbors",
+                self.neighbors,
+                accepted,
+            ));
+        }
+        if self.size() == 0 {
+            return Err(FlockError::parameter(
+                "observation",
+                "no block",
+                "at least one of own, phase, target, neighbors and order",
+            ));
+        }
+        Ok(())
+    }
+
+    /// The entries of a block; those of `Neighbors` are one neighbour's.
+    pub fn entries_of(block: Block) -> &'static [Entry] {
+        match block {
+            Block::Own => &OWN,
+            Block::Phase => &PHASE,
+            Block::Target => &TARGET,
+            Block::Neighbors => &NEIGHBOR,
+            Block::Order => &ORDER,
+        }
+    }
+
+    /// How often a block occurs: 0 or 1, or the number of neighbours.
+    pub fn repeats(&self, block: Block) -> usize {
+        match block {
+            Block::Own => usize::from(self.own),
+            Block::Phase => usize::from(self.phase),
+            Block::Target => usize::from(self.target),
+            Block::Neighbors => self.neighbors,
+            Block::Order => usize::from(self.order),
+        }
+    }
+
+    /// Where a block begins, if it is on.
+    pub fn offset(&self, wanted: Block) -> Option<usize> {
+        let mut offset = 0;
+        for &block in Block::ALL {
+            if block == wanted {
+                return (self.repeats(block) > 0).then_some(offset);
+            }
+            offset += self.repeats(block) * Self::entries_of(block).len();
+        }
+        None
+    }
+
+    /// Where an entry of a block stands, if the block is on; the first neighbour's for `Neighbors`.
+    pub fn place(&self, block: Block, name: &str) -> Option<usize> {
+        let entries = Self::entries_of(block);
+        let place = entries.iter().position(|entry| entry.name == name)?;
+        self.offset(block).map(|offset| offset + place)
+    }
+
+    /// How many numbers a leader observes.
+    pub fn size(&self) -> usize {
+        Block::ALL
+            .iter()
+            .map(|&block| self.repeats(block) * Self::entries_of(block).len())
+            .sum()
+    }
+
+    /// All entries in order, with their block and its count from 0.
+    pub fn entries(&self) -> Vec<(Block, usize, Entry)> {
+        Block::ALL
+            .iter()
+            .flat_map(|&block| (0..self.repeats(block)).map(move |count| (block, count)))
+            .flat_map(|(block, count)| {
+                Self::entries_of(block)
+                    .iter()
+                    .map(move |entry| (block, count, *entry))
+            })
+            .collect()
+    }
+}
+
+/// All entries of the global state of so many boats.
+pub fn state_entries(boats: usize) -> Vec<Entry> {
+    let mut entries: Vec<Entry> = (0..boats).flat_map(|_| BOAT).collect();
+    entries.extend(PHASE.iter().chain(&TARGET).chain(&CLOCK));
+    entries
+}

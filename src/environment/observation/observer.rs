@@ -1,0 +1,298 @@
+//! From a flock to the numbers that leaders and critics get.
+
+use super::entry::{BOAT, Entry, NEIGHBOR, ORDER, OWN, PHASE};
+use super::{ObservationLayout, state_entries};
+use crate::analysis::OrderParameters;
+use crate::boat::misalignment;
+use crate::clock::seconds;
+use crate::geometry::{HullPose, LapFrame, Pose, Vec2, Velocity, cross};
+use crate::integrator::PhaseMoment;
+use crate::parameters::{FlockParameters, Target};
+
+/// Everything that an observation depends on.
+#[derive(Debug, Clone, Copy)]
+pub struct FlockView<'a> {
+    /// Poses, leaders first.
+    pub poses: &'a [Pose],
+    /// The poses with their direction vectors.
+    pub hulls: &'a [HullPose],
+    /// Velocities.
+    pub velocities: &'a [Velocity],
+    /// How many of the boats are leaders.
+    pub leaders: usize,
+    /// Where in the cycle the flock is.
+    pub phase: PhaseMoment,
+    /// Length of the backward phase in s.
+    pub bw_s: f64,
+    /// The direction to lead in.
+    pub target: Target,
+    /// The leaders' rudders as they stand.
+    pub rudders: &'a [f64],
+    /// Order parameters of the normal boats; `None` where there is none.
+    pub order: Option<&'a OrderParameters>,
+}
+
+/// Scales, offsets and bounds of a row of numbers, ready to apply.
+#[derive(Debug, Clone, PartialEq)]
+struct Scaling {
+    /// Gain as it is, and where the view is mirrored.
+    gains: [Vec<f64>; 2],
+    offsets: Vec<f64>,
+    lows: Vec<f64>,
+    highs: Vec<f64>,
+}
+
+impl Scaling {
+    fn new(entries: impl Iterator<Item = Entry>, parameters: &FlockParameters) -> Self {
+        let mut scaling = Self {
+            gains: [Vec::new(), Vec::new()],
+            offsets: Vec::new(),
+            lows: Vec::new(),
+            highs: Vec::new(),
+        };
+        for entry in entries {
+            let (gain, offset) = entry.scale.affine(parameters);
+            scaling.gains[0].push(gain);
+            scaling.gains[1].push(if entry.mirrored { -gain } else { gain });
+            scaling.offsets.push(offset);
+            scaling.lows.push(entry.low);
+            scaling.highs.push(entry.high);
+        }
+        scaling
+    }
+
+    fn len(&self) -> usize {
+        self.offsets.len()
+    }
+
+    /// Writes scaled and clipped numbers; returns how many were clipped.
+    fn write(&self, physical: &[f64], mirrored: bool, out: &mut [f32]) -> u32 {
+        let n = self.len();
+        let gains = &self.gains[usize::from(mirrored)][..n];
+        let (offsets, lows, highs) = (&self.offsets[..n], &self.lows[..n], &self.highs[..n]);
+        let (physical, out) = (&physical[..n], &mut out[..n]);
+        let mut clipped = 0;
+        for i in 0..n {
+            let value = gains[i] * physical[i] + offsets[i];
+            let bounded = value.max(lows[i]).min(highs[i]);
+            clipped += u32::from(bounded != value);
+            out[i] = bounded as f32;
+        }
+        clipped
+    }
+}
+
+/// Writes observations of one flock's leaders.
+#[derive(Debug, Clone)]
+pub struct Observer {
+    layout: ObservationLayout,
+    scaling: Scaling,
+    physical: Vec<f64>,
+    nearest: Vec<(f64, u32)>,
+}
+
+impl Observer {
+    /// For a checked layout and checked parameters.
+    pub fn new(layout: ObservationLayout, parameters: &FlockParameters) -> Self {
+        let entries = layout.entries().into_iter().map(|(_, _, entry)| entry);
+        let scaling = Scaling::new(entries, parameters);
+        Self {
+            physical: Vec::with_capacity(scaling.len()),
+            scaling,
+            nearest: Vec::with_capacity(layout.neighbors + 1),
+            layout,
+        }
+    }
+
+    /// The layout.
+    pub fn layout(&self) -> &ObservationLayout {
+        &self.layout
+    }
+
+    /// Writes the leaders' observations one after another, `layout().size()` numbers each; returns how
+    /// many numbers were clipped at their bounds.
+    pub fn observe(&mut self, view: &FlockView, out: &mut [f32]) -> u32 {
+        let mirrored = self.layout.mirror_to_target && view.target.sign() < 0.0;
+        let mut clipped = 0;
+        for (leader, row) in out.chunks_exact_mut(self.scaling.len()).enumerate() {
+            self.physical.clear();
+            self.fill(view, leader);
+            clipped += self.scaling.write(&self.physical, mirrored, row);
+        }
+        clipped
+    }
+
+    fn fill(&mut self, view: &FlockView, leader: usize) {
+        let frame = LapFrame::at(view.poses[leader].position);
+        if self.layout.own {
+            self.physical.extend(own(view, leader, &frame));
+        }
+        if self.layout.phase {
+            self.physical.extend(phase(view));
+        }
+        if self.layout.target {
+            self.physical.push(view.target.sign());
+        }
+        if self.layout.neighbors > 0 {
+            self.find_nearest(view, leader);
+            self.fill_neighbors(view, leader, &frame);
+        }
+        if self.layout.order {
+            self.physical.extend(order(view));
+        }
+    }
+
+    /// The nearest boats by centre distance, nearest first, equally near ones in the order of boats.
+    fn find_nearest(&mut self, view: &FlockView, leader: usize) {
+        let wanted = self.layout.neighbors;
+        let center = view.hulls[leader].center;
+        self.nearest.clear();
+        let mut farthest = f64::INFINITY;
+        for (boat, hull) in view.hulls.iter().enumerate() {
+            let square = (hull.center - center).norm_squared();
+            if square >= farthest || boat == leader {
+                continue;
+            }
+            if self.nearest.len() < wanted {
+                self.nearest.push((square, boat as u32));
+            }
+            // From the back, where most newcomers belong.
+            let mut place = self.nearest.len() - 1;
+            while place > 0 && self.nearest[place - 1].0 > square {
+                self.nearest[place] = self.nearest[place - 1];
+                place -= 1;
+            }
+            self.nearest[place] = (square, boat as u32);
+            if self.nearest.len() == wanted {
+                farthest = self.nearest[wanted - 1].0;
+            }
+        }
+    }
+
+    fn fill_neighbors(&mut self, view: &FlockView, leader: usize, frame: &LapFrame) {
+        let own = &view.hulls[leader];
+        for &(_, boat) in &self.nearest {
+            let boat = boat as usize;
+            let other = &view.hulls[boat];
+            let distance = frame.components(other.center - own.center);
+            let velocity = frame.components(view.velocities[boat].linear);
+            self.physical.extend([
+                1.0,
+                distance.x,
+                distance.y,
+                own.axis.dot(&other.axis),
+                -cross(own.axis, other.axis),
+                velocity.x,
+                velocity.y,
+                f64::from(u8::from(boat < view.leaders)),
+            ]);
+        }
+        let missing = self.layout.neighbors - self.nearest.len();
+        self.physical
+            .extend(std::iter::repeat_n(0.0, missing * NEIGHBOR.len()));
+    }
+}
+
+fn own(view: &FlockView, leader: usize, frame: &LapFrame) -> [f64; OWN.len()] {
+    let (pose, velocity) = (&view.poses[leader], &view.velocities[leader]);
+    let (cos, sin) = orientation(pose, view.target);
+    let lap_velocity = frame.components(velocity.linear);
+    [
+        pose.position.norm(),
+        cos,
+        sin,
+        lap_velocity.x,
+        lap_velocity.y,
+        view.hulls[leader].axis.dot(&velocity.linear),
+        -velocity.angular,
+        view.rudders.get(leader).copied().unwrap_or_default(),
+    ]
+}
+
+/// Cosine and sine of the LAP orientation φ, by way of the steering law's own misalignment
+/// δ = φ − φ_target: its jump at δ = ±π then has the same sign for whoever reads the observation.
+fn orientation(pose: &Pose, target: Target) -> (f64, f64) {
+    let (sin, cos) = misalignment(pose.position, pose.heading, target).sin_cos();
+    (-target.sign() * sin, target.sign() * cos)
+}
+
+fn phase(view: &FlockView) -> [f64; PHASE.len()] {
+    let mut entries = [0.0; PHASE.len()];
+    entries[view.phase.phase.index()] = 1.0;
+    entries[4] = seconds(view.phase.left);
+    entries[5] = view.bw_s;
+    entries
+}
+
+fn order(view: &FlockView) -> [f64; ORDER.len()] {
+    let Some(order) = view.order else {
+        return [0.0; ORDER.len()];
+    };
+    let ((sin_o, cos_o), (sin_v, cos_v)) = (order.phi_o.sin_cos(), order.phi_v.sin_cos());
+    [
+        order.psi_o * cos_o,
+        order.psi_o * sin_o,
+        order.psi_v * cos_v,
+        order.psi_v * sin_v,
+    ]
+}
+
+/// Writes the global state of one flock, for critics that see everything.
+#[derive(Debug, Clone)]
+pub struct StateObserver {
+    boats: usize,
+    boat: Scaling,
+    rest: Scaling,
+    mirror_to_target: bool,
+}
+
+impl StateObserver {
+    /// For checked parameters; mirrored like the observations.
+    pub fn new(parameters: &FlockParameters, mirror_to_target: bool) -> Self {
+        let rest = state_entries(0).into_iter();
+        Self {
+            boats: parameters.n_boats,
+            boat: Scaling::new(BOAT.into_iter(), parameters),
+            rest: Scaling::new(rest, parameters),
+            mirror_to_target,
+        }
+    }
+
+    /// How many numbers there are.
+    pub fn size(&self) -> usize {
+        self.boats * self.boat.len() + self.rest.len()
+    }
+
+    /// Writes the state; `elapsed` is the part of the episode that is over.
+    pub fn observe(&self, view: &FlockView, elapsed: f64, out: &mut [f32]) {
+        let mirrored = self.mirror_to_target && view.target.sign() < 0.0;
+        let (boats, rest) = out.split_at_mut(self.boats * self.boat.len());
+        for (boat, row) in boats.chunks_exact_mut(self.boat.len()).enumerate() {
+            self.boat.write(&boat_state(view, boat), mirrored, row);
+        }
+        let mut physical = phase(view).to_vec();
+        physical.extend([view.target.sign(), elapsed]);
+        self.rest.write(&physical, mirrored, rest);
+    }
+}
+
+fn boat_state(view: &FlockView, boat: usize) -> [f64; BOAT.len()] {
+    let (pose, velocity) = (&view.poses[boat], &view.velocities[boat]);
+    let frame = LapFrame::at(pose.position);
+    let orientation = frame.components(view.hulls[boat].axis);
+    let lap_velocity = frame.components(velocity.linear);
+    let polar: Vec2 = frame.outward;
+    let is_leader = boat < view.leaders;
+    [
+        pose.position.norm(),
+        polar.x,
+        polar.y,
+        orientation.x,
+        orientation.y,
+        lap_velocity.x,
+        lap_velocity.y,
+        -velocity.angular,
+        view.rudders.get(boat).copied().unwrap_or_default(),
+        f64::from(u8::from(is_leader)),
+    ]
+}

@@ -1,0 +1,109 @@
+//! Sums over an episode, and the summary given at its end.
+
+use super::{EpisodeSchedule, RewardTerms, TERMS};
+use crate::analysis::OrderParameters;
+use crate::analysis::collective_state::OrderingWatch;
+use crate::parameters::Target;
+use std::f64::consts::PI;
+
+/// Signed order above this is motion in the target direction.
+pub const TOWARDS_TARGET: f64 = 0.5;
+/// How far off the tangent a flock counts as ordered: as eq. (7) prints it, and wider, since a boat that
+/// slides along the wall heads outward of it.
+pub const ORDERED_WITHIN: [f64; 2] = [PI / 20.0, PI / 4.0];
+
+/// Sums over the control steps of an episode.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct EpisodeStatistics {
+    terms: RewardTerms,
+    reward: f64,
+    window_steps: u32,
+    signed_order: f64,
+    psi_o: f64,
+    steps_towards_target: u32,
+    ordering: [OrderingWatch; 2],
+    clipped: u64,
+    observed: u64,
+}
+
+impl EpisodeStatistics {
+    /// Adds a leader's terms and reward in one step, as its share of the leaders' mean.
+    pub fn add_reward(&mut self, share: f64, terms: &RewardTerms, reward: f64) {
+        self.reward += share * reward;
+        for (sum, term) in self.terms.iter_mut().zip(terms) {
+            *sum += share * term;
+        }
+    }
+
+    /// Adds a step inside the analysis window.
+    pub fn add_window(&mut self, order: &OrderParameters, target: Target) {
+        self.window_steps += 1;
+        self.signed_order += order.signed_order(target);
+        self.psi_o += order.psi_o;
+        self.steps_towards_target += u32::from(order.signed_order(target) > TOWARDS_TARGET);
+    }
+
+    /// Takes note of the order at a time since the episode began; `is_late` in its second half.
+    pub fn watch_order(&mut self, order: &OrderParameters, time_s: f64, is_late: bool) {
+        for (watch, within) in self.ordering.iter_mut().zip(ORDERED_WITHIN) {
+            watch.note(time_s, order, within, is_late);
+        }
+    }
+
+    /// Counts numbers observed, and those clipped among them.
+    pub fn count_clipped(&mut self, clipped: u32, observed: usize) {
+        self.clipped += u64::from(clipped);
+        self.observed += observed as u64;
+    }
+
+    /// The summary of an episode with these statistics.
+    pub fn summary(&self, schedule: &EpisodeSchedule) -> EpisodeSummary {
+        let steps = f64::from(schedule.step);
+        let mut terms = [0.0; TERMS];
+        for (mean, sum) in terms.iter_mut().zip(&self.terms) {
+            *mean = sum / steps;
+        }
+        let window = f64::from(self.window_steps);
+        EpisodeSummary {
+            flock_seed: schedule.flock_seed,
+            bw_s: schedule.bw_s,
+            steps: schedule.step,
+            total_reward: self.reward,
+            terms,
+            signed_order: self.signed_order / window,
+            psi_o: self.psi_o / window,
+            share_towards_target: f64::from(self.steps_towards_target) / window,
+            ordering_times_s: self
+                .ordering
+                .map(|watch| watch.ordering_time_s().unwrap_or(f64::NAN)),
+            clip_rate: self.clipped as f64 / self.observed as f64,
+        }
+    }
+}
+
+/// The summary of an episode.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct EpisodeSummary {
+    /// Seed of its flock.
+    pub flock_seed: u64,
+    /// Its noise level: length of the backward phase in s.
+    pub bw_s: f64,
+    /// Control steps taken.
+    pub steps: u32,
+    /// Sum of the rewards, mean over leaders.
+    pub total_reward: f64,
+    /// Each reward term, mean over steps and leaders; NaN before the first step.
+    pub terms: RewardTerms,
+    /// Signed order, mean over the control steps in the analysis window after the first tenth of the
+    /// episode; NaN where there is none.
+    pub signed_order: f64,
+    /// Ψ_o, mean over the same steps.
+    pub psi_o: f64,
+    /// Part of the same steps in which the signed order exceeds [`TOWARDS_TARGET`].
+    pub share_towards_target: f64,
+    /// Ordering time (eq. 7) in s since the episode began, with the angle as printed, π/20, and with
+    /// π/4; NaN if the flock did not order.
+    pub ordering_times_s: [f64; 2],
+    /// Part of the observed numbers that were clipped at their bounds.
+    pub clip_rate: f64,
+}

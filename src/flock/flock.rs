@@ -1,0 +1,389 @@
+//! One flock: owns all state; placed, advanced, looked at, put away and brought back.
+
+use super::placement;
+use crate::analysis::OrderParameters;
+use crate::clock::{Ticks, seconds, ticks};
+use crate::contact::{Contact, Partner, Statistics};
+use crate::error::{FlockError, Result};
+use crate::geometry::{HullPose, Pose, Vec2, Velocity};
+use crate::integrator::{
+    Checkpoint, Integrator, PhaseMoment, PhaseSchedule, Steering, StepOutcome, Substep,
+};
+use crate::parameters::{FlockParameters, Target};
+
+/// The latest time a flock may reach: 10⁹ s.
+pub const LATEST: Ticks = 1_000_000_000_000_000_000;
+
+/// A contact with the force it carried.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactForce {
+    /// The contact, its gap taken at the current poses.
+    pub contact: Contact,
+    /// Where the force acts on the hull of `contact.boat`, at the current poses.
+    pub point: Vec2,
+    /// Mean force over the last substep in cm/s² (mass 1), along the normal on `contact.boat`.
+    pub force: f64,
+}
+
+/// A flock of boats in a pool.
+#[derive(Debug, Clone)]
+pub struct Flock {
+    pub(crate) parameters: FlockParameters,
+    schedule: PhaseSchedule,
+    pub(crate) seed: u64,
+    pub(crate) time: Ticks,
+    pub(crate) integrator: Integrator,
+    /// The motion before the last advance, to return to if it fails.
+    before: Box<Checkpoint>,
+}
+
+impl Flock {
+    /// A flock placed at random without overlap, at rest.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for parameters out of range, [`FlockError::Placement`] if the boats
+    /// do not fit.
+    pub fn new(parameters: FlockParameters, seed: u64) -> Result<Self> {
+        parameters.check()?;
+        let poses = placement::place(&parameters, seed)?;
+        let mut flock = Self::unplaced(parameters, seed);
+        flock
+            .integrator
+            .place(&poses, &vec![Velocity::default(); poses.len()]);
+        Ok(flock)
+    }
+
+    pub(crate) fn unplaced(parameters: FlockParameters, seed: u64) -> Self {
+        Self {
+            schedule: PhaseSchedule::new(&parameters),
+            integrator: Integrator::new(&parameters, seed),
+            before: Box::default(),
+            seed,
+            time: 0,
+            parameters,
+        }
+    }
+
+    /// Starts over with another seed: as a new flock with these parameters, but keeping its memory.
+    ///
+    /// # Errors
+    /// [`FlockError::Placement`]; the flock is unchanged then.
+    pub fn reset(&mut self, seed: u64) -> Result<()> {
+        *self = Self::new(self.parameters.clone(), seed)?;
+        Ok(())
+    }
+
+    /// Starts over with other parameters and another seed.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] or [`FlockError::Placement`]; the flock is unchanged then.
+    pub fn reset_with(&mut self, parameters: FlockParameters, seed: u64) -> Result<()> {
+        *self = Self::new(parameters, seed)?;
+        Ok(())
+    }
+
+    /// The parameters.
+    pub fn parameters(&self) -> &FlockParameters {
+        &self.parameters
+    }
+
+    /// The seed of all streams.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Time in s.
+    pub fn time_s(&self) -> f64 {
+        seconds(self.time)
+    }
+
+    /// Time in ticks.
+    pub fn time(&self) -> Ticks {
+        self.time
+    }
+
+    /// The cycle of phases.
+    pub fn schedule(&self) -> &PhaseSchedule {
+        &self.schedule
+    }
+
+    /// Where in the cycle the flock is.
+    pub fn phase(&self) -> PhaseMoment {
+        self.schedule.at(self.time)
+    }
+
+    /// Poses of all boats, leaders first.
+    pub fn poses(&self) -> &[Pose] {
+        &self.integrator.poses
+    }
+
+    /// Poses of all boats with their direction vectors.
+    pub fn hulls(&self) -> &[HullPose] {
+        &self.integrator.boats
+    }
+
+    /// Velocities of all boats. With `leapfrog` these are means over the last substep: they belong to
+    /// the time half a substep ago, and the poses moved with exactly them.
+    pub fn velocities(&self) -> &[Velocity] {
+        &self.integrator.velocities
+    }
+
+    /// What the substeps so far did.
+    pub fn statistics(&self) -> &Statistics {
+        &self.integrator.statistics
+    }
+
+    /// The paper's rudder command, eq. (10), for a leader where it is now.
+    pub fn steering_law(&self, leader: usize) -> f64 {
+        self.integrator.law(leader)
+    }
+
+    /// Changes the direction that the steering law heads for.
+    pub fn set_target(&mut self, target: Target) {
+        self.parameters.target = target;
+        self.integrator.set_target(target);
+    }
+
+    /// Puts the boats somewhere else.
+    ///
+    /// # Errors
+    /// [`FlockError::Shape`] for wrong lengths, [`FlockError::Parameter`] for numbers that are not
+    /// finite or out of range, [`FlockError::Overlap`] for overlapping hulls unless allowed. The
+    /// flock is unchanged then.
+    pub fn set_state(
+        &mut self,
+        poses: &[Pose],
+        velocities: &[Velocity],
+        time_s: f64,
+        allow_overlap: bool,
+    ) -> Result<()> {
+        let n = self.parameters.n_boats;
+        for (field, length) in [("pose", poses.len()), ("velocity", velocities.len())] {
+            if length != n {
+                return Err(FlockError::Shape {
+                    field,
+                    found: format!("({length}, 3)"),
+                    expected: format!("({n}, 3)"),
+                });
+            }
+        }
+        let accepted = "finite numbers within -1e9 to 1e9";
+        if let Some(boat) = poses.iter().position(|pose| !pose.is_in_range()) {
+            let Pose { position, heading } = poses[boat];
+            let value = format!("[{}, {}, {heading}] of boat {boat}", position.x, position.y);
+            return Err(FlockError::parameter("pose", value, accepted));
+        }
+        if let Some(boat) = velocities.iter().position(|v| !v.is_in_range()) {
+            let Velocity { linear, angular } = velocities[boat];
+            let value = format!("[{}, {}, {angular}] of boat {boat}", linear.x, linear.y);
+            return Err(FlockError::parameter("velocity", value, accepted));
+        }
+        let time = time_from(time_s)?;
+        let mut integrator = self.integrator.clone();
+        integrator.place(poses, velocities);
+        if !allow_overlap {
+            refuse_overlap(&mut integrator)?;
+        }
+        (self.integrator, self.time) = (integrator, time);
+        Ok(())
+    }
+
+    /// Advances by a duration. `rudder` holds one command in [−1, 1] a leader; `None` steers by the
+    /// paper's law at every substep.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] or [`FlockError::Shape`] for a bad duration or rudder,
+    /// [`FlockError::Solver`] if numbers left their range. The flock is unchanged then.
+    pub fn advance(&mut self, duration_s: f64, rudder: Option<&[f64]>) -> Result<()> {
+        let end = self.end_of(duration_s)?;
+        self.check_rudder(rudder)?;
+        self.advance_to(end, rudder.map_or(Steering::Law, Steering::Held))
+    }
+
+    /// When a duration from now on ends.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for a bad duration.
+    pub fn end_of(&self, duration_s: f64) -> Result<Ticks> {
+        if !(0.0..=seconds(LATEST)).contains(&duration_s) {
+            return Err(FlockError::parameter(
+                "seconds",
+                duration_s,
+                "a finite duration of at least 0 s",
+            ));
+        }
+        let end = self.time + ticks(duration_s);
+        if end > LATEST {
+            return Err(FlockError::parameter(
+                "seconds",
+                duration_s,
+                "an end before time_s = 1e9",
+            ));
+        }
+        Ok(end)
+    }
+
+    /// Checks rudder commands.
+    ///
+    /// # Errors
+    /// [`FlockError::Shape`] or [`FlockError::Parameter`].
+    pub fn check_rudder(&self, rudder: Option<&[f64]>) -> Result<()> {
+        let Some(commands) = rudder else {
+            return Ok(());
+        };
+        let k = self.parameters.n_leaders;
+        if commands.len() != k {
+            return Err(FlockError::Shape {
+                field: "rudder",
+                found: format!("({},)", commands.len()),
+                expected: format!("({k},), one a leader"),
+            });
+        }
+        match commands
+            .iter()
+            .find(|command| !(-1.0..=1.0).contains(*command))
+        {
+            Some(command) => Err(FlockError::parameter(
+                "rudder",
+                command,
+                "numbers in [-1, 1]",
+            )),
+            None => Ok(()),
+        }
+    }
+
+    /// Advances to a time with checked steering. Substeps end on multiples of dt, on phase switches and
+    /// at `end`.
+    ///
+    /// # Errors
+    /// [`FlockError::Solver`] if numbers left their range; the flock is unchanged then.
+    pub fn advance_to(&mut self, end: Ticks, steering: Steering) -> Result<()> {
+        self.integrator.save(&mut self.before);
+        let begin = self.time;
+        let dt = ticks(self.parameters.dt_s);
+        let unsolved = self.integrator.statistics.unsolved;
+        while self.time < end {
+            let moment = self.schedule.at(self.time);
+            let grid = (self.time / dt + 1) * dt;
+            let mut substep = Substep {
+                start: self.time,
+                length: end.min(grid).min(self.time + moment.left) - self.time,
+                phase: moment.phase,
+                steering,
+            };
+            while self.integrator.step(&substep) == StepOutcome::TooLong {
+                substep.length = substep.length.div_ceil(2);
+            }
+            self.time += substep.length;
+            // Contacts of numbers out of range take long to give up: no more of them.
+            if self.integrator.statistics.unsolved > unsolved && !self.integrator.is_in_range() {
+                break;
+            }
+        }
+        if self.integrator.is_in_range() {
+            return Ok(());
+        }
+        self.integrator.return_to(&self.before);
+        self.time = begin;
+        Err(FlockError::Solver(
+            "the motion left the range of 1e9 cm, cm/s, rad and rad/s; smaller dt_s or milder constants \
+             may help"
+                .to_owned(),
+        ))
+    }
+
+    /// Advances towards a time, but no further than about so many substeps times boats, and returns
+    /// whether it is reached. It stops on the substep grid, where stopping changes nothing.
+    ///
+    /// # Errors
+    /// As for [`Self::advance_to`].
+    pub fn advance_towards(
+        &mut self,
+        end: Ticks,
+        steering: Steering,
+        boat_substeps: u64,
+    ) -> Result<bool> {
+        let dt = ticks(self.parameters.dt_s);
+        let substeps = (boat_substeps / self.parameters.n_boats as u64).max(1);
+        let stop = end.min((self.time / dt + substeps) * dt);
+        self.advance_to(stop, steering)?;
+        Ok(stop == end)
+    }
+
+    /// Order parameters of the normal boats, or of all.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] if there is no such boat.
+    pub fn order_parameters(&self, include_leaders: bool) -> Result<OrderParameters> {
+        let first = if include_leaders {
+            0
+        } else {
+            self.parameters.n_leaders
+        };
+        OrderParameters::of_hulls(&self.hulls()[first..], &self.velocities()[first..])
+    }
+
+    /// Contacts and near-contacts of the last substep: gaps now, forces as means over the last kick.
+    pub fn contacts(&self) -> Vec<ContactForce> {
+        let mut resolver = self.integrator.contacts.clone();
+        let detector = resolver.detector();
+        let hull = detector.hull();
+        let resolver = &self.integrator.contacts;
+        resolver
+            .contacts()
+            .iter()
+            .zip(resolver.impulses())
+            .map(|(contact, &impulse)| {
+                let gap = detector.gap_at(contact, &self.integrator.boats);
+                let force = if impulse > 0.0 {
+                    impulse / self.integrator.kick_s
+                } else {
+                    0.0
+                };
+                let contact = Contact { gap, ..*contact };
+                ContactForce {
+                    point: contact.point(&self.hulls()[contact.boat as usize], hull),
+                    contact,
+                    force,
+                }
+            })
+            .collect()
+    }
+}
+
+fn time_from(time_s: f64) -> Result<Ticks> {
+    if time_s >= 0.0 && time_s <= seconds(LATEST) {
+        return Ok(ticks(time_s));
+    }
+    Err(FlockError::parameter(
+        "time_s",
+        time_s,
+        "a finite time of at least 0 s, at most 1e9 s",
+    ))
+}
+
+/// Overlap in cm that a given state may have: rounding of poses that are meant to touch.
+const ROUNDING: f64 = 1e-9;
+
+fn refuse_overlap(integrator: &mut Integrator) -> Result<()> {
+    let mut contacts = Vec::new();
+    integrator
+        .contacts
+        .detector()
+        .detect(&integrator.boats, 0.0, &mut contacts);
+    integrator.contacts.forget();
+    let deepest = contacts
+        .iter()
+        .min_by(|a, b| a.gap.gap.total_cmp(&b.gap.gap));
+    match deepest {
+        Some(contact) if contact.gap.gap < -ROUNDING => Err(FlockError::Overlap {
+            what: match contact.partner {
+                Partner::Boat(second) => format!("boats {} and {second}", contact.boat),
+                Partner::OuterWall => format!("boat {} and the outer wall", contact.boat),
+                Partner::InnerWall => format!("boat {} and the inner wall", contact.boat),
+            },
+            overlap_cm: -contact.gap.gap,
+        }),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,213 @@
+//! Random initial conditions: non-overlapping, uniform headings (Section 2.5's random start).
+//!
+//! Dilute flocks are placed by rejection: uniform positions and headings, one boat after another. Where
+//! that fails, hulls start small at uniform places, grow, and are pushed apart by the least
+//! displacement; their directions keep their random start but for what the pushing turns.
+
+use crate::contact::{ContactDetector, push_apart};
+use crate::error::{FlockError, Result};
+use crate::geometry::{Hull, HullPose, Pose, inner_wall_gap, outer_wall_gap, pair_gaps};
+use crate::parameters::{FlockParameters, Pool};
+use crate::random::{Stream, StreamRng};
+use rand::RngExt;
+use std::f64::consts::{PI, TAU};
+
+/// Tries a boat before rejection gives up.
+const TRIES_PER_BOAT: usize = 200;
+/// Fresh starts of grow-and-relax before placement fails.
+const ATTEMPTS: usize = 6;
+/// Part of the water that hulls may cover before placement is not even tried.
+const LARGEST_COVER: f64 = 0.92;
+/// Part of the water that hulls can cover at random.
+const WELL_COVERED: f64 = 0.78;
+/// Hull sizes, relative, at which growing hulls are pushed apart.
+const GROWTH: [f64; 8] = [0.5, 0.65, 0.78, 0.87, 0.93, 0.97, 0.99, 1.0];
+/// Distance kept between placed hulls, as a fraction of the boat's radius.
+const CLEARANCE: f64 = 1e-3;
+/// Open water gets this many hull areas a boat, as dilute as 20 boats in the `500-boats` pool.
+const OPEN_WATER_AREAS: f64 = 25.0;
+
+/// Places all boats of checked parameters.
+///
+/// # Errors
+/// [`FlockError::Placement`] if no arrangement without overlap was found.
+pub fn place(parameters: &FlockParameters, seed: u64) -> Result<Vec<Pose>> {
+    let mut rng = Stream::Placement.rng(seed);
+    let region = Region::new(parameters);
+    if !region.holds_a_boat() {
+        return Err(FlockError::Placement {
+            requested: parameters.n_boats,
+            placed: 0,
+        });
+    }
+    if let Some(poses) = by_rejection(parameters.n_boats, &region, &mut rng) {
+        return Ok(poses);
+    }
+    // Hulls that cover nearly all of the water cannot be disjoint. Trying would only take time; how
+    // many can be is worth one try for the error message.
+    let full = region.area() / region.hull.area();
+    let (boats, attempts) = if parameters.n_boats as f64 <= LARGEST_COVER * full {
+        (parameters.n_boats, ATTEMPTS)
+    } else {
+        ((WELL_COVERED * full) as usize, 1)
+    };
+    let mut most = 0;
+    for _ in 0..attempts {
+        let poses = by_growth(parameters, boats, &region, &mut rng);
+        let placed = region.count_disjoint(&poses);
+        if placed == parameters.n_boats {
+            return Ok(poses);
+        }
+        most = most.max(placed);
+    }
+    Err(FlockError::Placement {
+        requested: parameters.n_boats,
+        placed: most,
+    })
+}
+
+/// The water that boats are placed in.
+struct Region {
+    hull: Hull,
+    pool: Pool,
+    /// Radii between which centres are drawn.
+    inner: f64,
+    outer: f64,
+}
+
+impl Region {
+    fn new(parameters: &FlockParameters) -> Self {
+        let hull = Hull::new(parameters);
+        let pool = parameters.pool;
+        let inner = if pool.has_inner_wall() {
+            pool.inner_radius_cm + hull.radius
+        } else {
+            0.0
+        };
+        let outer = if pool.has_outer_wall() {
+            pool.outer_radius_cm - hull.radius
+        } else {
+            let area = OPEN_WATER_AREAS * hull.area() * parameters.n_boats as f64;
+            (area / PI + inner * inner).sqrt()
+        };
+        Self {
+            hull,
+            pool,
+            inner,
+            outer,
+        }
+    }
+
+    fn holds_a_boat(&self) -> bool {
+        self.outer > self.inner
+    }
+
+    fn area(&self) -> f64 {
+        let (inner, outer) = (self.inner - self.hull.radius, self.outer + self.hull.radius);
+        PI * (outer * outer - inner.max(0.0).powi(2))
+    }
+
+    /// A uniform place with a uniform heading.
+    fn draw(&self, rng: &mut StreamRng) -> Pose {
+        let square = rng.random_range(self.inner * self.inner..=self.outer * self.outer);
+        let (radius, angle) = (square.sqrt(), rng.random_range(-PI..PI));
+        Pose::new(
+            radius * angle.cos(),
+            radius * angle.sin(),
+            rng.random_range(-PI..PI),
+        )
+    }
+
+    fn is_inside(&self, boat: &HullPose, clearance: f64) -> bool {
+        let Pool {
+            outer_radius_cm,
+            inner_radius_cm,
+        } = self.pool;
+        let clear_of_outer = !self.pool.has_outer_wall()
+            || [-1.0, 1.0].iter().all(|&side| {
+                outer_wall_gap(boat, side, self.hull, outer_radius_cm).gap > clearance
+            });
+        clear_of_outer
+            && (!self.pool.has_inner_wall()
+                || inner_wall_gap(boat, self.hull, inner_radius_cm).gap > clearance)
+    }
+
+    fn is_clear(&self, boat: &HullPose, others: &[HullPose], clearance: f64) -> bool {
+        let mut clear = self.is_inside(boat, clearance);
+        for other in others {
+            if !clear {
+                break;
+            }
+            pair_gaps(boat, other, self.hull, clearance, |_, _| clear = false);
+        }
+        clear
+    }
+
+    /// How many boats, taken in order, overlap none before them.
+    fn count_disjoint(&self, poses: &[Pose]) -> usize {
+        let mut kept: Vec<HullPose> = Vec::with_capacity(poses.len());
+        for pose in poses {
+            let boat = HullPose::new(pose);
+            if self.is_clear(&boat, &kept, 0.0) {
+                kept.push(boat);
+            }
+        }
+        kept.len()
+    }
+}
+
+fn by_rejection(boats: usize, region: &Region, rng: &mut StreamRng) -> Option<Vec<Pose>> {
+    // Random sequential addition of stadiums stalls near half the area; do not even begin there. The
+    // quadratic search would also be slow for very large flocks, which growing handles.
+    if boats as f64 * region.hull.area() > 0.4 * region.area() || boats > 4000 {
+        return None;
+    }
+    let poses = greedily(boats, region, rng);
+    (poses.len() == boats).then_some(poses)
+}
+
+/// Adds boats one by one until one finds no place.
+fn greedily(boats: usize, region: &Region, rng: &mut StreamRng) -> Vec<Pose> {
+    let clearance = CLEARANCE * region.hull.radius;
+    let mut poses = Vec::new();
+    let mut placed: Vec<HullPose> = Vec::new();
+    while poses.len() < boats {
+        let found = (0..TRIES_PER_BOAT).find_map(|_| {
+            let pose = region.draw(rng);
+            let boat = HullPose::new(&pose);
+            region
+                .is_clear(&boat, &placed, clearance)
+                .then_some((pose, boat))
+        });
+        let Some((pose, boat)) = found else { break };
+        poses.push(pose);
+        placed.push(boat);
+    }
+    poses
+}
+
+fn by_growth(
+    parameters: &FlockParameters,
+    boats: usize,
+    region: &Region,
+    rng: &mut StreamRng,
+) -> Vec<Pose> {
+    let mut poses: Vec<Pose> = (0..boats).map(|_| region.draw(rng)).collect();
+    for size in GROWTH {
+        // The last sizes are a little more than the hull, so that gaps stay open.
+        let radius = parameters.boat_radius_cm * size * (1.0 + CLEARANCE);
+        let grown = FlockParameters {
+            boat_radius_cm: radius,
+            ..parameters.clone()
+        };
+        let mut detector = ContactDetector::new(&grown);
+        push_apart(&mut detector, &mut poses, parameters.gyration_radius_cm, 60);
+    }
+    for pose in &mut poses {
+        pose.heading = pose.heading.rem_euclid(TAU);
+        if pose.heading > PI {
+            pose.heading -= TAU;
+        }
+    }
+    poses
+}

@@ -1,0 +1,268 @@
+//! A run sampled at a fixed rate: what sweeps and figures are made of.
+
+use super::flock::{ContactForce, Flock};
+use crate::analysis::OrderParameters;
+use crate::clock::{Ticks, seconds, ticks};
+use crate::error::{FlockError, Result};
+use crate::integrator::{Phase, Steering};
+use crate::parameters::FlockParameters;
+
+/// When samples are taken: at 0, 1/rate, 2/rate … up to and including the duration. Each time is
+/// rounded to a tick by itself, so that errors do not add up.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sampling {
+    sample_hz: f64,
+    count: u64,
+}
+
+impl Sampling {
+    /// The highest rate that samples may be taken at, in 1/s.
+    pub const FASTEST_HZ: f64 = 1e6;
+    /// The longest run in s.
+    pub const LONGEST_S: f64 = 1e9;
+
+    /// Samples of a run of this duration.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for a duration or rate out of range.
+    pub fn new(duration_s: f64, sample_hz: f64) -> Result<Self> {
+        if !(0.0..=Self::LONGEST_S).contains(&duration_s) {
+            let accepted = "a finite duration of at least 0 s, at most 1e9 s";
+            return Err(FlockError::parameter("duration_s", duration_s, accepted));
+        }
+        // A NaN fails both comparisons.
+        if !(sample_hz > 0.0 && sample_hz <= Self::FASTEST_HZ) {
+            let accepted = "a positive rate of at most 1e6 samples a second";
+            return Err(FlockError::parameter("sample_hz", sample_hz, accepted));
+        }
+        let periods = (duration_s * sample_hz).floor() as u64;
+        let mut sampling = Self {
+            sample_hz,
+            count: periods + 1,
+        };
+        // 0.29 s at 100 Hz has 29 periods, but 0.29·100 < 29 in floating point.
+        if sampling.time(sampling.count) <= ticks(duration_s) {
+            sampling.count += 1;
+        }
+        Ok(sampling)
+    }
+
+    /// How many samples there are, at least 1.
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// When a sample is taken, counted from the beginning of the run.
+    pub fn time(&self, sample: u64) -> Ticks {
+        ticks(sample as f64 / self.sample_hz)
+    }
+}
+
+/// How a recording keeps poses and velocities.
+pub trait Real: Copy + Send {
+    /// The nearest number of this type.
+    fn nearest(value: f64) -> Self;
+}
+
+impl Real for f64 {
+    fn nearest(value: f64) -> Self {
+        value
+    }
+}
+
+impl Real for f32 {
+    fn nearest(value: f64) -> Self {
+        value as Self
+    }
+}
+
+/// Contacts that carried a force, sample after sample.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ContactSamples {
+    /// How many of them each sample has.
+    pub count: Vec<usize>,
+    /// The contacts; their forces are means over the substep before the sample.
+    pub contacts: Vec<ContactForce>,
+}
+
+impl ContactSamples {
+    fn push(&mut self, flock: &Flock) {
+        let before = self.contacts.len();
+        let contacts = flock.contacts().into_iter();
+        self.contacts
+            .extend(contacts.filter(|each| each.force > 0.0));
+        self.count.push(self.contacts.len() - before);
+    }
+}
+
+/// The samples of a run, row after row.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Recording<T> {
+    /// Times in s.
+    pub time_s: Vec<f64>,
+    /// The phase that begins or holds at each time.
+    pub phase: Vec<Phase>,
+    /// Whether each time lies in the analysis window.
+    pub in_analysis_window: Vec<bool>,
+    /// Poses [cm, cm, rad] of all boats, sample after sample.
+    pub pose: Vec<T>,
+    /// Velocities [cm/s, cm/s, rad/s] of all boats, sample after sample.
+    pub velocity: Vec<T>,
+    /// Order parameters of the normal boats; all NaN where there is none.
+    pub order: Vec<OrderParameters>,
+    /// Contacts, if they are recorded.
+    pub contacts: Option<ContactSamples>,
+}
+
+impl<T: Real> Recording<T> {
+    /// Recordings beyond this many bytes (16 GiB) are taken for a mistake.
+    pub const MOST_BYTES: u64 = 16 << 30;
+
+    /// An empty recording with room for a run.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] if that is more than [`Self::MOST_BYTES`] or than there is memory.
+    pub fn with_room_for(sampling: &Sampling, parameters: &FlockParameters) -> Result<Self> {
+        let samples = sampling.count();
+        let state = 6 * parameters.n_boats as u64 * size_of::<T>() as u64;
+        let other = (size_of::<OrderParameters>() + size_of::<f64>() + 2) as u64;
+        let bytes = samples.saturating_mul(state + other);
+        let mut recording = Self::empty();
+        if bytes > Self::MOST_BYTES || recording.reserve(samples, parameters.n_boats).is_none() {
+            return Err(FlockError::parameter(
+                "duration_s * sample_hz",
+                format!("{} samples of {} boats", samples, parameters.n_boats),
+                format!(
+                    "a recording of {} bytes does not fit; at most {} bytes, and the memory there \
+                     is: record a shorter run, at a lower rate or in float32",
+                    bytes,
+                    Self::MOST_BYTES
+                ),
+            ));
+        }
+        Ok(recording)
+    }
+
+    fn empty() -> Self {
+        Self {
+            time_s: Vec::new(),
+            phase: Vec::new(),
+            in_analysis_window: Vec::new(),
+            pose: Vec::new(),
+            velocity: Vec::new(),
+            order: Vec::new(),
+            contacts: None,
+        }
+    }
+
+    fn reserve(&mut self, samples: u64, boats: usize) -> Option<()> {
+        let samples = usize::try_from(samples).ok()?;
+        let numbers = samples.checked_mul(boats)?.checked_mul(3)?;
+        self.time_s.try_reserve_exact(samples).ok()?;
+        self.phase.try_reserve_exact(samples).ok()?;
+        self.in_analysis_window.try_reserve_exact(samples).ok()?;
+        self.order.try_reserve_exact(samples).ok()?;
+        self.pose.try_reserve_exact(numbers).ok()?;
+        self.velocity.try_reserve_exact(numbers).ok()
+    }
+
+    /// Takes a sample of a flock as it is now.
+    pub fn push(&mut self, flock: &Flock) {
+        const NO_BOAT: OrderParameters = OrderParameters {
+            psi_o: f64::NAN,
+            phi_o: f64::NAN,
+            c_o: f64::NAN,
+            psi_v: f64::NAN,
+            phi_v: f64::NAN,
+            c_v: f64::NAN,
+        };
+        self.time_s.push(flock.time_s());
+        self.phase.push(flock.phase().phase);
+        self.in_analysis_window
+            .push(flock.schedule().in_analysis_window(flock.time()));
+        for pose in flock.poses() {
+            let numbers = [pose.position.x, pose.position.y, pose.heading];
+            self.pose.extend(numbers.map(T::nearest));
+        }
+        for velocity in flock.velocities() {
+            let numbers = [velocity.linear.x, velocity.linear.y, velocity.angular];
+            self.velocity.extend(numbers.map(T::nearest));
+        }
+        self.order
+            .push(flock.order_parameters(false).unwrap_or(NO_BOAT));
+        if let Some(contacts) = &mut self.contacts {
+            contacts.push(flock);
+        }
+    }
+}
+
+/// A flock steered by the paper's law while it is recorded.
+#[derive(Debug, Clone)]
+pub struct Recorder<T> {
+    flock: Flock,
+    sampling: Sampling,
+    begin: Ticks,
+    taken: u64,
+    recording: Recording<T>,
+}
+
+impl<T: Real> Recorder<T> {
+    /// A run from where a flock is now, with nothing recorded yet.
+    ///
+    /// # Errors
+    /// As for [`Recording::with_room_for`], and for a run that would end later than any flock may.
+    pub fn new(flock: Flock, sampling: Sampling) -> Result<Self> {
+        flock.end_of(seconds(sampling.time(sampling.count() - 1)))?;
+        Ok(Self {
+            recording: Recording::with_room_for(&sampling, flock.parameters())?,
+            begin: flock.time(),
+            taken: 0,
+            flock,
+            sampling,
+        })
+    }
+
+    /// The same run, of which contacts are recorded too.
+    #[must_use]
+    pub fn with_contacts(mut self) -> Self {
+        self.recording.contacts = Some(ContactSamples::default());
+        self
+    }
+
+    /// Goes on for about so many substeps times boats; returns whether the recording is complete.
+    /// Where it pauses changes nothing.
+    ///
+    /// # Errors
+    /// As for [`Flock::advance_to`].
+    pub fn run(&mut self, boat_substeps: u64) -> Result<bool> {
+        let before = self.work();
+        while self.taken < self.sampling.count() {
+            let done = self.work() - before;
+            if done >= boat_substeps {
+                return Ok(false);
+            }
+            let next = self.begin + self.sampling.time(self.taken);
+            let left = boat_substeps - done;
+            if self.flock.advance_towards(next, Steering::Law, left)? {
+                self.recording.push(&self.flock);
+                self.taken += 1;
+            }
+        }
+        Ok(true)
+    }
+
+    /// Seconds from the beginning of the run to where it is now.
+    pub fn elapsed_s(&self) -> f64 {
+        seconds(self.flock.time() - self.begin)
+    }
+
+    fn work(&self) -> u64 {
+        let p = self.flock.parameters();
+        self.flock.statistics().substeps * p.n_boats as u64
+    }
+
+    /// What has been recorded.
+    pub fn into_recording(self) -> Recording<T> {
+        self.recording
+    }
+}

@@ -1,0 +1,47 @@
+//! The local-angle polar (LAP) frame of Section 2.3: outward radial and tangential axes at each
+//! boat's own polar angle θ. Orientations and tangential velocities count clockwise as positive, the
+//! camera's y-down convention, so that φ = 0 points at the outer wall and +π/2 is clockwise motion.
+
+use super::{HullPose, Pose, Vec2, Velocity, turned_left, wrap_angle};
+
+/// The axes at one place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LapFrame {
+    /// Unit vector away from the pool's centre.
+    pub outward: Vec2,
+    /// Unit vector along clockwise motion.
+    pub clockwise: Vec2,
+}
+
+impl LapFrame {
+    /// The axes at a position; at the very centre, those of θ = 0.
+    pub fn at(position: Vec2) -> Self {
+        let outward = position
+            .try_normalize(0.0)
+            .unwrap_or_else(|| Vec2::new(1.0, 0.0));
+        Self {
+            outward,
+            clockwise: -turned_left(outward),
+        }
+    }
+
+    /// LAP components (outward, clockwise) of a world vector.
+    pub fn components(&self, world: Vec2) -> Vec2 {
+        Vec2::new(world.dot(&self.outward), world.dot(&self.clockwise))
+    }
+}
+
+/// LAP orientation φ = wrap(θ − α) in (−π, π] (figure 3).
+pub fn orientation(pose: &Pose) -> f64 {
+    wrap_angle(pose.position.y.atan2(pose.position.x) - pose.heading)
+}
+
+/// The unit orientation vector o in LAP components: (cos φ, sin φ).
+pub fn orientation_vector(pose: &Pose) -> Vec2 {
+    LapFrame::at(pose.position).components(HullPose::new(pose).axis)
+}
+
+/// The velocity in LAP components (outward, clockwise) in cm/s.
+pub fn velocity_vector(pose: &Pose, velocity: &Velocity) -> Vec2 {
+    LapFrame::at(pose.position).components(velocity.linear)
+}

@@ -1,0 +1,90 @@
+//! Where a boat is and how it moves.
+
+use super::Vec2;
+
+/// The largest position (cm), heading (rad), velocity (cm/s) or angular velocity (rad/s) that a state
+/// may hold: squares and products of such numbers are far from overflowing.
+pub const LARGEST: f64 = 1e9;
+
+/// Position and heading of a boat.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct Pose {
+    /// Centroid in cm, world axes.
+    #[serde(with = "pair")]
+    pub position: Vec2,
+    /// Heading α in rad, counter-clockwise from x; not wrapped, so that turns can be counted.
+    pub heading: f64,
+}
+
+impl Pose {
+    /// A pose from its three numbers [cm, cm, rad].
+    pub fn new(x: f64, y: f64, heading: f64) -> Self {
+        Self {
+            position: Vec2::new(x, y),
+            heading,
+        }
+    }
+
+    /// The pose after moving with a velocity for a time.
+    #[inline]
+    pub fn moved(&self, velocity: &Velocity, dt: f64) -> Self {
+        Self {
+            position: self.position + velocity.linear * dt,
+            heading: self.heading + velocity.angular * dt,
+        }
+    }
+
+    /// Whether all three numbers are finite.
+    pub fn is_finite(&self) -> bool {
+        self.position.x.is_finite() && self.position.y.is_finite() && self.heading.is_finite()
+    }
+
+    /// Whether a flock may hold this pose: nothing beyond [`LARGEST`].
+    pub fn is_in_range(&self) -> bool {
+        self.position.amax() <= LARGEST && self.heading.abs() <= LARGEST && self.is_finite()
+    }
+}
+
+/// Linear and angular velocity of a boat.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct Velocity {
+    /// Velocity of the centroid in cm/s, world axes.
+    #[serde(with = "pair")]
+    pub linear: Vec2,
+    /// Angular velocity in rad/s, counter-clockwise.
+    pub angular: f64,
+}
+
+impl Velocity {
+    /// A velocity from its three numbers [cm/s, cm/s, rad/s].
+    pub fn new(x: f64, y: f64, angular: f64) -> Self {
+        Self {
+            linear: Vec2::new(x, y),
+            angular,
+        }
+    }
+
+    /// Whether all three numbers are finite.
+    pub fn is_finite(&self) -> bool {
+        self.linear.x.is_finite() && self.linear.y.is_finite() && self.angular.is_finite()
+    }
+
+    /// Whether a flock may hold this velocity: nothing beyond [`LARGEST`].
+    pub fn is_in_range(&self) -> bool {
+        self.linear.amax() <= LARGEST && self.angular.abs() <= LARGEST && self.is_finite()
+    }
+}
+
+/// A vector is stored as its two coordinates.
+mod pair {
+    use super::Vec2;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(vector: &Vec2, serializer: S) -> Result<S::Ok, S::Error> {
+        [vector.x, vector.y].serialize(serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec2, D::Error> {
+        <[f64; 2]>::deserialize(deserializer).map(|[x, y]| Vec2::new(x, y))
+    }
+}

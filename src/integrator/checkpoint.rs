@@ -1,0 +1,65 @@
+//! What decides how the motion continues, saved before every advance and stored in snapshots.
+
+use super::state::Integrator;
+use super::substep::LastSubstep;
+use crate::contact::{Load, Statistics};
+use crate::geometry::{Pose, Vec2, Velocity};
+
+/// All that decides how the motion goes on, apart from parameters, seed and time.
+#[derive(Debug, Clone, Default)]
+pub struct Checkpoint {
+    /// Poses of all boats.
+    pub poses: Vec<Pose>,
+    /// Velocities of all boats.
+    pub velocities: Vec<Velocity>,
+    /// What leapfrog remembers.
+    pub last: LastSubstep,
+    /// Contacts that carried an impulse in the last substep.
+    pub loads: Vec<Load>,
+    /// Centres that the neighbour list was built from, and within which distance.
+    pub neighbor_reference: (Vec<Vec2>, f64),
+    /// Length of the last kick in s.
+    pub kick_s: f64,
+    /// Running totals.
+    pub statistics: Statistics,
+}
+
+impl Integrator {
+    /// The motion as it is, to return to.
+    pub fn checkpoint(&self) -> Checkpoint {
+        let mut checkpoint = Checkpoint::default();
+        self.save(&mut checkpoint);
+        checkpoint
+    }
+
+    /// Writes the motion as it is over a checkpoint, whose memory is used again.
+    pub fn save(&self, into: &mut Checkpoint) {
+        into.poses.clone_from(&self.poses);
+        into.velocities.clone_from(&self.velocities);
+        into.last.clone_from(&self.last);
+        into.loads.clear();
+        into.loads.extend_from_slice(self.contacts.loads());
+        let neighbors = self.contacts.neighbors();
+        into.neighbor_reference.0.clear();
+        into.neighbor_reference
+            .0
+            .extend_from_slice(neighbors.reference());
+        into.neighbor_reference.1 = neighbors.cutoff();
+        into.kick_s = self.kick_s;
+        into.statistics = self.statistics;
+    }
+
+    /// Goes on from a checkpoint, bit for bit.
+    pub fn return_to(&mut self, checkpoint: &Checkpoint) {
+        self.place(&checkpoint.poses, &checkpoint.velocities);
+        self.last.clone_from(&checkpoint.last);
+        self.contacts.set_loads(&checkpoint.loads);
+        let (reference, cutoff) = &checkpoint.neighbor_reference;
+        self.contacts
+            .detector()
+            .neighbors
+            .restore(reference, *cutoff);
+        self.kick_s = checkpoint.kick_s;
+        self.statistics = checkpoint.statistics;
+    }
+}

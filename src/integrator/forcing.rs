@@ -1,0 +1,92 @@
+//! What drives the boats in a substep: motors, rudders and the water.
+
+use super::phase_schedule::Phase;
+use super::state::Integrator;
+use super::substep::{Steering, Substep};
+use crate::boat::{Drive, misalignment, steering_law};
+use crate::geometry::{Vec2, turned_left};
+
+impl Integrator {
+    /// Preferred speed in a phase, in cm/s, before the spread between boats.
+    fn preferred_speed(&self, is_leader: bool, phase: Phase) -> f64 {
+        let p = &self.parameters;
+        match phase {
+            Phase::Forward => p.speed_cm_s,
+            Phase::Backward if !is_leader || p.leaders_reverse => -p.reverse_speed_cm_s,
+            Phase::Backward | Phase::DriftAfterForward | Phase::DriftAfterBackward => 0.0,
+        }
+    }
+
+    /// Preferred speed of a boat in a phase, in cm/s.
+    pub(super) fn thrust(&self, boat: usize, phase: Phase) -> f64 {
+        let speed = self.preferred_speed(boat < self.parameters.n_leaders, phase);
+        self.speed_factors
+            .get(boat)
+            .map_or(speed, |factor| speed * factor)
+    }
+
+    /// Rudder of a boat: the command or the law for a leader, the bias for a normal boat.
+    pub(super) fn rudder(&self, boat: usize, steering: Steering) -> f64 {
+        if boat >= self.parameters.n_leaders {
+            return self.parameters.turning_bias;
+        }
+        match steering {
+            Steering::Held(commands) => commands[boat],
+            Steering::Law => self.law(boat),
+        }
+    }
+
+    /// The paper's rudder command for a boat where it is now, eq. (10).
+    pub fn law(&self, boat: usize) -> f64 {
+        let pose = &self.poses[boat];
+        steering_law(misalignment(
+            pose.position,
+            pose.heading,
+            self.parameters.target,
+        ))
+    }
+
+    /// Fills `drives` for a substep: thrust and rudder of its phase, water, noise kicks.
+    pub(super) fn fill_drives(&mut self, substep: &Substep) {
+        let normal = Drive {
+            thrust: self.preferred_speed(false, substep.phase),
+            rudder: self.parameters.turning_bias,
+            water: Vec2::zeros(),
+            kick: 0.0,
+        };
+        self.drives.clear();
+        self.drives
+            .extend(self.kicks.iter().map(|&kick| Drive { kick, ..normal }));
+        for leader in 0..self.parameters.n_leaders {
+            self.drives[leader].thrust = self.preferred_speed(true, substep.phase);
+            self.drives[leader].rudder = self.rudder(leader, substep.steering);
+        }
+        for (drive, factor) in self.drives.iter_mut().zip(&self.speed_factors) {
+            drive.thrust *= factor;
+        }
+        self.fill_water(|state, boat| state.velocities[boat].linear);
+    }
+
+    /// Sets the water in `drives` as boats with these velocities move it: counter-clockwise with the
+    /// speed −κ·(mean tangential velocity of the boats), capped (Section 4.5).
+    pub(super) fn fill_water(&mut self, velocity: impl Fn(&Self, usize) -> Vec2) {
+        let p = &self.parameters;
+        if p.current_gain == 0.0 {
+            return;
+        }
+        let sum: f64 = (0..self.poses.len())
+            .map(|boat| velocity(self, boat).dot(&self.tangent(boat)))
+            .sum();
+        let cap = p.current_cap_cm_s;
+        let current = (-p.current_gain * sum / self.poses.len() as f64).clamp(-cap, cap);
+        for boat in 0..self.poses.len() {
+            self.drives[boat].water = self.tangent(boat) * current;
+        }
+    }
+
+    /// Counter-clockwise unit tangent at a boat; zero at the pool's centre.
+    fn tangent(&self, boat: usize) -> Vec2 {
+        let position = self.poses[boat].position;
+        turned_left(position.try_normalize(0.0).unwrap_or_default())
+    }
+}

@@ -1,0 +1,128 @@
+//! Leapfrog: velocities live in the middle of substeps, poses at their ends. Second order while
+//! contacts persist.
+//!
+//! A kick at time t_n takes the velocity from the middle of the last substep to the middle of the
+//! next; where the two differ in length, phase or rudder, each half of the kick has its own. The first
+//! kick after a state was set is a half one.
+
+use super::phase_schedule::Phase;
+use super::state::Integrator;
+use super::substep::{LastSubstep, Steering, StepOutcome, Substep};
+use crate::boat::Drive;
+use crate::clock::seconds;
+use crate::contact::ContactOutcome;
+use crate::geometry::Vec2;
+
+/// Part of `dt_s` below which a kick does not tell what contacts press with: impulses that close small
+/// overlaps do not shrink with it. The kick before stands for it then.
+const SHORTEST_TELLING_KICK: f64 = 0.25;
+
+/// One kick and one drift.
+pub fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
+    let half_ticks = flock.last.length + substep.length;
+    let kick = 0.5 * seconds(half_ticks);
+    let begin = 2 * substep.start - flock.last.length.min(2 * substep.start);
+    flock.draw_kicks(substep.start, begin, 2 * substep.start + substep.length);
+    flock.fill_drives(substep);
+    blend_drives(flock, substep);
+    center_water(flock, kick);
+    centered_velocities(flock, kick);
+
+    let dt = seconds(substep.length);
+    let contacts = flock.solve_contacts(substep);
+    if contacts == ContactOutcome::TooLong {
+        return StepOutcome::TooLong;
+    }
+    let lasting = &mut flock.last.lasting_acceleration;
+    if contacts == ContactOutcome::Untouched {
+        lasting.clear();
+    } else if kick >= SHORTEST_TELLING_KICK * flock.parameters.dt_s {
+        lasting.clear();
+        lasting.resize(flock.poses.len(), Vec2::zeros());
+        flock
+            .contacts
+            .add_lasting_acceleration(&flock.inertia, kick, lasting);
+    }
+    flock.kick_s = kick;
+    flock.drift(dt);
+    remember(flock, substep);
+    StepOutcome::Taken
+}
+
+/// Replaces thrust and rudder by their means over the kick where the substep before had others.
+fn blend_drives(flock: &mut Integrator, substep: &Substep) {
+    let last_phase = Phase::ALL[flock.last.phase];
+    let last_rudder = std::mem::take(&mut flock.last.rudder);
+    let same_steering = match (substep.steering, &last_rudder) {
+        (Steering::Law, None) => true,
+        (Steering::Held(now), Some(then)) => now == then,
+        _ => false,
+    };
+    if flock.last.length > 0 && !(same_steering && last_phase == substep.phase) {
+        let steering = last_rudder.as_deref().map_or(Steering::Law, Steering::Held);
+        let past = flock.last.length as f64 / (flock.last.length + substep.length) as f64;
+        for boat in 0..flock.drives.len() {
+            let (thrust, rudder) = (flock.thrust(boat, last_phase), flock.rudder(boat, steering));
+            let drive = &mut flock.drives[boat];
+            drive.thrust += past * (thrust - drive.thrust);
+            drive.rudder += past * (rudder - drive.rudder);
+        }
+    }
+    flock.last.rudder = last_rudder;
+}
+
+/// Replaces the water by that which the boats move in the middle of the kick: taken from velocities
+/// half a kick old, it would cost the scheme its second order.
+fn center_water(flock: &mut Integrator, kick: f64) {
+    flock.fill_water(|flock, boat| {
+        let (velocity, axis) = (flock.velocities[boat].linear, flock.boats[boat].axis);
+        let drive = &flock.drives[boat];
+        let free = flock.motion.centered_change(velocity, axis, drive, kick);
+        velocity + (free + lasting_change(&flock.last, boat, kick)) * 0.5
+    });
+}
+
+/// Change of a boat's velocity over a kick by contacts that are likely to last.
+fn lasting_change(last: &LastSubstep, boat: usize, kick: f64) -> Vec2 {
+    let acceleration = last.lasting_acceleration.get(boat);
+    acceleration.map_or_else(Vec2::zeros, |a| a * kick)
+}
+
+/// Fills `free` and `inertia` over a kick.
+fn centered_velocities(flock: &mut Integrator, kick: f64) {
+    let gyration = flock.parameters.gyration_radius_cm;
+    let inverse_square = 1.0 / (gyration * gyration);
+    let Integrator {
+        free,
+        inertia,
+        velocities,
+        boats,
+        drives,
+        motion,
+        last,
+        ..
+    } = flock;
+    free.clear();
+    for (boat, drive) in drives.iter().enumerate() {
+        let drive: &Drive = drive;
+        let change = lasting_change(last, boat, kick);
+        let result = motion.centered(&velocities[boat], boats[boat].axis, drive, change, kick);
+        free.push(result.velocity);
+        inertia[boat].linear = result.linear_mobility;
+        inertia[boat].angular = inverse_square * result.angular_mobility;
+    }
+}
+
+fn remember(flock: &mut Integrator, substep: &Substep) {
+    let last = &mut flock.last;
+    last.length = substep.length;
+    last.phase = substep.phase.index();
+    match substep.steering {
+        Steering::Law => last.rudder = None,
+        Steering::Held(commands) => {
+            let kept = last.rudder.get_or_insert_default();
+            kept.clear();
+            kept.extend_from_slice(commands);
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! Semi-implicit Euler with contacts in the velocities (Moreau's time stepping): first order.
+
+use super::state::Integrator;
+use super::substep::{StepOutcome, Substep};
+use crate::clock::seconds;
+use crate::contact::ContactOutcome;
+
+/// Free velocities by explicit Euler, contacts on them, then poses with the *new* velocities.
+pub fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
+    let dt = seconds(substep.length);
+    flock.draw_step_kicks(substep);
+    flock.fill_drives(substep);
+    explicit_velocities(flock, dt);
+    if flock.solve_contacts(substep) == ContactOutcome::TooLong {
+        return StepOutcome::TooLong;
+    }
+    flock.kick_s = dt;
+    flock.drift(dt);
+    StepOutcome::Taken
+}
+
+/// Fills `free` with velocities after an explicit Euler step.
+pub(super) fn explicit_velocities(flock: &mut Integrator, dt: f64) {
+    let Integrator {
+        free,
+        velocities,
+        boats,
+        drives,
+        motion,
+        ..
+    } = flock;
+    free.clear();
+    free.extend(
+        velocities
+            .iter()
+            .zip(&*boats)
+            .zip(&*drives)
+            .map(|((velocity, boat), drive)| motion.explicit(velocity, boat.axis, drive, dt)),
+    );
+}

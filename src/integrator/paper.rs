@@ -1,0 +1,49 @@
+//! Steps 1–6 of the paper's appendix, taken literally.
+//!
+//! Poses advance with the *old* velocities. If nothing then overlaps by more than the tolerance, the
+//! step stands and velocities gain dt·a (eq. A.3). If something does, the poses are projected to
+//! linearised gaps ≥ 0 (eq. A.4) and *every* boat's velocity becomes displacement/dt (eq. A.5): a step
+//! with a contact loses its accelerations, for all boats at once.
+
+use super::moreau::explicit_velocities;
+use super::state::Integrator;
+use super::substep::{StepOutcome, Substep};
+use crate::clock::seconds;
+
+/// Overlap (cm) that no tolerance tells from touching: what a solver's residual of 1e-10 cm/s leaves in
+/// a substep, with room for a row of boats.
+const ROUNDING: f64 = 1e-10;
+
+/// One step of the appendix.
+pub fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
+    let dt = seconds(substep.length);
+    flock.kick_s = dt;
+    flock.draw_step_kicks(substep);
+    flock.fill_drives(substep);
+    explicit_velocities(flock, dt);
+    let Integrator {
+        contacts,
+        poses,
+        boats,
+        velocities,
+        inertia,
+        statistics,
+        parameters,
+        ..
+    } = flock;
+    // The displacement that minimises (A.4) is dt times the velocity nearest to the old one.
+    let near = contacts.find(poses, boats, velocities, dt, statistics);
+    let allowed = parameters.overlap_tolerance_cm.max(ROUNDING);
+    if near && contacts.overlaps_after(poses, velocities, dt, allowed) {
+        contacts.resolve(poses, velocities, inertia, dt, false, statistics);
+        flock
+            .velocities
+            .copy_from_slice(flock.contacts.velocities());
+        flock.drift(dt);
+        return StepOutcome::Taken;
+    }
+    contacts.clear_loads();
+    flock.drift(dt);
+    flock.velocities.copy_from_slice(&flock.free);
+    StepOutcome::Taken
+}

@@ -1,0 +1,126 @@
+//! Everything that one substep reads and writes: poses, velocities, what drives them, contacts.
+
+use super::substep::LastSubstep;
+use crate::boat::{Drive, FreeMotion};
+use crate::clock::ticks;
+use crate::contact::{ContactResolver, InverseInertia, Statistics};
+use crate::geometry::{HullPose, Pose, Velocity};
+use crate::parameters::{FlockParameters, Scheme, Target};
+use crate::random::{BrownianPaths, Stream};
+use rand::RngExt;
+
+/// State and working memory of a flock's motion.
+#[derive(Debug, Clone)]
+pub struct Integrator {
+    pub(crate) parameters: FlockParameters,
+    pub(crate) motion: FreeMotion,
+    /// Per-boat factor of the motor's speed; empty where all boats are alike.
+    pub(super) speed_factors: Vec<f64>,
+    pub(crate) poses: Vec<Pose>,
+    pub(crate) velocities: Vec<Velocity>,
+    /// The poses with their direction vectors.
+    pub(crate) boats: Vec<HullPose>,
+    pub(crate) contacts: ContactResolver,
+    /// η of eq. (9); `None` where c4 = 0.
+    pub(super) noise: Option<BrownianPaths>,
+    /// Change of each boat's angular velocity by noise over the substep.
+    pub(crate) kicks: Vec<f64>,
+    pub(crate) drives: Vec<Drive>,
+    pub(crate) free: Vec<Velocity>,
+    pub(crate) inertia: Vec<InverseInertia>,
+    pub(crate) last: LastSubstep,
+    pub(crate) statistics: Statistics,
+    /// Length of the last kick in s: what impulses are divided by to give forces.
+    pub(crate) kick_s: f64,
+}
+
+impl Integrator {
+    /// For checked parameters; boats at the origin, to be placed.
+    pub fn new(parameters: &FlockParameters, seed: u64) -> Self {
+        let n = parameters.n_boats;
+        let p = parameters;
+        let density = 1.0 / (p.gyration_radius_cm * p.gyration_radius_cm);
+        Self {
+            motion: FreeMotion::new(p),
+            speed_factors: speed_factors(p, seed),
+            poses: vec![Pose::default(); n],
+            velocities: vec![Velocity::default(); n],
+            boats: vec![HullPose::new(&Pose::default()); n],
+            contacts: ContactResolver::new(p),
+            noise: (p.c4 > 0.0).then(|| noise_paths(p, seed)),
+            kicks: vec![0.0; n],
+            drives: Vec::with_capacity(n),
+            free: Vec::with_capacity(n),
+            inertia: vec![
+                InverseInertia {
+                    linear: 1.0,
+                    angular: density
+                };
+                n
+            ],
+            last: LastSubstep::default(),
+            statistics: Statistics::default(),
+            kick_s: 0.0,
+            parameters: parameters.clone(),
+        }
+    }
+
+    /// Puts boats somewhere else; motion so far is forgotten.
+    pub fn place(&mut self, poses: &[Pose], velocities: &[Velocity]) {
+        self.poses.copy_from_slice(poses);
+        self.velocities.copy_from_slice(velocities);
+        self.last = LastSubstep::default();
+        self.kick_s = 0.0;
+        self.contacts.forget();
+        self.update_boats();
+    }
+
+    /// Changes the direction that leaders steer to.
+    pub fn set_target(&mut self, target: Target) {
+        self.parameters.target = target;
+    }
+
+    /// Works out the direction vectors of the poses.
+    pub fn update_boats(&mut self) {
+        HullPose::replace_all(&mut self.boats, &self.poses);
+    }
+
+    /// Moves every boat with its velocity for a time.
+    pub(crate) fn drift(&mut self, dt: f64) {
+        for (pose, velocity) in self.poses.iter_mut().zip(&self.velocities) {
+            *pose = pose.moved(velocity, dt);
+        }
+        self.update_boats();
+    }
+
+    /// Whether every pose and velocity is one that a flock may hold.
+    pub fn is_in_range(&self) -> bool {
+        self.poses.iter().all(Pose::is_in_range)
+            && self.velocities.iter().all(Velocity::is_in_range)
+    }
+}
+
+/// Brownian paths whose cells are what full substeps ask for: leapfrog kicks reach from the middle of
+/// one substep to the middle of the next.
+fn noise_paths(parameters: &FlockParameters, seed: u64) -> BrownianPaths {
+    let dt = ticks(parameters.dt_s);
+    let shift = if parameters.scheme == Scheme::Leapfrog {
+        dt
+    } else {
+        0
+    };
+    BrownianPaths::new(seed, parameters.n_boats, 2 * dt, shift)
+}
+
+/// Per-boat factors of the preferred speed; empty where all boats are alike.
+fn speed_factors(parameters: &FlockParameters, seed: u64) -> Vec<f64> {
+    let p = parameters;
+    if p.speed_spread_cm_s == 0.0 {
+        return Vec::new();
+    }
+    let mut rng = Stream::SpeedSpread.rng(seed);
+    let spread = p.speed_spread_cm_s / p.speed_cm_s;
+    (0..p.n_boats)
+        .map(|_| 1.0 + spread * rng.random_range(-1.0..=1.0))
+        .collect()
+}

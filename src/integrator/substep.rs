@@ -1,0 +1,67 @@
+//! One substep, and what came of it.
+
+use super::phase_schedule::Phase;
+use crate::clock::Ticks;
+use crate::geometry::Vec2;
+
+/// Where a leader's rudder command comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Steering<'a> {
+    /// The paper's law, eq. (10), at every substep.
+    Law,
+    /// Commands held over the substep, one a leader.
+    Held(&'a [f64]),
+}
+
+/// One substep.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Substep<'a> {
+    /// When it begins.
+    pub start: Ticks,
+    /// How long it lasts.
+    pub length: Ticks,
+    /// What the motors do.
+    pub phase: Phase,
+    /// What the rudders do.
+    pub steering: Steering<'a>,
+}
+
+/// What came of a substep.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StepOutcome {
+    /// The substep was taken.
+    Taken,
+    /// It is too long for its contacts: a shorter one has to be tried. Deep overlaps may have been
+    /// undone, but no time has passed.
+    TooLong,
+}
+
+/// What the leapfrog scheme remembers of the substep before: its second half belongs to the next kick.
+#[derive(Debug, PartialEq, Default)]
+pub struct LastSubstep {
+    /// Its length; 0 if there was none since the state was set.
+    pub length: Ticks,
+    /// The phase it lay in.
+    pub phase: usize,
+    /// The rudders held in it; `None` for the steering law.
+    pub rudder: Option<Vec<f64>>,
+    /// Linear acceleration of each boat by contacts that are likely to last; empty for none.
+    pub lasting_acceleration: Vec<Vec2>,
+}
+
+impl Clone for LastSubstep {
+    fn clone(&self) -> Self {
+        let mut copy = Self::default();
+        copy.clone_from(self);
+        copy
+    }
+
+    // A flock is saved before every advance: without allocations.
+    fn clone_from(&mut self, source: &Self) {
+        self.length = source.length;
+        self.phase = source.phase;
+        self.rudder.clone_from(&source.rudder);
+        self.lasting_acceleration
+            .clone_from(&source.lasting_acceleration);
+    }
+}

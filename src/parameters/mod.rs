@@ -1,0 +1,13 @@
+//! What defines a flock: its fields, named sets of them, pools, and the choices users make by name.
+
+mod choices;
+mod fields;
+mod named_choice;
+mod pools;
+mod presets;
+
+pub use choices::{Noise, Scheme, Solver, Target};
+pub use fields::FlockParameters;
+pub(crate) use named_choice::named_choice;
+pub use pools::Pool;
+pub use presets::Preset;

@@ -1,0 +1,115 @@
+//! Arrangements of recorded boats: poses come as (t, n, 3) arrays.
+
+use crate::analysis::structure::{self, PairCounts};
+use crate::error::FlockError;
+use crate::geometry::Pose;
+use crate::parameters::FlockParameters;
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray3};
+use pyo3::prelude::*;
+
+/// Found and expected pairs in each bin.
+type Pairs<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
+
+/// Part of the boats in the largest cluster, at each time.
+#[pyfunction]
+pub fn largest_cluster<'py>(
+    py: Python<'py>,
+    parameters: FlockParameters,
+    pose: PyReadonlyArray3<'py, f64>,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let samples = Samples::read(&pose)?;
+    let share = |poses| structure::largest_cluster(poses, &parameters);
+    let shares: Vec<f64> = py.detach(|| samples.each().map(share).collect());
+    Ok(PyArray1::from_vec(py, shares))
+}
+
+/// Part of the boats on the outer wall, at each time.
+#[pyfunction]
+pub fn on_outer_wall<'py>(
+    py: Python<'py>,
+    parameters: FlockParameters,
+    pose: PyReadonlyArray3<'py, f64>,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let samples = Samples::read(&pose)?;
+    let shares = samples.each();
+    let shares = shares.map(|poses| structure::on_outer_wall(poses, &parameters));
+    Ok(PyArray1::from_iter(py, shares))
+}
+
+/// Pairs by distance, over all times.
+#[pyfunction]
+pub fn pair_counts<'py>(
+    py: Python<'py>,
+    pose: PyReadonlyArray3<'py, f64>,
+    edges: PyReadonlyArray1<'py, f64>,
+) -> PyResult<Pairs<'py>> {
+    let samples = Samples::read(&pose)?;
+    let edges = edges.to_vec()?;
+    let rising = edges.windows(2).all(|pair| pair[0] < pair[1]);
+    if edges.len() < 2 || !rising || !edges.iter().all(|edge| edge.is_finite()) {
+        let accepted = "at least two finite distances in cm, increasing";
+        return Err(FlockError::parameter("edges", format!("{edges:?}"), accepted).into());
+    }
+    let counts = py.detach(|| {
+        let mut counts = PairCounts::new(edges);
+        samples.each().for_each(|poses| counts.add(poses));
+        counts
+    });
+    let (found, expected) = (counts.found, counts.expected);
+    Ok((
+        PyArray1::from_vec(py, found),
+        PyArray1::from_vec(py, expected),
+    ))
+}
+
+/// Mean-square displacement in cm² and heading correlation after each lag, in samples.
+#[pyfunction]
+pub fn lagged_motion<'py>(
+    py: Python<'py>,
+    pose: PyReadonlyArray3<'py, f64>,
+    lags: Vec<usize>,
+) -> PyResult<Pairs<'py>> {
+    let samples = Samples::read(&pose)?;
+    let rows: Vec<&[Pose]> = samples.each().collect();
+    let squares = |&lag: &usize| structure::mean_square_displacement(&rows, lag);
+    let cosines = |&lag: &usize| structure::heading_correlation(&rows, lag);
+    let (squares, cosines): (Vec<f64>, Vec<f64>) =
+        py.detach(|| lags.iter().map(|lag| (squares(lag), cosines(lag))).unzip());
+    Ok((
+        PyArray1::from_vec(py, squares),
+        PyArray1::from_vec(py, cosines),
+    ))
+}
+
+/// Poses sample after sample.
+struct Samples {
+    poses: Vec<Pose>,
+    boats: usize,
+}
+
+impl Samples {
+    fn read(pose: &PyReadonlyArray3<'_, f64>) -> PyResult<Self> {
+        let pose = pose.as_array();
+        let (times, boats, numbers) = pose.dim();
+        if numbers != 3 || boats == 0 {
+            return Err(FlockError::Shape {
+                field: "pose",
+                found: format!("({times}, {boats}, {numbers})"),
+                expected: "(t, n, 3) of at least one boat".to_owned(),
+            }
+            .into());
+        }
+        let rows = pose.rows();
+        let poses = rows
+            .into_iter()
+            .map(|row| Pose::new(row[0], row[1], row[2]));
+        Ok(Self {
+            poses: poses.collect(),
+            boats,
+        })
+    }
+
+    fn each(&self) -> impl Iterator<Item = &[Pose]> {
+        self.poses.chunks_exact(self.boats)
+    }
+}

@@ -1,0 +1,7 @@
+//! Randomness: named, seeded streams, and the Brownian paths of the noise.
+
+mod brownian;
+mod streams;
+
+pub use brownian::BrownianPaths;
+pub use streams::{Stream, StreamRng};
