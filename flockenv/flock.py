@@ -299,10 +299,10 @@ class Statistics:
         Most numbers that the Cholesky factors of one solve held.
     unsolved : int
         Solves whose constraints contradicted each other or that missed their residual.
-    recovery_passes : int
+    depenetration_passes : int
         Passes that moved deeply overlapping hulls apart.
     neighbor_builds : int
-        Times a substep had to build the neighbour list anew.
+        Times a substep had to build the neighbor list anew.
     worst_residual_cm_s : float
         Largest natural residual of a solve in cm/s.
     worst_overlap_cm : float
@@ -317,7 +317,7 @@ class Statistics:
     factored_rows: int
     most_factor_entries: int
     unsolved: int
-    recovery_passes: int
+    depenetration_passes: int
     neighbor_builds: int
     worst_residual_cm_s: float
     worst_overlap_cm: float

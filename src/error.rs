@@ -23,7 +23,7 @@ pub enum FlockError {
         /// The shape it should have.
         expected: String,
     },
-    /// The pool is too small for the flock: no arrangement without overlap was found.
+    /// The pool is too small for the flock: no placement without overlap was found.
     #[error(
         "n_boats = {requested} boats do not fit the pool: at most {placed} were placed without \
          overlap; use fewer boats or a larger pool"

@@ -82,7 +82,7 @@ impl Configuration {
         }
     }
 
-    /// Every scheme × step × relinearisation with the exact solver.
+    /// Every scheme × step × relinearization with the exact solver.
     pub fn all_exact() -> Vec<Self> {
         let mut all = Vec::new();
         for &scheme in Scheme::ALL {

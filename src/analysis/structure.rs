@@ -32,7 +32,7 @@ pub fn on_outer_wall(poses: &[Pose], parameters: &FlockParameters) -> f64 {
     at_wall.count() as f64 / poses.len() as f64
 }
 
-/// Pairs by the distance of their centres, beside those expected of independent boats.
+/// Pairs by the distance of their centers, beside those expected of independent boats.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PairCounts {
     /// Edges of the bins in cm, increasing.
@@ -82,7 +82,7 @@ impl PairCounts {
 fn chance_below(distance: f64, ra: f64, rb: f64) -> f64 {
     let cosine = (ra * ra + rb * rb - distance * distance) / (2.0 * ra * rb);
     if cosine.is_nan() {
-        // Both at the centre.
+        // Both at the center.
         return f64::from(u8::from(distance > 0.0));
     }
     cosine.clamp(-1.0, 1.0).acos() / PI

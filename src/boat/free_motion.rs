@@ -11,13 +11,13 @@ use crate::parameters::FlockParameters;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drive {
     /// Preferred speed v0 along the heading in cm/s, negative backwards.
-    pub thrust: f64,
+    pub preferred_speed: f64,
     /// Rudder s in [−1, 1], positive turns counter-clockwise when moving forward.
     pub rudder: f64,
     /// Velocity of the water in cm/s.
     pub water: Vec2,
     /// Change of the angular velocity by noise in rad/s, over the whole substep.
-    pub kick: f64,
+    pub noise: f64,
 }
 
 /// A free velocity and how readily contacts change it within the substep.
@@ -55,7 +55,7 @@ impl FreeMotion {
     /// Linear acceleration, eq. (8), with drag relative to the water.
     #[inline]
     pub fn linear_acceleration(&self, velocity: Vec2, axis: Vec2, drive: &Drive) -> Vec2 {
-        (axis * drive.thrust - (velocity - drive.water)) * self.c0
+        (axis * drive.preferred_speed - (velocity - drive.water)) * self.c0
     }
 
     /// Angular acceleration, eq. (9) without noise, at a speed through the water along the heading.
@@ -78,7 +78,7 @@ impl FreeMotion {
             angular: spin
                 + self.angular_acceleration(spin, along, drive.rudder) * dt
                 + excess * spin
-                + drive.kick,
+                + drive.noise,
         }
     }
 
@@ -88,7 +88,7 @@ impl FreeMotion {
         1.0 / (1.0 + 0.5 * dt * self.c0)
     }
 
-    /// Change of the velocity over `dt` without contacts, with drag centred in the substep.
+    /// Change of the velocity over `dt` without contacts, with drag centered in the substep.
     #[inline]
     pub fn centered_change(&self, velocity: Vec2, axis: Vec2, drive: &Drive, dt: f64) -> Vec2 {
         self.linear_acceleration(velocity, axis, drive) * (dt * self.linear_mobility(dt))
@@ -100,10 +100,10 @@ impl FreeMotion {
         (self.c3 * push).sqrt() + (self.c2 * rudder.abs() * push).cbrt()
     }
 
-    /// Second order over `dt` with drag, heading drive and angular damping centred in the substep:
-    /// Crank–Nicolson, linearised once for the angular velocity. `contact_change` is the change of
-    /// velocity that lasting contacts are expected to make in the substep, so that the heading's
-    /// drive u·ẋ is centred too while a boat leans on something.
+    /// Second order over `dt` with drag, heading drive and angular damping centered in the substep:
+    /// Crank–Nicolson, linearized once for the angular velocity. `contact_change` is the change of
+    /// velocity that persistent contacts are expected to make in the substep, so that the heading's
+    /// drive u·ẋ is centered too while a boat leans on something.
     ///
     /// The angular rate 3·c1·α̇² + c3·u·ẋ is negative for a backing boat that does not turn yet: the
     /// weight 1 + dt/2·rate is replaced there by 1/(1 − dt/2·rate), equal to second order and positive
@@ -136,7 +136,7 @@ impl FreeMotion {
             let most = spin.abs().max(self.fastest_turn(along, drive.rudder));
             torque = (driven.clamp(-most, most) - spin) / angular_mobility;
         }
-        torque += drive.kick;
+        torque += drive.noise;
         FreeVelocity {
             velocity: Velocity {
                 linear: velocity.linear + change,

@@ -1,31 +1,31 @@
 //! Moves overlapping hulls apart without giving them any speed.
 //!
 //! A gap far below zero must not enter the velocities: g + dt·J·v ≥ 0 would eject a 5 cm overlap at
-//! 500 cm/s. Deep overlaps are therefore undone by displacing poses alone, by the least
-//! Σ|Δx|² + ρ²ΣΔα² for which the linearised gaps open.
+//! 500 cm/s. Deep overlaps are therefore undone by moving poses alone, by the least
+//! Σ|Δx|² + ρ²ΣΔα² for which the linearized gaps open.
 
 use super::solver::ContactSolver;
 use super::{Contact, ContactDetector, ContactProblem, InverseInertia};
 use crate::geometry::{HullPose, Pose, Velocity};
 
-/// Gaps below this (cm) are recovered by displacement; smaller overlaps are left to the velocities.
-pub const DEEP: f64 = -0.01;
-/// The most that one pass opens a gap by, in cm: beyond it the linearisation means little.
+/// Overlaps beyond this (cm) are undone by moving poses; smaller ones are left to the velocities.
+pub const PENETRATION_SLOP: f64 = 0.01;
+/// The most that one pass opens a gap by, in cm: beyond it the linearization means little.
 const LARGEST_STEP: f64 = 1.0;
 
 /// A projection of poses, with its scratch space.
 #[derive(Debug, Clone)]
-pub struct Recovery {
+pub struct Depenetration {
     solver: ContactSolver,
     contacts: Vec<Contact>,
-    bounds: Vec<f64>,
+    biases: Vec<f64>,
     rest: Vec<Velocity>,
     inertia: Vec<InverseInertia>,
     /// Passes made so far.
     pub passes: u64,
 }
 
-impl Recovery {
+impl Depenetration {
     /// For `boats` boats of radius of gyration ρ.
     pub fn new(boats: usize, gyration_radius: f64) -> Self {
         let inertia = InverseInertia {
@@ -33,10 +33,10 @@ impl Recovery {
             angular: 1.0 / (gyration_radius * gyration_radius),
         };
         Self {
-            // Soft, since a packing may leave no way out; it is then shared evenly.
-            solver: ContactSolver::soft(1e-4),
+            // Regularized, since a packing may leave no way out; the rest is then shared evenly.
+            solver: ContactSolver::regularized(1e-4),
             contacts: Vec::new(),
-            bounds: Vec::new(),
+            biases: Vec::new(),
             rest: vec![Velocity::default(); boats],
             inertia: vec![inertia; boats],
             passes: 0,
@@ -76,8 +76,8 @@ impl Recovery {
     }
 
     fn displace(&mut self, poses: &mut [Pose]) {
-        self.bounds.clear();
-        self.bounds.extend(
+        self.biases.clear();
+        self.biases.extend(
             self.contacts
                 .iter()
                 .map(|contact| contact.gap.gap.max(-LARGEST_STEP)),
@@ -85,15 +85,15 @@ impl Recovery {
         self.solver.active.clear();
         self.solver
             .active
-            .extend(self.bounds.iter().map(|&gap| gap < 0.0));
+            .extend(self.biases.iter().map(|&gap| gap < 0.0));
         self.solver.impulses.clear();
         self.solver.impulses.resize(self.contacts.len(), 0.0);
-        self.solver.begin(poses.len(), &self.contacts);
+        self.solver.reset(poses.len(), &self.contacts);
         let problem = ContactProblem {
             contacts: &self.contacts,
             inertia: &self.inertia,
             free: &self.rest,
-            bounds: &self.bounds,
+            biases: &self.biases,
         };
         self.solver.solve(&problem);
         for (pose, step) in poses.iter_mut().zip(&self.solver.velocities) {
@@ -114,5 +114,11 @@ pub fn push_apart(
 ) -> f64 {
     let mut boats = Vec::with_capacity(poses.len());
     HullPose::replace_all(&mut boats, poses);
-    Recovery::new(poses.len(), gyration_radius).run(detector, poses, &mut boats, 0.0, most_passes)
+    Depenetration::new(poses.len(), gyration_radius).run(
+        detector,
+        poses,
+        &mut boats,
+        0.0,
+        most_passes,
+    )
 }

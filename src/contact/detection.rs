@@ -1,4 +1,4 @@
-//! Finds the contacts of a flock: candidate pairs from the neighbour list, walls, exact gaps.
+//! Finds the contacts of a flock: candidate pairs from the neighbor list, walls, exact gaps.
 
 use super::{Contact, Partner};
 use crate::geometry::{
@@ -8,7 +8,7 @@ use crate::geometry::{
 use crate::parameters::{FlockParameters, Pool};
 use std::ops::RangeInclusive;
 
-/// Geometry of a scene: hulls, walls and the neighbour list.
+/// Geometry of a flock: hulls, walls and the neighbor list.
 #[derive(Debug, Clone)]
 pub struct ContactDetector {
     hull: Hull,
@@ -71,7 +71,7 @@ impl ContactDetector {
         }
     }
 
-    /// Squared distances from the pool's centre at which no wall is nearer than `margin`.
+    /// Squared distances from the pool's center at which no wall is nearer than `margin`.
     fn open_water(&self, margin: f64) -> RangeInclusive<f64> {
         let square = |distance: f64| distance.max(0.0) * distance;
         let reach = self.hull.reach() + margin;

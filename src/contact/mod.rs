@@ -1,9 +1,8 @@
 //! Frictionless, perfectly inelastic contacts: which there are, and the impulses that hold them.
 //!
-//! Post-contact motion minimises Σ|Δv|² + ρ²ΣΔω² (eqs A.1 and A.2) over the velocities for which no
-//! linearised gap closes beyond zero in the substep.
+//! Post-contact motion minimizes Σ|Δv|² + ρ²ΣΔω² (eqs A.1 and A.2) over the velocities for which no
+//! linearized gap closes beyond zero in the substep.
 
-mod bounds;
 #[allow(
     clippy::module_inception,
     reason = "the file is named after the noun it owns"
@@ -17,6 +16,7 @@ mod problem;
 mod resolver;
 pub mod solver;
 mod statistics;
+mod velocity_bias;
 mod warm_start;
 
 pub use contact::{Contact, ContactKey, Partner};
@@ -26,4 +26,4 @@ pub use island::Islands;
 pub use problem::{ContactProblem, InverseInertia};
 pub use resolver::{ContactOutcome, ContactResolver};
 pub use statistics::Statistics;
-pub use warm_start::Load;
+pub use warm_start::CachedImpulse;

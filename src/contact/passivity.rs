@@ -1,13 +1,13 @@
 //! Frictionless plastic contacts take energy out of the boats that they join, or leave it; only what
 //! opens an overlap adds some.
 //!
-//! With bounds that follow from the gaps at hand alone, every solution obeys: rest satisfies them. Bounds
-//! that look ahead along a curve, for a flank on the inner wall or by relinearisation, may ask for more
+//! With biases that follow from the gaps at hand alone, every solution obeys: rest satisfies them. Biases
+//! that look ahead along a curve, for a flank on the inner wall or by relinearization, may ask for more
 //! where a boat turns far in one substep: the contact has then passed from one end of the hull to the
 //! other, and pushing as at the substep's beginning opens nothing.
 
 use super::ContactProblem;
-use super::bounds::Pace;
+use super::velocity_bias::VelocityBias;
 use crate::geometry::Velocity;
 
 /// Part of an island's energy that a curve may seem to add. Its true share is of third order in dt: in
@@ -15,12 +15,12 @@ use crate::geometry::Velocity;
 /// 1.8 million islands.
 const ALLOWED: f64 = 0.01;
 
-/// Whether contacts might drive a boat, told quickly: an impulse λ at a contact that opens at the speed
+/// Whether contacts might drive a boat, checked quickly: an impulse λ at a contact that opens at the speed
 /// −b adds at most −b·λ.
-pub fn may_drive(problem: &ContactProblem, impulses: &[f64], pace: Pace) -> bool {
+pub fn may_drive(problem: &ContactProblem, impulses: &[f64], bias: VelocityBias) -> bool {
     let adds_much = |k: usize| {
         let contact = &problem.contacts[k];
-        let ahead = pace.bound(&contact.gap).min(0.0) - problem.bounds[k];
+        let ahead = bias.of_gap(&contact.gap).min(0.0) - problem.biases[k];
         let energy = problem.energy(contact.boat as usize, problem.free);
         ahead > 0.0 && ahead * impulses[k] > ALLOWED * energy
     };
@@ -35,7 +35,7 @@ pub struct Passivity {
 
 impl Passivity {
     /// For a new set of contacts of so many boats.
-    pub fn begin(&mut self, boats: usize) {
+    pub fn reset(&mut self, boats: usize) {
         self.counted.clear();
         self.counted.resize(boats, false);
     }
@@ -48,7 +48,7 @@ impl Passivity {
         problem: &ContactProblem,
         impulses: &[f64],
         velocities: &[Velocity],
-        pace: Pace,
+        bias: VelocityBias,
     ) -> bool {
         let (mut before, mut after) = (0.0, 0.0);
         for &k in island {
@@ -60,7 +60,7 @@ impl Passivity {
                     after += problem.energy(boat, velocities);
                 }
             }
-            before += impulses[k as usize] * (-pace.bound(&contact.gap)).max(0.0);
+            before += impulses[k as usize] * (-bias.of_gap(&contact.gap)).max(0.0);
         }
         after > (1.0 + ALLOWED) * before
     }

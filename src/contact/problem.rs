@@ -13,8 +13,8 @@ pub struct InverseInertia {
     pub angular: f64,
 }
 
-/// min Σ (v − v_free)ᵀ M (v − v_free) subject to J·v + bound ≥ 0, with bound = gap/dt. Its dual is the
-/// complementarity problem w = A·λ + b ≥ 0, λ ≥ 0, w·λ = 0 with A = J·M⁻¹·Jᵀ and b = J·v_free + bound.
+/// min Σ (v − v_free)ᵀ M (v − v_free) subject to J·v + bias ≥ 0, with bias = gap/dt. Its dual is the
+/// complementarity problem w = A·λ + b ≥ 0, λ ≥ 0, w·λ = 0 with A = J·M⁻¹·Jᵀ and b = J·v_free + bias.
 #[derive(Debug, Clone, Copy)]
 pub struct ContactProblem<'a> {
     /// The contacts, one row of J each.
@@ -23,15 +23,15 @@ pub struct ContactProblem<'a> {
     pub inertia: &'a [InverseInertia],
     /// Velocity of every boat without contacts.
     pub free: &'a [Velocity],
-    /// How fast each gap may close, in cm/s.
-    pub bounds: &'a [f64],
+    /// Velocity bias of each contact: how fast its gap may close, in cm/s.
+    pub biases: &'a [f64],
 }
 
 impl ContactProblem<'_> {
-    /// w_k = J_k·v + bound_k: what is left of the gap at the substep's end, over dt.
+    /// w_k = J_k·v + bias_k: what is left of the gap at the substep's end, over dt.
     #[inline]
     pub fn slack(&self, k: usize, velocities: &[Velocity]) -> f64 {
-        self.contacts[k].gap_rate(velocities) + self.bounds[k]
+        self.contacts[k].gap_rate(velocities) + self.biases[k]
     }
 
     /// Changes velocities by an impulse at contact k.

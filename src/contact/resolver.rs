@@ -1,17 +1,17 @@
-//! From free velocities to velocities that respect the contacts: detection, warm start, solve,
-//! relinearisation, and what to do where the constraints contradict each other.
+//! From free velocities to velocities that respect the contacts: detection, warm start, solution,
+//! relinearization, and what to do where the constraints contradict each other.
 
-use super::bounds::Pace;
-use super::depenetration::{DEEP, Recovery};
+use super::depenetration::{Depenetration, PENETRATION_SLOP};
 use super::passivity::{self, Passivity};
 use super::solver::ContactSolver;
-use super::warm_start::{Load, Loads};
+use super::velocity_bias::VelocityBias;
+use super::warm_start::{CachedImpulse, WarmStartCache};
 use super::{Contact, ContactDetector, ContactProblem, InverseInertia, Statistics};
 use crate::clock::{seconds, ticks};
 use crate::geometry::{HullPose, NeighborList, Pose, Vec2, Velocity};
 use crate::parameters::{FlockParameters, Scheme, Solver};
 
-/// Relinearisation passes after which a substep is taken as it is.
+/// Relinearization passes after which a substep is taken as it is.
 const MOST_PASSES: u32 = 20;
 
 /// What the contacts of a substep came to.
@@ -31,21 +31,21 @@ pub struct ContactResolver {
     detector: ContactDetector,
     solver: ContactSolver,
     contacts: Vec<Contact>,
-    bounds: Vec<f64>,
+    biases: Vec<f64>,
     /// Whether each contact carried an impulse in the substep before.
-    lasting: Vec<bool>,
+    persistent: Vec<bool>,
     /// Contacts that carried an impulse, in the order of detection.
-    loads: Loads,
-    recovery: Option<Box<Recovery>>,
+    warm_start_cache: WarmStartCache,
+    depenetration: Option<Box<Depenetration>>,
     passivity: Passivity,
     /// Poses and hulls where a solve would move the boats.
     moved: Vec<Pose>,
     trial: Vec<HullPose>,
-    /// Overlap in cm at a substep's end that relinearisation stops at; `None` without it.
+    /// Overlap in cm at a substep's end that relinearization stops at; `None` without it.
     allowed_overlap: Option<f64>,
     gyration_radius: f64,
-    /// Gaps below this (cm, negative) are recovered by displacement.
-    deep: f64,
+    /// Overlaps beyond this (cm) are undone by moving poses.
+    penetration_slop: f64,
     /// Length of a whole substep in s: what an overlap has to close in, however short a substep is.
     whole_substep_s: f64,
 }
@@ -57,10 +57,10 @@ impl ContactResolver {
             detector: ContactDetector::new(parameters),
             solver: ContactSolver::new(parameters.solver),
             contacts: Vec::new(),
-            bounds: Vec::new(),
-            lasting: Vec::new(),
-            loads: Loads::default(),
-            recovery: None,
+            biases: Vec::new(),
+            persistent: Vec::new(),
+            warm_start_cache: WarmStartCache::default(),
+            depenetration: None,
             passivity: Passivity::default(),
             moved: Vec::new(),
             trial: Vec::new(),
@@ -69,10 +69,10 @@ impl ContactResolver {
                 .copied()
                 .flatten(),
             gyration_radius: parameters.gyration_radius_cm,
-            // Overlaps that the paper's scheme accepts are none to recover.
-            deep: match parameters.scheme {
-                Scheme::Paper => DEEP.min(-2.0 * parameters.overlap_tolerance_cm),
-                Scheme::Leapfrog | Scheme::Moreau => DEEP,
+            // Overlaps that the paper's scheme accepts are left alone.
+            penetration_slop: match parameters.scheme {
+                Scheme::Paper => PENETRATION_SLOP.max(2.0 * parameters.overlap_tolerance_cm),
+                Scheme::Leapfrog | Scheme::Moreau => PENETRATION_SLOP,
             },
             whole_substep_s: seconds(ticks(parameters.dt_s)),
         }
@@ -93,31 +93,31 @@ impl ContactResolver {
         &self.solver.velocities
     }
 
-    /// Geometry of the scene.
+    /// Geometry of the flock and its pool.
     pub fn detector(&mut self) -> &mut ContactDetector {
         &mut self.detector
     }
 
-    /// Candidate pairs of the scene.
+    /// Candidate pairs of boats.
     pub fn neighbors(&self) -> &NeighborList {
         &self.detector.neighbors
     }
 
     /// Contacts that carried an impulse in the last substep.
-    pub fn loads(&self) -> &[Load] {
-        self.loads.as_slice()
+    pub fn warm_start_impulses(&self) -> &[CachedImpulse] {
+        self.warm_start_cache.as_slice()
     }
 
-    /// Puts back what [`Self::loads`] gave.
-    pub fn set_loads(&mut self, loads: &[Load]) {
-        self.loads.replace(loads.iter().copied());
+    /// Puts back what [`Self::warm_start_impulses`] gave.
+    pub fn set_warm_start(&mut self, impulses: &[CachedImpulse]) {
+        self.warm_start_cache.replace(impulses.iter().copied());
     }
 
-    /// Forgets contacts and loads: the poses have been set from outside.
+    /// Forgets contacts and impulses: the poses have been set from outside.
     pub fn forget(&mut self) {
         self.contacts.clear();
         self.solver.impulses.clear();
-        self.loads.clear();
+        self.warm_start_cache.clear();
         self.detector.neighbors.clear();
     }
 
@@ -136,40 +136,47 @@ impl ContactResolver {
         self.detector.detect(boats, margin, &mut self.contacts);
         let smallest = self.contacts.iter().map(|c| c.gap.gap).fold(0.0, f64::min);
         statistics.worst_overlap_cm = statistics.worst_overlap_cm.max(-smallest);
-        if smallest < self.deep {
-            self.recover(poses, boats, statistics);
+        if smallest < -self.penetration_slop {
+            self.depenetrate(poses, boats, statistics);
             self.detector.detect(boats, margin, &mut self.contacts);
         }
         statistics.contacts += self.contacts.len() as u64;
         statistics.neighbor_builds += self.detector.neighbors.builds() - builds_before;
-        self.recall_loads(poses.len());
+        self.warm_start(poses.len());
         !self.contacts.is_empty()
     }
 
-    fn recover(
+    fn depenetrate(
         &mut self,
         poses: &mut [Pose],
         boats: &mut Vec<HullPose>,
         statistics: &mut Statistics,
     ) {
-        let recovery = self
-            .recovery
-            .get_or_insert_with(|| Box::new(Recovery::new(poses.len(), self.gyration_radius)));
-        let before = recovery.passes;
-        recovery.run(&mut self.detector, poses, boats, -0.1 * self.deep, 8);
-        statistics.recovery_passes += recovery.passes - before;
+        let depenetration = self
+            .depenetration
+            .get_or_insert_with(|| Box::new(Depenetration::new(poses.len(), self.gyration_radius)));
+        let before = depenetration.passes;
+        depenetration.run(
+            &mut self.detector,
+            poses,
+            boats,
+            0.1 * self.penetration_slop,
+            8,
+        );
+        statistics.depenetration_passes += depenetration.passes - before;
     }
 
     /// Guesses that contacts which carried an impulse still do.
-    fn recall_loads(&mut self, boats: usize) {
-        self.loads.index(boats);
+    fn warm_start(&mut self, boats: usize) {
+        self.warm_start_cache.index(boats);
         self.solver.impulses.clear();
-        let recalled = (0..self.contacts.len()).map(|k| self.loads.recall(&self.contacts, k));
-        self.solver.impulses.extend(recalled);
-        self.lasting.clear();
-        self.lasting
+        let impulses =
+            (0..self.contacts.len()).map(|k| self.warm_start_cache.lookup(&self.contacts, k));
+        self.solver.impulses.extend(impulses);
+        self.persistent.clear();
+        self.persistent
             .extend(self.solver.impulses.iter().map(|&impulse| impulse > 0.0));
-        self.solver.active.clone_from(&self.lasting);
+        self.solver.active.clone_from(&self.persistent);
     }
 
     /// Whether moving with these velocities for `dt` overlaps anything found last by more than `allowed`.
@@ -219,17 +226,17 @@ impl ContactResolver {
         shorter_possible: bool,
         statistics: &mut Statistics,
     ) -> ContactOutcome {
-        let pace = Pace {
+        let bias = VelocityBias {
             dt,
             closing_s: dt.max(self.whole_substep_s),
-            deep: self.deep,
+            penetration_slop: self.penetration_slop,
         };
-        self.bounds.clear();
-        self.bounds.extend(self.contacts.iter().map(|contact| {
+        self.biases.clear();
+        self.biases.extend(self.contacts.iter().map(|contact| {
             let spin = free[contact.boat as usize].angular;
-            pace.bound(&contact.gap) + pace.flank(&contact.gap, spin)
+            bias.of_gap(&contact.gap) + bias.of_flank(&contact.gap, spin)
         }));
-        self.solver.begin(poses.len(), &self.contacts);
+        self.solver.reset(poses.len(), &self.contacts);
         let mut solved = self.solve(free, inertia, statistics);
         if let Some(allowed) = self.allowed_overlap {
             for _ in 0..MOST_PASSES {
@@ -239,24 +246,29 @@ impl ContactResolver {
                 solved = self.solve(free, inertia, statistics);
             }
         }
-        if self.stop_driving(free, inertia, pace) {
+        if self.stop_driving(free, inertia, bias) {
             if shorter_possible {
                 return ContactOutcome::TooLong;
             }
             self.solve(free, inertia, statistics);
         }
         let impulses = self.solver.impulses.iter().copied();
-        self.loads
+        self.warm_start_cache
             .replace(self.contacts.iter().map(Contact::key).zip(impulses));
         ContactOutcome::Solved
     }
 
-    /// Has bounds follow from the gaps at hand alone in islands that would be driven otherwise; returns
+    /// Has velocity biases follow from the gaps at hand alone in islands that would be driven otherwise; returns
     /// whether there are any.
-    fn stop_driving(&mut self, free: &[Velocity], inertia: &[InverseInertia], pace: Pace) -> bool {
+    fn stop_driving(
+        &mut self,
+        free: &[Velocity],
+        inertia: &[InverseInertia],
+        bias: VelocityBias,
+    ) -> bool {
         let Self {
             contacts,
-            bounds,
+            biases,
             solver,
             passivity,
             ..
@@ -266,19 +278,19 @@ impl ContactResolver {
             contacts,
             inertia,
             free,
-            bounds,
+            biases,
         };
-        if !passivity::may_drive(&problem, impulses, pace) {
+        if !passivity::may_drive(&problem, impulses, bias) {
             return false;
         }
-        passivity.begin(free.len());
+        passivity.reset(free.len());
         let islands = (0..solver.islands().len()).map(|island| solver.islands().contacts(island));
         let driven: Vec<_> = islands
-            .filter(|island| passivity.is_driven(island, &problem, impulses, velocities, pace))
+            .filter(|island| passivity.is_driven(island, &problem, impulses, velocities, bias))
             .flatten()
             .collect();
         for &&k in &driven {
-            bounds[k as usize] = pace.bound(&contacts[k as usize].gap);
+            biases[k as usize] = bias.of_gap(&contacts[k as usize].gap);
         }
         !driven.is_empty()
     }
@@ -291,7 +303,7 @@ impl ContactResolver {
     ) -> bool {
         let Self {
             contacts,
-            bounds,
+            biases,
             solver,
             ..
         } = self;
@@ -299,7 +311,7 @@ impl ContactResolver {
             contacts,
             inertia,
             free,
-            bounds,
+            biases,
         });
         statistics.count(&report);
         if report.converged {
@@ -308,12 +320,12 @@ impl ContactResolver {
         // Overlaps that cannot all close within the substep contradict each other. Without them, rest
         // satisfies every constraint, and impulses stay bounded.
         statistics.unsolved += 1;
-        bounds.iter_mut().for_each(|bound| *bound = bound.max(0.0));
+        biases.iter_mut().for_each(|bias| *bias = bias.max(0.0));
         let problem = ContactProblem {
             contacts,
             inertia,
             free,
-            bounds,
+            biases,
         };
         if !solver.solve(&problem).converged {
             solver.impulses.fill(0.0);
@@ -322,7 +334,7 @@ impl ContactResolver {
         false
     }
 
-    /// Sets the bounds so that the gaps at the substep's end, evaluated where the last solve moves the
+    /// Sets the velocity biases so that the gaps at the substep's end, evaluated where the last solve moves the
     /// boats, open to zero: the normals stay those of the substep's beginning, along which forces act,
     /// and so does the factor. Returns the deepest overlap at the substep's end in cm. A shortened
     /// substep leaves its share of an overlap from before, which does not count.
@@ -332,10 +344,10 @@ impl ContactResolver {
         let left_over = 1.0 - dt / dt.max(self.whole_substep_s);
         let mut deepest = 0.0_f64;
         for (k, contact) in self.contacts.iter().enumerate() {
-            if contact.gap.gap >= self.deep {
+            if contact.gap.gap >= -self.penetration_slop {
                 let end_gap = self.end_gap(k) - left_over * contact.gap.gap.min(0.0);
                 deepest = deepest.max(-end_gap);
-                self.bounds[k] = end_gap / dt - contact.gap_rate(&velocities);
+                self.biases[k] = end_gap / dt - contact.gap_rate(&velocities);
             }
         }
         self.solver.velocities = velocities;
@@ -372,18 +384,23 @@ impl ContactResolver {
         }
     }
 
-    /// Drops the loads: nothing touched in this substep, and nothing near carried an impulse.
-    pub fn clear_loads(&mut self) {
-        self.loads.clear();
+    /// Forgets the impulses: nothing touched in this substep, and nothing near carried an impulse.
+    pub fn clear_warm_start(&mut self) {
+        self.warm_start_cache.clear();
         self.solver.impulses.fill(0.0);
     }
 
     /// Adds to each boat the linear acceleration from contacts that carried an impulse both in this
     /// kick, of length `dt`, and in the one before: what is likely to go on.
-    pub fn add_lasting_acceleration(&self, inertia: &[InverseInertia], dt: f64, sums: &mut [Vec2]) {
+    pub fn add_persistent_acceleration(
+        &self,
+        inertia: &[InverseInertia],
+        dt: f64,
+        sums: &mut [Vec2],
+    ) {
         for (k, contact) in self.contacts.iter().enumerate() {
             let impulse = self.solver.impulses[k];
-            if !self.lasting[k] || impulse <= 0.0 {
+            if !self.persistent[k] || impulse <= 0.0 {
                 continue;
             }
             let push = contact.gap.normal * (impulse / dt);

@@ -7,7 +7,7 @@ use super::solver::SolveReport;
 pub struct Statistics {
     /// Substeps taken.
     pub substeps: u64,
-    /// Contact problems solved, relinearisation passes included; substeps without a contact have none.
+    /// Contact problems solved, relinearization passes included; substeps without a contact have none.
     pub solves: u64,
     /// Contacts and near-contacts, summed over substeps.
     pub contacts: u64,
@@ -23,8 +23,8 @@ pub struct Statistics {
     /// are then those of the nearest problem that can be solved.
     pub unsolved: u64,
     /// Passes that moved deeply overlapping hulls apart.
-    pub recovery_passes: u64,
-    /// Times a substep had to build the neighbour list anew.
+    pub depenetration_passes: u64,
+    /// Times a substep had to build the neighbor list anew.
     pub neighbor_builds: u64,
     /// Largest natural residual of a solve in cm/s.
     pub worst_residual_cm_s: f64,

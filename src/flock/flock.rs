@@ -323,7 +323,7 @@ impl Flock {
         OrderParameters::of_hulls(&self.hulls()[first..], &self.velocities()[first..])
     }
 
-    /// Contacts and near-contacts of the last substep: gaps now, forces as means over the last kick.
+    /// Contacts and near-contacts of the last substep: gaps now, forces as means over the last change of velocity.
     pub fn contacts(&self) -> Vec<ContactForce> {
         let mut resolver = self.integrator.contacts.clone();
         let detector = resolver.detector();
@@ -336,7 +336,7 @@ impl Flock {
             .map(|(contact, &impulse)| {
                 let gap = detector.gap_at(contact, &self.integrator.boats);
                 let force = if impulse > 0.0 {
-                    impulse / self.integrator.kick_s
+                    impulse / self.integrator.step_length_s
                 } else {
                     0.0
                 };

@@ -30,7 +30,7 @@ const OPEN_WATER_AREAS: f64 = 25.0;
 /// Places all boats of checked parameters.
 ///
 /// # Errors
-/// [`FlockError::Placement`] if no arrangement without overlap was found.
+/// [`FlockError::Placement`] if no placement without overlap was found.
 pub fn place(parameters: &FlockParameters, seed: u64) -> Result<Vec<Pose>> {
     let mut rng = Stream::Placement.rng(seed);
     let region = Region::new(parameters);
@@ -70,7 +70,7 @@ pub fn place(parameters: &FlockParameters, seed: u64) -> Result<Vec<Pose>> {
 struct Region {
     hull: Hull,
     pool: Pool,
-    /// Radii between which centres are drawn.
+    /// Radii between which centers are drawn.
     inner: f64,
     outer: f64,
 }

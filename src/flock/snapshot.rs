@@ -3,7 +3,7 @@
 
 use super::flock::{Flock, LATEST};
 use crate::clock::Ticks;
-use crate::contact::{Load, Statistics};
+use crate::contact::{CachedImpulse, Statistics};
 use crate::error::{FlockError, Result};
 use crate::geometry::{Pose, Vec2, Velocity};
 use crate::integrator::{Checkpoint, LastSubstep};
@@ -26,15 +26,15 @@ pub struct Snapshot {
     /// Velocities of all boats.
     pub velocities: Vec<Velocity>,
     /// Contacts that carried an impulse in the last substep.
-    pub loads: Vec<Load>,
-    /// Centres that the neighbour list was built from, and within which distance.
+    pub warm_start: Vec<CachedImpulse>,
+    /// Centers that the neighbor list was built from, and within which distance.
     pub neighbor_reference: (Vec<[f64; 2]>, f64),
     /// Length of the last substep, its phase and the rudders held in it.
     pub last_substep: (Ticks, usize, Option<Vec<f64>>),
-    /// Accelerations by lasting contacts.
-    pub lasting_acceleration: Vec<[f64; 2]>,
-    /// Length of the last kick in s.
-    pub kick_s: f64,
+    /// Accelerations by persistent contacts.
+    pub persistent_acceleration: Vec<[f64; 2]>,
+    /// What impulses are divided by to give forces, in s.
+    pub step_length_s: f64,
     /// Running totals.
     pub statistics: Statistics,
 }
@@ -58,11 +58,11 @@ impl Snapshot {
         self.parameters.check()?;
         let n = self.parameters.n_boats;
         let (length, phase, rudder) = &self.last_substep;
-        let lasting = self.lasting_acceleration.len();
+        let accelerated = self.persistent_acceleration.len();
         let reference = self.neighbor_reference.0.len();
         let sizes = self.poses.len() == n
             && self.velocities.len() == n
-            && (lasting == 0 || lasting == n)
+            && (accelerated == 0 || accelerated == n)
             && (reference == 0 || reference == n)
             && rudder
                 .as_ref()
@@ -70,20 +70,23 @@ impl Snapshot {
             && *phase < 4
             && *length <= crate::clock::ticks(1.0)
             && self
-                .loads
+                .warm_start
                 .iter()
                 .all(|((boat, _, _), _)| (*boat as usize) < n);
         let plain = self
-            .lasting_acceleration
+            .persistent_acceleration
             .iter()
             .chain(&self.neighbor_reference.0)
             .flatten();
         let finite = self.poses.iter().all(Pose::is_in_range)
             && self.velocities.iter().all(Velocity::is_in_range)
-            && self.loads.iter().all(|(_, impulse)| impulse.is_finite())
+            && self
+                .warm_start
+                .iter()
+                .all(|(_, impulse)| impulse.is_finite())
             && rudder.iter().flatten().all(|s| s.abs() <= 1.0)
             && plain
-                .chain([&self.kick_s, &self.neighbor_reference.1])
+                .chain([&self.step_length_s, &self.neighbor_reference.1])
                 .all(|value| value.is_finite());
         if sizes && finite && self.time <= LATEST {
             return Ok(self);
@@ -106,11 +109,11 @@ impl Flock {
             time: self.time,
             neighbor_reference: (pairs(reference), *cutoff),
             last_substep: (state.last.length, state.last.phase, state.last.rudder),
-            lasting_acceleration: pairs(&state.last.lasting_acceleration),
+            persistent_acceleration: pairs(&state.last.persistent_acceleration),
             poses: state.poses,
             velocities: state.velocities,
-            loads: state.loads,
-            kick_s: state.kick_s,
+            warm_start: state.warm_start,
+            step_length_s: state.step_length_s,
             statistics: state.statistics,
         }
         .to_bytes()
@@ -159,11 +162,11 @@ impl Flock {
                 length,
                 phase,
                 rudder,
-                lasting_acceleration: vectors(snapshot.lasting_acceleration),
+                persistent_acceleration: vectors(snapshot.persistent_acceleration),
             },
-            loads: snapshot.loads,
+            warm_start: snapshot.warm_start,
             neighbor_reference: (vectors(reference), cutoff),
-            kick_s: snapshot.kick_s,
+            step_length_s: snapshot.step_length_s,
             statistics: snapshot.statistics,
         });
         Ok(flock)

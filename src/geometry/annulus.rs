@@ -7,7 +7,7 @@ use super::{Gap, Hull, HullPose, cross, turned_left};
 pub fn outer_wall_gap(boat: &HullPose, side: f64, hull: Hull, outer_radius: f64) -> Gap {
     let end = boat.end(side, hull.half_length);
     let distance = end.norm();
-    // At the very centre every direction is as good; the gap is the whole radius there.
+    // At the very center every direction is as good; the gap is the whole radius there.
     let normal = if distance > 0.0 {
         -end / distance
     } else {
@@ -22,7 +22,7 @@ pub fn outer_wall_gap(boat: &HullPose, side: f64, hull: Hull, outer_radius: f64)
     }
 }
 
-/// Gap between a hull and the inner wall: distance from the pool's centre to the core − r − R_in;
+/// Gap between a hull and the inner wall: distance from the pool's center to the core − r − R_in;
 /// the normal points outward. Where the hull's flank lies on the convex wall, turning it either way
 /// brings it into the wall.
 pub fn inner_wall_gap(boat: &HullPose, hull: Hull, inner_radius: f64) -> Gap {
@@ -30,7 +30,7 @@ pub fn inner_wall_gap(boat: &HullPose, hull: Hull, inner_radius: f64) -> Gap {
     let along = (-boat.center.dot(&boat.axis)).clamp(-h, h);
     let nearest = boat.center + boat.axis * along;
     let distance = nearest.norm();
-    // A core through the pool's centre leaves to the side.
+    // A core through the pool's center leaves to the side.
     let normal = if distance > 0.0 {
         nearest / distance
     } else {

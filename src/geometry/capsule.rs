@@ -22,7 +22,7 @@ impl Hull {
         }
     }
 
-    /// Distance from the centre to the farthest point of the hull.
+    /// Distance from the center to the farthest point of the hull.
     pub fn reach(&self) -> f64 {
         self.radius + self.half_length
     }
@@ -36,7 +36,7 @@ impl Hull {
 /// A pose with its direction vector worked out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HullPose {
-    /// Centre of the hull.
+    /// Center of the hull.
     pub center: Vec2,
     /// Unit vector along the heading.
     pub axis: Vec2,

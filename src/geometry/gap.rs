@@ -16,9 +16,9 @@ pub struct Gap {
     pub gap: f64,
     /// Unit vector along which the first body is pushed.
     pub normal: Vec2,
-    /// Lever arm of the normal about the first body's centre in cm.
+    /// Lever arm of the normal about the first body's center in cm.
     pub arm_i: f64,
-    /// Lever arm of the normal about the second body's centre in cm; 0 for a wall.
+    /// Lever arm of the normal about the second body's center in cm; 0 for a wall.
     pub arm_j: f64,
     /// Second derivative of the gap by the first body's heading in cm/rad², where it matters: a flank
     /// on the inner wall; 0 elsewhere.

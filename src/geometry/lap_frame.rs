@@ -7,14 +7,14 @@ use super::{HullPose, Pose, Vec2, Velocity, turned_left, wrap_angle};
 /// The axes at one place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LapFrame {
-    /// Unit vector away from the pool's centre.
+    /// Unit vector away from the pool's center.
     pub outward: Vec2,
     /// Unit vector along clockwise motion.
     pub clockwise: Vec2,
 }
 
 impl LapFrame {
-    /// The axes at a position; at the very centre, those of θ = 0.
+    /// The axes at a position; at the very center, those of θ = 0.
     pub fn at(position: Vec2) -> Self {
         let outward = position
             .try_normalize(0.0)

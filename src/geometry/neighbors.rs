@@ -1,5 +1,5 @@
 //! Which pairs of boats may touch soon: a list with a skin, rebuilt when boats have moved by half of
-//! it. The list is a function of the centres it was built from, so a snapshot keeps those.
+//! it. The list is a function of the centers it was built from, so a snapshot keeps those.
 
 use super::Vec2;
 
@@ -7,7 +7,7 @@ use super::Vec2;
 /// order give the contact matrix a narrow envelope.
 #[derive(Debug, Clone, Default)]
 pub struct NeighborList {
-    /// Centres the list was built from; empty before the first build.
+    /// Centers the list was built from; empty before the first build.
     reference: Vec<Vec2>,
     /// Boats by polar angle.
     order: Vec<u32>,
@@ -15,7 +15,7 @@ pub struct NeighborList {
     starts: Vec<u32>,
     /// Partners earlier in `order`.
     partners: Vec<u32>,
-    /// Centre distance within which the list is complete at the reference.
+    /// Center distance within which the list is complete at the reference.
     cutoff: f64,
     /// How often the list was built.
     builds: u64,
@@ -26,7 +26,7 @@ pub struct NeighborList {
 const ALL_PAIRS: usize = 64;
 
 impl NeighborList {
-    /// Centres the list was last built from, for snapshots.
+    /// Centers the list was last built from, for snapshots.
     pub fn reference(&self) -> &[Vec2] {
         &self.reference
     }
@@ -42,7 +42,7 @@ impl NeighborList {
         self.cutoff = 0.0;
     }
 
-    /// Makes sure that every pair of centres within `distance` is listed, with `skin` to spare when
+    /// Makes sure that every pair of centers within `distance` is listed, with `skin` to spare when
     /// the list is built.
     pub fn update(
         &mut self,
@@ -64,7 +64,7 @@ impl NeighborList {
         }
     }
 
-    /// Rebuilds the list of a snapshot from its reference centres.
+    /// Rebuilds the list of a snapshot from its reference centers.
     pub fn restore(&mut self, reference: &[Vec2], cutoff: f64) {
         self.reference.clear();
         self.reference.extend_from_slice(reference);
@@ -74,7 +74,7 @@ impl NeighborList {
         self.build(cutoff);
     }
 
-    /// Centre distance within which the list is complete at the reference.
+    /// Center distance within which the list is complete at the reference.
     pub fn cutoff(&self) -> f64 {
         self.cutoff
     }

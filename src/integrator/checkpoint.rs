@@ -2,7 +2,7 @@
 
 use super::state::Integrator;
 use super::substep::LastSubstep;
-use crate::contact::{Load, Statistics};
+use crate::contact::{CachedImpulse, Statistics};
 use crate::geometry::{Pose, Vec2, Velocity};
 
 /// All that decides how the motion goes on, apart from parameters, seed and time.
@@ -15,11 +15,11 @@ pub struct Checkpoint {
     /// What leapfrog remembers.
     pub last: LastSubstep,
     /// Contacts that carried an impulse in the last substep.
-    pub loads: Vec<Load>,
-    /// Centres that the neighbour list was built from, and within which distance.
+    pub warm_start: Vec<CachedImpulse>,
+    /// Centers that the neighbor list was built from, and within which distance.
     pub neighbor_reference: (Vec<Vec2>, f64),
-    /// Length of the last kick in s.
-    pub kick_s: f64,
+    /// What impulses are divided by to give forces, in s.
+    pub step_length_s: f64,
     /// Running totals.
     pub statistics: Statistics,
 }
@@ -37,15 +37,16 @@ impl Integrator {
         into.poses.clone_from(&self.poses);
         into.velocities.clone_from(&self.velocities);
         into.last.clone_from(&self.last);
-        into.loads.clear();
-        into.loads.extend_from_slice(self.contacts.loads());
+        into.warm_start.clear();
+        into.warm_start
+            .extend_from_slice(self.contacts.warm_start_impulses());
         let neighbors = self.contacts.neighbors();
         into.neighbor_reference.0.clear();
         into.neighbor_reference
             .0
             .extend_from_slice(neighbors.reference());
         into.neighbor_reference.1 = neighbors.cutoff();
-        into.kick_s = self.kick_s;
+        into.step_length_s = self.step_length_s;
         into.statistics = self.statistics;
     }
 
@@ -53,13 +54,13 @@ impl Integrator {
     pub fn return_to(&mut self, checkpoint: &Checkpoint) {
         self.place(&checkpoint.poses, &checkpoint.velocities);
         self.last.clone_from(&checkpoint.last);
-        self.contacts.set_loads(&checkpoint.loads);
+        self.contacts.set_warm_start(&checkpoint.warm_start);
         let (reference, cutoff) = &checkpoint.neighbor_reference;
         self.contacts
             .detector()
             .neighbors
             .restore(reference, *cutoff);
-        self.kick_s = checkpoint.kick_s;
+        self.step_length_s = checkpoint.step_length_s;
         self.statistics = checkpoint.statistics;
     }
 }

@@ -23,7 +23,7 @@ impl Integrator {
             ..
         } = self;
         if !contacts.find(poses, boats, free, dt, statistics) {
-            contacts.clear_loads();
+            contacts.clear_warm_start();
             self.velocities.copy_from_slice(free);
             return ContactOutcome::Untouched;
         }

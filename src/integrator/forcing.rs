@@ -8,7 +8,7 @@ use crate::geometry::{Vec2, turned_left};
 
 impl Integrator {
     /// Preferred speed in a phase, in cm/s, before the spread between boats.
-    fn preferred_speed(&self, is_leader: bool, phase: Phase) -> f64 {
+    fn phase_speed(&self, is_leader: bool, phase: Phase) -> f64 {
         let p = &self.parameters;
         match phase {
             Phase::Forward => p.speed_cm_s,
@@ -18,8 +18,8 @@ impl Integrator {
     }
 
     /// Preferred speed of a boat in a phase, in cm/s.
-    pub(super) fn thrust(&self, boat: usize, phase: Phase) -> f64 {
-        let speed = self.preferred_speed(boat < self.parameters.n_leaders, phase);
+    pub(super) fn preferred_speed(&self, boat: usize, phase: Phase) -> f64 {
+        let speed = self.phase_speed(boat < self.parameters.n_leaders, phase);
         self.speed_factors
             .get(boat)
             .map_or(speed, |factor| speed * factor)
@@ -46,23 +46,26 @@ impl Integrator {
         ))
     }
 
-    /// Fills `drives` for a substep: thrust and rudder of its phase, water, noise kicks.
+    /// Fills `drives` for a substep: preferred speed and rudder of its phase, water, noise.
     pub(super) fn fill_drives(&mut self, substep: &Substep) {
         let normal = Drive {
-            thrust: self.preferred_speed(false, substep.phase),
+            preferred_speed: self.phase_speed(false, substep.phase),
             rudder: self.parameters.turning_bias,
             water: Vec2::zeros(),
-            kick: 0.0,
+            noise: 0.0,
         };
         self.drives.clear();
-        self.drives
-            .extend(self.kicks.iter().map(|&kick| Drive { kick, ..normal }));
+        self.drives.extend(
+            self.noise_increments
+                .iter()
+                .map(|&noise| Drive { noise, ..normal }),
+        );
         for leader in 0..self.parameters.n_leaders {
-            self.drives[leader].thrust = self.preferred_speed(true, substep.phase);
+            self.drives[leader].preferred_speed = self.phase_speed(true, substep.phase);
             self.drives[leader].rudder = self.rudder(leader, substep.steering);
         }
         for (drive, factor) in self.drives.iter_mut().zip(&self.speed_factors) {
-            drive.thrust *= factor;
+            drive.preferred_speed *= factor;
         }
         self.fill_water(|state, boat| state.velocities[boat].linear);
     }
@@ -84,7 +87,7 @@ impl Integrator {
         }
     }
 
-    /// Counter-clockwise unit tangent at a boat; zero at the pool's centre.
+    /// Counter-clockwise unit tangent at a boat; zero at the pool's center.
     fn tangent(&self, boat: usize) -> Vec2 {
         let position = self.poses[boat].position;
         turned_left(position.try_normalize(0.0).unwrap_or_default())

@@ -13,16 +13,16 @@ use crate::clock::seconds;
 use crate::contact::ContactOutcome;
 use crate::geometry::Vec2;
 
-/// Part of `dt_s` below which a kick does not tell what contacts press with: impulses that close small
+/// Part of `dt_s` below which a kick does not show what contacts press with: impulses that close small
 /// overlaps do not shrink with it. The kick before stands for it then.
-const SHORTEST_TELLING_KICK: f64 = 0.25;
+const SHORTEST_KICK: f64 = 0.25;
 
 /// One kick and one drift.
 pub fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
     let half_ticks = flock.last.length + substep.length;
     let kick = 0.5 * seconds(half_ticks);
-    let begin = 2 * substep.start - flock.last.length.min(2 * substep.start);
-    flock.draw_kicks(substep.start, begin, 2 * substep.start + substep.length);
+    let start = 2 * substep.start - flock.last.length.min(2 * substep.start);
+    flock.draw_noise(substep.start, start, 2 * substep.start + substep.length);
     flock.fill_drives(substep);
     blend_drives(flock, substep);
     center_water(flock, kick);
@@ -33,23 +33,23 @@ pub fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
     if contacts == ContactOutcome::TooLong {
         return StepOutcome::TooLong;
     }
-    let lasting = &mut flock.last.lasting_acceleration;
+    let persistent = &mut flock.last.persistent_acceleration;
     if contacts == ContactOutcome::Untouched {
-        lasting.clear();
-    } else if kick >= SHORTEST_TELLING_KICK * flock.parameters.dt_s {
-        lasting.clear();
-        lasting.resize(flock.poses.len(), Vec2::zeros());
+        persistent.clear();
+    } else if kick >= SHORTEST_KICK * flock.parameters.dt_s {
+        persistent.clear();
+        persistent.resize(flock.poses.len(), Vec2::zeros());
         flock
             .contacts
-            .add_lasting_acceleration(&flock.inertia, kick, lasting);
+            .add_persistent_acceleration(&flock.inertia, kick, persistent);
     }
-    flock.kick_s = kick;
+    flock.step_length_s = kick;
     flock.drift(dt);
     remember(flock, substep);
     StepOutcome::Taken
 }
 
-/// Replaces thrust and rudder by their means over the kick where the substep before had others.
+/// Replaces preferred speed and rudder by their means over the kick where the substep before had others.
 fn blend_drives(flock: &mut Integrator, substep: &Substep) {
     let last_phase = Phase::ALL[flock.last.phase];
     let last_rudder = std::mem::take(&mut flock.last.rudder);
@@ -62,9 +62,12 @@ fn blend_drives(flock: &mut Integrator, substep: &Substep) {
         let steering = last_rudder.as_deref().map_or(Steering::Law, Steering::Held);
         let past = flock.last.length as f64 / (flock.last.length + substep.length) as f64;
         for boat in 0..flock.drives.len() {
-            let (thrust, rudder) = (flock.thrust(boat, last_phase), flock.rudder(boat, steering));
+            let (speed, rudder) = (
+                flock.preferred_speed(boat, last_phase),
+                flock.rudder(boat, steering),
+            );
             let drive = &mut flock.drives[boat];
-            drive.thrust += past * (thrust - drive.thrust);
+            drive.preferred_speed += past * (speed - drive.preferred_speed);
             drive.rudder += past * (rudder - drive.rudder);
         }
     }
@@ -78,13 +81,13 @@ fn center_water(flock: &mut Integrator, kick: f64) {
         let (velocity, axis) = (flock.velocities[boat].linear, flock.boats[boat].axis);
         let drive = &flock.drives[boat];
         let free = flock.motion.centered_change(velocity, axis, drive, kick);
-        velocity + (free + lasting_change(&flock.last, boat, kick)) * 0.5
+        velocity + (free + persistent_change(&flock.last, boat, kick)) * 0.5
     });
 }
 
-/// Change of a boat's velocity over a kick by contacts that are likely to last.
-fn lasting_change(last: &LastSubstep, boat: usize, kick: f64) -> Vec2 {
-    let acceleration = last.lasting_acceleration.get(boat);
+/// Change of a boat's velocity over a kick by persistent contacts.
+fn persistent_change(last: &LastSubstep, boat: usize, kick: f64) -> Vec2 {
+    let acceleration = last.persistent_acceleration.get(boat);
     acceleration.map_or_else(Vec2::zeros, |a| a * kick)
 }
 
@@ -105,7 +108,7 @@ fn centered_velocities(flock: &mut Integrator, kick: f64) {
     free.clear();
     for (boat, drive) in drives.iter().enumerate() {
         let drive: &Drive = drive;
-        let change = lasting_change(last, boat, kick);
+        let change = persistent_change(last, boat, kick);
         let result = motion.centered(&velocities[boat], boats[boat].axis, drive, change, kick);
         free.push(result.velocity);
         inertia[boat].linear = result.linear_mobility;

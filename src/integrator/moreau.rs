@@ -8,13 +8,13 @@ use crate::contact::ContactOutcome;
 /// Free velocities by explicit Euler, contacts on them, then poses with the *new* velocities.
 pub fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
     let dt = seconds(substep.length);
-    flock.draw_step_kicks(substep);
+    flock.draw_substep_noise(substep);
     flock.fill_drives(substep);
     explicit_velocities(flock, dt);
     if flock.solve_contacts(substep) == ContactOutcome::TooLong {
         return StepOutcome::TooLong;
     }
-    flock.kick_s = dt;
+    flock.step_length_s = dt;
     flock.drift(dt);
     StepOutcome::Taken
 }

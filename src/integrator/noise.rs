@@ -6,26 +6,28 @@ use crate::clock::{Ticks, seconds};
 use crate::parameters::Noise;
 
 impl Integrator {
-    /// Fills `kicks` with the noise of the interval [from, to] (half ticks), which the scheme takes
+    /// Fills `noise_increments` with the noise of the interval [from, to] (half ticks), which the scheme takes
     /// at `start`.
-    pub(super) fn draw_kicks(&mut self, start: Ticks, from: u64, to: u64) {
+    pub(super) fn draw_noise(&mut self, start: Ticks, from: u64, to: u64) {
         let Some(noise) = &mut self.noise else { return };
         let scale = match self.parameters.noise {
             Noise::White => {
-                noise.increments(from, to, &mut self.kicks);
+                noise.increments(from, to, &mut self.noise_increments);
                 self.parameters.c4
             }
             Noise::PerStep => {
-                noise.step_draws(start, &mut self.kicks);
+                noise.step_draws(start, &mut self.noise_increments);
                 self.parameters.c4 * seconds(to - from) / 2.0
             }
         };
-        self.kicks.iter_mut().for_each(|kick| *kick *= scale);
+        self.noise_increments
+            .iter_mut()
+            .for_each(|increment| *increment *= scale);
     }
 
-    /// Fills `kicks` with the noise of a whole substep.
-    pub(super) fn draw_step_kicks(&mut self, substep: &Substep) {
+    /// Fills `noise_increments` with the noise of a whole substep.
+    pub(super) fn draw_substep_noise(&mut self, substep: &Substep) {
         let end = substep.start + substep.length;
-        self.draw_kicks(substep.start, 2 * substep.start, 2 * end);
+        self.draw_noise(substep.start, 2 * substep.start, 2 * end);
     }
 }

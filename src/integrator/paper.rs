@@ -2,7 +2,7 @@
 //!
 //! Poses advance with the *old* velocities. If nothing then overlaps by more than the tolerance, the
 //! step stands and velocities gain dt·a (eq. A.3). If something does, the poses are projected to
-//! linearised gaps ≥ 0 (eq. A.4) and *every* boat's velocity becomes displacement/dt (eq. A.5): a step
+//! linearized gaps ≥ 0 (eq. A.4) and *every* boat's velocity becomes displacement/dt (eq. A.5): a step
 //! with a contact loses its accelerations, for all boats at once.
 
 use super::moreau::explicit_velocities;
@@ -10,15 +10,15 @@ use super::state::Integrator;
 use super::substep::{StepOutcome, Substep};
 use crate::clock::seconds;
 
-/// Overlap (cm) that no tolerance tells from touching: what a solver's residual of 1e-10 cm/s leaves in
+/// Overlap (cm) that no tolerance distinguishes from touching: what a solver's residual of 1e-10 cm/s leaves in
 /// a substep, with room for a row of boats.
 const ROUNDING: f64 = 1e-10;
 
 /// One step of the appendix.
 pub fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
     let dt = seconds(substep.length);
-    flock.kick_s = dt;
-    flock.draw_step_kicks(substep);
+    flock.step_length_s = dt;
+    flock.draw_substep_noise(substep);
     flock.fill_drives(substep);
     explicit_velocities(flock, dt);
     let Integrator {
@@ -31,7 +31,7 @@ pub fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
         parameters,
         ..
     } = flock;
-    // The displacement that minimises (A.4) is dt times the velocity nearest to the old one.
+    // The displacement that minimizes (A.4) is dt times the velocity nearest to the old one.
     let near = contacts.find(poses, boats, velocities, dt, statistics);
     let allowed = parameters.overlap_tolerance_cm.max(ROUNDING);
     if near && contacts.overlaps_after(poses, velocities, dt, allowed) {
@@ -42,7 +42,7 @@ pub fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
         flock.drift(dt);
         return StepOutcome::Taken;
     }
-    contacts.clear_loads();
+    contacts.clear_warm_start();
     flock.drift(dt);
     flock.velocities.copy_from_slice(&flock.free);
     StepOutcome::Taken

@@ -24,14 +24,14 @@ pub struct Integrator {
     /// η of eq. (9); `None` where c4 = 0.
     pub(super) noise: Option<BrownianPaths>,
     /// Change of each boat's angular velocity by noise over the substep.
-    pub(crate) kicks: Vec<f64>,
+    pub(crate) noise_increments: Vec<f64>,
     pub(crate) drives: Vec<Drive>,
     pub(crate) free: Vec<Velocity>,
     pub(crate) inertia: Vec<InverseInertia>,
     pub(crate) last: LastSubstep,
     pub(crate) statistics: Statistics,
-    /// Length of the last kick in s: what impulses are divided by to give forces.
-    pub(crate) kick_s: f64,
+    /// Length of the last change of velocity in s: what impulses are divided by to give forces.
+    pub(crate) step_length_s: f64,
 }
 
 impl Integrator {
@@ -48,7 +48,7 @@ impl Integrator {
             boats: vec![HullPose::new(&Pose::default()); n],
             contacts: ContactResolver::new(p),
             noise: (p.c4 > 0.0).then(|| noise_paths(p, seed)),
-            kicks: vec![0.0; n],
+            noise_increments: vec![0.0; n],
             drives: Vec::with_capacity(n),
             free: Vec::with_capacity(n),
             inertia: vec![
@@ -60,7 +60,7 @@ impl Integrator {
             ],
             last: LastSubstep::default(),
             statistics: Statistics::default(),
-            kick_s: 0.0,
+            step_length_s: 0.0,
             parameters: parameters.clone(),
         }
     }
@@ -70,7 +70,7 @@ impl Integrator {
         self.poses.copy_from_slice(poses);
         self.velocities.copy_from_slice(velocities);
         self.last = LastSubstep::default();
-        self.kick_s = 0.0;
+        self.step_length_s = 0.0;
         self.contacts.forget();
         self.update_boats();
     }
@@ -100,7 +100,7 @@ impl Integrator {
     }
 }
 
-/// Brownian paths whose cells are what full substeps ask for: leapfrog kicks reach from the middle of
+/// Brownian paths whose cells are what full substeps ask for: leapfrog noise_increments reach from the middle of
 /// one substep to the middle of the next.
 fn noise_paths(parameters: &FlockParameters, seed: u64) -> BrownianPaths {
     let dt = ticks(parameters.dt_s);

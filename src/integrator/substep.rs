@@ -46,7 +46,7 @@ pub struct LastSubstep {
     /// The rudders held in it; `None` for the steering law.
     pub rudder: Option<Vec<f64>>,
     /// Linear acceleration of each boat by contacts that are likely to last; empty for none.
-    pub lasting_acceleration: Vec<Vec2>,
+    pub persistent_acceleration: Vec<Vec2>,
 }
 
 impl Clone for LastSubstep {
@@ -61,7 +61,7 @@ impl Clone for LastSubstep {
         self.length = source.length;
         self.phase = source.phase;
         self.rudder.clone_from(&source.rudder);
-        self.lasting_acceleration
-            .clone_from(&source.lasting_acceleration);
+        self.persistent_acceleration
+            .clone_from(&source.persistent_acceleration);
     }
 }

@@ -27,7 +27,7 @@ named_choice! {
     pub enum Scheme ("scheme") {
         /// Velocities at half steps, Crank–Nicolson: second order while contacts persist.
         Leapfrog = "leapfrog",
-        /// Semi-implicit Euler with the same quadratic programme: first order, the yardstick.
+        /// Semi-implicit Euler with the same quadratic program: first order, the yardstick.
         Moreau = "moreau",
         /// Steps 1–6 of the paper's appendix, taken literally.
         Paper = "paper",

@@ -3,7 +3,7 @@
 use super::{Noise, Pool, Scheme, Solver, Target};
 use crate::error::{FlockError, Result};
 
-/// Everything that defines a scene. Fields are public to read and to build with;
+/// Everything that defines a flock. Fields are public to read and to build with;
 /// [`FlockParameters::check`] runs once wherever a flock is made from them.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct FlockParameters {
@@ -29,7 +29,7 @@ pub struct FlockParameters {
     pub c1: f64,
     /// Gain of the rudder in 1/(cm·s) (eq. 9).
     pub c2: f64,
-    /// Weathervane stabilisation of forward motion in 1/cm (eq. 9).
+    /// Weathervane stabilization of forward motion in 1/cm (eq. 9).
     pub c3: f64,
     /// Strength of the angular noise, in rad/s^1.5 (`white`) or rad/s² (`per-step`) (eq. 9).
     pub c4: f64,
@@ -37,7 +37,7 @@ pub struct FlockParameters {
     pub fw_s: f64,
     /// Duration of the drift after the forward phase in s.
     pub nop1_s: f64,
-    /// Duration of the backward phase in s: the noise level.
+    /// Duration of the backward phase in s: the source of disorder.
     pub bw_s: f64,
     /// Duration of the drift after the backward phase in s.
     pub nop2_s: f64,
@@ -56,7 +56,7 @@ pub struct FlockParameters {
     /// Overlap that the `paper` scheme accepts without a projection, in cm.
     pub overlap_tolerance_cm: f64,
     /// How well gaps hold at the end of a substep, where they are curved functions of the motion:
-    /// 0 linearised once (overlaps ≤ 1e-2 cm at dt = 0.01 s); 1 and 2 re-evaluate and solve again, with
+    /// 0 linearized once (overlaps ≤ 1e-2 cm at dt = 0.01 s); 1 and 2 re-evaluate and solve again, with
     /// the same factor, until overlaps are ≤ 1e-6 and ≤ 1e-9 cm.
     pub relinearizations: usize,
     /// Constant rudder of the normal boats, in [−1, 1]; positive turns counter-clockwise

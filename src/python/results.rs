@@ -118,5 +118,5 @@ macro_rules! statistics_fields {
 
 statistics_fields! {
     substeps solves contacts islands solver_iterations factored_rows most_factor_entries unsolved
-    recovery_passes neighbor_builds worst_residual_cm_s worst_overlap_cm
+    depenetration_passes neighbor_builds worst_residual_cm_s worst_overlap_cm
 }

@@ -1,4 +1,4 @@
-//! Arrangements of recorded boats: poses come as (t, n, 3) arrays.
+//! Structure of recorded flocks: poses come as (t, n, 3) arrays.
 
 use crate::analysis::structure::{self, PairCounts};
 use crate::error::FlockError;

@@ -6,7 +6,7 @@ use flockenv::draw::{AnimationEncoder, AnimationFormat};
 const WIDTH: usize = 40;
 const HEIGHT: usize = 30;
 
-/// A square that moves over a pattern of 1200 colours; two frames are alike.
+/// A square that moves over a pattern of 1200 colors; two frames are alike.
 fn frames() -> Vec<Vec<u8>> {
     [0, 3, 3, 12, 25].map(frame).to_vec()
 }
@@ -100,7 +100,7 @@ fn gif_is_close_and_keeps_time() {
 }
 
 #[test]
-fn few_colours_are_exact_as_gif() {
+fn few_colors_are_exact_as_gif() {
     let plain = |level: u8| vec![level; WIDTH * HEIGHT * 3];
     let bytes = encoded(AnimationFormat::Gif, &[plain(7), plain(200)]);
     let mut options = gif::DecodeOptions::new();

@@ -41,7 +41,7 @@ fn hash(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, fold)
 }
 
-/// The colour at a place of a 300 × 300 frame of the small pool, where 1 cm is 1.5667 pixels.
+/// The color at a place of a 300 × 300 frame of the small pool, where 1 cm is 1.5667 pixels.
 fn color_at(frame: &[u8], x_cm: f64, y_cm: f64) -> [u8; 3] {
     let scale = 300.0 * 0.47 / 90.0;
     let (column, row) = (

@@ -85,7 +85,7 @@ proptest! {
             // Rounding: some 1e4 impulses of order 100 cm/s, and lever arms of 100 cm.
             prop_assert!((momentum(&flock) - before).norm() < 1e-9);
             // The pushing of poses out of deep overlaps moves boats without momentum.
-            if flock.statistics().recovery_passes == 0 {
+            if flock.statistics().depenetration_passes == 0 {
                 prop_assert!((angular_momentum(&flock) - spin_before).abs() < 1e-7);
             }
         }
@@ -94,7 +94,7 @@ proptest! {
     #[test]
     fn no_impact_adds_energy(seed in 0_u64..1000, n in 2_usize..28) {
         // Without drag, so that nothing hides a gain. Where hulls overlap by rounding or by what the
-        // linearisation leaves, gaps g < 0 have to open, and a flank that turns by dt·ω on the inner
+        // linearization leaves, gaps g < 0 have to open, and a flank that turns by dt·ω on the inner
         // wall has to lift off by (R_in + r)·(dt·ω)²/2: with v⁺ = v⁻ + M⁻¹·Jᵀ·λ the energy changes by
         // λ·J·v⁺ − λ·A·λ/2 ≤ Σλ·(−g + lift)/dt, and by nothing more.
         for scheme in VELOCITY_SCHEMES {
@@ -124,7 +124,7 @@ proptest! {
 
     #[test]
     fn hulls_stay_apart(seed in 0_u64..1000, n in 2_usize..28) {
-        // Overlap after a substep is what the linearisation leaves: at most |d²gap/dt²|·dt²/2. A core
+        // Overlap after a substep is what the linearization leaves: at most |d²gap/dt²|·dt²/2. A core
         // end moves at 60 cm/s at the very most here, past something of radius 10 cm or more.
         for scheme in VELOCITY_SCHEMES {
             let p = FlockParameters { pool: Pool::TABLE_1, ..inert(scheme) };

@@ -42,7 +42,7 @@ impl Dense {
                     g[(k, 3 * boat + axis)] += row[axis] * roots[axis];
                 }
             }
-            h[k] = -(rate + problem.bounds[k]);
+            h[k] = -(rate + problem.biases[k]);
         }
         Self { g, h }
     }

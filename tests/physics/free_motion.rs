@@ -106,7 +106,7 @@ fn exact_two_cycles(p: &FlockParameters, rudder: f64) -> [f64; 3] {
     let (c0, c1, c2, c3) = (p.c0, p.c1, p.c2, p.c3);
     let mut state = [3.0, -2.0, 0.4, 2.0, 1.0, 0.3];
     for _ in 0..2 {
-        for (length, thrust) in [
+        for (length, speed) in [
             (p.fw_s, p.speed_cm_s),
             (p.nop1_s, 0.0),
             (p.bw_s, -p.reverse_speed_cm_s),
@@ -124,8 +124,8 @@ fn exact_two_cycles(p: &FlockParameters, rudder: f64) -> [f64; 3] {
                     vx,
                     vy,
                     spin,
-                    c0 * (thrust * cos - vx),
-                    c0 * (thrust * sin - vy),
+                    c0 * (speed * cos - vx),
+                    c0 * (speed * sin - vy),
                     -c1 * spin.powi(3) + (c2 * rudder - c3 * spin) * along,
                 ]
             });
@@ -190,7 +190,7 @@ fn switches_off_the_grid_of_substeps_keep_the_order() {
 }
 
 #[test]
-fn leapfrog_is_exact_to_a_hundredth_of_a_millimetre_a_second() {
+fn leapfrog_is_exact_to_a_hundredth_of_a_millimeter_a_second() {
     // dt = 0.01: the second-order error constant of a cycle with backing is of order 10 cm/s², which
     // gives 1e-3 cm; the first-order schemes are a hundred times worse.
     let p = FlockParameters {

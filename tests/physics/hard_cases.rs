@@ -1,6 +1,6 @@
 //! Hard cases: scenes that break contact solvers, each with its answer from a formula.
 //!
-//! On paper: a boat flat on the wall can only slide about the pool's centre, with inertia Y² + ρ².
+//! On paper: a boat flat on the wall can only slide about the pool's center, with inertia Y² + ρ².
 
 use crate::support::{
     H, R, RHO, SCHEMES, VELOCITY_SCHEMES, crowded, deepest_overlap, disc, driven, flock_of, inert,
@@ -13,9 +13,9 @@ use flockenv::{Flock, FlockParameters};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 #[test]
-fn a_boat_flat_on_the_wall_hit_off_centre() {
-    // The boat touches with both ends, its centre at distance Y from the pool's: it can only slide about
-    // the pool's centre, with inertia Y² + ρ². A tip that comes at w and hits its side at offset t gives
+fn a_boat_flat_on_the_wall_hit_off_center() {
+    // The boat touches with both ends, its center at distance Y from the pool's: it can only slide about
+    // the pool's center, with inertia Y² + ρ². A tip that comes at w and hits its side at offset t gives
     // μ = w/(1 + t²/(Y² + ρ²)); the slide is −μ·t/(Y² + ρ²), and the wall's two impulses have the sum
     // μ·Q/Y and the difference μ·t·Q·Y/(h·(Y² + ρ²)), Q = R_out − r.
     let q: f64 = 90.0 - R;
@@ -65,7 +65,7 @@ fn a_boat_flat_on_the_wall_hit_off_centre() {
 }
 
 /// Twelve boats nose to tail on the outer wall, in a pool just large enough for the ring to close; the
-/// pool's radius, the boats' distance Y from its centre and their poses.
+/// pool's radius, the boats' distance Y from its center and their poses.
 fn closed_ring() -> (f64, f64, Vec<Pose>) {
     let n = 12.0;
     let q = root(20.0, 60.0, |q| {
@@ -156,7 +156,7 @@ fn pressed_accelerations(turn: f64, shift: f64) -> Vec<f64> {
     let mut contacts: Vec<Contact> = Vec::new();
     ContactDetector::new(&p).detect(&boats, 1e-6, &mut contacts);
     let scene = crate::solver::Owned {
-        bounds: vec![0.0; contacts.len()],
+        biases: vec![0.0; contacts.len()],
         contacts,
         inertia: vec![crate::solver::PLAIN; 2],
         // Accelerations of eq. A.1 take the place of velocities: one boat is pushed down, and turned.

@@ -113,7 +113,7 @@ fn a_hit_on_the_inner_wall_is_the_same_law() {
         take_substeps(&mut flock, 1);
         assert_velocity(&flock.velocities()[0], [0.0, 3.0, 0.0], scheme.name());
         // Stern first, the disc of the stern on the wall at (45, 0): arm of normal (1, 0) about the
-        // centre is −h·sin(angle of the axis) with the stern at −h.
+        // center is −h·sin(angle of the axis) with the stern at −h.
         let angle = 0.6_f64;
         let (sin, cos) = angle.sin_cos();
         let mut flock = flock_of(&p, &[([45.0 + H * cos, H * sin, angle], [-8.0, 0.0, 0.0])]);
@@ -156,7 +156,7 @@ fn a_tip_into_a_side_at_an_offset() {
 }
 
 #[test]
-fn an_oblique_off_centre_hit_of_two_free_boats() {
+fn an_oblique_off_center_hit_of_two_free_boats() {
     // End disc on end disc: the normal joins the two ends, both arms are nonzero.
     let (a, b, direction) = (0.8_f64, 2.5_f64, 0.35_f64);
     let axis = |angle: f64| Vec2::new(angle.cos(), angle.sin());

@@ -43,7 +43,7 @@ fn assert_held(flock: &Flock, overlaps: &[f64]) {
     assert!(statistics.worst_residual_cm_s <= 1e-10, "{statistics:?}");
     assert_eq!(statistics.unsolved, 0);
     assert!(statistics.solves > statistics.substeps / 2);
-    // The linearisation's leftover without relinearisation passes, at dt = 0.01 s.
+    // The linearization's leftover without relinearization passes, at dt = 0.01 s.
     assert!(
         overlaps.iter().all(|&overlap| overlap <= 1e-2),
         "{overlaps:?}"

@@ -4,7 +4,6 @@
 mod dense_reference;
 mod support;
 
-mod arrangement;
 mod bad_input;
 mod collective_state;
 mod conservation;
@@ -30,6 +29,7 @@ mod solver;
 mod solver_agreement;
 mod speed_spread;
 mod steady_turning;
+mod structure;
 mod symmetry;
 mod turning_bias;
 mod water_current;

@@ -32,7 +32,7 @@ fn shallow_overlap_at_rest_opens_in_one_substep() {
 
 #[test]
 fn deep_overlap_and_crossed_cores_come_apart_without_speed() {
-    // What is left after the displacement, a thousandth of a centimetre, opens as a shallow overlap:
+    // What is left after the displacement, a thousandth of a centimeter, opens as a shallow overlap:
     // at most 0.001/dt a contact, half of it each.
     for scheme in SCHEMES {
         for states in [
@@ -60,7 +60,7 @@ fn deep_overlap_and_crossed_cores_come_apart_without_speed() {
                 assert!(flock.poses().iter().all(Pose::is_finite));
             }
             assert!(deepest_overlap(&flock) <= 0.0101, "{scheme:?} {states:?}");
-            assert!(flock.statistics().recovery_passes > 0);
+            assert!(flock.statistics().depenetration_passes > 0);
         }
     }
 }
@@ -97,7 +97,7 @@ fn too_many_boats_for_the_pool_stay_bounded() {
             }
         }
         let statistics = flock.statistics();
-        assert!(statistics.recovery_passes > 0 && statistics.worst_overlap_cm > 0.1);
+        assert!(statistics.depenetration_passes > 0 && statistics.worst_overlap_cm > 0.1);
     }
 }
 
@@ -126,7 +126,7 @@ fn substeps_of_a_whole_second_are_stable() {
 #[test]
 fn a_full_pool_with_its_engines_off_never_gains_energy() {
     // With the water's drag, not at all. Without it (c0 = 0) up to what opening overlaps of the
-    // linearisation takes, Σλ·overlap/dt, but never above the start.
+    // linearization takes, Σλ·overlap/dt, but never above the start.
     for scheme in VELOCITY_SCHEMES {
         for c0 in [1.0, 0.0] {
             let p = FlockParameters {

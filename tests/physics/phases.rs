@@ -123,7 +123,7 @@ fn no_time_takes_no_substep() {
 }
 
 #[test]
-fn each_phase_has_its_thrust() {
+fn each_phase_has_its_preferred_speed() {
     // From rest, over one short substep of each phase: v = ±c0·v0·dt, or nothing.
     for (durations, expected) in [
         ([1.0, 0.0, 0.0, 0.0], 15.0),

@@ -196,7 +196,7 @@ fn a_boat_flung_about_in_a_channel_of_its_own_length_stops() {
 
 #[test]
 fn clearance_without_contact_gives_exactly_zero_force() {
-    // A millionth of a millimetre is no contact for boats that stay or drift along.
+    // A millionth of a millimeter is no contact for boats that stay or drift along.
     for scheme in SCHEMES {
         let p = FlockParameters {
             pool: disc(90.0),

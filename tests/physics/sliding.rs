@@ -3,7 +3,7 @@
 //!
 //! On paper: let the bow's end circle at radius Q with rate Ω, and ψ be the heading against the radius
 //! there. Then ẍ = −Ω²·x, ẋ = Ω·ẑ×x and u·ẋ = Ω·Q·sin ψ give, along and across the radius and about
-//! the centre,
+//! the center,
 //!   N = c0·(v0·cos ψ − Ω·h·sin ψ) + Ω²·(Q − h·cos ψ),
 //!   Ω²·h·sin ψ = c0·(v0·sin ψ − Ω·(Q − h·cos ψ)),
 //!   N·h·sin ψ/ρ² = c1·Ω³ + c3·Ω²·Q·sin ψ.
@@ -120,7 +120,7 @@ fn exact_slide(psi: f64, duration: f64) -> Pose {
     Pose::new(end[0], end[1], end[2])
 }
 
-/// Distance of the centres after two seconds.
+/// Distance of the centers after two seconds.
 fn slide_error(scheme: Scheme, dt: f64, tolerance: f64) -> f64 {
     let mut flock = sliding_boat(scheme, dt, tolerance, 0.5);
     flock.advance(2.0, None).expect("finite motion");

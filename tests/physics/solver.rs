@@ -19,7 +19,7 @@ pub struct Owned {
     pub contacts: Vec<Contact>,
     pub inertia: Vec<InverseInertia>,
     pub free: Vec<Velocity>,
-    pub bounds: Vec<f64>,
+    pub biases: Vec<f64>,
 }
 
 impl Owned {
@@ -28,7 +28,7 @@ impl Owned {
             contacts: &self.contacts,
             inertia: &self.inertia,
             free: &self.free,
-            bounds: &self.bounds,
+            biases: &self.biases,
         }
     }
 
@@ -36,7 +36,7 @@ impl Owned {
     pub fn repeated(&self, times: usize) -> Self {
         Self {
             contacts: self.contacts.repeat(times),
-            bounds: self.bounds.repeat(times),
+            biases: self.biases.repeat(times),
             ..self.clone()
         }
     }
@@ -45,7 +45,7 @@ impl Owned {
         let mut solver = ContactSolver::new(kind);
         solver.active = vec![false; self.contacts.len()];
         solver.impulses = vec![0.0; self.contacts.len()];
-        solver.begin(self.free.len(), &self.contacts);
+        solver.reset(self.free.len(), &self.contacts);
         let report = solver.solve(&self.problem());
         (report, solver.impulses, solver.velocities)
     }
@@ -84,7 +84,7 @@ fn one_contact_on_paper() {
                 contacts: vec![contact(0, None, 0.0, (arm, 0.0))],
                 inertia: vec![PLAIN],
                 free: vec![Velocity::new(-closing, 1.0, 0.0)],
-                bounds: vec![bound],
+                biases: vec![bound],
             };
             let (report, impulses, velocities) = scene.solve(kind);
             let expected = (closing - bound).max(0.0) / (1.0 + (arm / RHO).powi(2));
@@ -97,7 +97,7 @@ fn one_contact_on_paper() {
 
 #[test]
 fn every_contact_three_times_gives_the_same_motion() {
-    // A row of five against a wall, pushed: the redundant contacts share the joints' loads.
+    // A row of five against a wall, pushed: the redundant contacts share the joints' impulses.
     let mut scene = Owned {
         inertia: vec![PLAIN; 5],
         free: vec![Velocity::new(-1.0, 0.2, 0.1); 5],
@@ -107,7 +107,7 @@ fn every_contact_three_times_gives_the_same_motion() {
     scene
         .contacts
         .extend((0..4).map(|i| contact(i, Some(i + 1), std::f64::consts::PI, (0.3, -0.4))));
-    scene.bounds = vec![0.0; 5];
+    scene.biases = vec![0.0; 5];
     let (_, impulses, velocities) = scene.solve(Solver::BlockPivoting);
     assert!(impulses.iter().all(|&impulse| impulse > 0.0));
     let (report, tripled, same) = scene.repeated(3).solve(Solver::BlockPivoting);
@@ -132,7 +132,7 @@ fn opposite_contacts_hold_a_boat_still() {
             ],
             inertia: vec![PLAIN],
             free: vec![Velocity::new(push, 3.0, 0.0)],
-            bounds: vec![0.0, 0.0],
+            biases: vec![0.0, 0.0],
         };
         let (report, impulses, velocities) = scene.solve(Solver::BlockPivoting);
         assert!(report.residual <= 1e-10);
@@ -151,7 +151,7 @@ fn constraints_that_contradict_each_other_are_reported() {
         ],
         inertia: vec![PLAIN],
         free: vec![Velocity::default()],
-        bounds: vec![-1.0, -1.0],
+        biases: vec![-1.0, -1.0],
     };
     for kind in Solver::ALL.iter().copied() {
         let (report, impulses, velocities) = scene.solve(kind);
@@ -194,13 +194,13 @@ fn scene(boats: u32, contacts: std::ops::Range<usize>, low: f64) -> impl Strateg
         prop::collection::vec((velocity(), inertia()), boats as usize),
     )
         .prop_map(|(contacts, boats)| {
-            let (contacts, bounds) = contacts.into_iter().unzip();
+            let (contacts, biases) = contacts.into_iter().unzip();
             let (free, inertia) = boats.into_iter().unzip();
             Owned {
                 contacts,
                 inertia,
                 free,
-                bounds,
+                biases,
             }
         })
 }
@@ -221,9 +221,9 @@ fn worsened(mut scene: Owned, opposed: bool, picks: &[(usize, usize)]) -> Owned 
             copy.gap.arm_i = -copy.gap.arm_i;
             copy.gap.arm_j = -copy.gap.arm_j;
         }
-        let bound = scene.bounds[k];
+        let bound = scene.biases[k];
         scene.contacts.push(copy);
-        scene.bounds.push(bound);
+        scene.biases.push(bound);
     }
     scene
 }
@@ -243,7 +243,7 @@ fn compare(scene: &Owned, reference: Option<Reference>) -> Result<(), TestCaseEr
         "{residual:e}"
     );
     if let Some(expected) = reference {
-        // Of two points that minimise ½|x|² for multipliers λ and λ', and miss the constraints by at most
+        // Of two points that minimize ½|x|² for multipliers λ and λ', and miss the constraints by at most
         // ε and ε', the distance is at most |x − x'|² ≤ Σλ·ε' + Σλ'·ε. Nearly dependent constraints have
         // large multipliers.
         let x = Dense::scaled(&scene.problem(), &velocities);
@@ -314,15 +314,15 @@ proptest! {
 
     #[test]
     fn solving_again_is_solving(scene in scene(8, 5..25, 0.0), other in scene(8, 25..26, 0.0)) {
-        // With new bounds and velocities on the same contacts, the factor kept gives the same answer.
+        // With new biases and velocities on the same contacts, the factor kept gives the same answer.
         let mut solver = ContactSolver::new(Solver::BlockPivoting);
         solver.active = vec![false; scene.contacts.len()];
         solver.impulses = vec![0.0; scene.contacts.len()];
-        solver.begin(8, &scene.contacts);
+        solver.reset(8, &scene.contacts);
         solver.solve(&scene.problem());
         let changed = Owned {
             free: other.free.clone(),
-            bounds: other.bounds[..scene.bounds.len()].to_vec(),
+            biases: other.biases[..scene.biases.len()].to_vec(),
             ..scene
         };
         let report = solver.solve(&changed.problem());

@@ -28,7 +28,7 @@ fn jam_problem(n_boats: usize, seconds: f64, seed: u64) -> Owned {
     ContactDetector::new(flock.parameters()).detect(&boats, 0.3, &mut contacts);
     let free = flock.velocities().iter().zip(&boats);
     Owned {
-        bounds: contacts.iter().map(|c| c.gap.gap / 0.01).collect(),
+        biases: contacts.iter().map(|c| c.gap.gap / 0.01).collect(),
         contacts,
         inertia: vec![PLAIN; n_boats],
         free: free

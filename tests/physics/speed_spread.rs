@@ -47,7 +47,7 @@ fn speeds_are_uniform_between_10_and_20() {
         let expected = (speed - 10.0) / 10.0;
         assert!((place as f64 / 4000.0 - expected).abs() < 1.95 / 4000_f64.sqrt());
     }
-    // Neighbours are independent: correlation below five standard deviations.
+    // Neighbors are independent: correlation below five standard deviations.
     let part = |v: f64| (v - 15.0) / SPREAD;
     let pairs = speeds.windows(2).map(|pair| part(pair[0]) * part(pair[1]));
     assert!((pairs.sum::<f64>() / 3999.0 * 3.0).abs() < 5.0 / 4000_f64.sqrt());

@@ -11,7 +11,7 @@ use flockenv::parameters::{Scheme, Target};
 use flockenv::{Flock, FlockParameters};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_6, PI};
 
-/// u·ẋ of a boat that turns steadily at w with thrust v0 in continuous time (dt = 0) or as the scheme
+/// u·ẋ of a boat that turns steadily at w with speed v0 in continuous time (dt = 0) or as the scheme
 /// has it: with z = exp(i·w·dt), Euler gives (z − 1)/dt·v = c0·(v0·u − v), and Crank–Nicolson with
 /// velocities V·exp(±i·w·dt/2) gives 2i·sin(w·dt/2)/dt·V = c0·(v0·u − cos(w·dt/2)·V).
 fn along(scheme: Scheme, w: f64, v0: f64, c0: f64, dt: f64) -> f64 {
@@ -91,7 +91,7 @@ fn backing_exactly_straight_stays_straight() {
 #[test]
 fn a_leader_turns_steadily() {
     for scheme in SCHEMES {
-        for (rudder, thrust) in [(1.0, 15.0), (-0.4, 15.0)] {
+        for (rudder, speed) in [(1.0, 15.0), (-0.4, 15.0)] {
             let p = FlockParameters {
                 n_leaders: 1,
                 ..driven(scheme)
@@ -103,9 +103,9 @@ fn a_leader_turns_steadily() {
             };
             let mut flock = flock_of(&p, &[([0.0; 3], [0.0; 3])]);
             let spin = spin_after(&mut flock, 60.0, Some(&[rudder]));
-            let expected = steady_rate(&p, thrust, rudder, p.dt_s, range);
+            let expected = steady_rate(&p, speed, rudder, p.dt_s, range);
             assert!((spin - expected).abs() < 1e-10, "{scheme:?}: {spin}");
-            let continuous = steady_rate(&p, thrust, rudder, 0.0, range);
+            let continuous = steady_rate(&p, speed, rudder, 0.0, range);
             assert!((spin - continuous).abs() < 1e-6, "{scheme:?}: {spin}");
             // "about 0.1 rad/s" at full rudder.
             assert!((continuous - 0.1 * rudder).abs() < 0.002);

@@ -128,11 +128,11 @@ pub fn crowded(p: &FlockParameters, states: &[([f64; 3], [f64; 3])]) -> Flock {
             .iter()
             .map(|(_, [x, y, w])| Velocity::new(*x, *y, *w))
             .collect(),
-        loads: Vec::new(),
+        warm_start: Vec::new(),
         neighbor_reference: (Vec::new(), 0.0),
         last_substep: (0, 0, None),
-        lasting_acceleration: Vec::new(),
-        kick_s: 0.0,
+        persistent_acceleration: Vec::new(),
+        step_length_s: 0.0,
         statistics: Statistics::default(),
     };
     Flock::from_snapshot(&snapshot.to_bytes()).expect("a finite state")

@@ -1,7 +1,7 @@
 //! Water current (Section 4.5): a flock that goes round pushes the water the other way round, with the
 //! speed −κ·(mean tangential velocity of all boats), at most the cap; drag and u·ẋ are relative to it.
 //!
-//! On paper: boats with thrusts v_i along the tangent end at v_i + w with w = −κ·mean(v_i)/(1 + κ): a
+//! On paper: boats with preferred speeds v_i along the tangent end at v_i + w with w = −κ·mean(v_i)/(1 + κ): a
 //! flock of equal boats at v0/(1 + κ), or at v0 − cap.
 
 use crate::support::{SCHEMES, driven, flock_of, runge_kutta};
@@ -10,7 +10,7 @@ use flockenv::parameters::Scheme;
 use flockenv::{Flock, FlockParameters};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// So far from the centre (cm) that boats which go straight stay on the tangent.
+/// So far from the center (cm) that boats which go straight stay on the tangent.
 const FAR: f64 = 1e8;
 
 fn with_current(scheme: Scheme, current_gain: f64, current_cap_cm_s: f64) -> FlockParameters {
@@ -21,7 +21,7 @@ fn with_current(scheme: Scheme, current_gain: f64, current_cap_cm_s: f64) -> Flo
     }
 }
 
-/// Boats at rest around the centre, headed `turn` from outward.
+/// Boats at rest around the center, headed `turn` from outward.
 fn ring(p: &FlockParameters, boats: usize, turn: f64) -> Flock {
     let places = (0..boats).map(|boat| TAU * boat as f64 / boats as f64);
     let states: Vec<_> = places
@@ -119,7 +119,7 @@ fn a_boat_without_a_motor_drifts_with_the_water_and_does_not_steer() {
     }
 }
 
-/// A lone boat that circles the centre with its rudder held, current and all: d/dt of
+/// A lone boat that circles the center with its rudder held, current and all: d/dt of
 /// [x, y, α, ẋ, ẏ, α̇].
 fn rate(p: &FlockParameters, rudder: f64, y: &[f64; 6]) -> [f64; 6] {
     let [px, py, heading, vx, vy, spin] = *y;

@@ -1,4 +1,4 @@
-//! What a solve costs, counted: rounds of pivoting, islands, rows factored, contacts, neighbour lists
+//! What a solve costs, counted: rounds of pivoting, islands, rows factored, contacts, neighbor lists
 //! built. A slowdown shows here without a stopwatch.
 //!
 //! On paper: one boat at rest against a wall has one contact, one island and one round a substep; a
@@ -24,7 +24,10 @@ fn one_boat_at_the_wall() {
     assert_eq!(statistics.factored_rows, 0);
     assert_eq!(statistics.most_factor_entries, 0);
     assert_eq!(statistics.neighbor_builds, 1);
-    assert_eq!((statistics.unsolved, statistics.recovery_passes), (0, 0));
+    assert_eq!(
+        (statistics.unsolved, statistics.depenetration_passes),
+        (0, 0)
+    );
 }
 
 #[test]
@@ -69,7 +72,7 @@ fn contacts_apart_are_islands_of_their_own() {
 }
 
 #[test]
-fn boats_that_stay_within_their_skin_share_one_neighbour_list() {
+fn boats_that_stay_within_their_skin_share_one_neighbor_list() {
     let p = FlockParameters {
         pool: disc(90.0),
         ..inert(Scheme::Leapfrog)

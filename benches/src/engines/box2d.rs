@@ -10,7 +10,7 @@ use boxdd_sys::ffi::*;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-/// What Box2D's tolerances take for a metre, in cm, as for rapier; one for the whole process.
+/// What Box2D's tolerances take for a meter, in cm, as for rapier; one for the whole process.
 const LENGTH_UNIT_CM: f32 = 10.0;
 /// Contacts of one boat that are looked at.
 const MOST_CONTACTS: usize = 64;
@@ -69,7 +69,7 @@ impl Box2d {
             unsafe {
                 b2Body_ApplyForceToCenter(id, vector(push.force), true);
                 b2Body_ApplyTorque(id, (self.moment * push.spin_up) as f32, true);
-                b2Body_ApplyAngularImpulse(id, (self.moment * push.kick) as f32, true);
+                b2Body_ApplyAngularImpulse(id, (self.moment * push.noise) as f32, true);
             }
         }
     }

@@ -15,7 +15,7 @@ pub struct Push {
     /// Angular acceleration in rad/s².
     pub spin_up: f64,
     /// Change of the angular velocity by noise in rad/s.
-    pub kick: f64,
+    pub noise: f64,
 }
 
 /// Clock, phases and noise of a scene without leaders and optional effects.
@@ -25,8 +25,8 @@ pub struct Driver {
     schedule: PhaseSchedule,
     motion: FreeMotion,
     noise: Option<BrownianPaths>,
-    kicks: Vec<f64>,
-    thrust: f64,
+    noise_increments: Vec<f64>,
+    preferred_speed: f64,
     time: Ticks,
     dt: Ticks,
 }
@@ -39,8 +39,8 @@ impl Driver {
             schedule: PhaseSchedule::new(parameters),
             motion: FreeMotion::new(parameters),
             noise: (parameters.c4 > 0.0).then(|| BrownianPaths::new(seed, n, 2 * dt, 0)),
-            kicks: vec![0.0; n],
-            thrust: 0.0,
+            noise_increments: vec![0.0; n],
+            preferred_speed: 0.0,
             time: ticks(time_s),
             dt,
             parameters: parameters.clone(),
@@ -51,9 +51,9 @@ impl Driver {
     pub fn begin_step(&mut self) {
         let end = self.time + self.dt;
         if let Some(noise) = &mut self.noise {
-            noise.increments(2 * self.time, 2 * end, &mut self.kicks);
+            noise.increments(2 * self.time, 2 * end, &mut self.noise_increments);
         }
-        self.thrust = match self.schedule.at(self.time).phase {
+        self.preferred_speed = match self.schedule.at(self.time).phase {
             Phase::Forward => self.parameters.speed_cm_s,
             Phase::Backward => -self.parameters.reverse_speed_cm_s,
             Phase::DriftAfterForward | Phase::DriftAfterBackward => 0.0,
@@ -64,10 +64,10 @@ impl Driver {
     /// What drives a boat in this step.
     pub fn push(&self, boat: usize, axis: Vec2, velocity: &Velocity) -> Push {
         let drive = Drive {
-            thrust: self.thrust,
+            preferred_speed: self.preferred_speed,
             rudder: 0.0,
             water: Vec2::zeros(),
-            kick: 0.0,
+            noise: 0.0,
         };
         let along = axis.dot(&velocity.linear);
         Push {
@@ -77,7 +77,7 @@ impl Driver {
             spin_up: self
                 .motion
                 .angular_acceleration(velocity.angular, along, 0.0),
-            kick: self.parameters.c4 * self.kicks[boat],
+            noise: self.parameters.c4 * self.noise_increments[boat],
         }
     }
 }

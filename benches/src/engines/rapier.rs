@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 pub struct Settings {
     /// Solver iterations; rapier's default is 4.
     pub iterations: usize,
-    /// What rapier's tolerances take for a metre, in cm.
+    /// What rapier's tolerances take for a meter, in cm.
     pub length_unit_cm: f64,
     /// Whether the inner wall is rapier's own disc rather than chords.
     pub round_obstacle: bool,
@@ -30,7 +30,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             iterations: 4,
-            // Its tolerances are made for bodies of about a metre; a boat is 1.5 of these.
+            // Its tolerances are made for bodies of about a meter; a boat is 1.5 of these.
             length_unit_cm: 10.0,
             round_obstacle: false,
         }
@@ -84,7 +84,7 @@ impl Rapier {
             body.reset_torques(false);
             body.add_force(vector(push.force), true);
             body.add_torque((self.moment * push.spin_up) as Real, true);
-            body.apply_torque_impulse((self.moment * push.kick) as Real, true);
+            body.apply_torque_impulse((self.moment * push.noise) as Real, true);
         }
     }
 }

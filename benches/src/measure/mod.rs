@@ -52,7 +52,7 @@ pub fn on_all_cores<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Send
 }
 
 /// Distance of two arrangements in cm: the root mean square over boats of |Δx|² + ρ²Δα², the metric
-/// that contacts minimise in.
+/// that contacts minimize in.
 pub fn distance(parameters: &FlockParameters, a: &[Pose], b: &[Pose]) -> f64 {
     let square = |(a, b): (&Pose, &Pose)| {
         let turn = parameters.gyration_radius_cm * wrap_angle(a.heading - b.heading);

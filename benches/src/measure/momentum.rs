@@ -1,4 +1,4 @@
-//! In open water without drag, thrust and noise, collisions keep the total momentum and the total
+//! In open water without drag, propulsion and noise, collisions keep the total momentum and the total
 //! angular momentum about any point.
 
 use super::{on_all_cores, push_row, table};

@@ -22,7 +22,7 @@ pub fn scene() -> FlockParameters {
 }
 
 /// Starts that differ in how far outward of the tangent the boat heads, 26° to 66°. It moves as if
-/// rigidly fixed to a wheel about the pool's centre, so that the bow stays on the wall.
+/// rigidly fixed to a wheel about the pool's center, so that the bow stays on the wall.
 pub fn starts() -> Vec<Start> {
     let parameters = scene();
     let hull = Hull::new(&parameters);

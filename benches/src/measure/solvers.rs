@@ -64,7 +64,7 @@ impl Problem {
         solver
             .active
             .extend(self.guess.iter().map(|&impulse| impulse > 0.0));
-        solver.begin(self.free.len(), &self.contacts);
+        solver.reset(self.free.len(), &self.contacts);
         solver.solve(&ContactProblem {
             contacts: &self.contacts,
             inertia: &self.inertia,
@@ -82,10 +82,10 @@ pub(super) fn without_contacts(
 ) -> (Vec<Velocity>, Vec<InverseInertia>) {
     let motion = FreeMotion::new(parameters);
     let drive = Drive {
-        thrust: parameters.speed_cm_s,
+        preferred_speed: parameters.speed_cm_s,
         rudder: 0.0,
         water: Vec2::zeros(),
-        kick: 0.0,
+        noise: 0.0,
     };
     let moment = parameters.gyration_radius_cm.powi(2);
     let boat = |(boat, velocity): (&HullPose, &Velocity)| {

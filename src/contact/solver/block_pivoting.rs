@@ -19,8 +19,8 @@ const PATIENCE: u32 = 5;
 /// The matrix, the factors of all islands, and the state of pivoting, row by row of the matrix.
 #[derive(Debug, Clone, Default)]
 pub struct BlockPivoting {
-    /// Added to the diagonal, relative to it, so that redundant contacts share their load.
-    ridge: f64,
+    /// Added to the diagonal, relative to it, so that redundant contacts share their impulse.
+    regularization: f64,
     matrix: ContactMatrix,
     /// Whether the matrix is that of the contacts at hand.
     is_built: bool,
@@ -37,16 +37,16 @@ pub struct BlockPivoting {
 }
 
 impl BlockPivoting {
-    /// A solver with a relative ridge.
-    pub fn new(ridge: f64) -> Self {
+    /// A solver with a relative regularization.
+    pub fn new(regularization: f64) -> Self {
         Self {
-            ridge,
+            regularization,
             ..Self::default()
         }
     }
 
     /// Forgets the factors; so many islands come next.
-    pub fn begin(&mut self, islands: usize) {
+    pub fn reset(&mut self, islands: usize) {
         self.is_built = false;
         self.factors.iter_mut().for_each(EnvelopeFactor::clear);
         if self.factors.len() < islands {
@@ -63,7 +63,7 @@ impl BlockPivoting {
         impulses: &mut [f64],
         velocities: &mut Vec<Velocity>,
     ) -> SolveReport {
-        self.load(problem, islands, active);
+        self.assemble(problem, islands, active);
         let mut report = SolveReport::default();
         for island in 0..islands.len() {
             self.solve_island(island, islands.range(island), &mut report);
@@ -75,11 +75,11 @@ impl BlockPivoting {
         }
         velocities.clear();
         velocities.extend_from_slice(&self.velocities[..problem.free.len()]);
-        report.converged = report.residual <= EXACT.max(self.ridge);
+        report.converged = report.residual <= EXACT.max(self.regularization);
         report
     }
 
-    fn load(&mut self, problem: &ContactProblem, islands: &Islands, active: &[bool]) {
+    fn assemble(&mut self, problem: &ContactProblem, islands: &Islands, active: &[bool]) {
         if !self.is_built {
             self.matrix.build(problem, islands);
             self.is_built = true;
@@ -154,7 +154,7 @@ impl BlockPivoting {
     /// One contact alone needs no guess and no factor: it pushes as much as it would overlap.
     fn solve_alone(&mut self, number: usize) {
         let row = &self.matrix.rows()[number];
-        let impulse = (-row.right / (row.diagonal * (1.0 + self.ridge))).max(0.0);
+        let impulse = (-row.right / (row.diagonal * (1.0 + self.regularization))).max(0.0);
         self.active[number] = impulse > 0.0;
         self.impulses[number] = impulse;
         if impulse > 0.0 {
@@ -172,7 +172,12 @@ impl BlockPivoting {
                 .map(|row| row as u32),
         );
         let factor = &mut self.factors[island];
-        let computed = factor.update(&self.matrix, &self.wanted, self.ridge, &mut self.places);
+        let computed = factor.update(
+            &self.matrix,
+            &self.wanted,
+            self.regularization,
+            &mut self.places,
+        );
         let right = |&row: &u32| -self.matrix.rows()[row as usize].right;
         self.solution.clear();
         self.solution.extend(self.wanted.iter().map(right));
@@ -182,8 +187,8 @@ impl BlockPivoting {
         computed
     }
 
-    /// The ridge and rounding leave a remainder at the active contacts; another solve removes it. A
-    /// softened problem is meant to give way. Returns whether there was anything to do.
+    /// The regularization and rounding leave a remainder at the active contacts; another solve removes it. A
+    /// regularized problem is meant to give way. Returns whether there was anything to do.
     fn refine(&mut self, island: usize, rows: Range<usize>) -> bool {
         let slack = |&row: &u32| self.slacks[row as usize];
         let worst = self
@@ -192,7 +197,7 @@ impl BlockPivoting {
             .map(slack)
             .map(f64::abs)
             .fold(0.0, f64::max);
-        if worst <= 0.5 * EXACT || self.ridge > TOLERANCE {
+        if worst <= 0.5 * EXACT || self.regularization > TOLERANCE {
             return false;
         }
         self.solution.clear();
@@ -264,14 +269,14 @@ impl BlockPivoting {
 
     /// The larger of an island's natural residual and the worst so far; NaN if anything is.
     fn worst_residual(&self, rows: Range<usize>, worst: f64) -> f64 {
-        let softness = if self.ridge < TOLERANCE {
+        let regularization = if self.regularization < TOLERANCE {
             0.0
         } else {
-            self.ridge
+            self.regularization
         };
         rows.fold(worst, |worst, row| {
-            let load = self.matrix.rows()[row].diagonal * self.impulses[row];
-            let residual = load.min(self.slacks[row] + softness * load).abs();
+            let scaled = self.matrix.rows()[row].diagonal * self.impulses[row];
+            let residual = scaled.min(self.slacks[row] + regularization * scaled).abs();
             if residual > worst || residual.is_nan() {
                 residual
             } else {

@@ -1,4 +1,4 @@
-//! The interior-point solver clarabel on the primal quadratic programme. An independent check: it
+//! The interior-point solver clarabel on the primal quadratic program. An independent check: it
 //! stops at residuals of 1e-4 to 1e-7 cm/s, which are reported as they are.
 
 use clarabel::algebra::CscMatrix;

@@ -43,13 +43,13 @@ impl EnvelopeFactor {
     }
 
     /// Brings the factor to the rows in `wanted` (ascending); returns how many rows were computed.
-    /// `ridge` is added to the diagonal, relative to it. `places` maps every row of the matrix to its
+    /// `regularization` is added to the diagonal, relative to it. `places` maps every row of the matrix to its
     /// place in the factor: scratch that holds only [`ABSENT`] before and after.
     pub fn update(
         &mut self,
         matrix: &ContactMatrix,
         wanted: &[u32],
-        ridge: f64,
+        regularization: f64,
         places: &mut [u32],
     ) -> u64 {
         let kept = wanted
@@ -65,7 +65,7 @@ impl EnvelopeFactor {
             places[row as usize] = place as u32;
         }
         for &row in &wanted[kept..] {
-            self.push_row(matrix, row, ridge, places);
+            self.push_row(matrix, row, regularization, places);
             places[row as usize] = self.members.len() as u32 - 1;
         }
         for &row in &self.members {
@@ -75,7 +75,7 @@ impl EnvelopeFactor {
     }
 
     /// Appends a row: its couplings to rows that are in the factor, then elimination.
-    fn push_row(&mut self, matrix: &ContactMatrix, row: u32, ridge: f64, places: &[u32]) {
+    fn push_row(&mut self, matrix: &ContactMatrix, row: u32, regularization: f64, places: &[u32]) {
         let place = self.members.len();
         let couplings = matrix.couplings(row as usize);
         let present = couplings.iter().map(|&(other, _)| places[other as usize]);
@@ -93,7 +93,11 @@ impl EnvelopeFactor {
         self.first.push(first as u32);
         self.ends.push(self.values.len() as u32);
         let diagonal = matrix.rows()[row as usize].diagonal;
-        self.eliminate(place, diagonal * (1.0 + ridge), 0.5 * ridge * diagonal);
+        self.eliminate(
+            place,
+            diagonal * (1.0 + regularization),
+            0.5 * regularization * diagonal,
+        );
     }
 
     fn eliminate(&mut self, place: usize, diagonal: f64, least: f64) {
@@ -113,7 +117,7 @@ impl EnvelopeFactor {
             current[column - first] = value;
             squares += value * value;
         }
-        // Rounding may eat a pivot that only the ridge keeps positive.
+        // Rounding may eat a pivot that only the regularization keeps positive.
         self.inverse_diagonal
             .push(1.0 / (diagonal - squares).max(least).sqrt());
     }

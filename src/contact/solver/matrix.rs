@@ -106,7 +106,7 @@ impl ContactMatrix {
     /// Takes on bounds and works out b.
     pub fn set_right(&mut self, problem: &ContactProblem, free: &[Velocity]) {
         for row in &mut self.rows {
-            row.bound = problem.bounds[row.contact as usize];
+            row.bound = problem.biases[row.contact as usize];
             row.right = row.slack(free);
         }
     }

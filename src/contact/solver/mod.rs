@@ -16,7 +16,7 @@ use block_pivoting::BlockPivoting;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SolveReport {
     /// Whether the residual meets the solver's bound (1e-10 cm/s for block pivoting). It may not if
-    /// the linearised constraints contradict each other.
+    /// the linearized constraints contradict each other.
     pub converged: bool,
     /// Natural residual max|min(A_kk·λ_k, w_k)| in cm/s.
     pub residual: f64,
@@ -60,20 +60,20 @@ impl ContactSolver {
         }
     }
 
-    /// An exact solver in which every contact gives way by `softness`·A_kk·λ_k, so that constraints
+    /// An exact solver in which every contact gives way by `regularization`·A_kk·λ_k, so that constraints
     /// that contradict each other are met as well as they can be.
-    pub fn soft(softness: f64) -> Self {
+    pub fn regularized(regularization: f64) -> Self {
         Self {
-            pivoting: BlockPivoting::new(softness),
+            pivoting: BlockPivoting::new(regularization),
             ..Self::new(Solver::BlockPivoting)
         }
     }
 
     /// Takes on a new set of contacts; `active` and `impulses` must hold a guess for each.
-    pub fn begin(&mut self, boats: usize, contacts: &[Contact]) {
+    pub fn reset(&mut self, boats: usize, contacts: &[Contact]) {
         debug_assert_eq!(self.active.len(), contacts.len());
         self.islands.find(boats, contacts);
-        self.pivoting.begin(self.islands.len());
+        self.pivoting.reset(self.islands.len());
     }
 
     /// The islands of the contacts taken on last.

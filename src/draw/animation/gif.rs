@@ -1,4 +1,4 @@
-//! GIF. Each frame has a palette of the colours that are new in it; what has not changed is left out, so
+//! GIF. Each frame has a palette of the colors that are new in it; what has not changed is left out, so
 //! that still parts of the picture never flicker.
 
 use super::changes::Changes;
@@ -8,9 +8,9 @@ use color_quant::NeuQuant;
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
 use std::collections::BTreeSet;
 
-/// Index of what has not changed; colours have the others.
+/// Index of what has not changed; colors have the others.
 const UNCHANGED: u8 = 255;
-/// Pixels that train a palette: more give better colours and take longer.
+/// Pixels that train a palette: more give better colors and take longer.
 const TRAINING: usize = 20_000;
 
 pub struct GifEncoder {
@@ -68,7 +68,7 @@ impl GifEncoder {
     }
 }
 
-/// The colours of a frame's changes.
+/// The colors of a frame's changes.
 enum Palette {
     Exact(Vec<[u8; 3]>),
     Quantised(Box<NeuQuant>),
@@ -104,7 +104,7 @@ impl Palette {
         }
     }
 
-    /// 256 colours, row by row.
+    /// 256 colors, row by row.
     fn colors(&self) -> Vec<u8> {
         let mut colors = match self {
             Self::Exact(colors) => colors.concat(),

@@ -14,9 +14,9 @@ use gif::GifEncoder;
 named_choice! {
     /// A file format of moving pictures.
     pub enum AnimationFormat ("file_format") {
-        /// Animated PNG: every colour as it is.
+        /// Animated PNG: every color as it is.
         Apng = "apng",
-        /// GIF: up to 255 new colours a frame.
+        /// GIF: up to 255 new colors a frame.
         Gif = "gif",
     }
 }

@@ -34,7 +34,7 @@ pub fn draw(canvas: &mut Pixmap, flock: &Flock, view: &View) {
     }
 }
 
-/// The parts of a boat, each in its colour.
+/// The parts of a boat, each in its color.
 #[derive(Default)]
 struct Layers {
     outline: PathBuilder,
@@ -84,7 +84,7 @@ impl Shape {
     }
 }
 
-/// Where a boat is in the frame; (along, across) count from its centre to the bow and to port.
+/// Where a boat is in the frame; (along, across) count from its center to the bow and to port.
 struct Place {
     center: Point,
     axis: Point,

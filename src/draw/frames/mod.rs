@@ -1,5 +1,5 @@
 //! Pictures of a flock, drawn without a screen: pool, hulls with a direction mark, leaders in their own
-//! colour and a legend. A frame depends on the flock and the frame's size alone.
+//! color and a legend. A frame depends on the flock and the frame's size alone.
 
 mod boats;
 mod legend;
@@ -93,7 +93,7 @@ impl FrameRenderer {
         let open = !flock.parameters().pool.has_outer_wall();
         let grid_cm = open.then(|| water::grid_spacing(&view));
         self.legend.draw(&mut self.canvas, flock, grid_cm);
-        // The canvas is opaque throughout, so that premultiplied colours are plain ones.
+        // The canvas is opaque throughout, so that premultiplied colors are plain ones.
         for (rgb, pixel) in frame
             .chunks_exact_mut(3)
             .zip(self.canvas.data().chunks_exact(4))

@@ -1,8 +1,8 @@
-//! Colours of a frame: Okabe and Ito's set, told apart by colour-blind eyes too, on pale water.
+//! Colors of a frame: Okabe and Ito's set, told apart by color-blind eyes too, on pale water.
 
 use tiny_skia::{Color, Paint};
 
-/// An opaque colour.
+/// An opaque color.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rgb(pub u8, pub u8, pub u8);
 
@@ -36,12 +36,12 @@ pub const AGAINST: Rgb = Rgb(0xD5, 0x5E, 0x00);
 pub const TARGET: Rgb = Rgb(0xC3, 0xC9, 0xCE);
 
 impl Rgb {
-    /// As tiny-skia's colour.
+    /// As tiny-skia's color.
     pub fn color(self) -> Color {
         Color::from_rgba8(self.0, self.1, self.2, 0xFF)
     }
 
-    /// A paint that fills with this colour and smooth edges.
+    /// A paint that fills with this color and smooth edges.
     pub fn paint(self) -> Paint<'static> {
         let mut paint = Paint::default();
         paint.set_color(self.color());

@@ -72,7 +72,7 @@ impl View {
     }
 }
 
-/// Centre and scale that hold all boats, clear of the legend.
+/// Center and scale that hold all boats, clear of the legend.
 fn following(flock: &Flock, size: Vec2) -> (Vec2, f64) {
     let length = 2.0 * Hull::new(flock.parameters()).reach();
     let (mut low, mut high) = (Vec2::repeat(f64::INFINITY), Vec2::repeat(-f64::INFINITY));

@@ -1,5 +1,5 @@
 //! The camera between flock and leaders: frames with drop-outs, and one frame late, as in the experiment
-//! (0.3 % of the boats were not recognised in a frame, Section 3.1). Off by default and free then.
+//! (0.3 % of the boats were not recognized in a frame, Section 3.1). Off by default and free then.
 
 use crate::analysis::OrderParameters;
 use crate::error::{FlockError, Result};
@@ -10,7 +10,7 @@ use rand_chacha::rand_core::Rng;
 /// What the camera does to the leaders' picture of the flock.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct CameraSettings {
-    /// Chance that a boat is not recognised in a frame, and stays in the picture as it was in the last
+    /// Chance that a boat is not recognized in a frame, and stays in the picture as it was in the last
     /// one; in [0, 1).
     pub dropout_rate: f64,
     /// Frames that the picture is late: 0 or 1.

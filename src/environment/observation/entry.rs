@@ -9,7 +9,7 @@ use crate::parameters::FlockParameters;
 pub enum Scale {
     /// The number itself.
     Plain,
-    /// −1 where the centre of a boat touching the inner wall (or the pool's centre) is, +1 where that
+    /// −1 where the center of a boat touching the inner wall (or the pool's center) is, +1 where that
     /// of a boat touching the outer wall is. Open water: ±1 are 0 and 40 boat radii off the inner wall.
     Radial,
     /// Six boat radii.
@@ -80,7 +80,7 @@ fn radial(parameters: &FlockParameters) -> (f64, f64) {
 /// One number of an observation or of the global state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Entry {
-    /// Its name; entries of a neighbour or boat share names with those of the others.
+    /// Its name; entries of a neighbor or boat share names with those of the others.
     pub name: &'static str,
     /// Unit of the physical value.
     pub unit: &'static str,
@@ -131,10 +131,10 @@ const TWICE: (f64, f64) = (-2.0, 2.0);
 /// The leader itself.
 #[rustfmt::skip]
 pub const OWN: [Entry; 8] = [
-    Entry::new("radial_position", "cm", Scale::Radial, (-1.1, 1.1), "distance from the pool's centre"),
+    Entry::new("radial_position", "cm", Scale::Radial, (-1.1, 1.1), "distance from the pool's center"),
     Entry::new("cos_orientation", "", Scale::Plain, UNIT, "cosine of the LAP orientation: 1 heads at the outer wall"),
     Entry::new("sin_orientation", "", Scale::Plain, UNIT, "sine of the LAP orientation: 1 heads clockwise").odd(),
-    Entry::new("outward_velocity", "cm/s", Scale::Speed, TWICE, "velocity away from the pool's centre"),
+    Entry::new("outward_velocity", "cm/s", Scale::Speed, TWICE, "velocity away from the pool's center"),
     Entry::new("clockwise_velocity", "cm/s", Scale::Speed, TWICE, "tangential velocity, positive clockwise").odd(),
     Entry::new("forward_velocity", "cm/s", Scale::Speed, TWICE, "velocity along the heading; a rudder works in reverse where it is negative"),
     Entry::new("clockwise_spin", "rad/s", Scale::AngularVelocity, TWICE, "angular velocity, positive clockwise").odd(),
@@ -158,14 +158,14 @@ pub const TARGET: [Entry; 1] = [
     Entry::new("target", "", Scale::Plain, UNIT, "+1 clockwise, -1 counter-clockwise").odd(),
 ];
 
-/// One neighbour; all zero where there are fewer boats than places.
+/// One neighbor; all zero where there are fewer boats than places.
 #[rustfmt::skip]
 pub const NEIGHBOR: [Entry; 8] = [
-    Entry::new("present", "", Scale::Plain, FLAG, "1 where there is such a neighbour"),
-    Entry::new("outward_distance", "cm", Scale::Length, (-4.0, 4.0), "its centre, seen from the leader along the leader's outward axis"),
+    Entry::new("present", "", Scale::Plain, FLAG, "1 where there is such a neighbor"),
+    Entry::new("outward_distance", "cm", Scale::Length, (-4.0, 4.0), "its center, seen from the leader along the leader's outward axis"),
     Entry::new("clockwise_distance", "cm", Scale::Length, (-4.0, 4.0), "the same along the leader's clockwise axis").odd(),
     Entry::new("cos_relative_heading", "", Scale::Plain, UNIT, "cosine of the angle between the headings"),
-    Entry::new("sin_relative_heading", "", Scale::Plain, UNIT, "its sine: positive where the neighbour heads clockwise of the leader").odd(),
+    Entry::new("sin_relative_heading", "", Scale::Plain, UNIT, "its sine: positive where the neighbor heads clockwise of the leader").odd(),
     Entry::new("outward_velocity", "cm/s", Scale::Speed, TWICE, "its velocity along the leader's outward axis"),
     Entry::new("clockwise_velocity", "cm/s", Scale::Speed, TWICE, "its velocity along the leader's clockwise axis").odd(),
     Entry::new("is_leader", "", Scale::Plain, FLAG, "1 for a leader"),
@@ -183,12 +183,12 @@ pub const ORDER: [Entry; 4] = [
 /// One boat of the global state.
 #[rustfmt::skip]
 pub const BOAT: [Entry; 10] = [
-    Entry::new("radial_position", "cm", Scale::Radial, (-1.1, 1.1), "distance from the pool's centre"),
+    Entry::new("radial_position", "cm", Scale::Radial, (-1.1, 1.1), "distance from the pool's center"),
     Entry::new("cos_polar_angle", "", Scale::Plain, UNIT, "cosine of its polar angle, counter-clockwise from x"),
     Entry::new("sin_polar_angle", "", Scale::Plain, UNIT, "its sine").odd(),
     Entry::new("cos_orientation", "", Scale::Plain, UNIT, "cosine of the LAP orientation"),
     Entry::new("sin_orientation", "", Scale::Plain, UNIT, "its sine: 1 heads clockwise").odd(),
-    Entry::new("outward_velocity", "cm/s", Scale::Speed, TWICE, "velocity away from the pool's centre"),
+    Entry::new("outward_velocity", "cm/s", Scale::Speed, TWICE, "velocity away from the pool's center"),
     Entry::new("clockwise_velocity", "cm/s", Scale::Speed, TWICE, "tangential velocity, positive clockwise").odd(),
     Entry::new("clockwise_spin", "rad/s", Scale::AngularVelocity, TWICE, "angular velocity, positive clockwise").odd(),
     Entry::new("rudder", "", Scale::Plain, UNIT, "a leader's rudder as it stands; 0 for a normal boat").odd(),

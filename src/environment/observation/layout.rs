@@ -7,7 +7,7 @@ use crate::parameters::named_choice;
 /// Version of the observation: of the entries, their order, scales and bounds. A policy belongs to one.
 pub const OBSERVATION_VERSION: u32 = 1;
 
-/// The most neighbours that a leader may observe.
+/// The most neighbors that a leader may observe.
 pub const MOST_NEIGHBORS: usize = 64;
 
 named_choice! {
@@ -61,7 +61,7 @@ impl ObservationLayout {
     /// Checks the layout.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] if nothing is observed, or too many neighbours.
+    /// [`FlockError::Parameter`] if nothing is observed, or too many neighbors.
     pub fn check(&self) -> Result<()> {
         if self.neighbors > MOST_NEIGHBORS {
             let accepted = format!("0 (off) to {MOST_NEIGHBORS}");
@@ -81,7 +81,7 @@ impl ObservationLayout {
         Ok(())
     }
 
-    /// The entries of a block; those of `Neighbors` are one neighbour's.
+    /// The entries of a block; those of `Neighbors` are one neighbor's.
     pub fn entries_of(block: Block) -> &'static [Entry] {
         match block {
             Block::Own => &OWN,
@@ -92,7 +92,7 @@ impl ObservationLayout {
         }
     }
 
-    /// How often a block occurs: 0 or 1, or the number of neighbours.
+    /// How often a block occurs: 0 or 1, or the number of neighbors.
     pub fn repeats(&self, block: Block) -> usize {
         match block {
             Block::Own => usize::from(self.own),
@@ -115,7 +115,7 @@ impl ObservationLayout {
         None
     }
 
-    /// Where an entry of a block stands, if the block is on; the first neighbour's for `Neighbors`.
+    /// Where an entry of a block stands, if the block is on; the first neighbor's for `Neighbors`.
     pub fn place(&self, block: Block, name: &str) -> Option<usize> {
         let entries = Self::entries_of(block);
         let place = entries.iter().position(|entry| entry.name == name)?;

@@ -142,7 +142,7 @@ impl Observer {
         }
     }
 
-    /// The nearest boats by centre distance, nearest first, equally near ones in the order of boats.
+    /// The nearest boats by center distance, nearest first, equally near ones in the order of boats.
     fn find_nearest(&mut self, view: &FlockView, leader: usize) {
         let wanted = self.layout.neighbors;
         let center = view.hulls[leader].center;

@@ -19,7 +19,7 @@ fn table_1() -> FlockParameters {
 }
 
 #[test]
-fn a_cluster_is_what_gaps_below_half_a_centimetre_join() {
+fn a_cluster_is_what_gaps_below_half_a_centimeter_join() {
     // Side by side: hulls are 10 cm wide.
     let row = |gap: f64, count: usize| -> Vec<Pose> {
         let place = |boat| Pose::new(0.0, (10.0 + gap) * boat as f64, 0.0);
