@@ -6,7 +6,7 @@
 
 use flockenv::Flock;
 use flockenv::contact::Statistics;
-use flockenv::environment::{BatchRows, EnvBatch, EnvSettings, ResetRequest, Run};
+use flockenv::environment::{BatchRows, EnvBatch, EnvSettings, Episode, ResetRequest};
 use flockenv::parameters::{FlockParameters, Pool, Preset};
 use std::fmt::Write as _;
 use std::fs;
@@ -140,7 +140,7 @@ impl Scene {
                 let mut batch = EnvBatch::from_bytes(state)?;
                 control(&mut batch, 2)?;
                 let statistics = |batch: &EnvBatch| {
-                    let flock = batch.envs()[0].run().map(Run::flock);
+                    let flock = batch.envs()[0].episode().map(Episode::flock);
                     flock.map(|flock| *flock.statistics()).unwrap_or_default()
                 };
                 let before = statistics(&batch);
