@@ -21,9 +21,7 @@ pub fn order_parameters<'py>(
         phi_v,
         c_v,
     } = *order;
-    let class = py
-        .import("flockenv.flock")?
-        .getattr("OrderParameters")?;
+    let class = py.import("flockenv.flock")?.getattr("OrderParameters")?;
     class.call1((psi_o, phi_o, c_o, psi_v, phi_v, c_v))
 }
 
@@ -32,9 +30,7 @@ pub fn order_series<'py>(
     py: Python<'py>,
     series: &[OrderParameters],
 ) -> PyResult<Bound<'py, PyAny>> {
-    let class = py
-        .import("flockenv.flock")?
-        .getattr("OrderSeries")?;
+    let class = py.import("flockenv.flock")?.getattr("OrderSeries")?;
     let column = |value: fn(&OrderParameters) -> f64| {
         PyArray1::from_vec(py, series.iter().map(value).collect())
     };

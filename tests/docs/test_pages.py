@@ -26,7 +26,7 @@ PAGES = sorted(
     if "_build" not in path.parts
 )
 # Made by readers and commands, and an environment's id.
-NO_FILES_YET = {"docs/_build/html", "flockenv/Leaders-v0", "src/scheme/centered.rs"}
+NO_FILES_YET = {"docs/_build/html", "flockenv/Leaders-v0", "src/integrator/centered.rs"}
 
 
 def run_shell(example: Example) -> None:
