@@ -26,6 +26,7 @@ UV := VIRTUAL_ENV="$(CURDIR)/$(VENV)" $(BIN)/uv
 # Directories are listed too: their times change when a file is removed.
 RUST_SOURCES := Cargo.toml Cargo.lock $(shell find src)
 STUBS := flockenv/_core.pyi
+JS_TESTS := tests/replay/js
 
 # The comparison with other engines: a crate and a Python environment of their own.
 PEERS := benches/peers/.venv
@@ -43,7 +44,7 @@ TEST_EXTRAS := --extra train --extra plot --extra fit --extra render --extra swe
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help setup build compare test lint format test-rust test-python test-browser test-wheel test-oldest \
+.PHONY: help setup build compare test lint format test-rust test-python test-js test-browser test-wheel test-oldest \
         test-rllib test-ray validate docs wheel audit licenses pages tables replay-animation \
         instructions learning-check throughput soak fuzz speed-vs-error lint-benches clean
 
@@ -87,6 +88,9 @@ fuzz: $(STAMPS)/test $(STAMPS)/core ## hostile parameters, options, states, file
 test-browser: $(STAMPS)/browser $(STAMPS)/core ## the replay page, clicked and read in headless Chromium
 	@tests/browser/need_chromium.sh
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m browser tests/browser $(PYTEST_ARGS)
+
+test-js: $(JS_TESTS)/node_modules ## the replay page's scripts: style, and unit tests, with Node
+	cd $(JS_TESTS) && npm run lint && npm test
 
 wheel: $(STAMPS)/venv ## the wheel and the source distribution, into dist
 	rm -rf dist
@@ -191,7 +195,7 @@ lint-benches: ## formatting and clippy of the comparison with other engines
 
 clean: ## remove everything that was built or installed here
 	cargo clean
-	rm -rf benches/target $(PEERS)
+	rm -rf benches/target $(PEERS) $(JS_TESTS)/node_modules
 	rm -rf docs/_build
 	rm -rf $(VENV) .venv-rllib .venv-ray .venv-peers .venv-oldest flockenv/_core.*.so flockenv/_core.*.pyd dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find . -name __pycache__ -prune -exec rm -rf {} +
@@ -218,6 +222,12 @@ $(STAMPS)/test: pyproject.toml requirements-excluded.txt | $(STAMPS)/venv
 
 $(STAMPS)/browser: pyproject.toml $(STAMPS)/test
 	$(UV) pip install -r pyproject.toml --extra browser
+	@touch $@
+
+# One package of one version, which names its own parts exactly: there is nothing for a lock file to hold.
+$(JS_TESTS)/node_modules: $(JS_TESTS)/package.json
+	@node --version > /dev/null && npm --version > /dev/null || { echo "Node 20 or newer and npm are needed for the scripts' tests." >&2; exit 1; }
+	cd $(JS_TESTS) && npm install --no-package-lock --no-audit --no-fund
 	@touch $@
 
 $(STAMPS)/docs: pyproject.toml $(STAMPS)/test

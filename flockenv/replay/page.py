@@ -11,10 +11,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv._io.atomic_write import whole_file
@@ -23,27 +23,31 @@ from flockenv.flock import ContactSeries
 from flockenv.parameters import FlockParameters
 from flockenv.recording import PHASES, Recording
 from flockenv.replay.packing import Packer
+from flockenv.replay.quantities import ShownQuantity, shown_quantities, telling_minute
 
 __all__ = ["MOST_BYTES", "Replay", "write_replay"]
 
 MOST_BYTES = 10_000_000
 """Size that no page exceeds: of longer runs it shows fewer samples a second."""
 
-_SCRIPTS = ("packing.js", "run.js", "scene.js", "chart.js", "card.js", "player.js")
+# In the order in which one needs another; on the page they are one script.
+_SCRIPTS = (
+    "packing.mjs",
+    "words.mjs",
+    "link.mjs",
+    "run.mjs",
+    "forces.mjs",
+    "scene.mjs",
+    "chart.mjs",
+    "panel.mjs",
+    "player.mjs",
+    "main.mjs",
+)
 _THINNING = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 _MOST_RUNS = 2
 _MOST_SAMPLES = 400_000
 # What numbers are rounded to: finer than a page shows them, in cm, rad, cm/s, rad/s, cm/s².
 _POSITION, _ANGLE, _SPEED, _TURNING, _FORCE = 0.01, 0.001, 0.05, 0.005, 0.1
-_ORDER_QUANTA = {
-    "psi_o": 0.0005,
-    "phi_o": 0.001,
-    "c_o": 0.0005,
-    "psi_v": 0.005,
-    "phi_v": 0.001,
-    "c_v": 0.05,
-    "signed_order": 0.0005,
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,16 +66,24 @@ class Replay:
     every: int
 
 
-def write_replay(path: str | os.PathLike[str], recordings: Mapping[str, Recording]) -> Replay:
+def write_replay(
+    path: str | os.PathLike[str], recordings: Recording | Mapping[str, Recording]
+) -> Replay:
     """Write one or two recordings as one HTML page that plays them and needs no network.
+
+    The page opens at the minute that tells most and plays from there at eight times real time: of
+    one run the minute in which signed order changes most (mean of its second half less mean of its
+    first), of two runs the minute in which their signed orders differ most on average. A link to
+    the page may end in ``#t=240&speed=8``, a time in s and a speed.
 
     Parameters
     ----------
     path
         The file to write.
     recordings
-        One or two recordings by the names they have on the page; two play side by side.
-        Forces are shown of those that hold contacts (``simulate(..., contacts=True)``).
+        A recording, which is named after the file; or one or two recordings by the names they have
+        on the page, where two play side by side. Forces are shown of those that hold contacts
+        (``simulate(..., contacts=True)``).
 
     Returns
     -------
@@ -85,26 +97,49 @@ def write_replay(path: str | os.PathLike[str], recordings: Mapping[str, Recordin
     OSError
         If the file cannot be written; what was there before is still there.
     """
+    if isinstance(recordings, Recording):
+        recordings = {Path(path).stem: recordings}
     if not 1 <= len(recordings) <= _MOST_RUNS:
         raise ParameterError(f"{len(recordings)} recordings are not accepted: 1 or {_MOST_RUNS}")
+    page, every = replay_page(recordings, MOST_BYTES)
+    with whole_file(path) as file:
+        file.write(page)
+    return Replay(len(page), every)
+
+
+def replay_page(
+    recordings: Mapping[str, Recording], most_bytes: int, *, plays: bool = True
+) -> tuple[bytes, int]:
+    """Return a page of at most so many bytes, and which of the samples it shows.
+
+    Raises
+    ------
+    ParameterError
+        If the recordings are too large to be shown at all.
+    """
     longest = max(len(recording) for recording in recordings.values())
     for every in _THINNING:
         if longest > every * _MOST_SAMPLES:
             continue
-        page = _page(recordings, every).encode()
-        if len(page) <= MOST_BYTES:
-            with whole_file(path) as file:
-                file.write(page)
-            return Replay(len(page), every)
+        page = _page(recordings, every, plays).encode()
+        if len(page) <= most_bytes:
+            return page, every
     raise ParameterError(
-        f"the recordings do not fit a page of {MOST_BYTES} bytes, not even one in {_THINNING[-1]} "
+        f"the recordings do not fit a page of {most_bytes} bytes, not even one in {_THINNING[-1]} "
         "samples: record fewer boats or a shorter run"
     )
 
 
-def _page(recordings: Mapping[str, Recording], every: int) -> str:
-    runs = [_run(name, recording, every) for name, recording in recordings.items()]
-    style, script = _read("replay.css"), "\n".join(map(_read, _SCRIPTS))
+def _page(recordings: Mapping[str, Recording], every: int, plays: bool) -> str:
+    time_s, words = telling_minute(list(recordings.values()))
+    quantities = shown_quantities(list(recordings.values()))
+    facts = {
+        "runs": [_run(name, each, every, quantities) for name, each in recordings.items()],
+        "quantities": [each.facts() for each in quantities],
+        "moment": {"time_s": time_s, "words": words},
+        "plays": plays,
+    }
+    style, script = _read("replay.css"), _script()
     parts = {
         "title": html.escape(" and ".join(recordings)),
         "policy": "; ".join(
@@ -119,7 +154,7 @@ def _page(recordings: Mapping[str, Recording], every: int) -> str:
         ),
         "style": style,
         "script": script,
-        "runs": _as_script_content(runs),
+        "facts": _as_script_content(facts),
     }
     # One pass over the template alone: nothing that a recording says is taken for a place in it.
     return re.sub(r"\{\{(\w+)\}\}", lambda match: parts[match[1]], _read("page.html"))
@@ -128,6 +163,13 @@ def _page(recordings: Mapping[str, Recording], every: int) -> str:
 @cache
 def _read(name: str) -> str:
     return resources.files("flockenv.replay").joinpath(name).read_text("utf-8")
+
+
+@cache
+def _script() -> str:
+    """Return the modules as one: without the lines that import and the words that export."""
+    modules = "\n".join(map(_read, _SCRIPTS))
+    return re.sub(r"^(?:import .*;\n|export )", "", modules, flags=re.MULTILINE)
 
 
 def _digest(source: str) -> str:
@@ -140,7 +182,9 @@ def _as_script_content(value: Any) -> str:
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
-def _run(name: str, recording: Recording, every: int) -> dict[str, Any]:
+def _run(
+    name: str, recording: Recording, every: int, quantities: list[ShownQuantity]
+) -> dict[str, Any]:
     parameters = recording.parameters
     return {
         "name": name,
@@ -149,13 +193,14 @@ def _run(name: str, recording: Recording, every: int) -> dict[str, Any]:
         "parameters": {key: str(value) for key, value in parameters.to_dict().items()},
         "boats": parameters.n_boats,
         "leaders": parameters.n_leaders,
-        "target": parameters.target,
+        # Without leaders nobody heads for it.
+        "target": parameters.target if parameters.n_leaders else None,
         "bw_s": parameters.bw_s,
         "lengths": _lengths(parameters),
         "phases": PHASES.tolist(),
         "samples": len(recording),
         "every": every,
-        "data": _series(recording, every),
+        "data": _series(recording, every, quantities),
     }
 
 
@@ -170,7 +215,7 @@ def _lengths(parameters: FlockParameters) -> dict[str, float | None]:
     }
 
 
-def _series(recording: Recording, every: int) -> str:
+def _series(recording: Recording, every: int, quantities: list[ShownQuantity]) -> str:
     shown = slice(None, None, every)
     packer = Packer()
     packer.add("time_s", recording.time_s[shown], 0.0005)
@@ -182,20 +227,13 @@ def _series(recording: Recording, every: int) -> str:
     packer.add("heading", pose[..., 2], _ANGLE)
     packer.add("speed_cm_s", np.hypot(velocity[..., 0], velocity[..., 1]), _SPEED)
     packer.add("turning_rate", velocity[..., 2], _TURNING)
-    for key, quantum in _ORDER_QUANTA.items():
-        values = _order(recording, key)[shown]
+    for quantity in quantities:
+        values = quantity.of(recording)[shown]
         if np.isfinite(values).all():
-            packer.add(key, values, quantum)
+            packer.add(quantity.key, values, quantity.quantum)
     if recording.contacts is not None:
         _add_contacts(packer, recording, recording.contacts, every)
     return packer.text()
-
-
-def _order(recording: Recording, key: str) -> NDArray[np.float64]:
-    if key == "signed_order":
-        return recording.order.signed_order(recording.parameters.target)
-    values: NDArray[np.float64] = getattr(recording.order, key)
-    return values
 
 
 def _add_contacts(

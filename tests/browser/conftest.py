@@ -6,12 +6,17 @@ import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import flockenv
 from flockenv.replay import write_replay
 
 SIZE = (1366, 768)
+OUTER_CM = 90.0
+"""Of the pool of `scene`."""
+LAST_DIGIT = 0.0056
+"""Numbers with two decimals, and what they were rounded to in the page."""
 
 
 @pytest.fixture(scope="session")
@@ -40,13 +45,14 @@ def chromium() -> Iterator:
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     service = Service(program("CHROMEDRIVER", "chromedriver"))
     driver = webdriver.Chrome(options=options, service=service)
-    width, height = SIZE
-    driver.execute_cdp_cmd(
-        "Emulation.setDeviceMetricsOverride",
-        {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False},
-    )
+    resize(driver, *SIZE)
     yield driver
     driver.quit()
+
+
+def resize(driver, width: int, height: int) -> None:
+    metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500}
+    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
 
 
 @pytest.fixture(scope="session")
@@ -69,20 +75,64 @@ def pages(law, damped, tmp_path_factory) -> Path:
 
 
 @pytest.fixture
-def open_page(chromium) -> Callable[[Path], "ReplayPage"]:
-    return lambda path: ReplayPage(chromium, path)
+def open_page(chromium) -> Callable[..., "ReplayPage"]:
+    def opened(path: Path, *, size: tuple[int, int] = SIZE, rests: bool = True) -> ReplayPage:
+        resize(chromium, *size)
+        page = ReplayPage(chromium, path.as_uri())
+        if rests and page.state() == "true":
+            page.rest()
+        return page
+
+    return opened
+
+
+@pytest.fixture
+def page(open_page, pages) -> "ReplayPage":
+    return open_page(pages / "one.html")
+
+
+@pytest.fixture
+def pair(open_page, pages) -> "ReplayPage":
+    return open_page(pages / "two.html")
+
+
+@pytest.fixture
+def open_link(chromium) -> Callable[[Path, str], "ReplayPage"]:
+    def opened(path: Path, fragment: str) -> ReplayPage:
+        resize(chromium, *SIZE)
+        return ReplayPage(chromium, path.as_uri() + fragment)
+
+    return opened
 
 
 class ReplayPage:
-    def __init__(self, driver, path: Path) -> None:
+    def __init__(self, driver, address: str) -> None:
         self.driver = driver
         # Installed for these tests alone: nothing of it may be needed to collect them.
         from selenium.webdriver.support.ui import WebDriverWait
 
         driver.get_log("browser")
         driver.get_log("performance")
-        driver.get(path.as_uri())
+        # From one fragment of a page to another nothing would be loaded.
+        driver.get("about:blank")
+        driver.get(address)
         WebDriverWait(driver, 30).until(lambda _: self.state())
+
+    def rest(self) -> None:
+        """Pause at the beginning, in real time."""
+        self.script("""
+            if (player.playing) {
+              player.toggle();
+            }
+            player.controls.speed.value = 1;
+            player.seek(player.begin)""")
+        self.settle()
+
+    def is_playing(self) -> bool:
+        return self.find("#play").get_attribute("aria-label") == "Pause"
+
+    def link(self) -> str:
+        return self.script("return location.hash")
 
     def actions(self):
         from selenium.webdriver.common.action_chains import ActionChains
@@ -145,10 +195,31 @@ class ReplayPage:
             "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done))"
         )
 
-    def pixels(self, run: int, x_cm: float, y_cm: float, outer_cm: float) -> tuple[float, float]:
+    def sample(self, recording: flockenv.Recording) -> int:
+        """The recording's sample that is shown."""
+        sample = np.searchsorted(recording.time_s, self.time() + 1e-6, side="right") - 1
+        return min(int(sample), len(recording) - 1)
+
+    def check(self, recording: flockenv.Recording, run: int = 0) -> None:
+        """Check the numbers around a run's picture against its recording."""
+        k, order = self.sample(recording), recording.order
+        signed = order.signed_order(recording.parameters.target)
+        assert self.number(".time", run) == pytest.approx(recording.time_s[k], abs=0.051)
+        assert self.number(".psi", run) == pytest.approx(order.psi_o[k], abs=LAST_DIGIT)
+        assert self.number(".phi", run) == pytest.approx(order.phi_o[k], abs=LAST_DIGIT)
+        assert self.number(".signed", run) == pytest.approx(signed[k], abs=LAST_DIGIT)
+        phase = self.find(".phase.now", run).get_attribute("data-phase")
+        assert phase == recording.phase[k]
+
+    def place_of(self, recording: flockenv.Recording, boat: int) -> tuple[float, float]:
+        """Where a boat is on the first run's canvas."""
+        x, y, _ = recording.pose[self.sample(recording), boat]
+        return self.pixels(0, x, y)
+
+    def pixels(self, run: int, x_cm: float, y_cm: float) -> tuple[float, float]:
         """Where a point of the pool is on a run's canvas."""
         size = self.find("canvas", run).size
-        scale = min(size["width"], size["height"]) * (0.5 - 0.022) / outer_cm
+        scale = min(size["width"], size["height"]) * (0.5 - 0.022) / OUTER_CM
         return size["width"] / 2 + x_cm * scale, size["height"] / 2 - y_cm * scale
 
     def color(self, run: int, x: float, y: float) -> tuple[int, ...]:

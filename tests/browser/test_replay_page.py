@@ -1,4 +1,4 @@
-"""Law: a replay shows what the recording says, does what is clicked, and asks no network."""
+"""Law: a replay shows what the recording says, and asks no network."""
 
 import dataclasses
 import json
@@ -9,45 +9,10 @@ import pytest
 
 import flockenv
 from flockenv.replay import MOST_BYTES, write_replay
+from flockenv.replay import page as replay_page
+from flockenv.replay.quantities import ShownQuantity
 
 pytestmark = pytest.mark.browser
-
-OUTER_CM = 90.0
-NORMAL, LEADER, FORCE = (0x00, 0x72, 0xB2), (0xF0, 0xA2, 0x02), (0xC2, 0x18, 0x5B)
-LAST_DIGIT = 0.0051
-
-
-@pytest.fixture
-def page(open_page, pages):
-    return open_page(pages / "one.html")
-
-
-@pytest.fixture
-def pair(open_page, pages):
-    return open_page(pages / "two.html")
-
-
-def sample(page, recording: flockenv.Recording) -> int:
-    return int(np.searchsorted(recording.time_s, page.time() + 1e-6, side="right")) - 1
-
-
-def check_numbers(page, recording: flockenv.Recording, run: int = 0) -> None:
-    k = min(sample(page, recording), len(recording) - 1)
-    signed = recording.order.signed_order(recording.parameters.target)
-    assert page.number(".time", run) == pytest.approx(recording.time_s[k], abs=0.051)
-    assert page.number(".psi", run) == pytest.approx(
-        recording.order.psi_o[k], abs=LAST_DIGIT + 5e-4
-    )
-    assert page.number(".phi", run) == pytest.approx(
-        recording.order.phi_o[k], abs=LAST_DIGIT + 1e-3
-    )
-    assert page.number(".signed", run) == pytest.approx(signed[k], abs=LAST_DIGIT + 5e-4)
-    assert page.text(".phase.now", run) == recording.phase[k]
-
-
-def place_of(page, recording: flockenv.Recording, boat: int) -> tuple[float, float]:
-    x, y, _ = recording.pose[sample(page, recording), boat]
-    return page.pixels(0, x, y, OUTER_CM)
 
 
 def test_it_opens_without_a_network_or_a_complaint(page, law):
@@ -78,86 +43,22 @@ def test_its_policy_forbids_the_network(page):
 
 
 def test_scrubbing_shows_the_recordings_numbers(page, law):
-    check_numbers(page, law)
+    page.check(law)
     seen = set()
     for share in (0.1, 0.33, 0.5, 0.77, 0.95):
         page.click_at("#scrub", share)
         assert page.time() == pytest.approx(share * 120.0, abs=3.0)
-        check_numbers(page, law)
+        page.check(law)
         seen.add(page.text(".psi", 0))
     assert len(seen) > 2
-
-
-def test_play_keeps_real_time_and_pauses(page, law):
-    page.click("#play")
-    assert page.find("#play").get_attribute("aria-label") == "Pause"
-    time.sleep(1.5)
-    page.click("#play")
-    stopped = page.time()
-    assert 1.0 <= stopped <= 3.0
-    time.sleep(0.3)
-    assert page.time() == stopped
-    check_numbers(page, law)
-
-
-def test_speed(page):
-    page.choose("#speed", "16")
-    page.click("#play")
-    time.sleep(1.5)
-    page.click("#play")
-    assert 16.0 <= page.time() <= 48.0
-
-
-def test_it_stops_at_the_end_and_begins_again(page):
-    page.press("END")
-    assert page.time() == 120.0
-    page.click("#play")
-    time.sleep(0.3)
-    assert page.time() < 5.0
-
-
-def test_steps_and_keys(page, law):
-    page.click("#forward")
-    page.settle()
-    assert page.time() == 0.1
-    page.press("ARROW_RIGHT", "ARROW_RIGHT")
-    assert page.time() == 0.3
-    page.press("ARROW_LEFT")
-    assert page.time() == 0.2
-    page.click("#back")
-    page.settle()
-    assert page.time() == 0.1
-    page.press("+")
-    assert page.find("#speed").get_attribute("value") == "2"
-    page.press("HOME")
-    assert page.time() == 0.0
-    page.script("document.activeElement.blur()")
-    page.press(" ")
-    assert page.find("#play").get_attribute("aria-label") == "Pause"
-    page.press(" ")
-    assert page.find("#play").get_attribute("aria-label") == "Play"
-    check_numbers(page, law)
-
-
-def test_boats_are_drawn_where_they_are(page, law):
-    page.choose("#trails", "0")
-    page.click("#forces")
-    for share in (0.2, 0.6):
-        page.click_at("#scrub", share)
-        page.press("ARROW_LEFT")
-        for boat, (x, y, heading) in enumerate(law.pose[sample(page, law)]):
-            # Towards the stern there is no direction mark.
-            stern = (x - 4 * np.cos(heading), y - 4 * np.sin(heading))
-            color = page.color(0, *page.pixels(0, *stern, OUTER_CM))
-            assert color == (LEADER if boat < 2 else NORMAL)
 
 
 def test_hovering_tells_a_boats_numbers(page, law):
     page.click_at("#scrub", 0.6)
     page.press("ARROW_LEFT")
-    k = sample(page, law)
+    k = page.sample(law)
     for boat in (0, 7):
-        page.point_at(0, *place_of(page, law, boat))
+        page.point_at(0, *page.place_of(law, boat))
         assert page.text(".card .head", 0).split()[:2] == ["boat", str(boat)]
         assert ("leader" in page.text(".card .head", 0)) == (boat < 2)
         x, y, heading = law.pose[k, boat]
@@ -181,44 +82,18 @@ def test_hovering_tells_a_boats_numbers(page, law):
 
 
 def test_a_click_keeps_a_boats_numbers(page, law):
-    page.point_at(0, *place_of(page, law, 3))
+    page.point_at(0, *page.place_of(law, 3))
     page.actions().click().perform()
     page.point_at(0, 5, 300)
     page.click_at("#scrub", 0.9)
     assert page.text(".card .head", 0) == "boat 3"
     page.press("ARROW_LEFT")
-    x = law.pose[sample(page, law), 3, 0]
+    x = law.pose[page.sample(law), 3, 0]
     assert page.number("dd[data-number='x']", 0) == pytest.approx(x, abs=0.056)
     page.press("]")
     assert page.text(".card .head", 0) == "boat 4"
     page.press("ESCAPE")
     assert not page.find(".card", 0).is_displayed()
-
-
-def test_forces_are_drawn_where_hulls_touch(page, law):
-    counts = law.contacts.count
-    ends = np.cumsum(counts)
-    strong = [
-        (k, c)
-        for k in range(400, 1200)
-        for c in range(ends[k] - counts[k], ends[k])
-        if 10.0 < law.contacts.force[c] < 60.0
-    ]
-    k, c = strong[len(strong) // 2]
-    page.script("player.seek(arguments[0])", law.time_s[k])
-    page.settle()
-    place = page.pixels(0, *map(float, law.contacts.point_cm[c]), OUTER_CM)
-    assert page.color(0, *place) == FORCE
-    page.click("#forces")
-    page.settle()
-    assert page.color(0, *place) != FORCE
-
-
-def test_trails_can_be_switched_off(page):
-    page.press("END")
-    with_trails = page.picture(".run canvas")
-    page.choose("#trails", "0")
-    assert page.picture(".run canvas") != with_trails
 
 
 def test_the_chart_follows_and_leads(page, law):
@@ -228,13 +103,26 @@ def test_the_chart_follows_and_leads(page, law):
     width = page.find("#overview").size["width"]
     assert page.time() == pytest.approx(120.0 * (0.5 * width - 40) / (width - 50), abs=0.5)
     assert page.picture("#overview") != before
-    check_numbers(page, law)
+    page.check(law)
     for key in ("psi_o", "psi_v", "c_v"):
         page.choose("#quantity", key)
-        value = getattr(law.order, key)[sample(page, law)]
+        value = getattr(law.order, key)[page.sample(law)]
         decimals = len(page.text("#legend b").partition(".")[2])
         shown = page.number("#legend b")
         assert shown == pytest.approx(value, abs=0.5 * 10.0**-decimals + 0.03)
+
+
+def test_a_quantity_that_is_new_is_charted(open_page, law, tmp_path, monkeypatch):
+    milling = ShownQuantity("milling", "milling", "", None, 3, lambda run: run.order.psi_o / 2)
+    shown = replay_page.shown_quantities
+    monkeypatch.setattr(replay_page, "shown_quantities", lambda runs: [*shown(runs), milling])
+    write_replay(tmp_path / "new.html", law)
+    page = open_page(tmp_path / "new.html")
+    assert page.driver.title == "new – flockenv replay"
+    page.script("player.seek(60)")
+    page.choose("#quantity", "milling")
+    assert page.text("#legend").startswith("milling")
+    assert page.number("#legend b") == pytest.approx(law.order.psi_o[600] / 2, abs=1e-3)
 
 
 def test_two_runs_side_by_side(pair, law, damped):
@@ -242,17 +130,17 @@ def test_two_runs_side_by_side(pair, law, damped):
     assert pair.find(".run[data-run='0']").rect["y"] == pair.find(".run[data-run='1']").rect["y"]
     pair.click_at("#scrub", 0.5)
     pair.press("ARROW_LEFT")
-    check_numbers(pair, law, 0)
-    check_numbers(pair, damped, 1)
+    pair.check(law, 0)
+    pair.check(damped, 1)
     assert law.order.psi_o[600] != damped.order.psi_o[600]
-    pair.point_at(0, *place_of(pair, law, 4))
+    pair.point_at(0, *pair.place_of(law, 4))
     heads = [pair.text(".card .head", run) for run in (0, 1)]
     assert heads == ["boat 4", "boat 4"]
     # The shorter run stays at its end.
     pair.press("END")
     assert pair.time() == 120.0
     assert pair.number(".time", 1) == 90.0
-    check_numbers(pair, damped, 1)
+    pair.check(damped, 1)
 
 
 def test_recorded_words_are_not_run(open_page, law, tmp_path):
@@ -308,4 +196,4 @@ def test_an_hour_opens_at_once_and_scrubs_smoothly(open_page, scene, tmp_path):
         return (performance.now() - begin) / 100"""
     assert page.script(source) < 40.0
     page.click_at("#scrub", 0.7)
-    check_numbers(page, run)
+    page.check(run)

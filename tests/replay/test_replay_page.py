@@ -51,9 +51,10 @@ def test_nothing_is_loaded_and_only_its_own_script_runs(tmp_path):
     assert re.findall(r"https?:|//[a-z]+\.|@import|url\(", text) == []
     policy = re.search(r'Content-Security-Policy" content="([^"]*)"', text)[1]
     assert "default-src 'none'" in policy
-    script = re.search(r"<script>(.*?)</script>", text, re.DOTALL)[1]
+    script = re.search(r'<script type="module">(.*?)</script>', text, re.DOTALL)[1]
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     assert f"script-src 'sha256-{digest}'" in policy
+    assert re.findall(r"^(?:import|export)\b.*", script, re.MULTILINE) == []
 
 
 def test_words_cannot_leave_their_place(tmp_path):
@@ -63,6 +64,15 @@ def test_words_cannot_leave_their_place(tmp_path):
     assert text.count("</script>") == 2
     assert "<b>" not in text
     assert text.count("class Player") == 1
+
+
+def test_a_recording_is_named_after_its_file(tmp_path):
+    run = flockenv.simulate(SCENE, 7, 1.0)
+    write_replay(tmp_path / "evening.html", run)
+    write_replay(tmp_path / "named.html", {"evening": run})
+    pages = [(tmp_path / f"{name}.html").read_bytes() for name in ("evening", "named")]
+    assert b"<title>evening " in pages[0]
+    assert pages[0] == pages[1]
 
 
 @pytest.mark.parametrize("count", [0, 3])

@@ -1,14 +1,12 @@
 // The picture of a run at one time: water, walls, trails, boats, forces.
 
+import { drawForces } from "./forces.mjs";
+
 const MARGIN = 0.022;
 const TRAIL_PIECES = 6;
-/** Force, in cm/s², that is drawn as long as a hull is wide: what one motor presses with is 15. */
-const FORCE_OF_A_HULL = 30;
-/** Weaker ones are left out. */
-const LEAST_FORCE = 0.5;
 
-/** Colours of the style sheet, by name. */
-function colors() {
+/** Colors of the style sheet, by name. */
+export function colors() {
   const style = getComputedStyle(document.documentElement);
   const names = ["ground", "wall", "water", "grid", "ink", "faint", "target", "normal", "mark",
     "leader", "leader-mark", "outline", "force", "pin", "run-1", "run-2", "window", "track"];
@@ -16,7 +14,7 @@ function colors() {
 }
 
 /** Fits a canvas' pixels to its place on the page; returns its context in CSS pixels. */
-function fitted(canvas) {
+export function fitted(canvas) {
   const ratio = window.devicePixelRatio || 1;
   const width = Math.round(canvas.clientWidth * ratio);
   const height = Math.round(canvas.clientHeight * ratio);
@@ -28,15 +26,19 @@ function fitted(canvas) {
   return context;
 }
 
-class Scene {
+export class Scene {
   constructor(canvas, run) {
     this.canvas = canvas;
     this.run = run;
     this.poses = [];
   }
 
-  draw(time, { trailSeconds, forces, boat, palette }) {
+  /** `forceScale` is the force drawn as long as a hull is wide; null draws none. */
+  draw(time, { trailSeconds, forceScale, boat, palette }) {
     this.poses = this.run.posesAt(time);
+    if (this.canvas.clientWidth === 0) {
+      return;
+    }
     this.context = fitted(this.canvas);
     this.palette = palette;
     this.#look();
@@ -47,8 +49,8 @@ class Scene {
     for (let k = this.run.boats - 1; k >= 0; k -= 1) {
       this.#boat(k);
     }
-    if (forces && this.run.hasForces) {
-      this.#forces(this.run.sampleAt(time));
+    if (forceScale !== null && this.run.hasForces) {
+      drawForces(this, this.run.sampleAt(time), forceScale);
     }
     if (boat !== null) {
       this.#ring(boat);
@@ -77,17 +79,18 @@ class Scene {
 
   /** Where a boat is on the canvas. */
   place(boat) {
-    return this.#pixel(this.poses[boat][0], this.poses[boat][1]);
+    return this.pixel(this.poses[boat][0], this.poses[boat][1]);
   }
 
-  #pixel(x, y) {
+  /** Where a point in cm is on the canvas. */
+  pixel = (x, y) => {
     return [
       this.middle[0] + (x - this.center[0]) * this.scale,
       this.middle[1] - (y - this.center[1]) * this.scale,
     ];
-  }
+  };
 
-  /** Centre and scale: the whole pool, or all boats in open water. */
+  /** Center and scale: the whole pool, or all boats in open water. */
   #look() {
     const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
     this.middle = [width / 2, height / 2];
@@ -126,7 +129,7 @@ class Scene {
     if (inner > 0) {
       this.#disc(inner * this.scale, palette.wall);
       this.#disc(inner * this.scale - wall, palette.ground);
-      if (inner * this.scale >= 24) {
+      if (run.target !== null && inner * this.scale >= 24) {
         this.#arrow(0.66 * inner * this.scale);
       }
     }
@@ -135,7 +138,7 @@ class Scene {
   #disc(radius, color) {
     const { context } = this;
     context.beginPath();
-    context.arc(...this.#pixel(0, 0), Math.max(radius, 0), 0, 2 * Math.PI);
+    context.arc(...this.pixel(0, 0), Math.max(radius, 0), 0, 2 * Math.PI);
     context.fillStyle = color;
     context.fill();
   }
@@ -149,13 +152,13 @@ class Scene {
     context.beginPath();
     const first = (center, size) => Math.ceil((center - size / 2 / this.scale) / spacing) * spacing;
     for (let x = first(this.center[0], width); ; x += spacing) {
-      const px = Math.round(this.#pixel(x, 0)[0]) + 0.5;
+      const px = Math.round(this.pixel(x, 0)[0]) + 0.5;
       if (px > width) break;
       context.moveTo(px, 0);
       context.lineTo(px, height);
     }
     for (let y = first(this.center[1], height); ; y += spacing) {
-      const py = Math.round(this.#pixel(0, y)[1]) + 0.5;
+      const py = Math.round(this.pixel(0, y)[1]) + 0.5;
       if (py < 0) break;
       context.moveTo(0, py);
       context.lineTo(width, py);
@@ -167,7 +170,7 @@ class Scene {
   #arrow(radius) {
     const { context, palette } = this;
     const turn = this.run.target === "cw" ? 1 : -1;
-    const [x, y] = this.#pixel(0, 0);
+    const [x, y] = this.pixel(0, 0);
     const head = Math.max(radius / 6, 5);
     const start = -0.5 * Math.PI + turn * 0.25 * Math.PI;
     const end = -0.5 * Math.PI + turn * 1.8 * Math.PI;
@@ -200,7 +203,7 @@ class Scene {
         context.globalAlpha = ((isBold ? 0.9 : 0.42) * (piece + 1)) / TRAIL_PIECES;
         context.beginPath();
         for (let k = from; k <= to; k += 1) {
-          context.lineTo(...this.#pixel(position.at(k, 2 * boat), position.at(k, 2 * boat + 1)));
+          context.lineTo(...this.pixel(position.at(k, 2 * boat), position.at(k, 2 * boat + 1)));
         }
         if (piece === TRAIL_PIECES - 1) {
           context.lineTo(...this.place(boat));
@@ -240,33 +243,6 @@ class Scene {
       context.fill();
     }
     context.restore();
-  }
-
-  /** A bar across each contact, as long as its force is strong (above two motors' as its root). */
-  #forces(sample) {
-    const { context, palette, run } = this;
-    const { hull_radius_cm: radius } = run.lengths;
-    context.lineCap = "round";
-    for (const { i, along, angle, force } of run.contacts(sample)) {
-      if (force < LEAST_FORCE) {
-        continue;
-      }
-      const [x, y, heading] = this.poses[i];
-      const [nx, ny] = [Math.cos(angle), Math.sin(angle)];
-      const px = x + along * Math.cos(heading) - radius * nx;
-      const py = y + along * Math.sin(heading) - radius * ny;
-      const share = force / FORCE_OF_A_HULL;
-      const half = radius * Math.min(share < 1 ? share : Math.sqrt(share), 3);
-      const ends = [1, -1].map((side) => this.#pixel(px + side * half * nx, py + side * half * ny));
-      for (const [color, extra] of [[palette.mark, 2], [palette.force, 0]]) {
-        context.strokeStyle = color;
-        context.lineWidth = Math.max(0.3 * radius * this.scale, 2) + extra;
-        context.beginPath();
-        context.moveTo(...ends[0]);
-        context.lineTo(...ends[1]);
-        context.stroke();
-      }
-    }
   }
 
   #ring(boat) {

@@ -1,13 +1,28 @@
-// The clock of the page: playing, scrubbing, keys, and what is shown.
+// The clock of the page: playing, scrubbing, keys, the link, and what is shown.
 
-const SPEEDS = [0.25, 0.5, 1, 2, 4, 8, 16, 32, 64];
+import { Chart } from "./chart.mjs";
+import { forceScale } from "./forces.mjs";
+import { linkTo, readLink } from "./link.mjs";
+import { Panel } from "./panel.mjs";
+import { span } from "./run.mjs";
+import { colors } from "./scene.mjs";
+import { caption, element, fixed } from "./words.mjs";
+
+export const SPEEDS = [0.25, 0.5, 1, 2, 4, 8, 16, 32, 64];
+const FIRST_SPEED = 8;
 const FAR = 10;
+const MINUTE = 60;
+/** How often, in ms, the link follows while the page plays: browsers refuse more than some 100 in half a minute. */
+const LINK_EVERY = 1000;
 
-class Player {
-  constructor(runs) {
+export class Player {
+  /** `moment` in s is where the page opens unless its link says otherwise. */
+  constructor(runs, quantities, moment) {
     this.runs = runs;
+    this.quantities = quantities;
     this.controls = Object.fromEntries(
-      ["play", "back", "forward", "scrub", "clock", "speed", "trails", "forces", "quantity", "legend"]
+      ["play", "back", "forward", "scrub", "clock", "speed", "trails", "boat", "forces", "quantity", "legend",
+        "help", "keys", "letters", "status"]
         .map((id) => [id, document.getElementById(id)]),
     );
     [this.begin, this.end] = span(runs);
@@ -15,6 +30,7 @@ class Player {
     this.playing = false;
     this.hovered = this.pinned = null;
     this.palette = colors();
+    this.forceScale = forceScale(runs);
     this.panels = runs.map((run, place) => new Panel(run, place, runs.length > 1));
     document.getElementById("runs").append(...this.panels.map((panel) => panel.root));
     document.body.classList.toggle("pair", runs.length > 1);
@@ -25,6 +41,8 @@ class Player {
     ];
     this.#fill();
     this.#listen();
+    this.seek(moment);
+    this.#followLink();
     this.show();
   }
 
@@ -37,31 +55,41 @@ class Player {
   }
 
   #fill() {
-    const { speed, quantity, scrub, forces } = this.controls;
-    SPEEDS.forEach((each) => speed.append(new Option(`${each} ×`, each, each === 1, each === 1)));
-    QUANTITIES.forEach(({ key, words, unit }) => {
-      const isThere = this.runs.some((run) => run.columns.has(key));
-      quantity.append(new Option(unit ? `${words} (${unit})` : words, key));
-      quantity.lastChild.disabled = !isThere;
-    });
+    const { speed, quantity, scrub, forces, boat } = this.controls;
+    speed.append(...SPEEDS.map((each) => new Option(`${each} ×`, each)));
+    speed.value = FIRST_SPEED;
+    quantity.append(...this.quantities.map((each) => new Option(caption(each), each.key)));
     [scrub.min, scrub.max, scrub.value] = [this.begin, this.end, this.begin];
+    boat.append(new Option("none", ""));
+    for (let k = 0; k < this.#mostBoats(); k += 1) {
+      boat.append(new Option(this.runs.some((run) => k < run.leaders) ? `${k}, leader` : k, k));
+    }
     if (!this.runs.some((run) => run.hasForces)) {
       forces.checked = false;
       forces.disabled = true;
-      document.getElementById("forces-label").title = "These recordings hold no contacts: record them with contacts=True";
+      const label = document.getElementById("forces-label");
+      label.append(" (not recorded)");
+      label.title = "Runs recorded with contacts=True show them";
     }
     fillParameters(this.runs);
   }
 
+  #mostBoats() {
+    return Math.max(...this.runs.map((run) => run.boats));
+  }
+
   #listen() {
-    const { play, back, forward, scrub, speed, trails, forces, quantity } = this.controls;
+    const { play, back, forward, scrub, speed, trails, boat, forces, quantity, help, keys } = this.controls;
     play.addEventListener("click", () => this.toggle());
     back.addEventListener("click", () => this.step(-1));
     forward.addEventListener("click", () => this.step(1));
     scrub.addEventListener("input", () => this.seek(Number(scrub.value)));
-    for (const each of [speed, trails, forces, quantity]) {
+    help.addEventListener("click", () => keys.showModal());
+    for (const each of [trails, forces, quantity]) {
       each.addEventListener("change", () => this.show());
     }
+    speed.addEventListener("change", () => { this.#writeLink(); this.show(); });
+    boat.addEventListener("change", () => this.pin(boat.value === "" ? null : Number(boat.value)));
     for (const panel of this.panels) {
       const boatAt = (event) => {
         const box = panel.canvas.getBoundingClientRect();
@@ -70,12 +98,12 @@ class Player {
       panel.canvas.addEventListener("pointermove", (event) => this.hover(boatAt(event)));
       panel.canvas.addEventListener("pointerleave", () => this.hover(null));
       panel.canvas.addEventListener("click", (event) => {
-        const boat = boatAt(event);
-        this.pinned = boat === this.pinned ? null : boat;
-        this.show();
+        const chosen = boatAt(event);
+        this.pin(chosen === this.pinned ? null : chosen);
       });
     }
     document.addEventListener("keydown", (event) => this.#key(event));
+    window.addEventListener("hashchange", () => this.#followLink());
     new ResizeObserver(() => this.show()).observe(document.getElementById("runs"));
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
       this.palette = colors();
@@ -84,29 +112,36 @@ class Player {
   }
 
   #key(event) {
-    if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("select, summary")) {
+    const { keys, letters, forces } = this.controls;
+    if (keys.open || event.ctrlKey || event.metaKey || event.altKey || event.target.closest("select, summary")) {
       return;
     }
     if (event.key === " " && event.target.closest("button, input[type=checkbox]")) {
       return;
     }
-    const actions = {
+    const named = {
       " ": () => this.toggle(),
       ArrowLeft: () => (event.shiftKey ? this.seek(this.time - FAR) : this.step(-1)),
       ArrowRight: () => (event.shiftKey ? this.seek(this.time + FAR) : this.step(1)),
+      PageUp: () => this.seek(this.time + MINUTE),
+      PageDown: () => this.seek(this.time - MINUTE),
       Home: () => this.seek(this.begin),
       End: () => this.seek(this.end),
+      Escape: () => this.pin(null),
+    };
+    const characters = {
       "+": () => this.#choose("speed", 1),
       "-": () => this.#choose("speed", -1),
       t: () => this.#choose("trails", 1, true),
-      f: () => this.controls.forces.click(),
-      "]": () => this.#pin(1),
-      "[": () => this.#pin(-1),
-      Escape: () => { this.pinned = null; this.show(); },
+      f: () => forces.click(),
+      "]": () => this.#pinNext(1),
+      "[": () => this.#pinNext(-1),
+      "?": () => keys.showModal(),
     };
-    if (event.key in actions) {
+    const action = named[event.key] ?? (letters.checked ? characters[event.key.toLowerCase()] : undefined);
+    if (action) {
       event.preventDefault();
-      actions[event.key]();
+      action();
     }
   }
 
@@ -115,19 +150,26 @@ class Player {
     const count = select.options.length;
     const next = select.selectedIndex + by;
     select.selectedIndex = around ? next % count : Math.min(Math.max(next, 0), count - 1);
-    this.show();
+    select.dispatchEvent(new Event("change"));
   }
 
-  #pin(by) {
-    const boats = Math.max(...this.runs.map((run) => run.boats));
-    this.pinned = this.pinned === null ? 0 : (this.pinned + by + boats) % boats;
+  #pinNext(by) {
+    const boats = this.#mostBoats();
+    const first = by > 0 ? 0 : boats - 1;
+    this.pin(this.pinned === null ? first : (this.pinned + by + boats) % boats);
+  }
+
+  /** Keeps the card of a boat; null lets it go. */
+  pin(boat) {
+    this.pinned = boat;
+    this.controls.boat.value = boat ?? "";
     this.show();
   }
 
   hover(boat) {
     if (boat !== this.hovered) {
       this.hovered = boat;
-      this.show();
+      this.request();
     }
   }
 
@@ -141,6 +183,7 @@ class Player {
       requestAnimationFrame((now) => this.#tick(now));
     } else {
       this.time = this.#sampled(this.time);
+      this.#writeLink();
     }
     this.show();
   }
@@ -162,6 +205,7 @@ class Player {
   seek(time) {
     this.time = this.#sampled(Math.min(Math.max(time, this.begin), this.end));
     this.before = performance.now();
+    this.#writeLink();
     this.request();
   }
 
@@ -179,23 +223,52 @@ class Player {
     this.before = now;
     this.time = Math.min(this.time + passed * this.speed, this.end);
     this.playing = this.time < this.end;
+    this.#writeLink();
     this.show();
     requestAnimationFrame((next) => this.#tick(next));
   }
 
+  /** Does what the page's link says, and tells what of it cannot be done. */
+  #followLink() {
+    const asked = readLink(location.hash, { begin: this.begin, end: this.end, speeds: SPEEDS });
+    this.controls.status.textContent = asked.ignored.join(" ");
+    if (asked.speed !== null) {
+      this.controls.speed.value = asked.speed;
+    }
+    if (asked.time !== null) {
+      this.seek(asked.time);
+    }
+  }
+
+  /** Brings the page's link up to date, soon: not more often than browsers allow. */
+  #writeLink() {
+    // A page inside another one, such as a notebook, has no address of its own.
+    if (location.protocol === "about:") {
+      return;
+    }
+    this.linkDue ??= setTimeout(() => {
+      this.linkDue = undefined;
+      history.replaceState(null, "", linkTo(this.time, this.speed));
+    }, LINK_EVERY);
+  }
+
   show() {
     cancelAnimationFrame(this.requested);
-    this.requested = null;
+    this.requested = undefined;
     const { play, scrub, clock, trails, forces, quantity } = this.controls;
     const options = {
       trailSeconds: Number(trails.value),
-      forces: forces.checked,
+      forceScale: forces.checked ? this.forceScale : null,
       boat: this.boat,
       palette: this.palette,
     };
-    this.panels.forEach((panel) => panel.show(this.time, options));
-    const chosen = QUANTITIES.find(({ key }) => key === quantity.value);
-    this.charts.forEach((chart) => chart.draw(this.time, chosen, this.palette));
+    for (const panel of this.panels) {
+      panel.show(this.time, options);
+    }
+    const chosen = this.quantities.find(({ key }) => key === quantity.value);
+    for (const chart of this.charts) {
+      chart.draw(this.time, chosen, this.palette);
+    }
     play.classList.toggle("playing", this.playing);
     play.setAttribute("aria-label", this.playing ? "Pause" : "Play");
     scrub.value = this.time;
@@ -209,14 +282,14 @@ class Player {
     const parts = this.runs.map((run, place) => {
       const part = element("span", "value");
       if (this.runs.length > 1) {
-        part.append(element("span", `swatch run-${place + 1}`));
+        part.title = run.name;
+        part.append(element("span", `swatch run-${place + 1}`), element("span", "unseen", `${run.name} `));
       }
       const value = run.value(chosen.key, run.sampleAt(this.time));
       part.append(element("b", "", fixed(value, chosen.decimals)));
       return part;
     });
-    const words = chosen.unit ? `${chosen.words} (${chosen.unit})` : chosen.words;
-    this.controls.legend.replaceChildren(element("span", "", words), ...parts);
+    this.controls.legend.replaceChildren(element("span", "", caption(chosen)), ...parts);
   }
 }
 
@@ -233,21 +306,3 @@ function fillParameters(runs) {
   }
   document.getElementById("parameters").append(table);
 }
-
-async function start() {
-  const facts = JSON.parse(document.getElementById("data").textContent);
-  const runs = await Promise.all(facts.map(async (fact) => new Run(fact, await unpack(fact.data))));
-  window.player = new Player(runs);
-  const thinned = Math.max(...runs.map((run) => run.every));
-  document.getElementById("detail-caption").textContent = "shaded: analysis window";
-  document.getElementById("note").textContent =
-    (thinned > 1 ? `Every ${thinned}th sample is shown. ` : "") +
-    "Between samples boats are drawn on straight lines. Click a boat to keep its numbers. " +
-    "Keys: space, ← →, shift ← →, + −, t trails, f forces, [ ] boats.";
-  document.body.dataset.ready = "true";
-}
-
-start().catch((error) => {
-  document.getElementById("note").textContent = `This page is damaged, or the browser too old: ${error.message}`;
-  document.body.dataset.ready = "failed";
-});

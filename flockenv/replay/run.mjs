@@ -1,17 +1,6 @@
 // A run: what the recording says at each of its samples, and in between for the picture.
 
-/** The series a chart can show: name in the data, words, unit, decimals, range (none: the data's). */
-const QUANTITIES = [
-  { key: "signed_order", words: "order towards target", decimals: 2, range: [-1, 1] },
-  { key: "psi_o", words: "order Ψₒ", decimals: 2, range: [0, 1] },
-  { key: "phi_o", words: "angle φₒ", unit: "rad", decimals: 2, range: [-Math.PI, Math.PI] },
-  { key: "c_o", words: "correlation Cₒ", decimals: 2 },
-  { key: "psi_v", words: "velocity Ψᵥ", unit: "cm/s", decimals: 1 },
-  { key: "phi_v", words: "angle φᵥ", unit: "rad", decimals: 2, range: [-Math.PI, Math.PI] },
-  { key: "c_v", words: "correlation Cᵥ", unit: "cm²/s²", decimals: 0 },
-];
-
-class Run {
+export class Run {
   constructor(facts, columns) {
     Object.assign(this, facts);
     this.columns = columns;
@@ -83,6 +72,16 @@ class Run {
     return this.columns.get("in_analysis_window").at(sample) === 1;
   }
 
+  /** A leader's rudder command at a sample; undefined where it was not recorded. */
+  rudder(boat, sample) {
+    return boat < this.leaders ? this.columns.get("rudder")?.at(sample, boat) : undefined;
+  }
+
+  /** A leader's orientation φ in the local frame, in rad. */
+  orientation(boat, sample) {
+    return boat < this.leaders ? this.columns.get("leader_phi")?.at(sample, boat) : undefined;
+  }
+
   /** Contacts that carried a force at a sample: boats, foot along the core, direction, force. */
   contacts(sample) {
     const found = [];
@@ -98,4 +97,9 @@ class Run {
     }
     return found;
   }
+}
+
+/** First and last time of all runs. */
+export function span(runs) {
+  return [Math.min(...runs.map((run) => run.time[0])), Math.max(...runs.map((run) => run.time.at(-1)))];
 }

@@ -1,8 +1,12 @@
 // A series against time, for every run, with a cursor that a click or drag moves.
 
+import { span } from "./run.mjs";
+import { fitted } from "./scene.mjs";
+import { clockText, plain, roundNumber } from "./words.mjs";
+
 const EDGE = { left: 40, right: 10, top: 8, bottom: 20 };
 
-class Chart {
+export class Chart {
   /** `reach` in s shows that much before and after the cursor; null shows the whole run. */
   constructor(canvas, runs, reach, seek) {
     Object.assign(this, { canvas, runs, reach, kept: null });
@@ -46,6 +50,9 @@ class Chart {
 
   draw(time, quantity, palette) {
     [this.width, this.height] = [this.canvas.clientWidth, this.canvas.clientHeight];
+    if (this.width === 0) {
+      return;
+    }
     this.#choose(time);
     this.range = quantity.range ?? valueRange(this.runs, quantity.key);
     const context = fitted(this.canvas);
@@ -63,7 +70,7 @@ class Chart {
     context.stroke();
   }
 
-  /** The whole run changes with the size, the series and the colours only. */
+  /** The whole run changes with the size, the series and the colors only. */
   #drawKept(context, quantity, palette) {
     const key = JSON.stringify([this.canvas.width, this.canvas.height, quantity.key, palette]);
     if (this.kept?.key !== key) {
@@ -83,15 +90,15 @@ class Chart {
     if (this.reach !== null) {
       this.#windows(context, palette);
     }
-    this.#axes(context, quantity, palette);
-    this.runs.forEach((run, place) => {
+    this.#axes(context, palette);
+    for (const [place, run] of this.runs.entries()) {
       const column = run.columns.get(quantity.key);
       if (column) {
         const dense = (run.length * (this.to - this.from)) / (run.time.at(-1) - run.time[0] || 1);
         const draw = dense > 2 * this.width ? drawBand : drawLine;
         draw(this, context, run, column, palette[`run-${place + 1}`]);
       }
-    });
+    }
   }
 
   #windows(context, palette) {
@@ -113,7 +120,7 @@ class Chart {
     }
   }
 
-  #axes(context, quantity, palette) {
+  #axes(context, palette) {
     const { width, height } = this;
     context.font = `11px ${getComputedStyle(document.body).fontFamily}`;
     context.lineWidth = 1;
@@ -139,11 +146,6 @@ class Chart {
   }
 }
 
-/** First and last time of all runs. */
-function span(runs) {
-  return [Math.min(...runs.map((run) => run.time[0])), Math.max(...runs.map((run) => run.time.at(-1)))];
-}
-
 const ranges = new Map();
 
 function valueRange(runs, key) {
@@ -162,33 +164,17 @@ function valueRange(runs, key) {
 }
 
 /** Round numbers between two, about so many. */
-function ticks(low, high, count, roundStep = roundNumber) {
+export function ticks(low, high, count, roundStep = roundNumber) {
   const step = roundStep((high - low) / count);
   const first = Math.ceil(low / step - 1e-9);
   const last = Math.floor(high / step + 1e-9);
   return Array.from({ length: last - first + 1 }, (_, k) => (first + k) * step);
 }
 
-/** The next of 1, 2, 5, 10, 20 … */
-function roundNumber(least) {
-  const decade = 10 ** Math.floor(Math.log10(least));
-  return [1, 2, 5, 10].find((each) => each * decade >= least) * decade;
-}
-
 /** The next round number of seconds, minutes or hours. */
-function timeStep(least) {
+export function timeStep(least) {
   const steps = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600];
   return least < 1 ? roundNumber(least) : steps.find((step) => step >= least) ?? 3600 * roundNumber(least / 3600);
-}
-
-function plain(value) {
-  return String(Number(value.toPrecision(6))).replace("-", "−");
-}
-
-/** Minutes and seconds. */
-function clockText(time) {
-  const seconds = Math.round(time);
-  return seconds < 60 ? `${plain(time)} s` : `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
 }
 
 function drawLine(chart, context, run, column, color) {
@@ -235,6 +221,8 @@ function drawBand(chart, context, run, column, color) {
   context.lineWidth = 1.4;
   context.lineJoin = "round";
   context.beginPath();
-  means.forEach((point) => context.lineTo(...point));
+  for (const point of means) {
+    context.lineTo(...point);
+  }
   context.stroke();
 }

@@ -1,7 +1,7 @@
 // Undoes packing.py: base64, gzip, planes of bytes, folded signs, differences along time.
 
 /** One series: `values[channel * length + sample] * quantum`. */
-class Column {
+export class Column {
   constructor(header, values) {
     this.length = header.length;
     this.channels = header.channels;
@@ -15,7 +15,7 @@ class Column {
 }
 
 /** Returns the series of a run by name. */
-async function unpack(text) {
+export async function unpack(text) {
   const bytes = await gunzip(Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)));
   const end = 4 + new DataView(bytes.buffer).getUint32(0, true);
   const headers = JSON.parse(new TextDecoder().decode(bytes.subarray(4, end)));

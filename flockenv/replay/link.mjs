@@ -1,0 +1,34 @@
+// The part of the page's address that tells what is shown: `#t=240&speed=8`.
+
+/**
+ * What a fragment asks for: `time` in s and `speed`, null where it says nothing, and `ignored`, a sentence
+ * for each part that cannot be followed.
+ */
+export function readLink(fragment, { begin, end, speeds }) {
+  const asked = { time: null, speed: null, ignored: [] };
+  for (const [key, text] of new URLSearchParams(fragment.replace(/^#/, ""))) {
+    const value = text.trim() === "" ? NaN : Number(text);
+    if (key === "t" && value >= begin && value <= end) {
+      asked.time = value;
+    } else if (key === "speed" && speeds.includes(value)) {
+      asked.speed = value;
+    } else {
+      asked.ignored.push(refusal(key, text, { begin, end, speeds }));
+    }
+  }
+  return asked;
+}
+
+function refusal(key, text, { begin, end, speeds }) {
+  const accepted = {
+    t: `t is a time from ${begin} to ${end} s`,
+    speed: `speed is one of ${speeds.join(", ")}`,
+  };
+  const shown = text.length > 40 ? `${text.slice(0, 40)}…` : text;
+  return `The link's ${key}=${shown} is ignored: ${accepted[key] ?? "a link may hold t and speed"}.`;
+}
+
+/** The fragment for a time in s and a speed. */
+export function linkTo(time, speed) {
+  return `#t=${Number(time.toFixed(1))}&speed=${speed}`;
+}

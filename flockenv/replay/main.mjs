@@ -1,0 +1,24 @@
+// Begins the page: unpacks its runs, shows them at the moment that tells most, and plays.
+
+import { unpack } from "./packing.mjs";
+import { Player } from "./player.mjs";
+import { Run } from "./run.mjs";
+
+async function start() {
+  const { runs: facts, quantities, moment, plays } = JSON.parse(document.getElementById("data").textContent);
+  const runs = await Promise.all(facts.map(async (fact) => new Run(fact, await unpack(fact.data))));
+  window.player = new Player(runs, quantities, moment.time_s);
+  const thinned = Math.max(...runs.map((run) => run.every));
+  document.getElementById("note").textContent =
+    `${moment.words} ${thinned > 1 ? `Every ${thinned}th sample is shown. ` : ""}` +
+    "Between samples boats are drawn on straight lines. Click a boat to keep its numbers.";
+  document.body.dataset.ready = "true";
+  if (plays && !matchMedia("(prefers-reduced-motion: reduce)").matches) {
+    window.player.toggle();
+  }
+}
+
+start().catch((error) => {
+  document.getElementById("note").textContent = `This page is damaged, or the browser too old: ${error.message}`;
+  document.body.dataset.ready = "failed";
+});

@@ -1,0 +1,181 @@
+// What a run's panel says in words: its legend around the picture, and a card with a boat's numbers.
+
+import { Scene } from "./scene.mjs";
+import { element, fixed, wrapped } from "./words.mjs";
+
+/** What the motors do in each phase of their cycle. */
+const PHASES = {
+  fw: ["forward", "the motors drive the boats forward"],
+  nop1: ["drift", "the motors are off after driving forward"],
+  bw: ["backward", "the motors drive the boats backward"],
+  nop2: ["drift", "the motors are off after driving backward"],
+};
+
+/** A run's canvas with everything around it. */
+export class Panel {
+  constructor(run, place, several) {
+    this.run = run;
+    this.root = element("article", "run");
+    this.root.dataset.run = String(place);
+    const title = element("h2");
+    const swatch = element("span", `swatch run-${place + 1}`);
+    title.append(...(several ? [swatch] : []), element("span", "name", run.name),
+      element("span", "faint facts", `seed ${run.seed} · flockenv ${run.version}`));
+    this.picture = element("div", "picture");
+    this.canvas = element("canvas");
+    this.canvas.setAttribute("role", "img");
+    this.canvas.setAttribute("aria-label", `Boats of ${run.name}; keys [ and ] choose a boat`);
+    this.card = element("div", "card");
+    this.card.hidden = true;
+    this.picture.append(this.#clock(), this.#scene(), this.canvas, this.#order(), this.#sense(), this.card);
+    this.root.append(title, this.picture);
+    this.scene = new Scene(this.canvas, run);
+  }
+
+  #clock() {
+    const corner = element("div", "corner top left");
+    this.time = element("div", "time");
+    const phases = element("div", "phases");
+    this.phases = this.run.phases.map((name) => {
+      const [words, meaning] = PHASES[name] ?? [name, ""];
+      const phase = element("span", "phase", words);
+      phase.dataset.phase = name;
+      phase.title = `${name}, ${this.run.parameters[`${name}_s`]} s: ${meaning}`;
+      return phase;
+    });
+    const heading = element("span", "faint", "motors");
+    heading.title = "The phase of the cycle that the motors of all boats go through together";
+    phases.append(heading, ...this.phases);
+    corner.append(this.time, phases);
+    return corner;
+  }
+
+  #scene() {
+    const { run } = this;
+    const corner = element("div", "corner top right");
+    if (run.target !== null) {
+      corner.append(element("div", "target", run.target === "cw" ? "target ↻ cw" : "target ↺ ccw"));
+    }
+    const backward = element("div", "", `backward ${fixed(run.bw_s, 2)} s`);
+    backward.title = "bw_s, how long the boats back up in each cycle: the longer, the noisier";
+    corner.append(backward);
+    if (run.leaders > 0) {
+      const leaders = element("div");
+      leaders.append(element("span", "swatch leader"), `${run.leaders} leader${run.leaders > 1 ? "s" : ""}`);
+      corner.append(leaders);
+    }
+    this.forceKey = element("div", "force-key");
+    this.forceKey.title = "Bars lie on the boat that is pushed, in proportion to the force; one that ends in an arrowhead would be longer";
+    this.forceBar = element("span", "force-bar");
+    this.forceWords = element("span");
+    this.forceKey.append(this.forceBar, this.forceWords);
+    corner.append(this.forceKey);
+    return corner;
+  }
+
+  #order() {
+    const corner = element("div", "corner bottom left");
+    this.phi = element("span", "phi");
+    this.psi = element("span", "psi");
+    this.psiBar = element("div", "bar");
+    const [angle, line, gauge] = [element("div"), element("div"), element("div", "gauge")];
+    angle.append("angle φₒ ", this.phi, " rad");
+    line.append("order Ψₒ ", this.psi);
+    gauge.append(this.psiBar);
+    corner.append(angle, line, gauge);
+    return corner;
+  }
+
+  /** Order towards the target; without leaders there is none, and the sense of rotation stands in its place. */
+  #sense() {
+    const hasTarget = this.run.target !== null;
+    this.signedKey = hasTarget ? "signed_order" : "rotation";
+    const corner = element("div", "corner bottom right");
+    this.signed = element("span", "signed");
+    this.signedBar = element("div", "bar");
+    const [line, gauge] = [element("div"), element("div", "gauge middle")];
+    line.append(hasTarget ? "towards target " : "clockwise ", this.signed);
+    gauge.append(this.signedBar);
+    corner.append(line, gauge);
+    return corner;
+  }
+
+  show(time, options) {
+    const { run } = this;
+    const sample = run.sampleAt(time);
+    this.root.dataset.sample = String(sample);
+    this.scene.draw(time, options);
+    this.time.textContent = `${fixed(run.time[sample], 1)} s`;
+    const phase = run.phase(sample);
+    for (const each of this.phases) {
+      each.classList.toggle("now", each.dataset.phase === phase);
+    }
+    this.psi.textContent = fixed(run.value("psi_o", sample), 2);
+    this.phi.textContent = fixed(run.value("phi_o", sample), 2, true);
+    const signed = run.value(this.signedKey, sample);
+    this.signed.textContent = fixed(signed, 2, true);
+    this.psiBar.style.width = `${100 * (run.value("psi_o", sample) ?? 0)}%`;
+    this.signedBar.style.width = `${50 * Math.abs(signed ?? 0)}%`;
+    this.signedBar.style.left = `${signed < 0 ? 50 + 50 * signed : 50}%`;
+    this.#showForceKey(options.forceScale);
+    this.#showCard(options.boat, sample);
+  }
+
+  #showForceKey(forceScale) {
+    this.forceKey.hidden = forceScale === null || !this.run.hasForces;
+    if (!this.forceKey.hidden) {
+      this.forceBar.style.width = `${2 * this.run.lengths.hull_radius_cm * this.scene.scale}px`;
+      this.forceWords.textContent = `force ${forceScale} cm/s²`;
+    }
+  }
+
+  #showCard(boat, sample) {
+    const isShown = boat !== null && boat < this.run.boats;
+    this.card.hidden = !isShown;
+    if (!isShown) {
+      return;
+    }
+    const head = element("div", "head", `boat ${boat}`);
+    head.append(element("span", "faint", boat < this.run.leaders ? " leader" : ""));
+    const list = element("dl");
+    for (const [name, value, unit, meaning] of boatNumbers(this.run, boat, sample)) {
+      const answer = element("dd", "", value);
+      answer.dataset.number = name;
+      const term = element("dt", "", name);
+      term.title = meaning ?? "";
+      list.append(term, answer, element("dd", "faint", unit));
+    }
+    this.card.replaceChildren(head, list);
+    const [x, y] = this.scene.place(boat);
+    const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
+    const beside = x > width / 2 ? x - this.card.offsetWidth - 18 : x + 18;
+    this.card.style.left = `${Math.max(beside, 2)}px`;
+    this.card.style.top = `${Math.min(Math.max(y - 30, 2), height - this.card.offsetHeight - 2)}px`;
+  }
+}
+
+/** A boat's numbers at a sample: name, value, unit and, where the name says too little, its meaning. */
+export function boatNumbers(run, boat, sample) {
+  const at = (name, channel) => run.columns.get(name).at(sample, channel);
+  const numbers = [
+    ["x", fixed(at("position_cm", 2 * boat), 1), "cm"],
+    ["y", fixed(at("position_cm", 2 * boat + 1), 1), "cm"],
+    ["heading", fixed(wrapped(at("heading", boat)), 2), "rad"],
+    ["speed", fixed(at("speed_cm_s", boat), 1), "cm/s"],
+    ["turning", fixed(at("turning_rate", boat), 2, true), "rad/s"],
+  ];
+  if (boat < run.leaders) {
+    numbers.push(
+      ["φ", fixed(run.orientation(boat, sample), 2, true), "rad",
+        "orientation in the local frame: 0 points outward, +π/2 clockwise"],
+      ["rudder", fixed(run.rudder(boat, sample), 2, true), "",
+        "from −1 to 1; positive turns counter-clockwise when moving forward"],
+    );
+  }
+  if (run.hasForces) {
+    const touching = run.contacts(sample).filter(({ i, j }) => i === boat || j === boat);
+    const strongest = Math.max(0, ...touching.map(({ force }) => force));
+    numbers.push(["contacts", String(touching.length), ""], ["strongest push", fixed(strongest, 1), "cm/s²"]);
+  }
+  return numbers;
+}

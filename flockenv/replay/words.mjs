@@ -1,0 +1,48 @@
+// Numbers, angles and times as the page writes them, and elements that hold them.
+
+/** An element with a class and text. */
+export function element(kind, className = "", text = "") {
+  const made = document.createElement(kind);
+  made.className = className;
+  made.textContent = text;
+  return made;
+}
+
+/** A number with a real minus sign; what rounds to zero has no sign, what is not there is a dash. */
+export function fixed(value, decimals, plus = false) {
+  if (value === undefined || Number.isNaN(value)) {
+    return "–";
+  }
+  const text = value.toFixed(decimals);
+  if (Number(text) === 0) {
+    return text.replace("-", "");
+  }
+  return text.startsWith("-") ? text.replace("-", "−") : (plus ? "+" : "") + text;
+}
+
+/** A number as short as it is, with a real minus sign. */
+export function plain(value) {
+  return String(Number(value.toPrecision(6))).replace("-", "−");
+}
+
+/** An angle within half a turn. */
+export function wrapped(angle) {
+  return Math.atan2(Math.sin(angle), Math.cos(angle));
+}
+
+/** Seconds, or minutes and seconds, for an axis. */
+export function clockText(time) {
+  const seconds = Math.round(time);
+  return seconds < 60 ? `${plain(time)} s` : `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
+}
+
+/** A quantity's words with its unit. */
+export function caption({ words, unit }) {
+  return unit ? `${words} (${unit})` : words;
+}
+
+/** The next of 1, 2, 5, 10, 20 … */
+export function roundNumber(least) {
+  const decade = 10 ** Math.floor(Math.log10(least));
+  return [1, 2, 5, 10].find((each) => each * decade >= least * (1 - 1e-9)) * decade;
+}

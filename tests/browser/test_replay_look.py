@@ -1,0 +1,165 @@
+"""Law: what a replay draws has the place, length and color of what it shows; no words are cut."""
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv.replay import write_replay
+
+pytestmark = pytest.mark.browser
+
+NORMAL, LEADER, FORCE = (0x00, 0x72, 0xB2), (0xF0, 0xA2, 0x02), (0xC2, 0x18, 0x5B)
+
+
+def test_boats_are_drawn_where_they_are(page, law):
+    page.choose("#trails", "0")
+    page.click("#forces")
+    for share in (0.2, 0.6):
+        page.click_at("#scrub", share)
+        page.press("ARROW_LEFT")
+        for boat, (x, y, heading) in enumerate(law.pose[page.sample(law)]):
+            # Towards the stern there is no direction mark.
+            stern = (x - 4 * np.cos(heading), y - 4 * np.sin(heading))
+            color = page.color(0, *page.pixels(0, *stern))
+            assert color == (LEADER if boat < 2 else NORMAL)
+
+
+def test_forces_are_drawn_where_hulls_touch(page, law):
+    counts = law.contacts.count
+    ends = np.cumsum(counts)
+    strong = [
+        (k, c)
+        for k in range(400, 1200)
+        for c in range(ends[k] - counts[k], ends[k])
+        if 10.0 < law.contacts.force[c] < 60.0
+    ]
+    k, c = strong[len(strong) // 2]
+    page.script("player.seek(arguments[0])", law.time_s[k])
+    page.settle()
+    # A bar begins where hulls touch, and lies on the boat that is pushed.
+    inside = law.contacts.point_cm[c] + 1.0 * law.contacts.normal[c]
+    place = page.pixels(0, *map(float, inside))
+    assert page.color(0, *place) == FORCE
+    page.click("#forces")
+    page.settle()
+    assert page.color(0, *place) != FORCE
+
+
+def test_a_forces_drawn_length_tells_its_size(page, law):
+    page.choose("#trails", "0")
+    hull_px = 2 * law.parameters.boat_radius_cm * page.script("return player.panels[0].scene.scale")
+    scale = page.script("return player.forceScale")
+    assert page.text(".force-key", 0) == f"force {scale:g} cm/s²"
+    assert page.find(".force-bar", 0).size["width"] == pytest.approx(hull_px, abs=1.0)
+    sample = np.repeat(np.arange(len(law)), law.contacts.count)
+    points = law.contacts.point_cm
+    # Bars of other contacts must not lie across.
+    near = [
+        np.hypot(*(points[sample == k] - p).T) < 40.0 for k, p in zip(sample, points, strict=True)
+    ]
+    alone = np.flatnonzero([each.sum() == 1 for each in near])
+    lengths = []
+    for force in np.linspace(0.5, 3.0, 6) * scale:
+        c = alone[np.abs(law.contacts.force[alone] - force).argmin()]
+        page.script("player.seek(arguments[0]); player.show()", law.time_s[sample[c]])
+        begin = np.array(page.pixels(0, *map(float, points[c])))
+        along = np.arange(0.0, 6.0 * hull_px, 0.5)[:, None] * law.contacts.normal[c] * (1, -1)
+        drawn = 0.5 * sum(page.color(0, *place) == FORCE for place in begin + along)
+        lengths.append((float(law.contacts.force[c]), drawn))
+    for force, length in lengths:
+        assert length == pytest.approx(hull_px * force / scale, abs=2.0)
+
+
+def test_trails_can_be_switched_off(page):
+    page.press("END")
+    with_trails = page.picture(".run canvas")
+    page.choose("#trails", "0")
+    assert page.picture(".run canvas") != with_trails
+
+
+def test_phases_are_words_with_a_title(page, law):
+    words = [each.text for each in page.driver.find_elements("css selector", ".phase")]
+    assert words == ["forward", "drift", "backward", "drift"]
+    assert page.text(".phases").startswith("motors")
+    for name in ("fw", "nop1", "bw", "nop2"):
+        title = page.find(f".phase[data-phase={name}]").get_attribute("title")
+        assert title.startswith(f"{name}, {getattr(law.parameters, name + '_s')} s: the motors")
+
+
+@pytest.mark.parametrize("size", [(1440, 900), (768, 1024), (390, 844)])
+@pytest.mark.parametrize("name", ["one", "two", "long"])
+def test_no_words_are_cut(open_page, law, pages, tmp_path, name, size):
+    path = pages / f"{name}.html"
+    if name == "long":
+        path = tmp_path / "long.html"
+        write_replay(path, {"a_name_without_a_space_" * 8: law, "many words in a name " * 9: law})
+    page = open_page(path, size=size)
+    page.script("player.pin(0); document.getElementById('about').open = true")
+    page.settle()
+    cut = page.script("""
+        const isCut = (each) => each.clientWidth > 0 && each.scrollWidth > each.clientWidth + 1
+            || each.getBoundingClientRect().right > innerWidth + 1
+            || getComputedStyle(each).textOverflow === "ellipsis";
+        return [...document.querySelectorAll("main *")]
+            .filter((each) => !each.closest(".unseen, select, svg, table"))
+            .filter((each) => each.innerText?.trim() && isCut(each))
+            .map((each) => each.outerHTML)""")
+    assert cut == []
+    assert page.script("return document.documentElement.scrollWidth") <= size[0]
+    sizes = page.script("""
+        return [...document.querySelectorAll("main *")].filter((each) => each.innerText?.trim())
+            .map((each) => parseFloat(getComputedStyle(each).fontSize))""")
+    assert min(sizes) >= 11
+
+
+def test_nothing_is_aimed_at_without_leaders(open_page, scene, tmp_path):
+    run = flockenv.simulate(scene.replace(n_leaders=0, pool="500-boats"), 7, 30.0)
+    write_replay(tmp_path / "free.html", run)
+    page = open_page(tmp_path / "free.html")
+    assert "target" not in page.text("main")
+    assert page.find("#quantity").get_attribute("value") == "rotation"
+    page.press("END")
+    assert page.number(".signed", 0) == pytest.approx(run.order.rotation()[-1], abs=0.0056)
+    assert "clockwise" in page.text(".bottom.right", 0)
+    arrow = page.script("return player.palette.target")
+    target = tuple(int(arrow[k : k + 2], 16) for k in (1, 3, 5))
+    assert target not in ring(page)
+    led = flockenv.simulate(scene.replace(pool="500-boats"), 7, 1.0)
+    write_replay(tmp_path / "led.html", {"led": led, "free": run})
+    pair = open_page(tmp_path / "led.html")
+    assert target in ring(pair)
+    assert [
+        len(pair.driver.find_elements("css selector", f"[data-run='{k}'] .target")) for k in (0, 1)
+    ] == [1, 0]
+
+
+def ring(page) -> set[tuple[int, ...]]:
+    """Colors where a run's arrow is, in the middle of its pool."""
+    scale = page.script("return player.panels[0].scene.scale")
+    inner = page.script("return player.runs[0].lengths.inner_radius_cm")
+    x, y = page.script("return player.panels[0].scene.pixel(0, 0)")
+    angles = np.linspace(0, 2 * np.pi, 40)
+    radius = 0.66 * inner * scale
+    return {page.color(0, x + radius * np.cos(a), y + radius * np.sin(a)) for a in angles}
+
+
+def test_runs_have_colors_of_their_own(pair):
+    for scheme in ("light", "dark"):
+        features = [{"name": "prefers-color-scheme", "value": scheme}]
+        pair.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
+        palette = pair.script("return player.palette")
+        runs = [lab(palette[f"run-{k}"]) for k in (1, 2)]
+        boats = [lab(palette[name]) for name in ("normal", "leader", "force")]
+        pair.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+        assert np.linalg.norm(runs[0] - runs[1]) > 60
+        for run in runs:
+            assert min(np.linalg.norm(run - boat) for boat in boats) > 35
+
+
+def lab(color: str) -> np.ndarray:
+    """A color #rrggbb in CIELAB, where 2 is just seen."""
+    rgb = np.array([int(color[k : k + 2], 16) for k in (1, 3, 5)]) / 255
+    linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+    to_xyz = [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]
+    x, y, z = np.cbrt(np.array(to_xyz) @ linear / [0.9505, 1.0, 1.089])
+    return np.array([116 * y - 16, 500 * (x - y), 200 * (y - z)])

@@ -1,0 +1,58 @@
+// Law: a bar is as long as its force is large, on a round scale that the page's runs share.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { barOf, drawForces, forceScale, LONGEST } from "../../../flockenv/replay/forces.mjs";
+import { runOf } from "./runs.js";
+
+test("twice the force is twice the bar", () => {
+  for (const force of [3, 7, 29]) {
+    assert.equal(barOf(2 * force, 10).widths, 2 * barOf(force, 10).widths);
+  }
+  assert.equal(barOf(10, 10).widths, 1);
+});
+
+test("a bar that would be too long is cut, and says so", () => {
+  assert.deepEqual(barOf(10 * LONGEST, 10), { widths: LONGEST, cut: false });
+  assert.deepEqual(barOf(10 * LONGEST + 1, 10), { widths: LONGEST, cut: true });
+});
+
+test("a force too weak to be seen has no bar", () => {
+  assert.equal(barOf(0.1, 10).widths, 0);
+});
+
+test("the scale is a round number near what nine in ten forces stay below", () => {
+  const forces = Array.from({ length: 101 }, (_, k) => k);
+  assert.equal(forceScale([runOf(forces)]), 50);
+  assert.equal(forceScale([runOf([1, 1, 1]), runOf(forces)]), 50);
+});
+
+test("there is a scale without contacts", () => {
+  assert.equal(forceScale([]), 1);
+  assert.equal(forceScale([runOf([])]), 1);
+});
+
+/** A canvas that writes down the rectangles it is asked for. */
+function written() {
+  const rectangles = [];
+  const ignore = () => undefined;
+  const context = {
+    save: ignore, restore: ignore, translate: ignore, rotate: ignore,
+    beginPath: ignore, moveTo: ignore, lineTo: ignore, fill: ignore,
+    fillRect: (x, _y, width) => rectangles.push([context.fillStyle, x, width]),
+  };
+  return { context, rectangles };
+}
+
+test("what is drawn has the length of the force from the point where it presses, on each boat", () => {
+  const { context, rectangles } = written();
+  const run = runOf([6, 12, 24]);
+  const scene = {
+    context, run, scale: 2, poses: run.posesAt(0.5), pixel: (x, y) => [x, y],
+    palette: { mark: "white", force: "red" },
+  };
+  drawForces(scene, 1, 6);
+  const bars = rectangles.filter(([color]) => color === "red");
+  // A hull of radius 5 cm at 2 pixels a cm is 20 pixels wide; two boats are pushed, then one by a wall.
+  assert.deepEqual(bars, [["red", 0, 20], ["red", 0, 20], ["red", 0, 40]]);
+});

@@ -1,0 +1,69 @@
+// Law: a run says what the recording says at a sample, and straight lines in between.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { boatNumbers } from "../../../flockenv/replay/panel.mjs";
+import { Run, span } from "../../../flockenv/replay/run.mjs";
+import { column, runOf } from "./runs.js";
+
+test("the last sample at or before a time", () => {
+  const run = runOf();
+  assert.deepEqual([-1, 0, 0.4, 0.5, 0.9, 1, 7].map((time) => run.sampleAt(time)), [0, 0, 0, 1, 1, 2, 2]);
+});
+
+test("poses between samples lie on straight lines", () => {
+  const run = runOf();
+  assert.deepEqual(run.posesAt(0), [[0, 0, 0], [30, 0, 1]]);
+  assert.deepEqual(run.posesAt(0.25), [[5, 2, 0.25], [30, 0, 1]]);
+  assert.deepEqual(run.posesAt(99), [[20, 8, 1], [30, 0, 1]]);
+});
+
+test("contacts belong to their sample", () => {
+  const run = runOf();
+  assert.deepEqual(run.contacts(0), []);
+  assert.deepEqual(run.contacts(1).map(({ i, j, force }) => [i, j, force]), [[0, 1, 5], [1, -1, 20]]);
+  assert.deepEqual(run.contacts(2).map(({ force }) => force), [40]);
+});
+
+test("only leaders have a rudder and an orientation", () => {
+  const run = runOf();
+  assert.equal(run.rudder(0, 1), 0.5);
+  assert.equal(run.orientation(0, 1), 1.5);
+  assert.equal(run.rudder(1, 1), undefined);
+});
+
+test("a leader's card tells its rudder and its angle, a normal boat's does not", () => {
+  const told = (boat) => Object.fromEntries(boatNumbers(runOf(), boat, 1).map(([name, value]) => [name, value]));
+  assert.equal(told(0).rudder, "+0.50");
+  assert.equal(told(0).φ, "+1.50");
+  assert.equal(told(0).contacts, "1");
+  assert.equal(told(1)["strongest push"], "20.0");
+  assert.equal(told(1).rudder ?? told(1).φ, undefined);
+});
+
+test("a recording without rudders or contacts leaves them open", () => {
+  const full = runOf();
+  const columns = new Map([...full.columns].filter(([name]) => !/contact|rudder/.test(name)));
+  const run = new Run({ boats: 2, leaders: 1, phases: ["fw"] }, columns);
+  assert.equal(run.hasForces, false);
+  assert.deepEqual(run.contacts(1), []);
+  const told = Object.fromEntries(boatNumbers(run, 0, 1));
+  assert.equal(told.rudder, "–");
+  assert.ok(!("contacts" in told));
+});
+
+test("a value is that of the sample, and undefined where there is no such series", () => {
+  assert.equal(runOf().value("psi_o", 2), 0.75);
+  assert.equal(runOf().value("milling", 2), undefined);
+});
+
+test("runs together begin with the first and end with the last", () => {
+  const later = runOf();
+  later.time = Float64Array.of(2, 3, 4);
+  assert.deepEqual(span([runOf(), later]), [0, 4]);
+});
+
+test("a column is channel after channel, in quanta", () => {
+  const each = column([1, 2, 3, 4], 0.5, 2);
+  assert.deepEqual([each.at(0), each.at(1), each.at(0, 1), each.at(1, 1)], [0.5, 1, 1.5, 2]);
+});

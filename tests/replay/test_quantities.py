@@ -1,0 +1,77 @@
+"""Law: a page charts what the recordings hold, and opens at the minute that tells most of it."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv.flock import OrderSeries
+from flockenv.replay.quantities import shown_quantities, telling_minute
+
+SCENE = flockenv.FlockParameters(n_boats=4, n_leaders=1, target="cw")
+
+
+@pytest.fixture(scope="module")
+def still() -> flockenv.Recording:
+    return flockenv.simulate(SCENE, 1, 400.0, 2.0)
+
+
+def with_signed_order(recording: flockenv.Recording, values) -> flockenv.Recording:
+    """The recording with this signed order: Ψ_o its size, φ_o along or against the target."""
+    values = np.asarray(values, float)
+    phi = np.where(values < 0, -np.pi / 2, np.pi / 2)
+    order = dataclasses.replace(recording.order, psi_o=np.abs(values), phi_o=phi)
+    return dataclasses.replace(recording, order=order)
+
+
+def test_one_run_opens_where_its_order_changes_most(still):
+    # A step at 210 s, and a smaller one at 60 s.
+    time_s = still.time_s
+    run = with_signed_order(still, np.where(time_s < 60, 0.0, np.where(time_s < 210, -0.4, 0.5)))
+    begin, words = telling_minute([run])
+    assert begin == 180.0
+    assert "180 s, the beginning of the minute in which order changes most" in words
+
+
+def test_two_runs_open_where_they_differ_most(still):
+    time_s = still.time_s
+    flat = with_signed_order(still, np.full(len(time_s), 0.5))
+    apart = with_signed_order(still, np.where(abs(time_s - 300) <= 30, -0.5, 0.5))
+    begin, words = telling_minute([flat, apart])
+    assert begin == 270.0
+    assert "differ most" in words
+    assert telling_minute([apart, flat])[0] == 270.0
+
+
+def test_of_runs_of_different_lengths_and_rates_what_they_share_counts(still):
+    short = flockenv.simulate(SCENE, 1, 100.0, 10.0)
+    time_s = still.time_s
+    run = with_signed_order(still, np.where(time_s < 300, 0.0, -1.0))
+    begin, _ = telling_minute([run, with_signed_order(short, np.linspace(0, 1, len(short)))])
+    assert begin == 40.0
+
+
+def test_without_a_minute_or_normal_boats_it_is_the_start(still):
+    brief = flockenv.simulate(SCENE, 1, 59.0)
+    assert telling_minute([brief]) == (0.0, "")
+    assert telling_minute([still, brief]) == (0.0, "")
+    alone = flockenv.simulate(SCENE.replace(n_boats=1), 1, 100.0)
+    assert telling_minute([alone]) == (0.0, "")
+
+
+def test_order_towards_the_target_comes_first_where_there_are_leaders(still):
+    free = flockenv.simulate(SCENE.replace(n_leaders=0), 1, 1.0)
+    fields = [each.name for each in dataclasses.fields(OrderSeries)]
+    keys = [each.key for each in shown_quantities([still])]
+    assert keys == ["signed_order", "rotation", *fields]
+    assert [each.key for each in shown_quantities([free])] == ["rotation", *fields]
+    assert shown_quantities([free, still])[0].key == "signed_order"
+
+
+def test_digits_follow_the_size_of_the_numbers(still):
+    quantities = {each.key: each for each in shown_quantities([still])}
+    assert quantities["psi_o"].decimals == 2
+    for quantity in quantities.values():
+        largest = np.abs(quantity.of(still)).max()
+        assert quantity.quantum <= max(largest, 1e-3) / 100
