@@ -25,8 +25,8 @@ from rich.progress import Progress
 import flockenv
 from flockenv._core import pool_radii_cm
 from flockenv._io.atomic_write import whole_file
-from flockenv.comparison import named_policy
 from flockenv.envs.observation import observation_entries, state_entries
+from flockenv.policies.registry import named_policy
 from flockenv.reproduce.style import COLORS, column_figure, paper_style
 from flockenv.runs.seeds import check_evaluation_seeds
 

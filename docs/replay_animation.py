@@ -14,7 +14,7 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.support.ui import Select, WebDriverWait
 
 import flockenv
-from flockenv.comparison import named_policy
+from flockenv.policies.registry import named_policy
 from flockenv.replay import write_replay
 
 SCENE = flockenv.FlockParameters(n_boats=27, n_leaders=4, pool="500-boats", bw_s=0.3)

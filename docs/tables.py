@@ -173,7 +173,7 @@ def other_policies() -> str:
         "no leaders": "no leaders",
         "straight ahead": "straight ahead",
         "random rudders": "random rudders",
-        "steering law, every substep": "steering law, every substep",
+        "steering law, every substep": "steering law at every substep",
         "linear-table-1.npz": "linear feedback",
     }
     body = []

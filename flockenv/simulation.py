@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import DTypeLike
@@ -11,18 +11,13 @@ from flockenv import _core
 from flockenv.errors import ParameterError
 from flockenv.flock import ContactSeries, OrderSeries
 from flockenv.parameters import FlockParameters
+from flockenv.policies.base import LeaderPolicy
+from flockenv.policies.registry import EVERY_SUBSTEP, named_policy
 from flockenv.recording import PHASES, PRECISIONS, Recording
 
 __all__ = ["LeaderPolicy", "columns_of", "sample", "simulate"]
 
 _TICKS_A_SECOND = 1e9
-
-
-class LeaderPolicy(Protocol):
-    """Anything with the ``predict`` of a stable-baselines3 policy."""
-
-    def predict(self, observation: Any, state: Any = None, episode_start: Any = None) -> Any:
-        """Return actions for observations, and the next state of a recurrent policy."""
 
 
 def simulate(
@@ -54,9 +49,10 @@ def simulate(
         Samples a second, taken at 0, 1/sample_hz, 2/sample_hz … Substeps end on samples: rates of
         which 1/dt_s is no multiple change the course of the run within its numerical error.
     policy
-        How leaders steer: None or "law" for the steering law, eq. (10), at every substep; or an
-        object whose ``predict`` maps observations (k, size) to rudders (k,), clipped to [-1, 1].
-        It observes the default layout, or that of its attributes ``observation`` and
+        How leaders steer: None or "law" for the steering law, eq. (10), at every substep; the name
+        of another policy, such as "learned" or "damped law", or the path of a policy's ``.npz``
+        file; or an object whose ``predict`` maps observations (k, size) to rudders (k,), clipped
+        to [-1, 1]. It observes the default layout, or that of its attributes ``observation`` and
         ``mirror_to_target``.
     control_hz
         Control steps a second of a policy.
@@ -76,15 +72,20 @@ def simulate(
     Raises
     ------
     ParameterError
-        For arguments out of range, boats that do not fit the pool, rudders that are NaN, and a
-        recording of more than 16 GiB; nothing is returned then.
+        For arguments out of range, unknown names of policies and pools that a policy is not made
+        for, boats that do not fit the pool, rudders that are NaN, and a recording of more than
+        16 GiB; nothing is returned then.
+    OSError
+        If a policy's file cannot be opened.
     TypeError
         For arguments of the wrong type.
     SolverError
         If the motion left its range of 1e9 (cm, cm/s, rad, rad/s).
     """
     precision = _precision(dtype)
-    if policy is None or (isinstance(policy, str) and policy == "law"):
+    if isinstance(policy, str):
+        policy = named_policy(policy, parameters.pool)()
+    if policy is None or policy == EVERY_SUBSTEP:
         kept = {"single_precision": bool(precision == np.float32), "contacts": contacts}
         columns = _core.record(parameters, seed, duration_s, sample_hz, kept, progress)
         columns["phase"] = PHASES[columns["phase"]]
@@ -94,7 +95,8 @@ def simulate(
         columns = _steered(parameters, seed, steps, policy, precision, contacts)
     else:
         raise ParameterError(
-            f"policy = {policy!r} is not accepted: None, 'law' or an object with predict"
+            f"policy = {policy!r} is not accepted: None, a policy's name or file, or an object "
+            "with predict"
         )
     return Recording(**columns, parameters=parameters, seed=int(seed), version=_core.__version__)
 

@@ -12,7 +12,7 @@ from flockenv.cli.output import check_folder
 from flockenv.cli.pools import PoolOption, pool_name, scenes
 from flockenv.cli.scene import ChangesOption, FileOption, PresetOption
 from flockenv.errors import ParameterError
-from flockenv.simulation import LeaderPolicy
+from flockenv.policies.base import LeaderPolicy
 
 __all__ = ["compare"]
 
@@ -50,8 +50,8 @@ def compare(
 
     Example: `flockenv compare --pool table-1 --policy "damped law" --set bw_s=0.4`
     """
-    from flockenv.comparison.episodes import named_policy
     from flockenv.comparison.report import ComparisonReport, report
+    from flockenv.policies.registry import named_policy
 
     found = scenes(preset, params, changes, pool)
     policies = {
@@ -90,7 +90,7 @@ def compare(
 
 def _default_policies(pool: Any) -> dict[str, Callable[[], LeaderPolicy | str]]:
     """Return what is compared unasked: what is made for a pool only where there is such."""
-    from flockenv.comparison.episodes import named_policy
+    from flockenv.policies.registry import named_policy
 
     policies = {}
     for name in DEFAULT_POLICIES:

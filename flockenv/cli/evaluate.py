@@ -62,12 +62,12 @@ def evaluate(
     Writes `card.md` and, for each pool and noise level, a folder with the tables, the picture,
     `run.toml` and the exact parameters, as `flockenv compare` does.
 
-    Example: `flockenv evaluate baselines/policies/table-1.npz --pool table-1 --leaders 3`
+    Example: `flockenv evaluate learned --pool table-1 --leaders 3`
     """
     from flockenv._io.atomic_write import whole_file
-    from flockenv.comparison.episodes import POOL_POLICIES, named_policy
     from flockenv.comparison.model_card import model_card
     from flockenv.comparison.report import ComparisonReport, report
+    from flockenv.policies.registry import POOL_POLICIES, named_policy
 
     references = list(against or (each for each in REFERENCES if each != policy))
     if policy in references:

@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 from flockenv.cli.console import console, interruptible, progress_bar, say
 from flockenv.cli.output import check_file, writable
 from flockenv.cli.scene import ChangesOption, FileOption, PresetOption, read_scene, save_scene
-from flockenv.comparison.episodes import EVERY_SUBSTEP, POLICIES, POOL_POLICIES, named_policy
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
+from flockenv.policies.base import LeaderPolicy
+from flockenv.policies.registry import EVERY_SUBSTEP, POLICIES, POOL_POLICIES, named_policy, quoted
 from flockenv.recording import Recording
-from flockenv.simulation import LeaderPolicy, simulate
+from flockenv.simulation import simulate
 
 __all__ = ["run"]
 
@@ -27,7 +28,7 @@ def run(
         str,
         typer.Option(
             help="How leaders steer: law (eq. 10 at every substep); or at 10 Hz, from what they "
-            f"observe, a policy's .npz file or one of: {', '.join([*POLICIES, *POOL_POLICIES])}."
+            f"observe, a policy's .npz file or one of: {quoted([*POLICIES, *POOL_POLICIES])}."
         ),
     ] = EVERY_SUBSTEP,
     seed: Annotated[int, typer.Option(min=0, help="Seed of placement and noise.")] = 0,
@@ -84,8 +85,6 @@ def run(
 
 
 def _policy(name: str, scene: FlockParameters) -> LeaderPolicy | str:
-    if name == EVERY_SUBSTEP:
-        return name
     try:
         return named_policy(name, scene.pool)()
     except OSError as error:

@@ -1,10 +1,8 @@
 """Leader policies against each other: seeded episodes, order by number of leaders (figure 12)."""
 
-import difflib
 import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -16,37 +14,24 @@ from flockenv import _core
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
-from flockenv.policies import (
-    RandomRudders,
-    StraightAhead,
-    load,
-)
-from flockenv.policies.laws import LAWS
-from flockenv.policies.pretrained import TUNED_GAINS, learned, tuned_law
+from flockenv.policies.base import LeaderPolicy
 from flockenv.runs.seeds import check_evaluation_seeds
-from flockenv.simulation import LeaderPolicy, simulate
+from flockenv.simulation import simulate
 
 if TYPE_CHECKING:
     import pandas as pd
 
 __all__ = [
     "CONTROL_HZ",
-    "EVERY_SUBSTEP",
     "NO_LEADERS",
     "ORDERING_TIMES",
-    "POLICIES",
-    "POOL_POLICIES",
     "QUANTITIES",
     "compare_leaders",
-    "named_policy",
     "run_episodes",
 ]
 
 NO_LEADERS = "no leaders"
 """Name under which runs without leaders are listed."""
-
-EVERY_SUBSTEP = "law"
-"""Stands for the paper's law evaluated at every substep, from the pose: what `simulate` does."""
 
 QUANTITIES = ("psi_o", "signed_order", "share_towards_target")
 """What is compared: mean Ψ_o and mean signed order of the normal boats, and the part of the time in
@@ -61,51 +46,6 @@ order."""
 
 CONTROL_HZ = 10.0
 """Control steps a second, unless the environment has another option."""
-
-POLICIES: Mapping[str, Callable[[], LeaderPolicy | str]] = {
-    **LAWS,
-    "steering law, every substep": lambda: EVERY_SUBSTEP,
-    "straight ahead": StraightAhead,
-    "random rudders": RandomRudders,
-}
-"""Policies that can be compared by name."""
-
-POOL_POLICIES: Mapping[str, Callable[[Any], LeaderPolicy]] = {
-    **{f"tuned {law}": partial(tuned_law, law) for law in TUNED_GAINS},
-    "learned": learned,
-}
-"""Policies that can be compared by name, each made for a pool."""
-
-
-def named_policy(name: str, pool: Any) -> Callable[[], LeaderPolicy | str]:
-    """Return what makes a policy: a name, or the path of a learned policy's ``.npz`` file.
-
-    Parameters
-    ----------
-    name
-        A name in `POLICIES` or `POOL_POLICIES`, or a path.
-    pool
-        The scene's pool.
-
-    Raises
-    ------
-    ParameterError
-        For unknown names, files that are no policy, and pools that a policy is not made for.
-    OSError
-        If the file cannot be opened.
-    """
-    if name in POLICIES:
-        return POLICIES[name]
-    if name in POOL_POLICIES:
-        made = POOL_POLICIES[name](pool)
-        return lambda: made
-    if name.endswith(".npz"):
-        read = load(name)
-        return lambda: read
-    names = [*POLICIES, *POOL_POLICIES]
-    near = difflib.get_close_matches(name, names, n=1)
-    hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(names)}"
-    raise ParameterError(f"{name!r} is no policy and no .npz file: {hint}")
 
 
 def compare_leaders(
@@ -130,7 +70,7 @@ def compare_leaders(
     leaders
         Numbers of leaders; 0 is run once, whatever the policies.
     policies
-        What makes each policy, by the name to list it under: `POLICIES` or a part of it, others of
+        What makes each policy, by the name to list it under: such as those of `POLICIES`, or of
         your own. Each is made anew for each number of leaders.
     seeds
         One episode each; below `flockenv.runs.seeds.FIRST_TRAINING_SEED`.

@@ -5,10 +5,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from flockenv._core import __version__
-from flockenv.comparison.episodes import EVERY_SUBSTEP
 from flockenv.comparison.report import ComparisonReport
 from flockenv.envs.observation import OBSERVATION_VERSION
 from flockenv.policies import LeaningLaw, NetworkPolicy
+from flockenv.policies.registry import EVERY_SUBSTEP
 from flockenv.statistics.intervals import CONFIDENCE
 
 __all__ = ["model_card"]

@@ -20,7 +20,7 @@ from flockenv.comparison.episodes import (
     compare_leaders,
 )
 from flockenv.parameters import FlockParameters
-from flockenv.simulation import LeaderPolicy
+from flockenv.policies.base import LeaderPolicy
 from flockenv.statistics.intervals import (
     CONFIDENCE,
     Difference,

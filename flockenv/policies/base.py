@@ -1,8 +1,8 @@
-"""What policies share that steer each leader by its own observation, whatever form it comes in."""
+"""What a policy is, and what those share that steer each leader by its own observation."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,7 +10,14 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError
 
-__all__ = ["RowPolicy"]
+__all__ = ["LeaderPolicy", "RowPolicy"]
+
+
+class LeaderPolicy(Protocol):
+    """Anything with the ``predict`` of a stable-baselines3 policy."""
+
+    def predict(self, observation: Any, state: Any = None, episode_start: Any = None) -> Any:
+        """Return actions for observations, and the next state of a recurrent policy."""
 
 
 class RowPolicy(ABC):

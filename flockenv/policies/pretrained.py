@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Mapping
-from pathlib import Path
+from importlib import resources
 from typing import Any
 
 from flockenv.errors import ParameterError
@@ -11,7 +11,10 @@ from flockenv.policies.laws import LAWS, ObservedPolicy
 from flockenv.policies.leaning_law import LeaningLaw
 from flockenv.policies.network import NetworkPolicy
 
-__all__ = ["TUNED_GAINS", "learned", "load", "tuned_law"]
+__all__ = ["LEARNED", "TUNED_GAINS", "learned", "load", "tuned_law"]
+
+LEARNED = "learned"
+"""Name of the learned leaders, which are others in each pool."""
 
 _KINDS: dict[str, type[NetworkPolicy] | type[LeaningLaw]] = {
     "network": NetworkPolicy,
@@ -29,16 +32,33 @@ TUNED_GAINS: Mapping[str, Mapping[str, Mapping[str, float]]] = {
 among 27 boats at each pool's critical noise, on training seeds."""
 
 
-def load(path: str | os.PathLike[str]) -> NetworkPolicy | LeaningLaw:
-    """Read a shipped or trained policy; nothing in the file is ever executed.
+def load(path: str | os.PathLike[str], *, pool: str | None = None) -> NetworkPolicy | LeaningLaw:
+    """Return the learned leaders of a pool, or a policy from its file.
+
+    Nothing in a file is ever executed.
+
+    Parameters
+    ----------
+    path
+        ``"learned"`` for the leaders that come with the package, or a policy's ``.npz`` file.
+    pool
+        With ``"learned"``, and then needed: the named pool that the leaders were trained in.
 
     Raises
     ------
     OSError
         If the file cannot be opened.
     ParameterError
-        If it is no policy file, is damaged, or was made for another version of the observation.
+        If the file is no policy, is damaged, or was made for another version of the observation;
+        for a pool without learned leaders.
     """
+    if path == LEARNED:
+        return learned(pool)
+    if pool is not None:
+        raise ParameterError(
+            f"pool = {pool!r} is not accepted with the file {os.fspath(path)!r}: a pool chooses "
+            f"among the policies called {LEARNED!r}"
+        )
     header, arrays = read_policy(path)
     kind = header.get("kind", "network")
     try:
@@ -61,20 +81,16 @@ def tuned_law(law: str, pool: Any) -> ObservedPolicy:
 
 
 def learned(pool: Any) -> NetworkPolicy | LeaningLaw:
-    """Return the learned leaders that ship for a named pool, from baselines/policies.
+    """Return the learned leaders that ship for a named pool.
 
     Raises
     ------
     ParameterError
-        For other pools, and where the package is not run from a checkout of the project.
+        For other pools.
     """
-    path = Path(__file__).parents[2] / "baselines" / "policies" / f"{_named(pool)}.npz"
-    if not path.is_file():
-        raise ParameterError(
-            "learned leaders come with a checkout of the project, in baselines/policies, and not "
-            "with the installed package: name the .npz file"
-        )
-    return load(path)
+    file = resources.files("flockenv.policies").joinpath("learned", f"{_named(pool)}.npz")
+    with resources.as_file(file) as path:
+        return load(path)
 
 
 def _named(pool: Any) -> str:

@@ -6,8 +6,8 @@ import numpy as np
 
 from flockenv.comparison.episodes import run_episodes
 from flockenv.parameters import FlockParameters
+from flockenv.policies.base import LeaderPolicy
 from flockenv.runs.seeds import training_seed
-from flockenv.simulation import LeaderPolicy
 from flockenv.training.settings import TrainingSettings
 
 __all__ = ["scene_names", "validation_scores"]

@@ -63,4 +63,4 @@ def test_samples_are_the_flocks_own(script) -> None:
 
 def test_policies_without_observations_are_refused(script, tmp_path: Path) -> None:
     with pytest.raises(SystemExit, match="sees no observations"):
-        script.main(["--policy", "steering law, every substep", "--out", str(tmp_path)])
+        script.main(["--policy", "steering law at every substep", "--out", str(tmp_path)])

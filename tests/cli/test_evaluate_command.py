@@ -74,7 +74,7 @@ def test_a_file_called_like_a_reference_is_not_it(flockenv: Run, tmp_path: Path)
 
 def test_the_card_of_the_law_at_every_substep(flockenv: Run, tmp_path: Path) -> None:
     arguments = ["--against", "straight ahead", "--leaders", "1", "--out", str(tmp_path)]
-    done = flockenv("evaluate", "steering law, every substep", *SHORT, *arguments)
+    done = flockenv("evaluate", "steering law at every substep", *SHORT, *arguments)
     assert done.returncode == 0, done.stderr
     card = (tmp_path / "card.md").read_text("utf-8")
     assert "The policy is the paper's law, eq. (10), from the pose at every substep." in card
@@ -88,7 +88,10 @@ def test_errors_are_named(flockenv: Run, tmp_path: Path) -> None:
         (["damped law", "--bw-s", "0.31", "--bw-s", "0.3100000001"], "beside 0.31"),
         ([str(tmp_path / "broken.npz")], "broken.npz"),
         ([str(tmp_path / "missing.npz")], "missing.npz"),
-        (["straight ahead", "--against", "steering law, every substep", "--alternate"], "options"),
+        (
+            ["straight ahead", "--against", "steering law at every substep", "--alternate"],
+            "options",
+        ),
     ):
         done = flockenv("evaluate", *arguments, *SHORT, "--out", str(tmp_path / "out"))
         assert done.returncode == 2, done.stderr

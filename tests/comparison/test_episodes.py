@@ -101,7 +101,7 @@ def test_the_report_tells_the_environment(scene: flockenv.FlockParameters, tmp_p
     ("leaders", "name", "environment", "words"),
     [
         ([1, 9], "straight ahead", {}, "9 leaders among n_boats = 9 .* `--most-leaders`"),
-        ([1], "steering law, every substep", {"target": "alternate"}, "outside"),
+        ([1], "steering law at every substep", {"target": "alternate"}, "outside"),
     ],
 )
 def test_what_cannot_be_compared_is_refused_first(
@@ -137,7 +137,7 @@ def test_leaders_that_never_steer_are_rudders_of_zero(scene: flockenv.FlockParam
 
 
 def test_the_law_at_every_substep_is_what_simulate_does(scene: flockenv.FlockParameters) -> None:
-    name = "steering law, every substep"
+    name = "steering law at every substep"
     runs = compare_leaders(scene, [2], {name: POLICIES[name]}, [3], 60.0)
     env = flockenv.LeadersVectorEnv(1, params=scene.replace(n_leaders=2))
     _, infos = env.reset(seed=[3])

@@ -1,0 +1,77 @@
+"""Policies by name: closed-form laws, what is tuned or trained for a pool, and files."""
+
+import difflib
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+from flockenv.errors import ParameterError
+from flockenv.policies.base import LeaderPolicy
+from flockenv.policies.constant import RandomRudders, StraightAhead
+from flockenv.policies.laws import LAWS
+from flockenv.policies.pretrained import LEARNED, TUNED_GAINS, learned, load, tuned_law
+
+__all__ = ["EVERY_SUBSTEP", "POLICIES", "POOL_POLICIES", "named_policy", "quoted"]
+
+EVERY_SUBSTEP = "law"
+"""Stands for the paper's law evaluated at every substep, from the pose: what `simulate` does."""
+
+POLICIES: Mapping[str, Callable[[], LeaderPolicy | str]] = {
+    **LAWS,
+    "steering law at every substep": lambda: EVERY_SUBSTEP,
+    "straight ahead": StraightAhead,
+    "random rudders": RandomRudders,
+}
+"""Policies by name that are the same in every pool."""
+
+POOL_POLICIES: Mapping[str, Callable[[Any], LeaderPolicy]] = {
+    **{f"tuned {law}": partial(tuned_law, law) for law in TUNED_GAINS},
+    LEARNED: learned,
+}
+"""Policies by name, each tuned or trained for a pool."""
+
+_ALSO_CALLED = {
+    EVERY_SUBSTEP: "steering law at every substep",
+    "steering law, every substep": "steering law at every substep",
+}
+
+
+def named_policy(name: str, pool: Any) -> Callable[[], LeaderPolicy | str]:
+    """Return a function that returns a policy, given its name or the path of its ``.npz`` file.
+
+    Parameters
+    ----------
+    name
+        A name in `POLICIES` or `POOL_POLICIES`, `EVERY_SUBSTEP`, or a path.
+    pool
+        The scene's pool.
+
+    Raises
+    ------
+    ParameterError
+        For unknown names, files that are no policy, and pools that a policy is not made for.
+    OSError
+        If the file cannot be opened.
+    """
+    name = _ALSO_CALLED.get(name, name)
+    if name in POLICIES:
+        return POLICIES[name]
+    if name in POOL_POLICIES:
+        made = POOL_POLICIES[name](pool)
+        return lambda: made
+    if name.endswith(".npz"):
+        read = load(name)
+        return lambda: read
+    names = [*POLICIES, *POOL_POLICIES]
+    parts = [part.strip() for part in name.split(",")]
+    near = difflib.get_close_matches(name, names, n=1)
+    if len(parts) > 1 and set(parts) <= {*names, *_ALSO_CALLED}:
+        hint = "policies are named one by one (on the command line, repeat the option)"
+    else:
+        hint = f"did you mean {near[0]!r}?" if near else f"there are {quoted(names)}"
+    raise ParameterError(f"{name!r} is no policy and no .npz file: {hint}")
+
+
+def quoted(names: list[str]) -> str:
+    """Return names in a row, each in quotes: some hold spaces."""
+    return ", ".join(map(repr, names))

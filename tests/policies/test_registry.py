@@ -1,0 +1,94 @@
+"""Law: a policy's name, its file and the object itself steer the same, wherever they are given."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv.policies.registry import EVERY_SUBSTEP, POLICIES, POOL_POLICIES, named_policy, quoted
+
+REPOSITORY = Path(__file__).parents[2]
+SCENE = flockenv.FlockParameters(n_boats=6, n_leaders=2, pool="table-1")
+RUN = {"seed": 3, "duration_s": 5.0}
+
+
+@pytest.mark.parametrize("name", [*POLICIES, *POOL_POLICIES])
+def test_names_steer_as_the_policies_they_stand_for(name: str) -> None:
+    policy = named_policy(name, SCENE.pool)()
+    assert flockenv.simulate(SCENE, policy=name, **RUN) == flockenv.simulate(
+        SCENE, policy=policy, **RUN
+    )
+
+
+def test_learned_leaders_are_loaded_by_name_and_by_file() -> None:
+    for pool in ("500-boats", "table-1"):
+        named = flockenv.policies.load("learned", pool=pool)
+        assert repr(named) == repr(named_policy("learned", pool)())
+        file = REPOSITORY / "baselines" / "policies" / f"{pool}.npz"
+        assert repr(named) == repr(flockenv.policies.load(file))
+        assert named.made == flockenv.policies.load(file).made
+
+
+def test_learned_leaders_have_one_home() -> None:
+    home = REPOSITORY / "flockenv" / "policies" / "learned"
+    files = sorted(home.glob("*.npz"))
+    assert [each.stem for each in files] == ["500-boats", "table-1"]
+    for each in files:
+        assert (REPOSITORY / "baselines" / "policies" / each.name).samefile(each)
+        assert (REPOSITORY / "baselines" / "policies" / f"{each.stem}.md").is_file()
+
+
+def test_a_pool_without_learned_leaders_says_which_have_some() -> None:
+    elsewhere = SCENE.replace(pool=(150.0, 30.0))
+    for call in (
+        lambda: flockenv.policies.load("learned", pool="bath"),
+        lambda: flockenv.policies.load("learned"),
+        lambda: flockenv.simulate(elsewhere, policy="learned", **RUN),
+    ):
+        with pytest.raises(flockenv.ParameterError, match="500-boats, table-1"):
+            call()
+    with pytest.raises(flockenv.ParameterError, match="'500-boats' is not accepted with the file"):
+        flockenv.policies.load("other.npz", pool="500-boats")
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("stering law", "did you mean 'steering law'"),
+        ("damped law, learned", "one by one"),
+        ("steering law, every substep, learned", "did you mean"),
+        ("nobody", quoted([*POLICIES, *POOL_POLICIES])),
+    ],
+)
+def test_unknown_names_are_told_with_what_there_is(name: str, words: str) -> None:
+    with pytest.raises(flockenv.ParameterError) as told:
+        named_policy(name, "table-1")
+    assert words in str(told.value)
+
+
+def test_no_name_holds_a_comma_and_older_names_are_known() -> None:
+    assert not [name for name in (*POLICIES, *POOL_POLICIES) if "," in name]
+    for name in (EVERY_SUBSTEP, "steering law, every substep"):
+        assert named_policy(name, "table-1")() == EVERY_SUBSTEP
+
+
+def test_the_command_line_knows_names_in_any_folder(tmp_path: Path) -> None:
+    fields = [f"--set={field}" for field in ("n_boats=6", "n_leaders=2", "pool=table-1")]
+    command = "from flockenv.cli import main; main()"
+    words = ["run", *fields, "--policy", "learned", "--minutes", "0.2", "--seed", "3", "--json"]
+    done = subprocess.run(
+        [sys.executable, "-c", command, *words],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=True,
+    )
+    assert json.loads(done.stdout)["policy"] == "learned"
+    (path,) = tmp_path.rglob("*.npz")
+    expected = flockenv.simulate(SCENE, 3, 12.0, policy="learned")
+    assert np.array_equal(flockenv.Recording.load(path).pose, expected.pose)
