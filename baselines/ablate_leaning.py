@@ -30,7 +30,7 @@ GROUPS = {
     "outer wall": ("radial_position", "near_outer_wall"),
     "own velocity": ("outward_velocity", "clockwise_velocity", "forward_velocity"),
     "order of the flock": tuple(name for name in FEATURES if name.startswith("mean_")),
-    "normal neighbours": tuple(
+    "normal neighbors": tuple(
         name
         for name in FEATURES
         if name.startswith(("near", "opposed", "turned")) and "wall" not in name

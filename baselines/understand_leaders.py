@@ -165,7 +165,7 @@ def draw_places(found: dict[str, pd.DataFrame], scene: flockenv.FlockParameters)
     outer, inner = pool_radii_cm(scene.pool)
     shown = {
         "alignment": ("cos of misalignment", np.linspace(-1.0, 1.0, 41)),
-        "radius_cm": ("distance from the centre [cm]", np.linspace(inner, outer, 31)),
+        "radius_cm": ("distance from the center [cm]", np.linspace(inner, outer, 31)),
         "apart_cm": ("distance to the next leader [cm]", np.linspace(0.0, 2.0 * outer, 41)),
     }
     figure = column_figure(5.0, 17.0)

@@ -193,18 +193,15 @@ def ablation() -> str:
     def change(name: str) -> str:
         return interval(found[name], "beyond_whole", "low", "high", "+.3f")
 
-    groups = {
-        "normal neighbours": "normal neighbors",
-        "order of the flock": "order of the flock",
-        "outer wall": "outer wall",
-        "own velocity": "the leader's own velocity",
-        "other leaders": "other leaders",
-    }
+    groups = (
+        "normal neighbors",
+        "order of the flock",
+        "outer wall",
+        "own velocity",
+        "other leaders",
+    )
     body = [["all weights", change("no weights"), ""]]
-    body += [
-        [title, change(f"without {name}"), change(f"{name} alone")]
-        for name, title in groups.items()
-    ]
+    body += [[name, change(f"without {name}"), change(f"{name} alone")] for name in groups]
     return markdown(["group of weights", "left out", "kept alone"], body)
 
 

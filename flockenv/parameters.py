@@ -100,7 +100,7 @@ class FlockParameters:
     )
     relinearizations: int = _field(
         "relinearizations",
-        "How well gaps hold at a substep's end: 0 linearised once; 1 and 2 re-evaluated and solved "
+        "How well gaps hold at a substep's end: 0 linearized once; 1 and 2 re-evaluated and solved "
         "again until overlaps are at most 1e-6 and 1e-9 cm.",
     )
     turning_bias: float = _field(

@@ -36,6 +36,9 @@ MOVED = {
 }
 """Old names below `flockenv`, and where their contents are now."""
 
+RENAMED = {"summarise": "summarize"}
+"""Old names in moved modules, and what they are called now."""
+
 
 class _MovedModule:
     """Stands in `sys.modules` for a module that has moved."""
@@ -47,7 +50,7 @@ class _MovedModule:
         # Who walks through sys.modules asks for such names, and means nothing by it.
         if name.startswith("__"):
             raise AttributeError(name)
-        value = getattr(importlib.import_module(self._new), name)
+        value = getattr(importlib.import_module(self._new), RENAMED.get(name, name))
         warnings.warn(f"{self.__name__} has moved to {self._new}", DeprecationWarning, stacklevel=2)
         return value
 

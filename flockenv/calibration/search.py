@@ -134,7 +134,7 @@ class Fit:
         """
         cmaes = require("cmaes", "fit")
         known = _read_log(log, self.free)
-        optimiser = cmaes.CMA(
+        optimizer = cmaes.CMA(
             mean=np.full(len(self.free), 0.5),
             sigma=0.25,
             bounds=np.tile([0.0, 1.0], (len(self.free), 1)),
@@ -144,8 +144,8 @@ class Fit:
         done: list[Trial] = []
         while len(done) < self.trials:
             generation = []
-            for _ in range(optimiser.population_size):
-                place = optimiser.ask()
+            for _ in range(optimizer.population_size):
+                place = optimizer.ask()
                 constants = self._constants(place)
                 if len(done) < len(known):
                     trial = _same(known[len(done)], constants, log)
@@ -156,12 +156,12 @@ class Fit:
                     _write_log(log, done)
                 generation.append((place, trial.loss))
                 yield trial
-            optimiser.tell(generation)
+            optimizer.tell(generation)
 
     def finals(
         self, trials: Sequence[Trial], progress: Callable[[], None] = lambda: None
     ) -> list[Trial]:
-        """Run the best trials again on other seeds, best first: its favourites were lucky."""
+        """Run the best trials again on other seeds, best first: its favorites were lucky."""
         ranked = sorted(trials, key=lambda trial: trial.loss)[: self.finalists]
         smooth = surface_minimum(self._with_flocks(trials), self.only, self.seed)
         again = []
@@ -224,7 +224,7 @@ def surface_minimum(
     """Find the constants of least loss on planes through all trials: a response surface.
 
     Each fact is a linear function of the logarithms of the constants, fitted to all trials by least
-    squares; its loss is minimised over draws as widely spread as the trials are. Averaging over
+    squares; its loss is minimized over draws as widely spread as the trials are. Averaging over
     trials, it is less deceived by their seeds' luck than the best of them.
 
     Returns

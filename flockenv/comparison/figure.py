@@ -15,7 +15,7 @@ from flockenv.statistics.intervals import Line
 __all__ = ["leader_curve"]
 
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
-"""Okabe and Ito's colours, told apart by all."""
+"""Okabe and Ito's colors, told apart by all."""
 
 _LABELS = {
     "psi_o": r"mean $\Psi_o$",
@@ -37,7 +37,7 @@ def leader_curve(
     runs
         One row an episode, of `compare_leaders`.
     means
-        Its means and intervals by policy and number of leaders, of `summarise`.
+        Its means and intervals by policy and number of leaders, of `summarize`.
     lines
         The fitted line for each (policy, quantity) that has one.
     title

@@ -27,7 +27,7 @@ from flockenv.statistics.intervals import (
     Line,
     fit_line,
     paired_difference,
-    summarise,
+    summarize,
 )
 
 if TYPE_CHECKING:
@@ -200,7 +200,7 @@ def report(
 def _means(runs: "pd.DataFrame") -> "pd.DataFrame":
     """Return means and intervals, and how many runs ordered, and how soon (medians)."""
     by = ["policy", "leaders"]
-    means = summarise(runs, by, list(QUANTITIES))
+    means = summarize(runs, by, list(QUANTITIES))
     groups = runs.groupby(by, sort=False)
     columns = groups[list(ORDERING_TIMES)].median()
     columns["ordered"] = groups["ordering_time_wide_s"].count() / groups.size()

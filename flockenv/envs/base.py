@@ -31,7 +31,7 @@ class OneFlock:
         self.metadata = {**self.metadata, "render_fps": fps}
 
     def state(self) -> NDArray[np.float32]:
-        """Return the global state for centralised critics, shape (state size,), float32."""
+        """Return the global state for centralized critics, shape (state size,), float32."""
         return self._batch.core.state(0)
 
     def episode(self) -> dict[str, Any]:

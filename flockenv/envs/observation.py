@@ -24,7 +24,7 @@ __all__ = [
 #: Version of the observation: of its entries, their order, scales and bounds.
 OBSERVATION_VERSION: int = _core.observation_version()
 
-#: The blocks with their defaults: on or off, and how many neighbours.
+#: The blocks with their defaults: on or off, and how many neighbors.
 BLOCKS: dict[str, Any] = _core.env_defaults()["observation"]
 
 
@@ -116,7 +116,7 @@ def observe(
 
 
 def observation_table(entries: Iterable[Entry]) -> str:
-    """Return entries as a Markdown table; those that repeat for each neighbour or boat once."""
+    """Return entries as a Markdown table; those that repeat for each neighbor or boat once."""
     lines = ["| block | entry | unit | 1 stands for | bounds | meaning |", "| --- " * 6 + "|"]
     for entry in entries:
         if entry.place == 0:

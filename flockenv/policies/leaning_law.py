@@ -49,7 +49,7 @@ FEATURES = (
 """What a leaning leader looks at.
 
 Entries of the observation by their names there; ``near_outer_wall``, how much the radial position
-exceeds 0.6; and sums over the neighbours seen. Normal boats count with exp(-d²/2), leaders
+exceeds 0.6; and sums over the neighbors seen. Normal boats count with exp(-d²/2), leaders
 (``leaders…``) with exp(-d²/8), d their distance in the observation's unit of 6 boat radii. Summed
 are 1, the places (``outward``, ``ahead``: clockwise), the velocities, how far they head against the
 leader (``opposed``: (1 - cos of the relative heading)/2, ``turned``: its sine) and products.

@@ -120,7 +120,7 @@ def reproduce(
     for name in plan.names:
         figure = load(name)
         specs = list(dict.fromkeys(figure.runs(plan.settings)))
-        outcome = figure.analyse(plan.settings, Results(store, specs, derived))
+        outcome = figure.analyze(plan.settings, Results(store, specs, derived))
         write_outcome(outcome, folder / name)
         finished.append((figure, specs, outcome))
     if ALL in plan.asked:

@@ -36,7 +36,7 @@ _PLAIN = ("frames", "psi_o", "psi_o²", "c_v", "c_v²", "rotating", "cw", "jamme
 
 def _blocks(run: RunResult) -> NDArray[np.float64]:
     """Sum what is counted of a run over its blocks: shape (b, q)."""
-    order, used = run.order, run.analysed
+    order, used = run.order, run.analyzed
     psi, phi, c_v = (values[used] for values in (order.psi_o, order.phi_o, order.c_v))
     states = order.states(run.spec.parameters.speed_cm_s)[used]
     cw = states == "ordered cw"
@@ -80,7 +80,7 @@ class _Point:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OrderStatistics:
-    """Sums over the analysed frames of a series of p points, each of some runs.
+    """Sums over the analyzed frames of a series of p points, each of some runs.
 
     Every method's result has r replicates along axis 1: first as measured, then as resampled by
     `flockenv.statistics.block_bootstrap`, independently at each point.

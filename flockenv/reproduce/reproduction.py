@@ -144,7 +144,7 @@ class Reproduction:
         Of the paper.
     runs : callable
         The runs that settings ask for, in a fixed order. Runs that figures share are made once.
-    analyse : callable
+    analyze : callable
         From settings and those runs to what is written: a pure function, so that a resumed
         reproduction equals an uninterrupted one byte for byte.
     """
@@ -153,4 +153,4 @@ class Reproduction:
     title: str
     section: str
     runs: Callable[[Settings], list[RunSpec]]
-    analyse: Callable[[Settings, Results], Outcome]
+    analyze: Callable[[Settings, Results], Outcome]

@@ -64,9 +64,9 @@ def density_rows(
 def density_map(
     axes: Axes, series: OrderStatistics, name: str, highest: float, gamma: float = 1.0
 ) -> QuadMesh:
-    """Draw densities as colours, each column a point of the series.
+    """Draw densities as colors, each column a point of the series.
 
-    A `gamma` below 1 spreads the colours of low densities.
+    A `gamma` below 1 spreads the colors of low densities.
     """
     edges = PHI_EDGES if name == "phi_o" else PSI_EDGES
     half = np.diff(series.x).mean() / 2

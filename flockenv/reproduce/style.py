@@ -1,4 +1,4 @@
-"""How reproduced figures look: legible at a column's width, told apart without colour vision."""
+"""How reproduced figures look: legible at a column's width, told apart without color vision."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -16,7 +16,7 @@ COLUMN_CM = 8.5
 """Width of a figure: a column of a journal page."""
 
 DENSITY_COLORS = "cividis"
-"""Colour map of densities: even in lightness, and the same for the colour-blind."""
+"""Color map of densities: even in lightness, and the same for the colour-blind."""
 
 _STYLE: dict[Any, Any] = {
     "font.size": 7,

@@ -160,7 +160,7 @@ class RunResult:
         return OrderSeries(*(self.orders[name].astype(np.float64) for name in ORDER_NAMES))
 
     @property
-    def analysed(self) -> NDArray[np.bool_]:
+    def analyzed(self) -> NDArray[np.bool_]:
         """Bool array (t,): samples in the analysis window after the first tenth of the run."""
         return self.in_analysis_window & (self.time_s > DISCARDED_SHARE * self.spec.duration_s)
 

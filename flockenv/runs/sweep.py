@@ -24,7 +24,7 @@ _AVERAGED = (*(name for name in ORDER_NAMES if name[:3] != "phi"), "rotation", "
 
 
 def summary(run: RunResult) -> dict[str, float]:
-    """Return means and standard deviations over the analysed frames of a run.
+    """Return means and standard deviations over the analyzed frames of a run.
 
     Returns
     -------
@@ -33,7 +33,7 @@ def summary(run: RunResult) -> dict[str, float]:
         ``<name>_std`` of Ψ_o, C_o, Ψ_v (cm/s), C_v (cm²/s²) and the rotation Ψ_o·sin φ_o, and of
         the signed order towards the target. NaN where undefined.
     """
-    used = run.analysed
+    used = run.analyzed
     order = run.order
     series = {name: getattr(order, name) for name in _AVERAGED if name in ORDER_NAMES}
     series |= {

@@ -13,7 +13,7 @@ from flockenv._io.extras import require
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Difference", "Line", "fit_line", "mean_interval", "paired_difference", "summarise"]
+__all__ = ["Difference", "Line", "fit_line", "mean_interval", "paired_difference", "summarize"]
 
 CONFIDENCE = 0.95
 """Level of every interval."""
@@ -170,7 +170,7 @@ def _interval(
     return value, float(low), float(high)
 
 
-def summarise(runs: "pd.DataFrame", by: list[str], quantities: list[str]) -> "pd.DataFrame":
+def summarize(runs: "pd.DataFrame", by: list[str], quantities: list[str]) -> "pd.DataFrame":
     """Means and intervals of quantities in groups of runs.
 
     Parameters

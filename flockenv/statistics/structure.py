@@ -49,7 +49,7 @@ def on_outer_wall(parameters: FlockParameters, pose: ArrayLike) -> NDArray[np.fl
 def pair_distribution(pose: ArrayLike, edges: ArrayLike) -> NDArray[np.float64]:
     """Return how much likelier pairs of boats are at a distance than independent boats.
 
-    Independent boats have the same distances from the pool's centre as those found, and polar
+    Independent boats have the same distances from the pool's center as those found, and polar
     angles of their own: the walls' part in where boats are is divided out.
 
     Parameters
@@ -57,7 +57,7 @@ def pair_distribution(pose: ArrayLike, edges: ArrayLike) -> NDArray[np.float64]:
     pose
         Shape (t, n, 3), as in a `Recording`.
     edges
-        Edges of b bins of the distance of centres in cm, increasing, shape (b + 1,).
+        Edges of b bins of the distance of centers in cm, increasing, shape (b + 1,).
 
     Returns
     -------

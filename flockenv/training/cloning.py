@@ -1,4 +1,4 @@
-"""Behaviour cloning: a network that steers as a law does, for training to start from."""
+"""Behavior cloning: a network that steers as a law does, for training to start from."""
 
 import time
 from typing import Any

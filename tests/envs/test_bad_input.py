@@ -28,7 +28,7 @@ def face(request):
         ({"rewards": {}}, "did you mean 'reward'"),
         ({"xyzzy": 1}, "there are preset, params"),
         ({"reward": {"signed_ordre": 1.0}}, "did you mean 'signed_order'"),
-        ({"observation": {"neighbours": 3}}, "did you mean 'neighbors'"),
+        ({"observation": {"neighbor": 3}}, "did you mean 'neighbors'"),
         ({"target": "clockwise"}, '"cw", "ccw", "random", "alternate"'),
         ({"preset": "simulaton"}, "simulation"),
         ({"n_leaders": 0}, "at least 1 in an environment"),

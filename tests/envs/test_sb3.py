@@ -147,9 +147,9 @@ def test_wrappers_evaluation_and_ppo():
     assert len(model.ep_info_buffer) > 0
     mean, _ = evaluate_policy(model, venv, n_eval_episodes=8)
     assert np.isfinite(mean)
-    normalised = VecNormalize(make())
-    normalised.reset()
-    normalised.step(actions_of(normalised, 0))
+    normalized = VecNormalize(make())
+    normalized.reset()
+    normalized.step(actions_of(normalized, 0))
 
 
 def test_ppo_repeats_itself_with_a_seed():

@@ -57,7 +57,7 @@ def test_without_weights_it_is_the_damped_law():
         ({"radial_position": 0.7}, {"near_outer_wall": 2.0}, 0.2),
         ({"radial_position": 0.2}, {"near_outer_wall": 2.0}, 0.0),
         ({"mean_sin_orientation": -0.5}, {"mean_sin_orientation": 0.4}, -0.2),
-        # One neighbour, a unit ahead, that heads the other way: opposed by 1, near by exp(-1/2).
+        # One neighbor, a unit ahead, that heads the other way: opposed by 1, near by exp(-1/2).
         (
             {"present": 1.0, "clockwise_distance": 1.0, "cos_relative_heading": -1.0},
             {"near_opposed": 0.3},

@@ -120,7 +120,7 @@ def changed(policy, tmp_path, **entries):
         ({"layers": 0}, "0 weights"),
         ({"activation": "exec"}, "tanh, relu"),
         ({"activation": ["tanh"]}, r"activation = \['tanh'\] is not accepted: a text"),
-        ({"observation": {"neighbours": 3}}, "neighbours"),
+        ({"observation": {"neighbor": 3}}, "neighbor"),
         ({"observation": {"neighbors": 3}}, "layer 0"),
         ({"observation": 3}, "observation = 3 is not accepted: a table"),
         ({"made": 3}, "made = 3 is not accepted: a table"),

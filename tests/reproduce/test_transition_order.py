@@ -139,7 +139,7 @@ def test_a_small_design_from_runs_to_tables(tmp_path: object) -> None:
     assert len(specs) == 2 * 2 * (2 * 2 + 3) * 2
     store = RunStore(tmp_path)  # type: ignore[arg-type]
     assert run_missing(specs, store) == {}
-    outcome = reproduction.analyse(settings, Results(store, specs))
+    outcome = reproduction.analyze(settings, Results(store, specs))
     assert len(outcome.tables["transition"]) == 2 * 2 * 2 * 2
     assert len(outcome.claims) == 2 * 2 * 3
     assert outcome.tables["loops"]["there"].between(-1, 1).any()

@@ -49,7 +49,7 @@ def test_a_kept_run_comes_back(scene: flockenv.FlockParameters, tmp_path: Path, 
     frames = np.ones(301, bool)
     if keep == "window":
         frames = recording.in_analysis_window & (recording.time_s > 3.0)
-        assert loaded.analysed.all()
+        assert loaded.analyzed.all()
     assert (loaded.time_s == recording.time_s[frames]).all()
     for name in ORDER_NAMES:
         single = getattr(recording.order, name)[frames].astype(np.float32)

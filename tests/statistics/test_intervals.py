@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from flockenv.statistics.intervals import fit_line, mean_interval, paired_difference, summarise
+from flockenv.statistics.intervals import fit_line, mean_interval, paired_difference, summarize
 
 
 def test_a_line_through_three_points() -> None:
@@ -61,7 +61,7 @@ def test_intervals_of_one_value_and_of_equal_values() -> None:
 
 def test_groups_keep_their_order_and_their_own_means() -> None:
     runs = pd.DataFrame({"policy": list("bbaa"), "k": [1, 1, 0, 0], "psi_o": [1.0, 3.0, 5.0, 9.0]})
-    means = summarise(runs, ["policy", "k"], ["psi_o"])
+    means = summarize(runs, ["policy", "k"], ["psi_o"])
     assert means["policy"].tolist() == ["b", "a"]
     assert means["psi_o"].tolist() == [2.0, 7.0]
     assert means["runs"].tolist() == [2, 2]

@@ -216,13 +216,13 @@ REPRODUCTIONS = (
         title="Ordering time against noise, with and without leaders",
         section="4.2",
         runs=_noise_runs,
-        analyse=_figure8,
+        analyze=_figure8,
     ),
     Reproduction(
         name="fig12",
         title="Ψ_o against the number of leaders at bw = 1.8 s",
         section="4.4",
         runs=_leader_runs,
-        analyse=_figure12,
+        analyze=_figure12,
     ),
 )

@@ -64,7 +64,7 @@ def _motion(settings: Settings, results: Results) -> Outcome:
         panels[0, 0].set(xlabel="time (s)", ylabel="mean-square\ndisplacement (cm²)")
         panels[0, 1].set(xlabel="time (s)", ylabel=r"$\langle\cos\Delta\alpha\rangle$")
         panels[0, 1].axhline(np.exp(-1), color="0.6", lw=0.6)
-        panels[1, 0].set(xlabel="distance of centres (cm)", ylabel="pairs over\nindependent ones")
+        panels[1, 0].set(xlabel="distance of centers (cm)", ylabel="pairs over\nindependent ones")
         panels[1, 0].axhline(1.0, color="0.6", lw=0.6)
         handles, labels = panels[0, 0].get_legend_handles_labels()
         picture.legend(handles, labels, loc="outside upper center", ncols=2)
@@ -75,7 +75,7 @@ def _motion(settings: Settings, results: Results) -> Outcome:
         )
     notes = [
         "Mean-square displacement and heading correlation are over boats and starting times; the "
-        "heading is kept for about as long as the correlation is above 1/e (grey). Pairs are "
+        "heading is kept for about as long as the correlation is above 1/e (gray). Pairs are "
         "divided by those of boats at the same radii with independent polar angles. On the wall: "
         "within 0.5 cm of it.",
         f"Bars and bands: {CONFIDENCE:.0%} intervals of a bootstrap over runs.",
@@ -108,7 +108,7 @@ def _band(axes: Axes, table: pd.DataFrame, x: str, y: str, color: str, label: st
 
 def _pair_rows(bw_s: float, runs: Sequence[RunResult]) -> pd.DataFrame:
     found = [
-        structure.pair_distribution(poses_of(run)[run.analysed][::3], _EDGES_CM) for run in runs
+        structure.pair_distribution(poses_of(run)[run.analyzed][::3], _EDGES_CM) for run in runs
     ]
     distances = (_EDGES_CM[:-1] + _EDGES_CM[1:]) / 2
     return pd.DataFrame({"bw_s": bw_s, "distance_cm": distances, **_over_runs("g", found)})
@@ -116,7 +116,7 @@ def _pair_rows(bw_s: float, runs: Sequence[RunResult]) -> pd.DataFrame:
 
 def _wall_row(bw_s: float, runs: Sequence[RunResult]) -> dict[str, float]:
     means = [
-        structure.on_outer_wall(run.spec.parameters, poses_of(run)[run.analysed]).mean()
+        structure.on_outer_wall(run.spec.parameters, poses_of(run)[run.analyzed]).mean()
         for run in runs
     ]
     mean, low, high = interval(drawn(np.array(means)))
@@ -134,6 +134,6 @@ REPRODUCTIONS = (
         title="Single boats, pairs and the wall",
         section="4",
         runs=pose_runs,
-        analyse=_motion,
+        analyze=_motion,
     ),
 )

@@ -274,8 +274,8 @@ def _note(settings: Settings) -> str:
 
 
 REPRODUCTIONS = tuple(
-    Reproduction(name=name, title=title, section="4.3", runs=_runs, analyse=analyse)
-    for name, title, analyse in (
+    Reproduction(name=name, title=title, section="4.3", runs=_runs, analyze=analyze)
+    for name, title, analyze in (
         ("fig9", "Probability density of φ_o against noise, by leaders", _figure9),
         ("fig10", "Ψ_o against noise, by leaders", _figure10),
         ("fig11", "C_v against noise, by leaders", _figure11),

@@ -26,7 +26,7 @@ def run_rows(
 ) -> pd.DataFrame:
     """Return one row a run.
 
-    Columns: ``setup``, `x_name`, ``seed``, mean and standard deviation of Ψ_o over the analysed
+    Columns: ``setup``, `x_name`, ``seed``, mean and standard deviation of Ψ_o over the analyzed
     frames, mean Ψ_o after ordering, and ordering times of eq. (7) with π/20 (``ordering_s``) and
     with π/4 (``ordering_wide_s``); times are NaN for runs that do not order.
     """
@@ -38,7 +38,7 @@ def run_rows(
 
 
 def _row(run: RunResult) -> dict[str, float]:
-    order, used = run.order, run.analysed
+    order, used = run.order, run.analyzed
     wide = order.ordering_time(run.time_s, WIDE)
     after = order.psi_o[run.time_s >= wide]
     return {

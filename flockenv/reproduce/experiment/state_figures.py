@@ -347,8 +347,8 @@ def _snapshot_row(title: str, run: RunResult, sample: int, frames: int) -> dict[
 
 
 REPRODUCTIONS = tuple(
-    Reproduction(name=name, title=title, section="4.1", runs=pose_runs, analyse=analyse)
-    for name, title, analyse in (
+    Reproduction(name=name, title=title, section="4.1", runs=pose_runs, analyze=analyze)
+    for name, title, analyze in (
         ("fig4", "Snapshots of the four states", _figure4),
         ("table2", "States, how long they last and what they change to", _table2),
     )

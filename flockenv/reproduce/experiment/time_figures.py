@@ -53,7 +53,7 @@ def _cycles(run: RunResult) -> pd.DataFrame:
 
 def _typical(runs: Sequence[RunResult]) -> RunResult:
     """Return the run whose mean Ψ_o is the median: what is shown is not picked by eye."""
-    means = [float(run.orders["psi_o"][run.analysed].mean()) for run in runs]
+    means = [float(run.orders["psi_o"][run.analyzed].mean()) for run in runs]
     return runs[int(np.argsort(means, kind="stable")[len(means) // 2])]
 
 
@@ -193,7 +193,7 @@ def _figure7(settings: Settings, results: Results) -> Outcome:
         reached.append(float((ends > 0).mean()))
     free = [results[spec] for spec in _specs(settings, GUIDED_S)]
     gain = [
-        float(a.orders["psi_o"][a.analysed].mean() - b.orders["psi_o"][b.analysed].mean())
+        float(a.orders["psi_o"][a.analyzed].mean() - b.orders["psi_o"][b.analyzed].mean())
         for a, b in zip(runs, free, strict=True)
     ]
     stretches = f"the 4-minute stretches ({'-'.join(TARGETS * 2).upper()})"
@@ -232,20 +232,20 @@ REPRODUCTIONS = (
         title="Order parameters over time at bw = 1.4 s",
         section="4.2",
         runs=lambda settings: _specs(settings, 1.4),
-        analyse=_figure5,
+        analyze=_figure5,
     ),
     Reproduction(
         name="fig6",
         title="Order parameters over time at bw = 1.9 s",
         section="4.2",
         runs=_both_noises,
-        analyse=_figure6,
+        analyze=_figure6,
     ),
     Reproduction(
         name="fig7",
         title="24 boats and 3 leaders that change their direction every 4 minutes",
         section="4.2",
         runs=lambda settings: _specs(settings, GUIDED_S, 3) + _specs(settings, GUIDED_S),
-        analyse=_figure7,
+        analyze=_figure7,
     ),
 )

@@ -180,9 +180,9 @@ def _reproduction(
     name: str,
     title: str,
     runs: Callable[[Settings], list[RunSpec]],
-    analyse: Callable[[Settings, Results], Outcome],
+    analyze: Callable[[Settings, Results], Outcome],
 ) -> Reproduction:
-    return Reproduction(name=name, title=title, section="5.2", runs=runs, analyse=analyse)
+    return Reproduction(name=name, title=title, section="5.2", runs=runs, analyze=analyze)
 
 
 REPRODUCTIONS = (

@@ -126,6 +126,6 @@ REPRODUCTIONS = (
         title="The claims of Section 5 by scheme, noise convention and pool",
         section="5.2",
         runs=_runs,
-        analyse=_analyse,
+        analyze=_analyse,
     ),
 )

@@ -16,7 +16,7 @@ from flockenv.statistics.block_bootstrap import block_sums, block_sums_resampled
 from flockenv.statistics.intervals import CONFIDENCE
 
 __all__ = [
-    "CENTRES",
+    "CENTERS",
     "C_V_EDGES",
     "M_EDGES",
     "Loops",
@@ -37,7 +37,7 @@ C_V_EDGES = np.linspace(-50.0, 225.0, 45)
 """Edges of the bins of C_v in cm²/s²."""
 
 _LOOP_BINS = 12
-CENTRES = (np.arange(_LOOP_BINS) + 0.5) / _LOOP_BINS
+CENTERS = (np.arange(_LOOP_BINS) + 0.5) / _LOOP_BINS
 """Positions in a loop at which its branches are averaged."""
 
 
@@ -89,7 +89,7 @@ def hysteresis(run: RunResult) -> NDArray[np.float64]:
     Returns
     -------
     float64 array, shape (2, 12)
-        Of analysed frames, from the loop's first scene to its last; NaN in bins without any.
+        Of analyzed frames, from the loop's first scene to its last; NaN in bins without any.
     """
     position = loop_position(run.time_s, run.spec.duration_s)
     place = np.minimum((position * _LOOP_BINS).astype(int), _LOOP_BINS - 1)

@@ -26,7 +26,7 @@ from flockenv.reproduce.transition.design import (
 )
 from flockenv.reproduce.transition.measured import (
     C_V_EDGES,
-    CENTRES,
+    CENTERS,
     M_EDGES,
     Loops,
     Measured,
@@ -239,7 +239,7 @@ def _loops_table(measured: Measured) -> pd.DataFrame:
     for (growth, kind), loop in measured.loops.items():
         keys = {"way": growth.way, "n_boats": growth.n_boats, "loop": kind}
         value, low, high = student(loop.openings)
-        columns = {"position": CENTRES, "there": loop.there, "back": loop.back}
+        columns = {"position": CENTERS, "there": loop.there, "back": loop.back}
         ends = {"opening": value, "opening_low": low, "opening_high": high}
         tables.append(pd.DataFrame({**keys, **columns, **ends}))
     return pd.concat(tables)
@@ -267,7 +267,7 @@ def transition_order(design: TransitionDesign | None = None) -> Reproduction:
         title="Is the jamming–order transition of first order?",
         section="5.2, left open",
         runs=lambda settings: chosen(settings).all_runs(settings),
-        analyse=lambda settings, results: _analyse(chosen(settings), settings, results),
+        analyze=lambda settings, results: _analyse(chosen(settings), settings, results),
     )
 
 

@@ -1,4 +1,4 @@
-"""The pictures of `transition-order`: colour is the size or the density, the line the start."""
+"""The pictures of `transition-order`: color is the size or the density, the line the start."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -13,7 +13,7 @@ from flockenv.reproduce.style import COLORS, column_figure, paper_style
 from flockenv.reproduce.transition.design import LOOP_BW_S, LOOPS, WAYS, Growth, TransitionDesign
 from flockenv.reproduce.transition.measured import (
     C_V_EDGES,
-    CENTRES,
+    CENTERS,
     M_EDGES,
     Loops,
     Measured,
@@ -81,8 +81,8 @@ def _loops(measured: Measured) -> Figure:
         for place, n in enumerate(design.sizes):
             color = COLORS[place % len(COLORS)]
             loop = measured.loops[Growth(way, n), "slow density"]
-            _draw_loop(density, lowest * DENSITY_RATIO**CENTRES, loop, color)
-            _draw_loop(noise, LOOP_BW_S * CENTRES, measured.loops[Growth(way, n), "noise"], color)
+            _draw_loop(density, lowest * DENSITY_RATIO**CENTERS, loop, color)
+            _draw_loop(noise, LOOP_BW_S * CENTERS, measured.loops[Growth(way, n), "noise"], color)
         density.set_xscale("log")
         _name_ticks(density, design.densities[way])
         density.set_xlabel("density (boats / pool)")

@@ -3,7 +3,7 @@
 The loop starts with all boats circulating (a big flock that starts at random would not get there),
 and goes from its first scene to its last and back, in equal steps and equal times; boats keep
 their poses and velocities. In a loop of the density it is the pool that changes, and boats move
-with it: each keeps its share of the way between the walls and its angle about the centre. What
+with it: each keeps its share of the way between the walls and its angle about the center. What
 little overlap that makes as the pool shrinks, the contact solver takes out again.
 """
 

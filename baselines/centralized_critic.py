@@ -1,6 +1,6 @@
-"""A centralised critic: actors see what their leader sees, the critic sees the whole flock.
+"""A centralized critic: actors see what their leader sees, the critic sees the whole flock.
 
-    python baselines/centralised_critic.py --samples 200000
+    python baselines/centralized_critic.py --samples 200000
 
 PPO of stable-baselines3 with one policy shared by all leaders. `state()` is appended to each
 leader's observation; the actor's network gets the observation alone, the critic's gets both. Only
@@ -109,7 +109,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--samples", type=int, default=200_000)
     parser.add_argument("--flocks", type=int, default=16)
     parser.add_argument("--seed", type=run_number, default=0)
-    parser.add_argument("--out", type=Path, default=Path("results/centralised_critic"))
+    parser.add_argument("--out", type=Path, default=Path("results/centralized_critic"))
     options = parser.parse_args(arguments)
     scene = {"target": "random", "episode_s": 120.0}
     try:

@@ -1,4 +1,4 @@
-"""Law: in the centralised-critic example the critic reads the state, and the actor does not."""
+"""Law: in the centralized-critic example the critic reads the state, and the actor does not."""
 
 import numpy as np
 import pytest
