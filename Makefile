@@ -60,11 +60,12 @@ setup: $(STAMPS)/test
 
 build: $(STAMPS)/core ## build the simulator and install the package, editable, into .venv
 
-lint: $(STAMPS)/test $(STAMPS)/core ## formatting, clippy, ruff, import layers, mypy, stubs
+lint: $(STAMPS)/test $(STAMPS)/core ## formatting, clippy, Rust module cycles, ruff, import layers, mypy, stubs
 	cargo fmt --check
 	$(BIN)/ruff format --check
 	cargo clippy --locked --all-targets -- -D warnings
 	PYO3_PYTHON="$(CURDIR)/$(BIN)/python" cargo clippy --locked --all-targets --features python -- -D warnings
+	$(BIN)/python tests/modules/cycles.py src
 	$(BIN)/ruff check
 	$(BIN)/lint-imports --no-logo --no-cache
 	$(BIN)/mypy

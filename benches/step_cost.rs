@@ -1,9 +1,8 @@
 //! Quick looks while developing: `cargo bench`. What is published comes from `make speed-vs-error`.
 
 use divan::{Bencher, black_box};
-use flockenv::clock::ticks;
 use flockenv::parameters::{Pool, Preset, Scheme};
-use flockenv::{Flock, FlockBatch, FlockParameters};
+use flockenv::{Flock, FlockParameters};
 
 /// Boats in pool `table-1`, scaled by sqrt(n/50) beyond 50; engines always forward if it is a jam.
 fn scene(boats: usize, is_jam: bool) -> FlockParameters {
@@ -83,23 +82,6 @@ fn control_step(bencher: Bencher) {
     bencher.bench_local(|| {
         flock
             .advance(0.1, Some(black_box(&[0.5, -0.5])))
-            .expect("the motion stays finite");
-    });
-}
-
-/// The same for 64 flocks at once, on all cores.
-#[divan::bench]
-fn control_step_of_64_flocks(bencher: Bencher) {
-    let parameters = FlockParameters {
-        n_leaders: 2,
-        ..FlockParameters::preset(Preset::Simulation)
-    };
-    let members = (0..64).map(|seed| (parameters.clone(), seed)).collect();
-    let mut batch = FlockBatch::new(members).expect("the boats fit");
-    let rudders = [0.5; 128];
-    bencher.counter(64_u32).bench_local(|| {
-        batch
-            .advance(ticks(0.1), Some(black_box(&rudders)))
             .expect("the motion stays finite");
     });
 }

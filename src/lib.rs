@@ -18,7 +18,7 @@
 //! boat, leader, normal boat, flock, pool, pose, heading, hull (capsule), gap (signed, negative =
 //! overlap), contact, island (boats joined by contacts), impulse, scheme (how a time step is taken),
 //! solver (how the contact problem is solved), phase, LAP frame, order parameter, rudder command,
-//! control step (policy) and substep (physics), flock batch.
+//! control step (policy) and substep (physics).
 
 pub mod analysis;
 pub mod boat;
@@ -41,5 +41,5 @@ mod python;
 pub use analysis::OrderParameters;
 pub use draw::FrameRenderer;
 pub use error::{FlockError, Result};
-pub use flock::{Flock, FlockBatch};
+pub use flock::Flock;
 pub use parameters::FlockParameters;

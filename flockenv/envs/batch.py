@@ -77,7 +77,7 @@ class LeaderBatch:
 
     def reward_terms(self) -> dict[str, NDArray[np.float64]]:
         """Return each term of the last step's reward, one number a row."""
-        return dict(zip(TERMS, np.ascontiguousarray(self.core.reward_terms().T), strict=True))
+        return dict(zip(TERMS, self.core.reward_terms(), strict=True))
 
 
 def drawn_seed(random: np.random.Generator) -> int:

@@ -187,11 +187,10 @@ class LeadersParallelEnv(
         return np.concatenate(each)
 
     def _infos(self, over: bool) -> Infos:
-        terms = self._batch.reward_terms()
-        names, rows = tuple(terms), np.stack(list(terms.values()), axis=1).tolist()
+        terms = {name: rows.tolist() for name, rows in self._batch.reward_terms().items()}
         infos: Infos = {
-            agent: {"reward_terms": dict(zip(names, row, strict=True))}
-            for agent, row in zip(self.agents, rows, strict=True)
+            agent: {"reward_terms": {name: rows[leader] for name, rows in terms.items()}}
+            for leader, agent in enumerate(self.agents)
         }
         if over:
             for info in infos.values():

@@ -94,7 +94,12 @@ impl ContactResolver {
     }
 
     /// Geometry of the flock and its pool.
-    pub fn detector(&mut self) -> &mut ContactDetector {
+    pub fn detector(&self) -> &ContactDetector {
+        &self.detector
+    }
+
+    /// Geometry of the flock and its pool, to detect contacts with.
+    pub fn detector_mut(&mut self) -> &mut ContactDetector {
         &mut self.detector
     }
 

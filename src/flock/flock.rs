@@ -64,21 +64,12 @@ impl Flock {
         }
     }
 
-    /// Starts over with another seed: as a new flock with these parameters, but keeping its memory.
+    /// Starts over with another seed: as a new flock with these parameters.
     ///
     /// # Errors
     /// [`FlockError::Placement`]; the flock is unchanged then.
     pub fn reset(&mut self, seed: u64) -> Result<()> {
         *self = Self::new(self.parameters.clone(), seed)?;
-        Ok(())
-    }
-
-    /// Starts over with other parameters and another seed.
-    ///
-    /// # Errors
-    /// [`FlockError::Parameter`] or [`FlockError::Placement`]; the flock is unchanged then.
-    pub fn reset_with(&mut self, parameters: FlockParameters, seed: u64) -> Result<()> {
-        *self = Self::new(parameters, seed)?;
         Ok(())
     }
 
@@ -325,10 +316,9 @@ impl Flock {
 
     /// Contacts and near-contacts of the last substep: gaps now, forces as means over the last change of velocity.
     pub fn contacts(&self) -> Vec<ContactForce> {
-        let mut resolver = self.integrator.contacts.clone();
+        let resolver = &self.integrator.contacts;
         let detector = resolver.detector();
         let hull = detector.hull();
-        let resolver = &self.integrator.contacts;
         resolver
             .contacts()
             .iter()
@@ -369,7 +359,7 @@ fn refuse_overlap(integrator: &mut Integrator) -> Result<()> {
     let mut contacts = Vec::new();
     integrator
         .contacts
-        .detector()
+        .detector_mut()
         .detect(&integrator.boats, 0.0, &mut contacts);
     integrator.contacts.forget();
     let deepest = contacts

@@ -1,6 +1,5 @@
 //! A flock that is placed, advanced, recorded, stored and brought back.
 
-mod batch;
 #[allow(
     clippy::module_inception,
     reason = "the file is named after the noun it owns"
@@ -10,7 +9,6 @@ mod placement;
 mod recorder;
 mod snapshot;
 
-pub use batch::FlockBatch;
 pub use flock::{ContactForce, Flock, LATEST};
 pub use recorder::{ContactSamples, Real, Recorder, Recording, Sampling};
 pub use snapshot::Snapshot;

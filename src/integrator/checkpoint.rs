@@ -57,7 +57,7 @@ impl Integrator {
         self.contacts.set_warm_start(&checkpoint.warm_start);
         let (reference, cutoff) = &checkpoint.neighbor_reference;
         self.contacts
-            .detector()
+            .detector_mut()
             .neighbors
             .restore(reference, *cutoff);
         self.step_length_s = checkpoint.step_length_s;

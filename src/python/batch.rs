@@ -5,7 +5,7 @@ use super::flock::PyFlock;
 use super::parameters::to_python;
 use super::settings::{settings_from, settings_to_dict, term_names};
 use crate::environment::{
-    BatchRows, EnvBatch, Episode, EpisodeSummary, FlockEnv, ResetRequest, Start,
+    BatchRows, EnvBatch, Episode, EpisodeSummary, FlockEnv, ResetRequest, Start, TERMS,
 };
 use crate::error::FlockError;
 use crate::geometry::{Pose, Velocity};
@@ -156,31 +156,33 @@ impl PyEnvBatch {
         Ok(array)
     }
 
-    /// Reward terms of the last step: (rows, terms).
+    /// Reward terms of the last step: (terms, rows).
     fn reward_terms<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let mut rows = Vec::with_capacity(self.0.rows());
+        let rows = self.0.rows();
+        let mut terms = vec![0.0; TERMS * rows];
+        let mut row = 0;
         for flock in 0..self.0.envs().len() {
-            rows.extend(
-                self.episode_of(flock)?
-                    .terms()
-                    .iter()
-                    .map(|terms| terms.to_vec()),
-            );
+            for own in self.episode_of(flock)?.terms() {
+                for (term, &value) in own.iter().enumerate() {
+                    terms[term * rows + row] = value;
+                }
+                row += 1;
+            }
         }
-        Ok(PyArray2::from_vec2(py, &rows)?)
+        PyArray1::from_vec(py, terms).reshape([TERMS, rows])
     }
 
     /// Order parameters of the normal boats: (flocks, 6) [psi_o, phi_o, c_o, psi_v, phi_v, c_v], NaN
     /// where a flock has none.
     fn order_parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let mut rows = Vec::with_capacity(self.0.envs().len());
-        for flock in 0..self.0.envs().len() {
-            let row = self.episode_of(flock)?.order().map_or([f64::NAN; 6], |o| {
+        let flocks = self.0.envs().len();
+        let mut numbers = Vec::with_capacity(6 * flocks);
+        for flock in 0..flocks {
+            numbers.extend(self.episode_of(flock)?.order().map_or([f64::NAN; 6], |o| {
                 [o.psi_o, o.phi_o, o.c_o, o.psi_v, o.phi_v, o.c_v]
-            });
-            rows.push(row.to_vec());
+            }));
         }
-        Ok(PyArray2::from_vec2(py, &rows)?)
+        PyArray1::from_vec(py, numbers).reshape([flocks, 6])
     }
 
     /// Whether each flock is in the analysis window.

@@ -4,6 +4,7 @@
 use crate::support::{batch, parameters, seeded, settings, step};
 use flockenv::FlockError;
 use flockenv::environment::{Autoreset, EnvBatch, EnvSettings, ResetRequest, Start};
+use flockenv::parameters::{FlockParameters, Scheme};
 use rayon::ThreadPoolBuilder;
 
 fn action(seed: u64, leader: usize, time: u32) -> f64 {
@@ -110,4 +111,27 @@ fn resets_happen_as_a_whole() {
     assert!(batch.reset(&[seeded(7), Some(bad)]).is_err());
     assert!(batch.reset(&[seeded(7)]).is_err());
     assert_eq!(before, batch.to_bytes());
+}
+
+#[test]
+fn one_exploding_flock_does_not_hold_up_its_batch() {
+    // Constants so wild that an explicit step leaves the range of a state.
+    let wild = FlockParameters {
+        c0: 1e6,
+        dt_s: 0.1,
+        scheme: Scheme::Moreau,
+        ..parameters(1)
+    };
+    let members = vec![parameters(1), wild, parameters(1)];
+    let mut batch = EnvBatch::new(settings(30), members).unwrap();
+    batch.reset(&[seeded(1), seeded(2), seeded(3)]).unwrap();
+    let time_s =
+        |batch: &EnvBatch, flock: usize| batch.envs()[flock].episode().unwrap().flock().time_s();
+    let first_failure = (1..=20)
+        .find(|_| matches!(step(&mut batch, &[0.5; 3]), Err(FlockError::Solver(_))))
+        .expect("the wild flock leaves its range");
+    let moved = 0.1 * f64::from(first_failure);
+    assert!((time_s(&batch, 0) - moved).abs() < 1e-9);
+    assert!((time_s(&batch, 1) - (moved - 0.1)).abs() < 1e-9);
+    assert_eq!(time_s(&batch, 2), time_s(&batch, 0));
 }

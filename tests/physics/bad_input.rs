@@ -3,10 +3,9 @@
 //! On paper: a snapshot taken before a refused call equals the one taken after it, byte for byte.
 
 use crate::support::{bits, driven, flock_of};
-use flockenv::clock::ticks;
 use flockenv::geometry::{Pose, Velocity};
 use flockenv::parameters::{Preset, Scheme, Solver, Target};
-use flockenv::{Flock, FlockBatch, FlockError, FlockParameters};
+use flockenv::{Flock, FlockError, FlockParameters};
 
 fn table_3() -> FlockParameters {
     FlockParameters::preset(Preset::Simulation)
@@ -220,52 +219,4 @@ fn motion_of_many_boats_that_leaves_the_finite_numbers_is_an_error_and_undone() 
     // More than 64 boats are sorted into cells, whose number must stay finite.
     explode(Scheme::Moreau, Solver::BlockPivoting, 70);
     explode(Scheme::Paper, Solver::BlockPivoting, 70);
-}
-
-#[test]
-fn one_exploding_flock_does_not_hold_up_its_batch() {
-    let calm = FlockParameters {
-        n_boats: 3,
-        ..driven(Scheme::Moreau)
-    };
-    let members = vec![(calm.clone(), 1), (exploding(Scheme::Moreau), 2), (calm, 3)];
-    let mut batch = FlockBatch::new(members).expect("open water");
-    batch.flocks_mut()[1]
-        .set_state(
-            &[Pose::default()],
-            &[Velocity::new(0.0, 0.0, 9.0)],
-            0.0,
-            false,
-        )
-        .expect("a free boat");
-    for round in 1..=20 {
-        let result = batch.advance(ticks(5.0), None);
-        assert!(matches!(result, Err(FlockError::Solver(_))));
-        let times: Vec<_> = batch.flocks().iter().map(Flock::time).collect();
-        let moved = ticks(5.0) * round;
-        assert_eq!(times, [moved, 0, moved]);
-    }
-}
-
-#[test]
-fn a_batch_refuses_a_wrong_number_of_rudders() {
-    let p = FlockParameters {
-        n_leaders: 2,
-        ..table_3()
-    };
-    let mut batch = FlockBatch::new(vec![(p.clone(), 1), (p, 2)]).expect("room");
-    for count in [0, 1, 3, 5, 8] {
-        let rudders = vec![0.5; count];
-        assert_eq!(
-            refused_field(batch.advance(ticks(0.1), Some(&rudders))),
-            "rudder"
-        );
-    }
-    let mut bad_last = vec![0.5; 4];
-    bad_last[3] = 2.0;
-    assert_eq!(
-        refused_field(batch.advance(ticks(0.1), Some(&bad_last))),
-        "rudder"
-    );
-    assert!(batch.flocks().iter().all(|f| f.time() == 0));
 }

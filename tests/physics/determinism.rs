@@ -1,12 +1,12 @@
-//! The same seed gives the same bits: at any thread count, in any batch size, through a snapshot, on
+//! The same seed gives the same bits: at any thread count, through a snapshot, on
 //! and off the grid of substeps.
 //!
 //! On paper: nothing, zero bits of difference.
 
 use crate::support::{NOISES, SCHEMES, bits, busy};
-use flockenv::clock::ticks;
 use flockenv::parameters::{Noise, Scheme, Solver, Target};
-use flockenv::{Flock, FlockBatch, FlockParameters};
+use flockenv::{Flock, FlockParameters};
+use rayon::prelude::*;
 
 fn all_kinds() -> impl Iterator<Item = FlockParameters> {
     SCHEMES
@@ -113,68 +113,19 @@ fn a_snapshot_restored_is_the_snapshot() {
     }
 }
 
-fn batch_bits(members: &[(FlockParameters, u64)], threads: usize) -> Vec<Vec<u64>> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .expect("threads");
-    pool.install(|| {
-        let mut batch = FlockBatch::new(members.to_vec()).expect("room");
-        for _ in 0..8 {
-            batch.advance(ticks(0.11), None).expect("finite motion");
-        }
-        batch.flocks().iter().map(bits).collect()
-    })
-}
-
 #[test]
-fn neither_threads_nor_batch_size_matter() {
+fn threads_do_not_matter() {
     let members: Vec<(FlockParameters, u64)> = all_kinds().zip(20..).collect();
-    let alone: Vec<Vec<u64>> = members
-        .iter()
-        .map(|(p, seed)| {
-            let mut flock = Flock::new(p.clone(), *seed).expect("room");
-            advanced(&mut flock, &[0.11; 8])
-        })
-        .collect();
-    for threads in [1, 2, 5] {
-        assert_eq!(batch_bits(&members, threads), alone);
-        for size in [1, 2, 4] {
-            let parts: Vec<Vec<u64>> = members
-                .chunks(size)
-                .flat_map(|part| batch_bits(part, threads))
-                .collect();
-            assert_eq!(parts, alone, "{threads} threads, batches of {size}");
-        }
-    }
-}
-
-#[test]
-fn a_batch_hands_each_flock_its_own_rudders() {
-    let mut p = busy(Scheme::Leapfrog, Noise::White);
-    p.n_leaders = 2;
-    let leaderless = FlockParameters {
-        n_leaders: 0,
-        ..p.clone()
+    let run = |(p, seed): &(FlockParameters, u64)| {
+        advanced(&mut Flock::new(p.clone(), *seed).expect("room"), &[0.11; 8])
     };
-    let rudders = [0.1, 0.2, -0.3, -0.4];
-    let mut batch = FlockBatch::new(vec![
-        (p.clone(), 1),
-        (leaderless.clone(), 2),
-        (p.clone(), 3),
-    ])
-    .expect("room");
-    batch
-        .advance(ticks(1.0), Some(&rudders))
-        .expect("four leaders");
-    for (flock, (p, seed, commands)) in batch.flocks().iter().zip([
-        (&p, 1, &rudders[..2]),
-        (&leaderless, 2, &[]),
-        (&p, 3, &rudders[2..]),
-    ]) {
-        let mut alone = Flock::new(p.clone(), seed).expect("room");
-        alone.advance(1.0, Some(commands)).expect("finite motion");
-        assert_eq!(bits(flock), bits(&alone));
+    let alone: Vec<Vec<u64>> = members.iter().map(run).collect();
+    for threads in [2, 5] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let together: Vec<_> = pool
+            .expect("threads")
+            .install(|| members.par_iter().map(run).collect());
+        assert_eq!(together, alone, "{threads} threads");
     }
 }
 

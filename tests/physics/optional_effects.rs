@@ -4,9 +4,8 @@
 //! On paper: zero bits of difference.
 
 use crate::support::{NOISES, OPEN_WATER, SCHEMES, bits, busy};
-use flockenv::clock::ticks;
 use flockenv::parameters::{Noise, Scheme};
-use flockenv::{Flock, FlockBatch, FlockParameters};
+use flockenv::{Flock, FlockParameters};
 
 fn all_on(scheme: Scheme, noise: Noise) -> FlockParameters {
     FlockParameters {
@@ -88,7 +87,7 @@ fn with_all_effects_on_a_run_is_a_function_of_its_seed() {
 }
 
 #[test]
-fn with_all_effects_on_snapshots_and_batches_go_on_bit_for_bit() {
+fn with_all_effects_on_snapshots_continue_bit_for_bit() {
     for (scheme, noise) in kinds() {
         let p = all_on(scheme, noise);
         let mut flock = Flock::new(p.clone(), 11).expect("room");
@@ -98,11 +97,5 @@ fn with_all_effects_on_snapshots_and_batches_go_on_bit_for_bit() {
         copy.advance(3.0, None).expect("finite motion");
         assert_eq!(bits(&flock), bits(&copy), "{scheme:?} {noise:?}");
         assert!(flock.snapshot() == copy.snapshot());
-    }
-    let p = all_on(Scheme::Leapfrog, Noise::White);
-    let mut batch = FlockBatch::new((1..5).map(|seed| (p.clone(), seed)).collect()).expect("room");
-    batch.advance(ticks(2.0), None).expect("finite motion");
-    for (seed, flock) in (1..).zip(batch.flocks()) {
-        assert_eq!(bits(flock), run(&p, seed, &[2.0]));
     }
 }
