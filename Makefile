@@ -45,7 +45,7 @@ TEST_EXTRAS := --extra train --extra plot --extra fit --extra render --extra swe
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .PHONY: help setup build compare test lint format test-rust test-python test-js test-browser test-wheel test-oldest \
-        test-rllib test-ray validate docs wheel audit licenses pages tables replay-animation \
+        test-rllib test-ray validate docs wheel audit licenses tables replay-animation \
         instructions learning-check throughput soak fuzz speed-vs-error lint-benches clean
 
 help: ## list the commands
@@ -138,9 +138,6 @@ tables: $(STAMPS)/compare ## fill the tables of README and docs from the committ
 	$(BIN)/python docs/tables.py
 	$(BIN)/python benches/report docs
 	$(BIN)/python benches/throughput.py --page
-
-pages: $(STAMPS)/test $(STAMPS)/core ## write docs/environments from the docstrings
-	$(BIN)/python docs/environment_pages.py
 
 replay-animation: $(STAMPS)/browser $(STAMPS)/core ## photograph the replay page into docs/replay.webp
 	@tests/browser/need_chromium.sh

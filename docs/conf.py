@@ -11,7 +11,11 @@ from sphinx.environment import BuildEnvironment
 
 import flockenv
 
-sys.path.insert(0, str(Path(__file__).parent / "extensions"))
+sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parent / "extensions")]
+
+import environment_pages  # noqa: E402
+
+environment_pages.write()
 
 project = "flockenv"
 author = "flockenv contributors"

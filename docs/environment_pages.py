@@ -1,7 +1,4 @@
-"""Writes docs/environments/*.md from the docstrings of the environment classes.
-
-python docs/environment_pages.py
-"""
+"""The pages of the environments, written from the docstrings whenever the pages are built."""
 
 import inspect
 from pathlib import Path
@@ -19,14 +16,15 @@ CLASSES = (
 
 
 def pages() -> dict[Path, str]:
-    """Every page's text."""
+    """Return the text of every page."""
     return {
         FOLDER / f"{each.__name__}.md": f"# {each.__name__}\n\n{inspect.getdoc(each)}\n"
         for each in CLASSES
     }
 
 
-if __name__ == "__main__":
+def write() -> None:
+    """Write the pages that differ."""
     for path, text in pages().items():
-        path.parent.mkdir(exist_ok=True)
-        path.write_text(text)
+        if not path.exists() or path.read_text(encoding="utf-8") != text:
+            path.write_text(text, encoding="utf-8")

@@ -1,6 +1,7 @@
 """Every constant that defines a scene. Values and range checks live in the Rust core."""
 
 import difflib
+import textwrap
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any, Self
@@ -13,11 +14,15 @@ from flockenv.errors import ParameterError
 
 __all__ = ["FlockParameters"]
 
+_TABLE = {row[0]: row for row in _core.parameter_table()}
 _DEFAULTS = _core.preset_fields("simulation")
 
 
-def _field(name: str, doc: str) -> Any:
-    return field(default=_DEFAULTS[name], metadata={"doc": doc})
+def _declared(name: str) -> Any:
+    """Return the field that the core declares under this name: default, unit, range and meaning."""
+    _, kind, unit, accepted, doc = _TABLE[name]
+    metadata = {"kind": kind, "unit": unit, "accepted": accepted, "doc": doc}
+    return field(default=_DEFAULTS[name], metadata=metadata)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,91 +41,35 @@ class FlockParameters:
         For a value of the wrong type.
     """
 
-    n_boats: int = _field("n_boats", "Number of boats, leaders included (Table 3: n).")
-    n_leaders: int = _field("n_leaders", "Number of steerable leaders, boats 0..k-1 (Table 3: k).")
-    pool: str | tuple[float, float] = _field(
-        "pool",
-        '"500-boats" (radii 180 and 97 cm, the free space of Section 2.2), "table-1" '
-        "(90 and 48.5 cm, Table 1 as printed) or (outer_radius_cm, inner_radius_cm); inner 0: no "
-        "obstacle, outer infinite: open water.",
-    )
-    boat_radius_cm: float = _field(
-        "boat_radius_cm", "Radius of the hull's end discs in cm (Table 3: r)."
-    )
-    boat_shape: float = _field(
-        "boat_shape", "Half-length of the hull's core segment over its radius (Table 3: p)."
-    )
-    gyration_radius_cm: float = _field(
-        "gyration_radius_cm",
-        "Radius of gyration in cm (Table 3: ρ; the exact stadium has 4.690).",
-    )
-    speed_cm_s: float = _field("speed_cm_s", "Preferred forward speed in cm/s (Table 3: v0 in fw).")
-    reverse_speed_cm_s: float = _field(
-        "reverse_speed_cm_s", "Preferred backward speed in cm/s, positive (Table 3: -v0 in bw)."
-    )
-    c0: float = _field("c0", "Convergence rate of the velocity in 1/s (eq. 8).")
-    c1: float = _field("c1", "Cubic damping of the angular velocity in s (eq. 9).")
-    c2: float = _field("c2", "Gain of the rudder in 1/(cm·s) (eq. 9).")
-    c3: float = _field("c3", "Weathervane stabilisation of forward motion in 1/cm (eq. 9).")
-    c4: float = _field(
-        "c4",
-        "Strength of the angular noise in rad/s^1.5 (white) or rad/s² (per-step) (eq. 9).",
-    )
-    fw_s: float = _field("fw_s", "Duration of the forward phase in s (Section 2.1).")
-    nop1_s: float = _field("nop1_s", "Duration of the drift after the forward phase in s.")
-    bw_s: float = _field("bw_s", "Duration of the backward phase in s: the noise level.")
-    nop2_s: float = _field("nop2_s", "Duration of the drift after the backward phase in s.")
-    leaders_reverse: bool = _field(
-        "leaders_reverse",
-        "Whether leaders back up in the bw phase (in the experiment their motor ran in fw only).",
-    )
-    target: str = _field(
-        "target",
-        'Direction that eq. (10) steers leaders to: "cw" (LAP orientation +π/2) or "ccw" (-π/2).',
-    )
-    scheme: str = _field(
-        "scheme",
-        'How a time step is taken: "leapfrog" (second order), "moreau" (first order) or "paper" '
-        "(the appendix taken literally).",
-    )
-    noise: str = _field(
-        "noise",
-        'What η of eq. (9) means: "white" (increment c4·sqrt(dt)·N(0, 1)) or "per-step" '
-        "(c4·dt·N(0, 1)).",
-    )
-    solver: str = _field(
-        "solver",
-        'How contacts are solved: "block-pivoting" (exact), or for comparison "gauss-seidel" or '
-        '"clarabel".',
-    )
-    dt_s: float = _field("dt_s", "Longest substep in s, rounded to 1 ns.")
-    overlap_tolerance_cm: float = _field(
-        "overlap_tolerance_cm",
-        "Overlap that the paper scheme accepts without a projection, in cm.",
-    )
-    relinearizations: int = _field(
-        "relinearizations",
-        "How well gaps hold at a substep's end: 0 linearized once; 1 and 2 re-evaluated and solved "
-        "again until overlaps are at most 1e-6 and 1e-9 cm.",
-    )
-    turning_bias: float = _field(
-        "turning_bias",
-        "Constant rudder of the normal boats in [-1, 1], positive turns counter-clockwise "
-        "(Section 4.5); 0: off.",
-    )
-    speed_spread_cm_s: float = _field(
-        "speed_spread_cm_s",
-        "Half-width of the uniform spread of the boats' forward speeds in cm/s (Table 1); backward "
-        "speeds scale along; 0: off.",
-    )
-    current_gain: float = _field(
-        "current_gain",
-        "κ of the net tangential water current -κ·(mean tangential velocity) (Section 4.5); "
-        "0: off.",
-    )
-    current_cap_cm_s: float = _field(
-        "current_cap_cm_s", "Cap of that current's speed in cm/s (Section 4.5)."
-    )
+    n_boats: int = _declared("n_boats")
+    n_leaders: int = _declared("n_leaders")
+    pool: str | tuple[float, float] = _declared("pool")
+    boat_radius_cm: float = _declared("boat_radius_cm")
+    boat_shape: float = _declared("boat_shape")
+    gyration_radius_cm: float = _declared("gyration_radius_cm")
+    speed_cm_s: float = _declared("speed_cm_s")
+    reverse_speed_cm_s: float = _declared("reverse_speed_cm_s")
+    c0: float = _declared("c0")
+    c1: float = _declared("c1")
+    c2: float = _declared("c2")
+    c3: float = _declared("c3")
+    c4: float = _declared("c4")
+    fw_s: float = _declared("fw_s")
+    nop1_s: float = _declared("nop1_s")
+    bw_s: float = _declared("bw_s")
+    nop2_s: float = _declared("nop2_s")
+    leaders_reverse: bool = _declared("leaders_reverse")
+    target: str = _declared("target")
+    scheme: str = _declared("scheme")
+    noise: str = _declared("noise")
+    solver: str = _declared("solver")
+    dt_s: float = _declared("dt_s")
+    overlap_tolerance_cm: float = _declared("overlap_tolerance_cm")
+    relinearizations: int = _declared("relinearizations")
+    turning_bias: float = _declared("turning_bias")
+    speed_spread_cm_s: float = _declared("speed_spread_cm_s")
+    current_gain: float = _declared("current_gain")
+    current_cap_cm_s: float = _declared("current_cap_cm_s")
 
     def __new__(cls, **values: Any) -> Self:
         """Refuse unknown fields with the nearest name, which a dataclass would not tell."""
@@ -253,13 +202,15 @@ def _refuse_unknown(names: Iterable[str]) -> None:
 
 
 def _attributes() -> str:
-    """Return the fields' own descriptions as a numpydoc section."""
+    """Return what the core declares of the fields as a numpydoc section."""
     lines = ["    Attributes", "    ----------"]
+    indented = textwrap.TextWrapper(96, initial_indent=" " * 8, subsequent_indent=" " * 8)
     for each in fields(FlockParameters):
-        kind = (
-            each.type if isinstance(each.type, str) else getattr(each.type, "__name__", each.type)
-        )
-        lines += [f"    {each.name} : {kind}", f"        {each.metadata['doc']}"]
+        told = each.metadata
+        unit = f" Unit: {told['unit']}." if told["unit"] else ""
+        accepted = f" Accepted: {told['accepted']}." if told["accepted"] else ""
+        lines += [f"    {each.name} : {told['kind']}"]
+        lines += indented.wrap(f"{told['doc']}{unit}{accepted}")
     return "\n".join(lines)
 
 

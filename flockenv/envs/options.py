@@ -17,34 +17,6 @@ __all__ = ["RESET_OPTIONS", "EnvOptions"]
 #: What ``reset(options=...)`` understands, besides ``reset_mask`` in the vector environment.
 RESET_OPTIONS = ("target", "bw_s", "state", "snapshot")
 
-#: What the options mean that are not fields of `FlockParameters`.
-_MEANINGS = {
-    "preset": "named parameters of the scene, see `FlockParameters.presets`",
-    "params": "parameters of the scene, `FlockParameters` or a dictionary, instead of a preset",
-    "n_boats": "number of boats, leaders included",
-    "n_leaders": "number of leaders k",
-    "bw_s": "length of the backward phase in s, the noise level; a pair (low, high) draws it "
-    "uniformly for each episode",
-    "target": '"cw", "ccw", "random" (drawn for each episode) or "alternate" (ccw, cw, ccw, cw, a '
-    "quarter of the episode each)",
-    "episode_s": "length of an episode in s, rounded to whole control steps; None: 480, and 960 "
-    "where targets alternate",
-    "control_hz": "control steps a second",
-    "observation": "blocks that differ from the default layout, such as `{'order': False, "
-    "'neighbors': 4}`",
-    "mirror_to_target": "reflect observation, state and action where the target is ccw, so that "
-    "both directions are one task",
-    "dropout_rate": "chance that the camera misses a boat in a frame and shows where it was before",
-    "delay_frames": "frames that the leaders' picture is late, 0 or 1",
-    "reward": "weights of the reward's terms; terms that are not named weigh nothing",
-    "rudder_levels": "number of levels of the discrete action, 2 to 1001; None: continuous",
-    "rudder_lag_s": "time constant of the rudder servo in s",
-    "rudder_rate_per_s": "fastest change of the rudder in 1/s; None: any",
-    "render_mode": 'None, "rgb_array" (`render` returns a frame) or, for environments with one '
-    'flock, "human" (a window, extra `render`)',
-    "render_size": "width and height of a frame in pixels, 64 to 4096",
-}
-
 _FIELDS = tuple(each.name for each in fields(FlockParameters))
 _SETTINGS = tuple(
     name for name in _core.env_defaults() if name not in ("bw_range_s", "autoreset_mode")
@@ -128,8 +100,20 @@ def known_reset_options(options: Mapping[str, Any] | None) -> dict[str, Any]:
 
 
 def arguments_table() -> str:
-    """Return the options as a Markdown table."""
+    """Return the options as a Markdown table: what the core declares, and how Python adds to it."""
     scene = FlockParameters().replace(**_SCENE).to_dict()
+    declared = {each.name: str(each.metadata["doc"]) for each in fields(FlockParameters)}
+    meanings = {
+        "preset": "named parameters of the scene, see `FlockParameters.presets`",
+        "params": "parameters of the scene, `FlockParameters` or a dictionary, instead of a preset",
+        "n_boats": declared["n_boats"],
+        "n_leaders": declared["n_leaders"],
+        "bw_s": f"{declared['bw_s']} In s; a pair (low, high) draws it uniformly for each episode.",
+        **{name: text for name, text in _core.env_meanings().items() if name in _SETTINGS},
+        "render_mode": 'None, "rgb_array" (`render` returns a frame) or, for environments with one '
+        'flock, "human" (a window, extra `render`)',
+        "render_size": "width and height of a frame in pixels, 64 to 4096",
+    }
     defaults = {
         **scene,
         **_core.env_defaults(),
@@ -138,7 +122,7 @@ def arguments_table() -> str:
         "render_size": DEFAULT_SIZE,
     }
     lines = ["| option | default | meaning |", "| --- | --- | --- |"]
-    for name, meaning in _MEANINGS.items():
+    for name, meaning in meanings.items():
         lines.append(f"| `{name}` | `{defaults.get(name)!r}` | {meaning} |")
     lines.append("| any other field of `FlockParameters` | the preset's | see there |")
     return "\n".join(lines)

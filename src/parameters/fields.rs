@@ -1,74 +1,119 @@
-//! Every constant of Tables 1 and 3, and one check on construction.
+//! Every constant of Tables 1 and 3, declared once: name, type, default, unit, range, source and meaning. The struct,
+//! its check, the bindings and the documentation follow from this table.
 
+use super::field::{Field, FieldType, Range, Value};
 use super::{Noise, Pool, Scheme, Solver, Target};
 use crate::error::{FlockError, Result};
 
-/// Everything that defines a flock. Fields are public to read and to build with;
-/// [`FlockParameters::check`] runs once wherever a flock is made from them.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct FlockParameters {
+macro_rules! declare_parameters {
+    ($($(#[doc = $doc:literal])+ $name:ident: $type:ty = $default:expr, $unit:literal, $range:expr, $source:literal;)+) => {
+        /// Everything that defines a flock. Fields are public to read and to build with;
+        /// [`FlockParameters::check`] runs once wherever a flock is made from them.
+        #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+        pub struct FlockParameters {
+            $($(#[doc = $doc])+ pub $name: $type,)+
+        }
+
+        impl FlockParameters {
+            /// What is declared of each field, in the order of documentation. Defaults and sources are those of the
+            /// preset `simulation`.
+            pub const FIELDS: &'static [Field] = &[$(Field {
+                name: stringify!($name),
+                kind: <$type as FieldType>::KIND,
+                unit: $unit,
+                range: $range,
+                source: $source,
+                doc: concat!($($doc),+),
+            },)+];
+
+            /// The preset `simulation`.
+            pub(super) fn simulation() -> Self {
+                Self { $($name: $default,)+ }
+            }
+
+            /// The values in the order of [`Self::FIELDS`].
+            pub fn values(&self) -> Vec<Value> {
+                vec![$(self.$name.value(),)+]
+            }
+
+            /// Parameters from their values, which `read` gives for each field in turn. They are not checked yet.
+            ///
+            /// # Errors
+            /// Those of `read`, and [`FlockError::Parameter`] for a name that is none of the choices.
+            pub fn from_values<E: From<FlockError>>(
+                mut read: impl FnMut(&'static Field) -> std::result::Result<Value, E>,
+            ) -> std::result::Result<Self, E> {
+                let mut fields = Self::FIELDS.iter();
+                let mut next = || fields.next().map(&mut read).unwrap_or(Ok(Value::Flag(false)));
+                Ok(Self { $($name: <$type as FieldType>::from_value(next()?)?,)+ })
+            }
+        }
+    };
+}
+
+declare_parameters! {
     /// Number of boats, leaders included (Table 3: n).
-    pub n_boats: usize,
-    /// Number of steerable leaders, boats 0..k−1 (Table 3: k).
-    pub n_leaders: usize,
-    /// The water.
-    pub pool: Pool,
-    /// Radius of the hull's end discs in cm (Table 3: r).
-    pub boat_radius_cm: f64,
+    n_boats: usize = 20, "", Range::Within(1.0, Self::MOST_BOATS as f64, "1 to 100000"), "Table 3 (20 to 50)";
+    /// Number of steerable leaders, boats 0..k-1 (Table 3: k).
+    n_leaders: usize = 0, "", Range::Dependent("0 to n_boats"), "Table 3 (0 or 0.2 n)";
+    /// The water: "500-boats" (radii 180 and 97 cm, the free space of Section 2.2), "table-1" (90 and 48.5 cm, Table 1
+    /// as printed) or (outer_radius_cm, inner_radius_cm); inner 0: no obstacle, outer infinite: open water.
+    pool: Pool = Pool::FIVE_HUNDRED_BOATS, "cm", Range::Dependent("0 <= inner < outer"), "Section 2.2 (room for 500 boats)";
+    /// Radius of the hull's end discs (Table 3: r).
+    boat_radius_cm: f64 = 5.0, "cm", Range::Positive, "Table 3";
     /// Half-length of the hull's core segment over its radius (Table 3: p).
-    pub boat_shape: f64,
-    /// Radius of gyration in cm (Table 3: ρ; the exact stadium has 4.690).
-    pub gyration_radius_cm: f64,
-    /// Preferred forward speed in cm/s (Table 3: v0 in fw).
-    pub speed_cm_s: f64,
-    /// Preferred backward speed in cm/s, positive (Table 3: −v0 in bw).
-    pub reverse_speed_cm_s: f64,
-    /// Convergence rate of the velocity in 1/s (eq. 8).
-    pub c0: f64,
-    /// Cubic damping of the angular velocity in s (eq. 9).
-    pub c1: f64,
-    /// Gain of the rudder in 1/(cm·s) (eq. 9).
-    pub c2: f64,
-    /// Weathervane stabilization of forward motion in 1/cm (eq. 9).
-    pub c3: f64,
-    /// Strength of the angular noise, in rad/s^1.5 (`white`) or rad/s² (`per-step`) (eq. 9).
-    pub c4: f64,
-    /// Duration of the forward phase in s.
-    pub fw_s: f64,
-    /// Duration of the drift after the forward phase in s.
-    pub nop1_s: f64,
-    /// Duration of the backward phase in s: the source of disorder.
-    pub bw_s: f64,
-    /// Duration of the drift after the backward phase in s.
-    pub nop2_s: f64,
+    boat_shape: f64 = 0.5, "", Range::NonNegative, "Table 3";
+    /// Radius of gyration (Table 3: ρ; the exact stadium has 4.690 cm).
+    gyration_radius_cm: f64 = 4.74, "cm", Range::Positive, "Table 3";
+    /// Preferred forward speed (Table 3: v0 in fw).
+    speed_cm_s: f64 = 15.0, "cm/s", Range::NonNegative, "Table 3";
+    /// Preferred backward speed, positive (Table 3: -v0 in bw).
+    reverse_speed_cm_s: f64 = 15.0, "cm/s", Range::NonNegative, "Table 3";
+    /// Convergence rate of the velocity (eq. 8).
+    c0: f64 = 1.0, "1/s", Range::NonNegative, "Table 3";
+    /// Cubic damping of the angular velocity (eq. 9).
+    c1: f64 = 1.0, "s", Range::NonNegative, "Table 3";
+    /// Gain of the rudder (eq. 9).
+    c2: f64 = 0.1, "1/(cm·s)", Range::NonNegative, "Table 3";
+    /// Weathervane stabilization of forward motion (eq. 9).
+    c3: f64 = 1.0, "1/cm", Range::NonNegative, "Table 3";
+    /// Strength of the angular noise (eq. 9): in rad/s^1.5 where the noise is "white", in rad/s² where it is "per-step".
+    c4: f64 = 0.1, "rad/s^1.5 or rad/s²", Range::NonNegative, "Table 3";
+    /// Duration of the forward phase (Section 2.1).
+    fw_s: f64 = 2.0, "s", Range::NonNegative, "Table 1";
+    /// Duration of the drift after the forward phase.
+    nop1_s: f64 = 1.0, "s", Range::NonNegative, "Table 1";
+    /// Duration of the backward phase: the source of disorder.
+    bw_s: f64 = 0.3, "s", Range::NonNegative, "near the critical noise";
+    /// Duration of the drift after the backward phase.
+    nop2_s: f64 = 1.0, "s", Range::NonNegative, "Table 1";
     /// Whether leaders back up in the bw phase (in the experiment their motor ran in fw only).
-    pub leaders_reverse: bool,
-    /// The direction that eq. (10) steers leaders to.
-    pub target: Target,
-    /// How a time step is taken.
-    pub scheme: Scheme,
-    /// What η of eq. (9) means.
-    pub noise: Noise,
-    /// How contacts are solved.
-    pub solver: Solver,
-    /// Longest substep in s (rounded to 1 ns).
-    pub dt_s: f64,
-    /// Overlap that the `paper` scheme accepts without a projection, in cm.
-    pub overlap_tolerance_cm: f64,
-    /// How well gaps hold at the end of a substep, where they are curved functions of the motion:
-    /// 0 linearized once (overlaps ≤ 1e-2 cm at dt = 0.01 s); 1 and 2 re-evaluate and solve again, with
-    /// the same factor, until overlaps are ≤ 1e-6 and ≤ 1e-9 cm.
-    pub relinearizations: usize,
-    /// Constant rudder of the normal boats, in [−1, 1]; positive turns counter-clockwise
-    /// (Section 4.5's bias). 0: off.
-    pub turning_bias: f64,
-    /// Half-width of the uniform per-boat spread of the forward speed in cm/s (Table 1: ±5); the
-    /// backward speed scales along. 0: off.
-    pub speed_spread_cm_s: f64,
-    /// κ of the net tangential water current −κ·(mean tangential velocity) (Section 4.5). 0: off.
-    pub current_gain: f64,
-    /// Cap of that current's speed in cm/s.
-    pub current_cap_cm_s: f64,
+    leaders_reverse: bool = true, "", Range::Any, "eq. (8), the same for all";
+    /// Direction that eq. (10) steers leaders to: "cw" (LAP orientation +π/2) or "ccw" (-π/2).
+    target: Target = Target::Clockwise, "", Range::Any, "chosen";
+    /// How a time step is taken: "leapfrog" (second order), "moreau" (first order) or "paper" (the appendix taken
+    /// literally).
+    scheme: Scheme = Scheme::Leapfrog, "", Range::Any, "chosen";
+    /// What η of eq. (9) means: "white" (increment c4·sqrt(dt)·N(0, 1)) or "per-step" (c4·dt·N(0, 1)).
+    noise: Noise = Noise::White, "", Range::Any, "chosen";
+    /// How contacts are solved: "block-pivoting" (exact), or for comparison "gauss-seidel" or "clarabel".
+    solver: Solver = Solver::BlockPivoting, "", Range::Any, "chosen";
+    /// Longest substep, rounded to 1 ns.
+    dt_s: f64 = 0.02, "s", Range::Dependent("1e-6 to 1, to 0.1 for the schemes moreau and paper"), "chosen";
+    /// Overlap that the paper scheme accepts without a projection.
+    overlap_tolerance_cm: f64 = 0.01, "cm", Range::NonNegative, "chosen";
+    /// How well gaps hold at a substep's end, where they are curved functions of the motion: 0 linearizes them once;
+    /// 1 and 2 evaluate them again and solve again until overlaps are at most 1e-6 and 1e-9 cm.
+    relinearizations: usize = 0, "", Range::Within(0.0, 2.0, "0, 1 or 2"), "chosen";
+    /// Constant rudder of the normal boats, positive turns counter-clockwise (Section 4.5); 0: off.
+    turning_bias: f64 = 0.0, "", Range::Within(-1.0, 1.0, "a rudder in [-1, 1]"), "Section 4.5, off";
+    /// Half-width of the uniform spread of the boats' forward speeds (Table 1: 5 cm/s); backward speeds scale along;
+    /// 0: off.
+    speed_spread_cm_s: f64 = 0.0, "cm/s", Range::Dependent("0 to speed_cm_s"), "Section 4.5, off";
+    /// κ of the net tangential water current -κ·(mean tangential velocity) (Section 4.5); 0: off.
+    current_gain: f64 = 0.0, "", Range::Within(0.0, 1.0, "0 (off) to 1"), "Section 4.5, off";
+    /// Cap of that current's speed (Section 4.5).
+    current_cap_cm_s: f64 = 5.0, "cm/s", Range::Positive, "Section 4.5 (3 to 5)";
 }
 
 impl FlockParameters {
@@ -83,67 +128,23 @@ impl FlockParameters {
     /// Checks every field; the one gate through which parameters enter a flock.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] names the first field that is out of range.
+    /// [`FlockError::Parameter`] names a field that is out of range.
     pub fn check(&self) -> Result<()> {
-        self.check_counts()?;
+        for (field, value) in Self::FIELDS.iter().zip(self.values()) {
+            field.check(value)?;
+        }
+        self.check_leaders()?;
         self.check_pool()?;
-        for (field, value) in [
-            ("boat_radius_cm", self.boat_radius_cm),
-            ("gyration_radius_cm", self.gyration_radius_cm),
-            ("current_cap_cm_s", self.current_cap_cm_s),
-        ] {
-            check_range(
-                field,
-                value,
-                f64::MIN_POSITIVE,
-                LARGE,
-                "a positive length or speed",
-            )?;
-        }
-        for (field, value) in [
-            ("boat_shape", self.boat_shape),
-            ("speed_cm_s", self.speed_cm_s),
-            ("reverse_speed_cm_s", self.reverse_speed_cm_s),
-            ("c0", self.c0),
-            ("c1", self.c1),
-            ("c2", self.c2),
-            ("c3", self.c3),
-            ("c4", self.c4),
-            ("fw_s", self.fw_s),
-            ("nop1_s", self.nop1_s),
-            ("bw_s", self.bw_s),
-            ("nop2_s", self.nop2_s),
-            ("overlap_tolerance_cm", self.overlap_tolerance_cm),
-        ] {
-            check_range(
-                field,
-                value,
-                0.0,
-                LARGE,
-                "a finite number of at least 0, at most 1e6",
-            )?;
-        }
-        self.check_effects()?;
+        self.check_spread()?;
         self.check_timing()
     }
 
-    fn check_counts(&self) -> Result<()> {
-        if self.n_boats == 0 || self.n_boats > Self::MOST_BOATS {
-            let accepted = format!("1 to {}", Self::MOST_BOATS);
-            return Err(FlockError::parameter("n_boats", self.n_boats, accepted));
+    fn check_leaders(&self) -> Result<()> {
+        if self.n_leaders <= self.n_boats {
+            return Ok(());
         }
-        if self.n_leaders > self.n_boats {
-            let accepted = format!("0 to n_boats = {}", self.n_boats);
-            return Err(FlockError::parameter("n_leaders", self.n_leaders, accepted));
-        }
-        if self.relinearizations > 2 {
-            return Err(FlockError::parameter(
-                "relinearizations",
-                self.relinearizations,
-                "0, 1 or 2",
-            ));
-        }
-        Ok(())
+        let accepted = format!("0 to n_boats = {}", self.n_boats);
+        Err(FlockError::parameter("n_leaders", self.n_leaders, accepted))
     }
 
     fn check_pool(&self) -> Result<()> {
@@ -151,9 +152,9 @@ impl FlockParameters {
             outer_radius_cm: outer,
             inner_radius_cm: inner,
         } = self.pool;
-        let ok = (0.0..=LARGE).contains(&inner)
+        let ok = (0.0..=Range::LARGE).contains(&inner)
             && outer > inner
-            && (outer <= LARGE || outer == f64::INFINITY);
+            && (outer <= Range::LARGE || outer == f64::INFINITY);
         if ok {
             return Ok(());
         }
@@ -164,49 +165,36 @@ impl FlockParameters {
         ))
     }
 
-    fn check_effects(&self) -> Result<()> {
-        check_range(
-            "turning_bias",
-            self.turning_bias,
-            -1.0,
-            1.0,
-            "a rudder in [-1, 1]",
-        )?;
+    fn check_spread(&self) -> Result<()> {
+        if (0.0..=self.speed_cm_s).contains(&self.speed_spread_cm_s) {
+            return Ok(());
+        }
         let accepted = format!("0 to speed_cm_s = {}", self.speed_cm_s);
-        check_range(
+        Err(FlockError::parameter(
             "speed_spread_cm_s",
             self.speed_spread_cm_s,
-            0.0,
-            self.speed_cm_s,
-            &accepted,
-        )?;
-        check_range("current_gain", self.current_gain, 0.0, 1.0, "0 (off) to 1")
+            accepted,
+        ))
     }
 
     fn check_timing(&self) -> Result<()> {
-        if self.fw_s + self.nop1_s + self.bw_s + self.nop2_s < 1e-6 {
+        let cycle_s = self.fw_s + self.nop1_s + self.bw_s + self.nop2_s;
+        if cycle_s < 1e-6 {
+            let accepted = "a cycle of at least 1e-6 s (a single phase may last 0 s)";
             return Err(FlockError::parameter(
                 "fw_s + nop1_s + bw_s + nop2_s",
-                self.fw_s + self.nop1_s + self.bw_s + self.nop2_s,
-                "a cycle of at least 1e-6 s (a single phase may last 0 s)",
+                cycle_s,
+                accepted,
             ));
         }
         let longest = self.scheme.longest_dt_s();
+        if (1e-6..=longest).contains(&self.dt_s) {
+            return Ok(());
+        }
         let accepted = format!(
             "1e-6 to {longest} s, where scheme {:?} is stable",
             self.scheme.name()
         );
-        check_range("dt_s", self.dt_s, 1e-6, longest, &accepted)
+        Err(FlockError::parameter("dt_s", self.dt_s, accepted))
     }
-}
-
-/// Lengths, speeds and rates beyond this (1e6 cm = 10 km) are taken for a mistake.
-const LARGE: f64 = 1e6;
-
-fn check_range(field: &'static str, value: f64, low: f64, high: f64, accepted: &str) -> Result<()> {
-    // A NaN fails both comparisons.
-    if value >= low && value <= high {
-        return Ok(());
-    }
-    Err(FlockError::parameter(field, value, accepted))
 }

@@ -1,12 +1,14 @@
 //! What defines a flock: its fields, named sets of them, pools, and the choices users make by name.
 
 mod choices;
+mod field;
 mod fields;
 mod named_choice;
 mod pools;
 mod presets;
 
 pub use choices::{Noise, Scheme, Solver, Target};
+pub use field::{Field, Kind, Range, Value};
 pub use fields::FlockParameters;
 pub(crate) use named_choice::named_choice;
 pub use pools::Pool;

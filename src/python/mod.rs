@@ -40,12 +40,13 @@ mod _core {
     use super::order_parameters::{outward, rotation, signed_order};
     #[pymodule_export]
     use super::parameters::{
-        checked_fields, critical_bw_s, pool_radii_cm, preset_fields, preset_names, preset_sources,
+        checked_fields, critical_bw_s, parameter_table, pool_radii_cm, preset_fields, preset_names,
+        preset_sources,
     };
     #[pymodule_export]
     use super::recording::{phase_names, record};
     #[pymodule_export]
-    use super::settings::{env_defaults, reward_terms};
+    use super::settings::{env_defaults, env_meanings, reward_terms};
     #[pymodule_export]
     use super::structure::{lagged_motion, largest_cluster, on_outer_wall, pair_counts};
 

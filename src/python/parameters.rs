@@ -1,51 +1,119 @@
 //! `flockenv.FlockParameters` to and from the core's: fields are read as attributes of the same name,
-//! so any object that has them will do. Range checks stay in [`FlockParameters::check`].
+//! so any object that has them will do. Which there are, and their range, is declared in the core.
 
-use super::arguments::{real, text, truth, whole, wrong_type};
-use crate::parameters::{FlockParameters, Noise, Pool, Preset, Scheme, Solver, Target};
+use super::arguments::{real, text, truth, wrong_type};
+use super::settings::count;
+use crate::parameters::{Field, FlockParameters, Kind, Pool, Preset, Value};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PySequence, PyString};
 
-/// A field of the parameters, as Python holds it.
-trait Field: Sized {
-    fn read(value: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Self>;
-    fn write<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>>;
+impl<'py> FromPyObject<'_, 'py> for FlockParameters {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        Self::from_values(|field| {
+            let value = object.getattr_opt(field.name)?;
+            let value =
+                value.ok_or_else(|| wrong_type(&object, "parameters", "FlockParameters"))?;
+            read(&value, field)
+        })
+    }
 }
 
-macro_rules! fields {
-    ($($name:ident)+) => {
-        impl<'py> FromPyObject<'_, 'py> for FlockParameters {
-            type Error = PyErr;
+fn read(value: &Bound<'_, PyAny>, field: &'static Field) -> PyResult<Value> {
+    let name = field.name;
+    Ok(match field.kind {
+        Kind::Count => Value::Count(count(value, name)?),
+        Kind::Real => Value::Real(real(value, name)?),
+        Kind::Flag => Value::Flag(truth(value, name)?),
+        Kind::Choice(_) => Value::Name(text(value, name)?),
+        Kind::Pool => read_pool(value, name)?,
+    })
+}
 
-            fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-                Ok(Self { $($name: read_attribute(&object, stringify!($name))?,)+ })
-            }
+/// A pool is its name, or (outer_radius_cm, inner_radius_cm) if it has none.
+fn read_pool(value: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Value> {
+    let accepted = "a pool's name or (outer_radius_cm, inner_radius_cm)";
+    if value.cast::<PyString>().is_ok() {
+        return Ok(Value::Name(text(value, name)?));
+    }
+    let radii = value.cast::<PySequence>();
+    let radii = radii.map_err(|_| wrong_type(value, name, accepted))?;
+    if radii.len()? != 2 {
+        return Err(wrong_type(value, name, accepted));
+    }
+    Ok(Value::Radii(
+        real(&radii.get_item(0)?, name)?,
+        real(&radii.get_item(1)?, name)?,
+    ))
+}
+
+fn pool_from(value: &Bound<'_, PyAny>) -> PyResult<Pool> {
+    Ok(match read_pool(value, "pool")? {
+        Value::Radii(outer_radius_cm, inner_radius_cm) => Pool {
+            outer_radius_cm,
+            inner_radius_cm,
+        },
+        name => Pool::named(&name.to_string())?,
+    })
+}
+
+fn written<'py>(value: &Value, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+    match value {
+        Value::Count(count) => count.into_bound_py_any(py),
+        Value::Real(real) => real.into_bound_py_any(py),
+        Value::Flag(flag) => flag.into_bound_py_any(py),
+        Value::Name(name) => name.into_bound_py_any(py),
+        Value::Radii(outer, inner) => (outer, inner).into_bound_py_any(py),
+    }
+}
+
+/// Every field by name, in the order of documentation.
+pub fn to_dict<'py>(py: Python<'py>, parameters: &FlockParameters) -> PyResult<Bound<'py, PyDict>> {
+    let fields = PyDict::new(py);
+    for (field, value) in FlockParameters::FIELDS.iter().zip(parameters.values()) {
+        fields.set_item(field.name, written(&value, py)?)?;
+    }
+    Ok(fields)
+}
+
+/// What is declared of each field: (name, type, unit, accepted, meaning).
+#[pyfunction]
+pub fn parameter_table() -> Vec<(&'static str, &'static str, &'static str, String, String)> {
+    let fields = FlockParameters::FIELDS.iter();
+    fields
+        .map(|field| {
+            let doc = field.doc.trim().to_owned();
+            (
+                field.name,
+                kind_name(field.kind),
+                field.unit,
+                accepted(field),
+                doc,
+            )
+        })
+        .collect()
+}
+
+fn kind_name(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Count => "int",
+        Kind::Real => "float",
+        Kind::Flag => "bool",
+        Kind::Choice(_) => "str",
+        Kind::Pool => "str or (float, float)",
+    }
+}
+
+fn accepted(field: &Field) -> String {
+    match field.kind {
+        Kind::Choice(names) => {
+            let names: Vec<_> = names().iter().map(|name| format!("{name:?}")).collect();
+            names.join(", ")
         }
-
-        /// Every field by name, in the order of documentation.
-        pub fn to_dict<'py>(
-            py: Python<'py>,
-            parameters: &FlockParameters,
-        ) -> PyResult<Bound<'py, PyDict>> {
-            let fields = PyDict::new(py);
-            $(fields.set_item(stringify!($name), parameters.$name.write(py)?)?;)+
-            Ok(fields)
-        }
-    };
-}
-
-fields! {
-    n_boats n_leaders pool boat_radius_cm boat_shape gyration_radius_cm speed_cm_s reverse_speed_cm_s
-    c0 c1 c2 c3 c4 fw_s nop1_s bw_s nop2_s leaders_reverse target scheme noise solver dt_s
-    overlap_tolerance_cm relinearizations turning_bias speed_spread_cm_s current_gain
-    current_cap_cm_s
-}
-
-fn read_attribute<T: Field>(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<T> {
-    let value = object.getattr_opt(name)?;
-    let value = value.ok_or_else(|| wrong_type(object, "parameters", "FlockParameters"))?;
-    Field::read(&value, name)
+        _ => field.range.accepted().to_owned(),
+    }
 }
 
 /// The parameters as a `flockenv.FlockParameters`.
@@ -103,87 +171,12 @@ pub fn checked_fields<'py>(
 /// The critical noise of a preset in a pool, or `None` where it has not been measured.
 #[pyfunction]
 pub fn critical_bw_s(preset: &str, pool: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
-    Ok(preset
-        .parse::<Preset>()?
-        .critical_bw_s(&Pool::read(pool, "pool")?))
+    Ok(preset.parse::<Preset>()?.critical_bw_s(&pool_from(pool)?))
 }
 
 /// Radii of a pool in cm, outer and inner, whether it has a name or not.
 #[pyfunction]
 pub fn pool_radii_cm(pool: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
-    let pool = Pool::read(pool, "pool")?;
+    let pool = pool_from(pool)?;
     Ok((pool.outer_radius_cm, pool.inner_radius_cm))
 }
-
-impl Field for usize {
-    fn read(value: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Self> {
-        // Saturates on 32-bit targets, far beyond what any count may be.
-        whole(value, name).map(|number| Self::try_from(number).unwrap_or(Self::MAX))
-    }
-
-    fn write<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.into_bound_py_any(py)
-    }
-}
-
-impl Field for f64 {
-    fn read(value: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Self> {
-        real(value, name)
-    }
-
-    fn write<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.into_bound_py_any(py)
-    }
-}
-
-impl Field for bool {
-    fn read(value: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Self> {
-        truth(value, name)
-    }
-
-    fn write<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.into_bound_py_any(py)
-    }
-}
-
-/// A pool is its name, or (outer_radius_cm, inner_radius_cm) if it has none.
-impl Field for Pool {
-    fn read(value: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Self> {
-        let accepted = "a pool's name or (outer_radius_cm, inner_radius_cm)";
-        if value.cast::<PyString>().is_ok() {
-            return Ok(Self::named(&text(value, name)?)?);
-        }
-        let radii = value.cast::<PySequence>();
-        let radii = radii.map_err(|_| wrong_type(value, name, accepted))?;
-        if radii.len()? != 2 {
-            return Err(wrong_type(value, name, accepted));
-        }
-        Ok(Self {
-            outer_radius_cm: real(&radii.get_item(0)?, name)?,
-            inner_radius_cm: real(&radii.get_item(1)?, name)?,
-        })
-    }
-
-    fn write<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        match self.name() {
-            Some(name) => name.into_bound_py_any(py),
-            None => (self.outer_radius_cm, self.inner_radius_cm).into_bound_py_any(py),
-        }
-    }
-}
-
-macro_rules! named_fields {
-    ($($type:ty),+) => {
-        $(impl Field for $type {
-            fn read(value: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Self> {
-                Ok(text(value, name)?.parse()?)
-            }
-
-            fn write<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-                self.name().into_bound_py_any(py)
-            }
-        })+
-    };
-}
-
-named_fields!(Target, Scheme, Noise, Solver);

@@ -1,9 +1,11 @@
-//! Options of environments, as a dictionary of plain values, to and from the core's settings.
+//! Options of environments, as a dictionary of plain values, to and from the core's settings. Which there
+//! are is declared in the core.
 
 use super::arguments::{real, text, truth, whole, wrong_type};
-use crate::environment::observation::ObservationLayout;
-use crate::environment::{EnvSettings, RewardTerm, RewardWeights, TERMS};
+use crate::environment::observation::{Block, ObservationLayout};
+use crate::environment::{EnvOption, EnvSettings, OPTIONS, OptionValue, RewardTerm};
 use crate::error::FlockError;
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
 
@@ -11,34 +13,37 @@ use pyo3::types::{PyDict, PyString, PyTuple};
 pub fn settings_from(options: &Bound<'_, PyDict>) -> PyResult<EnvSettings> {
     let mut settings = EnvSettings::default();
     for (name, value) in options {
-        set(&mut settings, &text(&name, "option")?, &value)?;
+        let name = text(&name, "option")?;
+        let option = OPTIONS.iter().find(|option| option.name == name);
+        let option = option.ok_or_else(|| unknown("option", &name, "an option of environments"))?;
+        let value = read(&value, option, &settings)?;
+        (option.set)(&mut settings, value)?;
     }
     Ok(settings)
 }
 
-fn set(settings: &mut EnvSettings, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
-    let (episode, rudder) = (&mut settings.episode, &mut settings.rudder);
-    match name {
-        "target" => episode.target = text(value, "target")?.parse()?,
-        "episode_s" => episode.episode_s = optional(value, |v| real(v, "episode_s"))?,
-        "control_hz" => episode.control_hz = real(value, "control_hz")?,
-        "bw_range_s" => episode.bw_range_s = optional(value, bw_range)?,
-        "observation" => read_blocks(&mut settings.observation, value)?,
-        "mirror_to_target" => {
-            settings.observation.mirror_to_target = truth(value, "mirror_to_target")?;
+/// A value of the kind that the option has.
+fn read(
+    value: &Bound<'_, PyAny>,
+    option: &EnvOption,
+    settings: &EnvSettings,
+) -> PyResult<OptionValue> {
+    let name = option.name;
+    Ok(match (option.get)(settings) {
+        OptionValue::Real(_) => OptionValue::Real(real(value, name)?),
+        OptionValue::OptionalReal(_) => {
+            OptionValue::OptionalReal(optional(value, |v| real(v, name))?)
         }
-        "dropout_rate" => settings.camera.dropout_rate = real(value, "dropout_rate")?,
-        "delay_frames" => settings.camera.delay_frames = count(value, "delay_frames")?,
-        "reward" => settings.reward = weights_from(value)?,
-        "rudder_levels" => rudder.levels = optional(value, |v| count(v, "rudder_levels"))?,
-        "rudder_lag_s" => rudder.lag_s = real(value, "rudder_lag_s")?,
-        "rudder_rate_per_s" => {
-            rudder.rate_per_s = optional(value, |v| real(v, "rudder_rate_per_s"))?;
+        OptionValue::OptionalRange(_) => OptionValue::OptionalRange(optional(value, bw_range)?),
+        OptionValue::Count(_) => OptionValue::Count(count(value, name)?),
+        OptionValue::OptionalCount(_) => {
+            OptionValue::OptionalCount(optional(value, |v| count(v, name))?)
         }
-        "autoreset_mode" => settings.autoreset = text(value, "autoreset_mode")?.parse()?,
-        _ => return Err(unknown("option", name, "an option of environments")),
-    }
-    Ok(())
+        OptionValue::Flag(_) => OptionValue::Flag(truth(value, name)?),
+        OptionValue::Name(_) => OptionValue::Name(text(value, name)?),
+        OptionValue::Blocks(_) => OptionValue::Blocks(blocks_from(value)?),
+        OptionValue::Weights(_) => OptionValue::Weights(weights_from(value)?),
+    })
 }
 
 /// The settings as the dictionary that they would be read from.
@@ -46,22 +51,41 @@ pub fn settings_to_dict<'py>(
     py: Python<'py>,
     settings: &EnvSettings,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (episode, rudder) = (&settings.episode, &settings.rudder);
     let dict = PyDict::new(py);
-    dict.set_item("target", episode.target.name())?;
-    dict.set_item("episode_s", episode.episode_s)?;
-    dict.set_item("control_hz", episode.control_hz)?;
-    dict.set_item("bw_range_s", episode.bw_range_s)?;
-    dict.set_item("observation", blocks_to_dict(py, &settings.observation)?)?;
-    dict.set_item("mirror_to_target", settings.observation.mirror_to_target)?;
-    dict.set_item("dropout_rate", settings.camera.dropout_rate)?;
-    dict.set_item("delay_frames", settings.camera.delay_frames)?;
-    dict.set_item("reward", weights_to_dict(py, &settings.reward)?)?;
-    dict.set_item("rudder_levels", rudder.levels)?;
-    dict.set_item("rudder_lag_s", rudder.lag_s)?;
-    dict.set_item("rudder_rate_per_s", rudder.rate_per_s)?;
-    dict.set_item("autoreset_mode", settings.autoreset.name())?;
+    for option in OPTIONS {
+        dict.set_item(option.name, written((option.get)(settings), py)?)?;
+    }
     Ok(dict)
+}
+
+fn written(value: OptionValue, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+    match value {
+        OptionValue::Real(real) => real.into_bound_py_any(py),
+        OptionValue::OptionalReal(real) => real.into_bound_py_any(py),
+        OptionValue::OptionalRange(range) => range.into_bound_py_any(py),
+        OptionValue::Count(count) => count.into_bound_py_any(py),
+        OptionValue::OptionalCount(count) => count.into_bound_py_any(py),
+        OptionValue::Flag(flag) => flag.into_bound_py_any(py),
+        OptionValue::Name(name) => name.into_bound_py_any(py),
+        OptionValue::Blocks(blocks) => {
+            let dict = PyDict::new(py);
+            for (block, repeats) in blocks {
+                if block.is_counted() {
+                    dict.set_item(block.name(), repeats)?;
+                } else {
+                    dict.set_item(block.name(), repeats > 0)?;
+                }
+            }
+            Ok(dict.into_any())
+        }
+        OptionValue::Weights(weights) => {
+            let dict = PyDict::new(py);
+            for (term, weight) in weights {
+                dict.set_item(term.name(), weight)?;
+            }
+            Ok(dict.into_any())
+        }
+    }
 }
 
 /// A layout from its blocks and whether it is mirrored.
@@ -70,60 +94,41 @@ pub fn layout_from(blocks: &Bound<'_, PyAny>, mirror: bool) -> PyResult<Observat
         mirror_to_target: mirror,
         ..ObservationLayout::default()
     };
-    read_blocks(&mut layout, blocks)?;
+    for (block, repeats) in blocks_from(blocks)? {
+        layout.repeat(block, repeats);
+    }
     layout.check()?;
     Ok(layout)
 }
 
-fn read_blocks(layout: &mut ObservationLayout, value: &Bound<'_, PyAny>) -> PyResult<()> {
-    let blocks = value.cast::<PyDict>();
-    let blocks = blocks.map_err(|_| wrong_type(value, "observation", "a dictionary of blocks"))?;
-    for (name, value) in blocks {
-        match text(&name, "observation")?.as_str() {
-            "own" => layout.own = truth(&value, "observation own")?,
-            "phase" => layout.phase = truth(&value, "observation phase")?,
-            "target" => layout.target = truth(&value, "observation target")?,
-            "neighbors" => layout.neighbors = count(&value, "observation neighbors")?,
-            "order" => layout.order = truth(&value, "observation order")?,
-            other => return Err(unknown("observation", other, "a block of the observation")),
-        }
+fn blocks_from(value: &Bound<'_, PyAny>) -> PyResult<Vec<(Block, usize)>> {
+    let given = value.cast::<PyDict>();
+    let given = given.map_err(|_| wrong_type(value, "observation", "a dictionary of blocks"))?;
+    let mut blocks = Vec::with_capacity(given.len());
+    for (name, value) in given {
+        let block: Block = text(&name, "observation")?.parse()?;
+        let name = block.option();
+        let repeats = if block.is_counted() {
+            count(&value, name)?
+        } else {
+            usize::from(truth(&value, name)?)
+        };
+        blocks.push((block, repeats));
     }
-    Ok(())
-}
-
-fn blocks_to_dict<'py>(
-    py: Python<'py>,
-    layout: &ObservationLayout,
-) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
-    dict.set_item("own", layout.own)?;
-    dict.set_item("phase", layout.phase)?;
-    dict.set_item("target", layout.target)?;
-    dict.set_item("neighbors", layout.neighbors)?;
-    dict.set_item("order", layout.order)?;
-    Ok(dict)
+    Ok(blocks)
 }
 
 /// Weights by the names of their terms; terms without one weigh nothing.
-fn weights_from(value: &Bound<'_, PyAny>) -> PyResult<RewardWeights> {
+fn weights_from(value: &Bound<'_, PyAny>) -> PyResult<Vec<(RewardTerm, f64)>> {
     let given = value.cast::<PyDict>();
     let given = given.map_err(|_| wrong_type(value, "reward", "a dictionary of weights"))?;
-    let mut weights = RewardWeights([0.0; TERMS]);
-    for (name, value) in given {
-        let term: RewardTerm = text(&name, "reward")?.parse()?;
-        weights.0[term as usize] = real(&value, "reward")?;
-    }
-    Ok(weights)
-}
-
-fn weights_to_dict<'py>(py: Python<'py>, weights: &RewardWeights) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
-    for (term, weight) in RewardTerm::ALL.iter().zip(weights.0) {
-        if weight != 0.0 {
-            dict.set_item(term.name(), weight)?;
-        }
-    }
-    Ok(dict)
+    let weights = given.into_iter();
+    weights
+        .map(|(name, value)| {
+            let term: RewardTerm = text(&name, "reward")?.parse()?;
+            Ok((term, real(&value, "reward")?))
+        })
+        .collect()
 }
 
 fn bw_range(value: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
@@ -160,6 +165,16 @@ fn unknown(field: &'static str, name: &str, accepted: &str) -> PyErr {
 #[pyfunction]
 pub fn env_defaults(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     settings_to_dict(py, &EnvSettings::default())
+}
+
+/// What each option of environments means, by name.
+#[pyfunction]
+pub fn env_meanings(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let meanings = PyDict::new(py);
+    for option in OPTIONS {
+        meanings.set_item(option.name, option.doc.trim())?;
+    }
+    Ok(meanings)
 }
 
 /// The terms of the reward: (name, description).

@@ -1,4 +1,4 @@
-"""Law: the environments' pages are what their docstrings say today."""
+"""Law: each environment's docstring is its specification, in the order of Gymnasium's pages."""
 
 import importlib.util
 from pathlib import Path
@@ -20,14 +20,13 @@ SECTIONS = (
 )
 
 
-def test_pages_are_current():
+def test_pages_have_their_sections_in_order():
     spec = importlib.util.spec_from_file_location("environment_pages", SCRIPT)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     found = module.pages()
     assert len(found) == 4
-    for path, text in found.items():
-        assert path.read_text() == text, f"run `python docs/{SCRIPT.name}`"
+    for text in found.values():
         places = [text.index(f"\n## {section}\n") for section in SECTIONS]
         assert places == sorted(places)
         assert "{" not in text.replace("{'", "").replace("{k-1}", "").replace('{"reset_mask', "")

@@ -26,6 +26,24 @@ named_choice! {
     }
 }
 
+impl Block {
+    /// Whether the block may occur more than once, as that of a neighbor does.
+    pub fn is_counted(self) -> bool {
+        self == Self::Neighbors
+    }
+
+    /// What messages call the choice of this block.
+    pub fn option(self) -> &'static str {
+        match self {
+            Self::Own => "observation own",
+            Self::Phase => "observation phase",
+            Self::Target => "observation target",
+            Self::Neighbors => "observation neighbors",
+            Self::Order => "observation order",
+        }
+    }
+}
+
 /// Which blocks are on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct ObservationLayout {
@@ -100,6 +118,17 @@ impl ObservationLayout {
             Block::Target => usize::from(self.target),
             Block::Neighbors => self.neighbors,
             Block::Order => usize::from(self.order),
+        }
+    }
+
+    /// Has a block occur so often: 0 or 1, or the number of neighbors.
+    pub fn repeat(&mut self, block: Block, repeats: usize) {
+        match block {
+            Block::Own => self.own = repeats > 0,
+            Block::Phase => self.phase = repeats > 0,
+            Block::Target => self.target = repeats > 0,
+            Block::Neighbors => self.neighbors = repeats,
+            Block::Order => self.order = repeats > 0,
         }
     }
 
