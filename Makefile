@@ -134,7 +134,7 @@ validate: $(STAMPS)/test $(STAMPS)/core ## the slow tests and the published curv
 	cargo test --locked -- --ignored
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) -m "slow or validation" --timeout 3600 $(PYTEST_ARGS)
 
-tables: $(STAMPS)/compare ## fill the tables of README and docs from the committed data
+tables: $(STAMPS)/compare $(STAMPS)/core ## fill the tables of README and docs from the committed data
 	$(BIN)/python docs/tables.py
 	$(BIN)/python benches/report docs
 	$(BIN)/python benches/throughput.py --page

@@ -1,13 +1,17 @@
 """Fill the marked tables of the pages from committed data: `make tables`.
 
 A table stands between ``<!-- table: NAME -->`` and ``<!-- end -->``; `TABLES` says how NAME is made
-and from which file. tests/docs/test_tables.py fails where a page differs from its data.
+and from which file (`parameters` from what the core declares). tests/docs/test_tables.py fails
+where a page differs from its data.
 """
 
 import csv
 import re
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import fields
 from pathlib import Path
+
+from flockenv import FlockParameters
 
 DOCS = Path(__file__).parent
 PAGES = (DOCS.parent / "README.md", *sorted(DOCS.glob("*.md")))
@@ -307,7 +311,24 @@ def fit_variants() -> str:
     return markdown(["variant", *keys.values()], body)
 
 
+def parameters() -> str:
+    """Return what the core declares of each parameter, with the values of the presets."""
+    presets = {name: FlockParameters.preset(name).to_dict() for name in FlockParameters.presets()}
+    body = [
+        [
+            f"`{each.name}`",
+            each.metadata["unit"],
+            *(str(values[each.name]) for values in presets.values()),
+            each.metadata["accepted"],
+            each.metadata["doc"],
+        ]
+        for each in fields(FlockParameters)
+    ]
+    return markdown(["field", "unit", *presets, "accepted", "meaning"], body)
+
+
 TABLES: dict[str, Callable[[], str]] = {
+    "parameters": parameters,
     "leader-count": leader_count,
     "leaders-500-boats": lambda: leaders_of(
         "500-boats", ("steering law", "tuned damped law", "learned")

@@ -242,3 +242,19 @@ def test_parameters_that_are_none_are_type_errors():
             FlockParameters.from_dict(values)
         with pytest.raises(TypeError, match="parameters must be FlockParameters"):
             flockenv.Flock(values, seed=1)
+
+
+UNITS = {"_cm_s": "cm/s", "_cm": "cm", "_s": "s"}
+
+
+@pytest.mark.parametrize("field", dataclasses.fields(FlockParameters), ids=lambda each: each.name)
+def test_a_field_is_declared_in_whole(field):
+    suffix = next((end for end in UNITS if field.name.endswith(end)), None)
+    assert field.metadata["doc"].endswith(".")
+    assert f"    {field.name} : {field.metadata['kind']}\n" in FlockParameters.__doc__
+    if suffix is not None:
+        assert field.metadata["unit"] == UNITS[suffix]
+    if field.metadata["kind"] == "float":
+        assert field.metadata["accepted"]
+        with pytest.raises(flockenv.ParameterError, match=field.name):
+            FlockParameters(**{field.name: -2.0})
