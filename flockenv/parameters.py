@@ -167,9 +167,9 @@ class FlockParameters:
         """
         if not isinstance(values, Mapping):
             raise TypeError(f"parameters must be a mapping of fields, not {type(values).__name__}")
-        changes = dict(values)
-        base = cls.preset(changes.pop("preset", "simulation"))
-        return base.replace(**{str(name): value for name, value in changes.items()})
+        changes = {str(name): value for name, value in values.items()}
+        base = _core.preset_fields(changes.pop("preset", "simulation"))
+        return cls(**{**base, **changes})
 
     def to_toml(self) -> str:
         """Return the parameters as TOML, every field on a line of its own."""

@@ -23,7 +23,8 @@ class LeaderBatch:
     """A batch of flocks with their episodes. Rows are leaders, flock after flock."""
 
     def __init__(self, options: EnvOptions, leaders: Sequence[int], autoreset_mode: str) -> None:
-        members = [options.parameters.replace(n_leaders=k) for k in leaders]
+        scenes = {k: options.parameters.replace(n_leaders=k) for k in set(leaders)}
+        members = [scenes[k] for k in leaders]
         self.core = _core.EnvBatch(members, {**options.settings, "autoreset_mode": autoreset_mode})
         self.settings: dict[str, Any] = self.core.options
         self.num_flocks = len(members)

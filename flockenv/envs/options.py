@@ -51,22 +51,23 @@ class EnvOptions:
             if isinstance(settings.get(name), Mapping):
                 settings[name] = dict(settings[name])
                 refuse_unknown(settings[name], known, f"part of {name}")
-        parameters = _parameters(given)
-        target = settings.setdefault("target", parameters.target)
+        target = settings.get("target")
         if isinstance(target, str) and target in ("cw", "ccw"):
-            parameters = parameters.replace(target=target)
+            given["target"] = target
+        parameters = _parameters(given)
+        settings.setdefault("target", parameters.target)
         return cls(parameters, settings)
 
 
 def _parameters(given: dict[str, Any]) -> FlockParameters:
     params, preset = given.pop("params", None), given.pop("preset", None)
     if params is None:
-        base = FlockParameters.preset("simulation" if preset is None else preset)
-        return base.replace(**{**_SCENE, **given})
+        name = "simulation" if preset is None else preset
+        return FlockParameters.from_dict({"preset": name, **_SCENE, **given})
     if preset is not None:
         raise ParameterError("params and preset are both given: one of them names the scene")
     if isinstance(params, Mapping):
-        params = FlockParameters.from_dict(params)
+        return FlockParameters.from_dict({**params, **given})
     if not isinstance(params, FlockParameters):
         raise TypeError(f"params must be FlockParameters, not {type(params).__name__}")
     return params.replace(**given)
