@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
-__all__ = ["whole_file"]
+__all__ = ["whole_file", "write_text"]
 
 
 @contextmanager
@@ -30,3 +30,15 @@ def whole_file(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> None:
+    """Write a text to a file as UTF-8, whole or not at all.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written; what was there before is still there.
+    """
+    with whole_file(path) as file:
+        file.write(text.encode())

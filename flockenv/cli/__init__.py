@@ -11,7 +11,14 @@ import typer
 
 from flockenv._core import __version__
 from flockenv.cli.compare import compare
-from flockenv.cli.console import INTERRUPTED, console, errors, interruptible, say
+from flockenv.cli.console import (
+    INTERRUPTED,
+    console,
+    errors,
+    interruptible,
+    print_anywhere,
+    say,
+)
 from flockenv.cli.evaluate import evaluate
 from flockenv.cli.fit import fit
 from flockenv.cli.presets import presets
@@ -48,6 +55,7 @@ for command in (run, replay, compare, evaluate, fit, presets, reproduce, sweep, 
 
 def main() -> None:
     """Run the command line; errors of the user's or of files end it with exit code 2."""
+    print_anywhere()
     try:
         app()
     except (FlockError, OSError) as error:

@@ -7,8 +7,8 @@ from typing import Annotated, Any
 
 import typer
 
-from flockenv.cli.console import console, errors, finished_in, progress_bar, say
-from flockenv.cli.output import check_folder
+from flockenv.cli.console import console, errors, finished_in, print_json, progress_bar, say
+from flockenv.cli.output import check_folder, keep, printable, refuse_overwriting
 from flockenv.cli.pools import PoolOption, pool_name, scenes
 from flockenv.cli.scene import ChangesOption, FileOption, PresetOption
 from flockenv.errors import ParameterError
@@ -55,12 +55,13 @@ def compare(
 
     found = scenes(preset, params, changes, pool)
     policies = {
-        pool_name(scene): {name: named_policy(name, scene.pool) for name in policy}
+        pool_name(scene): {printable(name): named_policy(name, scene.pool) for name in policy}
         if policy
         else _default_policies(scene.pool)
         for scene in found
     }
     check_folder(out)
+    refuse_overwriting(params, "--params", [out / name / "parameters.toml" for name in policies])
     runs = sum(1 + most_leaders * len(each) for each in policies.values())
     work = runs * episodes * minutes * 60
     results: dict[str, ComparisonReport] = {}
@@ -68,18 +69,19 @@ def compare(
         task = progress.add_task("simulating", total=work)
         for scene in found:
             name = pool_name(scene)
-            results[name] = report(
+            result = report(
                 scene,
                 range(most_leaders + 1),
                 policies[name],
                 range(seed, seed + episodes),
                 minutes * 60,
-                out / name,
                 lambda seconds: progress.advance(task, seconds),
             )
+            keep(out / name, result.write)
+            results[name] = result
     if as_json:
         means = {name: each.means.to_json(orient="records") for name, each in results.items()}
-        console.print_json(data={name: json.loads(text) for name, text in means.items()})
+        print_json({name: json.loads(text) for name, text in means.items()})
         return
     for name, result in results.items():
         console.print(result.table(console.width))

@@ -1,10 +1,15 @@
 """Where commands print: results to standard output, progress and errors to standard error."""
 
+import codecs
+import io
 import signal
+import sys
+import unicodedata
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
+from typing import Any
 
 import typer
 from rich.console import Console
@@ -18,6 +23,8 @@ __all__ = [
     "errors",
     "finished_in",
     "interruptible",
+    "print_anywhere",
+    "print_json",
     "progress_bar",
     "resumable",
     "say",
@@ -35,6 +42,36 @@ errors = Console(stderr=True)
 def say(text: str, on: Console = console) -> None:
     """Print a line as it is: brackets in a file's name are no markup, and nothing breaks it."""
     on.print(text, markup=False, highlight=False, soft_wrap=True)
+
+
+def print_json(data: Any) -> None:
+    """Print data as JSON, in ASCII: the same on every console."""
+    console.print_json(data=data, ensure_ascii=True)
+
+
+_PLAIN_SIGNS = {"–": "-", "—": "-", "−": "-", "×": "x", "·": "*", "±": "+-"}
+
+
+def _plain(error: UnicodeError) -> tuple[str | bytes, int]:
+    """Stand in for a sign that a console lacks: a Greek letter's name, or a sign like it."""
+    assert isinstance(error, UnicodeEncodeError)
+    sign, end = error.object[error.start], error.start + 1
+    if "\udc80" <= sign <= "\udcff":  # A byte of a file's name that is no UTF-8.
+        return bytes([ord(sign) - 0xDC00]), end
+    name = unicodedata.name(sign, "")
+    if name.startswith("GREEK "):
+        letter = name.split()[3] if " LETTER " in name else name.split()[1]
+        return (letter.capitalize() if " CAPITAL " in name else letter.lower()), end
+    alike = unicodedata.normalize("NFKD", sign).encode("ascii", "ignore").decode()
+    return _PLAIN_SIGNS.get(sign, alike or "?"), end
+
+
+def print_anywhere() -> None:
+    """Let both streams print signs that they lack, such as Ψ, as plain ones instead of failing."""
+    codecs.register_error("flockenv", _plain)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="flockenv")
 
 
 def progress_bar(disable: bool) -> Progress:

@@ -8,8 +8,9 @@ from typing import Annotated, Any
 
 import typer
 
-from flockenv.cli.console import console, finished_in, progress_bar, say
-from flockenv.cli.output import check_folder
+from flockenv._io.atomic_write import write_text
+from flockenv.cli.console import console, finished_in, print_json, progress_bar, say
+from flockenv.cli.output import check_folder, keep, printable, refuse_overwriting
 from flockenv.cli.pools import PoolOption, pool_name, scenes
 from flockenv.cli.scene import ChangesOption, FileOption, PresetOption
 from flockenv.errors import ParameterError
@@ -64,7 +65,6 @@ def evaluate(
 
     Example: `flockenv evaluate learned --pool table-1 --leaders 3`
     """
-    from flockenv._io.atomic_write import whole_file
     from flockenv.comparison.model_card import model_card
     from flockenv.comparison.report import ComparisonReport, report
     from flockenv.policies.registry import POOL_POLICIES, named_policy
@@ -72,10 +72,10 @@ def evaluate(
     references = list(against or (each for each in REFERENCES if each != policy))
     if policy in references:
         raise ParameterError(f"{policy!r} is both the policy and one of those it is compared with")
-    name = Path(policy).stem if policy.endswith(".npz") else policy
+    name = printable(Path(policy).stem if policy.endswith(".npz") else policy)
     if name in references:
-        name = policy
-    named = {each: each for each in references} | {name: policy}
+        name = printable(policy)
+    named = {printable(each): each for each in references} | {name: policy}
     options: dict[str, Any] = {"dropout_rate": dropout_rate} if dropout_rate else {}
     if alternate:
         options["target"] = "alternate"
@@ -90,37 +90,38 @@ def evaluate(
         each: {shown: named_policy(given, each) for shown, given in named.items()} for each in pools
     }
     check_folder(out)
+    refuse_overwriting(params, "--params", [out / each / "parameters.toml" for each in found])
     results: dict[str, ComparisonReport] = {}
     with finished_in(out, results), progress_bar(quiet or as_json) as progress:
         work = len(found) * len(numbers) * len(named) * episodes * duration_s
         task = progress.add_task("simulating", total=work)
         for scene_name, scene in found.items():
-            results[scene_name] = report(
+            result = report(
                 scene,
                 numbers,
                 policies[scene.pool],
                 seeds,
                 duration_s,
-                out / scene_name,
                 lambda seconds: progress.advance(task, seconds),
                 options,
             )
+            keep(out / scene_name, result.write)
+            results[scene_name] = result
     card = model_card(
         name,
         policies[next(iter(pools))][name](),
         results,
-        command=shlex.join(["flockenv", *sys.argv[1:]]),
+        command=printable(shlex.join(["flockenv", *sys.argv[1:]])),
         seeds=seeds,
         duration_s=duration_s,
     )
-    with whole_file(out / "card.md") as file:
-        file.write(card.encode())
+    keep(out / "card.md", lambda path: write_text(path, card))
     if as_json:
         told = {
             scene: json.loads(each.differences.to_json(orient="records"))
             for scene, each in results.items()
         }
-        console.print_json(data=told)
+        print_json(told)
         return
     for each in results.values():
         console.print(each.table(console.width))

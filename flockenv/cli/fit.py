@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from flockenv.calibration.search import BOUNDS, MODEL_CONSTANTS
-from flockenv.cli.console import console, interruptible, progress_bar, say
+from flockenv.cli.console import console, interruptible, print_json, progress_bar, say
 from flockenv.cli.output import check_folder
 from flockenv.parameters import FlockParameters
 
@@ -82,7 +82,7 @@ def fit(
             )
     if as_json:
         rows = json.loads(result.residuals.to_json(orient="records"))
-        console.print_json(data={"parameters": result.scene.to_dict(), "residuals": rows})
+        print_json({"parameters": result.scene.to_dict(), "residuals": rows})
         return
     console.print(result.table())
     if check is None:

@@ -1,14 +1,32 @@
 """What commands do with files they are given and asked for."""
 
-from collections.abc import Iterator
+import os
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from tempfile import TemporaryFile
+from shutil import rmtree
+from tempfile import TemporaryFile, gettempdir, mkdtemp
 
 from flockenv.errors import ParameterError
 from flockenv.recording import Recording
 
-__all__ = ["check_file", "check_folder", "load_recording", "writable"]
+__all__ = [
+    "check_file",
+    "check_folder",
+    "keep",
+    "load_recording",
+    "printable",
+    "refuse_overwriting",
+    "writable",
+]
+
+
+def printable(name: str | os.PathLike[str]) -> str:
+    """Return the name of a file or policy with a sign in place of bytes that are no UTF-8.
+
+    Such a name opens its file, but stands in no page, table or picture.
+    """
+    return os.fspath(name).encode("utf-8", "surrogateescape").decode("utf-8", "replace")
 
 
 def load_recording(path: Path) -> Recording:
@@ -26,26 +44,31 @@ def load_recording(path: Path) -> Recording:
 
 
 def check_folder(folder: Path, option: str = "--out") -> None:
-    """Check, before long work, that files can be written into a folder; leaves nothing behind.
+    """Check, before long work, that files can be written into a folder, or where it will be made.
+
+    Nothing is made and nothing removed: other commands may be at work in the same folder.
 
     Raises
     ------
     ParameterError
         If the folder cannot be made, or no file in it.
     """
-    made: list[Path] = []
     try:
-        for each in (*reversed(folder.parents), folder):
-            if not each.is_dir():
-                each.mkdir()
-                made.append(each)
-        with TemporaryFile(dir=folder):
+        with TemporaryFile(dir=_nearest(folder)):
             pass
     except OSError as error:
         raise ParameterError(f"{option} {folder} cannot be written: {error.strerror}") from error
-    finally:
-        for each in reversed(made):
-            each.rmdir()
+
+
+def _nearest(folder: Path) -> Path:
+    """Return the folder, or the nearest one above it that is there."""
+    for each in (folder, *folder.parents):
+        try:
+            each.lstat()
+        except FileNotFoundError:
+            continue
+        return each
+    return folder
 
 
 def check_file(path: Path, option: str = "--out") -> None:
@@ -59,6 +82,70 @@ def check_file(path: Path, option: str = "--out") -> None:
     if path.is_dir():
         raise ParameterError(f"{option} {path} cannot be written: it is a folder")
     check_folder(path.parent, f"{option} {path}: folder")
+
+
+def refuse_overwriting(
+    given: str | os.PathLike[str] | None, option: str, written: Iterable[Path]
+) -> None:
+    """Check that a file which the user has given is none of those that will be written.
+
+    Raises
+    ------
+    ParameterError
+        If it is one of them; the message names `option`, by which it was given.
+    """
+    if given is None or not os.path.exists(given):
+        return
+    for path in written:
+        if path.exists() and path.samefile(given):
+            raise ParameterError(
+                f"{option} {given} is where results would be written: name another --out"
+            )
+
+
+def keep(path: Path, write: Callable[[Path], object]) -> None:
+    """Write the results of finished work; where that cannot be done, somewhere else.
+
+    A full disk or a folder that was taken away costs no run: results go into a new folder of the
+    current one, of the system's for temporary files, or of the user's home.
+
+    Parameters
+    ----------
+    path
+        Where they should go; folders above it are made.
+    write
+        Writes them to a path: the file or folder itself, and what lies beside it.
+
+    Raises
+    ------
+    ParameterError
+        If they had to be written somewhere else, or could not be written at all; the message says
+        where they are.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write(path)
+    except OSError as error:
+        failed = f"{path} cannot be written: {error.strerror or error}"
+        for folder in (Path(), Path(gettempdir()), Path(os.path.expanduser("~"))):
+            refuge = _written_in(folder, path.name, write)
+            if refuge is not None:
+                raise ParameterError(f"{failed}; the results are kept in {refuge}") from error
+        raise ParameterError(f"{failed}, and so is every other folder; nothing is kept") from error
+
+
+def _written_in(folder: Path, name: str, write: Callable[[Path], object]) -> Path | None:
+    """Write results into a new folder of another one; return where they are, or None."""
+    try:
+        made = mkdtemp(prefix="flockenv-", dir=folder)
+    except OSError:
+        return None
+    try:
+        write(Path(made, name))
+    except OSError:
+        rmtree(made, ignore_errors=True)
+        return None
+    return Path(made, name).absolute()
 
 
 @contextmanager

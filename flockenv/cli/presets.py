@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 from rich.table import Table
 
-from flockenv.cli.console import console, say
+from flockenv.cli.console import console, print_json, say
 from flockenv.parameters import FlockParameters
 
 __all__ = ["ABOUT", "presets"]
@@ -44,7 +44,7 @@ def presets(
             }
             for name in names
         }
-        console.print_json(data=told)
+        print_json(told)
         return
     for name in names:
         say(f"{name}: {ABOUT[name]}")

@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from flockenv.cli.console import console, interruptible, progress_bar, say
-from flockenv.cli.output import check_file, load_recording, writable
+from flockenv.cli.console import interruptible, print_json, progress_bar, say
+from flockenv.cli.output import check_file, load_recording, printable, writable
 from flockenv.errors import ParameterError
 
 __all__ = ["replay"]
@@ -57,7 +57,7 @@ def replay(
         progress.advance(task)
     if as_json:
         facts = {"html": str(page), "bytes": written.size, "every": written.every}
-        console.print_json(data=facts)
+        print_json(facts)
     else:
         thinned = "" if written.every == 1 else f", every {written.every}th sample"
         size = f"{written.size / 1e6:.1f} MB"
@@ -69,8 +69,8 @@ def replay(
 def _titles(paths: list[Path], names: list[str]) -> list[str]:
     if names and len(names) != len(paths):
         raise ParameterError(f"--name was given {len(names)} times for {len(paths)} recordings")
-    titles = names or [path.stem for path in paths]
+    titles = [printable(name) for name in names or [path.stem for path in paths]]
     if len(set(titles)) < len(titles) and len(set(paths)) == len(paths) and not names:
-        return [str(path) for path in paths]
+        return [printable(path) for path in paths]
     # The same file or name twice is shown twice.
     return [f"{t} ({k + 1})" if titles.count(t) > 1 else t for k, t in enumerate(titles)]

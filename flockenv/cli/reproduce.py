@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 from rich.table import Table
 
-from flockenv.cli.console import console, errors, progress_bar, resumable, say
+from flockenv.cli.console import console, errors, print_json, progress_bar, resumable, say
 from flockenv.cli.output import check_folder
 from flockenv.errors import ParameterError
 from flockenv.reproduce import names, require_packages
@@ -64,7 +64,7 @@ def reproduce(
         )
     rows = [{"figure": name, **each.row()} for name, list_ in claims.items() for each in list_]
     if as_json:
-        console.print_json(data=rows)
+        print_json(rows)
         return
     if rows:
         console.print(_table(rows))

@@ -7,8 +7,8 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
-from flockenv.cli.console import console, interruptible, progress_bar, say
-from flockenv.cli.output import check_file, writable
+from flockenv.cli.console import interruptible, print_json, progress_bar, say
+from flockenv.cli.output import check_file, keep, printable, refuse_overwriting
 from flockenv.cli.scene import ChangesOption, FileOption, PresetOption, read_scene, save_scene
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
@@ -55,6 +55,8 @@ def run(
     parameters = out.with_suffix(".toml")
     for path in (out, parameters):
         check_file(path)
+    refuse_overwriting(params, "--params", (out, parameters))
+    refuse_overwriting(policy, "--policy", (out,))
     with interruptible("Nothing was written."), progress_bar(quiet or as_json) as progress:
         task = progress.add_task("simulating", total=minutes * 60)
         recording = simulate(
@@ -67,16 +69,19 @@ def run(
             progress=lambda seconds: progress.advance(task, seconds),
         )
         progress.update(task, completed=minutes * 60)
-    remark = f"flockenv {recording.version}: seed {seed}, policy {policy}, {minutes:g} min"
+    shown = printable(policy)
+    remark = f"flockenv {recording.version}: seed {seed}, policy {shown}, {minutes:g} min"
+
+    def write(path: Path) -> None:
+        recording.save(path)
+        save_scene(path.with_suffix(".toml"), scene, remark)
+
     with interruptible(f"{out} may not have been written."):
-        with writable(out):
-            recording.save(out)
-        with writable(parameters):
-            save_scene(parameters, scene, remark)
+        keep(out, write)
     summary = _summary(recording)
     if as_json:
         files = {"recording": str(out), "parameters": str(parameters)}
-        console.print_json(data={**files, "seed": seed, "policy": policy, **summary})
+        print_json({**files, "seed": seed, "policy": policy, **summary})
         return
     words = ", ".join(f"{name} {value}" for name, value in _words(summary))
     say(f"{recording.parameters.n_boats} boats, seed {seed}: {words}")

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from flockenv._io.atomic_write import whole_file
+from flockenv._io.atomic_write import write_text
 from flockenv._io.toml import read_toml
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
@@ -99,8 +99,7 @@ def save_scene(path: Path, parameters: FlockParameters, remark: str) -> None:
         If the file cannot be written; what was there before is still there.
     """
     lines = "".join(f"# {line}\n" for line in remark.splitlines())
-    with whole_file(path) as file:
-        file.write((lines + parameters.to_toml()).encode())
+    write_text(path, lines + parameters.to_toml())
 
 
 def _file_fields(path: Path) -> dict[str, Any]:

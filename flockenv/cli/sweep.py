@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from flockenv._io.atomic_write import whole_file
-from flockenv.cli.console import console, errors, progress_bar, resumable, say
+from flockenv.cli.console import errors, print_json, progress_bar, resumable, say
 from flockenv.cli.output import check_folder, writable
 from flockenv.runs.executors import named
 
@@ -55,6 +55,6 @@ def sweep(
     if failed:
         errors.print(f"Warning: {failed} of {len(table)} runs failed; see the column failure")
     if as_json:
-        console.print_json(data=json.loads(table.to_json(orient="records")))
+        print_json(json.loads(table.to_json(orient="records")))
         return
     say(f"{len(table)} runs, written to {folder}")

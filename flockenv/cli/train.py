@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from flockenv.cli.console import console, interruptible, progress_bar, say
+from flockenv.cli.console import interruptible, print_json, progress_bar, say
 from flockenv.cli.output import check_folder
 from flockenv.cli.scene import changed_fields
 from flockenv.errors import ParameterError
@@ -73,7 +73,7 @@ def train(
     if as_json:
         last = {"samples": progress.samples, "wall_s": round(progress.wall_s, 1)}
         best = {"best": progress.best_score, "validations": progress.validations}
-        console.print_json(data={**last, **best, "policy": str(out / "best.npz")})
+        print_json({**last, **best, "policy": str(out / "best.npz")})
         return
     for name, value in progress.validations[-1].items():
         say(f"{name}: {value:g}")

@@ -9,6 +9,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from flockenv._io.atomic_write import whole_file
 from flockenv.comparison.episodes import NO_LEADERS
 from flockenv.statistics.intervals import Line
 
@@ -58,9 +59,15 @@ def leader_curve(
             axes.set_ylabel(_LABELS[quantity])
             axes.set_xticks(sorted(runs["leaders"].unique()))
             # Below: the episodes fill the panel.
-            axes.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.16), fontsize=8)
-        figure.suptitle(title, fontsize=9)
-        figure.savefig(path, dpi=200)
+            legend = axes.legend(
+                frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.16), fontsize=8
+            )
+            # Policies may have the names of files: a dollar sign there begins no formula.
+            for text in legend.get_texts():
+                text.set_parse_math(False)
+        figure.suptitle(title, fontsize=9, parse_math=False)
+        with whole_file(path) as file:
+            figure.savefig(file, dpi=200, format=path.suffix.removeprefix("."))
 
 
 class _Shown:
@@ -69,7 +76,8 @@ class _Shown:
     def __init__(
         self, runs: pd.DataFrame, means: pd.DataFrame, policies: list[str], quantity: str
     ) -> None:
-        self.label = policies[0]
+        # A legend leaves out what begins with an underscore.
+        self.label = f" {policies[0]}" if policies[0].startswith("_") else policies[0]
         runs = runs[runs["policy"].isin(policies)]
         means = means[means["policy"].isin(policies)].sort_values("leaders")
         self.leaders, self.values = runs["leaders"].to_numpy(), runs[quantity].to_numpy()

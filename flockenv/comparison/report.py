@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import tomli_w
 from rich.table import Table
+from rich.text import Text
 
 from flockenv._core import __version__
-from flockenv._io.atomic_write import whole_file
+from flockenv._io.atomic_write import whole_file, write_text
 from flockenv._io.extras import require
 from flockenv.comparison.episodes import (
     CONTROL_HZ,
@@ -65,6 +66,10 @@ class ComparisonReport:
     differences : pandas.DataFrame
         How much signed order each policy has beyond each one before it, its ``reference``, seed by
         seed, for each number of leaders; empty for a single policy.
+    runs : pandas.DataFrame
+        One row an episode, of `compare_leaders`.
+    asked : dict
+        What the numbers depend on, the scene aside: seeds, policies, options.
     environment : dict
         Options of the environment that differ from its defaults.
     """
@@ -73,7 +78,37 @@ class ComparisonReport:
     means: "pd.DataFrame"
     lines: dict[tuple[str, str], Line]
     differences: "pd.DataFrame"
+    runs: "pd.DataFrame"
+    asked: Mapping[str, Any]
     environment: Mapping[str, Any] = field(default_factory=dict)
+
+    def write(self, folder: Path) -> None:
+        """Write the comparison into a folder, which is made.
+
+        ``runs.csv``, ``means.csv``, ``lines.csv``, ``differences.csv``, ``leader_curve.png``,
+        ``parameters.toml`` (the scene) and ``run.toml`` (all else that the numbers depend on).
+
+        Raises
+        ------
+        OSError
+            If one cannot be written; each is whole or as it was before.
+        """
+        from flockenv.comparison.figure import leader_curve
+
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, table in (
+            ("runs", self.runs),
+            ("means", self.means),
+            ("lines", _lines_table(self.lines)),
+            ("differences", self.differences),
+        ):
+            with whole_file(folder / f"{name}.csv") as file:
+                table.to_csv(file, index=False)
+        write_text(folder / "run.toml", tomli_w.dumps(dict(self.asked)))
+        header = f"# flockenv {__version__}: the scene; seeds, policies and options in run.toml\n"
+        write_text(folder / "parameters.toml", header + self.scene.to_toml())
+        picture = folder / "leader_curve.png"
+        leader_curve(self.runs, self.means, self.lines, self.title(), picture)
 
     def title(self) -> str:
         """Return what was run, in one line."""
@@ -112,7 +147,7 @@ class ComparisonReport:
                 for q in QUANTITIES
             ]
             ordered = f"{row['ordered']:4.0%}"
-            table.add_row(row["policy"], str(row["leaders"]), *cells, ordered)
+            table.add_row(Text(row["policy"]), str(row["leaders"]), *cells, ordered)
         return table
 
     def differences_in_words(self) -> str:
@@ -140,28 +175,21 @@ def report(
     policies: Mapping[str, Callable[[], LeaderPolicy | str]],
     seeds: Sequence[int],
     duration_s: float,
-    folder: Path,
     progress: Callable[[float], None],
     environment: Mapping[str, Any] | None = None,
 ) -> ComparisonReport:
-    """Run a comparison of policies and write its files.
-
-    Writes ``runs.csv``, ``means.csv``, ``lines.csv``, ``differences.csv``, ``leader_curve.png``,
-    ``parameters.toml`` (the scene) and ``run.toml`` (all else that the numbers depend on) into
-    `folder`.
+    """Run a comparison of policies.
 
     Raises
     ------
     ParameterError
-        For parameters, seeds and durations out of range; nothing is written then.
+        For parameters, seeds and durations out of range.
     MissingExtraError
         Without the extra ``plot``.
     """
     # All of them before hours of runs.
     for package in ("matplotlib", "pandas", "scipy"):
         require(package, "plot")
-    from flockenv.comparison.figure import leader_curve
-
     runs = compare_leaders(scene, leaders, policies, seeds, duration_s, progress, environment)
     means = _means(runs)
     lines = {}
@@ -170,16 +198,6 @@ def report(
         for quantity in QUANTITIES if own["leaders"].nunique() > 1 else ():
             lines[policy, quantity] = fit_line(own["leaders"], own[quantity])
     differences = _differences(runs, list(policies))
-    result = ComparisonReport(scene, means, lines, differences, environment or {})
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, table in (
-        ("runs", runs),
-        ("means", means),
-        ("lines", _lines_table(lines)),
-        ("differences", result.differences),
-    ):
-        with whole_file(folder / f"{name}.csv") as file:
-            table.to_csv(file, index=False)
     asked = {
         "flockenv": __version__,
         "duration_s": float(duration_s),
@@ -188,13 +206,7 @@ def report(
         "policies": {name: str(make()) for name, make in policies.items()},
         "environment": {"target": scene.target, "control_hz": CONTROL_HZ, **(environment or {})},
     }
-    with whole_file(folder / "run.toml") as file:
-        file.write(tomli_w.dumps(asked).encode())
-    header = f"# flockenv {__version__}: the scene; seeds, policies and options in run.toml\n"
-    with whole_file(folder / "parameters.toml") as file:
-        file.write((header + scene.to_toml()).encode())
-    leader_curve(runs, means, lines, result.title(), folder / "leader_curve.png")
-    return result
+    return ComparisonReport(scene, means, lines, differences, runs, asked, environment or {})
 
 
 def _means(runs: "pd.DataFrame") -> "pd.DataFrame":

@@ -60,9 +60,9 @@ def test_the_report_writes_its_files(scene: flockenv.FlockParameters, tmp_path: 
         dict(list(POLICIES.items())[:3]),
         range(2),
         40.0,
-        folder,
         lambda seconds: None,
     )
+    result.write(folder)
     assert {each.name for each in folder.iterdir()} == {
         "differences.csv",
         "leader_curve.png",
@@ -87,7 +87,8 @@ def test_the_report_writes_its_files(scene: flockenv.FlockParameters, tmp_path: 
 
 def test_the_report_tells_the_environment(scene: flockenv.FlockParameters, tmp_path: Path) -> None:
     options = {"target": "alternate", "dropout_rate": 0.003, "control_hz": 5.0}
-    result = report(scene, [1], LAW, range(2), 20.0, tmp_path, lambda seconds: None, options)
+    result = report(scene, [1], LAW, range(2), 20.0, lambda seconds: None, options)
+    result.write(tmp_path)
     for words in ("alternating targets", "0.3 % of positions dropped", "control_hz = 5.0"):
         assert words in result.title()
     assert "target cw" not in result.title()

@@ -1,0 +1,49 @@
+"""Law: what is printed is printed on every console, in the signs that it has."""
+
+import io
+import json
+import os
+import sys
+
+import pytest
+
+from flockenv.cli.console import print_anywhere, print_json, say
+
+
+@pytest.fixture
+def printed(monkeypatch):
+    """Return what is printed to a console of an encoding, as its bytes."""
+
+    def printed_on(encoding, *texts, print_one=say) -> bytes:
+        raw = io.BytesIO()
+        monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(raw, encoding, write_through=True))
+        print_anywhere()
+        for text in texts:
+            print_one(text)
+        return raw.getvalue()
+
+    return printed_on
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252", "latin-1", "cp437", "utf-8"])
+def test_greek_is_printed_or_spelt(encoding, printed):
+    told = printed(encoding, "mean Ψ_o → φ – 3×2…").decode(encoding)
+    if encoding == "utf-8":
+        assert told == "mean Ψ_o → φ – 3×2…\n"
+    else:
+        assert told.startswith("mean Psi_o ? ")
+        assert "?" not in told[12:]
+
+
+def test_a_file_name_comes_out_as_its_own_bytes(printed):
+    name = os.fsdecode(b"\xff\xfe.npz")
+    for encoding in ("utf-8", "ascii", "latin-1"):
+        assert printed(encoding, name) == b"\xff\xfe.npz\n"
+
+
+def test_json_is_the_same_on_every_console(printed):
+    data = {"Ψ": [os.fsdecode(b"\xff.npz"), None]}
+    for encoding in ("utf-8", "ascii", "cp1252"):
+        told = printed(encoding, data, print_one=print_json)
+        assert told.isascii()
+        assert json.loads(told) == data

@@ -1,0 +1,196 @@
+"""Law: a finished run is always written, nothing that a user gave is written over, and commands at
+work in one folder do not disturb each other."""
+
+import io
+import os
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from threading import Barrier
+
+import pytest
+
+import flockenv
+from flockenv.cli import output
+from flockenv.comparison import report
+from flockenv.errors import ParameterError
+
+TINY = ["-q", "--minutes", "0.02", "--set", "n_boats=3"]
+SHORT = ["-q", "--episodes", "2", "--minutes", "0.1", "--out", "c"]
+EPISODES = [*SHORT, "--pool", "table-1", "--set", "n_boats=5"]
+
+
+@pytest.fixture(autouse=True)
+def _in_a_folder_of_its_own(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture
+def cli(monkeypatch):
+    """Run a command line in this process: its exit code, and what it printed."""
+
+    def run(*arguments: str) -> tuple[int, str]:
+        raw = io.BytesIO()
+        for name in ("stdout", "stderr"):
+            stream = io.TextIOWrapper(raw, "utf-8", write_through=True)
+            monkeypatch.setattr(sys, name, stream)
+        monkeypatch.setattr(sys, "argv", ["flockenv", *arguments])
+        with pytest.raises(SystemExit) as ended:
+            flockenv.cli.main()
+        return ended.value.code or 0, raw.getvalue().decode("utf-8", "surrogateescape")
+
+    return run
+
+
+def test_checking_a_folder_leaves_alone_what_another_command_makes_meanwhile(monkeypatch):
+    folder = Path("results", "new")
+    probe = output.TemporaryFile
+
+    def with_another_command(dir):  # noqa: A002 - the name of the argument that is passed
+        folder.mkdir(parents=True, exist_ok=True)
+        return probe(dir=dir)
+
+    monkeypatch.setattr(output, "TemporaryFile", with_another_command)
+    output.check_folder(folder)
+    assert folder.is_dir()
+
+
+def test_commands_at_once_write_into_one_new_folder():
+    folder, together = Path("a", "b", "c"), Barrier(8)
+
+    def command(number: int) -> None:
+        path = folder / f"{number}.txt"
+        together.wait()
+        output.check_file(path)
+        output.keep(path, lambda path: path.write_text("done"))
+
+    for _ in range(20):
+        with ThreadPoolExecutor(8) as pool:
+            list(pool.map(command, range(8)))
+        assert len(list(folder.iterdir())) == 8
+        for each in folder.iterdir():
+            each.unlink()
+        os.removedirs(folder)
+
+
+def test_a_folder_whose_name_is_too_long_is_refused_before_work():
+    with pytest.raises(ParameterError, match=r"cannot be written: File name too long"):
+        output.check_folder(Path("a" * 300))
+
+
+def test_a_run_whose_folder_was_taken_away_is_kept_elsewhere(cli, tmp_path, monkeypatch):
+    simulate = sys.modules["flockenv.cli.run"].simulate
+
+    def meanwhile(*arguments, **options):
+        Path("results").write_text("a file by now")
+        return simulate(*arguments, **options)
+
+    monkeypatch.setattr(sys.modules["flockenv.cli.run"], "simulate", meanwhile)
+    code, told = cli("run", *TINY)
+    assert code == 2
+    (kept,) = tmp_path.glob("flockenv-*/run.npz")
+    told = told.replace("\n", "")
+    assert str(kept) in told
+    assert "results/run.npz cannot be written" in told
+    assert len(flockenv.Recording.load(kept)) == 13
+    assert kept.with_suffix(".toml").is_file()
+
+
+def test_a_comparison_whose_folder_was_taken_away_is_kept_elsewhere(cli, tmp_path, monkeypatch):
+    compare_leaders = report.compare_leaders
+
+    def meanwhile(*arguments, **options):
+        Path("c").write_text("a file by now")
+        return compare_leaders(*arguments, **options)
+
+    monkeypatch.setattr(report, "compare_leaders", meanwhile)
+    code, told = cli("compare", *EPISODES, "--most-leaders", "1", "--policy", "straight ahead")
+    assert code == 2
+    (kept,) = tmp_path.glob("flockenv-*/table-1")
+    assert str(kept) in told.replace("\n", "")
+    assert {"runs.csv", "leader_curve.png", "run.toml"} <= {each.name for each in kept.iterdir()}
+
+
+def test_what_cannot_be_kept_anywhere_says_so(monkeypatch, tmp_path):
+    def full(path):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setattr(output, "gettempdir", lambda: str(tmp_path))
+    with pytest.raises(ParameterError, match="No space left on device, and so is every other"):
+        output.keep(Path("run.npz"), full)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "given"),
+    [
+        (["run", *TINY, "--params", "X.toml", "--out", "X.npz"], "--params X.toml"),
+        (["run", *TINY, "--params", "X.toml", "--out", "sub/../X.npz"], "--params X.toml"),
+        (["run", *TINY, "--params", "link.toml", "--out", "X.npz"], "--params link.toml"),
+        (["run", *TINY, "--policy", "p.npz", "--out", "p.npz"], "--policy p.npz"),
+        (
+            ["compare", *EPISODES, "--params", "c/table-1/parameters.toml"],
+            "--params c/table-1/parameters.toml",
+        ),
+        (
+            ["evaluate", "straight ahead", "--params", "c/table-1-bw-1/parameters.toml", *SHORT],
+            "--params c/table-1-bw-1/parameters.toml",
+        ),
+    ],
+)
+def test_what_the_user_gave_is_not_written_over(cli, arguments, given, tmp_path):
+    (tmp_path / "sub").mkdir()
+    for folder in ("table-1", "table-1-bw-1"):
+        (tmp_path / "c" / folder).mkdir(parents=True)
+        text = 'n_boats = 5\npool = "table-1"\nbw_s = 1.0\n'
+        (tmp_path / "c" / folder / "parameters.toml").write_text(text)
+    (tmp_path / "X.toml").write_text("n_boats = 5  # my own words\n")
+    (tmp_path / "link.toml").hardlink_to(tmp_path / "X.toml")
+    size = len(flockenv.envs.observation.observation_entries())
+    flockenv.policies.NetworkPolicy([[[0.0]] * size], [[0.0]]).save(tmp_path / "p.npz")
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*.*")}
+    code, told = cli(*arguments)
+    assert code == 2, told
+    assert f"{given} is where results would be written" in told.replace("\n", " ")
+    assert {path: path.read_bytes() for path in tmp_path.rglob("*.*")} == before
+
+
+def test_names_that_are_no_utf_8_replay(cli, tmp_path):
+    name = os.fsdecode(b"\xff\xfe run.npz")
+    try:
+        Path(name).touch()
+    except OSError:
+        pytest.skip("this file system takes UTF-8 names only")
+    code, told = cli("run", *TINY, "--out", name)
+    assert code == 0, told
+    code, told = cli("replay", name, "-q", "--html", "page.html")
+    assert code == 0, told
+    assert "<title>\ufffd\ufffd run" in Path("page.html").read_text("utf-8")
+    for title in (name, "[/b] $x$ <b>"):
+        code, told = cli("replay", name, "-q", "--html", "page.html", "--name", title)
+        assert code == 0, told
+
+
+def test_policies_may_have_any_name(cli, tmp_path):
+    size = len(flockenv.envs.observation.observation_entries())
+    policy = flockenv.policies.NetworkPolicy([[[0.1]] * size], [[0.0]])
+    names = ["x[/b] $a_{ $.npz", "_under.npz", os.fsdecode(b"\xff.npz")]
+    (tmp_path / "x[").mkdir()
+    for name in names:
+        try:
+            policy.save(tmp_path / name)
+        except OSError:
+            pytest.skip("this file system takes UTF-8 names only")
+    wanted = [word for name in names for word in ("--policy", name)]
+    code, told = cli("compare", *EPISODES, "--most-leaders", "1", *wanted)
+    assert code == 0, told
+    assert "x[/b] $a_{ $.npz" in told.replace("\n", "")
+    assert (tmp_path / "c" / "table-1" / "leader_curve.png").stat().st_size > 0
+    assert "\ufffd.npz" in (tmp_path / "c" / "table-1" / "run.toml").read_text("utf-8")
+    evaluated = ["--against", names[0], "--leaders", "1"]
+    code, told = cli("evaluate", names[2], *EPISODES, *evaluated)
+    assert code == 0, told
+    assert (tmp_path / "c" / "card.md").read_text("utf-8").startswith("# \ufffd\n")
+    code, told = cli("run", *TINY, "--set", "n_leaders=1", "--policy", names[2])
+    assert code == 0, told
