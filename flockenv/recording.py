@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from flockenv import _core
 from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv.errors import ParameterError
-from flockenv.flock import ContactSeries, OrderSeries
+from flockenv.flock import ContactSeries, Flock, OrderSeries
 from flockenv.parameters import FlockParameters
 
 __all__ = ["PHASES", "PRECISIONS", "Recording"]
@@ -106,6 +106,32 @@ class Recording:
             f"<flockenv.Recording of {self.parameters.n_boats} boats, seed {self.seed}, "
             f"{len(self)} samples to {self.time_s[-1]} s>"
         )
+
+    def flock_at(self, time_s: float) -> Flock:
+        """Return the flock at the last sample up to a time, as far as it was recorded.
+
+        Contacts and the state of the noise are no part of it: such a flock has the poses, the
+        velocities and the time of the sample, and does not move on as the recorded one did.
+
+        Raises
+        ------
+        ParameterError
+            For a time outside the recording.
+        """
+        begin, end = self.time_s[0], self.time_s[-1]
+        if not begin <= time_s <= end:
+            raise ParameterError(
+                f"time_s = {time_s!r} is not accepted: a time from {begin} to {end} s"
+            )
+        sample = int(np.searchsorted(self.time_s, time_s, side="right")) - 1
+        state = {
+            "pose": self.pose[sample].astype(np.float64),
+            "velocity": self.velocity[sample].astype(np.float64),
+            "time_s": float(self.time_s[sample]),
+            # Single precision leaves overlaps of a rounding.
+            "allow_overlap": True,
+        }
+        return Flock.from_state(self.parameters, self.seed, state)
 
     def save(self, path: str | os.PathLike[str], *, compressed: bool = False) -> None:
         """Write the recording to an ``.npz`` file, whole or not at all.

@@ -31,8 +31,9 @@ def simulate(
     dtype: DTypeLike = np.float64,
     contacts: bool = False,
     progress: Callable[[float], object] | None = None,
+    start: bytes | Mapping[str, Any] | None = None,
 ) -> Recording:
-    """Run a flock from its random start and record it: a pure function of its arguments.
+    """Run a flock and record it: a pure function of its arguments.
 
     Without a policy of its own the run is one call into the core, without the interpreter lock.
 
@@ -63,6 +64,12 @@ def simulate(
         Whether contacts and their forces are recorded too: 28 bytes a contact.
     progress
         Called now and then with the flock-seconds simulated since; what it raises ends the run.
+    start
+        Where the run begins, and at which time. None: at random, at rest, at 0 s. A snapshot, as
+        bytes of `Flock.snapshot`, of a flock with these parameters (the target aside) and this
+        seed: under the law the run continues with the same bits. A dictionary with ``pose`` (n, 3)
+        and, if need be, ``velocity`` (n, 3), ``time_s`` and ``allow_overlap``, as in
+        `Flock.set_state`.
 
     Returns
     -------
@@ -73,8 +80,8 @@ def simulate(
     ------
     ParameterError
         For arguments out of range, unknown names of policies and pools that a policy is not made
-        for, boats that do not fit the pool, rudders that are NaN, and a recording of more than
-        16 GiB; nothing is returned then.
+        for, boats that do not fit the pool, a start that this flock cannot have, rudders that are
+        NaN, and a recording of more than 16 GiB; nothing is returned then.
     OSError
         If a policy's file cannot be opened.
     TypeError
@@ -83,22 +90,42 @@ def simulate(
         If the motion left its range of 1e9 (cm, cm/s, rad, rad/s).
     """
     precision = _precision(dtype)
+    begun = None if start is None else _started(parameters, seed, start)
     if isinstance(policy, str):
         policy = named_policy(policy, parameters.pool)()
     if policy is None or policy == EVERY_SUBSTEP:
         kept = {"single_precision": bool(precision == np.float32), "contacts": contacts}
-        columns = _core.record(parameters, seed, duration_s, sample_hz, kept, progress)
+        columns = _core.record(parameters, seed, duration_s, sample_hz, kept, progress, begun)
         columns["phase"] = PHASES[columns["phase"]]
     elif hasattr(policy, "predict"):
         _check_rates(duration_s, sample_hz, control_hz)
         steps = _told(_events(duration_s, sample_hz, control_hz), progress)
-        columns = _steered(parameters, seed, steps, policy, precision, contacts)
+        flock = begun or _core.Flock(parameters, seed)
+        columns = _steered(flock, steps, policy, precision, contacts)
     else:
         raise ParameterError(
             f"policy = {policy!r} is not accepted: None, a policy's name or file, or an object "
             "with predict"
         )
     return Recording(**columns, parameters=parameters, seed=int(seed), version=_core.__version__)
+
+
+def _started(
+    parameters: FlockParameters, seed: int, start: bytes | Mapping[str, Any]
+) -> _core.Flock:
+    if not isinstance(start, bytes):
+        if not isinstance(start, Mapping):
+            raise TypeError(f"start must be a snapshot or a dictionary, not {start!r}")
+        return _core.Flock.from_state(parameters, seed, dict(start))
+    flock = _core.Flock.from_snapshot(start)
+    if flock.parameters.replace(target=parameters.target) != parameters:
+        raise ParameterError("start is a snapshot of a flock with other parameters")
+    if flock.seed != seed:
+        raise ParameterError(
+            f"seed = {seed!r} is not accepted: start is a snapshot of {flock.seed}"
+        )
+    flock.set_target(parameters.target)
+    return flock
 
 
 def _check_rates(duration_s: float, sample_hz: float, control_hz: float) -> None:
@@ -114,14 +141,13 @@ def _check_rates(duration_s: float, sample_hz: float, control_hz: float) -> None
 
 
 def _steered(
-    parameters: FlockParameters,
-    seed: int,
+    flock: _core.Flock,
     steps: Iterable[tuple[int, bool, bool]],
     policy: LeaderPolicy,
     precision: np.dtype[Any],
     contacts: bool,
 ) -> dict[str, Any]:
-    flock = _core.Flock(parameters, seed)
+    parameters = flock.parameters
     mirrored = getattr(policy, "mirror_to_target", False)
     sign = -1.0 if mirrored and parameters.target == "ccw" else 1.0
     layout = getattr(policy, "observation", None)

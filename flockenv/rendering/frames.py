@@ -1,11 +1,13 @@
 """Frames: pictures of a flock, drawn in Rust. They need no screen."""
 
-from functools import lru_cache
+from functools import lru_cache, singledispatch
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv._core import Flock, FrameRenderer
+from flockenv._core import FrameRenderer
+from flockenv.recording import Recording
 
 __all__ = ["DEFAULT_SIZE", "frame", "renderer"]
 
@@ -13,10 +15,14 @@ __all__ = ["DEFAULT_SIZE", "frame", "renderer"]
 DEFAULT_SIZE = (600, 600)
 
 
+@singledispatch
 def frame(
-    flock: Flock, width: int = DEFAULT_SIZE[0], height: int = DEFAULT_SIZE[1]
+    flock: Any, width: int = DEFAULT_SIZE[0], height: int = DEFAULT_SIZE[1]
 ) -> NDArray[np.uint8]:
-    """Return a picture of a flock as it is now.
+    """Return a picture of a flock as it is now, or of a recording at a time.
+
+    ``frame(flock)`` shows a flock, ``frame(recording, time_s)`` the last sample of a recording up
+    to a time in s. Both take a width and a height.
 
     It shows the pool (in open water the part where the boats are), the boats with a mark towards
     the bow, leaders in amber, and in the corners the time and phase, the target and noise level,
@@ -25,7 +31,7 @@ def frame(
     Parameters
     ----------
     flock
-        The flock; the same flock gives the same bytes.
+        A `Flock`, or a `Recording` with the time after it; the same flock gives the same bytes.
     width, height
         Size in pixels, 64 to 4096 each.
 
@@ -37,9 +43,19 @@ def frame(
     Raises
     ------
     ParameterError
-        For a size out of range.
+        For a size out of range, and a time outside the recording.
     """
     return renderer(width, height).draw(flock)
+
+
+@frame.register
+def _frame_of_recording(
+    recording: Recording,
+    time_s: float,
+    width: int = DEFAULT_SIZE[0],
+    height: int = DEFAULT_SIZE[1],
+) -> NDArray[np.uint8]:
+    return renderer(width, height).draw(recording.flock_at(time_s))
 
 
 @lru_cache(maxsize=4)

@@ -2,8 +2,7 @@
 
 use super::{EnvSettings, EpisodeSchedule, TargetChoice};
 use crate::error::{FlockError, Result};
-use crate::flock::{Flock, LATEST};
-use crate::geometry::{Pose, Velocity};
+use crate::flock::{Flock, LATEST, State};
 use crate::parameters::FlockParameters;
 
 /// Where an episode begins.
@@ -13,16 +12,7 @@ pub enum Start {
     #[default]
     Random,
     /// A given state.
-    State {
-        /// Poses of all boats.
-        poses: Vec<Pose>,
-        /// Velocities of all boats.
-        velocities: Vec<Velocity>,
-        /// The flock's time in s.
-        time_s: f64,
-        /// Whether hulls may overlap.
-        allow_overlap: bool,
-    },
+    State(State),
     /// A flock's snapshot; its noise level and its noise come along.
     Snapshot(Vec<u8>),
 }
@@ -57,25 +47,15 @@ impl ResetRequest {
         plan.target = self.target.unwrap_or(plan.target);
         let mut schedule = EpisodeSchedule::new(&plan, flock_seed, parameters.bw_s);
         schedule.bw_s = self.bw_s.unwrap_or(schedule.bw_s);
+        let own = FlockParameters {
+            bw_s: schedule.bw_s,
+            ..parameters.clone()
+        };
         let mut flock = match &self.start {
             Start::Snapshot(bytes) => flock_from(bytes, parameters)?,
-            Start::Random | Start::State { .. } => {
-                let own = FlockParameters {
-                    bw_s: schedule.bw_s,
-                    ..parameters.clone()
-                };
-                Flock::new(own, flock_seed)?
-            }
+            Start::Random => Flock::new(own, flock_seed)?,
+            Start::State(state) => Flock::from_state(own, flock_seed, state)?,
         };
-        if let Start::State {
-            poses,
-            velocities,
-            time_s,
-            allow_overlap,
-        } = &self.start
-        {
-            flock.set_state(poses, velocities, *time_s, *allow_overlap)?;
-        }
         if flock.time() + plan.time_of(schedule.steps) > LATEST {
             let accepted = "a time at least an episode's length before 1e9 s";
             return Err(FlockError::parameter("time_s", flock.time_s(), accepted));

@@ -25,6 +25,19 @@ pub struct ContactForce {
     pub force: f64,
 }
 
+/// Where the boats of a flock are, and when.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// Poses of all boats.
+    pub poses: Vec<Pose>,
+    /// Velocities of all boats.
+    pub velocities: Vec<Velocity>,
+    /// The flock's time in s.
+    pub time_s: f64,
+    /// Whether hulls may overlap.
+    pub allow_overlap: bool,
+}
+
 /// A flock of boats in a pool.
 #[derive(Debug, Clone)]
 pub struct Flock {
@@ -50,6 +63,22 @@ impl Flock {
         flock
             .integrator
             .place(&poses, &vec![Velocity::default(); poses.len()]);
+        Ok(flock)
+    }
+
+    /// A flock whose boats are where they are told to be.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for parameters out of range, otherwise as for [`Self::set_state`].
+    pub fn from_state(parameters: FlockParameters, seed: u64, state: &State) -> Result<Self> {
+        parameters.check()?;
+        let mut flock = Self::unplaced(parameters, seed);
+        flock.set_state(
+            &state.poses,
+            &state.velocities,
+            state.time_s,
+            state.allow_overlap,
+        )?;
         Ok(flock)
     }
 

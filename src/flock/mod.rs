@@ -9,6 +9,6 @@ mod placement;
 mod recorder;
 mod snapshot;
 
-pub use flock::{ContactForce, Flock, LATEST};
+pub use flock::{ContactForce, Flock, LATEST, State};
 pub use recorder::{ContactSamples, Real, Recorder, Recording, Sampling};
 pub use snapshot::Snapshot;

@@ -1,14 +1,13 @@
 //! `flockenv._core.EnvBatch`: what all environment classes sit on.
 
-use super::arguments::{floats, real, text, truth, whole, wrong_type};
-use super::flock::PyFlock;
+use super::arguments::{real, text, whole, wrong_type};
+use super::flock::{PyFlock, state_from};
 use super::parameters::to_python;
 use super::settings::{settings_from, settings_to_dict, term_names};
 use crate::environment::{
     BatchRows, EnvBatch, Episode, EpisodeSummary, FlockEnv, ResetRequest, Start, TERMS,
 };
 use crate::error::FlockError;
-use crate::geometry::{Pose, Velocity};
 use crate::parameters::FlockParameters;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -306,7 +305,7 @@ fn request_from(options: &Bound<'_, PyDict>, boats: usize) -> PyResult<ResetRequ
             "seed" => request.seed = Some(whole(&value, "seed")?),
             "target" => request.target = Some(text(&value, "target")?.parse()?),
             "bw_s" => request.bw_s = Some(real(&value, "bw_s")?),
-            "state" => request.start = state_from(&value, boats)?,
+            "state" => request.start = Start::State(state_from(&value, boats)?),
             "snapshot" => request.start = snapshot_from(&value)?,
             other => {
                 let accepted = "target, bw_s, state or snapshot";
@@ -328,39 +327,4 @@ fn snapshot_from(value: &Bound<'_, PyAny>) -> PyResult<Start> {
     let bytes = value.cast::<PyBytes>();
     let bytes = bytes.map_err(|_| wrong_type(value, "snapshot", "bytes of Flock.snapshot"))?;
     Ok(Start::Snapshot(bytes.as_bytes().to_vec()))
-}
-
-/// {"pose": (n, 3), "velocity": (n, 3), "time_s": float, "allow_overlap": bool}; the pose alone will do.
-fn state_from(value: &Bound<'_, PyAny>, boats: usize) -> PyResult<Start> {
-    let accepted = "a dictionary with pose and, if need be, velocity, time_s and allow_overlap";
-    let state = value.cast::<PyDict>();
-    let state = state.map_err(|_| wrong_type(value, "state", accepted))?;
-    let mut pose = None;
-    let mut velocity = vec![0.0; 3 * boats];
-    let (mut time_s, mut allow_overlap) = (0.0, false);
-    for (name, value) in state {
-        match text(&name, "state")?.as_str() {
-            "pose" => pose = Some(floats(&value, "pose", &[boats, 3])?),
-            "velocity" => velocity = floats(&value, "velocity", &[boats, 3])?,
-            "time_s" => time_s = real(&value, "time_s")?,
-            "allow_overlap" => allow_overlap = truth(&value, "allow_overlap")?,
-            other => {
-                return Err(FlockError::parameter("state", format!("{other:?}"), accepted).into());
-            }
-        }
-    }
-    let Some(pose) = pose else {
-        return Err(FlockError::parameter("state", "without pose", accepted).into());
-    };
-    let (poses, _) = pose.as_chunks::<3>();
-    let (velocities, _) = velocity.as_chunks::<3>();
-    Ok(Start::State {
-        poses: poses.iter().map(|&[x, y, a]| Pose::new(x, y, a)).collect(),
-        velocities: velocities
-            .iter()
-            .map(|&[x, y, w]| Velocity::new(x, y, w))
-            .collect(),
-        time_s,
-        allow_overlap,
-    })
 }

@@ -1,16 +1,17 @@
 //! `flockenv.Flock`.
 
-use super::arguments::{Seconds, Seed, TimeS, floats, text};
+use super::arguments::{Seconds, Seed, TimeS, floats, real, text, truth, wrong_type};
 use super::parameters::to_python;
 use super::results;
 use crate::clock::{Ticks, seconds};
-use crate::flock::Flock;
+use crate::error::FlockError;
+use crate::flock::{Flock, State};
 use crate::geometry::{Pose, Velocity};
 use crate::integrator::Steering;
 use crate::parameters::FlockParameters;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyType};
+use pyo3::types::{PyBytes, PyDict, PyType};
 
 /// A flock of boats in a pool.
 ///
@@ -48,6 +49,36 @@ impl PyFlock {
     #[classmethod]
     fn from_snapshot(_class: &Bound<'_, PyType>, snapshot: &Bound<'_, PyBytes>) -> PyResult<Self> {
         Ok(Self(Flock::from_snapshot(snapshot.as_bytes())?))
+    }
+
+    /// A flock in a given state.
+    ///
+    /// Parameters
+    /// ----------
+    /// parameters : FlockParameters
+    ///     The scene.
+    /// seed : int
+    ///     Seed of all random streams, 0 to 2^64 - 1.
+    /// state : dict
+    ///     ``pose`` (n, 3) and, if need be, ``velocity`` (n, 3), ``time_s`` and ``allow_overlap``, as
+    ///     in `set_state`.
+    ///
+    /// Raises
+    /// ------
+    /// ParameterError
+    ///     For other keys, a seed out of range and what `set_state` refuses.
+    /// TypeError
+    ///     For values of the wrong type.
+    #[classmethod]
+    fn from_state(
+        _class: &Bound<'_, PyType>,
+        parameters: FlockParameters,
+        seed: Seed,
+        state: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        parameters.check()?;
+        let state = state_from(state, parameters.n_boats)?;
+        Ok(Self(Flock::from_state(parameters, seed.0, &state)?))
     }
 
     /// Start over with another seed, as a new flock with these parameters.
@@ -301,6 +332,41 @@ fn advance_in_pieces(
         py.check_signals()?;
     }
     Ok(())
+}
+
+/// {"pose": (n, 3), "velocity": (n, 3), "time_s": float, "allow_overlap": bool}; the pose alone will do.
+pub fn state_from(value: &Bound<'_, PyAny>, boats: usize) -> PyResult<State> {
+    let accepted = "a dictionary with pose and, if need be, velocity, time_s and allow_overlap";
+    let state = value.cast::<PyDict>();
+    let state = state.map_err(|_| wrong_type(value, "state", accepted))?;
+    let mut pose = None;
+    let mut velocity = vec![0.0; 3 * boats];
+    let (mut time_s, mut allow_overlap) = (0.0, false);
+    for (name, value) in state {
+        match text(&name, "state")?.as_str() {
+            "pose" => pose = Some(floats(&value, "pose", &[boats, 3])?),
+            "velocity" => velocity = floats(&value, "velocity", &[boats, 3])?,
+            "time_s" => time_s = real(&value, "time_s")?,
+            "allow_overlap" => allow_overlap = truth(&value, "allow_overlap")?,
+            other => {
+                return Err(FlockError::parameter("state", format!("{other:?}"), accepted).into());
+            }
+        }
+    }
+    let Some(pose) = pose else {
+        return Err(FlockError::parameter("state", "without pose", accepted).into());
+    };
+    let (poses, _) = pose.as_chunks::<3>();
+    let (velocities, _) = velocity.as_chunks::<3>();
+    Ok(State {
+        poses: poses.iter().map(|&[x, y, a]| Pose::new(x, y, a)).collect(),
+        velocities: velocities
+            .iter()
+            .map(|&[x, y, w]| Velocity::new(x, y, w))
+            .collect(),
+        time_s,
+        allow_overlap,
+    })
 }
 
 fn rows(numbers: &[f64]) -> impl Iterator<Item = [f64; 3]> {

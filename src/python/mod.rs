@@ -48,7 +48,9 @@ mod _core {
     #[pymodule_export]
     use super::settings::{env_defaults, env_meanings, reward_terms};
     #[pymodule_export]
-    use super::structure::{lagged_motion, largest_cluster, on_outer_wall, pair_counts};
+    use super::structure::{
+        lagged_motion, lap_orientation, largest_cluster, on_outer_wall, pair_counts,
+    };
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -1,7 +1,7 @@
 //! The loop of `flockenv.simulate`.
 
 use super::arguments::{DurationS, SampleHz, Seed};
-use super::flock::BOAT_SUBSTEPS_A_PIECE;
+use super::flock::{BOAT_SUBSTEPS_A_PIECE, PyFlock};
 use super::results;
 use crate::flock::{Flock, Real, Recorder, Recording, Sampling};
 use crate::integrator::Phase;
@@ -24,9 +24,11 @@ pub struct Kept {
     contacts: bool,
 }
 
-/// Records a run under the steering law: the fields of a `flockenv.Recording` that a run fills.
+/// Records a run under the steering law: the fields of a `flockenv.Recording` that a run fills. It goes
+/// on from where `start` is, which stays there; without one, from a random start.
 #[pyfunction]
-#[pyo3(signature = (parameters, seed, duration_s, sample_hz, kept, progress=None))]
+#[pyo3(signature = (parameters, seed, duration_s, sample_hz, kept, progress=None, start=None))]
+#[expect(clippy::too_many_arguments, reason = "the arguments of `simulate`")]
 pub fn record<'py>(
     py: Python<'py>,
     parameters: FlockParameters,
@@ -35,43 +37,45 @@ pub fn record<'py>(
     sample_hz: SampleHz,
     kept: Kept,
     progress: Option<Bound<'py, PyAny>>,
+    start: Option<PyRef<'py, PyFlock>>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let start = start.map(|start| start.0.clone());
     let sampling = Sampling::new(duration_s.0, sample_hz.0)?;
     let contacts = kept.contacts;
     if kept.single_precision {
-        run::<f32>(
-            py,
-            parameters,
-            seed.0,
-            sampling,
-            contacts,
-            progress.as_ref(),
-        )
+        let flock = placed::<f32>(py, parameters, seed.0, &sampling, start)?;
+        run::<f32>(py, flock, sampling, contacts, progress.as_ref())
     } else {
-        run::<f64>(
-            py,
-            parameters,
-            seed.0,
-            sampling,
-            contacts,
-            progress.as_ref(),
-        )
+        let flock = placed::<f64>(py, parameters, seed.0, &sampling, start)?;
+        run::<f64>(py, flock, sampling, contacts, progress.as_ref())
+    }
+}
+
+/// The flock that a run begins with; what does not fit memory is refused before boats are placed.
+fn placed<T: Real>(
+    py: Python<'_>,
+    parameters: FlockParameters,
+    seed: u64,
+    sampling: &Sampling,
+    start: Option<Flock>,
+) -> PyResult<Flock> {
+    parameters.check()?;
+    Recording::<T>::with_room_for(sampling, &parameters)?;
+    match start {
+        Some(flock) => Ok(flock),
+        None => Ok(py.detach(|| Flock::new(parameters, seed))?),
     }
 }
 
 fn run<'py, T: Real + Element>(
     py: Python<'py>,
-    parameters: FlockParameters,
-    seed: u64,
+    flock: Flock,
     sampling: Sampling,
     contacts: bool,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    parameters.check()?;
-    // Refuses what does not fit before boats are placed.
-    Recording::<T>::with_room_for(&sampling, &parameters)?;
-    let boats = parameters.n_boats;
-    let mut recorder = py.detach(|| Recorder::<T>::new(Flock::new(parameters, seed)?, sampling))?;
+    let boats = flock.parameters().n_boats;
+    let mut recorder = Recorder::<T>::new(flock, sampling)?;
     if contacts {
         recorder = recorder.with_contacts();
     }

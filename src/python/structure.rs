@@ -3,8 +3,9 @@
 use crate::analysis::structure::{self, PairCounts};
 use crate::error::FlockError;
 use crate::geometry::Pose;
+use crate::geometry::lap_frame::orientation;
 use crate::parameters::FlockParameters;
-use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray3};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray3};
 use pyo3::prelude::*;
 
 /// Found and expected pairs in each bin.
@@ -34,6 +35,17 @@ pub fn on_outer_wall<'py>(
     let shares = samples.each();
     let shares = shares.map(|poses| structure::on_outer_wall(poses, &parameters));
     Ok(PyArray1::from_iter(py, shares))
+}
+
+/// LAP orientation φ of each boat at each time, in (-π, π].
+#[pyfunction]
+pub fn lap_orientation<'py>(
+    py: Python<'py>,
+    pose: PyReadonlyArray3<'py, f64>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let samples = Samples::read(&pose)?;
+    let angles = samples.poses.iter().map(orientation).collect();
+    PyArray1::from_vec(py, angles).reshape([samples.poses.len() / samples.boats, samples.boats])
 }
 
 /// Pairs by distance, over all times.

@@ -315,3 +315,21 @@ def test_any_arrays_move_the_flock_or_are_refused(pose, rudder, seconds):
             call()
         assert np.isfinite(flock.pose).all()
         assert np.isfinite(flock.velocity).all()
+
+
+def test_a_flock_from_a_state_is_one_that_was_put_there():
+    parameters = FlockParameters(n_boats=6, n_leaders=1)
+    placed = Flock(parameters, 5)
+    placed.advance(3.0)
+    pose, velocity = placed.pose, placed.velocity
+    put = Flock(parameters, 9)
+    put.set_state(pose, velocity, 3.0, allow_overlap=True)
+    state = {"pose": pose, "velocity": velocity, "time_s": 3.0, "allow_overlap": True}
+    made = Flock.from_state(parameters, 9, state)
+    for flock in (put, made):
+        flock.advance(10.0)
+    assert np.array_equal(put.pose, made.pose)
+    assert made.seed == 9
+    assert made.snapshot() == put.snapshot()
+    with pytest.raises(TypeError, match="state"):
+        Flock.from_state(parameters, 9, pose)

@@ -325,3 +325,66 @@ def test_flipped_bits_give_the_same_recording_or_a_named_error(compressed, fract
     blob[int(fraction * len(blob))] ^= 1 << bit
     with contextlib.suppress(FlockError):
         assert load(bytes(blob)) == RUN
+
+
+def test_a_run_goes_on_from_a_snapshot_with_the_same_bits():
+    whole = flockenv.simulate(PARAMETERS, 3, 60.0)
+    flock = flockenv.Flock(PARAMETERS, 3)
+    flock.advance(40.0)
+    rest = flockenv.simulate(PARAMETERS, 3, 20.0, start=flock.snapshot())
+    assert rest.time_s[0] == 40.0
+    assert np.array_equal(rest.time_s, whole.time_s[400:])
+    assert np.array_equal(rest.pose, whole.pose[400:])
+    assert rest.order == type(rest.order)(
+        *(getattr(whole.order, each.name)[400:] for each in dataclasses.fields(whole.order))
+    )
+
+
+def test_a_run_starts_where_it_is_told():
+    begun = flockenv.simulate(PARAMETERS, 3, 10.0)
+    state = {"pose": begun.pose[-1], "velocity": begun.velocity[-1], "time_s": 10.0}
+    state["allow_overlap"] = True
+    law = flockenv.policies.SteeringLaw()
+    for policy in (None, law):
+        run = flockenv.simulate(PARAMETERS, 4, 5.0, policy=policy, start=state)
+        assert np.array_equal(run.pose[0], begun.pose[-1])
+        assert run.time_s[[0, -1]].tolist() == [10.0, 15.0]
+    flock = flockenv.Flock(PARAMETERS, 4)
+    flock.set_state(begun.pose[-1], begun.velocity[-1], 10.0, allow_overlap=True)
+    flock.advance(5.0)
+    again = flockenv.simulate(PARAMETERS, 4, 5.0, 0.2, start=state)
+    assert np.array_equal(again.pose[-1], flock.pose)
+
+
+def test_a_start_that_the_flock_cannot_have_is_refused():
+    snapshot = flockenv.Flock(PARAMETERS, 3).snapshot()
+    pose = flockenv.Flock(PARAMETERS, 3).pose
+    for start, match in (
+        (snapshot[:-1], "snapshot"),
+        ({"pose": pose[:-1]}, "pose"),
+        ({"pose": pose, "speed": 1.0}, "speed"),
+        ({"velocity": np.zeros_like(pose)}, "without pose"),
+        ({"pose": pose * 0.0}, "overlap"),
+        ({"pose": pose, "time_s": -1.0}, "time_s"),
+    ):
+        with pytest.raises(flockenv.FlockError, match=match):
+            flockenv.simulate(PARAMETERS, 3, 1.0, start=start)
+    with pytest.raises(flockenv.ParameterError, match="other parameters"):
+        flockenv.simulate(PARAMETERS.replace(bw_s=0.9), 3, 1.0, start=snapshot)
+    with pytest.raises(flockenv.ParameterError, match="seed = 4 is not accepted"):
+        flockenv.simulate(PARAMETERS, 4, 1.0, start=snapshot)
+    with pytest.raises(TypeError, match="snapshot or a dictionary"):
+        flockenv.simulate(PARAMETERS, 3, 1.0, start="snapshot")
+
+
+def test_a_recording_tells_its_flock_at_a_time():
+    run = flockenv.simulate(PARAMETERS, 3, 10.0, dtype=np.float32)
+    for time_s, sample in ((0.0, 0), (5.05, 50), (10.0, 100)):
+        flock = run.flock_at(time_s)
+        assert flock.time_s == run.time_s[sample]
+        assert flock.phase == run.phase[sample]
+        assert np.array_equal(flock.pose, run.pose[sample].astype(float))
+        assert np.array_equal(flock.velocity, run.velocity[sample].astype(float))
+    for time_s in (-0.1, 10.1, np.nan):
+        with pytest.raises(flockenv.ParameterError, match=r"from 0\.0 to 10\.0 s"):
+            run.flock_at(time_s)

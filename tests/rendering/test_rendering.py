@@ -39,6 +39,23 @@ def test_frames_of_every_pool(pool, target):
     assert (picture != rendering.frame(scene, 320, 240)).any()
 
 
+def test_a_frame_of_a_recording_is_that_of_its_flock():
+    frame = rendering.frame
+    parameters = flockenv.FlockParameters(n_boats=8, n_leaders=2)
+    recording = flockenv.simulate(parameters, 5, 10.0)
+    flock = flockenv.Flock(parameters, 5)
+    flock.advance(7.0)
+    assert np.array_equal(frame(recording, 7.0, 160, 120), frame(flock, 160, 120))
+    assert np.array_equal(frame(recording, 7.09, width=160), frame(flock, width=160))
+    assert frame(recording, 0.0).shape == frame(flock).shape
+    with pytest.raises(flockenv.ParameterError, match="time_s = 11"):
+        frame(recording, 11)
+    with pytest.raises(TypeError):
+        frame(recording)
+    with pytest.raises(TypeError):
+        frame("run.npz")
+
+
 def test_a_returned_frame_is_never_written_to_again():
     scene = flock()
     first = rendering.frame(scene, 100, 100)
