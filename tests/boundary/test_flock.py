@@ -318,7 +318,7 @@ def test_any_arrays_move_the_flock_or_are_refused(pose, rudder, seconds):
 
 
 def test_a_flock_from_a_state_is_one_that_was_put_there():
-    parameters = FlockParameters(n_boats=6, n_leaders=1)
+    parameters = flockenv.FlockParameters(n_boats=6, n_leaders=1)
     placed = Flock(parameters, 5)
     placed.advance(3.0)
     pose, velocity = placed.pose, placed.velocity
