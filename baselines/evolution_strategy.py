@@ -140,7 +140,7 @@ def scores(
     return rewards.reshape(count, len(seeds)).mean(axis=1)
 
 
-def centred_ranks(values: np.ndarray) -> np.ndarray:
+def centered_ranks(values: np.ndarray) -> np.ndarray:
     """From -0.5 for the worst to 0.5 for the best."""
     ranks = np.empty(len(values))
     ranks[np.argsort(values, kind="stable")] = np.arange(len(values))
@@ -161,7 +161,7 @@ def next_generation(
     first = options.seed * SEEDS_OF_A_RUN + number * options.flocks
     seeds = [training_seed(first + flock) for flock in range(options.flocks)]
     found = scores(env, shape, candidates, seeds)
-    ranks = centred_ranks(found)
+    ranks = centered_ranks(found)
     gradient = (ranks[: options.pairs] - ranks[options.pairs :]) @ half
     gradient /= 2 * options.pairs * options.sigma
     moment_1 = DECAY_1 * state.moment_1 + (1 - DECAY_1) * gradient

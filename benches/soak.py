@@ -1,8 +1,8 @@
 """Run ten million control steps with random rudders, and check the results: `make soak`.
 
-Two batches, one a pool, take turns. Noise levels and target directions are drawn for each episode;
-episodes begin anew by themselves. Ends with exit code 1 if anything is not as it must be. The page
-goes to docs/soak.md.
+Two batches, one per pool, take turns. Each episode draws its backward duration and its target
+direction, and episodes reset automatically. The exit code is 1 if a check fails. The page goes to
+docs/soak.md.
 """
 
 import argparse

@@ -50,7 +50,7 @@ class LeaderSlot:
         return self._env._batch.core.parameters(self.flock_index)
 
     def episode(self) -> dict[str, Any]:
-        """Return target, noise level, seed and step of the slot's flock."""
+        """Return target, backward duration, seed and step of the slot's flock."""
         return self._env._batch.core.episode(self.flock_index)
 
     def state(self) -> NDArray[np.float32]:

@@ -29,7 +29,7 @@ pub enum FlockError {
          overlap; use fewer boats or a larger pool"
     )]
     Placement {
-        /// How many boats were asked for.
+        /// Requested number of boats.
         requested: usize,
         /// How many the best attempt held without overlap.
         placed: usize,

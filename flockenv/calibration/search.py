@@ -200,7 +200,7 @@ def run_flocks(
     jobs: int = 1,
     progress: Callable[[], None] = lambda: None,
 ) -> FlockRuns:
-    """Run flocks with each number of leaders at each noise level, on the same seeds."""
+    """Run flocks with each number of leaders at each backward duration, on the same seeds."""
     cells = [(k, bw_s, seed) for k, levels in noise_s.items() for bw_s in levels for seed in seeds]
 
     def run(cell: tuple[int, float, int]) -> list[float]:

@@ -31,7 +31,7 @@ NOISE_S: Mapping[int, tuple[float, ...]] = {
     0: (0.6, 1.0, 1.2, 1.4, 1.6, 1.8, 2.2),
     3: (0.6, 1.0, 1.4, 1.8, 2.0, 2.2, 2.6),
 }
-"""Noise levels bw in s by number of leaders; the experiment went from 0.4 to 2.8 s."""
+"""Backward durations bw in s by number of leaders; the experiment went from 0.4 to 2.8 s."""
 
 DURATION_S = 480.0
 """Length of a measurement in the experiment."""
@@ -52,8 +52,8 @@ class FlockRuns:
     Attributes
     ----------
     noise_s : mapping of tuples of float
-        Noise levels bw in s, by number of leaders.
-    values : mapping of float64 arrays, shape (noise levels, seeds, 6)
+        Backward durations bw in s, by number of leaders.
+    values : mapping of float64 arrays, shape (backward durations, seeds, 6)
         By number of leaders: mean Ψ_o, mean |Ψ_o sin φ_o|, and the parts of the frames that are in
         ordered motion and jammed; over the ordered frames, the sum of ||φ_o| - π/2| and the number
         of those that go in the leaders' direction, both over the number of all frames.
@@ -67,14 +67,14 @@ class FlockRuns:
         return FlockRuns(self.noise_s, {k: array[:, seeds] for k, array in self.values.items()})
 
     def mean(self, leaders: int, quantity: str, at_s: Sequence[float] = ()) -> NDArray[np.float64]:
-        """Return means over seeds: at all noise levels, or at some."""
+        """Return means over seeds: at all backward durations, or at some."""
         levels = [self.noise_s[leaders].index(bw_s) for bw_s in at_s or self.noise_s[leaders]]
         row = self.values[leaders][levels, :, QUANTITIES.index(quantity)]
         means: NDArray[np.float64] = row.mean(axis=1)
         return means
 
     def critical_bw_s(self, leaders: int) -> float:
-        """Return where mean Ψ_o falls below 0.56 for good, interpolated between noise levels.
+        """Return where mean Ψ_o falls below 0.56 for good, interpolated between backward durations.
 
         A curve that never exceeds the middle gets the lowest noise less what it misses, one that
         always does the highest noise and what it has to spare, so that both can still be compared.
@@ -90,7 +90,7 @@ class FlockRuns:
         return float(np.interp(-_MIDDLE, -psi_o[pair], noise_s[pair]))
 
     def of_ordered_frames(self, leaders: int, quantity: str, at_s: Sequence[float]) -> float:
-        """Return a mean over the ordered frames at some noise levels; NaN if there are none."""
+        """Return a mean over the ordered frames at some backward durations; NaN if there are none."""
         ordered = self.mean(leaders, "ordered", at_s).sum()
         if ordered == 0.0:
             return math.nan

@@ -60,7 +60,7 @@ def evaluate(
     """Compare one policy with others on the same seeds and write its model card.
 
     Runs 27 boats in both pools, at the critical noise of each, unless the scene says otherwise.
-    Writes `card.md` and, for each pool and noise level, a folder with the tables, the picture,
+    Writes `card.md` and, for each pool and backward duration, a folder with tables, picture,
     `run.toml` and the exact parameters, as `flockenv compare` does.
 
     Example: `flockenv evaluate learned --pool table-1 --leaders 3`
@@ -136,8 +136,8 @@ def _by_folder(scenes: list[FlockParameters]) -> dict[str, FlockParameters]:
         name = f"{pool_name(scene)}-bw-{scene.bw_s:g}"
         if name in found:
             raise ParameterError(
-                f"--bw-s {scene.bw_s!r} is not accepted beside {found[name].bw_s!r}: noise levels "
-                "that differ in six digits"
+                f"--bw-s {scene.bw_s!r} is not accepted beside {found[name].bw_s!r}: "
+                "backward durations that differ in six digits"
             )
         found[name] = scene
     return found

@@ -1,4 +1,4 @@
-"""What commands do with files they are given and asked for."""
+"""Input and output files of the commands."""
 
 import os
 from collections.abc import Callable, Iterable, Iterator

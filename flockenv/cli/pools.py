@@ -1,4 +1,4 @@
-"""The scenes of a comparison: a scene in one pool or in both, at one noise level or several."""
+"""The scenes of a comparison: one or both pools, one or several backward durations."""
 
 from collections.abc import Sequence
 from enum import StrEnum
@@ -13,12 +13,12 @@ from flockenv.parameters import FlockParameters
 
 __all__ = ["PoolChoice", "PoolOption", "pool_name", "scenes"]
 
-#: The flock of the experiment, unless another number is asked for.
+#: The flock of the experiment, unless another number is given.
 _BOATS = 27
 
 
 class PoolChoice(StrEnum):
-    """Pools that a comparison can be run in."""
+    """Pools of a comparison."""
 
     BOTH = "both"
     FIVE_HUNDRED_BOATS = "500-boats"
@@ -37,16 +37,16 @@ def scenes(
     pool: PoolChoice | None,
     noise_levels: Sequence[float] | None = None,
 ) -> list[FlockParameters]:
-    """Return the scenes that a command's options ask for, one a pool and noise level.
+    """Return the scenes that a command's options select, one per pool and backward duration.
 
-    What neither the file nor a change names is the preset's, but for 27 boats, both pools, and the
-    critical noise of each pool. Numbers of leaders are the command's own affair.
+    Fields that neither the file nor a change names are the preset's, except for 27 boats, both
+    pools, and the critical noise of each pool. The command sets numbers of leaders itself.
 
     Raises
     ------
     ParameterError
-        As for `read_scene`; for a pool or a noise level asked for twice; for changes of the number
-        of leaders; for pools whose critical noise is not known.
+        As for `read_scene`; for a pool or a backward duration given twice; for changes of the
+        number of leaders; for pools whose critical noise is not known.
     """
     for change in changes or ():
         if change.partition("=")[0].strip() == "n_leaders":
@@ -72,7 +72,7 @@ def scenes(
 
 
 def pool_name(scene: FlockParameters) -> str:
-    """Return what the pool of a scene is called in the names of folders."""
+    """Return the name of a scene's pool in the names of folders."""
     if isinstance(scene.pool, str):
         return scene.pool
     outer, inner = scene.pool

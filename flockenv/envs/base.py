@@ -35,7 +35,7 @@ class OneFlock:
         return self._batch.core.state(0)
 
     def episode(self) -> dict[str, Any]:
-        """Return target, noise level, seed and step of the episode."""
+        """Return target, backward duration, seed and step of the episode."""
         return self._batch.core.episode(0)
 
     @property

@@ -98,7 +98,7 @@ class LeadersEnv(OneFlock, gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
         observation : numpy.ndarray
             Shape (k * observation size,), float32.
         info : dict
-            Target, noise level and seed of the episode.
+            Target, backward duration and seed of the episode.
         """
         self._batch.reset([seed], options, lambda: drawn_seed(self.np_random))
         super().reset(seed=None if seed is None else int(seed))

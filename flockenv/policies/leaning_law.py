@@ -143,7 +143,7 @@ def leaned(
 class LeaningLaw(RowPolicy):
     """The damped law about a heading that leans outward by a linear function of what is seen.
 
-    The heading aimed at is the target's tangent, turned outward by 1.2·tanh(lean/1.2) rad with
+    The desired heading is the target's tangent, turned outward by 1.2·tanh(lean/1.2) rad with
     lean = bias + Σ weight·feature (`FEATURES`). About it the leader steers as with `DampedLaw`.
     Observations have to be mirrored to the target, which the environments' option of that name
     does.

@@ -25,7 +25,7 @@ def frame(
     to a time in s. Both take a width and a height.
 
     It shows the pool (in open water the part where the boats are), the boats with a mark towards
-    the bow, leaders in amber, and in the corners the time and phase, the target and noise level,
+    the bow, leaders in amber, and in the corners the time and phase, the target and bw,
     Ψ_o and the signed order towards the target.
 
     Parameters

@@ -15,7 +15,7 @@ __all__ = ["ALL", "BUDGETED", "load", "names", "require_packages", "resolve"]
 ALL = "all"
 """The name that stands for everything of the paper."""
 
-# Modules are loaded when asked for: they need the extra `plot`.
+# Modules are loaded when a name is given: they need the extra `plot`.
 _PAPER: Mapping[str, str] = {
     **dict.fromkeys(("fig4", "table2"), "flockenv.reproduce.experiment.state_figures"),
     **dict.fromkeys(("fig5", "fig6", "fig7"), "flockenv.reproduce.experiment.time_figures"),

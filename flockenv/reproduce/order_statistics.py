@@ -88,7 +88,7 @@ class OrderStatistics:
     Attributes
     ----------
     x : float64 array, shape (p,)
-        Where the points are: noise levels in s or numbers of boats.
+        Where the points are: backward durations in s or numbers of boats.
     sums : float64 array, shape (p, r, q)
         Sums over the runs of a point.
     run_sums : list of float64 arrays, shape (runs, q)

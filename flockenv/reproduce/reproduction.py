@@ -57,7 +57,7 @@ class Settings:
 
 
 class Results(Mapping[RunSpec, RunResult]):
-    """Finished runs by their specs, read from the store when asked for.
+    """Finished runs by their specs, read from the store on access.
 
     Parameters
     ----------

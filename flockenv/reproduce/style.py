@@ -16,7 +16,7 @@ COLUMN_CM = 8.5
 """Width of a figure: a column of a journal page."""
 
 DENSITY_COLORS = "cividis"
-"""Color map of densities: even in lightness, and the same for the colour-blind."""
+"""Color map of densities: even in lightness, and the same for the color-blind."""
 
 _STYLE: dict[Any, Any] = {
     "font.size": 7,

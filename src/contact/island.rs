@@ -8,7 +8,7 @@ use std::ops::Range;
 pub struct Islands {
     /// Union-find over boats.
     parent: Vec<u32>,
-    /// Island of each boat that was asked for.
+    /// Island of each requested boat.
     island_of_boat: Vec<u32>,
     /// Where each island begins in `members`.
     starts: Vec<u32>,

@@ -13,7 +13,7 @@ pub enum Start {
     Random,
     /// A given state.
     State(State),
-    /// A flock's snapshot; its noise level and its noise come along.
+    /// A flock's snapshot, with its backward duration and its noise.
     Snapshot(Vec<u8>),
 }
 

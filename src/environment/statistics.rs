@@ -86,7 +86,7 @@ impl EpisodeStatistics {
 pub struct EpisodeSummary {
     /// Seed of its flock.
     pub flock_seed: u64,
-    /// Its noise level: length of the backward phase in s.
+    /// Its backward duration: length of the backward phase in s.
     pub bw_s: f64,
     /// Control steps taken.
     pub steps: u32,

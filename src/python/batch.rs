@@ -223,7 +223,7 @@ impl PyEnvBatch {
         Ok(PyFlock(self.episode_of(flock)?.flock().clone()))
     }
 
-    /// What a flock is doing: target, step, noise level, seed.
+    /// A flock's target, step, backward duration and seed.
     fn episode<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Bound<'py, PyDict>> {
         let schedule = self.episode_of(flock)?.schedule();
         let dict = PyDict::new(py);

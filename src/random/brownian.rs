@@ -80,7 +80,7 @@ impl rand_chacha::rand_core::TryRng for OneWordThenTail<'_> {
 ///
 /// Time is counted in half ticks. The axis is divided in cells of one full substep; the increment
 /// over a whole cell is one draw, and increments over a part of a cell follow from a Brownian bridge
-/// that is refined by bisection down to the time asked for.
+/// that is refined by bisection down to the requested time.
 #[derive(Debug, Clone)]
 pub struct BrownianPaths {
     normals: KeyedNormals,

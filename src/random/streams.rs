@@ -22,7 +22,7 @@ pub enum Stream {
     Sensing,
     /// Per-boat differences of speed.
     SpeedSpread,
-    /// What an episode draws besides: target and noise level.
+    /// An episode's target and backward duration.
     Episode,
     /// Seeds of an environment's episodes after the first.
     EpisodeSeeds,

@@ -12,7 +12,7 @@ from flockenv.policies import SteeringLaw
 
 
 class Constant:
-    """Rudders that never move, and a count of how often they were asked for."""
+    """Rudders that never move, and a count of the calls."""
 
     def __init__(self, rudder: float) -> None:
         self.rudder, self.asked = rudder, 0

@@ -1,4 +1,4 @@
-"""`flockenv run` and `flockenv replay`: what they write is what was asked for, and whole."""
+"""`flockenv run` and `flockenv replay`: they write the given run, completely."""
 
 import json
 import os

@@ -76,7 +76,7 @@ def test_phase_and_noise_level():
         assert seen["phase", 0, "bw_duration"] == pytest.approx(0.4)
 
 
-def test_neighbours_come_nearest_first_and_missing_ones_are_zero():
+def test_neighbors_come_nearest_first_and_missing_ones_are_zero():
     # Seen from the leader at (100, 0): boat 1 is 30 cm outward, boat 2 (a leader) 20 cm clockwise.
     pose = [[100, 0, 0], [100, -20, math.pi / 2], [130, 0, -math.pi / 2]]
     velocity = [[0, 0, 0], [15, 0, 0], [0, -7.5, 0]]

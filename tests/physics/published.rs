@@ -106,7 +106,7 @@ fn leaders_give_the_direction() {
     }
 }
 
-/// The prototype's table: for each noise level the range of four seeds' mean Ψ_o.
+/// The prototype's table: for each backward duration the range of four seeds' mean Ψ_o.
 type Row = &'static [(f64, f64, f64)];
 const PAPER_PER_STEP: Row = &[
     (0.0, 0.80, 1.0),

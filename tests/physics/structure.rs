@@ -1,4 +1,4 @@
-//! Arrangement of boats: clusters, the wall, pairs, displacement and persistence.
+//! Structure of boats: clusters, the wall, pairs, displacement and persistence.
 //!
 //! On paper: a boat that goes straight is displaced by (v·t)², one that circles by 4R²·sin²(w·t/2);
 //! independent boats have the pair distribution 1.

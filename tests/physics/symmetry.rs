@@ -1,7 +1,7 @@
 //! The physics knows no direction and no numbering: a mirrored, a turned and a renumbered scene moves
 //! as the scene itself, mirrored, turned and renumbered.
 //!
-//! On paper: a boat aimed at the wall from the right and its turned copy from above meet it alike.
+//! On paper: a boat that heads at the wall from the right and its turned copy from above meet it alike.
 
 use crate::support::{SCHEMES, driven, farthest_apart, flock_of, take_substeps};
 use flockenv::geometry::{Pose, Vec2, Velocity};

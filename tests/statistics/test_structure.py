@@ -1,4 +1,4 @@
-"""Law: arrangements of recorded boats are the core's; shapes are checked."""
+"""Law: structure measures of recorded boats are the core's; shapes are checked."""
 
 import numpy as np
 import pytest

@@ -51,7 +51,7 @@ pub fn on_all_cores<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Send
     items.par_iter().map(work).collect()
 }
 
-/// Distance of two arrangements in cm: the root mean square over boats of |Δx|² + ρ²Δα², the metric
+/// Distance of two sets of poses in cm: the root mean square over boats of |Δx|² + ρ²Δα², the metric
 /// that contacts minimize in.
 pub fn distance(parameters: &FlockParameters, a: &[Pose], b: &[Pose]) -> f64 {
     let square = |(a, b): (&Pose, &Pose)| {

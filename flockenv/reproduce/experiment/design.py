@@ -23,10 +23,10 @@ __all__ = [
 ]
 
 LEVELS_S = tuple(round(0.4 + 0.2 * place, 1) for place in range(13))
-"""Noise levels: bw from 0.4 to 2.8 s, the range of Table 1."""
+"""Backward durations: bw from 0.4 to 2.8 s, the range of Table 1."""
 
 GUIDED_S = 1.8
-"""The noise level of figures 7 and 12."""
+"""The backward duration of figures 7 and 12."""
 
 _RUNS = 6
 _LEADER_RUNS = 12
@@ -60,7 +60,7 @@ SETUPS = (NONE, CCW, CW)
 
 
 def scene(n_leaders: int, bw_s: float, target: str = "cw") -> FlockParameters:
-    """Return the experiment with so many leaders at a noise level."""
+    """Return the experiment with so many leaders at a backward duration."""
     base = FlockParameters.preset("experiment")
     return base.replace(n_leaders=n_leaders, bw_s=bw_s, target=target)
 
@@ -78,7 +78,7 @@ def _runs(settings: Settings, parameters: FlockParameters, count: int) -> list[R
 
 
 def noise_series(settings: Settings, setup: Setup) -> list[list[RunSpec]]:
-    """Return the 8-minute runs of a column, by noise level."""
+    """Return the 8-minute runs of a column, by backward duration."""
     scenes = (scene(setup.n_leaders, bw_s, setup.target) for bw_s in LEVELS_S)
     return [_runs(settings, each, _RUNS) for each in scenes]
 

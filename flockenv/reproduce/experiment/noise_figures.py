@@ -267,7 +267,7 @@ def _note(settings: Settings) -> str:
     length = block_length_s(settings.duration_s(8.0))
     runs = len(noise_series(settings, NONE)[0])
     return (
-        f"{runs} runs of 8 minutes at each noise level. Intervals ({CONFIDENCE:.0%}) are of a "
+        f"{runs} runs of 8 minutes at each backward duration. Intervals ({CONFIDENCE:.0%}) are of a "
         f"bootstrap in two stages: runs, and blocks of {length:g} s within each; {RESAMPLES} "
         "resamples. Frames in the analysis window after the first tenth of a run."
     )

@@ -31,7 +31,7 @@ _ORDERED = ("ordered cw", "ordered ccw")
 
 
 def pose_points(settings: Settings) -> dict[float, list[RunSpec]]:
-    """Return the runs whose poses are kept, by noise level."""
+    """Return the runs whose poses are kept, by backward duration."""
     return {
         bw_s: [
             RunSpec(
@@ -48,7 +48,7 @@ def pose_points(settings: Settings) -> dict[float, list[RunSpec]]:
 
 
 def pose_runs(settings: Settings) -> list[RunSpec]:
-    """Return the runs whose poses are kept, of all noise levels."""
+    """Return the runs whose poses are kept, of all backward durations."""
     return [spec for specs in pose_points(settings).values() for spec in specs]
 
 
@@ -325,10 +325,10 @@ def _image(run: RunResult, sample: int) -> NDArray[np.uint8]:
     flock.set_state(pose, velocity, float(run.time_s[sample]), allow_overlap=True)
     picture = frame(flock, _PIXELS, _PIXELS)
     x = np.arange(_PIXELS) - (_PIXELS - 1) / 2
-    from_centre = np.hypot(x, x[:, None]) / _PIXELS
+    from_center = np.hypot(x, x[:, None]) / _PIXELS
     # The captions in the corners are too small at a column's width, and there is nobody to have the
     # target in the middle.
-    picture[(from_centre > 0.485) | (from_centre < 0.22)] = 255
+    picture[(from_center > 0.485) | (from_center < 0.22)] = 255
     return picture
 
 

@@ -97,7 +97,7 @@ def critical_noise(
     Parameters
     ----------
     x
-        Noise levels in s, shape (p,).
+        Backward durations in s, shape (p,).
     y
         Mean Ψ_o at each level, shape (p, r).
     disordered_s

@@ -1,4 +1,4 @@
-"""What Section 5 ran: scenes, noise levels, densities and seeds of figures 14 to 17."""
+"""What Section 5 ran: scenes, backward durations, densities and seeds of figures 14 to 17."""
 
 from dataclasses import dataclass
 
@@ -56,7 +56,7 @@ class Design:
     Attributes
     ----------
     levels_s : tuple of float
-        Noise levels: lengths of the backward phase in s, increasing.
+        Backward durations: lengths of the backward phase in s, increasing.
     densities : tuple of int
         Numbers of boats of figure 17, at bw = 0.
     runs : int
@@ -76,7 +76,7 @@ class Design:
     def noise_series(
         self, settings: Settings, model: Model, n_boats: int, with_leaders: bool
     ) -> list[list[RunSpec]]:
-        """Return the runs of each noise level."""
+        """Return the runs of each backward duration."""
         leaders = round(_LEADER_SHARE * n_boats) if with_leaders else 0
         scenes = (model.scene(n_boats, leaders, bw_s) for bw_s in self.levels_s)
         return [self.at(settings, scene) for scene in scenes]

@@ -99,7 +99,7 @@ impl Sheet<'_> {
         }
     }
 
-    /// Top right: the target, the noise level and the leaders.
+    /// Top right: the target, the backward duration and the leaders.
     fn task(&mut self, flock: &Flock) {
         let parameters = flock.parameters();
         let target = match parameters.target {

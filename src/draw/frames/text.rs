@@ -1,4 +1,4 @@
-//! Text: the legend's glyphs, rasterised once a size.
+//! Text: the legend's glyphs, rasterized once a size.
 
 use super::palette::Rgb;
 use ab_glyph::{Font, FontRef, PxScale, ScaleFont};
@@ -34,7 +34,7 @@ impl Typeface {
             let units = font.units_per_em().unwrap_or(1.0);
             let scale = PxScale::from(size * font.height_unscaled() / units);
             for character in (' '..='~').chain(SYMBOLS) {
-                glyphs.insert(character, rasterised(&font, scale, character));
+                glyphs.insert(character, rasterized(&font, scale, character));
             }
         }
         Self { glyphs, size }
@@ -65,7 +65,7 @@ impl Typeface {
     }
 }
 
-fn rasterised(font: &FontRef, scale: PxScale, character: char) -> Glyph {
+fn rasterized(font: &FontRef, scale: PxScale, character: char) -> Glyph {
     let glyph = font.glyph_id(character).with_scale(scale);
     let advance = font.as_scaled(scale).h_advance(glyph.id);
     let mut drawn = Glyph {

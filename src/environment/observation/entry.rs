@@ -149,7 +149,7 @@ pub const PHASE: [Entry; 6] = [
     Entry::new("bw", "", Scale::Plain, FLAG, "1 in the backward phase"),
     Entry::new("nop2", "", Scale::Plain, FLAG, "1 in the drift after that"),
     Entry::new("time_left", "s", Scale::TimeLeft, (0.0, 2.0), "time until the phase ends"),
-    Entry::new("bw_duration", "s", Scale::Second, (0.0, 4.0), "length of the backward phase: the noise level"),
+    Entry::new("bw_duration", "s", Scale::Second, (0.0, 4.0), "length of the backward phase, which sets the noise"),
 ];
 
 /// The direction to lead in.

@@ -32,7 +32,7 @@ test("there is a scale without contacts", () => {
   assert.equal(forceScale([runOf([])]), 1);
 });
 
-/** A canvas that writes down the rectangles it is asked for. */
+/** A canvas that records the rectangles that are drawn on it. */
 function written() {
   const rectangles = [];
   const ignore = () => undefined;

@@ -1,4 +1,4 @@
-// Law: numbers are written with the digits asked for, a real minus sign, and no sign on a zero.
+// Law: numbers are written with the given digits, a real minus sign, and no sign on a zero.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
