@@ -90,7 +90,7 @@ class FlockRuns:
         return float(np.interp(-_MIDDLE, -psi_o[pair], noise_s[pair]))
 
     def of_ordered_frames(self, leaders: int, quantity: str, at_s: Sequence[float]) -> float:
-        """Return a mean over the ordered frames at some backward durations; NaN if there are none."""
+        """Return a mean over the ordered frames at some backward durations; NaN without any."""
         ordered = self.mean(leaders, "ordered", at_s).sum()
         if ordered == 0.0:
             return math.nan

@@ -21,7 +21,7 @@ def number(value: float) -> str:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Claim:
-    """What the paper says, and how it is judged: settled before anything is measured.
+    """What the paper says, and how it is judged: fixed before anything is measured.
 
     The claim holds if the whole interval of the quantity lies in [low, high], it does not hold if
     all of it lies outside, and it is inconclusive otherwise or if the quantity is undefined.

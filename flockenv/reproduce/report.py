@@ -42,7 +42,7 @@ def html_report(
         "in the collective dynamics of a simple robotic flock</i> (2011), measured with flockenv "
         f"{escape(_core.__version__)}. A claim is stated as a range of a measured quantity: it "
         f"holds if the whole {CONFIDENCE:.0%} interval lies inside, does not hold if all of it "
-        "lies outside, and is inconclusive otherwise. Ranges were settled before the runs.</p>",
+        "lies outside, and is inconclusive otherwise. Ranges were fixed before the runs.</p>",
         "<h2>Claims</h2>",
         _claims(claims) if claims else "<p>None of these figures has one.</p>",
     ]

@@ -14,10 +14,10 @@ from flockenv.statistics.intervals import CONFIDENCE
 __all__ = ["KEY_FIGURES", "Finished", "command", "markdown_summary", "shown_pictures"]
 
 KEY_FIGURES = ("fig9", "fig12", "fig14", "fig17")
-"""What is shown of all of the paper: two of the experiment, two of the simulation."""
+"""The figures shown for `all`: two of the experiment, two of the simulation."""
 
 Finished = Sequence[tuple[Reproduction, Sequence[RunSpec], Outcome]]
-"""What was reproduced: each with its runs and what came of it."""
+"""Finished reproductions: each with its runs and its outcome."""
 
 
 def markdown_summary(
@@ -25,27 +25,26 @@ def markdown_summary(
     finished: Finished,
     pictures: str = "{name}/{picture}.png",
 ) -> str:
-    """Return the page; `pictures` tells where it finds a picture of a name."""
+    """Return the page; `pictures` is the path of a picture of a name."""
     hours = sum({spec.key: spec.duration_s for _, specs, _ in finished for spec in specs}.values())
     minutes = settings.minutes
-    own = "of lengths told below" if _is_beyond(finished) else "of the paper's own length"
+    own = "of the lengths given below" if _is_beyond(finished) else "of the paper's own length"
     length = own if minutes is None else f"of {minutes:g} min"
+    claims = [claim for _, _, outcome in finished for claim in outcome.claims]
+    counts = Counter(claim.verdict for claim in claims)
     lines = [
         f"# {_title(finished)}",
         "",
-        f"Written by `{command(settings, finished)}` of flockenv {_core.__version__} (results "
-        f"version {RESULTS_VERSION}); runs {length}, {hours / 3600:.0f} hours of flock time, first "
-        f"seed {settings.seed}. A claim holds if the {CONFIDENCE:.0%} interval of the measured "
-        "quantity lies in the claimed range, does not hold if it lies outside, and is inconclusive "
-        "otherwise; the ranges stand in the code and were settled before the runs.",
-        "",
-    ]
-    claims = [claim for _, _, outcome in finished for claim in outcome.claims]
-    counts = Counter(claim.verdict for claim in claims)
-    lines += [
         f"Of {len(claims)} claims, one counted for each preset and setup it was measured with, "
         f"{counts[HOLDS]} hold, {counts[DOES_NOT_HOLD]} do not hold, and {counts[INCONCLUSIVE]} "
         "are inconclusive.",
+        "",
+        f"`{command(settings, finished)}` of flockenv {_core.__version__} (results version "
+        f"{RESULTS_VERSION}) wrote this page. Its runs are {length}, {hours / 3600:.0f} hours of "
+        f"flock time, with first seed {settings.seed}. A claim holds if the {CONFIDENCE:.0%} "
+        "interval of the measured quantity lies in the claimed range, does not hold if it lies "
+        "outside, and is inconclusive otherwise. The ranges stand in the code and were fixed "
+        "before the runs.",
         "",
     ]
     for figure, picture, caption in shown_pictures(finished):
@@ -64,7 +63,7 @@ def markdown_summary(
 
 
 def shown_pictures(finished: Finished) -> list[tuple[Reproduction, str, str]]:
-    """Return figure, picture and caption: of all of the paper the key ones, otherwise every one."""
+    """Return figure, picture and caption: the key ones for `all`, otherwise every one."""
     return [
         (figure, picture, outcome.captions.get(picture, figure.title))
         for figure, _, outcome in finished

@@ -26,7 +26,7 @@ VERDICTS = {"+": HOLDS, "-": DOES_NOT_HOLD, "?": INCONCLUSIVE}
         ("++--", "only with the paper's scheme"),
         ("+-+-", "only with the paper's noise convention"),
         ("+---", "only with the paper's scheme and noise together"),
-        ("----", "holds with none"),
+        ("----", "holds with no reading"),
         ("+--+", "holds with both presets"),
         ("+++?", "inconclusive with leapfrog, white noise"),
         ("+?--", "inconclusive with paper scheme, white noise"),
@@ -47,7 +47,7 @@ def test_the_statements_name_every_claim_once() -> None:
     assert said == [
         "Pool table-1: 2 of 4 claims hold with both presets, paper and simulation: a; b.",
         "Pool table-1: 1 of 4 claims hold only with the paper's noise convention: c.",
-        "Pool table-1: 1 of 4 claims are inconclusive with some reading, or follow no single "
+        "Pool table-1: 1 of 4 claims are inconclusive with some reading, or depend on no single "
         "choice: d.",
     ]
 

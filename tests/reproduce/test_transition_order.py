@@ -122,8 +122,8 @@ def test_the_conclusion_follows_its_rule() -> None:
     assert conclusion(smooth).startswith("not first order")
     # What differs by its start, but closes when run more slowly, is not shown to be of first order.
     lagging = conclusion([*first[:2], NO_LAG.check(-0.1, -0.2, -0.05, "a")])
-    assert lagging.startswith("inconclusive. a: that both states last: holds (0.5, 0.4 to 0.6)")
-    assert "that slower loops do not close: does not hold (-0.1, -0.2 to -0.05)" in lagging
+    assert lagging.startswith("inconclusive. a: both states persist (holds: 0.5, 0.4 to 0.6)")
+    assert "slower loops do not close (does not hold: -0.1, -0.2 to -0.05)" in lagging
     assert conclusion([first[0], *smooth[1:]]).startswith("inconclusive")
 
 
@@ -155,7 +155,7 @@ def test_a_small_design_from_runs_to_tables(tmp_path: object) -> None:
         "histograms_m",
         "histograms_c_v",
     }
-    verdicts = [note for note in outcome.notes if note.startswith("Growing the ")]
+    verdicts = [note for note in outcome.notes if note.startswith("The result with a growing ")]
     assert all("conclus" in note or "first order" in note for note in verdicts)
     assert len(verdicts) == 2
 

@@ -27,8 +27,8 @@ __all__ = ["REPRODUCTIONS"]
 _SCOPE = "experiment, table-1"
 _LATE_S = 1.4
 _INTERVALS = (
-    f"Intervals ({CONFIDENCE:.0%}) are of a bootstrap over runs within each level, {RESAMPLES} "
-    "resamples."
+    f"Intervals ({CONFIDENCE:.0%}) are of a bootstrap over runs within each level, with "
+    f"{RESAMPLES} resamples."
 )
 
 
@@ -99,7 +99,7 @@ def _figure12(settings: Settings, results: Results) -> Outcome:
         axes.set(xlabel="number of leaders", ylabel=r"$\Psi_o$", ylim=(0, 1.4), xticks=range(5))
         axes.set_yticks([0, 0.2, 0.4, 0.6, 0.8, 1])
     notes = [
-        "Each point is one 8-minute run, its bar one standard deviation of the frames.",
+        "Each point is one 8-minute run, and its bar is one standard deviation of the frames.",
         _INTERVALS,
     ]
     return Outcome({"fig12": runs}, {"fig12": picture}, claims, notes)
@@ -198,13 +198,14 @@ def _leaders_help(cases: dict[str, pd.DataFrame]) -> list[CheckedClaim]:
         Claim(
             text="Leaders extend the noise range where ordering is present",
             section="4.2",
-            quantity=f"share of ordering runs at bw > {_LATE_S} s (π/4), with leaders less without",
+            quantity=f"share of ordering runs at bw > {_LATE_S} s (π/4), "
+            "with leaders minus without",
             low=0.0,
         ).check(*interval(shares), scope=_SCOPE),
         Claim(
             text="Leaders slightly reduce the time needed for ordering",
             section="4.2",
-            quantity=f"mean ordering time at bw ≤ {_LATE_S} s, with leaders less without (s)",
+            quantity=f"mean ordering time at bw ≤ {_LATE_S} s, with leaders minus without (s)",
             high=0.0,
         ).check(*interval(times), scope=_SCOPE),
     ]

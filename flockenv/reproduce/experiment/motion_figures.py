@@ -74,11 +74,11 @@ def _motion(settings: Settings, results: Results) -> Outcome:
             ylim=(0, 1),
         )
     notes = [
-        "Mean-square displacement and heading correlation are over boats and starting times; the "
-        "heading is kept for about as long as the correlation is above 1/e (gray). Pairs are "
-        "divided by those of boats at the same radii with independent polar angles. On the wall: "
-        "within 0.5 cm of it.",
-        f"Bars and bands: {CONFIDENCE:.0%} intervals of a bootstrap over runs.",
+        "The mean-square displacement and the heading correlation are over boats and starting "
+        "times. A heading persists for about as long as the correlation is above 1/e (gray). "
+        "Numbers of pairs are divided by those of boats at the same radii with independent polar "
+        "angles. A boat is on the wall within 0.5 cm of it.",
+        f"Bars and bands are {CONFIDENCE:.0%} intervals of a bootstrap over runs.",
     ]
     tables = {"motion_lagged": moved, "motion_pairs": near, "motion_wall": wall}
     return Outcome(tables, {"motion": picture}, [], notes)

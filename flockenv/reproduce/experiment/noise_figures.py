@@ -118,7 +118,7 @@ def _direction_claims(series: Series) -> list[CheckedClaim]:
             None,
             "4.3",
             "Jamming comes mainly without leaders",
-            f"{quantity}: without leaders less with",
+            f"{quantity}: without leaders minus with",
             jams[0] - (jams[1] + jams[2]) / 2,
             # No jam at all does not count as one that leaders prevent.
             1e-3,
@@ -156,8 +156,8 @@ def _order_claims(series: Series) -> list[CheckedClaim]:
             _claim(
                 setup,
                 "4.3",
-                "Leaders greatly increase coherence at middle noise, read as Ψ_o by 0.2",
-                "mean Ψ_o at bw 1.4 to 2 s, with leaders less without",
+                "Leaders greatly increase coherence at medium noise, read as Ψ_o by 0.2",
+                "mean Ψ_o at bw 1.4 to 2 s, with leaders minus without",
                 gain,
                 0.2,
             )
@@ -187,7 +187,7 @@ def _velocity_claims(series: Series) -> list[CheckedClaim]:
             _claim(
                 setup,
                 "4.3",
-                "No velocity correlation in disordered motion, read as a tenth of the most",
+                "No velocity correlation in disordered motion, read as a tenth of the maximum",
                 "mean C_v at bw ≥ 2.4 s over its maximum",
                 high / most,
                 high=0.1,
@@ -198,7 +198,7 @@ def _velocity_claims(series: Series) -> list[CheckedClaim]:
             _claim(
                 setup,
                 "4.3",
-                "Low velocity correlation again at very low noise, read as half of the most",
+                "Low velocity correlation again at very low noise, read as half of the maximum",
                 "mean C_v at bw = 0.4 s over its maximum",
                 low / most,
                 high=0.5,
@@ -248,8 +248,8 @@ def _curves(
         panels[-1].set_xlabel(_BW)
     notes = [
         _note(settings),
-        f"Points and bars: means with their {CONFIDENCE:.0%} intervals. Shaded: the mean plus and "
-        "minus one standard deviation of the frames.",
+        f"Points and bars are means with their {CONFIDENCE:.0%} intervals. The shaded range is the "
+        "mean plus and minus one standard deviation of the frames.",
     ]
     return Outcome({name: pd.concat(tables)}, {name: picture}, claims(series), notes)
 
@@ -267,9 +267,10 @@ def _note(settings: Settings) -> str:
     length = block_length_s(settings.duration_s(8.0))
     runs = len(noise_series(settings, NONE)[0])
     return (
-        f"{runs} runs of 8 minutes at each backward duration. Intervals ({CONFIDENCE:.0%}) are of a "
-        f"bootstrap in two stages: runs, and blocks of {length:g} s within each; {RESAMPLES} "
-        "resamples. Frames in the analysis window after the first tenth of a run."
+        f"There are {runs} runs of 8 minutes at each backward duration. Intervals "
+        f"({CONFIDENCE:.0%}) are of a bootstrap in two stages, runs and blocks of {length:g} s "
+        f"within each, with {RESAMPLES} resamples. The frames are those in the analysis window "
+        "after the first tenth of a run."
     )
 
 

@@ -113,8 +113,8 @@ def _table2(settings: Settings, results: Results) -> Outcome:
         picture.legend(loc="outside upper center", ncols=3)
     notes = [
         "The state of a control cycle is the most frequent one in its analysis window; "
-        f"{_SEEDS} runs of 16 minutes a level. Dwell times are time in a state over changes out of "
-        "it, so that stays cut off by a run's end count.",
+        f"{_SEEDS} runs of 16 minutes at each level. A dwell time is the time in a state "
+        "divided by the changes out of it, so that stays that a run's end cuts off count too.",
         f"Bars and intervals ({CONFIDENCE:.0%}) are of a bootstrap over runs.",
     ]
     tables = {"table2": pd.DataFrame(rows), "table2_rates": pd.DataFrame(rates)}
@@ -199,7 +199,7 @@ def _state_claims(
             0.5,
         ),
         claim(
-            "Ordered motion is regular at low to middle noise",
+            "Ordered motion is regular at low to medium noise",
             "share of cycles in ordered motion, bw 0.8 to 1.2 s",
             share(_ORDERED, 0.8, 1.2),
             0.5,
@@ -251,9 +251,9 @@ _PANELS = (
 def _figure4(settings: Settings, results: Results) -> Outcome:
     found = _snapshots(settings, results)
     notes = [
-        "Each snapshot is found by a rule: among all frames in the analysis window that are in the "
-        "state, the one of highest Ψ_o for jamming and ordered motion, of lowest Ψ_o for disorder, "
-        "and of the largest cluster for clustering."
+        "A rule selects each snapshot among all frames in the analysis window that are in the "
+        "state: the highest Ψ_o for jamming and ordered motion, the lowest Ψ_o for disorder, and "
+        "the largest cluster for clustering."
     ]
     rows, claims = [], []
     with paper_style():

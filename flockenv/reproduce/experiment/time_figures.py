@@ -21,7 +21,7 @@ _MINUTES = 16.0
 _SEEDS = 12
 _SCOPE = "experiment, table-1"
 _SPEED_CM_S = 15.0
-_CYCLE = "means over each analysis window, one a control cycle"
+_CYCLE = "means over each analysis window, one per control cycle"
 _SETTLED = 0.5
 
 
@@ -87,7 +87,7 @@ def _picture(name: str, shown: RunResult, cycles: pd.DataFrame, led: bool) -> Ou
         panels[2].set_xlabel("time (min)")
         picture.suptitle(f"bw = {shown.spec.parameters.bw_s} s, seed {shown.spec.seed}", fontsize=7)
     notes = [
-        f"Shown: the run of median mean Ψ_o of {_SEEDS}; {_CYCLE}.",
+        f"The figure shows the run with the median mean Ψ_o of {_SEEDS} runs, as {_CYCLE}.",
         f"Intervals ({CONFIDENCE:.0%}) are of a bootstrap over runs.",
     ]
     return Outcome({name: cycles}, {name: picture}, [], notes)
@@ -213,7 +213,7 @@ def _figure7(settings: Settings, results: Results) -> Outcome:
             ),
             _claim(
                 "Correlations are higher than without leaders at the same noise",
-                "mean Ψ_o with alternating leaders less without, same seeds",
+                "mean Ψ_o with alternating leaders minus without, same seeds",
                 gain,
                 0.0,
             ),

@@ -370,4 +370,4 @@ CLAIMS: tuple[_Rule, ...] = (
         _neither,
     ),
 )
-"""Every claim with its rule, settled before the runs of the figures were made."""
+"""Every claim with its rule, fixed before the runs of the figures were made."""

@@ -33,10 +33,10 @@ def interval_note(settings: Settings, runs: int) -> str:
     """Return how intervals were made, in a sentence."""
     length = block_length_s(settings.duration_s(60.0))
     return (
-        f"Intervals ({CONFIDENCE:.0%}) are of a bootstrap in two stages: {runs} seeds at each "
-        f"point, and blocks of {length:g} s within each run; {RESAMPLES} resamples. Frames at "
-        "10 Hz in the analysis window after the first tenth of a run. So few seeds make intervals "
-        "rough where runs stay in one state for all of their length."
+        f"Intervals ({CONFIDENCE:.0%}) are of a bootstrap in two stages, {runs} seeds at each "
+        f"point and blocks of {length:g} s within each run, with {RESAMPLES} resamples. The frames "
+        "are those at 10 Hz in the analysis window after the first tenth of a run. With so few "
+        "seeds, intervals are rough where runs stay in one state throughout."
     )
 
 
@@ -122,8 +122,8 @@ def _curves(name: str, quantity: str, label: str, settings: Settings, results: R
             axes.set_ylabel(label)
     outcome = _finish(name, settings, evidence, pd.concat(tables), picture)
     outcome.notes.append(
-        f"Points and bars: means with their {CONFIDENCE:.0%} intervals. Shaded: the mean plus and "
-        "minus one standard deviation of the frames."
+        f"Points and bars are means with their {CONFIDENCE:.0%} intervals. The shaded range is the "
+        "mean plus and minus one standard deviation of the frames."
     )
     return outcome
 

@@ -31,7 +31,7 @@ _PLAIN = {
     (False, False, False, True): "holds only with leapfrog and white noise together",
     (False, True, False, True): "holds only with white noise",
     (False, False, True, True): "holds only with leapfrog",
-    (False, False, False, False): "holds with none",
+    (False, False, False, False): "holds with no reading",
 }
 _FIGURES = ("fig14", "fig15", "fig16", "fig17")
 
@@ -84,7 +84,7 @@ def statements(table: pd.DataFrame) -> list[str]:
             alike = rows[(rows["conclusion"] == words) & ~rows.index.isin(both.index)]
             groups[words.replace("holds", "hold", 1)] = list(alike["claim"])
         rest = rows[~rows["conclusion"].isin(_PLAIN.values()) & ~rows.index.isin(both.index)]
-        groups["are inconclusive with some reading, or follow no single choice"] = list(
+        groups["are inconclusive with some reading, or depend on no single choice"] = list(
             rest["claim"]
         )
         said += [

@@ -1,12 +1,12 @@
 """Beyond the paper: whether the jamming–order transition is of first order.
 
-Two numbers tell a jam from rotation. The rotation m = Ψ_o sin φ_o is 0 in a jam and ±1 in rotation
-one way, but also 0 where streams of both ways share a long pool. Ψ_o cos φ_o, the mean of cos φ
-over boats, is near 1 in a jam and near 0 in rotation, whichever ways. Signs of first order are
-looked for in the second: both states last at one density, each from its own start; loops in density
-stay open; and they stay as open when run more slowly, which lag does not. Binder's cumulant
-1 - <m⁴>/(3<m²>²) and that of C_v are shown with these: negative where few of the frames rotate,
-which means coexistence only where runs forget their start.
+Two numbers distinguish a jam from rotation. The rotation m = Ψ_o sin φ_o is 0 in a jam and ±1 in
+rotation one way, but also 0 where streams in both directions share a long pool. Ψ_o cos φ_o, the
+mean of cos φ over boats, is near 1 in a jam and near 0 in rotation in any direction. The second
+number shows three signs of first order: both states persist at one density, each from its own
+initial state; hysteresis loops in density stay open; and slower loops stay as open, which lag does
+not. Binder's cumulant 1 - <m⁴>/(3<m²>²) and that of C_v are shown with these: they are negative
+where few of the frames rotate, which means coexistence only where runs forget their initial state.
 """
 
 from collections.abc import Sequence
@@ -49,49 +49,49 @@ __all__ = [
 ]
 
 BISTABILITY = Claim(
-    text="Jam and rotation both last at one density, each from its own start",
+    text="Jam and rotation both persist at one density, each from its own initial state",
     section="5.2, left open",
-    quantity="mean Ψ_o cos φ_o of runs begun jammed less that of runs begun rotating, second "
-    "halves, at the density where this is largest",
+    quantity="mean Ψ_o cos φ_o of runs started jammed minus that of runs started rotating, "
+    "second halves, at the density where this is largest",
     low=0.2,
 )
 HYSTERESIS = Claim(
     text="Loops in density stay open",
     section="5.2, left open",
-    quantity="mean Ψ_o cos φ_o as density falls less that as it rises, over a slow loop",
+    quantity="mean Ψ_o cos φ_o as density falls minus that as it rises, over a slow loop",
     low=0.1,
 )
 NO_LAG = Claim(
     text="Loops in density do not close when run more slowly",
     section="5.2, left open",
-    quantity=f"opening of loops run {SLOWER:g} times as slowly less 0.7 of the faster ones'",
+    quantity=f"opening of loops run {SLOWER:g} times as slowly minus 0.7 of the faster ones'",
     low=0.0,
 )
 
 _SIGNS = {
-    BISTABILITY: "that both states last",
-    HYSTERESIS: "that loops stay open",
-    NO_LAG: "that slower loops do not close",
+    BISTABILITY: "both states persist",
+    HYSTERESIS: "loops stay open",
+    NO_LAG: "slower loops do not close",
 }
 
 _JAMMED = 0.3
 """Mean Ψ_o cos φ_o from which a loop has reached the jam at its highest density."""
 
 _CAPTIONS = {
-    "transition-order": "Jam (Ψ_o cos φ_o) of runs begun rotating or jammed, against density; by "
-    "how much loops stay open, against the number of boats",
+    "transition-order": "Jam (Ψ_o cos φ_o) of runs started rotating or jammed, against density; "
+    "opening of loops, against the number of boats",
     "loops": "Loops in density, run slowly, and in noise; dashed: on the way back; shaded: "
     "lowest to highest of the runs",
     "cumulants": "Binder cumulants of m and C_v against the number of boats, cut off below -1 and "
-    "-2; dashed: begun jammed",
-    "histograms_m": "Probability density of m; dashed: begun jammed",
-    "histograms_c_v": "Probability density of C_v; dashed: begun jammed; rotation has two peaks, "
-    "the boats' speeds at the end of fw and in nop",
+    "-2; dashed: started jammed",
+    "histograms_m": "Probability density of m; dashed: started jammed",
+    "histograms_c_v": "Probability density of C_v; dashed: started jammed; rotation has two "
+    "peaks, the boats' speeds at the end of fw and in nop",
 }
 
 
 def conclusion(claims: Sequence[CheckedClaim]) -> str:
-    """Return what the claims for the larger sizes say: a rule settled before the runs.
+    """Return what the claims for the larger sizes say, by a rule fixed before the runs.
 
     Parameters
     ----------
@@ -99,27 +99,27 @@ def conclusion(claims: Sequence[CheckedClaim]) -> str:
         `BISTABILITY`, `HYSTERESIS` and `NO_LAG` for the larger half of the sizes.
     """
     if all(claim.verdict == HOLDS for claim in claims):
-        return "first order: both states last, and loops stay open, at all of the larger sizes"
+        return "first order: both states persist and loops stay open at all of the larger sizes"
     states = [claim for claim in claims if claim.claim is not NO_LAG]
     if all(claim.verdict == DOES_NOT_HOLD for claim in states):
         return "not first order: one state outlasts the other and loops close at the larger sizes"
-    told = "; ".join(
+    verdicts = "; ".join(
         f"{scope}: "
         + ", ".join(
-            f"{_SIGNS[claim.claim]}: {claim.verdict} ({_told(claim)})"
+            f"{_SIGNS[claim.claim]} ({claim.verdict}: {_measured(claim)})"
             for claim in claims
             if claim.scope == scope
         )
         for scope in dict.fromkeys(claim.scope for claim in claims)
     )
     return (
-        f"inconclusive. {told}. It would take runs so long that flocks forget their start where "
-        "they still differ by it, loops slow enough that being slower changes nothing, and more "
-        "seeds where an interval is too wide"
+        f"inconclusive. {verdicts}. A conclusion needs runs so long that flocks forget their "
+        "initial state, loops so slow that slower ones are alike, and more seeds where an interval "
+        "is too wide"
     )
 
 
-def _told(claim: CheckedClaim) -> str:
+def _measured(claim: CheckedClaim) -> str:
     return claim.note if claim.ends == "none" else f"{number(claim.measured)}, {claim.ends}"
 
 
@@ -142,8 +142,8 @@ def _analyse(design: TransitionDesign, settings: Settings, results: Results) -> 
     for way in WAYS:
         judged = [judge(measured, Growth(way, n)) for n in design.sizes]
         larger = judged[len(judged) // 2 :]
-        told = conclusion([claim for triple in larger for claim in triple])
-        notes.append(f"Growing the {way}: {told}.")
+        found = conclusion([claim for triple in larger for claim in triple])
+        notes.append(f"The result with a growing {way} is {found}.")
         claims += [claim for triple in judged for claim in triple]
     notes += [_cumulants_note(measured), *_method_notes(design, settings)]
     tables = {
@@ -155,7 +155,7 @@ def _analyse(design: TransitionDesign, settings: Settings, results: Results) -> 
 
 
 def _cumulants_note(measured: Measured) -> str:
-    told = []
+    lowest = []
     for way in WAYS:
         growth = Growth(way, measured.design.sizes[-1])
         for start in STARTS:
@@ -164,31 +164,31 @@ def _cumulants_note(measured: Measured) -> str:
                 for density in measured.design.densities[way]
             ]
             value, low, high, density = min(ends)
-            told.append(
-                f"{value:.2f} ({low:.2f} to {high:.2f}) at density {density} begun {start}, {way}"
+            lowest.append(
+                f"{value:.2f} ({low:.2f} to {high:.2f}) at density {density} started {start}, {way}"
             )
     return (
-        f"Lowest Binder cumulant of m with {measured.design.sizes[-1]} boats: {'; '.join(told)}. "
-        "Where the two starts differ it belongs to a state that runs have not left, not to "
-        "equilibrium, and proves nothing."
+        f"The lowest Binder cumulants of m with {measured.design.sizes[-1]} boats are: "
+        f"{'; '.join(lowest)}. Where runs from the two initial states differ, the cumulant belongs "
+        "to a state that runs have not left and not to equilibrium, and proves nothing."
     )
 
 
 def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
     still, loop = (settings.duration_s(m) / 60 for m in (design.still_minutes, design.loop_minutes))
     return [
-        "Density: boats for each free area of the pool 500-boats. Runs at one density have no "
-        "noise but c4 and count in their second half; loops in density go from the lowest density "
-        f"to {DENSITY_RATIO:g} times that and back, loops in noise from bw = 0 to 0.6 s and back "
-        "at the lowest density, all from rotation. Preset simulation, dt = 0.05 s. Intervals are "
-        "Student's over seeds; those of cumulants a bootstrap over runs and blocks within them, "
-        "too narrow with so few runs. Densities and criteria were settled with shorter runs of "
-        "seeds 0 to 2 and 1000.",
-        f"Compute budget: {settings.budget_core_min:g} minutes of one core. This design: "
-        f"{design.runs} seeds, {still:g} minutes a run, {loop:g} minutes a loop and "
-        f"{SLOWER * loop:g} a slow one, {len(design.sizes)} sizes up to {max(design.sizes)} boats, "
-        f"estimated to take {design.core_minutes(settings):.0f}; the full one takes "
-        f"{FULL.core_minutes(settings):.0f} (`--budget`).",
+        "The density is the number of boats for each free area of the pool 500-boats. Runs at one "
+        "density have no noise but c4, and their second half counts. Loops in density go from the "
+        f"lowest density to {DENSITY_RATIO:g} times that and back. Loops in noise go from bw = 0 "
+        "to 0.6 s and back at the lowest density. All loops start from rotation. The preset is "
+        "simulation with dt = 0.05 s. Intervals are Student's over seeds; those of cumulants are a "
+        "bootstrap over runs and blocks within them, and are too narrow with so few runs. Shorter "
+        "runs of seeds 0 to 2 and 1000 fixed the densities and the criteria.",
+        f"The compute budget is {settings.budget_core_min:g} minutes of one core. The design has "
+        f"{design.runs} seeds, {still:g} minutes per run, {loop:g} minutes per loop and "
+        f"{SLOWER * loop:g} per slow loop, and {len(design.sizes)} sizes up to {max(design.sizes)} "
+        f"boats. It is estimated to take {design.core_minutes(settings):.0f} minutes, and the full "
+        f"design {FULL.core_minutes(settings):.0f} (`--budget`).",
     ]
 
 

@@ -64,7 +64,7 @@ def _states_and_openings(measured: Measured) -> Figure:
         openings.set_xlabel("boats")
     panels[0, 0].set_ylabel(_OUTWARD)
     panels[1, 0].set_ylabel("opening of loops")
-    handles = [*_sizes(design), *_styles({f"begun {start}": _LINES[start] for start in STARTS})]
+    handles = [*_sizes(design), *_styles({f"started {start}": _LINES[start] for start in STARTS})]
     picture.legend(handles=handles, loc="outside upper center", ncols=3)
     picture.legend(*panels[1, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return picture
@@ -153,7 +153,7 @@ def _cumulants(measured: Measured) -> Figure:
     # Heavy tails about 0 make cumulants as low as -10, which would hide all others.
     for axes, lowest in zip(panels[:, 0], (-1.0, -2.0), strict=True):
         axes.set_ylim(lowest, 0.8)
-    handles = _styles({f"begun {start}": _LINES[start] for start in STARTS})
+    handles = _styles({f"started {start}": _LINES[start] for start in STARTS})
     picture.legend(handles=handles, loc="outside upper center", ncols=2)
     return picture
 
@@ -201,7 +201,7 @@ def _histograms(measured: Measured, name: str) -> Figure:
         panels[0, column].set_ylim(top=50 * panels[0, column].get_ylim()[1])
         panels[0, column].legend(title="density", ncols=3, title_fontsize=6.5, **_TIGHT)
     picture.supylabel(f"probability density{unit}", fontsize=7)
-    handles = _styles({f"begun {start}": _LINES[start] for start in STARTS})
+    handles = _styles({f"started {start}": _LINES[start] for start in STARTS})
     picture.legend(handles=handles, loc="outside upper center", ncols=2)
     return picture
 
