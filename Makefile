@@ -60,7 +60,7 @@ setup: $(STAMPS)/test
 
 build: $(STAMPS)/core ## build the simulator and install the package, editable, into .venv
 
-lint: $(STAMPS)/test $(STAMPS)/core ## formatting, clippy, Rust module cycles, ruff, import layers, mypy, stubs
+lint: $(STAMPS)/test $(STAMPS)/core ## formatting, clippy, Rust module cycles, ruff, import layers, mypy, stubs, spelling, wording
 	cargo fmt --check
 	$(BIN)/ruff format --check
 	cargo clippy --locked --all-targets -- -D warnings
@@ -70,6 +70,8 @@ lint: $(STAMPS)/test $(STAMPS)/core ## formatting, clippy, Rust module cycles, r
 	$(BIN)/lint-imports --no-logo --no-cache
 	$(BIN)/mypy
 	$(if $(wildcard $(STUBS)),$(BIN)/stubtest flockenv._core --mypy-config-file pyproject.toml)
+	git ls-files -z | xargs -0 $(BIN)/codespell
+	$(BIN)/python docs/wording.py
 
 format: $(STAMPS)/test ## format the Rust and Python sources
 	cargo fmt

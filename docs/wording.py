@@ -10,11 +10,15 @@ import sys
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).parents[1]
-WORDS = Path(__file__).parent / "words.toml"
-SUFFIXES = {".css", ".html", ".js", ".md", ".pyi", ".py", ".rs", ".sh", ".toml", ".yml", ""}
-LEFT_OUT = re.compile(r"(^|/)(LICENSES?/|LICENSE$|Cargo\.lock$|tests/fixtures/|\.git)")
+WORDS: dict[str, Any] = tomllib.loads((ROOT / "docs/words.toml").read_text(encoding="utf-8"))
+SUFFIXES = {
+    *("", ".css", ".hbs", ".html", ".js", ".md", ".mjs"),
+    *(".py", ".pyi", ".rs", ".sh", ".toml", ".yml"),
+}
+LEFT_OUT = re.compile(r"^(LICENSES?/|LICENSE$|tests/fixtures/|\.git)")
 
 
 def main() -> int:
@@ -30,16 +34,15 @@ def main() -> int:
 
 def refused(name: str, text: str) -> Iterator[str]:
     """Yield a line for each refused word in the text of a file."""
-    words = tomllib.loads(WORDS.read_text(encoding="utf-8"))
-    banned = words["everywhere"] | (words["pages"] if name.endswith(".md") else {})
-    allowed = [re.compile(word, re.IGNORECASE) for word in words["allowed"].get(name, ())]
+    banned = WORDS["everywhere"] | (WORDS["pages"] if name.endswith(".md") else {})
+    allowed = WORDS["allowed"].get(name, ())
     pattern = re.compile("|".join(rf"\b(?:{word})\b" for word in banned), re.IGNORECASE)
     for number, line in enumerate(text.splitlines(), 1):
         for match in pattern.finditer(line):
-            if not any(word.fullmatch(match[0]) for word in allowed):
-                advice = next(
-                    text
-                    for word, text in banned.items()
+            if not any(re.fullmatch(word, match[0], re.IGNORECASE) for word in allowed):
+                (advice, *_) = (
+                    advice
+                    for word, advice in banned.items()
                     if re.fullmatch(word, match[0], re.IGNORECASE)
                 )
                 yield f"{name}:{number}: {match[0]!r}: write {advice}"
@@ -52,7 +55,10 @@ def _tracked_files() -> list[str]:
     return [
         name
         for name in listed
-        if name and Path(name).suffix in SUFFIXES and not LEFT_OUT.search(name)
+        if name
+        and Path(name).suffix in SUFFIXES
+        and not LEFT_OUT.search(name)
+        and (ROOT / name).exists()
     ]
 
 

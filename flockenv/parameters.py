@@ -136,7 +136,7 @@ class FlockParameters:
         if bw_s is None:
             raise ParameterError(
                 f"pool = {pool!r}: the critical noise of preset {preset!r} has not been measured "
-                "there. Choose another pool, or name a noise level yourself (bw_s; on the command "
+                "there. Choose another pool, or give a backward duration (bw_s; on the command "
                 "line `--pool table-1` or `--set bw_s=1.0`); baselines/critical_noise.py measures "
                 "it"
             )

@@ -1,4 +1,4 @@
-"""Docstrings of the environments: what they share, with tables from the core's data."""
+"""Shared parts of the environments' docstrings, with tables from the core's data."""
 
 import inspect
 from typing import TypeVar
@@ -16,27 +16,27 @@ __all__ = ["specified"]
 
 _Class = TypeVar("_Class", bound=type)
 
-_TASK = """Boats drive through a ring-shaped pool: forward for 2 s, drifting, backward for `bw_s`,
-drifting, and so on. They align by nothing but frictionless, perfectly inelastic collisions;
-backing makes them spin, the more the longer it lasts, which destroys order (Tarcai et al. 2011). A
-few of them, the leaders, have a rudder. The task is to make the *normal* boats circulate in the
-target direction."""
+_TASK = """Boats drive through a ring-shaped pool in cycles: forward for 2 s, drift, backward for
+`bw_s`, drift. Only frictionless, perfectly inelastic collisions align them. Backing makes boats
+spin and destroys order, the more the longer it lasts (Tarcai et al. 2011). A few boats, the
+leaders, have a rudder. The task is to make the *normal* boats circulate in the target direction."""
 
-_RUDDER = """A rudder is held for a control step. A positive one turns a boat that moves forward
-counter-clockwise, and works in reverse on one that moves backward. Numbers beyond ±1 are clipped,
-NaN is an error and nothing moves. With `rudder_levels=n` levels 0 to n - 1 are rudders evenly
-spaced from -1 to 1; `policies.WithLevels` chooses them for a policy that gives rudders."""
+_RUDDER = """A rudder is held for a control step. A positive rudder turns a boat that moves forward
+counter-clockwise, and works in reverse on a boat that moves backward. Numbers beyond ±1 are
+clipped. NaN is an error, and nothing moves then. With `rudder_levels=n`, levels 0 to n - 1 are
+rudders evenly spaced from -1 to 1, which `policies.WithLevels` chooses for a policy of rudders."""
 
-_FRAME = """Everything is in the local-angle polar (LAP) frame of the leader's own place, outward
-and clockwise, scaled and clipped at the bounds below (the part of numbers that were clipped is told
-at the episode's end). The entries of `neighbors` repeat for each of the nearest boats, nearest
-first."""
+_FRAME = """All entries are in the local-angle polar (LAP) frame of the leader's own position,
+outward and clockwise. They are scaled, and clipped at the bounds below; the share of clipped
+numbers is reported at the end of the episode. The entries of `neighbors` repeat for each of the
+nearest boats, nearest first."""
 
-_START = """Boats at random places with random headings, not overlapping, at rest; phase fw begins.
-The seed fixes the start, the noise (whatever the policy does), the target and the noise level; the
-first episode's flock is `Flock(parameters, seed)`. `reset(options=...)` can set for one episode:
-`target`, `bw_s`, `state` (a dictionary with pose (n, 3) and, if need be, velocity (n, 3), time_s
-and allow_overlap as in `Flock.set_state`) or `snapshot` (bytes of `Flock.snapshot`)."""
+_START = """Boats start at rest at random positions with random headings, without overlap, in phase
+fw. The seed fixes the initial state, the noise (whatever the policy does), the target and the
+backward duration; the first episode's flock is `Flock(parameters, seed)`. `reset(options=...)` can
+set for one episode: `target`, `bw_s`, `state` (a dictionary with pose (n, 3) and optionally
+velocity (n, 3), time_s and allow_overlap as in `Flock.set_state`) or `snapshot` (bytes of
+`Flock.snapshot`)."""
 
 _END = "After `episode_s` the episode is truncated; it never terminates."
 
