@@ -25,10 +25,13 @@ from flockenv.recording import PHASES, Recording
 from flockenv.replay.packing import Packer
 from flockenv.replay.quantities import ShownQuantity, shown_quantities, telling_minute
 
-__all__ = ["MOST_BYTES", "Replay", "write_replay"]
+__all__ = ["MOST_BYTES", "MOST_INLINE_BYTES", "Replay", "inline_replay", "write_replay"]
 
 MOST_BYTES = 10_000_000
 """Size that no page exceeds: of longer runs it shows fewer samples a second."""
+
+MOST_INLINE_BYTES = 2_000_000
+"""Size that no page inside a notebook exceeds: notebooks keep what they show."""
 
 # In the order in which one needs another; on the page they are one script.
 _SCRIPTS = (
@@ -43,6 +46,10 @@ _SCRIPTS = (
     "player.mjs",
     "main.mjs",
 )
+# What a page takes without its runs, at most.
+_SCRIPT_BYTES = 100_000
+# What a page's own quotation marks and angle brackets grow by inside an attribute, at most.
+_ESCAPES = 100_000
 _THINNING = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 _MOST_RUNS = 2
 _MOST_SAMPLES = 400_000
@@ -107,6 +114,25 @@ def write_replay(
     return Replay(len(page), every)
 
 
+def inline_replay(recording: Recording, name: str) -> str:
+    """Return a replay as an HTML element for a notebook: a page of its own, paused, in a frame.
+
+    The frame is sandboxed: its script reaches neither the notebook nor the network. It takes at
+    most `MOST_INLINE_BYTES`, in which longer runs show fewer samples.
+
+    Raises
+    ------
+    ParameterError
+        If the recording is too large to be shown at all.
+    """
+    page, _ = replay_page({name: recording}, MOST_INLINE_BYTES - _ESCAPES, plays=False)
+    return (
+        f'<iframe sandbox="allow-scripts" title="Replay of {html.escape(name)}" '
+        'style="width: 100%; height: 640px; max-height: 90vh; border: 0" '
+        f'srcdoc="{html.escape(page.decode())}"></iframe>'
+    )
+
+
 def replay_page(
     recordings: Mapping[str, Recording], most_bytes: int, *, plays: bool = True
 ) -> tuple[bytes, int]:
@@ -118,12 +144,15 @@ def replay_page(
         If the recordings are too large to be shown at all.
     """
     longest = max(len(recording) for recording in recordings.values())
+    # Samples that are further apart compress no better: nothing is packed that cannot fit.
+    least_every = max(1.0, longest / _MOST_SAMPLES)
     for every in _THINNING:
-        if longest > every * _MOST_SAMPLES:
+        if every < least_every:
             continue
         page = _page(recordings, every, plays).encode()
         if len(page) <= most_bytes:
             return page, every
+        least_every = every * (len(page) - _SCRIPT_BYTES) / most_bytes
     raise ParameterError(
         f"the recordings do not fit a page of {most_bytes} bytes, not even one in {_THINNING[-1]} "
         "samples: record fewer boats or a shorter run"

@@ -4,6 +4,7 @@ use super::arguments::{Seconds, Seed, TimeS, floats, real, text, truth, wrong_ty
 use super::parameters::to_python;
 use super::results;
 use crate::clock::{Ticks, seconds};
+use crate::draw::FrameRenderer;
 use crate::error::FlockError;
 use crate::flock::{Flock, State};
 use crate::geometry::{Pose, Velocity};
@@ -286,6 +287,20 @@ impl PyFlock {
         Ok((slf.get_type().getattr("from_snapshot")?, (snapshot,)))
     }
 
+    /// The flock as a picture, for notebooks.
+    fn _repr_html_(&self, py: Python<'_>) -> PyResult<String> {
+        let png = FrameRenderer::new(NOTEBOOK_PIXELS, NOTEBOOK_PIXELS)?.png(&self.0)?;
+        let encoded = py
+            .import("base64")?
+            .call_method1("b64encode", (PyBytes::new(py, &png),))?;
+        let encoded: String = encoded.call_method1("decode", ("ascii",))?.extract()?;
+        let words = self.__repr__();
+        let words = words.trim_matches(['<', '>']);
+        Ok(format!(
+            "<img alt=\"{words}\" src=\"data:image/png;base64,{encoded}\">"
+        ))
+    }
+
     fn __repr__(&self) -> String {
         let p = self.0.parameters();
         format!(
@@ -297,6 +312,9 @@ impl PyFlock {
         )
     }
 }
+
+/// Width and height of a flock's picture in a notebook.
+const NOTEBOOK_PIXELS: u32 = 400;
 
 /// Work between two looks at Python's signals: about 30 ms.
 pub const BOAT_SUBSTEPS_A_PIECE: u64 = 200_000;

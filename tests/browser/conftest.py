@@ -76,9 +76,11 @@ def pages(law, damped, tmp_path_factory) -> Path:
 
 @pytest.fixture
 def open_page(chromium) -> Callable[..., "ReplayPage"]:
-    def opened(path: Path, *, size: tuple[int, int] = SIZE, rests: bool = True) -> ReplayPage:
+    def opened(
+        path: Path, *, size: tuple[int, int] = SIZE, waits: bool = True, rests: bool = True
+    ) -> ReplayPage:
         resize(chromium, *size)
-        page = ReplayPage(chromium, path.as_uri())
+        page = ReplayPage(chromium, path.as_uri(), waits=waits)
         if rests and page.state() == "true":
             page.rest()
         return page
@@ -106,17 +108,22 @@ def open_link(chromium) -> Callable[[Path, str], "ReplayPage"]:
 
 
 class ReplayPage:
-    def __init__(self, driver, address: str) -> None:
+    def __init__(self, driver, address: str, *, waits: bool = True) -> None:
         self.driver = driver
-        # Installed for these tests alone: nothing of it may be needed to collect them.
-        from selenium.webdriver.support.ui import WebDriverWait
-
         driver.get_log("browser")
         driver.get_log("performance")
         # From one fragment of a page to another nothing would be loaded.
         driver.get("about:blank")
         driver.get(address)
-        WebDriverWait(driver, 30).until(lambda _: self.state())
+        if waits:
+            self.wait()
+
+    def wait(self) -> None:
+        """Wait until the page has begun, or failed to."""
+        # Installed for these tests alone: nothing of it may be needed to collect them.
+        from selenium.webdriver.support.ui import WebDriverWait
+
+        WebDriverWait(self.driver, 30).until(lambda _: self.state())
 
     def rest(self) -> None:
         """Pause at the beginning, in real time."""

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv.replay import MOST_BYTES, write_replay
+from flockenv.replay import MOST_BYTES, inline_replay, write_replay
 from flockenv.replay import page as replay_page
-from flockenv.replay.quantities import ShownQuantity
+from flockenv.replay.quantities import ShownQuantity, telling_minute
 
 pytestmark = pytest.mark.browser
 
@@ -197,3 +197,25 @@ def test_an_hour_opens_at_once_and_scrubs_smoothly(open_page, scene, tmp_path):
     assert page.script(source) < 40.0
     page.click_at("#scrub", 0.7)
     page.check(run)
+
+
+def test_it_plays_inside_a_notebook(open_page, law, tmp_path):
+    element = inline_replay(law, "law")
+    (tmp_path / "notebook.html").write_text(f"<!doctype html><p>cell</p>{element}")
+    outside = open_page(tmp_path / "notebook.html", waits=False, rests=False)
+    outside.driver.switch_to.frame(0)
+    outside.wait()
+    assert not outside.is_playing()
+    moment, _ = telling_minute([law])
+    assert outside.time() == moment
+    outside.check(law)
+    outside.click("#play")
+    time.sleep(1.5)
+    outside.click("#play")
+    outside.settle()
+    assert outside.time() > moment + 4.0
+    outside.check(law)
+    reaching = "try { return parent.document.title; } catch (error) { return error.name; }"
+    assert outside.script(reaching) == "SecurityError"
+    outside.driver.switch_to.default_content()
+    assert outside.driver.get_log("browser") == []

@@ -81,6 +81,24 @@ impl FrameRenderer {
         frame
     }
 
+    /// A flock as it is now, as a PNG file.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] if the picture cannot be encoded.
+    pub fn png(&mut self, flock: &Flock) -> Result<Vec<u8>> {
+        let frame = self.draw(flock);
+        let refused = |error: png::EncodingError| {
+            FlockError::parameter("frame", error, "a picture that PNG can hold")
+        };
+        let mut file = Vec::new();
+        let mut encoder = png::Encoder::new(&mut file, self.width(), self.height());
+        encoder.set_color(png::ColorType::Rgb);
+        let mut writer = encoder.write_header().map_err(refused)?;
+        writer.write_image_data(&frame).map_err(refused)?;
+        writer.finish().map_err(refused)?;
+        Ok(file)
+    }
+
     /// The same into a buffer of [`Self::frame_len`] bytes.
     ///
     /// # Panics
