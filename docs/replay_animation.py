@@ -58,7 +58,8 @@ def frames(page: Path) -> Iterator[Image.Image]:
         # What the frames amount to.
         Select(driver.find_element("id", "speed")).select_by_value(f"{STEP_S * FPS:g}")
         Select(driver.find_element("id", "trails")).select_by_value("5")
-        driver.execute_script("document.activeElement.blur()")
+        # The page plays by itself; these frames are taken at times of their own.
+        driver.execute_script("document.activeElement.blur(); player.toggle()")
         for frame in range(FRAMES):
             driver.execute_script(
                 "player.seek(arguments[0]); player.show()", BEGIN_S + STEP_S * frame
