@@ -2,9 +2,8 @@
 
 mod block_pivoting;
 mod clarabel;
-mod envelope;
+
 mod gauss_seidel;
-mod matrix;
 
 use super::{Contact, ContactProblem, Islands};
 use crate::geometry::Velocity;
@@ -73,7 +72,7 @@ impl ContactSolver {
     pub fn reset(&mut self, boats: usize, contacts: &[Contact]) {
         debug_assert_eq!(self.active.len(), contacts.len());
         self.islands.find(boats, contacts);
-        self.pivoting.reset(self.islands.len());
+        self.pivoting.reset(boats, self.islands.len());
     }
 
     /// The islands of the contacts taken on last.

@@ -1,0 +1,172 @@
+//! Block principal pivoting on one island.
+
+use super::factor::Factor;
+use super::rows::Rows;
+use crate::contact::ContactProblem;
+use crate::contact::solver::{EXACT, SolveReport};
+
+/// Signs are judged with this tolerance in cm/s, well below [`EXACT`].
+pub const TOLERANCE: f64 = 1e-11;
+/// Rounds without fewer violations before the descent takes over.
+const PATIENCE: u32 = 5;
+
+/// One island with its factor.
+#[derive(Debug, Clone, Default)]
+pub struct IslandSolver {
+    pub rows: Rows,
+    pub factor: Factor,
+    /// Whether the rows are those of the contacts at hand.
+    pub is_built: bool,
+    /// Right-hand side and solution, row by row.
+    solution: Vec<f64>,
+    /// Rows whose sign is wrong, and the largest slack of an active row in cm/s.
+    violations: usize,
+    worst: f64,
+}
+
+impl IslandSolver {
+    /// Lays out the rows of some contacts, unless they are.
+    pub fn build(
+        &mut self,
+        problem: &ContactProblem,
+        contacts: &[u32],
+        active: &[bool],
+        places: &mut [u32],
+    ) {
+        if self.is_built {
+            return;
+        }
+        self.is_built = true;
+        self.rows.build(problem, contacts, places);
+        self.solution.resize(self.rows.rows.len(), 0.0);
+        for row in &mut self.rows.rows {
+            row.is_active = active[row.contact as usize];
+        }
+        self.factor.reset(&self.rows.rows);
+    }
+
+    /// Takes on biases, free velocities and right-hand sides.
+    pub fn set_right(&mut self, problem: &ContactProblem, rights: &[f64]) {
+        for body in &mut self.rows.bodies {
+            if let Some(free) = problem.free.get(body.boat as usize) {
+                body.free = [free.linear.x, free.linear.y, free.angular];
+            }
+        }
+        for row in &mut self.rows.rows {
+            row.bias = problem.biases[row.contact as usize];
+            row.right = rights[row.contact as usize];
+            row.impulse = 0.0;
+        }
+    }
+
+    /// Solves for impulses and velocities.
+    pub fn solve(&mut self, regularization: f64, report: &mut SolveReport) {
+        let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
+        loop {
+            report.iterations += 1;
+            report.factored_rows += self.solve_active(regularization);
+            let mut refinements = 0;
+            while self.violations == 0 && refinements < 3 && self.refine(regularization) {
+                refinements += 1;
+            }
+            let violations = self.violations;
+            if violations == 0 {
+                break;
+            }
+            if violations < fewest {
+                (fewest, patience) = (violations, PATIENCE);
+            } else if patience > 0 {
+                patience -= 1;
+            } else {
+                self.descend(regularization, report);
+                break;
+            }
+            self.flip_violated();
+        }
+        report.factor_entries += self.factor.len() as u64;
+        self.drop_negative();
+        report.residual = self.worst_residual(regularization, report.residual);
+    }
+
+    /// Impulses that close exactly the active gaps, and the slacks of all; returns factored rows.
+    pub(super) fn solve_active(&mut self, regularization: f64) -> u64 {
+        let computed = self.factor.update(&self.rows.rows, regularization);
+        for (value, row) in self.solution.iter_mut().zip(&mut self.rows.rows) {
+            *value = if row.is_active { -row.right } else { 0.0 };
+            row.impulse = 0.0;
+        }
+        self.add_solution();
+        computed
+    }
+
+    /// Regularization and rounding leave a remainder at the active contacts; another solve removes it. A
+    /// regularized problem is meant to give way. Returns whether there was anything to do.
+    pub(super) fn refine(&mut self, regularization: f64) -> bool {
+        if self.worst <= 0.5 * EXACT || regularization > TOLERANCE {
+            return false;
+        }
+        for (value, row) in self.solution.iter_mut().zip(&self.rows.rows) {
+            *value = if row.is_active { -row.slack } else { 0.0 };
+        }
+        self.add_solution();
+        true
+    }
+
+    /// Adds the solution for the right-hand side at hand to the impulses, and brings slacks up to date.
+    fn add_solution(&mut self) {
+        self.factor.solve(&mut self.solution);
+        for (row, value) in self.rows.rows.iter_mut().zip(&self.solution) {
+            row.impulse += value;
+        }
+        (self.violations, self.worst) = self.rows.update();
+    }
+
+    fn flip_violated(&mut self) {
+        for k in 0..self.rows.rows.len() {
+            if self.rows.rows[k].is_violated() {
+                self.set_active(k, !self.rows.rows[k].is_active);
+            }
+        }
+    }
+
+    /// Has a row enter or leave the active ones.
+    pub(super) fn set_active(&mut self, row: usize, is_active: bool) {
+        if self.rows.rows[row].is_active != is_active {
+            self.rows.rows[row].is_active = is_active;
+            self.factor.flip(&self.rows, row);
+        }
+    }
+
+    /// Drops impulses that are negative by rounding.
+    fn drop_negative(&mut self) {
+        let mut dropped = false;
+        for k in 0..self.rows.rows.len() {
+            if self.rows.rows[k].impulse < 0.0 {
+                self.rows.rows[k].impulse = 0.0;
+                self.set_active(k, false);
+                dropped = true;
+            }
+        }
+        if dropped {
+            self.rows.update();
+        }
+    }
+
+    /// The larger of the natural residual and the worst so far; NaN if anything is.
+    fn worst_residual(&self, regularization: f64, worst: f64) -> f64 {
+        let compliance = if regularization < TOLERANCE {
+            0.0
+        } else {
+            regularization
+        };
+        self.rows.rows.iter().fold(worst, |worst, row| {
+            let speed = row.diagonal * row.impulse;
+            let residual = speed.min(row.slack + compliance * speed).abs();
+            if residual > worst || residual.is_nan() {
+                residual
+            } else {
+                worst
+            }
+        })
+    }
+}
