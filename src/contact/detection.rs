@@ -40,10 +40,13 @@ impl ContactDetector {
     /// Gaps that can close within `dt` at these velocities, with room for what contacts add to them.
     pub fn margin(&self, velocities: &[Velocity], dt: f64) -> f64 {
         let h = self.hull.half_length;
-        let fastest = velocities
-            .iter()
-            .map(|v| v.linear.norm_squared().sqrt() + h * v.angular.abs())
-            .fold(0.0, f64::max);
+        let mut fastest = 0.0;
+        for velocity in velocities {
+            let speed = velocity.linear.norm_squared().sqrt() + h * velocity.angular.abs();
+            if speed > fastest {
+                fastest = speed;
+            }
+        }
         3.0 * fastest * dt + 1e-3 * self.hull.radius
     }
 
@@ -90,10 +93,15 @@ impl ContactDetector {
             outer_radius_cm: outer,
             inner_radius_cm: inner,
         } = self.pool;
-        let distance = pose.center.norm();
+        let distance = pose.center.norm_squared().sqrt();
         if self.pool.has_outer_wall() && distance + self.hull.reach() + margin > outer {
             let ends = if self.hull.half_length > 0.0 { 2 } else { 1 };
+            let free = (outer - self.hull.radius - margin).max(0.0);
             for feature in 0..ends {
+                let end = pose.end(end_side(feature), self.hull.half_length);
+                if end.norm_squared() < free * free {
+                    continue;
+                }
                 let gap = outer_wall_gap(pose, end_side(feature), self.hull, outer);
                 if gap.gap < margin {
                     contacts.push(Contact {

@@ -1,6 +1,6 @@
 //! Islands: boats joined by contacts. Each is a contact problem of its own.
 
-use super::Contact;
+use super::{Contact, Partner};
 use std::ops::Range;
 
 /// Contacts grouped by island, each group in the order of detection.
@@ -8,8 +8,9 @@ use std::ops::Range;
 pub struct Islands {
     /// Union-find over boats.
     parent: Vec<u32>,
-    /// Island of each requested boat.
-    island_of_boat: Vec<u32>,
+    /// Island of each island's first boat, and of each contact.
+    island_of_root: Vec<u32>,
+    island_of_contact: Vec<u32>,
     /// Where each island begins in `members`.
     starts: Vec<u32>,
     /// Contact indices, island by island.
@@ -19,53 +20,53 @@ pub struct Islands {
 const NONE: u32 = u32::MAX;
 
 impl Islands {
-    /// Finds the islands of a flock of `boats` boats. Walls join nothing.
+    /// Finds the islands of a flock of `boats` boats, numbered in the order of detection. Walls join nothing.
     pub fn find(&mut self, boats: usize, contacts: &[Contact]) {
-        self.parent.clear();
-        self.parent.extend(0..boats as u32);
-        for contact in contacts {
-            if let Some(second) = contact.second() {
-                let (a, b) = (self.root(contact.boat), self.root(second as u32));
-                self.parent[a.max(b) as usize] = a.min(b);
-            }
-        }
+        self.join(boats, contacts);
         // First the sizes, then the members: a counting sort by island.
-        self.island_of_boat.clear();
-        self.island_of_boat.resize(boats, NONE);
+        self.island_of_root.clear();
+        self.island_of_root.resize(boats, NONE);
+        self.island_of_contact.resize(contacts.len(), 0);
         self.starts.clear();
         self.starts.push(0);
-        for contact in contacts {
-            let island = self.island_of(contact.boat);
-            self.starts[island + 1] += 1;
+        for (contact, own) in contacts.iter().zip(&mut self.island_of_contact) {
+            let root = self.parent[contact.boat as usize];
+            let island = &mut self.island_of_root[root as usize];
+            if *island == NONE {
+                *island = self.starts.len() as u32 - 1;
+                self.starts.push(0);
+            }
+            *own = *island;
+            self.starts[*island as usize + 1] += 1;
         }
-        for island in 1..self.starts.len() {
-            self.starts[island] += self.starts[island - 1];
+        let mut begin = 0;
+        for start in &mut self.starts[1..] {
+            // Filling moves every start to its island's end.
+            begin += std::mem::replace(start, begin);
         }
-        self.members.clear();
         self.members.resize(contacts.len(), 0);
-        for (k, contact) in contacts.iter().enumerate() {
-            let next = &mut self.starts[self.island_of_boat[contact.boat as usize] as usize];
+        for (k, &island) in self.island_of_contact.iter().enumerate() {
+            let next = &mut self.starts[island as usize + 1];
             self.members[*next as usize] = k as u32;
             *next += 1;
         }
-        // Filling moved every start to its island's end.
-        self.starts.rotate_right(1);
-        self.starts[0] = 0;
     }
 
-    /// The island of a boat that has a contact, numbered in the order of detection.
-    fn island_of(&mut self, boat: u32) -> usize {
-        let known = self.island_of_boat[boat as usize];
-        if known != NONE {
-            return known as usize;
+    /// Has every boat know the first boat of its island.
+    fn join(&mut self, boats: usize, contacts: &[Contact]) {
+        self.parent.clear();
+        self.parent.extend(0..boats as u32);
+        let parent = self.parent.as_mut_slice();
+        for contact in contacts {
+            if let Partner::Boat(second) = contact.partner {
+                let (a, b) = (root(parent, contact.boat), root(parent, second));
+                parent[a.max(b) as usize] = a.min(b);
+            }
         }
-        let root = self.root(boat) as usize;
-        if self.island_of_boat[root] == NONE {
-            self.island_of_boat[root] = self.starts.len() as u32 - 1;
-            self.starts.push(0);
+        // Parents come before their children.
+        for boat in 0..boats {
+            parent[boat] = parent[parent[boat] as usize];
         }
-        self.island_of_boat[boat as usize] = self.island_of_boat[root];
-        self.island_of_boat[root] as usize
     }
 
     /// How many islands have contacts.
@@ -92,13 +93,16 @@ impl Islands {
     pub fn contacts(&self, island: usize) -> &[u32] {
         &self.members[self.range(island)]
     }
+}
 
-    fn root(&mut self, boat: u32) -> u32 {
-        let mut boat = boat as usize;
-        while self.parent[boat] as usize != boat {
-            self.parent[boat] = self.parent[self.parent[boat] as usize];
-            boat = self.parent[boat] as usize;
+fn root(parent: &mut [u32], mut boat: u32) -> u32 {
+    loop {
+        let above = parent[boat as usize];
+        if above == boat {
+            return boat;
         }
-        boat as u32
+        let next = parent[above as usize];
+        parent[boat as usize] = next;
+        boat = next;
     }
 }

@@ -109,8 +109,8 @@ impl ContactResolver {
     }
 
     /// Contacts that carried an impulse in the last substep.
-    pub fn warm_start_impulses(&self) -> &[CachedImpulse] {
-        self.warm_start_cache.as_slice()
+    pub fn warm_start_impulses(&self) -> impl Iterator<Item = CachedImpulse> {
+        self.warm_start_cache.impulses()
     }
 
     /// Puts back what [`Self::warm_start_impulses`] gave.
@@ -139,7 +139,12 @@ impl ContactResolver {
         let margin = self.detector.margin(velocities, dt);
         let builds_before = self.detector.neighbors.builds();
         self.detector.detect(boats, margin, &mut self.contacts);
-        let smallest = self.contacts.iter().map(|c| c.gap.gap).fold(0.0, f64::min);
+        let mut smallest = 0.0;
+        for contact in &self.contacts {
+            if contact.gap.gap < smallest {
+                smallest = contact.gap.gap;
+            }
+        }
         statistics.worst_overlap_cm = statistics.worst_overlap_cm.max(-smallest);
         if smallest < -self.penetration_slop {
             self.depenetrate(poses, boats, statistics);
@@ -173,11 +178,8 @@ impl ContactResolver {
 
     /// Guesses that contacts which carried an impulse still do.
     fn warm_start(&mut self, boats: usize) {
-        self.warm_start_cache.index(boats);
-        self.solver.impulses.clear();
-        let impulses =
-            (0..self.contacts.len()).map(|k| self.warm_start_cache.lookup(&self.contacts, k));
-        self.solver.impulses.extend(impulses);
+        self.warm_start_cache
+            .lookup(boats, &self.contacts, &mut self.solver.impulses);
         self.persistent.clear();
         self.persistent
             .extend(self.solver.impulses.iter().map(|&impulse| impulse > 0.0));

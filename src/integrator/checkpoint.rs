@@ -38,8 +38,7 @@ impl Integrator {
         into.velocities.clone_from(&self.velocities);
         into.last.clone_from(&self.last);
         into.warm_start.clear();
-        into.warm_start
-            .extend_from_slice(self.contacts.warm_start_impulses());
+        into.warm_start.extend(self.contacts.warm_start_impulses());
         let neighbors = self.contacts.neighbors();
         into.neighbor_reference.0.clear();
         into.neighbor_reference
