@@ -6,17 +6,17 @@ use super::{Gap, Hull, HullPose, cross, turned_left};
 /// inward. A boat that lies flat on the wall touches with both ends.
 pub fn outer_wall_gap(boat: &HullPose, side: f64, hull: Hull, outer_radius: f64) -> Gap {
     let end = boat.end(side, hull.half_length);
-    let distance = end.norm();
+    let distance = end.norm_squared().sqrt();
     // At the very center every direction is as good; the gap is the whole radius there.
     let normal = if distance > 0.0 {
-        -end / distance
+        end * (-1.0 / distance)
     } else {
         -boat.axis
     };
     Gap {
         gap: outer_radius - hull.radius - distance,
         normal,
-        arm_i: cross(end - boat.center, normal),
+        arm_i: side * hull.half_length * cross(boat.axis, normal),
         arm_j: 0.0,
         bend: 0.0,
     }
@@ -29,17 +29,17 @@ pub fn inner_wall_gap(boat: &HullPose, hull: Hull, inner_radius: f64) -> Gap {
     let h = hull.half_length;
     let along = (-boat.center.dot(&boat.axis)).clamp(-h, h);
     let nearest = boat.center + boat.axis * along;
-    let distance = nearest.norm();
+    let distance = nearest.norm_squared().sqrt();
     // A core through the pool's center leaves to the side.
     let normal = if distance > 0.0 {
-        nearest / distance
+        nearest * (1.0 / distance)
     } else {
         turned_left(boat.axis)
     };
     Gap {
         gap: distance - hull.radius - inner_radius,
         normal,
-        arm_i: cross(nearest - boat.center, normal),
+        arm_i: along * cross(boat.axis, normal),
         arm_j: 0.0,
         bend: if along.abs() < h { -distance } else { 0.0 },
     }

@@ -2,7 +2,7 @@
 
 use super::{Pose, Vec2};
 use crate::parameters::FlockParameters;
-use wide::f64x4;
+use wide::{f64x4, u64x4};
 
 /// The shape that all boats of a flock share.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,7 +46,7 @@ impl HullPose {
     /// From a pose.
     #[inline]
     pub fn new(pose: &Pose) -> Self {
-        let (sin, cos) = f64x4::splat(pose.heading).sin_cos();
+        let (sin, cos) = sin_cos(f64x4::splat(pose.heading));
         Self {
             center: pose.position,
             axis: Vec2::new(cos.as_array()[0], sin.as_array()[0]),
@@ -54,20 +54,18 @@ impl HullPose {
     }
 
     /// Replaces `into` by the hulls at some poses, bit for bit those of [`Self::new`].
-    ///
-    /// Four headings at a time, which is faster; and the result does not depend on the machine's
-    /// mathematical library.
     pub fn replace_all(into: &mut Vec<Self>, poses: &[Pose]) {
         into.clear();
-        for four in poses.chunks(4) {
-            let heading = |k: usize| four.get(k).map_or(0.0, |pose| pose.heading);
-            let (sin, cos) = f64x4::new(std::array::from_fn(heading)).sin_cos();
-            let axes = cos.as_array().iter().zip(sin.as_array());
-            into.extend(four.iter().zip(axes).map(|(pose, (&cos, &sin))| Self {
-                center: pose.position,
-                axis: Vec2::new(cos, sin),
+        let (fours, rest) = poses.as_chunks::<4>();
+        for four in fours {
+            let (sin, cos) = sin_cos(f64x4::new(four.each_ref().map(|pose| pose.heading)));
+            let (sin, cos) = (sin.to_array(), cos.to_array());
+            into.extend_from_slice(&std::array::from_fn::<_, 4, _>(|lane| Self {
+                center: four[lane].position,
+                axis: Vec2::new(cos[lane], sin[lane]),
             }));
         }
+        into.extend(rest.iter().map(Self::new));
     }
 
     /// The end of the core segment at the bow (`side` +1) or stern (−1).
@@ -75,4 +73,46 @@ impl HullPose {
     pub fn end(&self, side: f64, half_length: f64) -> Vec2 {
         self.center + self.axis * (side * half_length)
     }
+}
+
+/// Sines and cosines to some 1e-16, the same on every machine: without its mathematical library, and without
+/// branches. The polynomials on [−π/4, π/4] are those of Cephes (Moshier 1989).
+#[inline]
+fn sin_cos(angle: f64x4) -> (f64x4, f64x4) {
+    let number = f64x4::splat;
+    // Adding and subtracting this rounds to a whole number, and leaves it in the lowest bits.
+    let rounding = number(6_755_399_441_055_744.0);
+    let shifted = angle * number(std::f64::consts::FRAC_2_PI) + rounding;
+    let quarters = shifted - rounding;
+    // π/2 in parts whose multiples are exact.
+    let x = angle
+        - quarters * number(1.570_796_310_901_641_8)
+        - quarters * number(1.589_325_471_229_585_7e-8)
+        - quarters * number(6.123_233_995_736_766e-17);
+    let z = x * x;
+    let sin = number(1.589_623_015_765_465_6e-10);
+    let sin = sin * z - number(2.505_074_776_285_780_7e-8);
+    let sin = sin * z + number(2.755_731_362_138_572_2e-6);
+    let sin = sin * z - number(1.984_126_982_958_954e-4);
+    let sin = sin * z + number(8.333_333_333_322_118e-3);
+    let sin = sin * z - number(1.666_666_666_666_663e-1);
+    let sin = x + x * z * sin;
+    let cos = number(-1.135_853_652_138_768_2e-11);
+    let cos = cos * z + number(2.087_570_084_197_473e-9);
+    let cos = cos * z - number(2.755_731_417_929_674e-7);
+    let cos = cos * z + number(2.480_158_728_885_170_4e-5);
+    let cos = cos * z - number(1.388_888_888_887_305_6e-3);
+    let cos = cos * z + number(4.166_666_666_666_659_5e-2);
+    let cos = number(1.0) - number(0.5) * z + z * z * cos;
+    // Odd quarters swap the two; the second and third turn the sine's sign, the first and second the cosine's.
+    let turn = shifted.to_bits();
+    let (sin, cos) = (sin.to_bits(), cos.to_bits());
+    let (one, two) = (u64x4::splat(1), u64x4::splat(2));
+    let swap = (u64x4::splat(0) - (turn & one)) & (sin ^ cos);
+    let sin_sign = (turn & two) << 62_u32;
+    let cos_sign = ((turn + one) & two) << 62_u32;
+    (
+        f64x4::from_bits(sin ^ swap ^ sin_sign),
+        f64x4::from_bits(cos ^ swap ^ cos_sign),
+    )
 }

@@ -56,89 +56,99 @@ struct Pair<'a> {
     a: &'a HullPose,
     b: &'a HullPose,
     hull: Hull,
+    /// From the first center to the second, and its components along both axes.
+    apart: Vec2,
+    apart_a: f64,
+    apart_b: f64,
+    /// Cosine of the angle between the axes.
+    cosine: f64,
 }
 
-/// Where along a core an end projects to, and what is nearest to it there.
-struct Projection {
-    /// Coordinate of the nearest point along the core, within [−h, h].
-    nearest: f64,
-    /// Whether the end projects beyond the core's own end.
-    beyond: bool,
+/// Two points of two cores.
+#[derive(Clone, Copy)]
+struct Touch {
+    /// Coordinates along the cores, from their centers.
+    along_a: f64,
+    along_b: f64,
+    /// From the second core's point to the first's.
+    between: Vec2,
 }
 
-impl Pair<'_> {
-    fn project(&self, point: Vec2, core: &HullPose) -> Projection {
-        let h = self.hull.half_length;
-        let along = (point - core.center).dot(&core.axis);
-        Projection {
-            nearest: along.clamp(-h, h),
-            beyond: along.abs() > h,
+impl<'a> Pair<'a> {
+    fn new(a: &'a HullPose, b: &'a HullPose, hull: Hull) -> Self {
+        let apart = b.center - a.center;
+        Self {
+            a,
+            b,
+            hull,
+            apart,
+            apart_a: apart.dot(&a.axis),
+            apart_b: apart.dot(&b.axis),
+            cosine: a.axis.dot(&b.axis),
         }
     }
 
-    /// The gap between point `p` of hull a's core and point `q` of hull b's core; `None` if the
-    /// points coincide.
-    fn between(&self, p: Vec2, q: Vec2) -> Option<Gap> {
-        let apart = p - q;
-        let distance = apart.norm();
+    /// The gap at two points; `None` if they coincide.
+    fn gap(&self, touch: &Touch) -> Option<Gap> {
+        let distance = touch.between.norm_squared().sqrt();
         if distance < TOUCHING_CORES {
             return None;
         }
-        let normal = apart / distance;
-        Some(self.along(normal, distance, p, q))
-    }
-
-    fn along(&self, normal: Vec2, distance: f64, p: Vec2, q: Vec2) -> Gap {
-        Gap {
+        let normal = touch.between * (1.0 / distance);
+        Some(Gap {
             gap: distance - 2.0 * self.hull.radius,
             normal,
-            arm_i: cross(p - self.a.center, normal),
-            arm_j: cross(q - self.b.center, normal),
+            arm_i: touch.along_a * cross(self.a.axis, normal),
+            arm_j: touch.along_b * cross(self.b.axis, normal),
             bend: 0.0,
+        })
+    }
+
+    /// Points of the cores with these coordinates.
+    fn touch(&self, along_a: f64, along_b: f64) -> Touch {
+        Touch {
+            along_a,
+            along_b,
+            between: self.a.axis * along_a - self.b.axis * along_b - self.apart,
         }
     }
 
     /// Nearest points for an end of hull a. Where end meets end, both hulls' ends describe it: with
     /// `once`, only the first hull's does, and only if neither end could slide nearer.
-    fn end_of_a(&self, side: f64, once: bool) -> Option<(Vec2, Vec2)> {
+    fn end_of_a(&self, side: f64, once: bool) -> Option<Touch> {
         let h = self.hull.half_length;
-        let p = self.a.end(side, h);
-        let onto = self.project(p, self.b);
-        let q = self.b.center + self.b.axis * onto.nearest;
-        if once && onto.beyond && (q - self.a.center).dot(&self.a.axis) * side < h {
+        let along_b = side * h * self.cosine - self.apart_b;
+        let nearest = along_b.clamp(-h, h);
+        if once && along_b.abs() > h && (self.apart_a + nearest * self.cosine) * side < h {
             return None;
         }
-        Some((p, q))
+        Some(self.touch(side * h, nearest))
     }
 
     /// Nearest points for an end of hull b, if it faces the side of hull a.
-    fn end_of_b(&self, side: f64) -> Option<(Vec2, Vec2)> {
-        let q = self.b.end(side, self.hull.half_length);
-        let onto = self.project(q, self.a);
-        (!onto.beyond).then(|| (self.a.center + self.a.axis * onto.nearest, q))
+    fn end_of_b(&self, side: f64) -> Option<Touch> {
+        let h = self.hull.half_length;
+        let along_a = self.apart_a + side * h * self.cosine;
+        (along_a.abs() <= h).then(|| self.touch(along_a, side * h))
     }
 
     /// The nearest points of the group of ends on one side of hull a.
-    fn nearest_towards(&self, side: f64) -> Option<(Vec2, Vec2)> {
-        let follows = if self.a.axis.dot(&self.b.axis) >= 0.0 {
-            side
-        } else {
-            -side
-        };
-        let (at_a, at_b) = (self.end_of_a(side, true), self.end_of_b(follows));
-        match (at_a, at_b) {
-            (Some(a), Some(b)) if (b.0 - b.1).norm_squared() < (a.0 - a.1).norm_squared() => at_b,
-            (Some(_), _) => at_a,
-            (None, _) => at_b,
+    fn nearest_towards(&self, side: f64) -> Option<Touch> {
+        let follows = if self.cosine >= 0.0 { side } else { -side };
+        match (self.end_of_a(side, true), self.end_of_b(follows)) {
+            (Some(a), Some(b)) => {
+                let is_b_nearer = b.between.norm_squared() < a.between.norm_squared();
+                Some(if is_b_nearer { b } else { a })
+            }
+            (at_a, at_b) => at_a.or(at_b),
         }
     }
 
     fn cores_cross(&self) -> bool {
         let h = self.hull.half_length;
-        let apart = self.b.center - self.a.center;
         let sine = cross(self.a.axis, self.b.axis);
-        let s = cross(apart, self.b.axis);
-        let t = cross(apart, self.a.axis);
+        let s = cross(self.apart, self.b.axis);
+        let t = cross(self.apart, self.a.axis);
         // a + s/sine·axis_a = b + t/sine·axis_b with both coordinates within the cores.
         sine != 0.0 && s.abs() <= h * sine.abs() && t.abs() <= h * sine.abs()
     }
@@ -152,27 +162,26 @@ pub fn pair_gaps(
     margin: f64,
     mut found: impl FnMut(PairFeature, Gap),
 ) {
-    let apart = b.center - a.center;
     let reach = 2.0 * hull.reach() + margin;
-    let distance_squared = apart.norm_squared();
+    let distance_squared = (b.center - a.center).norm_squared();
     if distance_squared > reach * reach {
         return;
     }
-    let pair = Pair { a, b, hull };
+    let pair = Pair::new(a, b, hull);
     let h = hull.half_length;
     if distance_squared <= 4.0 * h * h && pair.cores_cross() {
         found(PairFeature::Crossed, crossed_gap(a, b, hull));
         return;
     }
+    let farthest = 2.0 * hull.radius + margin;
     for (feature, side) in [(PairFeature::Stern, -1.0), (PairFeature::Bow, 1.0)] {
-        let Some((p, q)) = pair.nearest_towards(side) else {
+        let Some(touch) = pair.nearest_towards(side) else {
             continue;
         };
-        let farthest = 2.0 * hull.radius + margin;
-        if (p - q).norm_squared() >= farthest * farthest {
+        if touch.between.norm_squared() >= farthest * farthest {
             continue;
         }
-        match pair.between(p, q) {
+        match pair.gap(&touch) {
             Some(gap) => found(feature, gap),
             None => {
                 found(PairFeature::Crossed, crossed_gap(a, b, hull));
@@ -187,26 +196,32 @@ pub fn pair_gaps(
 
 /// The gap of a known contact at other poses of its hulls.
 pub fn pair_gap(feature: PairFeature, a: &HullPose, b: &HullPose, hull: Hull) -> Gap {
-    let pair = Pair { a, b, hull };
+    let pair = Pair::new(a, b, hull);
     let side = match feature {
         PairFeature::Stern => -1.0,
         PairFeature::Bow => 1.0,
         PairFeature::Crossed => return crossed_gap(a, b, hull),
     };
     // Where no end of the group faces the other hull any more, its own end still has a distance.
-    let points = pair
+    let touch = pair
         .nearest_towards(side)
         .or_else(|| pair.end_of_a(side, false));
-    points
-        .and_then(|(p, q)| pair.between(p, q))
+    touch
+        .and_then(|touch| pair.gap(&touch))
         .unwrap_or_else(|| crossed_gap(a, b, hull))
 }
 
 /// The gap of crossed cores: the least distance by which one core's end must be moved across the
 /// other's line, and as much more as makes the hulls touch.
 pub fn crossed_gap(a: &HullPose, b: &HullPose, hull: Hull) -> Gap {
-    let pair = Pair { a, b, hull };
     let h = hull.half_length;
+    let along = |distance: f64, normal, p: Vec2, q: Vec2| Gap {
+        gap: distance - 2.0 * hull.radius,
+        normal,
+        arm_i: cross(p - a.center, normal),
+        arm_j: cross(q - b.center, normal),
+        bend: 0.0,
+    };
     let mut least: Option<(f64, Gap)> = None;
     for side in [-1.0, 1.0] {
         let across_b = turned_left(b.axis);
@@ -223,12 +238,12 @@ pub fn crossed_gap(a: &HullPose, b: &HullPose, hull: Hull) -> Gap {
 
         for (depth, normal, p, q) in [candidate_a, candidate_b] {
             if least.is_none_or(|(known, _)| depth.abs() < known) {
-                least = Some((depth.abs(), pair.along(normal, -depth.abs(), p, q)));
+                least = Some((depth.abs(), along(-depth.abs(), normal, p, q)));
             }
         }
     }
     least.map_or_else(
-        || pair.along(turned_left(a.axis), 0.0, a.center, b.center),
+        || along(0.0, turned_left(a.axis), a.center, b.center),
         |(_, gap)| gap,
     )
 }

@@ -133,11 +133,25 @@ impl NeighborList {
             .reference
             .iter()
             .enumerate()
-            .map(|(boat, center)| (center.y.atan2(center.x), boat as u32))
+            .map(|(boat, center)| (turn(center), boat as u32))
             .collect();
         keyed.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         self.order.clear();
         self.order.extend(keyed.iter().map(|&(_, boat)| boat));
+    }
+}
+
+/// A number that grows with the polar angle in (−π, π], in [−2, 2]: along the unit square on its corner.
+fn turn(center: &Vec2) -> f64 {
+    let length = center.x.abs() + center.y.abs();
+    if length == 0.0 {
+        return 0.0;
+    }
+    let across = center.x / length;
+    if center.y < 0.0 {
+        across - 1.0
+    } else {
+        1.0 - across
     }
 }
 

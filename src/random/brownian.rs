@@ -12,6 +12,7 @@ use rand_distr::StandardNormal;
 /// Standard normal draws keyed by (cell, node, boat).
 #[derive(Debug, Clone)]
 struct KeyedNormals {
+    /// At its beginning.
     words: StreamRng,
     tail: StreamRng,
 }
@@ -27,11 +28,14 @@ impl KeyedNormals {
     /// `draws[boat] = N(0, 1)` for (cell, node): one 64-bit word a boat, and a private stretch of
     /// the tail stream in the 1.2 % of draws where the ziggurat wants more.
     fn fill(&mut self, cell: u64, node: u32, draws: &mut [f64]) {
-        self.words.set_stream(cell);
-        self.words.set_word_pos(u128::from(node) << 32);
+        // A generator that has handed out words fills its buffer again at every change of place: a fresh
+        // copy, only once.
+        let mut words = self.words.clone();
+        words.set_stream(cell);
+        words.set_word_pos(u128::from(node) << 32);
         for (boat, draw) in draws.iter_mut().enumerate() {
             let place = (u128::from(node) << 28 | boat as u128) << 8;
-            let first = Some(self.words.next_u64());
+            let first = Some(words.next_u64());
             let mut source = OneWordThenTail {
                 first,
                 tail: &mut self.tail,
