@@ -25,8 +25,6 @@ pub struct Drive {
 pub struct FreeVelocity {
     /// The velocity that the boat would have without contacts.
     pub velocity: Velocity,
-    /// One over the effective linear weight, 1 + dt/2·c0 where drag is implicit.
-    pub linear_mobility: f64,
     /// One over the effective weight of the angular velocity, to be divided by ρ².
     pub angular_mobility: f64,
 }
@@ -82,9 +80,9 @@ impl FreeMotion {
         }
     }
 
-    /// One over the weight 1 + dt/2·c0.
+    /// One over the effective linear weight, 1 + dt/2·c0.
     #[inline]
-    fn linear_mobility(&self, dt: f64) -> f64 {
+    pub fn linear_mobility(&self, dt: f64) -> f64 {
         1.0 / (1.0 + 0.5 * dt * self.c0)
     }
 
@@ -118,7 +116,6 @@ impl FreeMotion {
         contact_change: Vec2,
         dt: f64,
     ) -> FreeVelocity {
-        let linear_mobility = self.linear_mobility(dt);
         let change = self.centered_change(velocity.linear, axis, drive, dt);
         let middle = velocity.linear + (change + contact_change) * 0.5;
         let along = axis.dot(&(middle - drive.water));
@@ -142,7 +139,6 @@ impl FreeMotion {
                 linear: velocity.linear + change,
                 angular: spin + torque * angular_mobility,
             },
-            linear_mobility,
             angular_mobility,
         }
     }

@@ -8,10 +8,9 @@
 use super::phase_schedule::Phase;
 use super::state::Integrator;
 use super::substep::{LastSubstep, Steering, StepOutcome, Substep};
-use crate::boat::Drive;
 use crate::clock::seconds;
-use crate::contact::ContactOutcome;
-use crate::geometry::Vec2;
+use crate::contact::{ContactOutcome, InverseInertia};
+use crate::geometry::{Vec2, Velocity};
 
 /// Part of `dt_s` below which a kick does not show what contacts press with: impulses that close small
 /// overlaps do not shrink with it. The kick before stands for it then.
@@ -105,14 +104,20 @@ fn centered_velocities(flock: &mut Integrator, kick: f64) {
         last,
         ..
     } = flock;
-    free.clear();
-    for (boat, drive) in drives.iter().enumerate() {
-        let drive: &Drive = drive;
+    // A copy, which nothing that is written below can change.
+    let motion = *motion;
+    let linear = motion.linear_mobility(kick);
+    free.resize(drives.len(), Velocity::default());
+    let results = free.iter_mut().zip(inertia).enumerate();
+    let boats = velocities.iter().zip(&*boats).zip(&*drives);
+    for ((boat, (free, inertia)), ((velocity, hull), drive)) in results.zip(boats) {
         let change = persistent_change(last, boat, kick);
-        let result = motion.centered(&velocities[boat], boats[boat].axis, drive, change, kick);
-        free.push(result.velocity);
-        inertia[boat].linear = result.linear_mobility;
-        inertia[boat].angular = inverse_square * result.angular_mobility;
+        let result = motion.centered(velocity, hull.axis, drive, change, kick);
+        *free = result.velocity;
+        *inertia = InverseInertia {
+            linear,
+            angular: inverse_square * result.angular_mobility,
+        };
     }
 }
 

@@ -74,7 +74,9 @@ impl Scaling {
         let mut clipped = 0;
         for i in 0..n {
             let value = gains[i] * physical[i] + offsets[i];
-            let bounded = value.max(lows[i]).min(highs[i]);
+            // NaN becomes the lower bound.
+            let raised = if value > lows[i] { value } else { lows[i] };
+            let bounded = if raised < highs[i] { raised } else { highs[i] };
             clipped += u32::from(bounded != value);
             out[i] = bounded as f32;
         }
@@ -114,21 +116,28 @@ impl Observer {
     pub fn observe(&mut self, view: &FlockView, out: &mut [f32]) -> u32 {
         let mirrored = self.layout.mirror_to_target && view.target.sign() < 0.0;
         let mut clipped = 0;
+        let (phase, order) = (phase(view), order(view));
         for (leader, row) in out.chunks_exact_mut(self.scaling.len()).enumerate() {
             self.physical.clear();
-            self.fill(view, leader);
+            self.fill(view, leader, &phase, &order);
             clipped += self.scaling.write(&self.physical, mirrored, row);
         }
         clipped
     }
 
-    fn fill(&mut self, view: &FlockView, leader: usize) {
+    fn fill(
+        &mut self,
+        view: &FlockView,
+        leader: usize,
+        phase: &[f64; PHASE.len()],
+        order: &[f64; ORDER.len()],
+    ) {
         let frame = LapFrame::at(view.poses[leader].position);
         if self.layout.own {
             self.physical.extend(own(view, leader, &frame));
         }
         if self.layout.phase {
-            self.physical.extend(phase(view));
+            self.physical.extend_from_slice(phase);
         }
         if self.layout.target {
             self.physical.push(view.target.sign());
@@ -138,7 +147,7 @@ impl Observer {
             self.fill_neighbors(view, leader, &frame);
         }
         if self.layout.order {
-            self.physical.extend(order(view));
+            self.physical.extend_from_slice(order);
         }
     }
 
@@ -195,7 +204,7 @@ impl Observer {
 
 fn own(view: &FlockView, leader: usize, frame: &LapFrame) -> [f64; OWN.len()] {
     let (pose, velocity) = (&view.poses[leader], &view.velocities[leader]);
-    let (cos, sin) = orientation(pose, view.target);
+    let (cos, sin) = orientation(view, leader, frame);
     let lap_velocity = frame.components(velocity.linear);
     [
         pose.position.norm(),
@@ -209,11 +218,18 @@ fn own(view: &FlockView, leader: usize, frame: &LapFrame) -> [f64; OWN.len()] {
     ]
 }
 
-/// Cosine and sine of the LAP orientation φ, by way of the steering law's own misalignment
-/// δ = φ − φ_target: its jump at δ = ±π then has the same sign for whoever reads the observation.
-fn orientation(pose: &Pose, target: Target) -> (f64, f64) {
-    let (sin, cos) = misalignment(pose.position, pose.heading, target).sin_cos();
-    (-target.sign() * sin, target.sign() * cos)
+/// Cosine and sine of the LAP orientation φ. Where the heading is opposite to the target's, to rounding, they
+/// come by way of the steering law's own misalignment δ = φ − φ_target: its jump at δ = ±π then has the same
+/// sign for whoever reads the observation.
+fn orientation(view: &FlockView, leader: usize, frame: &LapFrame) -> (f64, f64) {
+    let orientation = frame.components(view.hulls[leader].axis);
+    let towards = view.target.sign();
+    if orientation.x.abs() > 1e-9 || towards * orientation.y > 0.0 {
+        return (orientation.x, orientation.y);
+    }
+    let pose = &view.poses[leader];
+    let (sin, cos) = misalignment(pose.position, pose.heading, view.target).sin_cos();
+    (-towards * sin, towards * cos)
 }
 
 fn phase(view: &FlockView) -> [f64; PHASE.len()] {
