@@ -91,7 +91,7 @@ pub(super) fn without_contacts(
     let boat = |(boat, velocity): (&HullPose, &Velocity)| {
         let free = motion.centered(velocity, boat.axis, &drive, Vec2::zeros(), parameters.dt_s);
         let inertia = InverseInertia {
-            linear: free.linear_mobility,
+            linear: motion.linear_mobility(parameters.dt_s),
             angular: free.angular_mobility / moment,
         };
         (free.velocity, inertia)
