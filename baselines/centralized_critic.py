@@ -18,7 +18,7 @@ from gymnasium.spaces import Box
 from run_number import run_number
 from stable_baselines3 import PPO
 from stable_baselines3.common.policies import ActorCriticPolicy
-from stable_baselines3.common.vec_env import VecEnvWrapper, VecMonitor
+from stable_baselines3.common.vec_env import VecEnvWrapper
 
 import flockenv
 from flockenv.sb3 import LeaderVecEnv
@@ -92,7 +92,7 @@ def train(samples: int, flocks: int, seed: int, **options: Any) -> PPO:
     seen = env.observation_space.shape[0]
     model = PPO(
         CentralisedCriticPolicy,
-        VecMonitor(WithState(env)),
+        WithState(env),
         n_steps=256,
         batch_size=256,
         gamma=0.995,

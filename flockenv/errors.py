@@ -1,6 +1,6 @@
 """What can go wrong: the exceptions that users meet."""
 
-__all__ = ["EpisodeError", "FlockError", "ParameterError", "SolverError"]
+__all__ = ["EpisodeError", "FlockError", "ParameterError", "SolverError", "UnknownOptionError"]
 
 
 class FlockError(Exception):
@@ -11,6 +11,14 @@ class ParameterError(FlockError, ValueError):
     """A parameter, argument, array, state, snapshot or file is not acceptable.
 
     The message names it, shows the value and says what would be accepted. Nothing has changed.
+    """
+
+
+class UnknownOptionError(ParameterError, TypeError):
+    """An environment was given a keyword argument that is none of its options.
+
+    A `TypeError` too, as of any other function: libraries try out optional arguments and leave out
+    those that are refused so (TorchRL's ``GymEnv``: ``frameskip``).
     """
 
 

@@ -1,7 +1,7 @@
 """What leaders observe: spaces, tables, and a flock observed without an environment."""
 
 from collections.abc import Iterable, Mapping
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import gymnasium
 import numpy as np
@@ -13,6 +13,7 @@ __all__ = [
     "BLOCKS",
     "OBSERVATION_VERSION",
     "Entry",
+    "ObservationSpace",
     "observation_entries",
     "observation_space",
     "observation_table",
@@ -62,23 +63,47 @@ def _bounds(entries: Iterable[Entry]) -> NDArray[np.float32]:
     return np.array([(entry.low, entry.high) for entry in entries], np.float32)
 
 
-def _box(bounds: NDArray[np.float32]) -> "gymnasium.spaces.Box[np.float32]":
-    low, high = bounds.T
-    return gymnasium.spaces.Box(low.copy(), high.copy(), dtype=np.float32)
+if TYPE_CHECKING:
+    _Box = gymnasium.spaces.Box[np.float32]
+else:
+    # Not generic before gymnasium 1.4.
+    _Box = gymnasium.spaces.Box
 
 
-def observation_space(
-    blocks: Mapping[str, Any], leaders: int = 1
-) -> "gymnasium.spaces.Box[np.float32]":
+class ObservationSpace(_Box):
+    """The space of one leader's observation, or of several leaders' one after another.
+
+    Models keep the space that they were trained on, also in their files. This one says how its
+    observations are made, so that a model gets such ones wherever it steers.
+
+    Attributes
+    ----------
+    leaders
+        Number of leaders.
+    options
+        Options of the environment that a policy depends on: ``observation``, ``mirror_to_target``
+        and ``control_hz``.
+    """
+
+    def __init__(self, options: Mapping[str, Any], leaders: int = 1) -> None:
+        bounds = np.tile(_bounds(observation_entries(options["observation"])), (leaders, 1))
+        super().__init__(*bounds.T.copy(), dtype=np.float32)
+        self.leaders = leaders
+        names = ("observation", "mirror_to_target", "control_hz")
+        self.options = {name: options[name] for name in names}
+
+
+def observation_space(blocks: Mapping[str, Any], leaders: int = 1) -> ObservationSpace:
     """Return the space of one leader's observation, or of several one after another."""
-    return _box(np.tile(_bounds(observation_entries(blocks)), (leaders, 1)))
+    return ObservationSpace({**_core.env_defaults(), "observation": blocks}, leaders)
 
 
-def state_space(n_boats: int) -> "gymnasium.spaces.Box[np.float32]":
+def state_space(n_boats: int) -> _Box:
     """Return the space of the global state."""
     boat_and_rest, rest = _bounds(state_entries(1)), _bounds(state_entries(0))
     boats = np.tile(boat_and_rest[: -len(rest)], (n_boats, 1))
-    return _box(np.concatenate([boats, rest]))
+    low, high = np.concatenate([boats, rest]).T.copy()
+    return _Box(low, high, dtype=np.float32)
 
 
 def observe(

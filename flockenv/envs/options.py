@@ -1,14 +1,14 @@
 """Options of the environments: one flat set of names, checked once, for all faces."""
 
 import difflib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Self
 
 from flockenv import _core
 from flockenv.envs.observation import BLOCKS
 from flockenv.envs.reward import TERMS
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, UnknownOptionError
 from flockenv.parameters import FlockParameters
 from flockenv.rendering.frames import DEFAULT_SIZE
 
@@ -39,10 +39,18 @@ class EnvOptions:
 
         Raises
         ------
+        UnknownOptionError
+            For unknown names, with the nearest known one.
         ParameterError
-            For unknown names, with the nearest known one, and for values out of range.
+            For values out of range.
         """
-        refuse_unknown(options, _NAMES, "option of the environment")
+        for name in options:
+            if name not in _NAMES:
+                # TorchRL looks for these words.
+                raise UnknownOptionError(
+                    f"got an unexpected keyword argument {name!r}, which is no option of the "
+                    f"environment: {_hint(name, _NAMES)}"
+                )
         given = dict(options)
         settings = {name: given.pop(name) for name in _SETTINGS if name in given}
         if isinstance(given.get("bw_s"), tuple | list):
@@ -79,9 +87,12 @@ def refuse_unknown(names: Iterable[str], known: Iterable[str], what: str) -> Non
     for name in names:
         if name in known:
             continue
-        near = difflib.get_close_matches(str(name), known, n=1, cutoff=0.6)
-        hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(known)}"
-        raise ParameterError(f"{name!r} is no {what}: {hint}")
+        raise ParameterError(f"{name!r} is no {what}: {_hint(name, known)}")
+
+
+def _hint(name: str, known: Sequence[str]) -> str:
+    near = difflib.get_close_matches(str(name), known, n=1, cutoff=0.6)
+    return f"did you mean {near[0]!r}?" if near else f"there are {', '.join(known)}"
 
 
 def known_reset_options(options: Mapping[str, Any] | None) -> dict[str, Any]:

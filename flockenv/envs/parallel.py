@@ -11,7 +11,7 @@ from pettingzoo import ParallelEnv
 from flockenv.envs.base import OneFlock
 from flockenv.envs.batch import drawn_seed
 from flockenv.envs.docs import specified
-from flockenv.envs.observation import observation_space
+from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.render_mode import RENDER_MODES
 from flockenv.envs.spaces import flat_actions, leader_action_space
 from flockenv.errors import EpisodeError, ParameterError
@@ -90,7 +90,7 @@ class LeadersParallelEnv(
         self.possible_agents = [f"leader_{leader}" for leader in range(self.num_leaders)]
         self.agents: list[str] = []
         self.observation_spaces = {
-            agent: observation_space(settings["observation"]) for agent in self.possible_agents
+            agent: ObservationSpace(settings) for agent in self.possible_agents
         }
         self.action_spaces = {
             agent: leader_action_space(settings["rudder_levels"]) for agent in self.possible_agents

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv.envs.base import OneFlock
 from flockenv.envs.batch import drawn_seed
 from flockenv.envs.docs import specified
-from flockenv.envs.observation import observation_space
+from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.render_mode import RENDER_MODES
 from flockenv.envs.spaces import flat_actions, joint_action_space
 from flockenv.rendering.frames import DEFAULT_SIZE
@@ -75,7 +75,7 @@ class LeadersEnv(OneFlock, gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
     ) -> None:
         self._set_up(options, render_mode, render_size)
         settings = self._batch.settings
-        self.observation_space = observation_space(settings["observation"], self.num_leaders)
+        self.observation_space = ObservationSpace(settings, self.num_leaders)
         self.action_space = joint_action_space(settings["rudder_levels"], self.num_leaders)
 
     def reset(

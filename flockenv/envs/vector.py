@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
 from flockenv.envs.docs import specified
-from flockenv.envs.observation import observation_space
+from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.options import EnvOptions
 from flockenv.envs.render_mode import Screen
 from flockenv.envs.spaces import flat_actions, joint_action_space
@@ -64,7 +64,8 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
     {episode_end} At the end `infos["episode_summary"]` has means over the episode. With
     `autoreset_mode="next_step"` the next step begins the next episode and ignores its action, with
     `"same_step"` the step itself does (`infos["final_obs"]` and `infos["final_info"]` have what was
-    last), with `"disabled"` flocks wait for a reset with a mask.
+    last), with `"disabled"` flocks wait for a reset with a mask, which is what TorchRL's
+    `GymWrapper` needs.
 
     ## Arguments
     `num_envs`: number of flocks; `autoreset_mode`: one of Gymnasium's `AutoresetMode` or its name;
@@ -98,7 +99,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         self._batch = LeaderBatch(
             parsed, [self.num_leaders] * num_envs, _CORE_NAMES[self.autoreset_mode]
         )
-        levels, blocks = self._batch.settings["rudder_levels"], self._batch.settings["observation"]
+        levels = self._batch.settings["rudder_levels"]
         self.render_mode = render_mode
         fps = self._batch.settings["control_hz"]
         self._screen = Screen(render_mode, render_size, fps, ("rgb_array",))
@@ -107,7 +108,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
             "autoreset_mode": self.autoreset_mode,
             "render_fps": fps,
         }
-        self.single_observation_space = observation_space(blocks, self.num_leaders)
+        self.single_observation_space = ObservationSpace(self._batch.settings, self.num_leaders)
         self.single_action_space = joint_action_space(levels, self.num_leaders)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)

@@ -58,7 +58,16 @@ def face(request):
 def test_options(face, options, message):
     with pytest.raises((ParameterError, TypeError)) as caught:
         face(**options)
-    assert message in str(caught.value) or isinstance(caught.value, TypeError)
+    assert message in str(caught.value) or not isinstance(caught.value, ParameterError)
+
+
+def test_unknown_options_are_the_errors_of_unexpected_keywords(face):
+    with pytest.raises(TypeError, match="unexpected keyword argument 'frameskip'") as caught:
+        face(frameskip=1)
+    assert isinstance(caught.value, ParameterError)
+    with pytest.raises(ParameterError) as caught:
+        face(n_boats=-1)
+    assert not isinstance(caught.value, TypeError)
 
 
 @pytest.mark.parametrize(

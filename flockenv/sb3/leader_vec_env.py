@@ -1,7 +1,4 @@
-"""`LeaderVecEnv`: stable-baselines3's vector interface, one slot a leader.
-
-Needs the extra ``train``: ``pip install flockenv[train]``.
-"""
+"""`LeaderVecEnv`: stable-baselines3's vector interface, one slot per leader."""
 
 import copy
 from collections.abc import Mapping, Sequence
@@ -9,21 +6,17 @@ from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
+from stable_baselines3.common.vec_env import VecEnv
 
-from flockenv._io.extras import require
 from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
 from flockenv.envs.docs import specified
-from flockenv.envs.observation import observation_space
+from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.options import EnvOptions
 from flockenv.envs.render_mode import Screen
 from flockenv.envs.spaces import flat_actions, leader_action_space
 from flockenv.errors import EpisodeError, ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.rendering.frames import DEFAULT_SIZE
-
-require("stable_baselines3", "train")
-
-from stable_baselines3.common.vec_env import VecEnv  # noqa: E402 - after the check above
 
 __all__ = ["LeaderSlot", "LeaderVecEnv"]
 
@@ -69,7 +62,14 @@ class LeaderVecEnv(VecEnv):
 
     Slots are leaders, flock after flock. Flocks are stepped in parallel in Rust; results depend
     neither on `num_flocks` nor on the number of threads. Arrays that are returned are never written
-    to again. For episode returns in SB3's logs wrap it in `VecMonitor`.
+    to again.
+
+    **A leader is not an episode.** stable-baselines3's `evaluate_policy`, `EvalCallback` and
+    `VecMonitor` count each slot, so that three leaders make three episodes with one and the same
+    order: counts three times too large, deviations and intervals too small. Use `evaluate_flocks`,
+    `FlockEvalCallback` and, for a monitor file, `FlockMonitor` of `flockenv.sb3` instead. No
+    `VecMonitor` is needed: the first slot of a flock has the ``"episode"`` of SB3's logs in its
+    last info, with the return as mean over the flock's leaders.
 
     ## Action space
     A slot's is `Box(-1, 1, (1,), float32)`, its leader's rudder; `Discrete(n)` with
@@ -131,7 +131,7 @@ class LeaderVecEnv(VecEnv):
         self.render_mode = render_mode
         fps = settings["control_hz"]
         self._screen = Screen(render_mode, render_size, fps, ("rgb_array",))
-        self.observation_space = observation_space(settings["observation"])
+        self.observation_space = ObservationSpace(settings)
         self.action_space = leader_action_space(settings["rudder_levels"])
         self.state_space = self._batch.state_space
         self.slots = [
@@ -226,6 +226,8 @@ class LeaderVecEnv(VecEnv):
                 infos[slot]["TimeLimit.truncated"] = True
                 infos[slot]["terminal_observation"] = row.copy()
                 infos[slot]["terminal_state"] = self._batch.core.final_state(flock)
+                if leader == 0:
+                    infos[slot]["episode"] = _monitored(infos[slot]["episode_summary"])
                 self.reset_infos[slot] = self._batch.begin_info(flock)
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
@@ -285,6 +287,11 @@ class LeaderVecEnv(VecEnv):
 
     def close(self) -> None:
         """Nothing is held open."""
+
+
+def _monitored(summary: Mapping[str, Any]) -> dict[str, Any]:
+    # As `Monitor` does, but for the time: infos depend on seeds alone.
+    return {"r": summary["total_reward"], "l": summary["steps"]}
 
 
 def _leader_counts(n_leaders: Any) -> list[int]:

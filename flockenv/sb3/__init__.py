@@ -1,0 +1,22 @@
+"""Leaders as slots of stable-baselines3's vector interface, and evaluation that counts flocks.
+
+Needs the extra ``train``: ``pip install flockenv[train]``.
+"""
+
+from flockenv._io.extras import require
+
+require("stable_baselines3", "train")
+
+# ruff: noqa: E402 - after the check above
+from flockenv.sb3.evaluation import FlockEvalCallback, PerFlock, evaluate_flocks
+from flockenv.sb3.leader_vec_env import LeaderSlot, LeaderVecEnv
+from flockenv.sb3.monitor import FlockMonitor
+
+__all__ = [
+    "FlockEvalCallback",
+    "FlockMonitor",
+    "LeaderSlot",
+    "LeaderVecEnv",
+    "PerFlock",
+    "evaluate_flocks",
+]

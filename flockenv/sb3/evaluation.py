@@ -1,0 +1,153 @@
+"""Evaluation of models on a `LeaderVecEnv` that counts episodes of flocks, not of leaders."""
+
+import warnings
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from stable_baselines3.common.callbacks import EvalCallback
+from stable_baselines3.common.evaluation import evaluate_policy
+from stable_baselines3.common.monitor import Monitor
+from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
+
+from flockenv.sb3.leader_vec_env import LeaderVecEnv
+
+__all__ = ["FlockEvalCallback", "PerFlock", "evaluate_flocks"]
+
+
+class PerFlock(VecEnvWrapper):
+    """A `LeaderVecEnv` whose rewards, ends and infos come once per flock; for evaluation only.
+
+    stable-baselines3's `evaluate_policy` counts the ends of slots as episodes. Those of a flock's
+    leaders are one episode with one order. Here `num_envs` is the number of flocks, a reward is the
+    mean over a flock's leaders, and an info is that of its first leader, with the ``"episode"``.
+    Observations and actions still have a row per leader, so that the model sees what it was trained
+    on.
+
+    Parameters
+    ----------
+    venv
+        A `LeaderVecEnv`, also inside other wrappers.
+
+    Raises
+    ------
+    TypeError
+        If there is none.
+    """
+
+    def __init__(self, venv: VecEnv) -> None:
+        super().__init__(venv)
+        leaders = venv.unwrapped
+        if not isinstance(leaders, LeaderVecEnv):
+            raise TypeError(f"a LeaderVecEnv is needed, not {type(leaders).__name__}")
+        self._leaders = np.bincount(leaders.flock_of_slot)
+        self._first = np.cumsum(self._leaders) - self._leaders
+        self.num_envs = leaders.num_flocks
+
+    def reset(self) -> Any:
+        """Start episodes in all flocks; return observations, a row per leader."""
+        return self.venv.reset()
+
+    def step_wait(self) -> tuple[Any, NDArray[Any], NDArray[Any], list[dict[str, Any]]]:
+        """Return observations, a row per leader, and rewards, ends and infos, one per flock."""
+        observations, rewards, dones, infos = self.venv.step_wait()
+        means = np.add.reduceat(rewards, self._first) / self._leaders
+        return observations, means, dones[self._first], [infos[slot] for slot in self._first]
+
+    def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
+        """Return, for each flock, True for `Monitor`: the ``"episode"`` is in the infos."""
+        wrapped = issubclass(wrapper_class, Monitor)
+        return [wrapped or self.venv.env_is_wrapped(wrapper_class)[0]] * self.num_envs
+
+
+def evaluate_flocks(
+    model: Any,
+    env: VecEnv,
+    n_eval_episodes: int = 10,
+    deterministic: bool = True,
+    *,
+    seed: int | None = None,
+    return_episode_rewards: bool = False,
+) -> Any:
+    """Evaluate a model as stable-baselines3's `evaluate_policy` does, but count flocks' episodes.
+
+    Parameters
+    ----------
+    model
+        A model or policy whose ``predict`` takes one leader's observation per row, without memory.
+    env
+        A `LeaderVecEnv`, also inside other wrappers. Returns are its own, whatever a wrapper does
+        to rewards.
+    n_eval_episodes
+        Number of flocks' episodes, dealt out to the flocks as evenly as possible.
+    deterministic
+        Whether actions are the most probable ones.
+    seed
+        Seed of the first flock, as in ``LeaderVecEnv.seed``; None: the next episodes.
+    return_episode_rewards
+        Whether to return a number per episode.
+
+    Returns
+    -------
+    mean, deviation : float
+        Of the episodes' returns, each the mean over a flock's leaders. With
+        `return_episode_rewards` the list of returns and that of lengths in control steps.
+
+    Raises
+    ------
+    TypeError
+        If `env` is no `LeaderVecEnv`.
+    """
+    flocks = PerFlock(env)
+    if seed is not None:
+        flocks.seed(seed)
+    return evaluate_policy(
+        model,
+        flocks,
+        n_eval_episodes,
+        deterministic,
+        return_episode_rewards=return_episode_rewards,
+    )
+
+
+class FlockEvalCallback(EvalCallback):
+    """stable-baselines3's `EvalCallback` on a `LeaderVecEnv`, with episodes of flocks.
+
+    Parameters
+    ----------
+    eval_env
+        A `LeaderVecEnv`. In `VecNormalize` wrap it as ``VecNormalize(PerFlock(venv))``.
+    seed
+        Each evaluation starts with this seed of the first flock, so that models meet the same
+        flocks; None: each goes on with the next episodes.
+    options
+        All others of `EvalCallback`; ``n_eval_episodes`` counts flocks.
+
+    Raises
+    ------
+    TypeError
+        If `eval_env` is no `LeaderVecEnv`.
+    """
+
+    def __init__(self, eval_env: VecEnv, *, seed: int | None = None, **options: Any) -> None:
+        counted = any(isinstance(each, PerFlock) for each in _layers(eval_env))
+        super().__init__(eval_env if counted else PerFlock(eval_env), **options)
+        self.seed = seed
+
+    def _init_callback(self) -> None:
+        with warnings.catch_warnings():
+            # The types differ by `PerFlock` on purpose.
+            warnings.filterwarnings("ignore", "Training and eval env are not of the same type")
+            super()._init_callback()
+
+    def _on_step(self) -> bool:
+        if self.seed is not None:
+            self.eval_env.seed(self.seed)
+        return super()._on_step()
+
+
+def _layers(env: VecEnv) -> list[VecEnv]:
+    layers = [env]
+    while isinstance(layers[-1], VecEnvWrapper):
+        layers.append(layers[-1].venv)
+    return layers

@@ -1,0 +1,141 @@
+"""Law: an episode is a flock's, however many leaders have a slot in it."""
+
+import numpy as np
+import pytest
+
+sb3 = pytest.importorskip("stable_baselines3")
+
+from stable_baselines3 import PPO  # noqa: E402
+from stable_baselines3.common.evaluation import evaluate_policy  # noqa: E402
+from stable_baselines3.common.monitor import load_results  # noqa: E402
+from stable_baselines3.common.vec_env import VecNormalize  # noqa: E402
+
+from flockenv.policies import SteeringLaw  # noqa: E402
+from flockenv.sb3 import (  # noqa: E402
+    FlockEvalCallback,
+    FlockMonitor,
+    LeaderVecEnv,
+    PerFlock,
+    evaluate_flocks,
+)
+
+OPTIONS = {"n_boats": 9, "episode_s": 2.0}
+
+
+def make(num_flocks=4, n_leaders=3, **options):
+    return LeaderVecEnv(num_flocks, n_leaders=n_leaders, **{**OPTIONS, **options})
+
+
+def returns_of(venv, policy, seed, episodes=1):
+    """Each flock's return in its first episodes, added up by hand."""
+    venv.seed(seed)
+    observations, found = venv.reset(), []
+    for _ in range(episodes):
+        total = np.zeros(venv.num_flocks)
+        for _ in range(20):
+            observations, rewards, dones, _ = venv.step(policy.predict(observations)[0])
+            total += np.bincount(venv.flock_of_slot, rewards) / np.bincount(venv.flock_of_slot)
+        assert dones.all()
+        found.append(total)
+    return np.array(found)
+
+
+def ppo(venv):
+    return PPO("MlpPolicy", venv, n_steps=8, batch_size=24, n_epochs=1, seed=0, device="cpu")
+
+
+def test_three_leaders_are_one_episode():
+    # What goes wrong otherwise: one order, three episodes, no deviation.
+    venv = make(num_flocks=1)
+    with pytest.warns(UserWarning, match="not wrapped with a ``Monitor``"):
+        counted, _ = evaluate_policy(
+            SteeringLaw(), venv, n_eval_episodes=3, return_episode_rewards=True
+        )
+    assert len(counted) == 3
+    assert len(set(counted)) == 1
+    returns, lengths = evaluate_flocks(
+        SteeringLaw(), venv, n_eval_episodes=3, return_episode_rewards=True
+    )
+    assert len(set(returns)) == 3
+    assert lengths == [20, 20, 20]
+
+
+def test_returns_are_means_over_the_flocks_leaders():
+    reward = {"signed_order": 1.0, "leader_velocity": 0.5}
+    venv = make(n_leaders=[1, 3], reward=reward)
+    expected = returns_of(venv, SteeringLaw(), 7)
+    found, _ = evaluate_flocks(
+        SteeringLaw(), venv, n_eval_episodes=4, seed=7, return_episode_rewards=True
+    )
+    np.testing.assert_allclose(found, expected[0], rtol=1e-5)
+    mean, deviation = evaluate_flocks(SteeringLaw(), venv, n_eval_episodes=4, seed=7)
+    assert mean == pytest.approx(expected.mean(), rel=1e-5)
+    assert deviation == pytest.approx(expected.std(), rel=1e-4)
+
+
+def test_returns_are_the_environments_own_inside_wrappers():
+    venv = make()
+    expected = returns_of(venv, SteeringLaw(), 3).mean()
+    mean, _ = evaluate_flocks(
+        SteeringLaw(), VecNormalize(make(), norm_obs=False), n_eval_episodes=4, seed=3
+    )
+    assert mean == pytest.approx(expected, rel=1e-5)
+
+
+def test_other_environments_are_refused():
+    from stable_baselines3.common.vec_env import DummyVecEnv
+
+    import flockenv
+
+    other = DummyVecEnv([lambda: flockenv.LeadersEnv(**OPTIONS)])
+    with pytest.raises(TypeError, match="a LeaderVecEnv is needed, not DummyVecEnv"):
+        evaluate_flocks(SteeringLaw(), other)
+
+
+def test_logs_count_flocks_without_a_monitor():
+    venv = make()
+    model = ppo(venv)
+    model.learn(12 * 24)
+    episodes = list(model.ep_info_buffer)
+    # 24 steps of 4 flocks, episodes of 20.
+    assert [episode["l"] for episode in episodes] == [20] * 4
+
+
+def test_callback_evaluates_flocks_and_keeps_the_best(tmp_path):
+    callback = FlockEvalCallback(
+        make(),
+        seed=11,
+        n_eval_episodes=4,
+        eval_freq=8,
+        log_path=str(tmp_path),
+        best_model_save_path=str(tmp_path),
+        verbose=0,
+    )
+    model = ppo(make())
+    model.learn(3 * 8 * 12, callback=callback)
+    stored = np.load(tmp_path / "evaluations.npz")
+    assert stored["results"].shape == (3, 4)
+    # The last evaluation, by hand, before the update that followed it.
+    assert (tmp_path / "best_model.zip").is_file()
+    best = PPO.load(tmp_path / "best_model", device="cpu")
+    best_return = returns_of(make(), best, 11).mean()
+    assert best_return == pytest.approx(stored["results"].mean(axis=1).max(), rel=1e-4)
+
+
+def test_callback_follows_normalized_training():
+    training = VecNormalize(make(), gamma=0.9)
+    evaluation = VecNormalize(PerFlock(make()), training=False, norm_reward=False, gamma=0.9)
+    callback = FlockEvalCallback(evaluation, n_eval_episodes=4, eval_freq=8, verbose=0)
+    ppo(training).learn(8 * 12, callback=callback)
+    np.testing.assert_array_equal(evaluation.obs_rms.mean, training.obs_rms.mean)
+    assert np.isfinite(callback.last_mean_reward)
+
+
+def test_monitor_file_has_a_row_per_flock(tmp_path):
+    venv = FlockMonitor(make(), str(tmp_path / "run"), ("signed_order", "ordering_time_s"))
+    ppo(venv).learn(12 * 24)
+    venv.close()
+    rows = load_results(str(tmp_path))
+    assert list(rows["l"]) == [20] * 4
+    assert rows["r"].nunique() == 4
+    assert {"t", "signed_order", "ordering_time_s"} <= set(rows.columns)
