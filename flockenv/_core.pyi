@@ -25,6 +25,7 @@ __all__ = [
     "lagged_motion",
     "lap_orientation",
     "largest_cluster",
+    "level_rudders",
     "nearest_levels",
     "observation_table",
     "observation_version",
@@ -87,7 +88,7 @@ def ordering_time(
     psi_o: NDArray[np.float64],
     phi_o: NDArray[np.float64],
     within: float,
-) -> float | None: ...
+) -> float: ...
 def record(
     parameters: FlockParameters,
     seed: int,
@@ -102,6 +103,7 @@ def rotation(psi_o: NDArray[np.float64], phi_o: NDArray[np.float64]) -> NDArray[
 def signed_order(
     psi_o: NDArray[np.float64], phi_o: NDArray[np.float64], target: str
 ) -> NDArray[np.float64]: ...
+def level_rudders(levels: NDArray[np.int64], rudder_levels: int) -> NDArray[np.float64]: ...
 def nearest_levels(rudders: NDArray[np.float64], rudder_levels: int) -> NDArray[np.int64]: ...
 def oversized_shape(values: Any, expected: Sequence[int]) -> str | None: ...
 def env_defaults() -> dict[str, Any]: ...

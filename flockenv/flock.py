@@ -128,7 +128,7 @@ class OrderSeries:
         return STATES[places]
 
     def ordering_time(self, time_s: NDArray[np.float64], within: float = np.pi / 20) -> float:
-        """Ordering time τ of a run, eq. (7), in s; NaN if the run does not order.
+        """Ordering time τ of a run, eq. (7), in s; infinite if the run does not order.
 
         The first time at which Ψ_o > 0.8 and ||φ_o| - π/2| < `within`, if mean Ψ_o over the second
         half of the run exceeds 0.8.
@@ -145,8 +145,7 @@ class OrderSeries:
         ParameterError
             For times of another length.
         """
-        time = _core.ordering_time(time_s, self.psi_o, self.phi_o, within)
-        return float("nan") if time is None else time
+        return _core.ordering_time(time_s, self.psi_o, self.phi_o, within)
 
     def __len__(self) -> int:
         return len(self.psi_o)

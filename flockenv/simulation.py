@@ -11,7 +11,8 @@ from flockenv import _core
 from flockenv.errors import ParameterError
 from flockenv.flock import ContactSeries, OrderSeries
 from flockenv.parameters import FlockParameters
-from flockenv.policies.base import LeaderPolicy
+from flockenv.policies.base import LeaderPolicy, control_rate
+from flockenv.policies.model import ModelPolicy, as_policy
 from flockenv.policies.registry import EVERY_SUBSTEP, named_policy
 from flockenv.recording import PHASES, PRECISIONS, Recording
 
@@ -27,7 +28,7 @@ def simulate(
     sample_hz: float = 10.0,
     policy: LeaderPolicy | str | None = None,
     *,
-    control_hz: float = 10.0,
+    control_hz: float | None = None,
     dtype: DTypeLike = np.float64,
     contacts: bool = False,
     progress: Callable[[float], object] | None = None,
@@ -53,10 +54,12 @@ def simulate(
         How leaders steer: None or "law" for the steering law, eq. (10), at every substep; the name
         of another policy, such as "learned" or "damped law", or the path of a policy's ``.npz``
         file; or an object whose ``predict`` maps observations (k, size) to rudders (k,), clipped
-        to [-1, 1]. It observes the default layout, or that of its attributes ``observation`` and
-        ``mirror_to_target``.
+        to [-1, 1], such as a model of stable-baselines3. It observes the default layout, or that
+        of its attributes ``observation`` and ``mirror_to_target``; a model observes what it was
+        trained on.
     control_hz
-        Control steps a second of a policy.
+        Control steps per second of a policy; None: as many as a model was trained with, where its
+        observation space says so, and otherwise 10.
     dtype
         float64, or float32 for half the size, which rounds the pose and velocity that are kept but
         not the run.
@@ -93,11 +96,15 @@ def simulate(
     begun = None if start is None else _started(parameters, seed, start)
     if isinstance(policy, str):
         policy = named_policy(policy, parameters.pool)()
+    policy = as_policy(policy)
     if policy is None or policy == EVERY_SUBSTEP:
         kept = {"single_precision": bool(precision == np.float32), "contacts": contacts}
         columns = _core.record(parameters, seed, duration_s, sample_hz, kept, progress, begun)
         columns["phase"] = PHASES[columns["phase"]]
     elif hasattr(policy, "predict"):
+        if isinstance(policy, ModelPolicy) and parameters.n_leaders > 0:
+            policy.check_leaders(parameters.n_leaders)
+        control_hz = control_rate(policy) if control_hz is None else control_hz
         _check_rates(duration_s, sample_hz, control_hz)
         steps = _told(_events(duration_s, sample_hz, control_hz), progress)
         flock = begun or _core.Flock(parameters, seed)

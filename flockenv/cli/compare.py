@@ -10,7 +10,7 @@ import typer
 from flockenv.cli.console import console, errors, finished_in, print_json, progress_bar, say
 from flockenv.cli.output import check_folder, keep, printable, refuse_overwriting
 from flockenv.cli.pools import PoolOption, pool_name, scenes
-from flockenv.cli.scene import ChangesOption, FileOption, PresetOption
+from flockenv.cli.scene import ChangesOption, FileOption, PresetOption, TrustOption
 from flockenv.errors import ParameterError
 from flockenv.policies.base import LeaderPolicy
 
@@ -30,10 +30,12 @@ def compare(
     policy: Annotated[
         list[str] | None,
         typer.Option(
-            help="Policy to compare, repeatable: a name, or the .npz file of a learned one; "
-            "differences are taken from the first. [steering law, tuned damped law, learned]"
+            help="Policy to compare, repeatable: a name, the .npz file of a learned one, or the "
+            ".zip file of an SB3 model (with --trust); differences are taken from the first. "
+            "[steering law, tuned damped law, learned]"
         ),
     ] = None,
+    trust: TrustOption = False,
     seed: Annotated[int, typer.Option(min=0, help="First seed.")] = 0,
     out: Annotated[Path, typer.Option(help="Folder for tables and pictures.")] = Path(
         "results/compare"
@@ -55,7 +57,9 @@ def compare(
 
     found = scenes(preset, params, changes, pool)
     policies = {
-        pool_name(scene): {printable(name): named_policy(name, scene.pool) for name in policy}
+        pool_name(scene): {
+            printable(name): named_policy(name, scene.pool, trust=trust) for name in policy
+        }
         if policy
         else _default_policies(scene.pool)
         for scene in found

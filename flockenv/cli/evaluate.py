@@ -12,7 +12,7 @@ from flockenv._io.atomic_write import write_text
 from flockenv.cli.console import console, finished_in, print_json, progress_bar, say
 from flockenv.cli.output import check_folder, keep, printable, refuse_overwriting
 from flockenv.cli.pools import PoolOption, pool_name, scenes
-from flockenv.cli.scene import ChangesOption, FileOption, PresetOption
+from flockenv.cli.scene import ChangesOption, FileOption, PresetOption, TrustOption
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 
@@ -23,12 +23,17 @@ REFERENCES = ("steering law", "tuned damped law")
 
 def evaluate(
     policy: Annotated[
-        str, typer.Argument(help="Name of a policy, or the .npz file of a learned one.")
+        str,
+        typer.Argument(
+            help="Name of a policy, the .npz file of a learned one, or the .zip file of an SB3 "
+            "model (with --trust)."
+        ),
     ],
     against: Annotated[
         list[str] | None,
         typer.Option(help="What to compare with, repeatable. [steering law, tuned damped law]"),
     ] = None,
+    trust: TrustOption = False,
     pool: PoolOption = None,
     preset: PresetOption = None,
     params: FileOption = None,
@@ -67,12 +72,12 @@ def evaluate(
     """
     from flockenv.comparison.model_card import model_card
     from flockenv.comparison.report import ComparisonReport, report
-    from flockenv.policies.registry import POOL_POLICIES, named_policy
+    from flockenv.policies.registry import FILES, POOL_POLICIES, named_policy
 
     references = list(against or (each for each in REFERENCES if each != policy))
     if policy in references:
         raise ParameterError(f"{policy!r} is both the policy and one of those it is compared with")
-    name = printable(Path(policy).stem if policy.endswith(".npz") else policy)
+    name = printable(Path(policy).stem if policy.endswith(FILES) else policy)
     if name in references:
         name = printable(policy)
     named = {printable(each): each for each in references} | {name: policy}
@@ -87,7 +92,8 @@ def evaluate(
     if policy in POOL_POLICIES and len(pools) > 1:
         raise ParameterError(f"{policy!r} is another policy in each pool: ask for one with --pool")
     policies = {
-        each: {shown: named_policy(given, each) for shown, given in named.items()} for each in pools
+        each: {shown: named_policy(given, each, trust=trust) for shown, given in named.items()}
+        for each in pools
     }
     check_folder(out)
     refuse_overwriting(params, "--params", [out / each / "parameters.toml" for each in found])

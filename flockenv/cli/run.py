@@ -9,7 +9,14 @@ from numpy.typing import NDArray
 
 from flockenv.cli.console import interruptible, print_json, progress_bar, say
 from flockenv.cli.output import check_file, keep, printable, refuse_overwriting
-from flockenv.cli.scene import ChangesOption, FileOption, PresetOption, read_scene, save_scene
+from flockenv.cli.scene import (
+    ChangesOption,
+    FileOption,
+    PresetOption,
+    TrustOption,
+    read_scene,
+    save_scene,
+)
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import LeaderPolicy
@@ -28,9 +35,11 @@ def run(
         str,
         typer.Option(
             help="How leaders steer: law (eq. 10 at every substep); or at 10 Hz, from what they "
-            f"observe, a policy's .npz file or one of: {quoted([*POLICIES, *POOL_POLICIES])}."
+            "observe, a policy's .npz file, an SB3 model's .zip file (with --trust) or one of: "
+            f"{quoted([*POLICIES, *POOL_POLICIES])}."
         ),
     ] = EVERY_SUBSTEP,
+    trust: TrustOption = False,
     seed: Annotated[int, typer.Option(min=0, help="Seed of placement and noise.")] = 0,
     minutes: Annotated[float, typer.Option(min=0.0, help="Length of the run.")] = 8.0,
     hz: Annotated[float, typer.Option(help="Samples a second.")] = 10.0,
@@ -51,7 +60,7 @@ def run(
     scene = read_scene(preset, params, changes)
     if out.suffix != ".npz":
         raise ParameterError(f"--out {out} is not accepted: a name that ends in .npz")
-    leaders = _policy(policy, scene)
+    leaders = _policy(policy, scene, trust)
     parameters = out.with_suffix(".toml")
     for path in (out, parameters):
         check_file(path)
@@ -89,9 +98,9 @@ def run(
     say(f"See it: flockenv replay {out}")
 
 
-def _policy(name: str, scene: FlockParameters) -> LeaderPolicy | str:
+def _policy(name: str, scene: FlockParameters, trust: bool) -> LeaderPolicy | str:
     try:
-        return named_policy(name, scene.pool)()
+        return named_policy(name, scene.pool, trust=trust)()
     except OSError as error:
         raise ParameterError(f"--policy {name} cannot be read: {error.strerror}") from error
 

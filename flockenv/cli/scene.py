@@ -15,6 +15,7 @@ __all__ = [
     "ChangesOption",
     "FileOption",
     "PresetOption",
+    "TrustOption",
     "changed_fields",
     "given_fields",
     "read_scene",
@@ -33,6 +34,13 @@ FileOption = Annotated[
 ChangesOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="FIELD=VALUE", help="Change one field; may be repeated."),
+]
+TrustOption = Annotated[
+    bool,
+    typer.Option(
+        "--trust",
+        help="Read .zip files of stable-baselines3 models, which executes the code in them.",
+    ),
 ]
 
 

@@ -14,7 +14,8 @@ from flockenv import _core
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
-from flockenv.policies.base import LeaderPolicy
+from flockenv.policies.base import CONTROL_HZ, LeaderPolicy, control_rate
+from flockenv.policies.model import ModelPolicy, as_policy
 from flockenv.runs.seeds import check_evaluation_seeds
 from flockenv.simulation import simulate
 
@@ -41,11 +42,8 @@ tenth."""
 ORDERING_TIMES = dict(
     zip(("ordering_time_s", "ordering_time_wide_s"), _core.ORDERED_WITHIN, strict=True)
 )
-"""Ordering times (eq. 7) with the angle as printed and a wider one; NaN where a flock did not
-order."""
-
-CONTROL_HZ = 10.0
-"""Control steps a second, unless the environment has another option."""
+"""Ordering times (eq. 7) with the angle as printed and a wider one; infinite where a flock did
+not order."""
 
 
 def compare_leaders(
@@ -71,7 +69,7 @@ def compare_leaders(
         Numbers of leaders; 0 is run once, whatever the policies.
     policies
         What makes each policy, by the name to list it under: such as those of `POLICIES`, or of
-        your own. Each is made anew for each number of leaders.
+        your own, such as models of stable-baselines3. Each is made anew for each number of leaders.
     seeds
         One episode each; below `flockenv.runs.seeds.FIRST_TRAINING_SEED`.
     duration_s
@@ -92,11 +90,16 @@ def compare_leaders(
     Raises
     ------
     ParameterError
-        For parameters, options and durations out of range, and for training seeds.
+        For parameters, options and durations out of range, for training seeds, and for models that
+        steer another number of leaders at once.
     """
     pandas = require("pandas", "plot")
     check_evaluation_seeds(seeds)
     _check_leaders(parameters, leaders)
+    for policy in (as_policy(make()) for make in policies.values()):
+        if isinstance(policy, ModelPolicy):
+            for k in (k for k in leaders if k > 0):
+                policy.check_leaders(k)
     if environment:
         _check_environment(environment, leaders, policies)
     options = {"target": parameters.target, **(environment or {})}
@@ -158,16 +161,20 @@ def run_episodes(
     scene, policy, seeds, duration_s, progress
         As for `compare_leaders`, for one policy and number of leaders.
     options
-        Further options of the environment.
+        Further options of the environment. Without ``control_hz`` a policy steers as often as it is
+        made for: 10 times per second, and a model as in its training.
 
     Returns
     -------
     dict
         The `QUANTITIES` and `ORDERING_TIMES` by name, one number an episode.
     """
+    policy = as_policy(policy)
+    control_hz = options.get("control_hz", control_rate(policy))
     layout = {
         "observation": getattr(policy, "observation", {}),
         "mirror_to_target": getattr(policy, "mirror_to_target", False),
+        "control_hz": control_hz,
     }
     env = _environment(scene, len(seeds), duration_s, {**options, **layout})
     observations, _ = env.reset(seed=list(seeds))
@@ -176,10 +183,17 @@ def run_episodes(
     while not ended.all():
         actions, state = policy.predict(observations, state)
         observations, _, _, ended, infos = env.step(actions)
-        progress(len(seeds) / options.get("control_hz", CONTROL_HZ))
+        progress(len(seeds) / control_hz)
     summary = infos["episode_summary"]
     names = (*QUANTITIES, *ORDERING_TIMES)
-    return {name: np.asarray(summary[name], np.float64) for name in names}
+    return {name: _told(summary, name, len(seeds)) for name in names}
+
+
+def _told(summary: Mapping[str, Any], name: str, episodes: int) -> NDArray[np.float64]:
+    """Return a number of each episode's summary, NaN for episodes that do not have it."""
+    if name not in summary:
+        return np.full(episodes, np.nan)
+    return np.where(summary[f"_{name}"], summary[name], np.nan)
 
 
 def _environment(
@@ -192,7 +206,7 @@ def _environment(
         params=scene,
         episode_s=duration_s,
         autoreset_mode="disabled",
-        **{"control_hz": CONTROL_HZ, **options},
+        **options,
     )
 
 

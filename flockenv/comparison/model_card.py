@@ -7,7 +7,8 @@ from typing import Any
 from flockenv._core import __version__
 from flockenv.comparison.report import ComparisonReport
 from flockenv.envs.observation import OBSERVATION_VERSION
-from flockenv.policies import LeaningLaw, NetworkPolicy
+from flockenv.policies import LeaningLaw, ModelPolicy, NetworkPolicy
+from flockenv.policies.model import as_policy
 from flockenv.policies.registry import EVERY_SUBSTEP
 from flockenv.statistics.intervals import CONFIDENCE
 
@@ -38,8 +39,9 @@ def model_card(
     seeds, duration_s
         Of their episodes.
     """
+    policy = as_policy(policy)
     lines = [f"# {name}", ""]
-    if isinstance(policy, NetworkPolicy | LeaningLaw):
+    if isinstance(policy, NetworkPolicy | LeaningLaw | ModelPolicy):
         takes = f"It takes version {OBSERVATION_VERSION} of the observation."
         lines += [f"The policy is `{policy!r}`. {takes}", ""]
         lines += ["| provenance | |", "| --- | --- |"]

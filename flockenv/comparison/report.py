@@ -1,6 +1,7 @@
 """The report of `flockenv compare`: means, straight lines, files."""
 
 import itertools
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
@@ -22,6 +23,7 @@ from flockenv.comparison.episodes import (
 )
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import LeaderPolicy
+from flockenv.policies.model import as_policy
 from flockenv.statistics.intervals import (
     CONFIDENCE,
     Difference,
@@ -203,19 +205,22 @@ def report(
         "duration_s": float(duration_s),
         "leaders": [int(k) for k in leaders],
         "seeds": {"first": int(seeds[0]), "last": int(seeds[-1]), "number": len(seeds)},
-        "policies": {name: str(make()) for name, make in policies.items()},
+        "policies": {name: str(as_policy(make())) for name, make in policies.items()},
         "environment": {"target": scene.target, "control_hz": CONTROL_HZ, **(environment or {})},
     }
     return ComparisonReport(scene, means, lines, differences, runs, asked, environment or {})
 
 
 def _means(runs: "pd.DataFrame") -> "pd.DataFrame":
-    """Return means and intervals, and how many runs ordered, and how soon (medians)."""
-    by = ["policy", "leaders"]
+    """Return means and intervals, which part of the runs ordered, and how soon those did (medians).
+
+    A median is infinite where none did.
+    """
+    by, times = ["policy", "leaders"], list(ORDERING_TIMES)
     means = summarize(runs, by, list(QUANTITIES))
-    groups = runs.groupby(by, sort=False)
-    columns = groups[list(ORDERING_TIMES)].median()
-    columns["ordered"] = groups["ordering_time_wide_s"].count() / groups.size()
+    came = runs[[*by, *times]].replace(math.inf, math.nan).groupby(by, sort=False)
+    columns = came[times].median().fillna(math.inf)
+    columns["ordered"] = came["ordering_time_wide_s"].count() / came.size()
     merged: pd.DataFrame = means.merge(columns.reset_index(), on=by, validate="one_to_one")
     return merged
 

@@ -7,10 +7,11 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from flockenv import _core
 from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError
 
-__all__ = ["LeaderPolicy", "RowPolicy"]
+__all__ = ["CONTROL_HZ", "LeaderPolicy", "RowPolicy", "control_rate"]
 
 
 class LeaderPolicy(Protocol):
@@ -18,6 +19,16 @@ class LeaderPolicy(Protocol):
 
     def predict(self, observation: Any, state: Any = None, episode_start: Any = None) -> Any:
         """Return actions for observations, and the next state of a recurrent policy."""
+
+
+CONTROL_HZ: float = _core.env_defaults()["control_hz"]
+"""Control steps per second, unless the environment or the policy has others."""
+
+
+def control_rate(policy: Any) -> float:
+    """Return the control steps per second that a policy is made for: 10 where it does not say."""
+    rate = getattr(policy, "control_hz", None)
+    return CONTROL_HZ if rate is None else float(rate)
 
 
 class RowPolicy(ABC):

@@ -9,6 +9,7 @@ from flockenv.errors import ParameterError
 from flockenv.policies.files import read_policy
 from flockenv.policies.laws import LAWS, ObservedPolicy
 from flockenv.policies.leaning_law import LeaningLaw
+from flockenv.policies.model import ModelPolicy, is_model_file, load_model
 from flockenv.policies.network import NetworkPolicy
 
 __all__ = ["LEARNED", "TUNED_GAINS", "learned", "load", "tuned_law"]
@@ -32,17 +33,25 @@ TUNED_GAINS: Mapping[str, Mapping[str, Mapping[str, float]]] = {
 among 27 boats at each pool's critical noise, on training seeds."""
 
 
-def load(path: str | os.PathLike[str], *, pool: str | None = None) -> NetworkPolicy | LeaningLaw:
+def load(
+    path: str | os.PathLike[str], *, pool: str | None = None, trust: bool = False
+) -> NetworkPolicy | LeaningLaw | ModelPolicy:
     """Return the learned leaders of a pool, or a policy from its file.
 
-    Nothing in a file is ever executed.
+    Nothing in an ``.npz`` file is ever executed. A model's ``.zip`` file of stable-baselines3 holds
+    pickled objects, and **reading it executes whatever code the file holds**: trust only files
+    whose origin you know.
 
     Parameters
     ----------
     path
-        ``"learned"`` for the leaders that come with the package, or a policy's ``.npz`` file.
+        ``"learned"`` for the leaders that come with the package, a policy's ``.npz`` file, or the
+        ``.zip`` file of a model that was trained with stable-baselines3 (needs the extra
+        ``train``).
     pool
         With ``"learned"``, and then needed: the named pool that the leaders were trained in.
+    trust
+        Whether a model's ``.zip`` file may execute the code in it.
 
     Raises
     ------
@@ -50,7 +59,9 @@ def load(path: str | os.PathLike[str], *, pool: str | None = None) -> NetworkPol
         If the file cannot be opened.
     ParameterError
         If the file is no policy, is damaged, or was made for another version of the observation;
-        for a pool without learned leaders.
+        for a model's file without `trust`; for a pool without learned leaders.
+    MissingExtraError
+        For a model's file without the extra ``train``.
     """
     if path == LEARNED:
         return learned(pool)
@@ -59,6 +70,14 @@ def load(path: str | os.PathLike[str], *, pool: str | None = None) -> NetworkPol
             f"pool = {pool!r} is not accepted with the file {os.fspath(path)!r}: a pool chooses "
             f"among the policies called {LEARNED!r}"
         )
+    if is_model_file(path):
+        if not trust:
+            raise ParameterError(
+                f"{path} holds a model with pickled objects, and reading it executes the code in "
+                "it: if you know where it comes from, say so with trust=True (on the command line "
+                "--trust)"
+            )
+        return load_model(path)
     header, arrays = read_policy(path)
     kind = header.get("kind", "network")
     try:
@@ -80,7 +99,7 @@ def tuned_law(law: str, pool: Any) -> ObservedPolicy:
     return LAWS[law](**TUNED_GAINS[law][_named(pool)])
 
 
-def learned(pool: Any) -> NetworkPolicy | LeaningLaw:
+def learned(pool: Any) -> NetworkPolicy | LeaningLaw | ModelPolicy:
     """Return the learned leaders that ship for a named pool.
 
     Raises

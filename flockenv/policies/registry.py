@@ -11,7 +11,10 @@ from flockenv.policies.constant import RandomRudders, StraightAhead
 from flockenv.policies.laws import LAWS
 from flockenv.policies.pretrained import LEARNED, TUNED_GAINS, learned, load, tuned_law
 
-__all__ = ["EVERY_SUBSTEP", "POLICIES", "POOL_POLICIES", "named_policy", "quoted"]
+__all__ = ["EVERY_SUBSTEP", "FILES", "POLICIES", "POOL_POLICIES", "named_policy", "quoted"]
+
+FILES = (".npz", ".zip")
+"""How the files of policies end: learned ones of this package, and models of stable-baselines3."""
 
 EVERY_SUBSTEP = "law"
 """Stands for the paper's law evaluated at every substep, from the pose: what `simulate` does."""
@@ -36,8 +39,8 @@ _ALSO_CALLED = {
 }
 
 
-def named_policy(name: str, pool: Any) -> Callable[[], LeaderPolicy | str]:
-    """Return a function that returns a policy, given its name or the path of its ``.npz`` file.
+def named_policy(name: str, pool: Any, *, trust: bool = False) -> Callable[[], LeaderPolicy | str]:
+    """Return a function that returns a policy, given its name or the path of its file.
 
     Parameters
     ----------
@@ -45,11 +48,14 @@ def named_policy(name: str, pool: Any) -> Callable[[], LeaderPolicy | str]:
         A name in `POLICIES` or `POOL_POLICIES`, `EVERY_SUBSTEP`, or a path.
     pool
         The scene's pool.
+    trust
+        Whether a model's ``.zip`` file may execute the code in it; see `load`.
 
     Raises
     ------
     ParameterError
-        For unknown names, files that are no policy, and pools that a policy is not made for.
+        For unknown names, files that are no policy, models' files without `trust`, and pools that
+        a policy is not made for.
     OSError
         If the file cannot be opened.
     """
@@ -59,8 +65,8 @@ def named_policy(name: str, pool: Any) -> Callable[[], LeaderPolicy | str]:
     if name in POOL_POLICIES:
         made = POOL_POLICIES[name](pool)
         return lambda: made
-    if name.endswith(".npz"):
-        read = load(name)
+    if name.endswith(FILES):
+        read = load(name, trust=trust)
         return lambda: read
     names = [*POLICIES, *POOL_POLICIES]
     parts = [part.strip() for part in name.split(",")]
@@ -69,7 +75,7 @@ def named_policy(name: str, pool: Any) -> Callable[[], LeaderPolicy | str]:
         hint = "policies are named one by one (on the command line, repeat the option)"
     else:
         hint = f"did you mean {near[0]!r}?" if near else f"there are {quoted(names)}"
-    raise ParameterError(f"{name!r} is no policy and no .npz file: {hint}")
+    raise ParameterError(f"{name!r} is no policy and no .npz or .zip file: {hint}")
 
 
 def quoted(names: list[str]) -> str:

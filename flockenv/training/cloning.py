@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from flockenv._io.provenance import made_by
 from flockenv.errors import ParameterError
-from flockenv.policies import NetworkPolicy
+from flockenv.policies import ModelPolicy, NetworkPolicy
 from flockenv.policies.base import RowPolicy
 from flockenv.training.actor import ACTIVATION_MODULES, one_thread
 from flockenv.training.pools import PooledVecEnv
@@ -19,7 +19,7 @@ __all__ = ["clone_law"]
 
 
 def clone_law(
-    law: RowPolicy,
+    law: RowPolicy | ModelPolicy,
     settings: TrainingSettings,
     *,
     samples: int = 100_000,
@@ -85,7 +85,7 @@ def clone_law(
 
 
 def _visited(
-    law: RowPolicy, settings: TrainingSettings, samples: int
+    law: RowPolicy | ModelPolicy, settings: TrainingSettings, samples: int
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     env = PooledVecEnv(settings)
     random = np.random.default_rng(settings.seed)

@@ -20,7 +20,7 @@ from stable_baselines3.common.utils import FloatSchedule
 from flockenv._io.atomic_write import whole_file
 from flockenv._io.provenance import made_by
 from flockenv.errors import ParameterError
-from flockenv.policies import NetworkPolicy, load
+from flockenv.policies import ModelPolicy, NetworkPolicy, load
 from flockenv.policies.base import RowPolicy
 from flockenv.policies.laws import LAWS
 from flockenv.training import checkpoint
@@ -355,7 +355,7 @@ def _actor(model: PPO) -> ActorCriticPolicy:
 def _start(settings: TrainingSettings, command: str) -> NetworkPolicy | None:
     if not settings.start:
         return None
-    found: RowPolicy
+    found: RowPolicy | ModelPolicy
     if settings.start in LAWS:
         found = LAWS[settings.start](
             observation=settings.observation, mirror_to_target=settings.mirror_to_target

@@ -85,17 +85,17 @@ impl OrderingWatch {
     }
 
     /// The first time in s at which Ψ_o > 0.8 and ||φ_o| − π/2| was less than `within`, if mean Ψ_o
-    /// over the second half exceeds 0.8; otherwise none.
-    pub fn ordering_time_s(&self) -> Option<f64> {
+    /// over the second half exceeds 0.8; otherwise infinite.
+    pub fn ordering_time_s(&self) -> f64 {
         let stays = self.late_order > HIGH_ORDER * f64::from(self.late_samples);
-        self.first_s.filter(|_| stays)
+        self.first_s.filter(|_| stays).unwrap_or(f64::INFINITY)
     }
 }
 
-/// Ordering time τ (eq. 7) of a series of samples. The slices are of equal length, the times
-/// increasing; the run lasts until the last of them.
-pub fn ordering_time(time_s: &[f64], order: &[OrderParameters], within: f64) -> Option<f64> {
-    let half = time_s.last()? / 2.0;
+/// Ordering time τ (eq. 7) of a series of samples, infinite where the run does not order. The slices
+/// are of equal length, the times increasing; the run lasts until the last of them.
+pub fn ordering_time(time_s: &[f64], order: &[OrderParameters], within: f64) -> f64 {
+    let half = time_s.last().map_or(0.0, |last| last / 2.0);
     let mut watch = OrderingWatch::default();
     for (&time, order) in time_s.iter().zip(order) {
         watch.note(time, order, within, time >= half);

@@ -224,7 +224,7 @@ impl FlockEnv {
         let mut restored = Self::new(settings, self.parameters.clone());
         restored.seeds = stored.seeds;
         restored.episode = episode;
-        restored.finished = stored.finished;
+        restored.finished = stored.finished.map(EpisodeSummary::from_stored);
         restored.final_observation = stored.final_observation;
         restored.final_state = stored.final_state;
         Ok(restored)

@@ -73,9 +73,7 @@ impl EpisodeStatistics {
             signed_order: self.signed_order / window,
             psi_o: self.psi_o / window,
             share_towards_target: f64::from(self.steps_towards_target) / window,
-            ordering_times_s: self
-                .ordering
-                .map(|watch| watch.ordering_time_s().unwrap_or(f64::NAN)),
+            ordering_times_s: self.ordering.map(|watch| watch.ordering_time_s()),
             clip_rate: self.clipped as f64 / self.observed as f64,
         }
     }
@@ -102,8 +100,22 @@ pub struct EpisodeSummary {
     /// Part of the same steps in which the signed order exceeds [`TOWARDS_TARGET`].
     pub share_towards_target: f64,
     /// Ordering time (eq. 7) in s since the episode began, with the angle as printed, π/20, and with
-    /// π/4; NaN if the flock did not order.
+    /// π/4; infinite if the flock did not order.
     pub ordering_times_s: [f64; 2],
     /// Part of the observed numbers that were clipped at their bounds.
     pub clip_rate: f64,
+}
+
+impl EpisodeSummary {
+    /// The summary as a stored state of any version has it: version 0.1.0 wrote NaN for ordering times
+    /// that never came.
+    #[must_use]
+    pub fn from_stored(mut self) -> Self {
+        for time in &mut self.ordering_times_s {
+            if time.is_nan() {
+                *time = f64::INFINITY;
+            }
+        }
+        self
+    }
 }

@@ -286,9 +286,16 @@ fn summary_dict<'py>(py: Python<'py>, summary: &EpisodeSummary) -> PyResult<Boun
     dict.set_item("steps", summary.steps)?;
     dict.set_item("total_reward", summary.total_reward)?;
     dict.set_item("reward_terms", terms)?;
-    dict.set_item("signed_order", summary.signed_order)?;
-    dict.set_item("psi_o", summary.psi_o)?;
-    dict.set_item("share_towards_target", summary.share_towards_target)?;
+    for (name, mean) in [
+        ("signed_order", summary.signed_order),
+        ("psi_o", summary.psi_o),
+        ("share_towards_target", summary.share_towards_target),
+    ] {
+        // A mean over an analysis window that the episode did not reach: infos hold no NaN.
+        if !mean.is_nan() {
+            dict.set_item(name, mean)?;
+        }
+    }
     let [printed, wide] = summary.ordering_times_s;
     dict.set_item("ordering_time_s", printed)?;
     dict.set_item("ordering_time_wide_s", wide)?;

@@ -46,14 +46,14 @@ pub fn off_tangents<'py>(
     PyArray1::from_iter(py, phi_o.as_array().iter().map(|&phi| off_tangent(phi)))
 }
 
-/// The ordering time of a run, eq. (7) with the angle `within`.
+/// The ordering time of a run, eq. (7) with the angle `within`; infinite if it does not order.
 #[pyfunction]
 pub fn ordering_time<'py>(
     time_s: PyReadonlyArray1<'py, f64>,
     psi_o: PyReadonlyArray1<'py, f64>,
     phi_o: PyReadonlyArray1<'py, f64>,
     within: &Bound<'py, PyAny>,
-) -> PyResult<Option<f64>> {
+) -> PyResult<f64> {
     let within = real(within, "within")?;
     let series = orders(&psi_o, &phi_o, None)?;
     let times = time_s.to_vec()?;

@@ -34,7 +34,8 @@ mod _core {
     use super::flock::PyFlock;
     #[pymodule_export]
     use super::observation::{
-        PyObservedLaw, nearest_levels, observation_table, observation_version, observe, state_table,
+        PyObservedLaw, level_rudders, nearest_levels, observation_table, observation_version,
+        observe, state_table,
     };
     #[pymodule_export]
     use super::order_parameters::{outward, rotation, signed_order};

@@ -193,6 +193,31 @@ impl PyObservedLaw {
     }
 }
 
+fn with_levels(rudder_levels: &Bound<'_, PyAny>) -> PyResult<RudderSettings> {
+    let settings = RudderSettings {
+        levels: Some(count(rudder_levels, "rudder_levels")?),
+        ..RudderSettings::default()
+    };
+    settings.check()?;
+    Ok(settings)
+}
+
+/// The rudders that numbers of levels stand for, of so many that an environment may have.
+#[pyfunction]
+pub fn level_rudders<'py>(
+    py: Python<'py>,
+    levels: PyReadonlyArray1<'py, i64>,
+    rudder_levels: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let settings = with_levels(rudder_levels)?;
+    let actions = levels.as_array().mapv(|level| level as f64);
+    for &action in &actions {
+        settings.check_action(action)?;
+    }
+    let rudders = actions.iter().map(|&action| settings.command(action));
+    Ok(PyArray1::from_iter(py, rudders))
+}
+
 /// Numbers of the levels nearest to rudders, of so many that an environment may have.
 #[pyfunction]
 pub fn nearest_levels<'py>(
@@ -200,11 +225,7 @@ pub fn nearest_levels<'py>(
     rudders: PyReadonlyArray1<'py, f64>,
     rudder_levels: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyArray1<i64>>> {
-    let settings = RudderSettings {
-        levels: Some(count(rudder_levels, "rudder_levels")?),
-        ..RudderSettings::default()
-    };
-    settings.check()?;
+    let settings = with_levels(rudder_levels)?;
     let rudders = rudders.as_array();
     if let Some(rudder) = rudders.iter().find(|s| !(-1.0..=1.0).contains(*s)) {
         return Err(FlockError::parameter("rudder", rudder, "numbers in [-1, 1]").into());

@@ -56,6 +56,24 @@ fn reseal(bytes: &mut [u8]) {
     bytes[8..16].copy_from_slice(&sum.to_le_bytes());
 }
 
+#[test]
+fn ordering_times_that_version_0_1_0_stored_as_nan_are_read_as_infinite() {
+    let mut ended = batch(settings(3), &[1], 0);
+    for _ in 0..3 {
+        step(&mut ended, &[0.0]).unwrap();
+    }
+    let never = ended.envs()[0].finished().unwrap().ordering_times_s;
+    assert_eq!(never, [f64::INFINITY; 2]);
+    let [now, before] = [f64::INFINITY, f64::NAN].map(|time| time.to_le_bytes().repeat(2));
+    let mut bytes = ended.to_bytes();
+    let place = bytes.windows(16).position(|window| window == now).unwrap();
+    bytes[place..place + 16].copy_from_slice(&before);
+    reseal(&mut bytes);
+    let restored = EnvBatch::from_bytes(&bytes).unwrap();
+    let read = restored.envs()[0].finished().unwrap().ordering_times_s;
+    assert_eq!(read, [f64::INFINITY; 2]);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig {
         cases: 400,

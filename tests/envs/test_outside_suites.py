@@ -6,7 +6,13 @@ import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env, data_equivalence
-from pettingzoo.test import api_test, max_cycles_test, parallel_api_test, seed_test
+from pettingzoo.test import (
+    api_test,
+    max_cycles_test,
+    parallel_api_test,
+    render_test,
+    seed_test,
+)
 from pettingzoo.test.state_test import state_test
 from pettingzoo.utils.conversions import parallel_to_aec
 
@@ -29,34 +35,50 @@ def aec_env(**options):
     return parallel_to_aec(flockenv.parallel_env(**{**SHORT, **options}))
 
 
+# Ends within every suite, before the analysis window: what the last infos hold is checked too.
+ENDING = {"ending": {"episode_s": 2.0}, "ending in the window": {"episode_s": 6.0}}
+
+
 @pytest.fixture(params=VARIANTS.values(), ids=VARIANTS.keys())
 def options(request):
     return {**SHORT, **request.param}
 
 
-def test_gymnasium_check_env(options):
-    check_env(gymnasium.make("flockenv/Leaders-v0", **options).unwrapped)
+@pytest.fixture(params=[*ENDING.values(), *VARIANTS.values()], ids=[*ENDING, *VARIANTS])
+def ending(request):
+    return {**SHORT, "episode_s": 2.0, **request.param}
 
 
-def test_stable_baselines3_check_env(options):
+def test_gymnasium_check_env(ending):
+    check_env(gymnasium.make("flockenv/Leaders-v0", **ending).unwrapped)
+
+
+def test_stable_baselines3_check_env(ending):
     env_checker = pytest.importorskip("stable_baselines3.common.env_checker")
-    env_checker.check_env(flockenv.LeadersEnv(**options))
+    env_checker.check_env(flockenv.LeadersEnv(**ending))
 
 
-def test_pettingzoo_parallel_api(options):
-    parallel_api_test(flockenv.parallel_env(**options), num_cycles=200)
+def test_pettingzoo_parallel_api(ending):
+    parallel_api_test(flockenv.parallel_env(**ending), num_cycles=200)
 
 
-def test_pettingzoo_aec_api(options):
-    api_test(aec_env(**options), num_cycles=200)
+def test_pettingzoo_aec_api(ending):
+    api_test(aec_env(**ending), num_cycles=200)
 
 
-def test_pettingzoo_seeds(options):
-    seed_test(lambda: aec_env(**{**options, "episode_s": 60.0}), num_cycles=500)
+@pytest.mark.parametrize("episode_s", [2.0, 6.0, 60.0])
+def test_pettingzoo_seeds(options, episode_s):
+    seed_test(lambda: aec_env(**{**options, "episode_s": episode_s}), num_cycles=500)
 
 
-def test_pettingzoo_state(options):
-    state_test(aec_env(**options), flockenv.parallel_env(**options))
+def test_pettingzoo_state(ending):
+    state_test(aec_env(**ending), flockenv.parallel_env(**ending))
+
+
+@pytest.mark.parametrize("episode_s", [2.0, 6.0])
+def test_pettingzoo_render(episode_s):
+    options = {**SHORT, "episode_s": episode_s}
+    render_test(lambda render_mode: aec_env(**options, render_mode=render_mode))
 
 
 def test_pettingzoo_max_cycles():
@@ -68,14 +90,17 @@ def test_pettingzoo_max_cycles():
     )
 
 
-def test_parallel_seeds_over_500_steps(options):
+@pytest.mark.parametrize("episode_s", [2.0, 6.0, 60.0])
+def test_parallel_seeds_over_500_steps(options, episode_s):
     # PettingZoo's own parallel_seed_test stops after one step: any() over a dictionary's keys.
-    first, second = (flockenv.parallel_env(**{**options, "episode_s": 60.0}) for _ in range(2))
+    first, second = (flockenv.parallel_env(**{**options, "episode_s": episode_s}) for _ in range(2))
     assert data_equivalence(first.reset(seed=42), second.reset(seed=42), exact=True)
     for env in (first, second):
         for place, agent in enumerate(env.possible_agents):
             env.action_space(agent).seed(place)
     for _ in range(500):
+        if not first.agents:
+            assert data_equivalence(first.reset(), second.reset(), exact=True)
         steps = [
             env.step({agent: env.action_space(agent).sample() for agent in env.agents})
             for env in (first, second)
@@ -93,6 +118,41 @@ def test_torchrl_check_env_specs(options):
 
     env = PettingZooWrapper(flockenv.parallel_env(**options), return_state=True)
     check_env_specs(env, seed=0)
+
+
+def test_torchrl_makes_the_registered_environment():
+    # GymEnv tries the argument frameskip, and leaves it out after a TypeError that names it.
+    pytest.importorskip("torchrl")
+    from torchrl.envs import GymEnv
+    from torchrl.envs.utils import check_env_specs
+
+    env = GymEnv("flockenv/Leaders-v0", **{**SHORT, "episode_s": 2.0})
+    check_env_specs(env, seed=0)
+    rollout = env.rollout(60, break_when_any_done=False)
+    assert rollout["next", "truncated"].sum() == 3
+
+
+def test_torchrl_wraps_the_native_vector_environment():
+    pytest.importorskip("torchrl")
+    import torch
+    from torchrl.envs import GymWrapper
+    from torchrl.envs.utils import check_env_specs
+
+    options = {**SHORT, "episode_s": 2.0, "autoreset_mode": "disabled"}
+    env = GymWrapper(flockenv.LeadersVectorEnv(3, **options))
+    check_env_specs(env, seed=0)
+    env.set_seed(0)
+    rollout = env.rollout(20, policy=lambda _: torch.zeros(3, 2))
+    native = flockenv.LeadersVectorEnv(3, **options)
+    # TorchRL resets once with the seed, and once more to begin.
+    native.reset(seed=0)
+    observations, _ = native.reset()
+    assert rollout["observation"].shape == (3, 20, observations.shape[1])
+    for step in range(20):
+        observations, rewards, _, truncated, _ = native.step(np.zeros((3, 2), np.float32))
+        np.testing.assert_allclose(rollout["next", "reward"][:, step, 0], rewards, atol=1e-6)
+        np.testing.assert_array_equal(rollout["next", "truncated"][:, step, 0], truncated)
+    assert truncated.all()
 
 
 @pytest.mark.parametrize("mode", ["sync", "async"])

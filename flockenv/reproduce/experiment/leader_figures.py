@@ -42,8 +42,8 @@ def _p_value(line: Line | None) -> tuple[float, float, float]:
 
 
 def _span(runs: pd.DataFrame, quantity: str) -> tuple[float, float]:
-    """Return the range of noise in which the quantity is defined."""
-    known = runs.loc[runs[quantity].notna(), "bw_s"]
+    """Return the range of noise in which the quantity is finite."""
+    known = runs.loc[np.isfinite(runs[quantity]), "bw_s"]
     return float(known.min()), float(known.max())
 
 
@@ -186,10 +186,10 @@ def _leaders_help(cases: dict[str, pd.DataFrame]) -> list[CheckedClaim]:
 
     def share(runs: pd.DataFrame) -> float:
         late = runs[runs["bw_s"] > _LATE_S]
-        return float(late["ordering_wide_s"].notna().mean())
+        return float(np.isfinite(late["ordering_wide_s"]).mean())
 
     def time(runs: pd.DataFrame) -> float:
-        early = runs[runs["bw_s"] <= _LATE_S]
+        early = runs[(runs["bw_s"] <= _LATE_S) & np.isfinite(runs["ordering_s"])]
         return float(early["ordering_s"].mean())
 
     shares = resampled(led, "bw_s", share, 1) - resampled(free, "bw_s", share, 2)

@@ -28,7 +28,7 @@ def run_rows(
 
     Columns: ``setup``, `x_name`, ``seed``, mean and standard deviation of Ψ_o over the analyzed
     frames, mean Ψ_o after ordering, and ordering times of eq. (7) with π/20 (``ordering_s``) and
-    with π/4 (``ordering_wide_s``); times are NaN for runs that do not order.
+    with π/4 (``ordering_wide_s``); times are infinite for runs that do not order.
     """
     rows = []
     for place, specs in zip(x, points, strict=True):
@@ -73,8 +73,8 @@ def resampled(
 
 
 def line_or_none(x: "pd.Series[float]", y: "pd.Series[float]") -> Line | None:
-    """Return the line through points whose y is defined, None where there are too few."""
-    known = y.notna()
+    """Return the line through points whose y is finite, None where there are too few."""
+    known = np.isfinite(y)
     try:
         return fit_line(x[known], y[known])
     except ValueError:

@@ -1,0 +1,302 @@
+"""`ModelPolicy`: a model of stable-baselines3 wherever a policy goes."""
+
+import hashlib
+import json
+import os
+import zipfile
+from collections.abc import Mapping
+from inspect import signature
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from flockenv import _core
+from flockenv._io.extras import require
+from flockenv.envs.observation import ObservationSpace, observation_space
+from flockenv.errors import ParameterError
+
+__all__ = ["ModelPolicy", "as_policy", "is_model_file", "load_model"]
+
+_WEIGHTS = "policy.pth"
+_NEEDED = ("policy_class", "policy_kwargs", "observation_space", "action_space", "use_sde")
+
+
+class ModelPolicy:
+    """A model or policy of stable-baselines3 that steers leaders like any other policy here.
+
+    The model's observation space says what it takes: one leader's observation (trained on
+    `LeaderVecEnv`), for any number of leaders, or those of k leaders one after another (trained on
+    ``gymnasium.make("flockenv/Leaders-v0")``), for flocks with k leaders. Numbers of levels, the
+    actions of environments with `rudder_levels`, become rudders. Where the model's environment is
+    a `VecNormalize`, observations are normalized as there; a file of a model does not hold that.
+
+    Parameters
+    ----------
+    model
+        A model such as ``PPO``, or its ``policy``.
+    observation, mirror_to_target
+        The environments' options of those names that it was trained with. None: what the
+        observation space says, and the defaults where that is no space of an environment here.
+    made
+        What made it: any short texts by name.
+
+    Attributes
+    ----------
+    leaders : int
+        Number of leaders that the model steers at once.
+    control_hz : float or None
+        Control steps per second that it was trained with, where the space says so.
+
+    Raises
+    ------
+    ParameterError
+        If the spaces are none of an environment here with those options.
+    """
+
+    def __init__(
+        self,
+        model: Any,
+        *,
+        observation: Mapping[str, Any] | None = None,
+        mirror_to_target: bool | None = None,
+        made: Mapping[str, str] | None = None,
+    ) -> None:
+        self.model = model
+        self.made = dict(made or {})
+        space = model.observation_space
+        told = space.options if isinstance(space, ObservationSpace) else {}
+        given = {"observation": observation, "mirror_to_target": mirror_to_target}
+        told = told | {name: value for name, value in given.items() if value is not None}
+        self.observation: dict[str, Any] = dict(told.get("observation", {}))
+        self.mirror_to_target = bool(told.get("mirror_to_target", False))
+        self.control_hz: float | None = told.get("control_hz")
+        one = observation_space(self.observation)
+        self._size = one.shape[0]
+        self.leaders = _leaders_of(space, one)
+        self._levels = _levels_of(model.action_space, self.leaders)
+
+    def check_leaders(self, n_leaders: int) -> None:
+        """Refuse flocks with a number of leaders that the model cannot steer.
+
+        Raises
+        ------
+        ParameterError
+            If the model was trained to steer another number at once.
+        """
+        if self.leaders not in (1, n_leaders):
+            raise ParameterError(
+                f"n_leaders = {n_leaders} is not accepted with {self!r}: it steers {self.leaders} "
+                "leaders at once; one that is trained on LeaderVecEnv steers any number"
+            )
+
+    def predict(
+        self,
+        observation: ArrayLike | Mapping[Any, ArrayLike],
+        state: Any = None,
+        episode_start: Any = None,
+        deterministic: bool = True,
+    ) -> tuple[Any, Any]:
+        """Return rudders for observations.
+
+        Parameters
+        ----------
+        observation
+            Shape (..., m * observation size): m leaders' observations one after another in the
+            last axis, as the environments give them; or a dictionary of such arrays by agent. A
+            model of k leaders takes each k that follow each other for a flock.
+        state, episode_start, deterministic
+            As of the model.
+
+        Returns
+        -------
+        action : numpy.ndarray or dict
+            Shape (..., m), float32, in [-1, 1].
+        state
+            The model's.
+
+        Raises
+        ------
+        ParameterError
+            If the last axis is no multiple of the observation's size, or the leaders are no
+            multiple of the model's.
+        """
+        if isinstance(observation, Mapping):
+            stacked = np.stack([np.asarray(each) for each in observation.values()])
+            rudders, state = self._predict(stacked, state, episode_start, deterministic)
+            return dict(zip(observation, rudders, strict=True)), state
+        return self._predict(np.asarray(observation), state, episode_start, deterministic)
+
+    def _predict(
+        self, array: NDArray[Any], state: Any, episode_start: Any, deterministic: bool
+    ) -> tuple[NDArray[np.float32], Any]:
+        width = array.shape[-1] if array.ndim else 0
+        leaders, rest = divmod(width, self._size)
+        if width == 0 or rest:
+            raise ParameterError(
+                f"observation has shape {array.shape}, which is not accepted: its last axis must "
+                f"be a multiple of {self._size}, the size of a leader's observation"
+            )
+        rows = array.size // self._size
+        if rows % self.leaders or (leaders > 1 and leaders % self.leaders):
+            raise ParameterError(
+                f"observation has shape {array.shape}, which is not accepted: {self!r} steers "
+                f"{self.leaders} leaders at once"
+            )
+        items = np.ascontiguousarray(array, np.float32).reshape(rows // self.leaders, -1)
+        if episode_start is not None:
+            starts = np.ravel(episode_start)
+            episode_start = np.repeat(starts, len(items) // len(starts))
+        actions, state = self.model.predict(
+            self._normalized(items), state, episode_start, deterministic
+        )
+        rudders = self._rudders(np.asarray(actions).reshape(rows))
+        return rudders.reshape(*array.shape[:-1], leaders), state
+
+    def _normalized(self, items: NDArray[np.float32]) -> NDArray[np.float32]:
+        around = getattr(self.model, "get_vec_normalize_env", lambda: None)()
+        return items if around is None else around.normalize_obs(items)
+
+    def _rudders(self, actions: NDArray[Any]) -> NDArray[np.float32]:
+        if self._levels is not None:
+            actions = _core.level_rudders(actions.astype(np.int64), self._levels)
+        rudders: NDArray[np.float32] = np.clip(actions, -1.0, 1.0).astype(np.float32)
+        return rudders
+
+    def __repr__(self) -> str:
+        name = self.made.get("file", type(self.model).__name__)
+        takes = "one leader" if self.leaders == 1 else f"{self.leaders} leaders at once"
+        rate = "" if self.control_hz is None else f", {self.control_hz:g} Hz"
+        return f"{type(self).__name__}({name}, {takes}{rate})"
+
+
+def as_policy(policy: Any) -> Any:
+    """Return a policy as it is, and a model of stable-baselines3 as a `ModelPolicy`.
+
+    Raises
+    ------
+    ParameterError
+        For a model that was trained on something else than the environments here.
+    """
+    if isinstance(getattr(policy, "observation_space", None), gymnasium.Space):
+        return ModelPolicy(policy)
+    return policy
+
+
+def is_model_file(path: str | os.PathLike[str]) -> bool:
+    """Return whether a file is one that stable-baselines3 saved a model to, by its entries alone.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be opened.
+    """
+    with open(path, "rb") as file:
+        try:
+            return _WEIGHTS in zipfile.ZipFile(file).namelist()
+        except zipfile.BadZipFile:
+            return False
+
+
+def load_model(
+    path: str | os.PathLike[str],
+    *,
+    observation: Mapping[str, Any] | None = None,
+    mirror_to_target: bool | None = None,
+) -> ModelPolicy:
+    """Read the policy of a model's ``.zip`` file, which executes code in the file.
+
+    Parameters
+    ----------
+    path
+        What ``model.save`` of stable-baselines3 or sb3-contrib wrote.
+    observation, mirror_to_target
+        As of `ModelPolicy`.
+
+    Raises
+    ------
+    MissingExtraError
+        Without the extra ``train``.
+    OSError
+        If the file cannot be opened.
+    ParameterError
+        If the model cannot be made from the file, or was not trained on an environment here.
+    """
+    saving = require("stable_baselines3.common.save_util", "train")
+    try:
+        with zipfile.ZipFile(path) as archive:
+            stored = json.loads(archive.read("data"))
+        # Schedules, buffers and the like need not be read, let alone executed.
+        skipped = dict.fromkeys(stored.keys() - set(_NEEDED))
+        data, weights, _ = saving.load_from_zip_file(path, device="cpu", custom_objects=skipped)
+        model = _policy_of(data)
+        model.load_state_dict(weights["policy"])
+        model.set_training_mode(False)
+    except OSError:
+        raise
+    # The file's own code may raise anything.
+    except Exception as error:
+        raise ParameterError(
+            f"{path} is no model that can be read: {type(error).__name__}: {error}"
+        ) from error
+    content = Path(path).read_bytes()
+    made = {
+        "file": Path(path).name,
+        "sha256": hashlib.sha256(content).hexdigest(),
+        "samples": str(stored.get("num_timesteps")),
+        "seed": str(stored.get("seed")),
+    }
+    return ModelPolicy(model, observation=observation, mirror_to_target=mirror_to_target, made=made)
+
+
+def _policy_of(data: Mapping[str, Any]) -> Any:
+    """Return the policy with new weights, as its algorithm would make it."""
+    kind, options = data["policy_class"], dict(data["policy_kwargs"])
+    options.pop("device", None)
+    takes = signature(kind).parameters
+    if "use_sde" in takes:
+        options.setdefault("use_sde", data["use_sde"])
+    if "lr_schedule" in takes:
+        options["lr_schedule"] = lambda _: 0.0
+    return kind(data["observation_space"], data["action_space"], **options)
+
+
+def _leaders_of(space: gymnasium.Space[Any], one: gymnasium.spaces.Box) -> int:
+    """Return how many leaders' observations make up a space, each with the space `one`."""
+    size = one.shape[0]
+    if (
+        not isinstance(space, gymnasium.spaces.Box)
+        or len(space.shape) != 1
+        or (space.shape[0] % size)
+    ):
+        raise ParameterError(
+            f"a model with the observation space {space} is not accepted: a box with {size} "
+            "numbers per leader; name the observation's blocks that it was trained with"
+        )
+    leaders = space.shape[0] // size
+    if not np.array_equal(space.low, np.tile(one.low, leaders)) or not np.array_equal(
+        space.high, np.tile(one.high, leaders)
+    ):
+        raise ParameterError(
+            "a model with other bounds of its observations than the environment's is not accepted: "
+            "it was trained with other blocks, or a wrapper changes what it sees"
+        )
+    return leaders
+
+
+def _levels_of(space: gymnasium.Space[Any], leaders: int) -> int | None:
+    """Return the number of levels of a model's actions, None where they are rudders."""
+    if isinstance(space, gymnasium.spaces.Box) and space.shape == (leaders,):
+        return None
+    if isinstance(space, gymnasium.spaces.Discrete) and leaders == 1 and space.start == 0:
+        return int(space.n)
+    if isinstance(space, gymnasium.spaces.MultiDiscrete) and space.shape == (leaders,):
+        numbers: set[int] = set(space.nvec.tolist())
+        if len(numbers) == 1:
+            return numbers.pop()
+    raise ParameterError(
+        f"a model with the action space {space} is not accepted: it observes {leaders} leaders and "
+        "has to choose as many rudders or levels"
+    )

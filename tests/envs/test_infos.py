@@ -1,0 +1,56 @@
+"""Law: infos hold no NaN. What never came is infinite, what has no mean is left out."""
+
+import math
+
+import numpy as np
+import pytest
+
+import flockenv
+
+SMALL = {"n_boats": 6, "n_leaders": 2}
+WINDOW_MEANS = {"signed_order", "psi_o", "share_towards_target"}
+
+
+def numbers(value):
+    if isinstance(value, dict):
+        return [number for each in value.values() for number in numbers(each)]
+    if isinstance(value, list | tuple):
+        return [number for each in value for number in numbers(each)]
+    array = np.asarray(value)
+    if array.dtype == object:
+        return [number for each in array.tolist() if each is not None for number in numbers(each)]
+    return array.ravel().tolist() if array.dtype.kind in "fiub" else []
+
+
+def last_info(**options):
+    env = flockenv.LeadersEnv(**{**SMALL, **options})
+    env.reset(seed=0)
+    over = False
+    while not over:
+        _, _, _, over, info = env.step(np.zeros(2))
+        assert not any(map(math.isnan, numbers(info)))
+    return info
+
+
+def test_a_time_that_never_came_is_infinite():
+    summary = last_info(episode_s=8.0)["episode_summary"]
+    assert summary["ordering_time_s"] == summary["ordering_time_wide_s"] == math.inf
+    assert summary.keys() >= WINDOW_MEANS
+
+
+def test_means_over_a_window_that_was_not_reached_are_left_out():
+    # The first forward phase, 2 s, begins at rest: its analysis window begins after 1 s, the one
+    # after it at 2.5 s.
+    summary = last_info(episode_s=0.5)["episode_summary"]
+    assert not WINDOW_MEANS & summary.keys()
+    assert {"ordering_time_s", "total_reward", "reward_terms"} <= summary.keys()
+
+
+@pytest.mark.parametrize("mode", ["next_step", "same_step", "disabled"])
+@pytest.mark.parametrize("episode_s", [0.5, 2.0, 6.0])
+def test_infos_of_the_vector_environment(mode, episode_s):
+    venv = flockenv.LeadersVectorEnv(3, autoreset_mode=mode, episode_s=episode_s, **SMALL)
+    infos = venv.reset(seed=0)[1]
+    while "episode_summary" not in infos and "final_info" not in infos:
+        infos = venv.step(np.zeros((3, 2)))[4]
+        assert not any(map(math.isnan, numbers(infos)))

@@ -1,0 +1,227 @@
+"""Law: a model of stable-baselines3 steers wherever a policy goes, as it would on its own."""
+
+import base64
+import json
+import os
+import pickle
+import zipfile
+
+import gymnasium
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv import ParameterError
+from flockenv.comparison import compare_leaders, run_episodes
+from flockenv.policies import ModelPolicy, SteeringLaw, WithLevels
+
+sb3 = pytest.importorskip("stable_baselines3")
+
+from stable_baselines3 import A2C, DQN, PPO, SAC  # noqa: E402
+from stable_baselines3.common.vec_env import VecFrameStack, VecNormalize  # noqa: E402
+
+from flockenv.sb3 import LeaderVecEnv  # noqa: E402
+
+SCENE = flockenv.FlockParameters(n_boats=6, n_leaders=2, pool="table-1")
+OPTIONS = {"params": SCENE, "episode_s": 2.0}
+FEW = {"observation": {"neighbors": 2, "order": False}, "mirror_to_target": True, "control_hz": 5.0}
+
+
+def rows_env(**options):
+    return LeaderVecEnv(2, **{**OPTIONS, **options})
+
+
+def joined_env(**options):
+    return gymnasium.make("flockenv/Leaders-v0", **{**OPTIONS, **options})
+
+
+MODELS = {
+    "rows": (PPO, rows_env, {}),
+    "joined": (PPO, joined_env, {}),
+    "rows, few blocks": (PPO, rows_env, FEW),
+    "joined, few blocks": (SAC, joined_env, FEW),
+    "levels": (DQN, rows_env, {"rudder_levels": 5}),
+    "joined levels": (A2C, joined_env, {"rudder_levels": 3}),
+}
+
+
+@pytest.fixture(scope="module", params=MODELS, ids=str)
+def model(request):
+    algorithm, make, options = MODELS[request.param]
+    made = algorithm("MlpPolicy", make(**options), seed=3, device="cpu")
+    made.given = options
+    return made
+
+
+@pytest.fixture
+def file(model, tmp_path):
+    model.save(tmp_path / "model.zip")
+    return tmp_path / "model.zip"
+
+
+def by_hand(model, observations):
+    """What the model itself does with leaders' observations, shape (flocks, 2 * size)."""
+    joined = model.observation_space.shape[0] == observations.shape[1]
+    rows = observations if joined else observations.reshape(2 * len(observations), -1)
+    actions = np.asarray(model.predict(rows, deterministic=True)[0]).reshape(-1, 2)
+    levels = model.given.get("rudder_levels")
+    return actions if levels is None else 2.0 * actions / (levels - 1) - 1.0
+
+
+def test_a_file_steers_as_the_model(model, file):
+    own, read = ModelPolicy(model), flockenv.policies.load(file, trust=True)
+    assert (own.observation, own.mirror_to_target) == (read.observation, read.mirror_to_target)
+    assert own.control_hz == read.control_hz == model.given.get("control_hz", 10.0)
+    assert own.leaders == read.leaders
+    assert len(read.made["sha256"]) == 64
+    venv = flockenv.LeadersVectorEnv(3, **{**OPTIONS, **model.given, "rudder_levels": None})
+    observations, _ = venv.reset(seed=0)
+    expected = by_hand(model, observations)
+    for policy in (own, read):
+        rudders, _ = policy.predict(observations)
+        assert (rudders.shape, rudders.dtype) == ((3, 2), np.float32)
+        np.testing.assert_allclose(rudders, expected, atol=1e-6)
+
+
+def test_every_interface_gets_the_same_rudders(model):
+    policy = ModelPolicy(model)
+    options = {**OPTIONS, **model.given, "rudder_levels": None}
+    single = flockenv.LeadersEnv(**options)
+    observation, _ = single.reset(seed=5)
+    rudders, _ = policy.predict(observation)
+    np.testing.assert_allclose(rudders, by_hand(model, observation[None])[0], atol=1e-6)
+    parallel = flockenv.parallel_env(**options)
+    by_agent, _ = policy.predict(parallel.reset(seed=5)[0])
+    np.testing.assert_array_equal(np.concatenate(list(by_agent.values())), rudders)
+    slots = LeaderVecEnv(2, **options)
+    slots.seed(5)
+    of_slots, _ = policy.predict(slots.reset())
+    assert of_slots.shape == (4, 1)
+    np.testing.assert_allclose(of_slots[:2, 0], rudders, atol=1e-6)
+    single.step(rudders)
+    parallel.step(by_agent)
+    slots.step(of_slots)
+    chosen = flockenv.LeadersEnv(**{**options, "rudder_levels": 5})
+    chosen.reset(seed=5)
+    chosen.step(WithLevels(policy, 5).predict(observation)[0])
+
+
+def test_simulations_and_episodes_take_the_model_itself(model):
+    # As by the policy, and in an episode the same as in the environment, step by step.
+    run = flockenv.simulate(SCENE, 7, 2.0, policy=model)
+    assert run == flockenv.simulate(SCENE, 7, 2.0, policy=ModelPolicy(model))
+    assert run != flockenv.simulate(SCENE, 7, 2.0, policy=SteeringLaw())
+    found = run_episodes(SCENE, model, [4, 5], 2.0)
+    venv = flockenv.LeadersVectorEnv(2, **{**OPTIONS, **model.given, "rudder_levels": None})
+    observations, _ = venv.reset(seed=4)
+    over = np.zeros(2, bool)
+    while not over.any():
+        observations, _, _, over, infos = venv.step(by_hand(model, observations))
+    np.testing.assert_allclose(
+        found["signed_order"], infos["episode_summary"]["signed_order"], atol=1e-6
+    )
+
+
+def test_comparisons_take_the_model_itself(model):
+    runs = compare_leaders(SCENE, [2], {"mine": lambda: model}, [0, 1], 2.0)
+    expected = run_episodes(SCENE, ModelPolicy(model), [0, 1], 2.0)
+    np.testing.assert_array_equal(runs["signed_order"], expected["signed_order"])
+
+
+def test_files_are_not_read_without_trust(file, tmp_path):
+    class Evil:
+        def __reduce__(self):
+            return os.mkdir, (str(tmp_path / "executed"),)
+
+    with zipfile.ZipFile(file) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    data = json.loads(parts["data"])
+    data["policy_kwargs"] = {":serialized:": base64.b64encode(pickle.dumps(Evil())).decode()}
+    parts["data"] = json.dumps(data).encode()
+    with zipfile.ZipFile(file, "w") as archive:
+        for name, content in parts.items():
+            archive.writestr(name, content)
+    for read in (
+        lambda: flockenv.policies.load(file),
+        lambda: flockenv.simulate(SCENE, 0, 1.0, policy=str(file)),
+    ):
+        with pytest.raises(ParameterError, match=r"reading it executes the code in it.*trust=True"):
+            read()
+    assert not (tmp_path / "executed").exists()
+    with pytest.raises(ParameterError, match="is no model that can be read"):
+        flockenv.policies.load(file, trust=True)
+    # The test would notice.
+    assert (tmp_path / "executed").exists()
+
+
+def test_damaged_files_are_refused(file, tmp_path):
+    whole = file.read_bytes()
+    for place in (100, len(whole) // 2, len(whole) - 30):
+        (tmp_path / "part.zip").write_bytes(whole[:place])
+        with pytest.raises(ParameterError, match=r"part\.zip"):
+            flockenv.policies.load(tmp_path / "part.zip", trust=True)
+    with zipfile.ZipFile(tmp_path / "other.zip", "w") as archive:
+        archive.writestr("policy.pth", b"")
+    with pytest.raises(ParameterError, match=r"other.zip is no model"):
+        flockenv.policies.load(tmp_path / "other.zip", trust=True)
+
+
+def test_models_of_other_things_are_refused():
+    def ppo(env):
+        return PPO("MlpPolicy", env, device="cpu")
+
+    with pytest.raises(ParameterError, match="other bounds"):
+        ModelPolicy(ppo(VecFrameStack(rows_env(), 2)))
+    env = joined_env()
+    halves = gymnasium.spaces.Box(env.observation_space.low / 2, env.observation_space.high / 2)
+    halved = gymnasium.wrappers.TransformObservation(env, lambda seen: seen / 2, halves)
+    with pytest.raises(ParameterError, match="other bounds"):
+        ModelPolicy(ppo(halved))
+    with pytest.raises(ParameterError, match="observation space"):
+        flockenv.simulate(SCENE, 0, 1.0, policy=ppo("CartPole-v1"))
+    first_action = gymnasium.wrappers.TransformAction(
+        joined_env(),
+        lambda action: np.repeat(action, 2),
+        gymnasium.spaces.Box(-1.0, 1.0, (1,), np.float32),
+    )
+    with pytest.raises(ParameterError, match="action space"):
+        ModelPolicy(ppo(first_action))
+
+
+def test_a_model_of_two_leaders_steers_no_other_number():
+    model = PPO("MlpPolicy", joined_env(), device="cpu")
+    three = SCENE.replace(n_leaders=3)
+    for call in (
+        lambda: flockenv.simulate(three, 0, 1.0, policy=model),
+        lambda: compare_leaders(SCENE, [2, 3], {"mine": lambda: model}, [0], 1.0),
+        lambda: ModelPolicy(model).predict(flockenv.LeadersEnv(params=three).reset(seed=0)[0]),
+    ):
+        with pytest.raises(ParameterError, match="leaders at once"):
+            call()
+    rows = PPO("MlpPolicy", rows_env(), device="cpu")
+    assert len(flockenv.simulate(three, 0, 1.0, policy=rows)) == 11
+
+
+def test_layouts_are_asked_for_where_the_space_does_not_say():
+    model = PPO("MlpPolicy", rows_env(**FEW), device="cpu")
+    space = model.observation_space
+    model.observation_space = gymnasium.spaces.Box(space.low, space.high)
+    with pytest.raises(ParameterError, match="name the observation's blocks"):
+        ModelPolicy(model)
+    policy = ModelPolicy(model, observation=FEW["observation"], mirror_to_target=True)
+    assert (policy.leaders, policy.mirror_to_target, policy.control_hz) == (1, True, None)
+    told = PPO("MlpPolicy", rows_env(**FEW), device="cpu")
+    told.policy.load_state_dict(model.policy.state_dict())
+    ccw = SCENE.replace(target="ccw")
+    run = flockenv.simulate(ccw, 0, 1.0, policy=policy, control_hz=5.0)
+    assert run == flockenv.simulate(ccw, 0, 1.0, policy=told)
+
+
+def test_normalized_observations_are_normalized_wherever_it_steers():
+    venv = VecNormalize(rows_env())
+    model = PPO("MlpPolicy", venv, n_steps=8, batch_size=8, seed=0, device="cpu").learn(64)
+    observations, _ = flockenv.LeadersEnv(**OPTIONS).reset(seed=1)
+    rudders, _ = ModelPolicy(model).predict(observations)
+    rows = venv.normalize_obs(observations.reshape(2, -1))
+    np.testing.assert_allclose(rudders, model.predict(rows, deterministic=True)[0][:, 0])
+    assert np.abs(rudders - model.predict(observations.reshape(2, -1))[0][:, 0]).max() > 1e-3
