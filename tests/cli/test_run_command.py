@@ -128,3 +128,44 @@ def test_ctrl_c_says_what_became_of_the_work(policy, tmp_path):
     assert "Nothing was written" in told
     assert "Traceback" not in told
     assert not out.parent.exists()
+
+
+@pytest.fixture(scope="module")
+def model(tmp_path_factory) -> Path:
+    stable_baselines3 = pytest.importorskip("stable_baselines3")
+    from flockenv.sb3 import LeaderVecEnv
+
+    scene = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="table-1")
+    ppo = stable_baselines3.PPO("MlpPolicy", LeaderVecEnv(1, params=scene), device="cpu", seed=1)
+    path = tmp_path_factory.mktemp("models") / "model.zip"
+    ppo.save(path)
+    return path
+
+
+def test_models_of_stable_baselines3_steer_with_trust(model, tmp_path):
+    out = tmp_path / "run.npz"
+    done = command("run", *SMALL, "--seed", "3", "--policy", model, "--out", out)
+    assert done.returncode == 2
+    assert "--trust" in done.stderr
+    assert not out.exists()
+    trusted = ["--policy", model, "--trust", "--no-contacts"]
+    done = command("run", *SMALL, "--seed", "3", *trusted, "--out", out)
+    assert done.returncode == 0, done.stderr
+    policy = flockenv.policies.load(model, trust=True)
+    scene = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="table-1")
+    assert flockenv.Recording.load(out) == flockenv.simulate(scene, 3, 12.0, policy=policy)
+
+
+@pytest.mark.parametrize("name", ["compare", "evaluate"])
+def test_models_of_stable_baselines3_are_compared_with_trust(name, model, tmp_path):
+    short = ["--pool", "table-1", "--episodes", "2", "--minutes", "0.1", "--set", "n_boats=6"]
+    if name == "compare":
+        call = ["compare", "--policy", model, "--policy", "steering law", "--most-leaders", "1"]
+    else:
+        call = ["evaluate", model, "--leaders", "1"]
+    refused = command(*call, *short, "--out", tmp_path / "out")
+    assert (refused.returncode, "--trust" in refused.stderr) == (2, True)
+    done = command(*call, *short, "--trust", "--out", tmp_path / "out")
+    assert done.returncode == 0, done.stderr
+    if name == "evaluate":
+        assert "sha256" in (tmp_path / "out" / "card.md").read_text()
