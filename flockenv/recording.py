@@ -1,17 +1,25 @@
 """Runs, sampled at a fixed rate: saved and loaded."""
 
+import html
+import importlib
 import os
 from dataclasses import dataclass, fields
-from typing import Any, Self
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv._io.array_file import read_arrays, write_arrays
+from flockenv._io.extras import require
 from flockenv.errors import ParameterError
 from flockenv.flock import ContactSeries, Flock, OrderSeries
 from flockenv.parameters import FlockParameters
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
 
 __all__ = ["PHASES", "PRECISIONS", "Recording"]
 
@@ -19,7 +27,12 @@ _FORMAT = "flockenv recording 1"
 PHASES = np.array(_core.phase_names())
 _ORDER = tuple(each.name for each in fields(OrderSeries))
 _CONTACTS = tuple(each.name for each in fields(ContactSeries))
-_ARRAYS = ("time_s", "phase", "in_analysis_window", "pose", "velocity")
+_TIMES = ("time_s", "phase", "in_analysis_window")
+_ARRAYS = (*_TIMES, "pose", "velocity")
+_COMPONENTS = {
+    "pose": ("x_cm", "y_cm", "heading_rad"),
+    "velocity": ("velocity_x_cm_s", "velocity_y_cm_s", "angular_velocity_rad_s"),
+}
 PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
 
 
@@ -133,6 +146,88 @@ class Recording:
         }
         return Flock.from_state(self.parameters, self.seed, state)
 
+    def to_dataframe(self, *, boats: bool = False) -> "pandas.DataFrame":
+        """Return the recording as a table of pandas (extra ``plot``).
+
+        Parameters
+        ----------
+        boats
+            False: one row per sample, with its time, phase and order parameters. True: one row per
+            sample and boat, with the boat's pose and velocity.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Columns ``time_s``, ``phase``, ``in_analysis_window``, then the order parameters; or
+            ``boat``, ``is_leader``, ``x_cm``, ``y_cm``, ``heading_rad``, ``velocity_x_cm_s``,
+            ``velocity_y_cm_s`` and ``angular_velocity_rad_s``.
+
+        Raises
+        ------
+        MissingExtraError
+            If pandas is not installed.
+        """
+        dataframe: type[pandas.DataFrame] = require("pandas", "plot").DataFrame
+        columns: dict[str, NDArray[Any]] = {name: getattr(self, name) for name in _TIMES}
+        if not boats:
+            return dataframe(columns | {name: getattr(self.order, name) for name in _ORDER})
+        count = self.pose.shape[1]
+        columns = {name: np.repeat(values, count) for name, values in columns.items()}
+        columns["boat"] = np.tile(np.arange(count), len(self))
+        columns["is_leader"] = columns["boat"] < self.parameters.n_leaders
+        columns |= {name: values.ravel() for name, values in self._motion().items()}
+        return dataframe(columns)
+
+    def to_xarray(self) -> "xarray.Dataset":
+        """Return the recording as a dataset of xarray (extra ``sweep``).
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions ``time_s`` and ``boat``. Variables: the phase, the analysis window and the
+            order parameters by time; ``x_cm``, ``y_cm``, ``heading_rad``, ``velocity_x_cm_s``,
+            ``velocity_y_cm_s`` and ``angular_velocity_rad_s`` by time and boat. Coordinate
+            ``is_leader`` by boat. Attributes: ``seed``, ``version``, and ``parameters`` as TOML.
+
+        Raises
+        ------
+        MissingExtraError
+            If xarray is not installed.
+        """
+        dataset: type[xarray.Dataset] = require("xarray", "sweep").Dataset
+        boats = np.arange(self.pose.shape[1])
+        by_time = {name: getattr(self, name) for name in _TIMES[1:]}
+        by_time |= {name: getattr(self.order, name) for name in _ORDER}
+        variables: dict[str, Any] = {name: ("time_s", each) for name, each in by_time.items()}
+        variables |= {name: (("time_s", "boat"), each) for name, each in self._motion().items()}
+        is_leader = ("boat", boats < self.parameters.n_leaders)
+        return dataset(
+            variables,
+            {"time_s": self.time_s, "boat": boats, "is_leader": is_leader},
+            {
+                "seed": np.uint64(self.seed),
+                "version": self.version,
+                "parameters": self.parameters.to_toml(),
+            },
+        )
+
+    def _motion(self) -> dict[str, NDArray[np.floating[Any]]]:
+        """Return poses and velocities by component, each (t, n)."""
+        return {
+            name: getattr(self, array)[..., component]
+            for array, names in _COMPONENTS.items()
+            for component, name in enumerate(names)
+        }
+
+    def _repr_html_(self) -> str:
+        """Return the replay page in a frame, for notebooks; the text where it does not fit."""
+        # Replays stand downstream of recordings, and nothing else here needs them.
+        replay: Any = importlib.import_module("flockenv.replay")
+        try:
+            return str(replay.inline_replay(self, "recording"))
+        except ParameterError:
+            return f"<code>{html.escape(repr(self))}</code>"
+
     def save(self, path: str | os.PathLike[str], *, compressed: bool = False) -> None:
         """Write the recording to an ``.npz`` file, whole or not at all.
 
@@ -143,9 +238,16 @@ class Recording:
 
         Raises
         ------
+        ParameterError
+            For a name that does not end in ``.npz``.
         OSError
             If the file cannot be written; what was there before is still there.
         """
+        if Path(path).suffix.lower() != ".npz":
+            raise ParameterError(
+                f"path = {os.fspath(path)!r} is not accepted: a name that ends in .npz; "
+                "to_dataframe() has to_csv(), to_parquet() and others"
+            )
         arrays = {name: getattr(self, name) for name in _ARRAYS}
         arrays |= {f"order_{name}": getattr(self.order, name) for name in _ORDER}
         if self.contacts is not None:

@@ -1,9 +1,11 @@
-"""Law: a notebook shows a flock as a picture, and a recording as a page that reaches nothing else."""
+"""Law: a notebook shows a flock as a picture, and a recording as a page that reaches nothing."""
 
 import base64
 import html
 import io
 import re
+import subprocess
+import sys
 
 import matplotlib.image
 import numpy as np
@@ -52,3 +54,20 @@ def test_what_fits_no_page_is_refused(monkeypatch):
     monkeypatch.setattr(page, "MOST_INLINE_BYTES", 110_000)
     with pytest.raises(flockenv.ParameterError, match="do not fit a page of 10000 bytes"):
         inline_replay(run, "run")
+
+
+def test_a_recording_in_a_notebook_is_its_page(monkeypatch):
+    run = flockenv.simulate(SCENE, 7, 1.0)
+    assert run._repr_html_() == inline_replay(run, "recording")
+    monkeypatch.setattr(page, "MOST_INLINE_BYTES", 110_000)
+    assert run._repr_html_() == f"<code>{html.escape(repr(run))}</code>"
+
+
+def test_showing_a_recording_is_all_that_needs_replays():
+    source = (
+        "import sys, flockenv; assert 'flockenv.replay' not in sys.modules;"
+        "run = flockenv.simulate(flockenv.FlockParameters(), 1, 1.0);"
+        "assert 'flockenv.replay' not in sys.modules;"
+        "assert run._repr_html_().startswith('<iframe')"
+    )
+    subprocess.run([sys.executable, "-c", source], check=True)

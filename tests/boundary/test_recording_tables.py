@@ -1,0 +1,68 @@
+"""Law: a recording's tables hold its numbers, in the libraries that the user has."""
+
+import sys
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv._io.extras import MissingExtraError
+
+SCENE = flockenv.FlockParameters(n_boats=5, n_leaders=2, pool="table-1")
+ORDER = ["psi_o", "phi_o", "c_o", "psi_v", "phi_v", "c_v"]
+
+
+@pytest.fixture(scope="module")
+def run() -> flockenv.Recording:
+    return flockenv.simulate(SCENE, 3, 2.0)
+
+
+def test_a_row_per_sample(run):
+    table = run.to_dataframe()
+    assert len(table) == 21
+    assert table.columns[:3].tolist() == ["time_s", "phase", "in_analysis_window"]
+    assert set(ORDER) <= set(table.columns)
+    assert np.array_equal(table["time_s"], run.time_s)
+    assert np.array_equal(table["psi_v"], run.order.psi_v)
+    assert table["phase"].tolist() == run.phase.tolist()
+
+
+def test_a_row_per_sample_and_boat(run):
+    table = run.to_dataframe(boats=True)
+    assert len(table) == 21 * 5
+    row = table.iloc[7 * 5 + 3]
+    assert (row["time_s"], row["boat"], row["is_leader"]) == (0.7, 3, False)
+    pose = row[["x_cm", "y_cm", "heading_rad"]].to_numpy(float)
+    assert np.array_equal(pose, run.pose[7, 3])
+    names = ["velocity_x_cm_s", "velocity_y_cm_s", "angular_velocity_rad_s"]
+    assert np.array_equal(row[names].to_numpy(float), run.velocity[7, 3])
+    assert table.groupby("boat")["is_leader"].first().tolist() == [True, True, False, False, False]
+
+
+def test_a_dataset_by_time_and_boat(run):
+    data = run.to_xarray()
+    assert dict(data.sizes) == {"time_s": 21, "boat": 5}
+    assert np.array_equal(data["heading_rad"].sel(boat=4), run.pose[:, 4, 2])
+    assert np.array_equal(data["phi_o"], run.order.phi_o)
+    assert data["is_leader"].to_numpy().tolist() == [True, True, False, False, False]
+    assert flockenv.FlockParameters.from_toml(data.attrs["parameters"]) == SCENE
+    assert (data.attrs["seed"], data.attrs["version"]) == (3, run.version)
+
+
+@pytest.mark.parametrize(
+    ("method", "package", "extra"),
+    [("to_dataframe", "pandas", "plot"), ("to_xarray", "xarray", "sweep")],
+)
+def test_a_missing_library_is_named_with_its_extra(run, monkeypatch, method, package, extra):
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(
+        MissingExtraError, match=rf"{package} is not installed: .*flockenv\[{extra}\]"
+    ):
+        getattr(run, method)()
+
+
+@pytest.mark.parametrize("name", ["m.csv", "m.parquet", "m", "m.npz.gz"])
+def test_a_recording_is_saved_as_npz_alone(run, tmp_path, name):
+    with pytest.raises(flockenv.ParameterError, match=r"ends in \.npz; to_dataframe"):
+        run.save(tmp_path / name)
+    assert list(tmp_path.iterdir()) == []
