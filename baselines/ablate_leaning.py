@@ -18,7 +18,7 @@ from rich.progress import Progress
 from run_number import run_number
 
 import flockenv
-from flockenv._io.atomic_write import whole_file
+from flockenv._io.atomic_write import atomic_write
 from flockenv.comparison import run_episodes
 from flockenv.envs.observation import observation_entries
 from flockenv.policies import LeaningLaw, load
@@ -134,7 +134,7 @@ def main(arguments: list[str] | None = None) -> None:
             options.out.with_stem(f"{options.out.stem}-lean"): lean,
         }
         for path, each in tables.items():
-            with whole_file(path) as file:
+            with atomic_write(path) as file:
                 file.write(each.to_csv(lineterminator="\n").encode())
     except KeyboardInterrupt:
         sys.exit("Interrupted: nothing was written")

@@ -24,7 +24,7 @@ from scipy.stats import qmc
 
 import flockenv
 from flockenv import training
-from flockenv._io.atomic_write import whole_file
+from flockenv._io.atomic_write import atomic_write
 from flockenv.policies.laws import LAWS
 from flockenv.training.validation import validation_scores
 
@@ -101,11 +101,11 @@ def search(options: argparse.Namespace, command: str) -> pd.DataFrame:
         progress.update(task, completed=1 + len(settings))
     # The law has no settings; the columns are those of a run.
     table = pd.DataFrame(rows)[list(rows[-1])]
-    with whole_file(options.out / "search.csv") as file:
+    with atomic_write(options.out / "search.csv") as file:
         text = table.to_csv(index=False, lineterminator="\n", float_format="%.5g")
         file.write(text.encode())
     best = settings[int(table["mean"][1:].to_numpy().argmax())]
-    with whole_file(options.out / "best.toml") as file:
+    with atomic_write(options.out / "best.toml") as file:
         file.write(best.to_toml().encode())
     return table
 

@@ -26,7 +26,7 @@ from rich.progress import Progress
 from run_number import run_number
 
 import flockenv
-from flockenv._io.atomic_write import whole_file
+from flockenv._io.atomic_write import atomic_write
 from flockenv._io.provenance import made_by
 from flockenv.comparison import run_episodes
 from flockenv.policies import DampedLaw, SignCorrectedLaw
@@ -84,7 +84,7 @@ def tune(law: str, pool: str, options: argparse.Namespace, progress: Progress) -
             rows.append({"generation": generation, **gains(place), "signed_order": score})
             told.append((place, -score))
         search.tell(told)
-        with whole_file(options.out / f"{law.replace(' ', '-')}-{pool}.csv") as file:
+        with atomic_write(options.out / f"{law.replace(' ', '-')}-{pool}.csv") as file:
             file.write(pd.DataFrame(rows).to_csv(index=False, lineterminator="\n").encode())
         progress.advance(task)
     return gains(search.mean)
@@ -115,7 +115,7 @@ def main(arguments: list[str] | None = None) -> None:
                     tuned.setdefault(law, {})[pool] = tune(law, pool, options, progress)
         wall_s = time.perf_counter() - begin
         made = made_by(command, seed=options.seed, samples=0, wall_s=wall_s)
-        with whole_file(options.out / "gains.toml") as file:
+        with atomic_write(options.out / "gains.toml") as file:
             file.write(tomli_w.dumps({**tuned, "made": made}).encode())
     except KeyboardInterrupt:
         sys.exit(f"Interrupted: candidates so far are in {options.out}, but no gains")

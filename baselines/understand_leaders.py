@@ -24,7 +24,7 @@ from rich.progress import Progress
 
 import flockenv
 from flockenv._core import pool_radii_cm
-from flockenv._io.atomic_write import whole_file
+from flockenv._io.atomic_write import atomic_write
 from flockenv.envs.observation import observation_entries, state_entries
 from flockenv.policies.registry import named_policy
 from flockenv.reproduce.style import COLORS, column_figure, paper_style
@@ -251,14 +251,14 @@ def main(arguments: list[str] | None = None) -> None:
                 "tracks": draw_tracks(names, scene, options),
             }
             for name, figure in figures.items():
-                with whole_file(options.out / f"{name}.png") as file:
+                with atomic_write(options.out / f"{name}.png") as file:
                     figure.savefig(file, dpi=200, format="png")
     except KeyboardInterrupt:
         sys.exit("Interrupted: means.csv was not written")
     except (flockenv.FlockError, OSError) as error:
         sys.exit(f"Error: {error}")
     table = pd.DataFrame(means).drop(columns=["cycle_s", "misalignment_rad", "spin_rad_s"])
-    with whole_file(options.out / "means.csv") as file:
+    with atomic_write(options.out / "means.csv") as file:
         file.write(table.to_csv(index=False, lineterminator="\n").encode())
     print(table.round(3).to_string(index=False))
     print(f"written to {options.out}")

@@ -286,9 +286,9 @@ def fit_targets() -> str:
         value, least, most, best = (
             f"{float(row[name]):.3g}" for name in ("value", "value_low", "value_high", "best_seen")
         )
-        inside = "yes" if row["met"] == "True" else "**no**"
+        inside = "yes" if row["in_range"] == "True" else "**no**"
         accepted = f"≥ {low}" if high == "inf" else f"{low} to {high}"
-        name = f"{row['fact']} ({row['source']})"
+        name = f"{row['target']} ({row['source']})"
         body.append([name, accepted, value, f"{least} to {most}", inside, best])
     header = ["quantity", "paper", "fitted", "95 % interval", "in range", "nearest of any trial"]
     return markdown(header, body)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.lib import format as npy
 from numpy.typing import NDArray
 
-from flockenv._io.atomic_write import whole_file
+from flockenv._io.atomic_write import atomic_write
 from flockenv.errors import ParameterError
 
 __all__ = ["read_arrays", "write_arrays"]
@@ -38,7 +38,7 @@ def write_arrays(
         If the file cannot be written; what was there before is still there.
     """
     save = np.savez_compressed if compressed else np.savez
-    with whole_file(path) as file:
+    with atomic_write(path) as file:
         save(file, allow_pickle=False, **dict(arrays))
 
 

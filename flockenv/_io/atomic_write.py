@@ -7,11 +7,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
-__all__ = ["whole_file", "write_text"]
+__all__ = ["atomic_write", "write_text"]
 
 
 @contextmanager
-def whole_file(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
+def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     """Open a file for writing bytes: a temporary one beside it, renamed where all went well.
 
     Raises
@@ -40,5 +40,5 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
     OSError
         If the file cannot be written; what was there before is still there.
     """
-    with whole_file(path) as file:
+    with atomic_write(path) as file:
         file.write(text.encode())

@@ -36,7 +36,7 @@ MOVED = {
 }
 """Old names below `flockenv`, and where their contents are now."""
 
-RENAMED = {"summarise": "summarize"}
+RENAMED = {"Dwelling": "DwellTimes", "dwelling": "dwell_times", "summarise": "summarize"}
 """Old names in moved modules, and what they are called now."""
 
 

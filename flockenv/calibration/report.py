@@ -9,10 +9,10 @@ import tomli_w
 from rich.table import Table
 
 from flockenv import _core
-from flockenv._io.atomic_write import whole_file
+from flockenv._io.atomic_write import atomic_write
 from flockenv._io.extras import require
 from flockenv.calibration.search import HELD_OUT, Fit, Trial, residuals, run_flocks
-from flockenv.calibration.targets import FACTS, NOISE_S
+from flockenv.calibration.targets import NOISE_S, TARGETS
 from flockenv.parameters import FlockParameters
 
 if TYPE_CHECKING:
@@ -23,21 +23,21 @@ __all__ = ["FitReport", "check", "report", "work"]
 VERIFIED_DT_S = 0.02
 """Substep of the runs on held-out seeds."""
 
-_FACTS_SHOWN = ("fact", "source", "asked", "reached", "95 %", "met", "best seen")
+_SHOWN = ("target", "source", "paper", "fitted", "95 %", "in range", "best seen")
 
 
 @dataclass(frozen=True, slots=True)
 class FitReport:
-    """What a fit reached.
+    """The result of a fit.
 
     Attributes
     ----------
     scene : FlockParameters
         The fitted parameters.
     residuals : pandas.DataFrame
-        One row a fact, of held-out seeds; see `calibration.search.residuals`. ``best_seen``
-        is what the trial that came nearest to the fact reached on its own few seeds, whatever it
-        missed otherwise: more than can be had together.
+        One row per target, of held-out seeds; see `calibration.search.residuals`. ``best_seen``
+        is the value of the trial nearest to this one target, on that trial's own few seeds; no
+        trial is that near to all targets together.
     """
 
     scene: FlockParameters
@@ -45,17 +45,17 @@ class FitReport:
 
     def table(self) -> Table:
         """Return the residuals as a table for the terminal."""
-        table = Table(*_FACTS_SHOWN, title_justify="left")
+        table = Table(*_SHOWN, title_justify="left")
         for row in self.residuals.to_dict("records"):
             low, high = row["value_low"], row["value_high"]
             best = row.get("best_seen")
             table.add_row(
-                row["fact"],
+                row["target"],
                 row["source"],
                 f"{row['target_low']:.3g} to {row['target_high']:.3g}",
                 f"{row['value']:.3g}",
                 f"{low:.3g} to {high:.3g}",
-                "yes" if row["met"] else "[bold]no[/]",
+                "yes" if row["in_range"] else "[bold]no[/]",
                 "" if best is None else f"{best:.3g}",
             )
         return table
@@ -69,21 +69,21 @@ def work(fit: Fit, held_out: int) -> int:
 def report(
     fit: Fit, held_out: int, folder: Path, progress: Callable[[str, float], None]
 ) -> FitReport:
-    """Fit, measure what was chosen on held-out seeds, and write the files.
+    """Fit, measure the chosen constants on held-out seeds, and write the files.
 
-    Writes ``fit.toml`` (what was asked), ``trials.csv`` (while it goes on; an interrupted fit goes
-    on from it), ``parameters.toml`` (the fitted scene) and ``residuals.csv``.
+    Writes ``fit.toml`` (the options), ``trials.csv`` (during the search; an interrupted fit resumes
+    from it), ``parameters.toml`` (the fitted scene) and ``residuals.csv``.
 
     Parameters
     ----------
     fit
-        What to search.
+        The search.
     held_out
         Seeds, from `HELD_OUT` on.
     folder
         Where to write.
     progress
-        Called with what was done, in words, and how many steps of `work` that is.
+        Called with the work that was done, in words, and its steps of `work`.
 
     Raises
     ------
@@ -92,12 +92,12 @@ def report(
     MissingExtraError
         Without the extra ``fit``; nothing is written then.
     """
-    # All of them before hours of trials.
+    # Both are required before hours of trials.
     for package in ("cmaes", "pandas"):
         require(package, "fit")
-    asked = asdict(fit) | {"scene": fit.scene.to_dict(), "held_out": held_out}
+    options = asdict(fit) | {"scene": fit.scene.to_dict(), "held_out": held_out}
     header = f"# flockenv {_core.__version__}\n"
-    _write(folder / "fit.toml", header + tomli_w.dumps(asked))
+    _write(folder / "fit.toml", header + tomli_w.dumps(options))
     trials = []
     best = float("inf")
     for trial in fit.search(folder / "trials.csv"):
@@ -117,7 +117,7 @@ def report(
 def check(
     scene: FlockParameters, held_out: int, jobs: int, progress: Callable[[str, float], None]
 ) -> FitReport:
-    """Measure every fact of a scene on held-out seeds, without a fit: `held_out` steps of work.
+    """Measure every target of a scene on held-out seeds, without a fit: `held_out` steps of work.
 
     Raises
     ------
@@ -141,19 +141,22 @@ def _residuals(
 
 
 def _best_seen(fit: Fit, trials: Sequence[Trial]) -> list[float]:
-    """For each fact the value of the trial that came nearest to it, whatever else that missed."""
+    """Return for each target the value of the trial nearest to it."""
     with_flocks = [trial for trial in trials if trial.loss < fit.HOPELESS]
     if not with_flocks:
-        return [float("nan")] * len(FACTS)
-    return [min((trial.values[fact.key] for trial in with_flocks), key=fact.miss) for fact in FACTS]
+        return [float("nan")] * len(TARGETS)
+    return [
+        min((trial.values[target.key] for trial in with_flocks), key=target.residual)
+        for target in TARGETS
+    ]
 
 
 def _rounded(trial: Trial) -> dict[str, float]:
-    """Three digits: more are not determined, and these can be read."""
+    """Return the constants with three digits, because more are not determined."""
     return {name: float(f"{value:.3g}") for name, value in trial.constants.items()}
 
 
 def _write(path: Path, text: str) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
-    with whole_file(path) as file:
+    with atomic_write(path) as file:
         file.write(text.encode())

@@ -1,11 +1,11 @@
 """The fit of the model's free constants to the experiment: seeded, resumable, with a log of trials.
 
 The search is CMA-ES (Hansen's covariance matrix adaptation, from the package cmaes) over logarithms
-of the constants. A trial measures the single boat first; only if that backs and turns about as the
-experiment's boats do, flocks are run, on the same seeds in every trial. The luck of those seeds
-makes the least loss of a trial too good: after the search the best trials, and the minimum of a
-surface that is smoothed through all of them, are run again on more seeds, and what is chosen is
-measured on seeds that the search has never seen.
+of the constants. A trial measures the single boat first. Flocks are run only if that boat backs and
+turns about as the experiment's boats do, on the same seeds in every trial. The least loss of a
+trial is too low by the luck of those seeds. After the search, the best trials and the minimum of a
+response surface through all trials are therefore run again on more seeds, and the chosen constants
+are measured on seeds that the search has not used.
 """
 
 import math
@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv._io.atomic_write import whole_file
+from flockenv._io.atomic_write import atomic_write
 from flockenv._io.extras import require
-from flockenv.calibration.targets import FACTS, NOISE_S, FlockRuns, loss, measure, run_flock
+from flockenv.calibration.targets import NOISE_S, TARGETS, FlockRuns, loss, measure, run_flock
 from flockenv.calibration.targets import single_boat as measure_boat
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
@@ -52,12 +52,12 @@ BOUNDS: Mapping[str, tuple[float, float]] = {
 """Constants that can be fitted, each between these bounds, searched by its logarithm."""
 
 MODEL_CONSTANTS = ("c1", "c2", "c3", "c4", "reverse_speed_cm_s")
-"""What is fitted unless told otherwise: no optional effects."""
+"""Default of the fitted constants: no optional effects."""
 
 HELD_OUT = 1_000_000
 """First of the seeds that no search uses."""
 
-_BOAT_FACTS = ("backing_turn", "backing_speed")
+_BOAT_TARGETS = ("backing_turn", "backing_speed")
 
 
 def experiment_scene() -> FlockParameters:
@@ -68,7 +68,7 @@ def experiment_scene() -> FlockParameters:
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """Constants that were tried, the values of the facts, and the loss."""
+    """Constants of a trial, the values of the targets, and the loss."""
 
     constants: Mapping[str, float]
     values: Mapping[str, float]
@@ -77,14 +77,14 @@ class Trial:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fit:
-    """What is searched, and how.
+    """The search: free constants, targets and effort.
 
     Attributes
     ----------
     free : tuple of str
         Constants to fit, of `BOUNDS`.
     only : tuple of str
-        Keys of the facts to fit to; all that have a weight, if empty.
+        Keys of the targets to fit to; all that have a weight, if empty.
     scene : FlockParameters
         Everything else.
     trials, seeds, finalists, seed : int
@@ -96,11 +96,11 @@ class Fit:
     Raises
     ------
     ParameterError
-        For unknown constants or facts, and numbers out of range.
+        For unknown constants or targets, and numbers out of range.
     """
 
     HOPELESS: ClassVar[float] = 1000.0
-    """Least loss of trials whose boats were too far off alone for flocks to be run."""
+    """Least loss of trials whose single boat is too far off for flocks to be run."""
 
     free: tuple[str, ...] = MODEL_CONSTANTS
     only: tuple[str, ...] = ()
@@ -113,7 +113,7 @@ class Fit:
 
     def __post_init__(self) -> None:
         _refuse_unknown("free", self.free, list(BOUNDS))
-        _refuse_unknown("only", self.only, [fact.key for fact in FACTS])
+        _refuse_unknown("only", self.only, [target.key for target in TARGETS])
         if not self.free:
             raise ParameterError("free = () is not accepted: at least one constant")
         for name in ("trials", "seeds", "finalists", "jobs"):
@@ -161,7 +161,7 @@ class Fit:
     def finals(
         self, trials: Sequence[Trial], progress: Callable[[], None] = lambda: None
     ) -> list[Trial]:
-        """Run the best trials again on other seeds, best first: its favorites were lucky."""
+        """Run the best trials again on other seeds, and return them best first."""
         ranked = sorted(trials, key=lambda trial: trial.loss)[: self.finalists]
         smooth = surface_minimum(self._with_flocks(trials), self.only, self.seed)
         again = []
@@ -171,14 +171,16 @@ class Fit:
         return sorted(again, key=lambda trial: trial.loss)
 
     def trial(self, constants: Mapping[str, float], seeds: Sequence[int]) -> Trial:
-        """Measure every fact with these constants."""
+        """Measure every target with these constants."""
         scene = self.scene.replace(**constants)
         boat = measure_boat(scene)
         lone = measure(boat, _no_runs())
-        missed = sum(fact.miss(lone[fact.key]) for fact in FACTS if fact.key in _BOAT_FACTS)
-        # Twice the tolerance off: flocks of such boats tell nothing.
-        if missed > 2.0:
-            return Trial(dict(constants), lone, self.HOPELESS + missed)
+        distance = sum(
+            target.residual(lone[target.key]) for target in TARGETS if target.key in _BOAT_TARGETS
+        )
+        # Flocks of boats that are two tolerances off carry no information.
+        if distance > 2.0:
+            return Trial(dict(constants), lone, self.HOPELESS + distance)
         values = measure(boat, run_flocks(scene, seeds, NOISE_S, self.jobs))
         return Trial(dict(constants), values, loss(values, self.only))
 
@@ -209,7 +211,7 @@ def run_flocks(
         progress()
         return measured
 
-    # Threads suffice: the simulator lets go of the interpreter while it runs.
+    # Threads suffice: the simulator releases the interpreter lock while it runs.
     with ThreadPoolExecutor(jobs) as pool:
         rows = iter(list(pool.map(run, cells)))
     values = {
@@ -223,21 +225,21 @@ def surface_minimum(
 ) -> list[dict[str, float]]:
     """Find the constants of least loss on planes through all trials: a response surface.
 
-    Each fact is a linear function of the logarithms of the constants, fitted to all trials by least
-    squares; its loss is minimized over draws as widely spread as the trials are. Averaging over
-    trials, it is less deceived by their seeds' luck than the best of them.
+    Each target is a linear function of the logarithms of the constants, fitted to all trials by
+    least squares. The loss of these functions is minimized over draws as widely spread as the trials. It
+    averages over trials, so that the luck of their seeds biases it less than the best trial.
 
     Returns
     -------
     list of dict
-        One set of constants, or none if there are fewer than five trials a constant.
+        One set of constants, or none if there are fewer than five trials per constant.
     """
     if len(trials) < 5 * (len(trials[0].constants) + 1 if trials else 1):
         return []
     names = list(trials[0].constants)
     places = np.log([list(trial.constants.values()) for trial in trials])
     middle, spread = places.mean(axis=0), np.cov(places.T).reshape(len(names), len(names))
-    known = [fact.key for fact in FACTS]
+    known = [target.key for target in TARGETS]
     values = np.array([[trial.values[key] for key in known] for trial in trials])
     whole = np.isfinite(values).all(axis=1)
     planes, *_ = np.linalg.lstsq(_with_one(places[whole] - middle), values[whole], rcond=None)
@@ -258,10 +260,10 @@ def _with_one(rows: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def residuals(scene: FlockParameters, runs: FlockRuns, resamples: int = 1000) -> "pd.DataFrame":
-    """Return each fact with its range, the value reached and its interval, and whether it is met.
+    """Return each target with its range, its value and interval, and whether it is in range.
 
-    Intervals are percentiles of a bootstrap over seeds, at 95 %. A fact counts as met if its value
-    lies in its range.
+    Intervals are percentiles of a bootstrap over seeds, at 95 %. A target is in range if its value
+    lies in its range, whatever its interval.
     """
     pandas = require("pandas", "fit")
     boat = measure_boat(scene)
@@ -272,23 +274,23 @@ def residuals(scene: FlockParameters, runs: FlockRuns, resamples: int = 1000) ->
         measure(boat, runs.resampled(rng.integers(seeds, size=seeds))) for _ in range(resamples)
     ]
     rows = []
-    for fact in FACTS:
-        sample = np.array([each[fact.key] for each in drawn])
+    for target in TARGETS:
+        sample = np.array([each[target.key] for each in drawn])
         defined = sample[np.isfinite(sample)]
         low, high = np.percentile(defined, [2.5, 97.5]) if len(defined) else (math.nan, math.nan)
-        value = values[fact.key]
+        value = values[target.key]
         rows.append(
             {
-                "key": fact.key,
-                "fact": fact.name,
-                "source": fact.source,
-                "target_low": fact.low,
-                "target_high": fact.high,
+                "key": target.key,
+                "target": target.name,
+                "source": target.source,
+                "target_low": target.low,
+                "target_high": target.high,
                 "value": value,
                 "value_low": low,
                 "value_high": high,
-                "met": fact.is_met(value),
-                "statement": fact.statement,
+                "in_range": target.is_in_range(value),
+                "statement": target.statement,
             }
         )
     table: pd.DataFrame = pandas.DataFrame(rows)
@@ -300,21 +302,21 @@ def _no_runs() -> FlockRuns:
 
 
 def _write_log(path: Path, trials: Sequence[Trial]) -> None:
-    free, keys = list(trials[0].constants), [fact.key for fact in FACTS]
+    free, keys = list(trials[0].constants), [target.key for target in TARGETS]
     lines = [",".join([*free, *keys, "loss"])]
     for trial in trials:
         numbers = [*trial.constants.values(), *(trial.values[key] for key in keys), trial.loss]
-        # repr keeps every bit: a fit that is gone on with makes the same next trial.
+        # repr keeps every bit, so that a resumed fit makes the same next trial.
         lines.append(",".join(repr(float(number)) for number in numbers))
     path.parent.mkdir(parents=True, exist_ok=True)
-    with whole_file(path) as file:
+    with atomic_write(path) as file:
         file.write(("\n".join(lines) + "\n").encode())
 
 
 def _read_log(path: Path, free: Sequence[str]) -> list[Trial]:
     if not path.exists():
         return []
-    keys = [fact.key for fact in FACTS]
+    keys = [target.key for target in TARGETS]
     header, *lines = path.read_text(encoding="utf-8").splitlines() or [""]
     if header.split(",") != [*free, *keys, "loss"]:
         raise ParameterError(

@@ -1,8 +1,8 @@
-"""What the paper tells about its experiment in numbers, and the same measured in simulation.
+"""Calibration targets: numbers of the paper's experiment, and the same numbers in simulation.
 
-Each `Fact` has a value that is computed from seeded runs of single boats and of 27 boats, and a
-range that the paper gives for it. Where the paper's words leave the range open, `Fact.statement`
-says how they are read.
+Each `Target` has a value, computed from seeded runs of single boats and of 27 boats, and a range
+that the paper gives for it. Where the paper's words leave the range open, `Target.statement` states
+how they are read.
 """
 
 import math
@@ -16,11 +16,11 @@ from flockenv.parameters import FlockParameters
 from flockenv.simulation import simulate
 
 __all__ = [
-    "FACTS",
     "NOISE_S",
     "QUANTITIES",
-    "Fact",
+    "TARGETS",
     "FlockRuns",
+    "Target",
     "loss",
     "measure",
     "run_flock",
@@ -42,7 +42,7 @@ _MIDDLE = 0.56
 """Ψ_o in the middle between 27 boats in order (0.95) and in disorder (0.886/√27 = 0.17)."""
 
 QUANTITIES = ("psi_o", "rotation", "ordered", "jammed", "off_tangent", "along_target")
-"""What is measured of a run; see `FlockRuns`."""
+"""Measured quantities of a run; see `FlockRuns`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,8 +76,9 @@ class FlockRuns:
     def critical_bw_s(self, leaders: int) -> float:
         """Return where mean Ψ_o falls below 0.56 for good, interpolated between backward durations.
 
-        A curve that never exceeds the middle gets the lowest noise less what it misses, one that
-        always does the highest noise and what it has to spare, so that both can still be compared.
+        A curve that never exceeds the middle gets the lowest bw minus its distance from the
+        middle, and a curve that always does the highest bw plus its distance, so that both can
+        still be compared.
         """
         psi_o, noise_s = self.mean(leaders, "psi_o"), self.noise_s[leaders]
         above = np.flatnonzero(psi_o >= _MIDDLE)
@@ -147,23 +148,23 @@ Value = Callable[[Mapping[str, float], FlockRuns], float]
 
 
 @dataclass(frozen=True, slots=True)
-class Fact:
-    """A number of the experiment.
+class Target:
+    """A number of the experiment with its accepted range.
 
     Attributes
     ----------
     key, name, source, statement : str
-        A word for it, what it is, where the paper has it, and what is asked of the simulation.
+        Short name, full name, place in the paper, and reading of the paper's words.
     low, high : float
-        The range that meets the fact.
+        The accepted range.
     aim : float
-        Where a fit pulls to.
+        The value with residual 0.
     tolerance : float
-        What a miss is measured in.
+        Unit of the residual.
     weight : float
-        Weight of the squared miss in a fit's loss; 0: reported only.
+        Weight of the squared residual in a fit's loss; 0: reported only.
     value : callable
-        The value, of a single boat's numbers and of flock runs.
+        Computes the value from a single boat's numbers and from flock runs.
     """
 
     key: str
@@ -177,10 +178,10 @@ class Fact:
     weight: float
     value: Value
 
-    def miss(self, value: float) -> float:
-        """Return the distance from the aim in tolerances; an undefined value misses by 3.
+    def residual(self, value: float) -> float:
+        """Return the distance from the aim in tolerances; 3 for an undefined value.
 
-        A one-sided fact (whose aim is an end of its range) is missed outside its range only.
+        The residual of a one-sided target (whose aim is an end of its range) is 0 in its range.
         """
         if math.isnan(value):
             return 3.0
@@ -188,8 +189,8 @@ class Fact:
             return max(self.low - value, value - self.high, 0.0) / self.tolerance
         return abs(value - self.aim) / self.tolerance
 
-    def is_met(self, value: float) -> bool:
-        """Tell whether a value lies in the range."""
+    def is_in_range(self, value: float) -> bool:
+        """Return whether a value lies in the range."""
         return self.low <= value <= self.high
 
 
@@ -215,9 +216,9 @@ def _gained(at_s: float) -> Value:
     )
 
 
-def _facts() -> Iterator[Fact]:
+def _targets() -> Iterator[Target]:
     inf = math.inf
-    yield Fact(
+    yield Target(
         "forward_speed",
         "forward speed [cm/s]",
         "Table 1",
@@ -225,7 +226,7 @@ def _facts() -> Iterator[Fact]:
         *(10.0, 20.0, 15.0, 5.0, 1.0),
         _single("forward_cm_s"),
     )
-    yield Fact(
+    yield Target(
         "backing_turn",
         "backing turn [rad/s]",
         "Table 1",
@@ -233,7 +234,7 @@ def _facts() -> Iterator[Fact]:
         *(0.8, 1.2, 1.0, 0.2, 1.0),
         _single("backing_turn_rad_s"),
     )
-    yield Fact(
+    yield Target(
         "backing_speed",
         "backing speed / forward speed",
         "Section 3.2",
@@ -242,7 +243,7 @@ def _facts() -> Iterator[Fact]:
         _single("backing_over_forward"),
     )
     for leaders, aim in ((0, 1.4), (3, 2.0)):
-        yield Fact(
+        yield Target(
             f"critical_bw_{leaders}",
             f"critical bw, {leaders} leaders [s]",
             "Figure 9",
@@ -251,7 +252,7 @@ def _facts() -> Iterator[Fact]:
             _critical(leaders),
         )
     for leaders in NOISE_S:
-        yield Fact(
+        yield Target(
             f"low_noise_{leaders}",
             f"Ψ_o at low noise, {leaders} leaders",
             "Figure 10",
@@ -260,7 +261,7 @@ def _facts() -> Iterator[Fact]:
             _level(leaders, "psi_o", 0.6, 1.0),
         )
     for leaders, bw_s in ((0, 2.2), (3, 2.6)):
-        yield Fact(
+        yield Target(
             f"high_noise_{leaders}",
             f"Ψ_o at high noise, {leaders} leaders",
             "Figure 10, Section 4.3",
@@ -268,7 +269,7 @@ def _facts() -> Iterator[Fact]:
             *(0.0, 0.3, 0.3, 0.1, 1.0),
             _level(leaders, "psi_o", bw_s),
         )
-    yield Fact(
+    yield Target(
         "off_tangent",
         "φ_o off the tangent when ordered [rad]",
         "Eq. (7), figure 9",
@@ -276,7 +277,7 @@ def _facts() -> Iterator[Fact]:
         *(0.0, math.pi / 20, math.pi / 20, math.pi / 40, 1.0),
         _ordered(0, "off_tangent", 0.6, 1.0, 1.2, 1.4),
     )
-    yield Fact(
+    yield Target(
         "ordered",
         "ordered motion regular, no leaders",
         "Table 2",
@@ -284,7 +285,7 @@ def _facts() -> Iterator[Fact]:
         *(0.5, 1.0, 0.5, 0.1, 1.0),
         _level(0, "ordered", 1.0, 1.2),
     )
-    yield Fact(
+    yield Target(
         "jamming",
         "jamming, no leaders",
         "Table 2, figure 9",
@@ -292,7 +293,7 @@ def _facts() -> Iterator[Fact]:
         *(0.005, 0.3, 0.3, 0.1, 0.0),
         _level(0, "jammed", 0.6),
     )
-    yield Fact(
+    yield Target(
         "leaders_direction",
         "ordered in the leaders' direction",
         "Section 4.2, figure 9",
@@ -300,33 +301,33 @@ def _facts() -> Iterator[Fact]:
         *(0.95, 1.0, 0.95, 0.1, 1.0),
         _ordered(3, "along_target", 1.4, 1.8),
     )
-    yield Fact(
+    yield Target(
         "leaders_gain",
         "gain of Ψ_o by 3 leaders at 1.8 s",
         "Figure 12",
-        "more leaders, more order: mean Ψ_o with three leaders less that without, above 0",
+        "more leaders, more order: mean Ψ_o with three leaders minus that without, above 0",
         *(0.0, inf, 0.0, 0.1, 0.0),
         _gained(1.8),
     )
 
 
-FACTS = tuple(_facts())
-"""Everything that a fit is judged by."""
+TARGETS = tuple(_targets())
+"""All calibration targets."""
 
 
 def measure(boat: Mapping[str, float], runs: FlockRuns) -> dict[str, float]:
-    """Return the value of every fact by its key."""
-    return {fact.key: fact.value(boat, runs) for fact in FACTS}
+    """Return the value of every target by its key."""
+    return {target.key: target.value(boat, runs) for target in TARGETS}
 
 
 def loss(values: Mapping[str, float], only: Sequence[str] = ()) -> float:
-    """Return Σ weight·ρ(miss) over the facts, or over some.
+    """Return Σ weight·ρ(residual) over all targets, or over some.
 
-    ρ(m) is m² up to 2 tolerances and 4m - 4 beyond, so that one hopeless fact does not rule.
+    ρ(r) is r² up to 2 tolerances and 4r - 4 beyond, so that one distant target does not dominate.
     """
-    facts = [fact for fact in FACTS if not only or fact.key in only]
-    misses = [fact.miss(values[fact.key]) for fact in facts]
+    targets = [target for target in TARGETS if not only or target.key in only]
+    distances = [target.residual(values[target.key]) for target in targets]
     return sum(
-        (1.0 if only else fact.weight) * (miss**2 if miss < 2.0 else 4.0 * miss - 4.0)
-        for fact, miss in zip(facts, misses, strict=True)
+        (1.0 if only else target.weight) * (each**2 if each < 2.0 else 4.0 * each - 4.0)
+        for target, each in zip(targets, distances, strict=True)
     )

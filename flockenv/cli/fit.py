@@ -18,13 +18,15 @@ _FREE = f"Constants to fit, by commas, of {', '.join(BOUNDS)}."
 
 def fit(
     free: Annotated[str, typer.Option(help=_FREE)] = ",".join(MODEL_CONSTANTS),
-    only: Annotated[str, typer.Option(help="Keys of the facts to fit to, by commas. [all]")] = "",
+    only: Annotated[
+        str, typer.Option(help="Keys of the calibration targets, by commas. [all]")
+    ] = "",
     trials: Annotated[int, typer.Option(help="Trials of the search.")] = 110,
     seeds: Annotated[int, typer.Option(help="Flock seeds in each trial.")] = 4,
     finalists: Annotated[int, typer.Option(help="Trials run again on more seeds.")] = 3,
-    held_out: Annotated[int, typer.Option(min=2, help="Seeds that residuals are of.")] = 24,
+    held_out: Annotated[int, typer.Option(min=2, help="Seeds of the residuals.")] = 24,
     check: Annotated[
-        str | None, typer.Option(help="Search nothing: measure every fact of this preset.")
+        str | None, typer.Option(help="Search nothing: measure every target of this preset.")
     ] = None,
     scheme: Annotated[str | None, typer.Option(help="Scheme of the runs.")] = None,
     noise: Annotated[str | None, typer.Option(help="Noise of the runs.")] = None,
@@ -37,11 +39,11 @@ def fit(
     as_json: Annotated[bool, typer.Option("--json", help="Print the residuals as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no progress.")] = False,
 ) -> None:
-    """Fit the model's constants to the experiment (Table 1, Section 4) and tell what it misses.
+    """Fit the model's constants to the experiment (Table 1, Section 4) and report the residuals.
 
-    Searches with CMA-ES, runs the best trials again on other seeds, and measures every fact with
-    the winner on seeds that the search has never seen. Writes `trials.csv`, `parameters.toml` and
-    `residuals.csv`; interrupted, the same command goes on where it was.
+    Searches with CMA-ES, runs the best trials again on other seeds, and measures every target with
+    the best constants on seeds that the search has not used. Writes `trials.csv`, `parameters.toml`
+    and `residuals.csv`. An interrupted fit resumes with the same command.
 
     Example: `flockenv fit --trials 60 --jobs 2`
     """
@@ -52,15 +54,14 @@ def fit(
     changes = {name: value for name, value in given.items() if value is not None}
     if check is not None:
         scene = FlockParameters.preset(check).replace(**changes)
-        told = "Nothing was written."
-        with interruptible(told), progress_bar(quiet or as_json) as progress:
+        with interruptible("Nothing was written."), progress_bar(quiet or as_json) as progress:
             task = progress.add_task("held-out seeds", total=held_out)
             result = fit_report.check(
                 scene, held_out, jobs, lambda words, steps: progress.advance(task, steps)
             )
     else:
         scene = experiment_scene().replace(**{"dt_s": 0.05, **changes})
-        asked = Fit(
+        search = Fit(
             free=_words(free),
             only=_words(only),
             scene=scene,
@@ -71,11 +72,11 @@ def fit(
             jobs=jobs,
         )
         check_folder(out)
-        told = f"Finished trials are kept in {out}: the same command goes on from them."
-        with interruptible(told), progress_bar(quiet or as_json) as progress:
-            task = progress.add_task("trials", total=fit_report.work(asked, held_out))
+        stored = f"Finished trials are stored in {out}: the same command resumes from them."
+        with interruptible(stored), progress_bar(quiet or as_json) as progress:
+            task = progress.add_task("trials", total=fit_report.work(search, held_out))
             result = fit_report.report(
-                asked,
+                search,
                 held_out,
                 out,
                 lambda words, steps: progress.update(task, description=words, advance=steps),

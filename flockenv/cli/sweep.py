@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from flockenv._io.atomic_write import whole_file
+from flockenv._io.atomic_write import atomic_write
 from flockenv.cli.console import errors, print_json, progress_bar, resumable, say
 from flockenv.cli.output import check_folder, writable
 from flockenv.runs.executors import named
@@ -40,7 +40,7 @@ def sweep(
     folder = out or Path("results/sweep") / spec.stem
     check_folder(folder)
     asked = spec.read_bytes()
-    with writable(folder / "sweep.toml") as path, whole_file(path) as file:
+    with writable(folder / "sweep.toml") as path, atomic_write(path) as file:
         file.write(asked)
     with resumable(folder / "runs"), progress_bar(quiet or as_json) as progress:
         task = progress.add_task(f"{len(work.runs)} runs", total=sum(run.cost for run in work.runs))

@@ -9,7 +9,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flockenv._io.atomic_write import whole_file
+from flockenv._io.atomic_write import atomic_write
 from flockenv.comparison.episodes import NO_LEADERS
 from flockenv.statistics.intervals import Line
 
@@ -66,7 +66,7 @@ def leader_curve(
             for text in legend.get_texts():
                 text.set_parse_math(False)
         figure.suptitle(title, fontsize=9, parse_math=False)
-        with whole_file(path) as file:
+        with atomic_write(path) as file:
             figure.savefig(file, dpi=200, format=path.suffix.removeprefix("."))
 
 

@@ -12,7 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from flockenv._core import __version__
-from flockenv._io.atomic_write import whole_file, write_text
+from flockenv._io.atomic_write import atomic_write, write_text
 from flockenv._io.extras import require
 from flockenv.comparison.episodes import (
     CONTROL_HZ,
@@ -104,7 +104,7 @@ class ComparisonReport:
             ("lines", _lines_table(self.lines)),
             ("differences", self.differences),
         ):
-            with whole_file(folder / f"{name}.csv") as file:
+            with atomic_write(folder / f"{name}.csv") as file:
                 table.to_csv(file, index=False)
         write_text(folder / "run.toml", tomli_w.dumps(dict(self.asked)))
         header = f"# flockenv {__version__}: the scene; seeds, policies and options in run.toml\n"

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv._core import AnimationEncoder
-from flockenv._io.atomic_write import whole_file
+from flockenv._io.atomic_write import atomic_write
 from flockenv.errors import ParameterError
 
 __all__ = ["save_animation"]
@@ -55,7 +55,7 @@ def save_animation(
     if encoder is None:
         raise ParameterError("frames are none: at least one")
     content = encoder.finish()
-    with whole_file(path) as file:
+    with atomic_write(path) as file:
         file.write(content)
 
 

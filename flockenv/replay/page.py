@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from flockenv import _core
-from flockenv._io.atomic_write import whole_file
+from flockenv._io.atomic_write import atomic_write
 from flockenv.errors import ParameterError
 from flockenv.flock import ContactSeries
 from flockenv.parameters import FlockParameters
@@ -109,7 +109,7 @@ def write_replay(
     if not 1 <= len(recordings) <= _MOST_RUNS:
         raise ParameterError(f"{len(recordings)} recordings are not accepted: 1 or {_MOST_RUNS}")
     page, every = replay_page(recordings, MOST_BYTES)
-    with whole_file(path) as file:
+    with atomic_write(path) as file:
         file.write(page)
     return Replay(len(page), every)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pandas as pd
 from matplotlib.figure import Figure
 
-from flockenv._io.atomic_write import whole_file
+from flockenv._io.atomic_write import atomic_write
 from flockenv.reproduce.claim import CheckedClaim
 from flockenv.reproduce.reproduction import Outcome
 from flockenv.reproduce.style import paper_style
@@ -28,7 +28,7 @@ def write_file(path: Path, content: bytes) -> None:
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with whole_file(path) as file:
+        with atomic_write(path) as file:
             file.write(content)
     except OSError as error:
         raise StorageError(f"{path} cannot be written: {error.strerror or error}") from error

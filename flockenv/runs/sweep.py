@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockenv._io.atomic_write import whole_file
+from flockenv._io.atomic_write import atomic_write
 from flockenv._io.extras import require
 from flockenv.errors import FlockError, ParameterError
 from flockenv.runs.executors import Engine, local
@@ -123,9 +123,9 @@ def _outcome(
 
 def _write(table: "pd.DataFrame", folder: Path) -> None:
     try:
-        with whole_file(folder / "sweep.csv") as file:
+        with atomic_write(folder / "sweep.csv") as file:
             file.write(table.to_csv(index=False, lineterminator="\n").encode())
-        with whole_file(folder / "sweep.parquet") as file:
+        with atomic_write(folder / "sweep.parquet") as file:
             table.to_parquet(file, index=False)
     except OSError as error:
         raise StorageError(f"{folder} cannot be written: {error.strerror or error}") from error

@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 
 from flockenv.errors import ParameterError
 
-__all__ = ["Dwelling", "dwelling"]
+__all__ = ["DwellTimes", "dwell_times"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Dwelling:
+class DwellTimes:
     """Stays in s states, over some series.
 
     Attributes
@@ -54,9 +54,9 @@ class Dwelling:
             return np.asarray(60.0 * self.changes / self.time_s[:, None])
 
 
-def dwelling(
+def dwell_times(
     series: Iterable[NDArray[np.str_]], states: Sequence[str], interval_s: float
-) -> Dwelling:
+) -> DwellTimes:
     """Measure stays in series of states that are told at a fixed interval.
 
     Parameters
@@ -90,4 +90,4 @@ def dwelling(
         changed = codes[1:] != codes[:-1]
         np.add.at(changes, (codes[:-1][changed], codes[1:][changed]), 1)
         stays += np.bincount(np.append(codes[:1], codes[1:][changed]), minlength=count)
-    return Dwelling(tuple(states), times, stays, changes)
+    return DwellTimes(tuple(states), times, stays, changes)

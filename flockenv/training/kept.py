@@ -9,7 +9,7 @@ from typing import Self
 
 from stable_baselines3 import PPO
 
-from flockenv._io.atomic_write import whole_file
+from flockenv._io.atomic_write import atomic_write
 from flockenv.policies import NetworkPolicy
 from flockenv.training import checkpoint
 from flockenv.training.checkpoint import Progress
@@ -64,5 +64,5 @@ def _write_rows(path: Path, rows: list[dict[str, float]]) -> None:
         writer = csv.DictWriter(text, rows[0].keys(), lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
-        with whole_file(path) as file:
+        with atomic_write(path) as file:
             file.write(text.getvalue().encode())

@@ -17,7 +17,7 @@ from stable_baselines3.common.logger import KVWriter, Logger, TensorBoardOutputF
 from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.utils import FloatSchedule
 
-from flockenv._io.atomic_write import whole_file
+from flockenv._io.atomic_write import atomic_write
 from flockenv._io.provenance import made_by
 from flockenv.errors import ParameterError
 from flockenv.policies import ModelPolicy, NetworkPolicy, load
@@ -108,7 +108,7 @@ def train(
             copy_into_actor(start, _actor(model), settings)
         with _written(folder, Progress()):
             folder.mkdir(parents=True, exist_ok=True)
-            with whole_file(folder / "settings.toml") as file:
+            with atomic_write(folder / "settings.toml") as file:
                 file.write(settings.to_toml().encode())
             if start is not None:
                 start.save(folder / "start.npz")

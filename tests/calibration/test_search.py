@@ -9,7 +9,7 @@ import flockenv
 from flockenv.calibration import report as fit_report
 from flockenv.calibration import search as experiment_fit
 from flockenv.calibration.search import BOUNDS, Fit, Trial, surface_minimum
-from flockenv.calibration.targets import FACTS, NOISE_S
+from flockenv.calibration.targets import NOISE_S, TARGETS
 
 
 @pytest.fixture
@@ -89,7 +89,7 @@ def test_a_response_surface_finds_what_lucky_trials_hide():
     trials = []
     for _ in range(60):
         c3, c1 = np.exp(rng.normal(np.log(0.1), 0.5)), np.exp(rng.normal(np.log(0.3), 0.5))
-        values = dict.fromkeys((fact.key for fact in FACTS), 0.95)
+        values = dict.fromkeys((target.key for target in TARGETS), 0.95)
         values |= {"forward_speed": 15.0, "backing_turn": 1.0, "critical_bw_3": 2.0}
         values |= {"high_noise_0": 0.2, "high_noise_3": 0.2, "off_tangent": 0.1}
         values |= {"backing_speed": 0.2}

@@ -1,4 +1,4 @@
-"""Law: facts of the experiment are read off runs as their statements say."""
+"""Law: calibration targets are computed from runs as their statements say."""
 
 import math
 
@@ -7,9 +7,9 @@ import pytest
 
 from flockenv import FlockParameters
 from flockenv.calibration.targets import (
-    FACTS,
     NOISE_S,
     QUANTITIES,
+    TARGETS,
     FlockRuns,
     loss,
     measure,
@@ -76,14 +76,19 @@ def test_an_ideal_experiment_has_no_loss_and_misses_are_counted_in_tolerances():
 
 
 def test_a_fact_is_met_inside_its_range_only():
-    facts = {fact.key: fact for fact in FACTS}
-    assert len(facts) == len(FACTS)
-    turn = facts["backing_turn"]
-    assert [turn.is_met(value) for value in (0.79, 0.8, 1.2, 1.21)] == [False, True, True, False]
-    assert not facts["off_tangent"].is_met(math.nan)
-    # One-sided: nothing is missed inside.
-    assert facts["high_noise_0"].miss(0.1) == 0.0
-    assert facts["high_noise_0"].miss(0.4) == pytest.approx(1.0)
+    targets = {target.key: target for target in TARGETS}
+    assert len(targets) == len(TARGETS)
+    turn = targets["backing_turn"]
+    assert [turn.is_in_range(value) for value in (0.79, 0.8, 1.2, 1.21)] == [
+        False,
+        True,
+        True,
+        False,
+    ]
+    assert not targets["off_tangent"].is_in_range(math.nan)
+    # One-sided: the residual is 0 inside.
+    assert targets["high_noise_0"].residual(0.1) == 0.0
+    assert targets["high_noise_0"].residual(0.4) == pytest.approx(1.0)
 
 
 def test_a_run_is_measured_by_its_states():

@@ -23,7 +23,7 @@ def test_a_fit_prints_its_residuals_and_writes_its_files(quick, tmp_path):
     done = CliRunner().invoke(app, ["fit", *options, "--json", "--out", str(tmp_path)])
     assert done.exit_code == 0, done.output
     told = json.loads(done.output)
-    assert {row["met"] for row in told["residuals"]} <= {True, False}
+    assert {row["in_range"] for row in told["residuals"]} <= {True, False}
     fitted = flockenv.FlockParameters.from_dict(told["parameters"])
     text = (tmp_path / "parameters.toml").read_text(encoding="utf-8")
     assert flockenv.FlockParameters.from_toml(text) == fitted

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv.statistics.dwell_times import dwelling
+from flockenv.statistics.dwell_times import dwell_times
 
 STATES = ("a", "b", "c")
 
 
 def test_stays_changes_and_rates_of_a_known_series():
-    found = dwelling([np.array(list("aaabba"))], STATES, 10.0)
+    found = dwell_times([np.array(list("aaabba"))], STATES, 10.0)
     assert found.time_s.tolist() == [40.0, 20.0, 0.0]
     assert found.stays.tolist() == [2, 1, 0]
     assert found.changes.tolist() == [[0, 1, 0], [1, 0, 0], [0, 0, 0]]
@@ -22,7 +22,7 @@ def test_stays_changes_and_rates_of_a_known_series():
 
 
 def test_nothing_changes_between_two_series():
-    found = dwelling([np.array(["a", "a"]), np.array(["b"]), np.array([], "U1")], STATES, 1.0)
+    found = dwell_times([np.array(["a", "a"]), np.array(["b"]), np.array([], "U1")], STATES, 1.0)
     assert found.changes.sum() == 0
     assert found.stays.tolist() == [1, 1, 0]
     assert np.isinf(found.dwell_s[0])
@@ -35,12 +35,12 @@ def test_dwell_times_are_those_of_a_random_process():
     for draw in rng.random(20_000):
         state = 1 - state if draw < (0.1, 0.2)[state] else state
         series.append("ab"[state])
-    found = dwelling(np.array(series).reshape(100, 200), STATES, 1.0)
+    found = dwell_times(np.array(series).reshape(100, 200), STATES, 1.0)
     assert found.dwell_s[:2] == pytest.approx([10.0, 5.0], rel=0.1)
 
 
 def test_unknown_states_and_intervals_are_refused():
     with pytest.raises(flockenv.ParameterError, match="'d' is no state"):
-        dwelling([np.array(["a", "d"])], STATES, 1.0)
+        dwell_times([np.array(["a", "d"])], STATES, 1.0)
     with pytest.raises(flockenv.ParameterError, match="interval_s"):
-        dwelling([], STATES, 0.0)
+        dwell_times([], STATES, 0.0)

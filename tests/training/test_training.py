@@ -10,7 +10,7 @@ import torch
 
 import flockenv
 from flockenv import training
-from flockenv._io.atomic_write import whole_file
+from flockenv._io.atomic_write import atomic_write
 from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy, load
 from flockenv.runs.seeds import FIRST_TRAINING_SEED
@@ -149,7 +149,7 @@ def test_a_full_disk_leaves_the_last_checkpoint(
         FullDisk.versions += 1
         if FullDisk.versions < 3:
             return write_arrays(path, arrays, **options)
-        with whole_file(path) as file:
+        with atomic_write(path) as file:
             file.write(b"PK the beginning")
             raise OSError(errno.ENOSPC, "No space left on device")
 

@@ -16,7 +16,7 @@ from flockenv.reproduce.style import COLORS, column_figure, paper_style
 from flockenv.runs.spec import RunResult, RunSpec
 from flockenv.statistics import structure
 from flockenv.statistics.block_bootstrap import RESAMPLES, block_sums_resampled, interval
-from flockenv.statistics.dwell_times import Dwelling, dwelling
+from flockenv.statistics.dwell_times import DwellTimes, dwell_times
 from flockenv.statistics.intervals import CONFIDENCE
 
 __all__ = ["LEVELS_S", "REPRODUCTIONS", "drawn", "pose_points", "pose_runs", "poses_of"]
@@ -92,7 +92,7 @@ def _table2(settings: Settings, results: Results) -> Outcome:
     leaving: dict[float, NDArray[np.float64]] = {}
     for bw_s, specs in pose_points(settings).items():
         series = [_cycle_states(results[spec]) for spec in specs]
-        stays = dwelling(series, STATES.tolist(), _cycle_s(bw_s))
+        stays = dwell_times(series, STATES.tolist(), _cycle_s(bw_s))
         leaving[bw_s] = _leaving(series, bw_s)
         shares[bw_s] = np.array([(each[:, None] == STATES).mean(axis=0) for each in series])
         rows += _state_rows(bw_s, stays, shares[bw_s], leaving[bw_s])
@@ -126,13 +126,13 @@ def _leaving(series: Sequence[NDArray[np.str_]], bw_s: float) -> NDArray[np.floa
 
     Shape (resamples + 1, 2, states).
     """
-    each = [dwelling([states], STATES.tolist(), _cycle_s(bw_s)) for states in series]
+    each = [dwell_times([states], STATES.tolist(), _cycle_s(bw_s)) for states in series]
     runs = [np.r_[one.time_s, one.changes.sum(axis=1)][None] for one in each]
     return block_sums_resampled(runs, round(1000 * bw_s)).reshape(-1, 2, len(STATES))
 
 
 def _state_rows(
-    bw_s: float, stays: Dwelling, shares: NDArray[np.float64], leaving: NDArray[np.float64]
+    bw_s: float, stays: DwellTimes, shares: NDArray[np.float64], leaving: NDArray[np.float64]
 ) -> list[dict[str, object]]:
     rows = []
     for place, state in enumerate(STATES.tolist()):
@@ -157,7 +157,7 @@ def _state_rows(
     return rows
 
 
-def _rate_rows(bw_s: float, stays: Dwelling) -> list[dict[str, object]]:
+def _rate_rows(bw_s: float, stays: DwellTimes) -> list[dict[str, object]]:
     return [
         {
             "bw_s": bw_s,
