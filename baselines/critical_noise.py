@@ -49,7 +49,7 @@ def critical_noise(means: pd.DataFrame) -> float:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run the scan, write one row a run, print the critical noise of each scene."""
+    """Run the scan, write one row per run, print the critical noise of each scene."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--boats", type=int, default=27)
     parser.add_argument("--seeds", type=int, default=8)

@@ -34,7 +34,7 @@ SETTINGS = TrainingSettings(
     net_arch=(64, 64),
     activation="tanh",
     # From here on as the best of ten runs had it: search_ppo.py, docs/leaders/ppo_search.csv.
-    # At ten decisions a second, exploring rudders cancel out before a boat has turned.
+    # At ten decisions per second, exploring rudders cancel out before a boat has turned.
     control_hz=2.5,
     n_steps=128,
     n_epochs=4,
@@ -45,7 +45,7 @@ SETTINGS = TrainingSettings(
     clip_range=0.135,
     log_std_init=-1.43,
     use_sde=True,
-    # Validated as policies are compared, at ten decisions a second; few episodes flatter.
+    # Validated as policies are compared, at ten decisions per second; few episodes flatter.
     validation_hz=10.0,
     validation_episodes=64,
 )

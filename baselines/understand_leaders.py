@@ -44,7 +44,7 @@ NEAR_WALL_CM, FAR_FROM_WALL_CM, BESIDE_CM = 8.0, 22.0, 20.0
 def watch(
     name: str, scene: flockenv.FlockParameters, options: argparse.Namespace, progress: Progress
 ) -> tuple[pd.DataFrame, float]:
-    """Run episodes; return samples, one row a leader and time, and the mean signed order."""
+    """Run episodes; return samples, one row per leader and time, and the mean signed order."""
     policy = named_policy(name, scene.pool)()
     if isinstance(policy, str):
         raise flockenv.ParameterError(f"{name!r} sees no observations: name another policy")

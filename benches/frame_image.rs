@@ -1,4 +1,4 @@
-//! Frames a second of 600 × 600 pixels with 50 boats, one thread.
+//! Frames per second of 600 × 600 pixels with 50 boats, one thread.
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};

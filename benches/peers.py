@@ -1,4 +1,4 @@
-"""Steps a second of other multi-agent environments: `python benches/peers.py vmas 5` prints JSON.
+"""Steps per second of other multi-agent environments: `python benches/peers.py vmas 5` prints JSON.
 
 Runs in an environment of its own (`make throughput` sets it up): the peers pin other versions.
 """
@@ -13,7 +13,7 @@ ENVS = 64
 
 
 def rate(step: Callable[[], None], steps_each: int, seconds: float) -> float:
-    """Environment steps a second over at least so many seconds, after a warm-up."""
+    """Environment steps per second over at least so many seconds, after a warm-up."""
     for _ in range(5):
         step()
     done, begin = 0, time.perf_counter()

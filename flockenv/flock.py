@@ -1,4 +1,4 @@
-"""A flock moved by hand, and what it tells: contacts, order parameters, statistics of substeps.
+"""A flock that a program advances, with its contacts, order parameters and statistics.
 
 The core computes them (order parameters: Section 3.2, in the LAP frame).
 """
@@ -102,7 +102,7 @@ class OrderSeries:
     def states(
         self, speed_cm_s: float, largest_cluster: NDArray[np.float64] | None = None
     ) -> NDArray[np.str_]:
-        """Tell the collective state at each time (Table 2), shape (t,).
+        """Return the collective state at each time (Table 2), shape (t,).
 
         Meant for times in the analysis window. ``"ordered cw"`` and ``"ordered ccw"``: Ψ_o above
         0.8, φ_o within π/4 of ±π/2, Ψ_v at least a quarter of the preferred speed. ``"jamming"``:
@@ -116,7 +116,7 @@ class OrderSeries:
             Preferred forward speed of the boats.
         largest_cluster
             Part of the boats in the largest cluster, shape (t,), as `largest_cluster` of
-            `flockenv.statistics.structure` tells it. None: no state is called clustering.
+            `flockenv.statistics.structure` computes it. None: no state is called clustering.
 
         Raises
         ------
@@ -166,7 +166,7 @@ class Contacts:
     """Contacts and near-contacts of a flock's last substep, c of them.
 
     Snapshots do not hold them: a flock that was restored or unpickled has none until its next
-    substep, and goes on from the same loads all the same.
+    substep, and continues from the same warm-start cache.
 
     Two nearly parallel hulls, and a hull along the outer wall, touch at two points: two entries.
 
@@ -297,11 +297,11 @@ class Statistics:
     most_factor_entries : int
         Most numbers that the Cholesky factors of one solve held.
     unsolved : int
-        Solves whose constraints contradicted each other or that missed their residual.
+        Solves whose constraints contradicted each other or that exceeded their residual.
     depenetration_passes : int
         Passes that moved deeply overlapping hulls apart.
     neighbor_builds : int
-        Times a substep had to build the neighbor list anew.
+        Substeps that had to rebuild the neighbor list.
     worst_residual_cm_s : float
         Largest natural residual of a solve in cm/s.
     worst_overlap_cm : float

@@ -72,7 +72,7 @@ class FlockParameters:
     current_cap_cm_s: float = _declared("current_cap_cm_s")
 
     def __new__(cls, **values: Any) -> Self:
-        """Refuse unknown fields with the nearest name, which a dataclass would not tell."""
+        """Refuse unknown fields and suggest the nearest name, which a dataclass does not."""
         _refuse_unknown(values)
         return object.__new__(cls)
 
@@ -206,11 +206,11 @@ def _attributes() -> str:
     lines = ["    Attributes", "    ----------"]
     indented = textwrap.TextWrapper(96, initial_indent=" " * 8, subsequent_indent=" " * 8)
     for each in fields(FlockParameters):
-        told = each.metadata
-        unit = f" Unit: {told['unit']}." if told["unit"] else ""
-        accepted = f" Accepted: {told['accepted']}." if told["accepted"] else ""
-        lines += [f"    {each.name} : {told['kind']}"]
-        lines += indented.wrap(f"{told['doc']}{unit}{accepted}")
+        field = each.metadata
+        unit = f" Unit: {field['unit']}." if field["unit"] else ""
+        accepted = f" Accepted: {field['accepted']}." if field["accepted"] else ""
+        lines += [f"    {each.name} : {field['kind']}"]
+        lines += indented.wrap(f"{field['doc']}{unit}{accepted}")
     return "\n".join(lines)
 
 

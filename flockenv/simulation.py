@@ -48,7 +48,7 @@ def simulate(
         Length of the run in s, from 0 s (one sample: the start) to 1e9 s. The run ends with the
         last sample.
     sample_hz
-        Samples a second, taken at 0, 1/sample_hz, 2/sample_hz … Substeps end on samples: rates of
+        Samples per second, taken at 0, 1/sample_hz, 2/sample_hz … Substeps end on samples: rates of
         which 1/dt_s is no multiple change the course of the run within its numerical error.
     policy
         How leaders steer: None or "law" for the steering law, eq. (10), at every substep; the name
@@ -61,10 +61,10 @@ def simulate(
         Control steps per second of a policy; None: as many as a model was trained with, where its
         observation space says so, and otherwise 10.
     dtype
-        float64, or float32 for half the size, which rounds the pose and velocity that are kept but
-        not the run.
+        float64, or float32 for half the size, which rounds the stored pose and velocity but not
+        the run.
     contacts
-        Whether contacts and their forces are recorded too: 28 bytes a contact.
+        Whether contacts and their forces are recorded too: 28 bytes per contact.
     progress
         Called now and then with the flock-seconds simulated since; what it raises ends the run.
     start
@@ -106,7 +106,7 @@ def simulate(
             policy.check_leaders(parameters.n_leaders)
         control_hz = control_rate(policy) if control_hz is None else control_hz
         _check_rates(duration_s, sample_hz, control_hz)
-        steps = _told(_events(duration_s, sample_hz, control_hz), progress)
+        steps = _reported(_events(duration_s, sample_hz, control_hz), progress)
         flock = begun or _core.Flock(parameters, seed)
         columns = _steered(flock, steps, policy, precision, contacts)
     else:
@@ -191,15 +191,15 @@ def _events(
         yield tick, tick in sampled, tick in steered
 
 
-def _told(
+def _reported(
     steps: Iterable[tuple[int, bool, bool]], progress: Callable[[float], object] | None
 ) -> Iterator[tuple[int, bool, bool]]:
-    """Pass steps on, and tell every 10 s of them."""
-    told = 0
+    """Pass steps on, and report every 10 s of them."""
+    reported = 0
     for step in steps:
-        if progress is not None and step[0] - told >= 10 * _TICKS_A_SECOND:
-            progress((step[0] - told) / _TICKS_A_SECOND)
-            told = step[0]
+        if progress is not None and step[0] - reported >= 10 * _TICKS_A_SECOND:
+            progress((step[0] - reported) / _TICKS_A_SECOND)
+            reported = step[0]
         yield step
 
 

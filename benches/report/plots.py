@@ -117,7 +117,7 @@ def _growth(m: Measurements) -> plt.Figure:
         rows = jam[(jam.engine == who[0]) & (jam.setting == who[1])].sort_values("n")
         if len(rows) > 1:
             axes[0].plot(rows.n, rows.us_per_step, label=name, **_style(*style))
-    axes[0].set(ylabel="µs a step, jam, dt = 0.01 s")
+    axes[0].set(ylabel="µs per step, jam, dt = 0.01 s")
     axes[0].legend(frameon=False, fontsize=9)
     of_factor = 8 * m.growth.factor_entries_per_boat
     for values, label, color, marker in [
@@ -126,7 +126,7 @@ def _growth(m: Measurements) -> plt.Figure:
         (of_factor, "in use, of the factor", "#D55E00", "D"),
     ]:
         axes[1].plot(m.growth.n, values, label=label, **_style(color, marker, True))
-    axes[1].set(ylabel="bytes a boat, jam, dt = 0.02 s", ylim=(1, None))
+    axes[1].set(ylabel="bytes per boat, jam, dt = 0.02 s", ylim=(1, None))
     axes[1].legend(frameon=False)
     for axis in axes:
         axis.set(xscale="log", yscale="log", xlabel="boats")
@@ -138,5 +138,5 @@ def _parts(m: Measurements) -> plt.Figure:
     figure, axis = plt.subplots(figsize=(9, 5), layout="constrained")
     spread = [rows.us_per_step - rows.us_q1, rows.us_q3 - rows.us_per_step]
     axis.barh(rows.scene, rows.us_per_step, xerr=spread, color="#56B4E9", capsize=3)
-    axis.set_xlabel("µs a step: 27 boats, leapfrog, dt = 0.01 s, cycle of [2 1 2 1] s")
+    axis.set_xlabel("µs per step: 27 boats, leapfrog, dt = 0.01 s, cycle of [2 1 2 1] s")
     return figure

@@ -1,6 +1,6 @@
 """Named arrays in an ``.npz`` file, written whole or not at all, and read without trust.
 
-NumPy's own reader allocates what a file's headers claim before it looks at the data, and raises
+NumPy's own reader allocates what a file's headers claim before it reads the data, and raises
 some ten kinds of exceptions for damaged files. Here sizes are checked first and there is one kind.
 """
 

@@ -1,4 +1,4 @@
-"""Files of arrays with a header in JSON that tells what they are, read without trust."""
+"""Files of arrays with a header in JSON that describes them, read without trust."""
 
 import json
 import os
@@ -53,7 +53,7 @@ def read_headed(
     if version != current:
         raise ParameterError(
             f"{path} was made for version {version} of the observation; this is version "
-            f"{current}: train it anew"
+            f"{current}: train it again"
         )
     return header, arrays
 

@@ -31,7 +31,7 @@ def commit() -> str:
 
 
 def made_by(command: str, *, seed: int, samples: int, wall_s: float) -> dict[str, str]:
-    """Return what a policy's file tells of its making, all as short texts."""
+    """Return the provenance of a policy's file as short texts."""
     return {
         "command": command,
         "flockenv": _core.__version__,

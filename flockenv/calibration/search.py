@@ -226,8 +226,9 @@ def surface_minimum(
     """Find the constants of least loss on planes through all trials: a response surface.
 
     Each target is a linear function of the logarithms of the constants, fitted to all trials by
-    least squares. The loss of these functions is minimized over draws as widely spread as the trials. It
-    averages over trials, so that the luck of their seeds biases it less than the best trial.
+    least squares. The loss of these functions is minimized over draws as widely spread as the
+    trials. It averages over trials, so that the luck of their seeds biases it less than the best
+    trial.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The command line: `flockenv COMMAND --help` tells what each command does. One file a command."""
+"""The command line, one file per command; `flockenv COMMAND --help` describes each."""
 
 import functools
 import signal
@@ -43,7 +43,7 @@ def _interruptible(command: Callable[..., None]) -> Callable[..., None]:
 
     @functools.wraps(command)
     def wrapped(*arguments: Any, **options: Any) -> None:
-        with interruptible("What was finished before is kept."):
+        with interruptible("Work that was finished before is stored."):
             command(*arguments, **options)
 
     return wrapped

@@ -95,7 +95,7 @@ def compare(
 
 
 def _default_policies(pool: Any) -> dict[str, Callable[[], LeaderPolicy | str]]:
-    """Return what is compared unasked: what is made for a pool only where there is such."""
+    """Return the default policies: those made for a pool only where there are such."""
     from flockenv.policies.registry import named_policy
 
     policies = {}

@@ -40,7 +40,7 @@ errors = Console(stderr=True)
 
 
 def say(text: str, on: Console = console) -> None:
-    """Print a line as it is: brackets in a file's name are no markup, and nothing breaks it."""
+    """Print a line unchanged: brackets in a file's name are no markup, and nothing breaks it."""
     on.print(text, markup=False, highlight=False, soft_wrap=True)
 
 
@@ -89,19 +89,19 @@ def progress_bar(disable: bool) -> Progress:
 
 
 @contextmanager
-def interruptible(told: str | Callable[[], str]) -> Iterator[None]:
-    """On Ctrl-C within a `with` block, end with exit code 130 and say what became of the work.
+def interruptible(message: str | Callable[[], str]) -> Iterator[None]:
+    """On Ctrl-C within a `with` block, end with exit code 130 and a message on the work.
 
     Parameters
     ----------
-    told
-        What is said, or what finds the words then. Another Ctrl-C does not cut it off.
+    message
+        The message, or a function that returns it then. Another Ctrl-C does not cut it off.
     """
     try:
         yield
     except KeyboardInterrupt:
         with on_interrupt(signal.SIG_IGN):
-            say(f"Interrupted. {told if isinstance(told, str) else told()}", errors)
+            say(f"Interrupted. {message if isinstance(message, str) else message()}", errors)
         raise typer.Exit(INTERRUPTED) from None
 
 
@@ -117,22 +117,22 @@ def finished_in(folder: Path, parts: Collection[str]) -> Iterator[None]:
         Names of the finished parts, as it grows within the block.
     """
 
-    def told() -> str:
-        return f"Finished and kept in {folder}: {', '.join(parts)}." if parts else _NOTHING
+    def message() -> str:
+        return f"Finished and stored in {folder}: {', '.join(parts)}." if parts else _NOTHING
 
-    with interruptible(told):
+    with interruptible(message):
         yield
 
 
 @contextmanager
 def resumable(folder: Path) -> Iterator[None]:
-    """On Ctrl-C within a `with` block, end with exit code 130 and say where work goes on from.
+    """On Ctrl-C within a `with` block, end with exit code 130 and say where work resumes from.
 
     Runs under way cannot be stopped in their middle, and long ones take a minute to end: that is
     said at once.
     """
-    told = f"Finished runs are kept in {folder}: the same command goes on from them."
-    with interruptible(told), _announced():
+    message = f"Finished runs are stored in {folder}: the same command resumes from them."
+    with interruptible(message), _announced():
         yield
 
 

@@ -90,7 +90,9 @@ def evaluate(
     found = _by_folder(scenes(preset, params, changes, pool, bw_s))
     pools = {each.pool for each in found.values()}
     if policy in POOL_POLICIES and len(pools) > 1:
-        raise ParameterError(f"{policy!r} is another policy in each pool: ask for one with --pool")
+        raise ParameterError(
+            f"{policy!r} is another policy in each pool: name one pool with --pool"
+        )
     policies = {
         each: {shown: named_policy(given, each, trust=trust) for shown, given in named.items()}
         for each in pools
@@ -123,11 +125,11 @@ def evaluate(
     )
     keep(out / "card.md", lambda path: write_text(path, card))
     if as_json:
-        told = {
+        data = {
             scene: json.loads(each.differences.to_json(orient="records"))
             for scene, each in results.items()
         }
-        print_json(told)
+        print_json(data)
         return
     for each in results.values():
         console.print(each.table(console.width))

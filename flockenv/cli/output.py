@@ -130,8 +130,10 @@ def keep(path: Path, write: Callable[[Path], object]) -> None:
         for folder in (Path(), Path(gettempdir()), Path(os.path.expanduser("~"))):
             refuge = _written_in(folder, path.name, write)
             if refuge is not None:
-                raise ParameterError(f"{failed}; the results are kept in {refuge}") from error
-        raise ParameterError(f"{failed}, and so is every other folder; nothing is kept") from error
+                raise ParameterError(f"{failed}; the results are stored in {refuge}") from error
+        raise ParameterError(
+            f"{failed}, and no other folder can be written; nothing is stored"
+        ) from error
 
 
 def _written_in(folder: Path, name: str, write: Callable[[Path], object]) -> Path | None:

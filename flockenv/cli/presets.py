@@ -34,7 +34,7 @@ def presets(
     values = {name: FlockParameters.preset(name).to_dict() for name in names}
     sources = {name: FlockParameters.preset_sources(name) for name in names}
     if as_json:
-        told = {
+        data = {
             name: {
                 "about": ABOUT[name],
                 "fields": {
@@ -44,7 +44,7 @@ def presets(
             }
             for name in names
         }
-        print_json(told)
+        print_json(data)
         return
     for name in names:
         say(f"{name}: {ABOUT[name]}")

@@ -38,8 +38,8 @@ def reproduce(
     """Reproduce figures of the paper and check its claims.
 
     Writes each figure (PNG and SVG), its data (CSV and Parquet) and a table of claims with measured
-    values, intervals and verdicts; for `all` also one HTML report. Finished runs are kept in
-    `runs/`: interrupted, the same command goes on where it was.
+    values, intervals and verdicts; for `all` also one HTML report. Finished runs are stored
+    in `runs/`, and an interrupted command resumes when it is given again.
 
     Example: `flockenv reproduce fig14 fig17`
     """

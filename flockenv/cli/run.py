@@ -42,7 +42,7 @@ def run(
     trust: TrustOption = False,
     seed: Annotated[int, typer.Option(min=0, help="Seed of placement and noise.")] = 0,
     minutes: Annotated[float, typer.Option(min=0.0, help="Length of the run.")] = 8.0,
-    hz: Annotated[float, typer.Option(help="Samples a second.")] = 10.0,
+    hz: Annotated[float, typer.Option(help="Samples per second.")] = 10.0,
     contacts: Annotated[
         bool, typer.Option("--contacts/--no-contacts", help="Record contact forces too.")
     ] = True,

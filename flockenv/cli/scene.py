@@ -47,7 +47,7 @@ TrustOption = Annotated[
 def read_scene(
     preset: str | None = None, file: Path | None = None, changes: Sequence[str] | None = None
 ) -> FlockParameters:
-    """Return the parameters that a command's options ask for.
+    """Return the parameters that a command's options select.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def _file_fields(path: Path) -> dict[str, Any]:
 
 
 def changed_fields(changes: Sequence[str]) -> dict[str, Any]:
-    """Return what `--set` options ask for: values as in TOML, words also without quotes.
+    """Return what `--set` options give: values as in TOML, words also without quotes.
 
     Raises
     ------

@@ -25,10 +25,10 @@ def sweep(
 ) -> None:
     """Run a grid of parameters and seeds, as one table.
 
-    Writes `sweep.csv` and `sweep.parquet`, one row a run, which `flockenv.runs.sweep.load_sweep`
+    Writes `sweep.csv` and `sweep.parquet`, one row per run, which `flockenv.runs.sweep.load_sweep`
     reads, and beside them the TOML file as `sweep.toml`.
-    Finished runs are kept in `runs/`: interrupted, the same command goes on where it was. What the
-    TOML file holds is told in `docs/sweep.md`.
+    Finished runs are stored in `runs/`, and an interrupted sweep resumes with the same command.
+    `docs/sweep.md` describes the TOML file.
 
     Example: `flockenv sweep docs/sweep-example.toml`
     """
@@ -39,9 +39,9 @@ def sweep(
     work = read_sweep(spec)
     folder = out or Path("results/sweep") / spec.stem
     check_folder(folder)
-    asked = spec.read_bytes()
+    given = spec.read_bytes()
     with writable(folder / "sweep.toml") as path, atomic_write(path) as file:
-        file.write(asked)
+        file.write(given)
     with resumable(folder / "runs"), progress_bar(quiet or as_json) as progress:
         task = progress.add_task(f"{len(work.runs)} runs", total=sum(run.cost for run in work.runs))
         table = run_sweep(

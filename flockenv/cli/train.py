@@ -40,7 +40,7 @@ def train(
 
     Writes `best.npz`, the best policy by validation, which `flockenv compare --policy` takes,
     `last.npz`, `curve.csv`, `validations.csv`, `settings.toml`, a checkpoint and logs for
-    tensorboard. What the TOML file holds is told in `docs/train.md`.
+    tensorboard. `docs/train.md` describes the TOML file.
 
     Example: `flockenv train --set 'pools=["table-1"]' --set 'start=damped law' --samples 500000`
     """
@@ -55,7 +55,7 @@ def train(
     else:
         wanted = _settings(settings, change or [], samples, seed)
         check_folder(out)
-    with interruptible(lambda: _kept(out)), progress_bar(quiet or as_json) as bar:
+    with interruptible(lambda: _last_checkpoint(out)), progress_bar(quiet or as_json) as bar:
         task = bar.add_task("beginning", total=wanted.samples)
 
         def report(progress: training.Progress) -> None:
@@ -97,7 +97,7 @@ def _settings(path: Path | None, change: list[str], samples: int | None, seed: i
     return TrainingSettings.from_dict(values)
 
 
-def _kept(out: Path) -> str:
+def _last_checkpoint(out: Path) -> str:
     if (out / "checkpoint.npz").exists():
-        return f"The last checkpoint is kept: flockenv train --resume --out {out}"
+        return f"The last checkpoint is stored: flockenv train --resume --out {out}"
     return "There is no checkpoint yet: start again."

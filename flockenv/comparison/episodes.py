@@ -84,7 +84,7 @@ def compare_leaders(
     Returns
     -------
     pandas.DataFrame
-        One row an episode: ``policy``, ``leaders``, ``seed``, the `QUANTITIES` and the
+        One row per episode: ``policy``, ``leaders``, ``seed``, the `QUANTITIES` and the
         `ORDERING_TIMES`.
 
     Raises
@@ -167,7 +167,7 @@ def run_episodes(
     Returns
     -------
     dict
-        The `QUANTITIES` and `ORDERING_TIMES` by name, one number an episode.
+        The `QUANTITIES` and `ORDERING_TIMES` by name, one number per episode.
     """
     policy = as_policy(policy)
     control_hz = options.get("control_hz", control_rate(policy))

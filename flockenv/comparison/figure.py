@@ -16,7 +16,7 @@ from flockenv.statistics.intervals import Line
 __all__ = ["leader_curve"]
 
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
-"""Okabe and Ito's colors, told apart by all."""
+"""Okabe and Ito's colors, which every kind of eye distinguishes."""
 
 _LABELS = {
     "psi_o": r"mean $\Psi_o$",
@@ -36,7 +36,7 @@ def leader_curve(
     Parameters
     ----------
     runs
-        One row an episode, of `compare_leaders`.
+        One row per episode, of `compare_leaders`.
     means
         Its means and intervals by policy and number of leaders, of `summarize`.
     lines
@@ -103,5 +103,5 @@ def _draw_policy(axes: Axes, shown: _Shown, line: Line | None, shift: float, col
         return
     x = np.array([shown.k.min(), shown.k.max()])
     y = line.intercept + line.slope * x
-    told = "no line to fit" if np.isnan(line.f) else f"F = {line.f:.1f}, p = {line.p:.1g}"
-    axes.plot(x, y, "-", lw=1, color=color, label=f"{shown.label}: {told}")
+    label = "no line to fit" if np.isnan(line.f) else f"F = {line.f:.1f}, p = {line.p:.1g}"
+    axes.plot(x, y, "-", lw=1, color=color, label=f"{shown.label}: {label}")

@@ -1,4 +1,4 @@
-"""A policy's model card: what it is, how it was made and how it compares, in Markdown."""
+"""A policy's model card in Markdown: the policy, its provenance and its comparison."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -29,13 +29,13 @@ def model_card(
     Parameters
     ----------
     name
-        Under which name it stands in the results.
+        Its name in the results.
     policy
-        The policy itself; of a learned one, the card tells how it was made.
+        The policy; the card of a learned policy lists its provenance.
     results
-        Comparisons in which it takes part, by scene.
+        Its comparisons, by scene.
     command
-        What made the results.
+        The command that made the results.
     seeds, duration_s
         Of their episodes.
     """
@@ -93,7 +93,7 @@ def _differences(name: str, result: ComparisonReport) -> list[str]:
     ]
     for row in own.to_dict("records"):
         interval = f"{row['mean']:+.3f} [{row['low']:+.3f}, {row['high']:+.3f}]"
-        # No ratio to what is not clearly above zero.
+        # A ratio needs a reference clearly above zero.
         known = not math.isnan(row["ratio"])
         ratio = f"{row['ratio']:.2f} [{row['ratio_low']:.2f}, {row['ratio_high']:.2f}]"
         lines.append(

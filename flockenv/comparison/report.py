@@ -39,9 +39,9 @@ if TYPE_CHECKING:
 __all__ = ["ComparisonReport", "report"]
 
 
-# A table of one line a row needs so many columns.
+# Columns that a table of one line per row needs.
 _WIDE = 132
-# That of "[-0.123, 0.045]".
+# The width of "[-0.123, 0.045]".
 _INTERVAL_WIDTH = 15
 
 NAMES = {
@@ -49,7 +49,7 @@ NAMES = {
     "signed_order": "signed order",
     "share_towards_target": "time towards target",
 }
-"""What the `QUANTITIES` are called in print."""
+"""Printed names of the `QUANTITIES`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +59,7 @@ class ComparisonReport:
     Attributes
     ----------
     scene : FlockParameters
-        What was run, but for the number of leaders.
+        The scene, except for the number of leaders.
     means : pandas.DataFrame
         One row for each policy and number of leaders.
     lines : dict
@@ -69,7 +69,7 @@ class ComparisonReport:
         How much signed order each policy has beyond each one before it, its ``reference``, seed by
         seed, for each number of leaders; empty for a single policy.
     runs : pandas.DataFrame
-        One row an episode, of `compare_leaders`.
+        One row per episode, of `compare_leaders`.
     asked : dict
         What the numbers depend on, the scene aside: seeds, policies, options.
     environment : dict
@@ -113,7 +113,7 @@ class ComparisonReport:
         leader_curve(self.runs, self.means, self.lines, self.title(), picture)
 
     def title(self) -> str:
-        """Return what was run, in one line."""
+        """Return the scene and the options in one line."""
         scene, options = self.scene, dict(self.environment)
         target = options.pop("target", scene.target)
         dropped = options.pop("dropout_rate", 0.0)
@@ -129,7 +129,7 @@ class ComparisonReport:
         return ", ".join(parts)
 
     def table(self, width: int = _WIDE) -> Table:
-        """Return the means as a table for a terminal of so many columns."""
+        """Return the means as a table for a terminal of this width in columns."""
         is_wide = width >= _WIDE
         table = Table(title=self.title(), title_justify="left", caption_justify="left")
         table.caption = (
@@ -153,7 +153,7 @@ class ComparisonReport:
         return table
 
     def differences_in_words(self) -> str:
-        """Return the differences from the first policy, one a row of text."""
+        """Return the differences from the first policy, one per line."""
         shown = self.differences
         if len(shown) > 0:
             shown = shown[shown["reference"] == shown["reference"].iloc[0]]
@@ -164,7 +164,7 @@ class ComparisonReport:
         )
 
     def lines_in_words(self) -> str:
-        """Return the fitted lines, one a row of text."""
+        """Return the fitted lines, one per line of text."""
         return "\n".join(
             f"{policy}: {NAMES[quantity]} = {line}"
             for (policy, quantity), line in self.lines.items()

@@ -40,7 +40,7 @@ class OneFlock:
 
     @property
     def flock(self) -> _core.Flock:
-        """A copy of the flock as it is now."""
+        """A copy of the flock in its present state."""
         return self._batch.core.flock(0)
 
     def get_state(self) -> bytes:
@@ -52,7 +52,7 @@ class OneFlock:
         self._batch.core.restore(state)
 
     def clone(self) -> Self:
-        """Return an independent copy that goes on exactly as this one."""
+        """Return an independent copy that continues with the same bits."""
         return copy.deepcopy(self)
 
     def _show(self) -> None:

@@ -51,7 +51,7 @@ class LeaderBatch:
         self.core.reset(requests)
 
     def _per_flock(self, options: Mapping[str, Any]) -> list[dict[str, Any]]:
-        """Options for each flock: lists have one entry a flock, anything else holds for all."""
+        """Options for each flock: lists have one entry per flock, anything else holds for all."""
         per_flock: list[dict[str, Any]] = [{} for _ in range(self.num_flocks)]
         for name, value in options.items():
             values = value if isinstance(value, list) else [value] * self.num_flocks
@@ -64,20 +64,20 @@ class LeaderBatch:
         return per_flock
 
     def begin_info(self, flock: int) -> dict[str, Any]:
-        """Return what is told at the beginning of an episode."""
+        """Return the infos of the start of an episode."""
         episode = self.core.episode(flock)
         seed = np.uint64(episode["flock_seed"])
         return {"target": episode["target"], "bw_s": episode["bw_s"], "flock_seed": seed}
 
     def end_info(self, flock: int) -> dict[str, Any]:
-        """Return what is told at the end of an episode."""
+        """Return the infos of the end of an episode."""
         summary = self.core.finished(flock)
         if summary is None:
             return {}
         return {"episode_summary": {**summary, "flock_seed": np.uint64(summary["flock_seed"])}}
 
     def reward_terms(self) -> dict[str, NDArray[np.float64]]:
-        """Return each term of the last step's reward, one number a row."""
+        """Return each term of the last step's reward, one number per row."""
         return dict(zip(TERMS, self.core.reward_terms(), strict=True))
 
 

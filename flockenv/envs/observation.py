@@ -55,7 +55,7 @@ def observation_entries(blocks: Mapping[str, Any] | None = None) -> list[Entry]:
 
 
 def state_entries(n_boats: int) -> list[Entry]:
-    """Return every entry of the global state of so many boats, in order."""
+    """Return every entry of the global state of a flock of this size, in order."""
     return [Entry(*row) for row in _core.state_table(n_boats)]
 
 

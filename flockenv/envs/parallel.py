@@ -1,4 +1,4 @@
-"""`LeadersParallelEnv`: each leader an agent, behind PettingZoo's parallel interface."""
+"""`LeadersParallelEnv`: each leader is an agent of PettingZoo's parallel interface."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -114,7 +114,7 @@ class LeadersParallelEnv(
         ----------
         seed
             Fixes the start, the noise and what is drawn for the episode, and those of the episodes
-            that follow without a seed. None goes on to the next episode.
+            that follow without a seed. None continues with the next episode.
         options
             ``target``, ``bw_s``, ``state`` and ``snapshot`` as in `LeadersEnv.reset`.
 
@@ -122,7 +122,7 @@ class LeadersParallelEnv(
         -------
         observations, infos : dict
             By agent; observations have shape (observation size,), float32, infos are empty. What
-            was drawn for the episode is told by `episode`.
+            was drawn for the episode is in `episode`.
         """
         self._batch.reset([seed], options, lambda: drawn_seed(self._random))
         self.agents = self.possible_agents[:]
@@ -138,7 +138,7 @@ class LeadersParallelEnv(
         Parameters
         ----------
         actions
-            One an agent: a rudder of shape (1,), clipped to [-1, 1], or the number of a level.
+            One per agent: a rudder of shape (1,), clipped to [-1, 1], or the number of a level.
 
         Returns
         -------

@@ -86,7 +86,8 @@ class LeadersEnv(OneFlock, gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
         Parameters
         ----------
         seed
-            Fixes this episode, and those that follow without a seed. None goes on to the next one.
+            Fixes this episode, and those that follow without a seed. None continues with the
+            next one.
         options
             For this episode: ``target`` ("cw", "ccw", "random", "alternate"), ``bw_s`` in s,
             ``state`` (a dictionary with pose (n, 3) and, if need be, velocity (n, 3), time_s and
@@ -139,5 +140,5 @@ class LeadersEnv(OneFlock, gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
         return rows.reshape(-1), float(rewards.mean()), False, over, info
 
     def observe(self) -> NDArray[np.float32]:
-        """Return the observation as it is now."""
+        """Return the present observation."""
         return self._batch.core.observe().reshape(-1)

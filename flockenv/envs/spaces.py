@@ -1,4 +1,4 @@
-"""Action spaces: one rudder a leader, continuous or a choice of levels."""
+"""Action spaces: one rudder per leader, continuous or a choice of levels."""
 
 from typing import Any
 
@@ -29,7 +29,7 @@ def joint_action_space(levels: int | None, leaders: int) -> gymnasium.Space[Any]
 def flat_actions(
     actions: ArrayLike, shape: tuple[int, ...], levels: int | None, name: str = "actions"
 ) -> NDArray[np.float64]:
-    """Return actions of the given shape as the core takes them: one number a leader, in order.
+    """Return actions of the given shape for the core: one number per leader, in order.
 
     `levels` is the environments' option `rudder_levels`; messages call the actions by `name`.
 

@@ -51,13 +51,13 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
 
     ## Rewards
     The weighted sum of the terms below, mean over a flock's leaders; `signed_order` with weight 1
-    unless `reward` says otherwise. `reward_terms()` tells those of the last step.
+    unless `reward` says otherwise. `reward_terms()` returns those of the last step.
 
     {reward_table}
 
     ## Starting state
     {starting_state} Here `seed=s` seeds flock i with s + i, a list gives each flock its own, and an
-    option that is a list has one entry a flock. `reset(options={"reset_mask": mask})` resets some
+    option that is a list has one entry per flock. `reset(options={"reset_mask": mask})` resets some
     flocks.
 
     ## Episode end
@@ -126,8 +126,8 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         Parameters
         ----------
         seed
-            One for flock 0, each following flock having the next; or one a flock; None goes on to
-            the next episode.
+            One for flock 0, each following flock having the next; or one per flock; None continues
+            with the next episode.
         options
             ``target`` ("cw", "ccw", "random", "alternate"), ``bw_s`` (s), ``state`` (a dictionary
             with pose, velocity, time_s and allow_overlap as in `Flock.set_state`) or ``snapshot``
@@ -241,7 +241,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         return self._shaped(self._batch.core.observe())
 
     def clone(self) -> Self:
-        """Return an independent copy that goes on exactly as this one."""
+        """Return an independent copy that continues with the same bits."""
         return copy.deepcopy(self)
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:

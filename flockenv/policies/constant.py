@@ -1,4 +1,4 @@
-"""Policies that look at nothing: what steering at all is worth."""
+"""Policies that observe nothing, as controls for the worth of steering."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -33,7 +33,7 @@ class StraightAhead(RowPolicy):
 
 
 class RandomRudders(RowPolicy):
-    """Leaders whose rudders are drawn anew for each control step, uniformly from [-1, 1].
+    """Leaders whose rudders are drawn for each control step, uniformly from [-1, 1].
 
     Parameters
     ----------

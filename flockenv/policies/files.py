@@ -1,4 +1,4 @@
-"""Learned policies in ``.npz`` files: a header that tells what they are, and plain arrays."""
+"""Learned policies in ``.npz`` files: a header that describes them, and plain arrays."""
 
 import json
 import os

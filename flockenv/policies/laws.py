@@ -65,9 +65,9 @@ def _rebuilt(
 class SteeringLaw(ObservedPolicy):
     """The paper's law, eq. (10): s = clamp(6·wrap(β - α)/π, -1, 1).
 
-    β is the tangential heading of the target direction at the leader's own place. The law is
-    evaluated once a control step, from the observation; `Flock.advance` without rudders does so at
-    every substep, from the pose.
+    β is the tangential heading of the target direction at the leader's own position. The
+    law is evaluated once per control step, from the observation; `Flock.advance` without rudders
+    evaluates it at every substep, from the pose.
 
     Parameters
     ----------

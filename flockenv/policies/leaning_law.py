@@ -1,4 +1,4 @@
-"""`LeaningLaw`: the damped law about a heading that leans outward by what the leader sees."""
+"""`LeaningLaw`: the damped law about a heading that leans outward by the observation."""
 
 import os
 from collections.abc import Mapping
@@ -46,13 +46,14 @@ FEATURES = (
     "leaders_outward",
     "leaders_ahead",
 )
-"""What a leaning leader looks at.
+"""The features of a leaning leader's lean.
 
-Entries of the observation by their names there; ``near_outer_wall``, how much the radial position
-exceeds 0.6; and sums over the neighbors seen. Normal boats count with exp(-d²/2), leaders
-(``leaders…``) with exp(-d²/8), d their distance in the observation's unit of 6 boat radii. Summed
-are 1, the places (``outward``, ``ahead``: clockwise), the velocities, how far they head against the
-leader (``opposed``: (1 - cos of the relative heading)/2, ``turned``: its sine) and products.
+They are entries of the observation by their names there; ``near_outer_wall``, how much the radial
+position exceeds 0.6; and sums over the observed neighbors. Normal boats count with exp(-d²/2),
+leaders (``leaders…``) with exp(-d²/8), where d is their distance in the observation's unit of 6
+boat radii. The sums are of 1, the positions (``outward``, ``ahead``: clockwise), the velocities,
+how far they head against the leader (``opposed``: (1 - cos of the relative heading)/2, ``turned``:
+its sine) and products.
 """
 
 _LARGEST_LEAN = 1.2
@@ -159,13 +160,13 @@ class LeaningLaw(RowPolicy):
     observation
         Blocks of the observation that differ from the default layout.
     made
-        What made it: any short texts by name, such as the command, the seed and the samples.
+        Its provenance: any short texts by name, such as the command, the seed and the samples.
 
     Raises
     ------
     ParameterError
-        For unknown names, numbers that are not finite, and layouts without the blocks that are
-        looked at.
+        For unknown names, numbers that are not finite, and layouts without the blocks of the
+        features.
     """
 
     def __init__(
@@ -222,7 +223,7 @@ class LeaningLaw(RowPolicy):
 
     @classmethod
     def from_file(cls, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Self:
-        """Return the law that a file's header and arrays tell of.
+        """Return the law of a file's header and arrays.
 
         Raises
         ------

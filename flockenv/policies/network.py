@@ -110,7 +110,7 @@ class NetworkPolicy(RowPolicy):
 
     @classmethod
     def from_file(cls, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Self:
-        """Return the policy that a file's header and arrays tell of.
+        """Return the policy of a file's header and arrays.
 
         Raises
         ------

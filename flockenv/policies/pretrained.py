@@ -1,4 +1,4 @@
-"""Policies from files, and what ships for the named pools: tuned gains and learned leaders."""
+"""Policies from files, and those of the named pools: tuned gains and pretrained leaders."""
 
 import os
 from collections.abc import Mapping
@@ -29,7 +29,7 @@ TUNED_GAINS: Mapping[str, Mapping[str, Mapping[str, float]]] = {
         "table-1": {"gain": 3.02, "backward_gain": 4.1, "damping": 35.6},
     },
 }
-"""Gains by law and pool: what `python baselines/tune_laws.py` (seed 0) found for three leaders
+"""Gains by law and pool: found by `python baselines/tune_laws.py` (seed 0) for three leaders
 among 27 boats at each pool's critical noise, on training seeds."""
 
 

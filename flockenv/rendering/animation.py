@@ -31,7 +31,7 @@ def save_animation(
     frames
         Arrays (height, width, 3) of uint8, all of one shape.
     fps
-        Frames a second, 0.1 to 100; many programs show GIF at 50 at most.
+        Frames per second, 0.1 to 100; many programs show GIF at 50 at most.
 
     Raises
     ------

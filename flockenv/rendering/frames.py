@@ -19,7 +19,7 @@ DEFAULT_SIZE = (600, 600)
 def frame(
     flock: Any, width: int = DEFAULT_SIZE[0], height: int = DEFAULT_SIZE[1]
 ) -> NDArray[np.uint8]:
-    """Return a picture of a flock as it is now, or of a recording at a time.
+    """Return a picture of a flock in its present state, or of a recording at a time.
 
     ``frame(flock)`` shows a flock, ``frame(recording, time_s)`` the last sample of a recording up
     to a time in s. Both take a width and a height.

@@ -29,15 +29,15 @@ def require_pygame() -> Any:
 class Window:
     """A window that shows a flock in real time.
 
-    Keys: space pauses and goes on; right arrow takes one step; + and - double and halve the speed.
-    There is one window in a process: a second one takes its place.
+    Keys: space pauses and continues; right arrow takes one step; + and - double and halve the
+    speed. A process has one window: a second one takes its place.
 
     Parameters
     ----------
     width, height
         Size in pixels.
     fps
-        Frames a second of simulated time: what real time is kept against.
+        Frames per second of simulated time, which sets the pace of real time.
 
     Raises
     ------
@@ -49,7 +49,7 @@ class Window:
 
     #: Slowest and fastest speed.
     SPEEDS = (1 / 16, 64.0)
-    #: Frames a second that are drawn at most; at higher speeds some are left out.
+    #: Frames per second that are drawn at most; at higher speeds some are left out.
     FASTEST_DRAWN = 60.0
 
     def __init__(self, width: int, height: int, fps: float) -> None:

@@ -163,7 +163,7 @@ function valueRange(runs, key) {
   return ranges.get(key);
 }
 
-/** Round numbers between two, about so many. */
+/** Round numbers between two numbers, about `count` of them. */
 export function ticks(low, high, count, roundStep = roundNumber) {
   const step = roundStep((high - low) / count);
   const first = Math.ceil(low / step - 1e-9);

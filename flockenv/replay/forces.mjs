@@ -2,11 +2,11 @@
 
 import { roundNumber } from "./words.mjs";
 
-/** Bars are no longer than so many hulls are wide; those of stronger forces end in an arrowhead. */
+/** Longest bar, in widths of a hull; those of stronger forces end in an arrowhead. */
 export const LONGEST = 6;
 /** Bars shorter than this part of a hull's width are left out. */
 const SHORTEST = 0.05;
-/** Forces looked at, at most, to choose the scale. */
+/** Largest number of forces that the scale is chosen from. */
 const MOST_SAMPLES = 20_000;
 
 /**

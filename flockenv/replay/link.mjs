@@ -1,4 +1,4 @@
-// The part of the page's address that tells what is shown: `#t=240&speed=8`.
+// The part of the page's address that selects what is shown: `#t=240&speed=8`.
 
 /**
  * What a fragment asks for: `time` in s and `speed`, null where it says nothing, and `ignored`, a sentence

@@ -1,4 +1,4 @@
-// Begins the page: unpacks its runs, shows them at the moment that tells most, and plays.
+// Starts the page: unpacks its runs, shows them at the most telling moment, and plays.
 
 import { unpack } from "./packing.mjs";
 import { Player } from "./player.mjs";

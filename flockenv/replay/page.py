@@ -28,7 +28,7 @@ from flockenv.replay.quantities import ShownQuantity, shown_quantities, telling_
 __all__ = ["MOST_BYTES", "MOST_INLINE_BYTES", "Replay", "inline_replay", "write_replay"]
 
 MOST_BYTES = 10_000_000
-"""Size that no page exceeds: of longer runs it shows fewer samples a second."""
+"""Size that no page exceeds: of longer runs it shows fewer samples per second."""
 
 MOST_INLINE_BYTES = 2_000_000
 """Size that no page inside a notebook exceeds: notebooks keep what they show."""
@@ -78,10 +78,10 @@ def write_replay(
 ) -> Replay:
     """Write one or two recordings as one HTML page that plays them and needs no network.
 
-    The page opens at the minute that tells most and plays from there at eight times real time: of
-    one run the minute in which signed order changes most (mean of its second half less mean of its
-    first), of two runs the minute in which their signed orders differ most on average. A link to
-    the page may end in ``#t=240&speed=8``, a time in s and a speed.
+    The page opens at the most telling minute and plays from there at eight times real time. This is
+    for one run the minute in which signed order changes most (mean of its second half minus mean of
+    its first), and for two runs the minute in which their signed orders differ most on average. A
+    link to the page may end in ``#t=240&speed=8``, a time in s and a speed.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def write_replay(
     ParameterError
         For no recording or more than two, and for one too large to be shown at all.
     OSError
-        If the file cannot be written; what was there before is still there.
+        If the file cannot be written; the file from before remains then.
     """
     if isinstance(recordings, Recording):
         recordings = {Path(path).stem: recordings}
@@ -136,7 +136,7 @@ def inline_replay(recording: Recording, name: str) -> str:
 def replay_page(
     recordings: Mapping[str, Recording], most_bytes: int, *, plays: bool = True
 ) -> tuple[bytes, int]:
-    """Return a page of at most so many bytes, and which of the samples it shows.
+    """Return a page of at most this size in bytes, and which of the samples it shows.
 
     Raises
     ------
@@ -271,7 +271,7 @@ def _add_contacts(
     sample = np.repeat(np.arange(len(recording)), contacts.count)
     kept = sample % every == 0
     sample, i, normal = sample[kept], contacts.i[kept], contacts.normal[kept]
-    # A hull's surface point is its foot on the core and the normal: one number is left to tell.
+    # A hull's surface point is its foot on the core and the normal: one number remains.
     pose = recording.pose[sample, i]
     foot = contacts.point_cm[kept] - pose[:, :2]
     foot += recording.parameters.boat_radius_cm * normal

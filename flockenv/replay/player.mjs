@@ -218,7 +218,7 @@ export class Player {
     if (!this.playing) {
       return;
     }
-    // A page in the background gets no frames; it goes on where it was.
+    // A page in the background gets no frames; it continues where it was.
     const passed = Math.min(Math.max(now - this.before, 0), 250) / 1000;
     this.before = now;
     this.time = Math.min(this.time + passed * this.speed, this.end);
@@ -228,7 +228,7 @@ export class Player {
     requestAnimationFrame((next) => this.#tick(next));
   }
 
-  /** Does what the page's link says, and tells what of it cannot be done. */
+  /** Does what the page's link says, and reports what of it cannot be done. */
   #followLink() {
     const asked = readLink(location.hash, { begin: this.begin, end: this.end, speeds: SPEEDS });
     this.controls.status.textContent = asked.ignored.join(" ");

@@ -1,4 +1,4 @@
-"""The series that a page charts, and the minute of them that tells most."""
+"""The series that a page charts, and their most telling minute."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -101,10 +101,10 @@ def _is_defined(values: NDArray[np.float64]) -> bool:
 
 
 def telling_minute(recordings: Sequence[Recording]) -> tuple[float, str]:
-    """Return where the minute that tells most begins, in s, and what it is in words.
+    """Return where the most telling minute starts, in s, and what it is in words.
 
     Of one recording it is the minute in which signed order changes most: the mean over its second
-    half less that over its first, in absolute value. Of two it is the minute in which the mean of
+    half minus that over its first, in absolute value. Of two it is the minute in which the mean of
     their difference in signed order is largest. It is the first sample, with no words, where the
     recordings have no whole minute in common or no normal boats.
     """

@@ -37,7 +37,7 @@ def names() -> list[str]:
     return [*_PAPER, *_BEYOND]
 
 
-def resolve(asked: Iterable[str]) -> list[str]:
+def resolve(given: Iterable[str]) -> list[str]:
     """Return names in the catalogue's order, each once, `ALL` replaced by those of the paper.
 
     Raises
@@ -45,8 +45,8 @@ def resolve(asked: Iterable[str]) -> list[str]:
     ParameterError
         For an unknown name; the message lists those there are.
     """
-    asked = list(asked)
-    for name in asked:
+    given = list(given)
+    for name in given:
         if name != ALL and name not in names():
             near = difflib.get_close_matches(name, [*names(), ALL], n=1)
             hint = f"did you mean {near[0]!r}? " if near else ""
@@ -54,7 +54,7 @@ def resolve(asked: Iterable[str]) -> list[str]:
                 f"{name!r} cannot be reproduced: {hint}there are {', '.join(names())}, "
                 f"and {ALL!r} for all of the paper"
             )
-    return [name for name in names() if name in asked or (ALL in asked and name in _PAPER)]
+    return [name for name in names() if name in given or (ALL in given and name in _PAPER)]
 
 
 def require_packages() -> None:

@@ -25,7 +25,7 @@ from flockenv.runs.store import RunStore, run_missing
 __all__ = ["RUNS_FOLDER", "Plan", "plan", "reproduce"]
 
 RUNS_FOLDER = "runs"
-"""Where finished runs are kept, inside the folder of results."""
+"""Folder of finished runs, inside the folder of results."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class Plan:
 
     Attributes
     ----------
-    asked : list of str
+    given : list of str
         The names as given, `ALL` among them or not.
     names : list of str
         What they stand for.
@@ -44,7 +44,7 @@ class Plan:
         All runs.
     """
 
-    asked: list[str]
+    given: list[str]
     names: list[str]
     settings: Settings
     specs: list[RunSpec]
@@ -55,7 +55,7 @@ class Plan:
         return sum(spec.cost for spec in self.specs)
 
 
-def plan(asked: Iterable[str], settings: Settings) -> Plan:
+def plan(given: Iterable[str], settings: Settings) -> Plan:
     """Return what names stand for and need; nothing is run or written.
 
     Raises
@@ -65,10 +65,10 @@ def plan(asked: Iterable[str], settings: Settings) -> Plan:
     MissingExtraError
         Without the extra ``plot``.
     """
-    asked = list(asked)
-    names = resolve(asked)
+    given = list(given)
+    names = resolve(given)
     specs = [spec for name in names for spec in load(name).runs(settings)]
-    return Plan(asked, names, settings, list(dict.fromkeys(specs)))
+    return Plan(given, names, settings, list(dict.fromkeys(specs)))
 
 
 def reproduce(
@@ -89,7 +89,7 @@ def reproduce(
     plan
         Of `plan`.
     folder
-        Of the results; finished runs are kept in its `RUNS_FOLDER`, and not made again.
+        Of the results; finished runs are stored in its `RUNS_FOLDER` and not repeated.
     engine
         Where to run.
     progress
@@ -108,7 +108,7 @@ def reproduce(
     Raises
     ------
     FlockError
-        If runs failed (all others are kept), or files cannot be written.
+        If runs failed (all others are stored), or files cannot be written.
     """
     runs = folder / RUNS_FOLDER
     store = RunStore(runs, notify) if notify else RunStore(runs)
@@ -123,7 +123,7 @@ def reproduce(
         outcome = figure.analyze(plan.settings, Results(store, specs, derived))
         write_outcome(outcome, folder / name)
         finished.append((figure, specs, outcome))
-    if ALL in plan.asked:
+    if ALL in plan.given:
         _write_report(plan, folder, finished)
     if summary is not None:
         _write_summary(plan, finished, summary)

@@ -113,7 +113,7 @@ class Outcome:
     pictures : dict of matplotlib.figure.Figure
         Each is written as ``<name>.png`` and ``<name>.svg``.
     captions : dict of str
-        What a picture shows, by its name, where the title of the figure does not tell it.
+        What a picture shows, by its name, where the title of the figure does not say it.
     claims : list of CheckedClaim
         The paper's claims about the figure, judged.
     notes : list of str
@@ -143,7 +143,7 @@ class Reproduction:
     section : str
         Of the paper.
     runs : callable
-        The runs that settings ask for, in a fixed order. Runs that figures share are made once.
+        The runs of the settings, in a fixed order. Runs that figures share are made once.
     analyze : callable
         From settings and those runs to what is written: a pure function, so that a resumed
         reproduction equals an uninterrupted one byte for byte.

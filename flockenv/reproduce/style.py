@@ -1,4 +1,4 @@
-"""How reproduced figures look: legible at a column's width, told apart without color vision."""
+"""Style of reproduced figures: legible at a column's width, also without color vision."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

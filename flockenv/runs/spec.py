@@ -71,7 +71,7 @@ class RunSpec:
     duration_s : float
         Length of the run in s.
     sample_hz : float
-        Samples a second.
+        Samples per second.
     protocol : str
         How leaders are led, a name in `PROTOCOLS`; "law": by eq. (10), towards the fixed target;
         "alternating": by eq. (10), towards directions that alternate every 4 minutes; the same as

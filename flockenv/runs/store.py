@@ -86,7 +86,7 @@ class RunStore:
         except OSError as error:
             raise StorageError(
                 f"{path} cannot be written ({error.strerror or error}); the runs finished before "
-                "are kept, and the same command goes on from them"
+                "are stored, and the same command resumes from them"
             ) from error
 
     def load(self, spec: RunSpec) -> RunResult | None:

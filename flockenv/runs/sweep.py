@@ -142,7 +142,7 @@ def load_sweep(path: str | os.PathLike[str]) -> "pd.DataFrame":
     Returns
     -------
     pandas.DataFrame
-        One row a run: the varied fields (a pool of its own radii as "180x97"), ``seed``, the
+        One row per run: the varied fields (a pool of its own radii as "180x97"), ``seed``, the
         columns of `summary`, and ``failure``: empty, or why there are no numbers.
 
     Raises

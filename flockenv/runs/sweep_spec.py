@@ -148,7 +148,7 @@ def _grids(values: Mapping[str, Any]) -> list[dict[str, list[Any]]]:
 def _check_axes(
     grids: list[dict[str, list[Any]]], axes: tuple[str, ...], fixed: Mapping[str, Any]
 ) -> None:
-    # Unknown fields are told here, before a value of theirs is looked at.
+    # Unknown fields are refused here, before their values are checked.
     for name in itertools.chain(fixed, *grids):
         if name not in FlockParameters.__dataclass_fields__:
             FlockParameters.from_dict({name: None})

@@ -87,8 +87,8 @@ class LeaderVecEnv(VecEnv):
 
     ## Rewards
     Each slot gets the weighted sum of the terms below, its own where they are a leader's own;
-    `signed_order` with weight 1 unless `reward` says otherwise. `reward_terms()` tells those of the
-    last step.
+    `signed_order` with weight 1 unless `reward` says otherwise. `reward_terms()` returns those of
+    the last step.
 
     {reward_table}
 
@@ -275,7 +275,7 @@ class LeaderVecEnv(VecEnv):
         return self._batch.core.observe()
 
     def clone(self) -> Self:
-        """Return an independent copy that goes on exactly as this one."""
+        """Return an independent copy that continues with the same bits."""
         return copy.deepcopy(self)
 
     def get_images(self) -> Sequence[NDArray[np.uint8] | None]:

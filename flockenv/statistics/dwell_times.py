@@ -57,7 +57,7 @@ class DwellTimes:
 def dwell_times(
     series: Iterable[NDArray[np.str_]], states: Sequence[str], interval_s: float
 ) -> DwellTimes:
-    """Measure stays in series of states that are told at a fixed interval.
+    """Measure stays in series of states at a fixed interval.
 
     Parameters
     ----------

@@ -176,7 +176,7 @@ def summarize(runs: "pd.DataFrame", by: list[str], quantities: list[str]) -> "pd
     Parameters
     ----------
     runs
-        One row a run.
+        One row per run.
     by
         Columns that form the groups.
     quantities

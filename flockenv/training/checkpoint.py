@@ -1,4 +1,4 @@
-"""Checkpoints: all that a killed run needs to go on as if nothing had happened.
+"""Checkpoints: the complete state of training, so that a killed run resumes bit for bit.
 
 They are plain arrays in an ``.npz`` file, so that loading one executes nothing; stable-baselines3's
 own ``.zip`` files hold pickles and are never read.
@@ -30,7 +30,7 @@ __all__ = ["Progress", "State", "read_settings", "restore", "save", "state_of"]
 FORMAT = "flockenv checkpoint 1"
 LEARNED = ("loss", "approx_kl", "clip_fraction", "explained_variance")
 CURVE = ("samples", "reward", "signed_order", *LEARNED)
-"""What is told of each rollout; of its update the learned ones."""
+"""Columns of the curve, one row per rollout; the learned ones are of its update."""
 _ADAM = ("step", "exp_avg", "exp_avg_sq")
 
 State = dict[str, NDArray[Any]]
@@ -87,7 +87,7 @@ def save(path: str | os.PathLike[str], state: State) -> None:
 def read_settings(path: str | os.PathLike[str]) -> TrainingSettings:
     """Return the settings of a checkpoint's run; see `restore` for the errors."""
     header, _ = read_headed(path, "checkpoint", FORMAT)
-    with _told(path):
+    with _reported(path):
         return _settings(header)
 
 
@@ -105,7 +105,7 @@ def restore(path: str | os.PathLike[str], model: PPO) -> Progress:
     header, arrays = read_headed(path, "checkpoint", FORMAT)
     env = model.env
     assert isinstance(env, PooledVecEnv)
-    with _told(path):
+    with _reported(path):
         progress = _checked_progress(header, _settings(header))
         updates = _count("updates", header.get("updates"))
         for name, like in _blank(model).items():
@@ -129,7 +129,7 @@ def restore(path: str | os.PathLike[str], model: PPO) -> Progress:
 
 
 @contextmanager
-def _told(path: str | os.PathLike[str]) -> Iterator[None]:
+def _reported(path: str | os.PathLike[str]) -> Iterator[None]:
     try:
         yield
     except (KeyError, TypeError, ValueError, OverflowError, RuntimeError) as error:
@@ -142,23 +142,23 @@ def _settings(header: dict[str, Any]) -> TrainingSettings:
 
 
 def _checked_progress(header: dict[str, Any], settings: TrainingSettings) -> Progress:
-    told, names = entry_of(header, "progress", dict), [each.name for each in fields(Progress)]
-    if sorted(told) != sorted(names):
-        raise ParameterError(f"progress has {', '.join(told)}: not {', '.join(names)}")
-    entry_of(told, "command", str)
-    _count("samples", told["samples"])
-    if not _is_number(told["wall_s"]) or not 0 <= told["wall_s"] < math.inf:
-        raise ParameterError(f"wall_s = {told['wall_s']!r} is not accepted: a number of seconds")
+    stored, names = entry_of(header, "progress", dict), [each.name for each in fields(Progress)]
+    if sorted(stored) != sorted(names):
+        raise ParameterError(f"progress has {', '.join(stored)}: not {', '.join(names)}")
+    entry_of(stored, "command", str)
+    _count("samples", stored["samples"])
+    if not _is_number(stored["wall_s"]) or not 0 <= stored["wall_s"] < math.inf:
+        raise ParameterError(f"wall_s = {stored['wall_s']!r} is not accepted: a number of seconds")
     columns = {"curve": CURVE, "validations": ("samples", "mean", *scene_names(settings))}
     for name, wanted in columns.items():
-        rows = told[name]
+        rows = stored[name]
         if not isinstance(rows, list) or not all(_is_row(row, wanted) for row in rows):
             raise ParameterError(f"{name} is not accepted: rows of numbers, {', '.join(wanted)}")
-    best = told["best_score"]
-    fits = _is_number(best) and math.isfinite(best) if told["validations"] else best is None
+    best = stored["best_score"]
+    fits = _is_number(best) and math.isfinite(best) if stored["validations"] else best is None
     if not fits:
         raise ParameterError(f"best_score = {best!r} is not accepted: the best of the validations")
-    return Progress(**told)
+    return Progress(**stored)
 
 
 def _count(name: str, value: Any) -> int:

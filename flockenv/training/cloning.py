@@ -39,7 +39,7 @@ def clone_law(
     epochs
         Passes through them.
     command
-        What is told in ``made``.
+        Provenance, stored in ``made``.
 
     Returns
     -------

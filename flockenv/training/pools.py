@@ -20,7 +20,7 @@ _SEEDS_OF_A_RUN = 1 << 20
 
 
 class PooledVecEnv(VecEnv):
-    """One `LeaderVecEnv` a pool behind one face; slots are those of the first pool, then the next.
+    """One `LeaderVecEnv` per pool behind one interface, with the slots of one pool after another.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class PooledVecEnv(VecEnv):
         super().__init__(int(self._ends[-1]), first.observation_space, first.action_space)
 
     def reset(self) -> NDArray[np.float32]:
-        """Begin anew with the run's training seeds."""
+        """Start again with the run's training seeds."""
         seed = self._first_seed
         for part in self.parts:
             part.seed(seed)
@@ -69,7 +69,7 @@ class PooledVecEnv(VecEnv):
         )
 
     def get_state(self) -> list[bytes]:
-        """Return everything that the future depends on, one entry a pool."""
+        """Return everything that the future depends on, one entry per pool."""
         return [part.get_state() for part in self.parts]
 
     def set_state(self, states: Sequence[bytes]) -> NDArray[np.float32]:

@@ -1,4 +1,4 @@
-"""The training run: PPO of stable-baselines3, checkpoints, validations, the best policy kept."""
+"""The training run: PPO of stable-baselines3, checkpoints, validations, the best policy."""
 
 import math
 import time
@@ -87,7 +87,7 @@ def train(
     folder
         Where to write.
     command
-        What is told in the policies' ``made``.
+        Provenance, stored in the policies' ``made``.
     report
         Called after each rollout.
 
@@ -148,7 +148,7 @@ def resume(
 
 
 def stored_settings(folder: Path, samples: int | None = None) -> TrainingSettings:
-    """Return what `resume` goes on with; see there."""
+    """Return what `resume` continues with; see there."""
     path = Path(folder) / "checkpoint.npz"
     if not path.exists():
         raise ParameterError(f"{folder} holds no checkpoint to resume")
@@ -191,7 +191,7 @@ class _Run:
                 self._write_kept()
             raise
         finally:
-            # What a full disk kept from the logs has been told already, or hides nothing else.
+            # A full disk that cut the logs has been reported already, or hides nothing else.
             with held_interrupts(), suppress(OSError):
                 self.log.close()
         best = _network(self.folder / "best.npz")
@@ -200,10 +200,10 @@ class _Run:
     def _iterate(self) -> None:
         settings, progress = self.settings, self.progress
         before = progress.samples
-        told = self._rollout_and_update()
+        row = self._rollout_and_update()
         progress.samples = self.model.num_timesteps
         progress.wall_s = time.perf_counter() - self.begin
-        progress.curve.append({"samples": progress.samples, **told})
+        progress.curve.append({"samples": progress.samples, **row})
         self._log()
         ends = progress.samples >= settings.samples
 
@@ -236,8 +236,8 @@ class _Run:
             raise self._broken(loss)
         for name, value in watch.means().items():
             self.log.record(f"rollout/{name}", value)
-        told = {name: float(self.log.name_to_value[f"train/{name}"]) for name in LEARNED}
-        return {**watch.means(), **told}
+        learned = {name: float(self.log.name_to_value[f"train/{name}"]) for name in LEARNED}
+        return {**watch.means(), **learned}
 
     def _finite(self) -> bool:
         return all(bool(torch.isfinite(each).all()) for each in self.model.policy.parameters())

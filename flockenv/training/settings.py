@@ -17,7 +17,7 @@ __all__ = ["TrainingError", "TrainingSettings"]
 
 
 class TrainingError(FlockError, RuntimeError):
-    """Training cannot go on; the last checkpoint is intact and the message says where."""
+    """Training cannot continue; the last checkpoint is intact, and the message names it."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class TrainingSettings:
     target
         ``"random"``, ``"cw"``, ``"ccw"`` or ``"alternate"``.
     episode_s, control_hz
-        Length of a training episode in s, and control steps a second.
+        Length of a training episode in s, and control steps per second.
     mirror_to_target, observation, reward
         The environments' options of those names.
     options
@@ -58,7 +58,7 @@ class TrainingSettings:
         Hidden layers of the actor and, apart, of the critic, and what stands between layers.
     log_std_init, use_sde, sde_sample_freq
         Exploration: logarithm of the first standard deviation, whether it depends on the state
-        (gSDE), and control steps after which that is drawn anew.
+        (gSDE), and control steps after which it is drawn again.
     seed
         Number of the training run; the flocks' seeds come from it (`runs.seeds.training_seed`).
     start
@@ -69,7 +69,7 @@ class TrainingSettings:
         Samples between checkpoints.
     validate_every, validation_episodes, validation_s, validation_hz
         Samples between validations of the mean policy at the critical noise, episodes for each
-        pool and number of leaders, their length in s and control steps a second.
+        pool and number of leaders, their length in s and control steps per second.
     device
         ``"auto"`` (a GPU if there is one), ``"cpu"`` or ``"cuda"``.
     """
@@ -163,7 +163,7 @@ class TrainingSettings:
         }
 
     def learning_rate_at(self, samples: int) -> float:
-        """Return the learning rate after so many samples."""
+        """Return the learning rate after a number of samples."""
         done = min(1.0, samples / self.samples)
         return self.learning_rate + done * (self.final_learning_rate - self.learning_rate)
 

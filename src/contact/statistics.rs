@@ -24,7 +24,7 @@ pub struct Statistics {
     pub unsolved: u64,
     /// Passes that moved deeply overlapping hulls apart.
     pub depenetration_passes: u64,
-    /// Times a substep had to build the neighbor list anew.
+    /// Substeps that had to rebuild the neighbor list.
     pub neighbor_builds: u64,
     /// Largest natural residual of a solve in cm/s.
     pub worst_residual_cm_s: f64,

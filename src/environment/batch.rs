@@ -10,7 +10,7 @@ use crate::sealed_bytes::{seal, unseal};
 
 const MAGIC: [u8; 8] = *b"flocken1";
 
-/// Where a step writes: one row a leader, flock after flock, and one flag a flock.
+/// Where a step writes: one row per leader, flock after flock, and one flag per flock.
 #[derive(Debug)]
 pub struct BatchRows<'a> {
     /// Observations, `rows × observation size`.
@@ -76,7 +76,7 @@ impl EnvBatch {
         self.rows
     }
 
-    /// How many numbers a leader observes.
+    /// Size of the observation of one leader.
     pub fn observation_size(&self) -> usize {
         self.settings.observation.size()
     }
@@ -161,7 +161,7 @@ impl EnvBatch {
     /// If `out` has another length than `rows × observation size`.
     pub fn observe(&mut self, out: &mut [f32]) {
         let size = self.observation_size();
-        assert_eq!(out.len(), self.rows * size, "one row a leader");
+        assert_eq!(out.len(), self.rows * size, "one row per leader");
         let mut rest = out;
         for env in &mut self.envs {
             let (own, others) = rest.split_at_mut(env.parameters().n_leaders * size);
@@ -225,7 +225,7 @@ fn shares<'a>(
     out: BatchRows<'a>,
 ) -> Vec<Share<'a>> {
     let (mut observations, mut rewards) = (out.observations, out.rewards);
-    assert_eq!(observations.len(), actions.len() * size, "one row a leader");
+    assert_eq!(observations.len(), actions.len() * size, "one row per leader");
     assert_eq!(rewards.len(), actions.len(), "one reward a leader");
     assert_eq!(out.truncated.len(), envs.len(), "one flag a flock");
     let mut shares = Vec::with_capacity(envs.len());

@@ -27,7 +27,7 @@ named_choice! {
 pub struct EpisodeSettings {
     /// Length in s; `None`: 480 s, and 960 s where targets alternate.
     pub episode_s: Option<f64>,
-    /// Control steps a second.
+    /// Control steps per second.
     pub control_hz: f64,
     /// The direction to lead in.
     pub target: TargetChoice,
@@ -53,7 +53,7 @@ impl EpisodeSettings {
     /// [`FlockError::Parameter`].
     pub fn check(&self) -> Result<()> {
         if !(0.1..=1000.0).contains(&self.control_hz) {
-            let accepted = "0.1 to 1000 control steps a second";
+            let accepted = "0.1 to 1000 control steps per second";
             return Err(FlockError::parameter(
                 "control_hz",
                 self.control_hz,

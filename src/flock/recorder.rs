@@ -32,7 +32,7 @@ impl Sampling {
         }
         // A NaN fails both comparisons.
         if !(sample_hz > 0.0 && sample_hz <= Self::FASTEST_HZ) {
-            let accepted = "a positive rate of at most 1e6 samples a second";
+            let accepted = "a positive rate of at most 1e6 samples per second";
             return Err(FlockError::parameter("sample_hz", sample_hz, accepted));
         }
         let periods = (duration_s * sample_hz).floor() as u64;

@@ -34,7 +34,7 @@ named_arguments! {
     TimeS(f64) = real("time_s");
     /// How long a run lasts, in s.
     DurationS(f64) = real("duration_s");
-    /// Samples a second.
+    /// Samples per second.
     SampleHz(f64) = real("sample_hz");
 }
 

@@ -20,7 +20,7 @@ type Step<'py> = (
     Bound<'py, PyArray1<bool>>,
 );
 
-/// Many flocks with their episodes, stepped at once; one row a leader, flock after flock.
+/// Many flocks with their episodes, stepped at once; one row per leader, flock after flock.
 #[pyclass(name = "EnvBatch", module = "flockenv._core")]
 pub struct PyEnvBatch(EnvBatch);
 

@@ -190,9 +190,9 @@ def test_a_sweep_keeps_what_was_asked_beside_its_table(tmp_path):
 LONG = {
     "compare": (["--minutes", "900", "--episodes", "8", "--pool", "table-1"], "Nothing was"),
     "evaluate": (["straight ahead", "--minutes", "900", "--episodes", "8"], "Nothing was"),
-    "fit": (["--trials", "5000"], "Finished trials are kept in "),
-    "reproduce": (["fig14", "--minutes", "10"], "Finished runs are kept in "),
-    "sweep": (["{}/spec.toml"], "Finished runs are kept in "),
+    "fit": (["--trials", "5000"], "Finished trials are stored in "),
+    "reproduce": (["fig14", "--minutes", "10"], "Finished runs are stored in "),
+    "sweep": (["{}/spec.toml"], "Finished runs are stored in "),
 }
 
 

@@ -95,7 +95,7 @@ fn gif_is_close_and_keeps_time() {
         assert!(error / (picture.len() as f64) < 6.0, "mean error {error}");
     }
     assert!(decoder.read_next_frame().unwrap().is_none());
-    // 30 frames a second in hundredths: 3.33 each.
+    // 30 frames per second in hundredths: 3.33 each.
     assert_eq!(delays, [3, 4, 3, 3, 4]);
 }
 

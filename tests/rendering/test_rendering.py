@@ -172,7 +172,7 @@ def test_gymnasium_records_a_video(tmp_path):
         clip = moviepy.VideoFileClip(str(path))
     assert clip.size == [160, 120]
     assert clip.fps == pytest.approx(10.0)
-    # 30 steps and the start, at 10 frames a second.
+    # 30 steps and the start, at 10 frames per second.
     assert clip.duration == pytest.approx(3.1, abs=0.15)
     assert np.ptp(clip.get_frame(1.0)) > 100
     clip.close()

@@ -1,4 +1,4 @@
-"""A sweep's table has one row a run, of the numbers that run has, whoever made it and when."""
+"""A sweep's table has one row per run, of the numbers that run has, whoever made it and when."""
 
 import textwrap
 from pathlib import Path

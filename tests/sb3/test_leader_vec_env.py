@@ -1,4 +1,4 @@
-"""Law: LeaderVecEnv keeps stable-baselines3's conventions, one slot a leader."""
+"""Law: LeaderVecEnv keeps stable-baselines3's conventions, one slot per leader."""
 
 import pickle
 

@@ -19,9 +19,9 @@ struct Outcome {
     task: usize,
     /// File of little-endian doubles [start][record][boat][x y heading vx vy ω].
     file: String,
-    /// Times of the engine's step call in µs a step, block by block.
+    /// Times of the engine's step call in µs per step, block by block.
     block_us: Vec<f64>,
-    /// µs a step of rapier2d-f64's step call, measured right after.
+    /// µs per step of rapier2d-f64's step call, measured right after.
     yardstick_us: Option<f64>,
     /// Mean force on the outer wall after the warm-up, in cm/s².
     wall_force: f64,

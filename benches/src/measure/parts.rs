@@ -93,7 +93,7 @@ fn scenes() -> Vec<(&'static str, FlockParameters)> {
     ]
 }
 
-/// Contacts and near-contacts a step, over the time that is timed.
+/// Contacts and near-contacts per step, over the time that is timed.
 fn contacts_per_step(parameters: &FlockParameters, timed_s: f64) -> f64 {
     let configuration = Configuration::exact(Scheme::Leapfrog, 0, STEP_S);
     let start = Start::placed(parameters, 1);

@@ -24,7 +24,7 @@ pub struct Entry {
     pub parameters: FlockParameters,
 }
 
-/// Times in µs a step, turn by turn.
+/// Times in µs per step, turn by turn.
 #[derive(Debug, Clone, Default)]
 pub struct Times {
     /// Of everything that moves the scene on by a step: noise, forces, contacts, motion.
@@ -83,7 +83,7 @@ fn warmed_up(entry: &Entry, seed: u64) -> Box<dyn Engine> {
     engine
 }
 
-/// µs a step of rapier2d-f64 in a scene of 27 boats: what other processes compare themselves with.
+/// µs per step of rapier2d-f64 in a scene of 27 boats: what other processes compare themselves with.
 pub fn yardstick(scene: Scene) -> [f64; 2] {
     let entry = Entry {
         configuration: Configuration::rapier(STEP_S),

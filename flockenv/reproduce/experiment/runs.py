@@ -24,7 +24,7 @@ def run_rows(
     x: Sequence[float],
     setup: str,
 ) -> pd.DataFrame:
-    """Return one row a run.
+    """Return one row per run.
 
     Columns: ``setup``, `x_name`, ``seed``, mean and standard deviation of Ψ_o over the analyzed
     frames, mean Ψ_o after ordering, and ordering times of eq. (7) with π/20 (``ordering_s``) and

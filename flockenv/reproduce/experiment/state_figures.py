@@ -31,7 +31,7 @@ _ORDERED = ("ordered cw", "ordered ccw")
 
 
 def pose_points(settings: Settings) -> dict[float, list[RunSpec]]:
-    """Return the runs whose poses are kept, by backward duration."""
+    """Return the runs whose poses are stored, by backward duration."""
     return {
         bw_s: [
             RunSpec(
@@ -48,7 +48,7 @@ def pose_points(settings: Settings) -> dict[float, list[RunSpec]]:
 
 
 def pose_runs(settings: Settings) -> list[RunSpec]:
-    """Return the runs whose poses are kept, of all backward durations."""
+    """Return the runs whose poses are stored, of all backward durations."""
     return [spec for specs in pose_points(settings).values() for spec in specs]
 
 

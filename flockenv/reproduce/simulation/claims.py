@@ -56,7 +56,7 @@ class Evidence:
 
 
 def runs_needed(settings: Settings, model: Model, design: Design) -> list[RunSpec]:
-    """Return all runs that `Evidence` may ask for."""
+    """Return all runs that `Evidence` may need."""
     series = [design.noise_series(settings, model, n, k) for n in (20, 50) for k in (False, True)]
     points = [point for each in (*series, design.density_series(settings, model)) for point in each]
     return [spec for point in points for spec in point]

@@ -9,7 +9,7 @@ from flockenv.runs.spec import RunSpec
 __all__ = ["FIGURES", "POOL", "PRESETS", "TABLE", "Design", "Model"]
 
 POOL = "500-boats"
-"""The pool of figures 14 to 17: the one that has the free space Section 2.2 tells."""
+"""The pool of figures 14 to 17: the one with the free space of Section 2.2."""
 
 _MINUTES = 60.0
 _LEADER_SHARE = 0.2

@@ -42,7 +42,7 @@ _POOL = "500-boats"
 _DT_S = 0.05
 """Of the leapfrog, whose statistics with white noise are the same from 0.005 to 0.1 s."""
 
-# Poses are not kept, but pass through memory: 1600 boats at 10 Hz would take 1.4 GB a run.
+# Poses are not stored, but pass through memory: 1600 boats at 10 Hz would take 1.4 GB per run.
 _SAMPLE_HZ = 1.0
 LOOP_BW_S = 0.6
 """Highest noise of loops in noise."""

@@ -119,14 +119,14 @@ def simulate_loop(
     duration_s
         Length of the whole loop in s.
     sample_hz
-        Samples a second.
+        Samples per second.
     kind
         One of `LOOPS`.
 
     Returns
     -------
     Recording
-        With the first scene's parameters; `loop_position` tells where a sample lies.
+        With the first scene's parameters; `loop_position` returns where a sample lies.
 
     Raises
     ------

@@ -34,8 +34,8 @@ def simulate_alternating(
     """Run a flock whose leaders follow the paper's law towards directions that alternate.
 
     A pure function of its arguments. The first direction is counter-clockwise, whatever the target
-    of the parameters; directions change at samples. The recording tells the parameters' target
-    alone, and so does its replay: `target_at` tells the one that held.
+    of the parameters; directions change at samples. The recording and its replay show the
+    parameters' target alone: `target_at` returns the one that held.
 
     Raises
     ------

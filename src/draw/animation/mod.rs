@@ -37,7 +37,7 @@ enum Encoder {
 }
 
 impl AnimationEncoder {
-    /// The slowest and the fastest animation, in frames a second.
+    /// The slowest and the fastest animation, in frames per second.
     pub const RATES: (f64, f64) = (0.1, 100.0);
     /// The longest side in pixels: GIF counts in 16 bits.
     pub const LONGEST: u32 = 65_535;
@@ -55,7 +55,7 @@ impl AnimationEncoder {
         }
         let (slowest, fastest) = Self::RATES;
         if !(slowest..=fastest).contains(&fps) {
-            let accepted = format!("{slowest} to {fastest} frames a second");
+            let accepted = format!("{slowest} to {fastest} frames per second");
             return Err(FlockError::parameter("fps", fps, accepted));
         }
         let encoder = match format {

@@ -1,4 +1,4 @@
-//! Text: the legend's glyphs, rasterized once a size.
+//! Text: the legend's glyphs, rasterized once per size.
 
 use super::palette::Rgb;
 use ab_glyph::{Font, FontRef, PxScale, ScaleFont};

@@ -1,4 +1,4 @@
-//! Which entries a leader observes, and in which order.
+//! The entries that a leader observes, in order.
 
 use super::entry::{BOAT, CLOCK, Entry, NEIGHBOR, ORDER, OWN, PHASE, TARGET};
 use crate::error::{FlockError, Result};
@@ -151,7 +151,7 @@ impl ObservationLayout {
         self.offset(block).map(|offset| offset + place)
     }
 
-    /// How many numbers a leader observes.
+    /// Size of the observation of one leader.
     pub fn size(&self) -> usize {
         Block::ALL
             .iter()
