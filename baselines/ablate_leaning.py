@@ -3,7 +3,7 @@
     python baselines/ablate_leaning.py baselines/policies/500-boats.npz --pool 500-boats
 
 A group that is left out leans as it did on average in the states that the whole law visits, so that
-what is lost is what it told apart. Three leaders among 27 boats, critical noise, training seeds,
+what is lost is what it distinguished. Three leaders among 27 boats, critical noise, training seeds,
 the same for all; differences from the whole law are paired by seed. What each feature is on average
 in those states, and the lean that its weight makes of it (rad), is written to NAME-lean.csv beside.
 """

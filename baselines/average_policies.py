@@ -6,7 +6,7 @@
 
 Searches of the same form from the same beginning end around the same law, each off by the noise of
 its own episodes; their mean may be less far off. The search moves logarithms of gains, so the mean
-gain is the geometric one. How each part was made is told in the mean's `made`. With --pool, all of
+gain is the geometric one. The mean's `made` holds the provenance of each part. With --pool, all of
 them lead in training episodes that no search reaches, beside the tuned damped law: whether the mean
 is to ship is decided there, before it meets the seeds of a comparison.
 """
@@ -30,12 +30,12 @@ from flockenv.statistics.intervals import mean_interval
 
 #: Beyond what searches and ablate_leaning.py reach with ordinary seeds.
 FIRST_SEED = 1 << 42
-#: What is told of each part.
-TOLD = ("command", "commit", "seed", "samples", "wall_s")
+#: Provenance of each part.
+LISTED = ("command", "commit", "seed", "samples", "wall_s")
 
 
 def total(laws: list[LeaningLaw], name: str) -> int:
-    """The sum of a number that every part tells; parts that do not tell it count nothing."""
+    """Return the sum of a number over the parts that have it."""
     return sum(int(law.made.get(name, "0")) for law in laws)
 
 
@@ -49,7 +49,7 @@ def average(laws: list[LeaningLaw], command: str) -> LeaningLaw:
     parts = {
         f"part {number}: {name}": law.made.get(name, "unknown")
         for number, law in enumerate(laws)
-        for name in TOLD
+        for name in LISTED
     }
     made = made_by(command, seed=0, samples=total(laws, "samples"), wall_s=total(laws, "wall_s"))
     made["seed"] = ", ".join(law.made.get("seed", "unknown") for law in laws)

@@ -175,10 +175,10 @@ def next_generation(
     return State(number + 1, weights, moment_1, moment_2, average, state.wall_s, curve)
 
 
-def identity(told: dict[str, Any]) -> dict[str, Any]:
+def identity(reported: dict[str, Any]) -> dict[str, Any]:
     """What a stored search must have been started with to go on: most of its options."""
     free = ("out", "generations", "quiet", "episodes")
-    whole = {"observation_version": OBSERVATION_VERSION, **told}
+    whole = {"observation_version": OBSERVATION_VERSION, **reported}
     return {name: value for name, value in whole.items() if name not in free}
 
 

@@ -5,7 +5,7 @@
     flockenv compare --policy "damped law" --policy results/ppo_shared_policy/best.npz
 
 Training starts from a clone of the damped law instead of from nothing. Episodes have between half
-and 1.25 times the critical noise of their pool. What it leaves is told in docs/train.md; what
+and 1.25 times the critical noise of their pool. docs/train.md lists its files; what
 ships in baselines/policies was searched by evolution_strategy.py instead (docs/leaders.md).
 """
 

@@ -75,15 +75,15 @@ def tune(law: str, pool: str, options: argparse.Namespace, progress: Progress) -
     for generation in range(options.generations):
         first = options.seed * SEEDS_OF_A_RUN + generation * options.episodes
         seeds = [training_seed(first + episode) for episode in range(options.episodes)]
-        told = []
+        reported = []
         for _ in range(search.population_size):
             place = search.ask()
             policy = make(**gains(place))
             found = run_episodes(parameters, policy, seeds, options.minutes * 60.0)
             score = float(found["signed_order"].mean())
             rows.append({"generation": generation, **gains(place), "signed_order": score})
-            told.append((place, -score))
-        search.tell(told)
+            reported.append((place, -score))
+        search.tell(reported)
         with atomic_write(options.out / f"{law.replace(' ', '-')}-{pool}.csv") as file:
             file.write(pd.DataFrame(rows).to_csv(index=False, lineterminator="\n").encode())
         progress.advance(task)

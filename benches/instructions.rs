@@ -211,8 +211,8 @@ fn measure(name: &str) -> Result<String, Failure> {
             return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
         }
         instructions += total(&profile)?;
-        let told = String::from_utf8(output.stdout)?;
-        for (sum, word) in sums.iter_mut().zip(told.split_whitespace()) {
+        let reported = String::from_utf8(output.stdout)?;
+        for (sum, word) in sums.iter_mut().zip(reported.split_whitespace()) {
             *sum += word.parse::<u64>()?;
         }
     }
@@ -237,7 +237,7 @@ fn total(profile: &Path) -> Result<u64, Failure> {
     Ok(line.ok_or("no totals")?.trim().parse()?)
 }
 
-/// Runs in valgrind: tells steps, substeps, boats and contacts.
+/// Runs in valgrind: prints steps, substeps, boats and contacts.
 fn count(name: &str, state: &str) -> Result<(), Failure> {
     let done = scene(name)
         .ok_or("no such scene")?

@@ -19,7 +19,7 @@ from rich.progress import Progress
 from throughput import processor
 
 import flockenv
-from flockenv._io.atomic_write import whole_file
+from flockenv._io.atomic_write import atomic_write
 
 ROOT = Path(__file__).parents[1]
 SCENE = {"n_boats": 27, "n_leaders": 4, "bw_s": (0.0, 1.0), "target": "random", "episode_s": 48.0}
@@ -192,7 +192,7 @@ def main() -> None:
     begin = time.perf_counter()
     pools, memory = soak(int(options.steps), options.seed)
     text = page(pools, memory, options.seed, time.perf_counter() - begin)
-    with whole_file(options.out) as file:
+    with atomic_write(options.out) as file:
         file.write(text.encode())
     print(text)
     if found := failures(pools, memory):

@@ -1,4 +1,4 @@
-//! States as bytes that tell when they are damaged: 8 bytes magic with the format's version, 8 bytes
+//! States as bytes that show when they are damaged: 8 bytes magic with the format's version, 8 bytes
 //! checksum (FNV-1a, little-endian), then the state in postcard encoding.
 
 use crate::error::{FlockError, Result};
@@ -41,7 +41,7 @@ pub fn unseal<T: DeserializeOwned>(magic: [u8; 8], bytes: &[u8]) -> Result<T> {
     })
 }
 
-/// FNV-1a over the bytes: enough to tell damage, no protection against intent.
+/// FNV-1a over the bytes: enough to detect damage, no protection against intent.
 fn checksum(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |sum, &byte| {
         (sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)

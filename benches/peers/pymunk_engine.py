@@ -45,7 +45,7 @@ class Engine:
             for k in range(count):
                 ends = corners[k], corners[(k + 1) % count]
                 segment = pymunk.Segment(static, *ends, 0.0)
-                # Told of its neighbors, a segment does not let boats catch on its corners.
+                # A segment that knows its neighbors does not let boats catch on its corners.
                 segment.set_neighbors(corners[k - 1], corners[(k + 2) % count])
                 shapes.append(segment)
         for shape in shapes:

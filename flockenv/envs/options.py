@@ -1,4 +1,4 @@
-"""Options of the environments: one flat set of names, checked once, for all faces."""
+"""Options of the environments: one flat set of names, checked once, for all interfaces."""
 
 import difflib
 from collections.abc import Iterable, Mapping, Sequence

@@ -66,7 +66,7 @@ class Window:
         self._pygame.display.init()
         self._size = (width, height)
         self._surface = self._pygame.display.set_mode(self._size)
-        self._tell()
+        self._report()
 
     def show(self, flock: Flock) -> None:
         """Show a flock, and return when the next step is due; at once if the window is closed."""
@@ -133,8 +133,8 @@ class Window:
             self.speed = min(2 * self.speed, fastest)
         elif key in (pygame.K_MINUS, pygame.K_KP_MINUS):
             self.speed = max(self.speed / 2, slowest)
-        self._tell()
+        self._report()
 
-    def _tell(self) -> None:
+    def _report(self) -> None:
         state = "paused" if self.paused else f"{self.speed:g}×"
         self._pygame.display.set_caption(f"flockenv, {state}")

@@ -210,13 +210,13 @@ class LeaderVecEnv(VecEnv):
         observations, rewards, truncated = self._batch.core.step(flat)
         infos: list[dict[str, Any]] = [{} for _ in self.slots]
         if truncated.any():
-            self._tell_ends(truncated, infos)
+            self._report_ends(truncated, infos)
             dones = truncated[self.flock_of_slot]
         else:
             dones = np.zeros(self.num_envs, np.bool_)
         return observations, rewards.astype(np.float32), dones, infos
 
-    def _tell_ends(self, truncated: NDArray[np.bool_], infos: list[dict[str, Any]]) -> None:
+    def _report_ends(self, truncated: NDArray[np.bool_], infos: list[dict[str, Any]]) -> None:
         for flock in np.flatnonzero(truncated).tolist():
             last = self._batch.core.final_observation(flock)
             first = int(np.searchsorted(self.flock_of_slot, flock))

@@ -1,4 +1,4 @@
-//! The collective states of Table 2, told from order parameters, and the ordering time of eq. (7).
+//! The collective states of Table 2, from order parameters, and the ordering time of eq. (7).
 
 use super::OrderParameters;
 use crate::parameters::named_choice;
@@ -71,7 +71,7 @@ pub struct OrderingWatch {
 }
 
 impl OrderingWatch {
-    /// Takes note of the order at a time since the run began. `is_late` tells the second half of the
+    /// Records the order at a time since the run started. `is_late` marks the second half of the
     /// run; an orientation is tangential that is less than `within` (rad) off.
     pub fn note(&mut self, time_s: f64, order: &OrderParameters, within: f64, is_late: bool) {
         if is_late {

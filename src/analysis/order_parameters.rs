@@ -68,7 +68,7 @@ impl OrderParameters {
         self.psi_o * (self.phi_o - target.sign() * FRAC_PI_2).cos()
     }
 
-    /// m = Ψ_o·sin φ_o: tells order (±1) from jam (0).
+    /// m = Ψ_o·sin φ_o: distinguishes order (±1) from a jam (0).
     pub fn rotation(&self) -> f64 {
         self.psi_o * self.phi_o.sin()
     }

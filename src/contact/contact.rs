@@ -60,7 +60,7 @@ impl Contact {
     /// Where the normal pushes the first hull: a point of its surface.
     pub fn point(&self, boat: &HullPose, hull: Hull) -> Vec2 {
         let (normal, h) = (self.gap.normal, hull.half_length);
-        // The lever arm tells how far along the core, but not of a push along the core: that is on
+        // The lever arm gives the place along the core, but not of a push along the core: that is on
         // the end.
         let across = cross(boat.axis, normal);
         let along = if across.abs() > 1e-9 {

@@ -2,7 +2,7 @@
 //! opens an overlap adds some.
 //!
 //! With biases that follow from the gaps at hand alone, every solution obeys: rest satisfies them. Biases
-//! that look ahead along a curve, for a flank on the inner wall or by relinearization, may ask for more
+//! that look ahead along a curve, for a flank on the inner wall or by relinearization, may demand more
 //! where a boat turns far in one substep: the contact has then passed from one end of the hull to the
 //! other, and pushing as at the substep's beginning opens nothing.
 

@@ -398,7 +398,7 @@ impl ContactResolver {
     }
 
     /// Adds to each boat the linear acceleration from contacts that carried an impulse both in this
-    /// kick, of length `dt`, and in the one before: what is likely to go on.
+    /// kick, of length `dt`, and in the one before: which are likely to continue.
     pub fn add_persistent_acceleration(
         &self,
         inertia: &[InverseInertia],

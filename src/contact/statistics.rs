@@ -2,7 +2,7 @@
 
 use super::solver::SolveReport;
 
-/// Running totals since the flock was made or reset; a snapshot carries them along.
+/// Running statistics since the flock was made or reset; a snapshot holds them.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Statistics {
     /// Substeps taken.
@@ -19,7 +19,7 @@ pub struct Statistics {
     pub factored_rows: u64,
     /// Most numbers that the Cholesky factors of one solve held.
     pub most_factor_entries: u64,
-    /// Solves whose constraints contradicted each other or that missed their residual; velocities
+    /// Solves whose constraints contradicted each other or that exceeded their residual; velocities
     /// are then those of the nearest problem that can be solved.
     pub unsolved: u64,
     /// Passes that moved deeply overlapping hulls apart.

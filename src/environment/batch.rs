@@ -15,7 +15,7 @@ const MAGIC: [u8; 8] = *b"flocken1";
 pub struct BatchRows<'a> {
     /// Observations, `rows × observation size`.
     pub observations: &'a mut [f32],
-    /// Rewards, one a row.
+    /// Rewards, one per row.
     pub rewards: &'a mut [f64],
     /// Whether each flock's episode has just reached its time limit.
     pub truncated: &'a mut [bool],
@@ -90,7 +90,7 @@ impl EnvBatch {
             return Err(FlockError::Shape {
                 field: "actions",
                 found: format!("({},)", actions.len()),
-                expected: format!("({},), one a leader", self.rows),
+                expected: format!("({},), one per leader", self.rows),
             });
         }
         for &action in actions {
@@ -133,7 +133,7 @@ impl EnvBatch {
             return Err(FlockError::Shape {
                 field: "reset requests",
                 found: format!("({},)", requests.len()),
-                expected: format!("({},), one a flock", self.envs.len()),
+                expected: format!("({},), one per flock", self.envs.len()),
             });
         }
         let settings = &self.settings;
@@ -225,7 +225,11 @@ fn shares<'a>(
     out: BatchRows<'a>,
 ) -> Vec<Share<'a>> {
     let (mut observations, mut rewards) = (out.observations, out.rewards);
-    assert_eq!(observations.len(), actions.len() * size, "one row per leader");
+    assert_eq!(
+        observations.len(),
+        actions.len() * size,
+        "one row per leader"
+    );
     assert_eq!(rewards.len(), actions.len(), "one reward a leader");
     assert_eq!(out.truncated.len(), envs.len(), "one flag a flock");
     let mut shares = Vec::with_capacity(envs.len());

@@ -120,7 +120,7 @@ impl Episode {
         &self.state.rudders
     }
 
-    /// What there is to tell about the episode so far.
+    /// Statistics of the episode so far.
     pub fn summary(&self) -> EpisodeSummary {
         self.statistics.summary(&self.state.schedule)
     }
@@ -148,7 +148,7 @@ impl Episode {
         observer.observe(&self.state.view(), self.state.schedule.elapsed(), out);
     }
 
-    /// Takes one control step with checked actions, one a leader, and writes the rewards.
+    /// Takes one control step with checked actions, one per leader, and writes the rewards.
     ///
     /// # Errors
     /// [`FlockError::Solver`]; the flock stays where it was, and the episode is over.
@@ -189,12 +189,12 @@ impl Episode {
             self.statistics.add_reward(share, terms, *paid);
         }
         let (flock, schedule) = (&self.state.flock, &self.state.schedule);
-        let settled = 10 * (u64::from(schedule.step) + 1) > u64::from(schedule.steps);
+        let counted = 10 * (u64::from(schedule.step) + 1) > u64::from(schedule.steps);
         if let Some(order) = &self.state.order {
             let time_s = seconds(settings.episode.time_of(schedule.step + 1));
             let is_late = 2 * (u64::from(schedule.step) + 1) >= u64::from(schedule.steps);
             self.statistics.watch_order(order, time_s, is_late);
-            if settled && flock.schedule().in_analysis_window(flock.time()) {
+            if counted && flock.schedule().in_analysis_window(flock.time()) {
                 self.statistics.add_window(order, view.target);
             }
         }

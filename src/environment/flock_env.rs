@@ -113,7 +113,7 @@ impl FlockEnv {
     }
 
     /// One control step with checked actions, or the start of the next episode where one is due. Writes
-    /// observations and rewards of the leaders and tells whether the episode was truncated.
+    /// observations and rewards of the leaders and returns whether the episode was truncated.
     ///
     /// # Errors
     /// [`FlockError::Solver`], [`FlockError::Placement`]; the episode is over then.

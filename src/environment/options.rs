@@ -166,7 +166,7 @@ declare_options! {
     observation: observation;
     /// reflect observation, state and action where the target is ccw, so that both directions are one task
     mirror_to_target: observation.mirror_to_target;
-    /// chance that the camera misses a boat in a frame and shows where it was before
+    /// chance that the camera loses a boat in a frame and shows where it was before
     dropout_rate: camera.dropout_rate;
     /// frames that the leaders' picture is late, 0 or 1
     delay_frames: camera.delay_frames;

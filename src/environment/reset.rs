@@ -1,4 +1,4 @@
-//! What a reset may ask for, and the flock that an episode begins with.
+//! Options of a reset, and the initial flock of an episode.
 
 use super::{EnvSettings, EpisodeSchedule, TargetChoice};
 use crate::error::{FlockError, Result};
@@ -17,10 +17,10 @@ pub enum Start {
     Snapshot(Vec<u8>),
 }
 
-/// What a reset asks for.
+/// Options of a reset.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ResetRequest {
-    /// A new seed of the environment; `None` goes on to its next episode.
+    /// A new seed of the environment; `None` continues with its next episode.
     pub seed: Option<u64>,
     /// Target of this episode; `None`: as the settings say.
     pub target: Option<TargetChoice>,

@@ -74,7 +74,7 @@ impl RewardWeights {
     /// Checks the weights for scenes with these parameters.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for weights that are not finite, or that ask for normal boats where
+    /// [`FlockError::Parameter`] for weights that are not finite, or that need normal boats where
     /// there is none.
     pub fn check(&self, parameters: &FlockParameters) -> Result<()> {
         for (term, weight) in RewardTerm::ALL.iter().zip(self.0) {

@@ -60,7 +60,7 @@ impl RudderSettings {
         Ok(())
     }
 
-    /// The rudder that a checked action asks for, in [−1, 1].
+    /// The rudder of a checked action, in [−1, 1].
     pub fn command(&self, action: f64) -> f64 {
         match self.levels {
             // Levels i and n - 1 - i are opposite to the bit: mirrored tasks stay the same task.

@@ -1,4 +1,4 @@
-//! The schedule of an episode: how long it lasts, which direction is wanted when, and what a seed fixes.
+//! The schedule of an episode: its length, its target at each time, and what a seed fixes.
 
 use crate::clock::{Ticks, ticks};
 use crate::error::{FlockError, Result};

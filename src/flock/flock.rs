@@ -1,4 +1,4 @@
-//! One flock: owns all state; placed, advanced, looked at, put away and brought back.
+//! One flock: it owns all state, and is placed, advanced, observed, stored and restored.
 
 use super::placement;
 use crate::analysis::OrderParameters;
@@ -66,7 +66,7 @@ impl Flock {
         Ok(flock)
     }
 
-    /// A flock whose boats are where they are told to be.
+    /// A flock with given poses of its boats.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for parameters out of range, otherwise as for [`Self::set_state`].
@@ -256,7 +256,7 @@ impl Flock {
             return Err(FlockError::Shape {
                 field: "rudder",
                 found: format!("({},)", commands.len()),
-                expected: format!("({k},), one a leader"),
+                expected: format!("({k},), one per leader"),
             });
         }
         match commands

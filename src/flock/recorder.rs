@@ -229,7 +229,7 @@ impl<T: Real> Recorder<T> {
         self
     }
 
-    /// Goes on for about so many substeps times boats; returns whether the recording is complete.
+    /// Continues for about this many substeps times boats; returns whether the recording is complete.
     /// Where it pauses changes nothing.
     ///
     /// # Errors

@@ -35,7 +35,7 @@ pub struct Snapshot {
     pub persistent_acceleration: Vec<[f64; 2]>,
     /// What impulses are divided by to give forces, in s.
     pub step_length_s: f64,
-    /// Running totals.
+    /// Running statistics.
     pub statistics: Statistics,
 }
 

@@ -5,7 +5,7 @@ use super::substep::LastSubstep;
 use crate::contact::{CachedImpulse, Statistics};
 use crate::geometry::{Pose, Vec2, Velocity};
 
-/// All that decides how the motion goes on, apart from parameters, seed and time.
+/// The complete state of the motion, apart from parameters, seed and time.
 #[derive(Debug, Clone, Default)]
 pub struct Checkpoint {
     /// Poses of all boats.
@@ -20,7 +20,7 @@ pub struct Checkpoint {
     pub neighbor_reference: (Vec<Vec2>, f64),
     /// What impulses are divided by to give forces, in s.
     pub step_length_s: f64,
-    /// Running totals.
+    /// Running statistics.
     pub statistics: Statistics,
 }
 
@@ -49,7 +49,7 @@ impl Integrator {
         into.statistics = self.statistics;
     }
 
-    /// Goes on from a checkpoint, bit for bit.
+    /// Continues from a checkpoint, bit for bit.
     pub fn return_to(&mut self, checkpoint: &Checkpoint) {
         self.place(&checkpoint.poses, &checkpoint.velocities);
         self.last.clone_from(&checkpoint.last);

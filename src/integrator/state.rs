@@ -100,7 +100,7 @@ impl Integrator {
     }
 }
 
-/// Brownian paths whose cells are what full substeps ask for: leapfrog noise_increments reach from the middle of
+/// Brownian paths whose cells are those of full substeps: leapfrog noise_increments reach from the middle of
 /// one substep to the middle of the next.
 fn noise_paths(parameters: &FlockParameters, seed: u64) -> BrownianPaths {
     let dt = ticks(parameters.dt_s);

@@ -9,7 +9,7 @@ use crate::geometry::Vec2;
 pub enum Steering<'a> {
     /// The paper's law, eq. (10), at every substep.
     Law,
-    /// Commands held over the substep, one a leader.
+    /// Commands held over the substep, one per leader.
     Held(&'a [f64]),
 }
 

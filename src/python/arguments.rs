@@ -80,7 +80,7 @@ pub fn text(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<String> {
     given.map_err(|_| wrong_type(object, name, "a string"))
 }
 
-/// What an argument may claim beyond its expected size before its dtype is looked at.
+/// What an argument may claim beyond its expected size before its dtype is checked.
 const HARMLESS: usize = 1 << 16;
 /// How deep NumPy stacks sequences.
 const DEEPEST: usize = 64;

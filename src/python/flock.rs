@@ -316,7 +316,7 @@ impl PyFlock {
 /// Width and height of a flock's picture in a notebook.
 const NOTEBOOK_PIXELS: u32 = 400;
 
-/// Work between two looks at Python's signals: about 30 ms.
+/// Work between two checks of Python's signals: about 30 ms.
 pub const BOAT_SUBSTEPS_A_PIECE: u64 = 200_000;
 
 /// Advances without the interpreter lock, letting Ctrl-C in between pieces that end on the substep

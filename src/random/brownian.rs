@@ -92,7 +92,7 @@ pub struct BrownianPaths {
     cell_length: u64,
     /// Cell j covers [j·length − shift, (j + 1)·length − shift).
     shift: u64,
-    /// Scratch: draws of a cell or node, one a boat.
+    /// Scratch: draws of a cell or node, one per boat.
     draws: Vec<f64>,
     low: Vec<f64>,
     high: Vec<f64>,

@@ -1,4 +1,4 @@
-"""The mean of leaning laws: what it steers with, and that it tells how each part was made."""
+"""The mean of leaning laws: what it steers with, and that it holds the provenance of each part."""
 
 from pathlib import Path
 

@@ -178,7 +178,7 @@ def test_a_foreign_state_is_refused(script, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("generations", "words"), [(0, "nothing is kept yet"), (1, "goes on from")]
 )
-def test_an_interrupt_tells_what_is_kept(
+def test_an_interrupt_reports_what_is_stored(
     script, tmp_path: Path, monkeypatch, generations: int, words: str
 ) -> None:
     def interrupted(state, *arguments):

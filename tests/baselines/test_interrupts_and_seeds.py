@@ -70,10 +70,10 @@ def test_an_interrupt_ends_in_one_line(name: str, imported, arguments, monkeypat
 def test_seeds_out_of_range(name: str, seed: str, imported, arguments, capsys) -> None:
     with pytest.raises(SystemExit) as ended:
         imported(name).main([*arguments(name), "--seed", seed])
-    told = str(ended.value) + capsys.readouterr().err
-    assert "is not accepted: " in told
-    assert f"{seed} " in told
-    assert "from 0 to " in told
+    reported = str(ended.value) + capsys.readouterr().err
+    assert "is not accepted: " in reported
+    assert f"{seed} " in reported
+    assert "from 0 to " in reported
 
 
 def test_training_seeds_are_none_to_be_understood_by(imported, arguments) -> None:
@@ -90,7 +90,7 @@ def test_no_critical_noise_without_runs(imported, arguments, capsys) -> None:
 
 
 @pytest.mark.parametrize(("kept", "words"), [(False, "no checkpoint yet"), (True, "--resume goes")])
-def test_ppo_tells_what_is_kept(
+def test_ppo_reports_what_is_stored(
     imported, tmp_path: Path, monkeypatch, kept: bool, words: str
 ) -> None:
     def interrupted(settings, out, **_options):

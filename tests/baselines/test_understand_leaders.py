@@ -26,7 +26,7 @@ def test_it_draws(script, tmp_path: Path, capsys) -> None:
     assert means.loc["straight ahead", "rudder"] == 0.0
 
 
-def test_files_of_one_name_are_told_apart(script, tmp_path: Path) -> None:
+def test_files_of_one_name_are_distinguished(script, tmp_path: Path) -> None:
     size, files = len(observation_entries()), []
     for rudder in (0.5, -0.5):
         files.append(str(tmp_path / f"{rudder}" / "best.npz"))

@@ -76,7 +76,7 @@ def test_samples_are_taken_up_to_and_including_the_end(duration_s, sample_hz, sa
     assert len(simulate(PARAMETERS, 1, duration_s, sample_hz)) == samples
 
 
-def test_float32_rounds_what_is_kept_and_not_the_run():
+def test_float32_rounds_what_is_stored_and_not_the_run():
     run = simulate(PARAMETERS, seed=3, duration_s=1.0, dtype="float32")
     assert run.pose.dtype == run.velocity.dtype == np.float32
     assert np.array_equal(run.pose, RUN.pose.astype(np.float32))
@@ -340,7 +340,7 @@ def test_a_run_goes_on_from_a_snapshot_with_the_same_bits():
     )
 
 
-def test_a_run_starts_where_it_is_told():
+def test_a_run_starts_where_it_is_given():
     begun = flockenv.simulate(PARAMETERS, 3, 10.0)
     state = {"pose": begun.pose[-1], "velocity": begun.velocity[-1], "time_s": 10.0}
     state["allow_overlap"] = True
@@ -377,7 +377,7 @@ def test_a_start_that_the_flock_cannot_have_is_refused():
         flockenv.simulate(PARAMETERS, 3, 1.0, start="snapshot")
 
 
-def test_a_recording_tells_its_flock_at_a_time():
+def test_a_recording_reports_its_flock_at_a_time():
     run = flockenv.simulate(PARAMETERS, 3, 10.0, dtype=np.float32)
     for time_s, sample in ((0.0, 0), (5.05, 50), (10.0, 100)):
         flock = run.flock_at(time_s)

@@ -1,7 +1,7 @@
 """A run with a policy is the run of the environments: the same observations, the same rudders.
 
 On paper: leaders that hold their rudders at zero are normal boats, so a policy of zeros gives the
-run of a flock whose leaders are told to hold zero.
+run of a flock whose leaders hold zero.
 """
 
 import numpy as np

@@ -72,7 +72,7 @@ def test_the_link_is_kept_in_step(page):
 
 
 @pytest.mark.parametrize("fragment", ["#t=1e9", "#t=soon", "#speed=7", "#t=40&speed=", "#top"])
-def test_a_link_that_cannot_be_followed_is_told(open_link, pages, law, fragment):
+def test_a_link_that_cannot_be_followed_is_reported(open_link, pages, law, fragment):
     page = open_link(pages / "one.html", fragment)
     assert page.state() == "true"
     assert page.find("#status").is_displayed()
@@ -123,7 +123,7 @@ def test_steps_and_keys(page, law):
     page.check(law)
 
 
-def test_keys_are_told_and_can_be_switched_off(page):
+def test_keys_are_reported_and_can_be_switched_off(page):
     page.press("?")
     assert page.find("#keys").is_displayed()
     page.click("#letters")

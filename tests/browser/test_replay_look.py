@@ -45,7 +45,7 @@ def test_forces_are_drawn_where_hulls_touch(page, law):
     assert page.color(0, *place) != FORCE
 
 
-def test_a_forces_drawn_length_tells_its_size(page, law):
+def test_a_forces_drawn_length_reports_its_size(page, law):
     page.choose("#trails", "0")
     hull_px = 2 * law.parameters.boat_radius_cm * page.script("return player.panels[0].scene.scale")
     scale = page.script("return player.forceScale")

@@ -53,7 +53,7 @@ def test_scrubbing_shows_the_recordings_numbers(page, law):
     assert len(seen) > 2
 
 
-def test_hovering_tells_a_boats_numbers(page, law):
+def test_hovering_reports_a_boats_numbers(page, law):
     page.click_at("#scrub", 0.6)
     page.press("ARROW_LEFT")
     k = page.sample(law)

@@ -100,7 +100,7 @@ def test_a_response_surface_finds_what_lucky_trials_hide():
     assert surface_minimum(trials[:10]) == []
 
 
-def test_a_fit_is_written_and_told(quick, tmp_path):
+def test_a_fit_is_written_and_reported(quick, tmp_path):
     steps = []
     fit = Fit(trials=22, seeds=1, finalists=2)
     result = fit_report.report(fit, 4, tmp_path, lambda words, count: steps.append(count))

@@ -27,12 +27,12 @@ def printed(monkeypatch):
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252", "latin-1", "cp437", "utf-8"])
 def test_greek_is_printed_or_spelt(encoding, printed):
-    told = printed(encoding, "mean Ψ_o → φ – 3×2…").decode(encoding)
+    reported = printed(encoding, "mean Ψ_o → φ – 3×2…").decode(encoding)
     if encoding == "utf-8":
-        assert told == "mean Ψ_o → φ – 3×2…\n"
+        assert reported == "mean Ψ_o → φ – 3×2…\n"
     else:
-        assert told.startswith("mean Psi_o ? ")
-        assert "?" not in told[12:]
+        assert reported.startswith("mean Psi_o ? ")
+        assert "?" not in reported[12:]
 
 
 def test_a_file_name_comes_out_as_its_own_bytes(printed):
@@ -44,6 +44,6 @@ def test_a_file_name_comes_out_as_its_own_bytes(printed):
 def test_json_is_the_same_on_every_console(printed):
     data = {"Ψ": [os.fsdecode(b"\xff.npz"), None]}
     for encoding in ("utf-8", "ascii", "cp1252"):
-        told = printed(encoding, data, print_one=print_json)
-        assert told.isascii()
-        assert json.loads(told) == data
+        reported = printed(encoding, data, print_one=print_json)
+        assert reported.isascii()
+        assert json.loads(reported) == data

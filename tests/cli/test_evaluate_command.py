@@ -24,7 +24,7 @@ def learned(folder: Path) -> str:
     return str(folder / "leaning.npz")
 
 
-def test_the_card_tells_what_made_it_and_how_it_compares(flockenv: Run, tmp_path: Path) -> None:
+def test_the_card_reports_what_made_it_and_how_it_compares(flockenv: Run, tmp_path: Path) -> None:
     out = tmp_path / "out"
     arguments = ["--leaders", "2", "--bw-s", "0.2", "--bw-s", "0.4", "--out", str(out)]
     done = flockenv("evaluate", learned(tmp_path), *SHORT, *arguments)

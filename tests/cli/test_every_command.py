@@ -41,10 +41,10 @@ def flockenv_cli(*arguments: object, **environment: str) -> subprocess.Completed
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_help_has_an_example_and_fits(name):
-    told = shown(name, "--help")
-    assert told.exit_code == 0
-    assert f"Example: flockenv {name}" in told.output
-    assert max(map(len, told.output.splitlines())) <= 80
+    reported = shown(name, "--help")
+    assert reported.exit_code == 0
+    assert f"Example: flockenv {name}" in reported.output
+    assert max(map(len, reported.output.splitlines())) <= 80
 
 
 @pytest.mark.parametrize("name", sorted({*COMMANDS} - {"presets"}))
@@ -56,27 +56,27 @@ def test_work_can_be_quiet_and_machine_readable(name):
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_misspelt_options_are_told_with_exit_code_2(name):
-    told = shown(name, "--jason")
-    assert told.exit_code == 2
-    assert "--jason" in told.output
+def test_misspelt_options_are_reported_with_exit_code_2(name):
+    reported = shown(name, "--jason")
+    assert reported.exit_code == 2
+    assert "--jason" in reported.output
 
 
 def test_presets_in_80_columns():
-    told = shown("presets")
-    assert told.exit_code == 0
-    assert max(map(len, told.output.splitlines())) <= 100
-    assert "…" not in told.output
+    reported = shown("presets")
+    assert reported.exit_code == 0
+    assert max(map(len, reported.output.splitlines())) <= 100
+    assert "…" not in reported.output
     for name, about in ABOUT.items():
-        assert f"{name}: {about}" in told.output
+        assert f"{name}: {about}" in reported.output
     for words in ("gyration_radius_cm", "4.74", "experiment: flockenv fit", "Section 5.2"):
-        assert words in told.output
+        assert words in reported.output
 
 
 def test_presets_as_json_are_the_presets():
-    told = json.loads(shown("presets", "--json").output)
-    assert list(told) == list(ABOUT) == flockenv.FlockParameters.presets()
-    for name, preset in told.items():
+    reported = json.loads(shown("presets", "--json").output)
+    assert list(reported) == list(ABOUT) == flockenv.FlockParameters.presets()
+    for name, preset in reported.items():
         values = {field: each["value"] for field, each in preset["fields"].items()}
         assert flockenv.FlockParameters.from_dict(values) == flockenv.FlockParameters.preset(name)
         assert all(each["source"] for each in preset["fields"].values())
@@ -142,10 +142,10 @@ def test_errors_are_one_line_with_exit_code_2(arguments, words, tmp_path, monkey
     monkeypatch.setattr(sys, "argv", ["flockenv", *(a.replace("{}", ".") for a in arguments)])
     with pytest.raises(SystemExit) as ended:
         flockenv.cli.main()
-    told = capsys.readouterr().err
-    assert ended.value.code == 2, told
-    assert words in told.replace("\n", " ")
-    assert "Traceback" not in told
+    reported = capsys.readouterr().err
+    assert ended.value.code == 2, reported
+    assert words in reported.replace("\n", " ")
+    assert "Traceback" not in reported
     assert sorted(tmp_path.rglob("*")) == before
 
 
@@ -215,19 +215,19 @@ def test_ctrl_c_says_where_finished_work_is(name, tmp_path):
         assert os.read(terminal, 1000)
         time.sleep(0.5)
         process.send_signal(signal.SIGINT)
-        told = everything(terminal)
-        assert process.wait(timeout=60) == 130, told
+        reported = everything(terminal)
+        assert process.wait(timeout=60) == 130, reported
     finally:
         process.kill()
         os.close(terminal)
-    assert f"Interrupted. {words}" in told
-    assert "left:" in told
-    assert "Traceback" not in told
+    assert f"Interrupted. {words}" in reported
+    assert "left:" in reported
+    assert "Traceback" not in reported
     assert not list(Path(tmp_path).rglob("*.tmp"))
 
 
 @pytest.mark.parametrize(
-    "told",
+    "reported",
     [
         lambda: interruptible("All is kept."),
         lambda: interruptible(lambda: "All is kept."),
@@ -235,7 +235,7 @@ def test_ctrl_c_says_where_finished_work_is(name, tmp_path):
         lambda: resumable(Path("here")),
     ],
 )
-def test_another_ctrl_c_does_not_cut_off_what_is_told(told, monkeypatch, capsys):
+def test_another_ctrl_c_does_not_cut_off_the_message(reported, monkeypatch, capsys):
     console = sys.modules[interruptible.__module__]  # The package has another thing of that name.
     whole = console.say
 
@@ -244,7 +244,7 @@ def test_another_ctrl_c_does_not_cut_off_what_is_told(told, monkeypatch, capsys)
         whole(text, on)
 
     monkeypatch.setattr(console, "say", pressed)
-    with pytest.raises((typer.Exit, KeyboardInterrupt)) as ended, told():
+    with pytest.raises((typer.Exit, KeyboardInterrupt)) as ended, reported():
         raise KeyboardInterrupt
     assert isinstance(ended.value, typer.Exit)
     assert ended.value.exit_code == 130
@@ -284,12 +284,12 @@ def test_a_missing_extra_is_named_before_any_work(package, extra, arguments, tmp
 
 def everything(terminal: int) -> str:
     """What is printed on a terminal until its program ends."""
-    told = b""
+    reported = b""
     while True:
         try:
             part = os.read(terminal, 4096)
         except OSError:  # Linux's way to say that the other end is closed.
             part = b""
         if not part:
-            return told.decode(errors="replace")
-        told += part
+            return reported.decode(errors="replace")
+        reported += part

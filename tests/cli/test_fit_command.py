@@ -1,4 +1,4 @@
-"""`flockenv fit` refuses nonsense in words; `flockenv presets` tells where numbers come from."""
+"""`flockenv fit` refuses nonsense in words; `flockenv presets` prints the source of numbers."""
 
 import json
 
@@ -22,9 +22,9 @@ def test_a_fit_prints_its_residuals_and_writes_its_files(quick, tmp_path):
     options = ["--trials", "11", "--seeds", "1", "--finalists", "1", "--held-out", "2"]
     done = CliRunner().invoke(app, ["fit", *options, "--json", "--out", str(tmp_path)])
     assert done.exit_code == 0, done.output
-    told = json.loads(done.output)
-    assert {row["in_range"] for row in told["residuals"]} <= {True, False}
-    fitted = flockenv.FlockParameters.from_dict(told["parameters"])
+    reported = json.loads(done.output)
+    assert {row["in_range"] for row in reported["residuals"]} <= {True, False}
+    fitted = flockenv.FlockParameters.from_dict(reported["parameters"])
     text = (tmp_path / "parameters.toml").read_text(encoding="utf-8")
     assert flockenv.FlockParameters.from_toml(text) == fitted
 
@@ -54,7 +54,7 @@ def test_nonsense_is_refused_in_words(options, word, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
-def test_presets_tell_where_each_number_comes_from():
+def test_presets_name_the_source_of_each_number():
     for name in flockenv.FlockParameters.presets():
         sources = flockenv.FlockParameters.preset_sources(name)
         assert list(sources) == list(flockenv.FlockParameters.preset(name).to_dict())

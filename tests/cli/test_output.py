@@ -86,12 +86,12 @@ def test_a_run_whose_folder_was_taken_away_is_kept_elsewhere(cli, tmp_path, monk
         return simulate(*arguments, **options)
 
     monkeypatch.setattr(sys.modules["flockenv.cli.run"], "simulate", meanwhile)
-    code, told = cli("run", *TINY)
+    code, reported = cli("run", *TINY)
     assert code == 2
     (kept,) = tmp_path.glob("flockenv-*/run.npz")
-    told = told.replace("\n", "")
-    assert str(kept) in told
-    assert "results/run.npz cannot be written" in told
+    reported = reported.replace("\n", "")
+    assert str(kept) in reported
+    assert "results/run.npz cannot be written" in reported
     assert len(flockenv.Recording.load(kept)) == 13
     assert kept.with_suffix(".toml").is_file()
 
@@ -104,10 +104,10 @@ def test_a_comparison_whose_folder_was_taken_away_is_kept_elsewhere(cli, tmp_pat
         return compare_leaders(*arguments, **options)
 
     monkeypatch.setattr(report, "compare_leaders", meanwhile)
-    code, told = cli("compare", *EPISODES, "--most-leaders", "1", "--policy", "straight ahead")
+    code, reported = cli("compare", *EPISODES, "--most-leaders", "1", "--policy", "straight ahead")
     assert code == 2
     (kept,) = tmp_path.glob("flockenv-*/table-1")
-    assert str(kept) in told.replace("\n", "")
+    assert str(kept) in reported.replace("\n", "")
     assert {"runs.csv", "leader_curve.png", "run.toml"} <= {each.name for each in kept.iterdir()}
 
 
@@ -150,9 +150,9 @@ def test_what_the_user_gave_is_not_written_over(cli, arguments, given, tmp_path)
     size = len(flockenv.envs.observation.observation_entries())
     flockenv.policies.NetworkPolicy([[[0.0]] * size], [[0.0]]).save(tmp_path / "p.npz")
     before = {path: path.read_bytes() for path in tmp_path.rglob("*.*")}
-    code, told = cli(*arguments)
-    assert code == 2, told
-    assert f"{given} is where results would be written" in told.replace("\n", " ")
+    code, reported = cli(*arguments)
+    assert code == 2, reported
+    assert f"{given} is where results would be written" in reported.replace("\n", " ")
     assert {path: path.read_bytes() for path in tmp_path.rglob("*.*")} == before
 
 
@@ -162,14 +162,14 @@ def test_names_that_are_no_utf_8_replay(cli, tmp_path):
         Path(name).touch()
     except OSError:
         pytest.skip("this file system takes UTF-8 names only")
-    code, told = cli("run", *TINY, "--out", name)
-    assert code == 0, told
-    code, told = cli("replay", name, "-q", "--html", "page.html")
-    assert code == 0, told
+    code, reported = cli("run", *TINY, "--out", name)
+    assert code == 0, reported
+    code, reported = cli("replay", name, "-q", "--html", "page.html")
+    assert code == 0, reported
     assert "<title>\ufffd\ufffd run" in Path("page.html").read_text("utf-8")
     for title in (name, "[/b] $x$ <b>"):
-        code, told = cli("replay", name, "-q", "--html", "page.html", "--name", title)
-        assert code == 0, told
+        code, reported = cli("replay", name, "-q", "--html", "page.html", "--name", title)
+        assert code == 0, reported
 
 
 def test_policies_may_have_any_name(cli, tmp_path):
@@ -183,14 +183,14 @@ def test_policies_may_have_any_name(cli, tmp_path):
         except OSError:
             pytest.skip("this file system takes UTF-8 names only")
     wanted = [word for name in names for word in ("--policy", name)]
-    code, told = cli("compare", *EPISODES, "--most-leaders", "1", *wanted)
-    assert code == 0, told
-    assert "x[/b] $a_{ $.npz" in told.replace("\n", "")
+    code, reported = cli("compare", *EPISODES, "--most-leaders", "1", *wanted)
+    assert code == 0, reported
+    assert "x[/b] $a_{ $.npz" in reported.replace("\n", "")
     assert (tmp_path / "c" / "table-1" / "leader_curve.png").stat().st_size > 0
     assert "\ufffd.npz" in (tmp_path / "c" / "table-1" / "run.toml").read_text("utf-8")
     evaluated = ["--against", names[0], "--leaders", "1"]
-    code, told = cli("evaluate", names[2], *EPISODES, *evaluated)
-    assert code == 0, told
+    code, reported = cli("evaluate", names[2], *EPISODES, *evaluated)
+    assert code == 0, reported
     assert (tmp_path / "c" / "card.md").read_text("utf-8").startswith("# \ufffd\n")
-    code, told = cli("run", *TINY, "--set", "n_leaders=1", "--policy", names[2])
-    assert code == 0, told
+    code, reported = cli("run", *TINY, "--set", "n_leaders=1", "--policy", names[2])
+    assert code == 0, reported

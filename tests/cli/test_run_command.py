@@ -123,10 +123,10 @@ def test_ctrl_c_says_what_became_of_the_work(policy, tmp_path):
     assert process.stderr.read(1)
     time.sleep(1.0)
     process.send_signal(signal.SIGINT)
-    _, told = process.communicate(timeout=30)
+    _, reported = process.communicate(timeout=30)
     assert process.returncode == 130
-    assert "Nothing was written" in told
-    assert "Traceback" not in told
+    assert "Nothing was written" in reported
+    assert "Traceback" not in reported
     assert not out.parent.exists()
 
 

@@ -85,7 +85,7 @@ def test_the_missing_extra_is_named(tmp_path: Path) -> None:
     assert "pip install 'flockenv[train]'" in done.stderr
 
 
-def test_an_interrupt_tells_how_to_go_on(tiny: str, tmp_path: Path) -> None:
+def test_an_interrupt_names_the_command_that_resumes(tiny: str, tmp_path: Path) -> None:
     out = tmp_path / "run"
     command = [sys.executable, "-c", "from flockenv.cli import main; main()", "train", "--quiet"]
     arguments = ["--settings", tiny, "--samples", "100000000", "--out", str(out)]
@@ -96,7 +96,7 @@ def test_an_interrupt_tells_how_to_go_on(tiny: str, tmp_path: Path) -> None:
         assert run.poll() is None
         time.sleep(0.1)
     run.send_signal(signal.SIGINT)
-    _, told = run.communicate(timeout=60)
+    _, reported = run.communicate(timeout=60)
     assert run.returncode == 130
-    assert "--resume" in told
+    assert "--resume" in reported
     assert (out / "checkpoint.npz").exists()

@@ -85,7 +85,9 @@ def test_the_report_writes_its_files(scene: flockenv.FlockParameters, tmp_path: 
     assert (folder / "leader_curve.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_the_report_tells_the_environment(scene: flockenv.FlockParameters, tmp_path: Path) -> None:
+def test_the_report_reports_the_environment(
+    scene: flockenv.FlockParameters, tmp_path: Path
+) -> None:
     options = {"target": "alternate", "dropout_rate": 0.003, "control_hz": 5.0}
     result = report(scene, [1], LAW, range(2), 20.0, lambda seconds: None, options)
     result.write(tmp_path)

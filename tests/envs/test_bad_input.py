@@ -16,7 +16,7 @@ FACES = {
 
 
 @pytest.fixture(params=FACES.values(), ids=FACES.keys())
-def face(request):
+def interface(request):
     return lambda **options: request.param(**{**OPTIONS, **options})
 
 
@@ -55,7 +55,7 @@ def face(request):
         ({"dt_s": 0.0}, "dt_s = 0"),
     ],
 )
-def test_options(face, options, message):
+def test_options(interface, options, message):
     with pytest.raises((ParameterError, TypeError)) as caught:
         face(**options)
     assert message in str(caught.value) or not isinstance(caught.value, ParameterError)
@@ -82,9 +82,9 @@ def test_unknown_options_are_the_errors_of_unexpected_keywords(face):
         {"n_boats": "many"},
     ],
 )
-def test_options_of_a_wrong_type(face, options):
+def test_options_of_a_wrong_type(interface, options):
     with pytest.raises((TypeError, ParameterError)):
-        face(**options)
+        interface(**options)
 
 
 def test_params_and_preset_exclude_each_other():
@@ -102,8 +102,8 @@ def zeros(env):
     return np.zeros(env.action_space.shape)
 
 
-def test_stepping_before_a_reset_and_after_the_end(face):
-    env = face(autoreset_mode="disabled") if face.__name__ == "vector" else face()
+def test_stepping_before_a_reset_and_after_the_end(interface):
+    env = interface(autoreset_mode="disabled") if interface.__name__ == "vector" else interface()
     with pytest.raises(EpisodeError, match="reset"):
         env.step(zeros(env))
     env.reset(seed=0)
@@ -197,8 +197,8 @@ def test_agents_that_are_not_there():
         {"snapshot": flockenv.Flock(flockenv.FlockParameters(n_boats=5), 0).snapshot()},
     ],
 )
-def test_reset_options(face, options):
-    env = face()
+def test_reset_options(interface, options):
+    env = interface()
     env.reset(seed=0)
     before = env.get_state()
     with pytest.raises(FlockError):
@@ -207,19 +207,19 @@ def test_reset_options(face, options):
     env.step(zeros(env))
 
 
-def test_reset_options_of_others_are_left_alone(face):
-    face().reset(seed=0, options={"curriculum": 3})
+def test_reset_options_of_others_are_left_alone(interface):
+    interface().reset(seed=0, options={"curriculum": 3})
 
 
 @pytest.mark.parametrize("options", [5, "abc", [], [("target", "cw")]])
-def test_reset_options_that_are_no_dictionary(face, options):
+def test_reset_options_that_are_no_dictionary(interface, options):
     with pytest.raises(TypeError, match="reset options must be a dictionary"):
-        face().reset(seed=0, options=options)
+        interface().reset(seed=0, options=options)
 
 
 @pytest.mark.parametrize("seed", [-1, 2**64, np.int64(-1)])
-def test_seeds_out_of_range(face, seed):
-    env = face()
+def test_seeds_out_of_range(interface, seed):
+    env = interface()
     env.reset(seed=0)
     before = env.get_state()
     with pytest.raises(ParameterError, match="seed = "):
@@ -228,22 +228,22 @@ def test_seeds_out_of_range(face, seed):
 
 
 @pytest.mark.parametrize("seed", ["1", True, 1j, {1}])
-def test_seeds_that_are_no_integers(face, seed):
+def test_seeds_that_are_no_integers(interface, seed):
     with pytest.raises(TypeError, match="seed must be an integer"):
-        face().reset(seed=seed)
+        interface().reset(seed=seed)
 
 
-def test_seeds_of_numpy(face):
-    first, second = face(), face()
+def test_seeds_of_numpy(interface):
+    first, second = interface(), interface()
     first.reset(seed=3)
     second.reset(seed=np.uint64(3))
     assert first.get_state() == second.get_state()
 
 
 @pytest.mark.parametrize("time_s", [1e9, 1e9 - 0.5])
-def test_episodes_end_before_the_end_of_time(face, time_s):
+def test_episodes_end_before_the_end_of_time(interface, time_s):
     # Beyond it a state could be put away, but not brought back.
-    env = face()
+    env = interface()
     env.reset(seed=0)
     parameters = flockenv.FlockParameters(n_boats=9, n_leaders=2)
     flock = flockenv.Flock(parameters, 0)
@@ -285,7 +285,7 @@ def test_vector_seeds_options_and_masks():
             flockenv.LeadersVectorEnv(**bad)
 
 
-def test_too_many_boats_tell_so_and_leave_the_episode():
+def test_too_many_boats_are_an_error_and_leave_the_episode():
     env = flockenv.LeadersEnv(n_boats=300, n_leaders=1, pool="table-1")
     with pytest.raises(ParameterError, match="do not fit"):
         env.reset(seed=0)

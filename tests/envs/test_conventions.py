@@ -224,7 +224,7 @@ def test_vector_reset_options_can_differ_by_flock():
     assert infos["bw_s"].tolist() == [0.5, 0.5]
 
 
-def test_summary_tells_means_over_the_episode():
+def test_summary_reports_means_over_the_episode():
     env = flockenv.LeadersEnv(**{**OPTIONS, "episode_s": 20.0})
     env.reset(seed=0)
     rewards, in_window = [], []
@@ -240,6 +240,6 @@ def test_summary_tells_means_over_the_episode():
     assert 0.0 <= summary["clip_rate"] < 0.05
 
 
-def test_parameters_tell_the_target():
+def test_parameters_report_the_target():
     assert flockenv.LeadersEnv(target="ccw").parameters.target == "ccw"
     assert flockenv.parallel_env(target="cw").parameters.target == "cw"

@@ -51,12 +51,12 @@ def load_run(path: Path):
     target = store.path(SPEC)
     target.parent.mkdir(parents=True)
     target.write_bytes(path.read_bytes())
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as reported:
         warnings.simplefilter("always", StoreWarning)
         found = store.load(SPEC)
-    assert (found is None) == (not target.exists()) == bool(told)
+    assert (found is None) == (not target.exists()) == bool(reported)
     if found is None:
-        raise ParameterError(str(told[0].message))
+        raise ParameterError(str(reported[0].message))
     return found
 
 

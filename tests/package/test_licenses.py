@@ -1,4 +1,4 @@
-"""Law: the notices that are shipped are those of the crates that are compiled in."""
+"""Law: the distributed notices are those of the crates that are compiled in."""
 
 import re
 import tomllib

@@ -136,7 +136,7 @@ fn a_normal_boat_keeps_no_turn_going_forward() {
 }
 
 #[test]
-fn leaders_back_up_or_drift_as_told() {
+fn leaders_back_up_or_drift_as_set() {
     for scheme in SCHEMES {
         for leaders_reverse in [true, false] {
             let p = FlockParameters {

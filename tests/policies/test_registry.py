@@ -64,10 +64,10 @@ def test_a_pool_without_learned_leaders_says_which_have_some() -> None:
         ("nobody", quoted([*POLICIES, *POOL_POLICIES])),
     ],
 )
-def test_unknown_names_are_told_with_what_there_is(name: str, words: str) -> None:
-    with pytest.raises(flockenv.ParameterError) as told:
+def test_unknown_names_are_reported_with_what_there_is(name: str, words: str) -> None:
+    with pytest.raises(flockenv.ParameterError) as reported:
         named_policy(name, "table-1")
-    assert words in str(told.value)
+    assert words in str(reported.value)
 
 
 def test_no_name_holds_a_comma_and_older_names_are_known() -> None:

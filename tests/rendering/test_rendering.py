@@ -1,4 +1,4 @@
-"""Law: pictures are a function of the flock alone, in every face, and need no screen."""
+"""Law: pictures are a function of the flock alone, in every interface, and need no display."""
 
 import copy
 import subprocess
@@ -136,21 +136,21 @@ def test_without_a_render_mode_nothing_is_drawn():
 
 
 @pytest.mark.parametrize(
-    ("face", "modes"),
+    ("interface", "modes"),
     [
         (flockenv.LeadersEnv, ["human", "rgb_array"]),
         (flockenv.parallel_env, ["human", "rgb_array"]),
         (flockenv.LeadersVectorEnv, ["rgb_array"]),
     ],
 )
-def test_metadata(face, modes):
-    env = face(control_hz=20.0, **SHORT)
+def test_metadata(interface, modes):
+    env = interface(control_hz=20.0, **SHORT)
     assert env.metadata["render_modes"] == modes
     assert env.metadata["render_fps"] == 20.0
     assert type(env).metadata["render_fps"] == 10.0
     for wrong in {"ansi", "human"} - set(modes):
         with pytest.raises(flockenv.ParameterError, match=f"render_mode = '{wrong}'"):
-            face(render_mode=wrong, **SHORT)
+            interface(render_mode=wrong, **SHORT)
 
 
 def test_pettingzoo_render_test():

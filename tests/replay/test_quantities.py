@@ -1,4 +1,4 @@
-"""Law: a page charts what the recordings hold, and opens at the minute that tells most of it."""
+"""Law: a page charts what the recordings hold, and opens at the most telling minute."""
 
 import dataclasses
 

@@ -43,9 +43,9 @@ def test_a_figure_of_short_runs_is_written(name, tmp_path):
     claims = reproduce(plan([name], SHORT), tmp_path)
     for ending in ("csv", "parquet", "png", "svg"):
         assert (tmp_path / name / f"{name}.{ending}").stat().st_size > 0
-    told = pd.read_csv(tmp_path / name / "claims.csv")
-    assert len(told) == len(claims[name]) > 0
-    assert set(told["verdict"]) <= {"holds", "does not hold", "inconclusive"}
+    reported = pd.read_csv(tmp_path / name / "claims.csv")
+    assert len(reported) == len(claims[name]) > 0
+    assert set(reported["verdict"]) <= {"holds", "does not hold", "inconclusive"}
 
 
 def test_runs_are_drawn_within_their_groups():

@@ -52,7 +52,7 @@ def test_the_statements_name_every_claim_once() -> None:
     ]
 
 
-def test_the_summary_tells_the_command_that_made_it() -> None:
+def test_the_summary_reports_the_command_that_made_it() -> None:
     names = [*resolve(["all"]), "transition-order"]
     finished = [(load(name), [], Outcome({})) for name in names]
     words = "flockenv reproduce all transition-order --seed 3 --minutes 2 --budget 7"

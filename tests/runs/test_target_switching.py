@@ -1,4 +1,4 @@
-"""Law: leaders turn round when they are told to; the run is a function of its arguments."""
+"""Law: leaders turn round at their switches; the run is a function of its arguments."""
 
 import numpy as np
 import pytest

@@ -50,7 +50,7 @@ def refused(folder: Path, words: str, arrays: Arrays, header: Any = None) -> Non
     assert path.read_bytes() == before
 
 
-def told(arrays: Arrays) -> dict[str, Any]:
+def reported(arrays: Arrays) -> dict[str, Any]:
     return json.loads(str(arrays["header"]))
 
 
@@ -100,7 +100,7 @@ def changed(name: str, value: Any) -> Callable[[dict[str, Any]], None]:
 def test_headers_that_are_refused(
     whole: Arrays, tmp_path: Path, name: str, value: Any, words: str
 ) -> None:
-    header = told(whole)
+    header = reported(whole)
     changed(name, value)(header)
     refused(tmp_path, words, whole, header)
 
@@ -172,7 +172,7 @@ json_values = st.recursive(
 def test_headers_with_any_entry(
     whole: Arrays, tmp_path_factory: pytest.TempPathFactory, name: str, value: Any
 ) -> None:
-    header = told(whole)
+    header = reported(whole)
     changed(name, value)(header)
     path = written(tmp_path_factory.mktemp("run"), whole, header)
     # Where it goes on, it lacks the policy that a whole run has beside its checkpoint.

@@ -59,7 +59,7 @@ def test_a_second_interrupt_is_not_held_back() -> None:
     assert reached == ["once"]
 
 
-def test_an_error_is_told_before_a_held_interrupt() -> None:
+def test_an_error_is_reported_before_a_held_interrupt() -> None:
     def failing() -> None:
         with held_interrupts():
             press()

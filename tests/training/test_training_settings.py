@@ -70,11 +70,11 @@ def test_seeds_are_training_seeds_and_differ(tiny: TrainingSettings) -> None:
         env = PooledVecEnv(tiny.replace(seed=number))
         env.reset()
         episodes = env.env_method("episode")
-        told = [int(episode["flock_seed"]) for episode in episodes]
-        seeds += told
-        assert min(told) >= FIRST_TRAINING_SEED
+        reported = [int(episode["flock_seed"]) for episode in episodes]
+        seeds += reported
+        assert min(reported) >= FIRST_TRAINING_SEED
         # 1 and 2 leaders in the flocks of each pool: six slots of four flocks.
-        assert len(set(told)) == 4
+        assert len(set(reported)) == 4
     assert len(set(seeds)) == 12
 
 

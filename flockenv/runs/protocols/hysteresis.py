@@ -145,9 +145,9 @@ def simulate_loop(
 def simulate_prepared(
     parameters: FlockParameters, seed: int, duration_s: float, sample_hz: float, start: str
 ) -> Recording:
-    """Run one scene from a prepared start: a pure function of its arguments.
+    """Run one scene from an initial state: a pure function of its arguments.
 
-    Parameters and errors are those of `simulate_loop`, but for `start`, one of
+    Parameters and errors are those of `simulate_loop`, except for `start`, one of
     `flockenv.runs.protocols.initial_state.STARTS`.
     """
     flock = prepared_flock(parameters, seed, start)

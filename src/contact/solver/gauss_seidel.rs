@@ -6,7 +6,7 @@ use crate::geometry::Velocity;
 
 /// Sweeps after which the solver gives up.
 const MOST_SWEEPS: u64 = 20_000;
-/// Sweeps between two looks at the residual.
+/// Sweeps between two evaluations of the residual.
 const SWEEPS_BETWEEN_CHECKS: u64 = 10;
 
 /// Solves by sweeping, from the impulses given.

@@ -42,7 +42,7 @@ impl AnimationEncoder {
     /// The longest side in pixels: GIF counts in 16 bits.
     pub const LONGEST: u32 = 65_535;
 
-    /// For frames of a size in pixels, shown at so many a second, over and over.
+    /// For frames of a size in pixels, shown at a constant rate, over and over.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for a size or rate out of range.

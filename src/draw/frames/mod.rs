@@ -1,4 +1,4 @@
-//! Pictures of a flock, drawn without a screen: pool, hulls with a direction mark, leaders in their own
+//! Pictures of a flock, drawn without a display: pool, hulls with a direction mark, leaders in their own
 //! color and a legend. A frame depends on the flock and the frame's size alone.
 
 mod boats;

@@ -1,4 +1,4 @@
-//! Colors of a frame: Okabe and Ito's set, told apart by color-blind eyes too, on pale water.
+//! Colors of a frame: Okabe and Ito's set, which color-blind eyes distinguish too, on pale water.
 
 use tiny_skia::{Color, Paint};
 

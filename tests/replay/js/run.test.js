@@ -32,13 +32,13 @@ test("only leaders have a rudder and an orientation", () => {
   assert.equal(run.rudder(1, 1), undefined);
 });
 
-test("a leader's card tells its rudder and its angle, a normal boat's does not", () => {
-  const told = (boat) => Object.fromEntries(boatNumbers(runOf(), boat, 1).map(([name, value]) => [name, value]));
-  assert.equal(told(0).rudder, "+0.50");
-  assert.equal(told(0).φ, "+1.50");
-  assert.equal(told(0).contacts, "1");
-  assert.equal(told(1)["strongest push"], "20.0");
-  assert.equal(told(1).rudder ?? told(1).φ, undefined);
+test("a leader's card reports its rudder and its angle, a normal boat's does not", () => {
+  const reported = (boat) => Object.fromEntries(boatNumbers(runOf(), boat, 1).map(([name, value]) => [name, value]));
+  assert.equal(reported(0).rudder, "+0.50");
+  assert.equal(reported(0).φ, "+1.50");
+  assert.equal(reported(0).contacts, "1");
+  assert.equal(reported(1)["strongest push"], "20.0");
+  assert.equal(reported(1).rudder ?? reported(1).φ, undefined);
 });
 
 test("a recording without rudders or contacts leaves them open", () => {
@@ -47,9 +47,9 @@ test("a recording without rudders or contacts leaves them open", () => {
   const run = new Run({ boats: 2, leaders: 1, phases: ["fw"] }, columns);
   assert.equal(run.hasForces, false);
   assert.deepEqual(run.contacts(1), []);
-  const told = Object.fromEntries(boatNumbers(run, 0, 1));
-  assert.equal(told.rudder, "–");
-  assert.ok(!("contacts" in told));
+  const reported = Object.fromEntries(boatNumbers(run, 0, 1));
+  assert.equal(reported.rudder, "–");
+  assert.ok(!("contacts" in reported));
 });
 
 test("a value is that of the sample, and undefined where there is no such series", () => {

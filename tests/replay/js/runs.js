@@ -1,4 +1,4 @@
-// Runs that are small enough to be told on paper.
+// Runs that are small enough to be checked on paper.
 
 import { Column } from "../../../flockenv/replay/packing.mjs";
 import { Run } from "../../../flockenv/replay/run.mjs";

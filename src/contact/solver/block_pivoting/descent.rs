@@ -9,7 +9,7 @@ use super::IslandSolver;
 use super::island_solver::TOLERANCE;
 use crate::contact::solver::SolveReport;
 
-/// Impulses (times A_kk, in cm/s) that only constraints which contradict each other ask for.
+/// Impulses (times A_kk, in cm/s) that only constraints which contradict each other demand.
 const CONTRADICTION: f64 = 1e9;
 
 impl IslandSolver {
