@@ -10,7 +10,7 @@ each, all in one batch of the simulator. Candidates of a generation steer the sa
 they differ by their weights alone; their mean rewards are replaced by ranks; Adam follows the
 estimated gradient. The policy is linear feedback on the observation unless hidden layers are asked
 for; with --form leaning it is a `LeaningLaw`, which begins as the damped law. Interrupted, the same
-command goes on from the last generation. The result is a policy file:
+command resumes from the last generation. The result is a policy file:
 
     flockenv compare --policy "steering law" --policy results/evolution/policy.npz
 """
@@ -242,7 +242,7 @@ def search(options: argparse.Namespace, command: str) -> NetworkPolicy | Leaning
     return policy
 
 
-def tell_held_out(options: argparse.Namespace, policies: dict[str, Any]) -> None:
+def print_held_out(options: argparse.Namespace, policies: dict[str, Any]) -> None:
     """Print what policies earn in episodes that the search has never seen."""
     env = environment(options, options.episodes, options.leaders[0])
     for name, policy in policies.items():
@@ -296,11 +296,13 @@ def main(arguments: list[str] | None = None) -> None:
     try:
         policy = search(options, command)
         ahead = flockenv.policies.StraightAhead(mirror_to_target=True)
-        tell_held_out(options, {"evolved": policy, "straight ahead": ahead})
+        print_held_out(options, {"evolved": policy, "straight ahead": ahead})
     except KeyboardInterrupt:
         path = options.out / "state.npz"
-        kept = f"the same command goes on from {path}" if path.exists() else "nothing is kept yet"
-        sys.exit(f"Interrupted: {kept}")
+        stored = (
+            f"the same command resumes from {path}" if path.exists() else "nothing is stored yet"
+        )
+        sys.exit(f"Interrupted: {stored}")
     except (flockenv.FlockError, OSError) as error:
         sys.exit(f"Error: {error}")
     print(f"written to {options.out / 'policy.npz'}")

@@ -78,8 +78,10 @@ def main(arguments: list[str] | None = None) -> None:
             result = training.train(settings, options.out, command=command, report=report)
     except KeyboardInterrupt:
         path = options.out / "checkpoint.npz"
-        kept = f"--resume goes on from {path}" if path.exists() else "there is no checkpoint yet"
-        sys.exit(f"\nInterrupted: {kept}")
+        stored = (
+            f"--resume continues from {path}" if path.exists() else "there is no checkpoint yet"
+        )
+        sys.exit(f"\nInterrupted: {stored}")
     except flockenv.FlockError as error:
         sys.exit(f"\nError: {error}")
     for name, value in result.progress.validations[-1].items():

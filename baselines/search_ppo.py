@@ -127,7 +127,7 @@ def main(arguments: list[str] | None = None) -> None:
         options.out.mkdir(parents=True, exist_ok=True)
         table = search(options, command)
     except KeyboardInterrupt:
-        sys.exit(f"Interrupted: the same command goes on from {options.out}")
+        sys.exit(f"Interrupted: the same command resumes from {options.out}")
     except (flockenv.FlockError, OSError) as error:
         sys.exit(f"Error: {error}")
     print(table.sort_values("mean", ascending=False).to_string(index=False))

@@ -33,8 +33,8 @@ from flockenv.training.actor import (
 from flockenv.training.checkpoint import LEARNED, Progress
 from flockenv.training.cloning import clone_law
 from flockenv.training.interrupts import held_interrupts
-from flockenv.training.kept import Kept
 from flockenv.training.pools import PooledVecEnv
+from flockenv.training.rollback_point import RollbackPoint
 from flockenv.training.settings import TrainingError, TrainingSettings
 from flockenv.training.validation import validation_scores
 
@@ -171,7 +171,7 @@ class _Run:
         self.progress, self.report = progress, report
         self.begin = time.perf_counter() - progress.wall_s
         self.log = Logger(None, [])
-        self.kept: Kept | None = None
+        self.rollback_point: RollbackPoint | None = None
 
     def go_on(self) -> TrainingResult:
         formats: list[KVWriter] = []
@@ -213,7 +213,7 @@ class _Run:
         if due(settings.validate_every):
             self._validate()
         # An interrupt in the middle of the next rollout goes back to here.
-        self.kept = Kept.of(self.model, settings, progress, self._policy({}))
+        self.rollback_point = RollbackPoint.of(self.model, settings, progress, self._policy({}))
         if due(settings.checkpoint_every) or due(settings.validate_every):
             self._write_kept()
         self.report(progress)
@@ -284,11 +284,11 @@ class _Run:
         )
 
     def _write_kept(self) -> None:
-        if self.kept is not None:
-            self.kept.policy.made.update(self._made(self.kept.progress))
-            with _written(self.folder, self.kept.progress):
-                self.kept.write(self.folder)
-            self.kept = None
+        if self.rollback_point is not None:
+            self.rollback_point.policy.made.update(self._made(self.rollback_point.progress))
+            with _written(self.folder, self.rollback_point.progress):
+                self.rollback_point.write(self.folder)
+            self.rollback_point = None
 
 
 class _Watch(BaseCallback):

@@ -176,7 +176,7 @@ def test_a_foreign_state_is_refused(script, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("generations", "words"), [(0, "nothing is kept yet"), (1, "goes on from")]
+    ("generations", "words"), [(0, "nothing is stored yet"), (1, "resumes from")]
 )
 def test_an_interrupt_reports_what_is_stored(
     script, tmp_path: Path, monkeypatch, generations: int, words: str

@@ -89,7 +89,9 @@ def test_no_critical_noise_without_runs(imported, arguments, capsys) -> None:
     assert "--seeds is at least 1" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(("kept", "words"), [(False, "no checkpoint yet"), (True, "--resume goes")])
+@pytest.mark.parametrize(
+    ("kept", "words"), [(False, "no checkpoint yet"), (True, "--resume continues")]
+)
 def test_ppo_reports_what_is_stored(
     imported, tmp_path: Path, monkeypatch, kept: bool, words: str
 ) -> None:

@@ -1,4 +1,4 @@
-"""The search of PPO's settings: what it draws, keeps and goes on from."""
+"""The search of PPO's settings: what it draws, stores and resumes from."""
 
 import math
 from pathlib import Path

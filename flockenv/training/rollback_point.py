@@ -1,4 +1,4 @@
-"""`Kept`: a run as it is between two rollouts, and the files that it is written to."""
+"""`RollbackPoint`: training between two rollouts, and the files that it is written to."""
 
 import csv
 import io
@@ -15,21 +15,21 @@ from flockenv.training import checkpoint
 from flockenv.training.checkpoint import Progress
 from flockenv.training.settings import TrainingSettings
 
-__all__ = ["Kept"]
+__all__ = ["RollbackPoint"]
 
 
 @dataclass(frozen=True)
-class Kept:
-    """What a run can go on from, which nothing that comes next changes.
+class RollbackPoint:
+    """The state of training between two rollouts, which later training does not change.
 
     Attributes
     ----------
     state
-        What goes into the checkpoint.
+        The contents of the checkpoint.
     policy
-        The mean policy; who writes it says in ``made`` what made it.
+        The mean policy; its writer adds the provenance in ``made``.
     progress
-        How far the run was.
+        The progress of the run.
     """
 
     state: checkpoint.State
@@ -40,7 +40,7 @@ class Kept:
     def of(
         cls, model: PPO, settings: TrainingSettings, progress: Progress, policy: NetworkPolicy
     ) -> Self:
-        """Return a run as it is now, between two rollouts."""
+        """Return the present state of training, between two rollouts."""
         state = checkpoint.state_of(model, settings, progress)
         return cls(state, policy, deepcopy(progress))
 
