@@ -67,12 +67,12 @@ class ModelPolicy:
         self.model = model
         self.made = dict(made or {})
         space = model.observation_space
-        told = space.options if isinstance(space, ObservationSpace) else {}
+        reported = space.options if isinstance(space, ObservationSpace) else {}
         given = {"observation": observation, "mirror_to_target": mirror_to_target}
-        told = told | {name: value for name, value in given.items() if value is not None}
-        self.observation: dict[str, Any] = dict(told.get("observation", {}))
-        self.mirror_to_target = bool(told.get("mirror_to_target", False))
-        self.control_hz: float | None = told.get("control_hz")
+        reported = reported | {name: value for name, value in given.items() if value is not None}
+        self.observation: dict[str, Any] = dict(reported.get("observation", {}))
+        self.mirror_to_target = bool(reported.get("mirror_to_target", False))
+        self.control_hz: float | None = reported.get("control_hz")
         one = observation_space(self.observation)
         self._size = one.shape[0]
         self.leaders = _leaders_of(space, one)

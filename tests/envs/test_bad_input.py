@@ -57,16 +57,16 @@ def interface(request):
 )
 def test_options(interface, options, message):
     with pytest.raises((ParameterError, TypeError)) as caught:
-        face(**options)
+        interface(**options)
     assert message in str(caught.value) or not isinstance(caught.value, ParameterError)
 
 
-def test_unknown_options_are_the_errors_of_unexpected_keywords(face):
+def test_unknown_options_are_the_errors_of_unexpected_keywords(interface):
     with pytest.raises(TypeError, match="unexpected keyword argument 'frameskip'") as caught:
-        face(frameskip=1)
+        interface(frameskip=1)
     assert isinstance(caught.value, ParameterError)
     with pytest.raises(ParameterError) as caught:
-        face(n_boats=-1)
+        interface(n_boats=-1)
     assert not isinstance(caught.value, TypeError)
 
 

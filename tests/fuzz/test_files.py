@@ -122,7 +122,7 @@ def read(kind: str, blob: bytes):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_whole_files_are_read(kind):
+def test_complete_files_are_read(kind):
     assert KINDS[kind][2](read(kind, written(kind)))
 
 

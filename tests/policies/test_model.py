@@ -210,11 +210,11 @@ def test_layouts_are_asked_for_where_the_space_does_not_say():
         ModelPolicy(model)
     policy = ModelPolicy(model, observation=FEW["observation"], mirror_to_target=True)
     assert (policy.leaders, policy.mirror_to_target, policy.control_hz) == (1, True, None)
-    told = PPO("MlpPolicy", rows_env(**FEW), device="cpu")
-    told.policy.load_state_dict(model.policy.state_dict())
+    reported = PPO("MlpPolicy", rows_env(**FEW), device="cpu")
+    reported.policy.load_state_dict(model.policy.state_dict())
     ccw = SCENE.replace(target="ccw")
     run = flockenv.simulate(ccw, 0, 1.0, policy=policy, control_hz=5.0)
-    assert run == flockenv.simulate(ccw, 0, 1.0, policy=told)
+    assert run == flockenv.simulate(ccw, 0, 1.0, policy=reported)
 
 
 def test_normalized_observations_are_normalized_wherever_it_steers():
