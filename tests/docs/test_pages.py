@@ -18,6 +18,7 @@ DOCS = REPOSITORY / "docs"
 EXECUTED = {
     "README.md": ["python"],
     "docs/start.md": ["python", "sh"],
+    "docs/api/flock.md": ["python"],
     "docs/extend/policy.md": ["python"],
 }
 PAGES = sorted(
