@@ -256,6 +256,10 @@ def _series(recording: Recording, every: int, quantities: list[ShownQuantity]) -
     packer.add("heading", pose[..., 2], _ANGLE)
     packer.add("speed_cm_s", np.hypot(velocity[..., 0], velocity[..., 1]), _SPEED)
     packer.add("turning_rate", velocity[..., 2], _TURNING)
+    leaders = recording.parameters.n_leaders
+    if leaders > 0:
+        phi = _core.lap_orientation(pose[:, :leaders].astype(np.float64))
+        packer.add("leader_phi", np.unwrap(phi, axis=0), _ANGLE)
     for quantity in quantities:
         values = quantity.of(recording)[shown]
         if np.isfinite(values).all():

@@ -166,7 +166,7 @@ export function boatNumbers(run, boat, sample) {
   ];
   if (boat < run.leaders) {
     numbers.push(
-      ["φ", fixed(run.orientation(boat, sample), 2, true), "rad",
+      ["φ", fixed(wrapped(run.orientation(boat, sample)), 2, true), "rad",
         "orientation in the local frame: 0 points outward, +π/2 clockwise"],
       ["rudder", fixed(run.rudder(boat, sample), 2, true), "",
         "from −1 to 1; positive turns counter-clockwise when moving forward"],

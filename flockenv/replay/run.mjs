@@ -77,7 +77,7 @@ export class Run {
     return boat < this.leaders ? this.columns.get("rudder")?.at(sample, boat) : undefined;
   }
 
-  /** A leader's orientation φ in the local frame, in rad. */
+  /** A leader's orientation φ in the local frame, in rad, not wrapped. */
   orientation(boat, sample) {
     return boat < this.leaders ? this.columns.get("leader_phi")?.at(sample, boat) : undefined;
   }

@@ -70,6 +70,14 @@ def test_hovering_reports_a_boats_numbers(page, law):
         assert (read["x"], read["y"]) == pytest.approx((x, y), abs=0.056)
         assert np.cos(read["heading"] - heading) == pytest.approx(1.0, abs=1e-4)
         assert read["speed"] == pytest.approx(speed, abs=0.076)
+        angles = page.driver.find_elements("css selector", ".card dd[data-number='φ']")
+        assert len(angles) == (boat < 2)
+        if boat < 2:
+            # Figure 3: 0 points outward, clockwise is positive.
+            phi = np.arctan2(y, x) - heading
+            assert np.cos(page.number("dd[data-number='φ']", 0) - phi) == pytest.approx(
+                1.0, abs=1e-4
+            )
         assert read["turning"] == pytest.approx(turning, abs=0.0076)
         first = law.contacts.count[:k].sum()
         now = slice(first, first + law.contacts.count[k])
