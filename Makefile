@@ -244,6 +244,11 @@ $(STAMPS)/peers: benches/peers/requirements.txt | $(STAMPS)/venv
 	$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check -r benches/peers/requirements.txt
 	@touch $@
 
+# An install from elsewhere, such as `pip install .` in this .venv, takes the place of the editable one.
+ifeq ($(shell grep -lxF "$(CURDIR)" $(VENV)/lib/python3*/site-packages/flockenv.pth 2> /dev/null),)
+.PHONY: $(STAMPS)/core
+endif
+
 $(STAMPS)/core: $(RUST_SOURCES) pyproject.toml | $(STAMPS)/compare
 	VIRTUAL_ENV="$(CURDIR)/$(VENV)" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
 	@touch $@

@@ -4,6 +4,7 @@ import difflib
 import textwrap
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field, fields
+from types import SimpleNamespace
 from typing import Any, Self
 
 import tomli_w
@@ -16,13 +17,16 @@ __all__ = ["FlockParameters"]
 
 _TABLE = {row[0]: row for row in _core.parameter_table()}
 _DEFAULTS = _core.preset_fields("simulation")
+_HULL = frozenset({"boat_radius_cm", "boat_shape"})
 
 
 def _declared(name: str) -> Any:
     """Return the field that the core declares under this name: default, unit, range and meaning."""
     _, kind, unit, accepted, doc = _TABLE[name]
     metadata = {"kind": kind, "unit": unit, "accepted": accepted, "doc": doc}
-    return field(default=_DEFAULTS[name], metadata=metadata)
+    # None: as the hull makes it.
+    default = None if name == "gyration_radius_cm" else _DEFAULTS[name]
+    return field(default=default, metadata=metadata)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,9 +78,21 @@ class FlockParameters:
     def __new__(cls, **values: Any) -> Self:
         """Refuse unknown fields and suggest the nearest name, which a dataclass does not."""
         _refuse_unknown(values)
+        if values.get("gyration_radius_cm", 0.0) is None:
+            raise TypeError("gyration_radius_cm must be a number or left out, not None")
+        if type(values.get("noise")) in (int, float):
+            level = values["noise"]
+            raise TypeError(
+                f"noise = {level!r} is not accepted: 'white' or 'per-step'; the noise level is the "
+                f"backward duration, bw_s = {level!r}"
+            )
         return object.__new__(cls)
 
     def __post_init__(self) -> None:
+        fields = asdict(self)
+        if fields["gyration_radius_cm"] is None:
+            rho = _gyration_radius_cm(SimpleNamespace(**_DEFAULTS), fields)
+            object.__setattr__(self, "gyration_radius_cm", rho)
         for name, value in _core.checked_fields(self).items():
             object.__setattr__(self, name, value)
 
@@ -143,8 +159,15 @@ class FlockParameters:
         return bw_s
 
     def replace(self, **changes: Any) -> Self:
-        """Return these parameters with some fields changed; see the class for the errors."""
-        return type(self)(**{**self.to_dict(), **changes})
+        """Return these parameters with some fields changed; see the class for the errors.
+
+        A hull of another size has a radius of gyration in the same ratio to that of a hull of even
+        mass, unless ``gyration_radius_cm`` is among the changes.
+        """
+        fields = {**self.to_dict(), **changes}
+        if _HULL & changes.keys() and "gyration_radius_cm" not in changes:
+            fields["gyration_radius_cm"] = _gyration_radius_cm(self, fields)
+        return type(self)(**fields)
 
     def to_dict(self) -> dict[str, Any]:
         """Every field by name: ints, floats, bools, strings, and a tuple for an unnamed pool."""
@@ -190,6 +213,11 @@ class FlockParameters:
 
 
 _NAMES = tuple(each.name for each in fields(FlockParameters))
+
+
+def _gyration_radius_cm(base: Any, fields: Mapping[str, Any]) -> float:
+    hull = {name: fields[name] for name in _HULL}
+    return _core.resized_gyration_radius_cm(base, **hull)
 
 
 def _refuse_unknown(names: Iterable[str]) -> None:

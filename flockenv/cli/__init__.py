@@ -8,6 +8,7 @@ from threading import enumerate as enumerate_threads
 from typing import Annotated, Any
 
 import typer
+import typer.core
 
 from flockenv._core import __version__
 from flockenv.cli.compare import compare
@@ -19,12 +20,15 @@ from flockenv.cli.console import (
     print_anywhere,
     say,
 )
+from flockenv.cli.demo import demo
 from flockenv.cli.evaluate import evaluate
 from flockenv.cli.fit import fit
+from flockenv.cli.play import play
 from flockenv.cli.presets import presets
 from flockenv.cli.replay import replay
 from flockenv.cli.reproduce import reproduce
 from flockenv.cli.run import run
+from flockenv.cli.scene import refuse_fields_as_options
 from flockenv.cli.sweep import sweep
 from flockenv.cli.train import train
 from flockenv.errors import FlockError
@@ -34,6 +38,7 @@ __all__ = ["app", "main"]
 app = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode="markdown",
+    context_settings={"help_option_names": ["-h", "--help"]},
     help="Flocks of radio-controlled boats with a few steerable leaders (Tarcai et al. 2011).",
 )
 
@@ -49,8 +54,32 @@ def _interruptible(command: Callable[..., None]) -> Callable[..., None]:
     return wrapped
 
 
-for command in (run, replay, compare, evaluate, fit, presets, reproduce, sweep, train):
-    app.command()(_interruptible(command))
+class _Command(typer.core.TyperCommand):
+    """A command that tells those who take a field of the scene for an option how it is changed."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        if any(parameter.name == "changes" for parameter in self.params):
+            known = {option for parameter in self.params for option in parameter.opts}
+            refuse_fields_as_options(args, known)
+        return super().parse_args(ctx, args)
+
+
+COMMANDS = (
+    demo,
+    run,
+    replay,
+    play,
+    compare,
+    evaluate,
+    fit,
+    presets,
+    reproduce,
+    sweep,
+    train,
+)
+
+for command in COMMANDS:
+    app.command(cls=_Command)(_interruptible(command))
 
 
 def main() -> None:

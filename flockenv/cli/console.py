@@ -74,9 +74,17 @@ def print_anywhere() -> None:
             stream.reconfigure(errors="flockenv")
 
 
+class _Bar(Progress):
+    """A bar that goes away with an error, which is all that is left to read then."""
+
+    def __exit__(self, kind: type[BaseException] | None, *rest: Any) -> None:
+        self.live.transient = kind is not None and not issubclass(kind, KeyboardInterrupt)
+        super().__exit__(kind, *rest)
+
+
 def progress_bar(disable: bool) -> Progress:
     """Return a bar with the share done and the time left, on standard error."""
-    return Progress(
+    return _Bar(
         TextColumn("{task.description}"),
         BarColumn(),
         TextColumn("{task.percentage:3.0f} %"),

@@ -1,12 +1,15 @@
 """Input and output files of the commands."""
 
 import os
+import sys
+import webbrowser
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from shutil import rmtree
 from tempfile import TemporaryFile, gettempdir, mkdtemp
 
+from flockenv.cli.console import errors, say
 from flockenv.errors import ParameterError
 from flockenv.recording import Recording
 
@@ -15,6 +18,7 @@ __all__ = [
     "check_folder",
     "keep",
     "load_recording",
+    "open_page",
     "printable",
     "refuse_overwriting",
     "writable",
@@ -164,3 +168,17 @@ def writable(path: Path) -> Iterator[Path]:
         yield path
     except OSError as error:
         raise ParameterError(f"{path} cannot be written: {error.strerror}") from error
+
+
+def open_page(page: Path) -> None:
+    """Open a page in a browser; where there is none that can show it, say where the page is."""
+    displays = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
+    # A browser in the terminal would take it over, and run none of the page's scripts.
+    has_display = not sys.platform.startswith("linux") or any(map(os.environ.get, displays))
+    address = page.resolve().as_uri()
+    try:
+        is_open = has_display and webbrowser.open(address)
+    except webbrowser.Error:
+        is_open = False
+    if not is_open:
+        say(f"No browser was found here. Open this page in one: {address}", errors)

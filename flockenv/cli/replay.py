@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from flockenv.cli.console import interruptible, print_json, progress_bar, say
-from flockenv.cli.output import check_file, load_recording, printable, writable
+from flockenv.cli.output import check_file, load_recording, open_page, printable, writable
 from flockenv.errors import ParameterError
 
 __all__ = ["replay"]
@@ -63,7 +63,7 @@ def replay(
         size = f"{written.size / 1e6:.1f} MB"
         say(f"Written to {page} ({size}{thinned})")
     if show:
-        typer.launch(str(page))
+        open_page(page)
 
 
 def _titles(paths: list[Path], names: list[str]) -> list[str]:

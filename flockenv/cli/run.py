@@ -1,5 +1,6 @@
 """`flockenv run`."""
 
+import itertools
 from pathlib import Path
 from typing import Annotated
 
@@ -24,7 +25,9 @@ from flockenv.policies.registry import EVERY_SUBSTEP, POLICIES, POOL_POLICIES, n
 from flockenv.recording import Recording
 from flockenv.simulation import simulate
 
-__all__ = ["run"]
+__all__ = ["DEFAULT_OUT", "in_words", "run", "summary_of"]
+
+DEFAULT_OUT = Path("results/run.npz")
 
 
 def run(
@@ -46,7 +49,13 @@ def run(
     contacts: Annotated[
         bool, typer.Option("--contacts/--no-contacts", help="Record contact forces too.")
     ] = True,
-    out: Annotated[Path, typer.Option(help="The recording.")] = Path("results/run.npz"),
+    out: Annotated[
+        Path | None,
+        typer.Option(help="The recording. [results/run.npz, numbered where that is taken]"),
+    ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Overwrite files that are there already.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no progress.")] = False,
 ) -> None:
@@ -58,6 +67,8 @@ def run(
     Example: `flockenv run --set n_boats=27 --set n_leaders=3 --set bw_s=0.3 --seed 7`
     """
     scene = read_scene(preset, params, changes)
+    if out is None:
+        out = DEFAULT_OUT if force else _free(DEFAULT_OUT)
     if out.suffix != ".npz":
         raise ParameterError(f"--out {out} is not accepted: a name that ends in .npz")
     leaders = _policy(policy, scene, trust)
@@ -66,6 +77,9 @@ def run(
         check_file(path)
     refuse_overwriting(params, "--params", (out, parameters))
     refuse_overwriting(policy, "--policy", (out,))
+    for path in (out, parameters):
+        if path.exists() and not force:
+            raise ParameterError(f"{path} is there already: --force overwrites it")
     with interruptible("Nothing was written."), progress_bar(quiet or as_json) as progress:
         task = progress.add_task("simulating", total=minutes * 60)
         recording = simulate(
@@ -87,15 +101,24 @@ def run(
 
     with interruptible(f"{out} may not have been written."):
         keep(out, write)
-    summary = _summary(recording)
+    summary = summary_of(recording)
     if as_json:
         files = {"recording": str(out), "parameters": str(parameters)}
         print_json({**files, "seed": seed, "policy": policy, **summary})
         return
-    words = ", ".join(f"{name} {value}" for name, value in _words(summary))
-    say(f"{recording.parameters.n_boats} boats, seed {seed}: {words}")
+    say(f"{recording.parameters.n_boats} boats, seed {seed}: {in_words(summary)}")
     say(f"Written to {out} and {parameters}")
     say(f"See it: flockenv replay {out}")
+
+
+def _free(path: Path) -> Path:
+    """Return a path, or the first with a number that no recording or its parameters have taken."""
+    numbered = (path.with_stem(f"{path.stem}-{number}") for number in itertools.count(2))
+    return next(
+        each
+        for each in itertools.chain([path], numbered)
+        if not (each.exists() or each.with_suffix(".toml").exists())
+    )
 
 
 def _policy(name: str, scene: FlockParameters, trust: bool) -> LeaderPolicy | str:
@@ -105,8 +128,8 @@ def _policy(name: str, scene: FlockParameters, trust: bool) -> LeaderPolicy | st
         raise ParameterError(f"--policy {name} cannot be read: {error.strerror}") from error
 
 
-def _summary(recording: Recording) -> dict[str, float | int | None]:
-    """Means over the samples in the analysis window after the first tenth of the run."""
+def summary_of(recording: Recording) -> dict[str, float | int | None]:
+    """Return means over the samples in the analysis window after the first tenth of the run."""
     settled = recording.time_s > 0.1 * recording.time_s[-1]
     window = recording.in_analysis_window & settled
     order = recording.order
@@ -125,11 +148,14 @@ def _mean(values: NDArray[np.float64]) -> float | None:
     return float(values.mean()) if len(values) and np.isfinite(values).all() else None
 
 
-def _words(summary: dict[str, float | int | None]) -> list[tuple[str, str]]:
+def in_words(summary: dict[str, float | int | None]) -> str:
+    """Return what a summary says, in one line."""
     words = {
         "psi_o": "mean Ψ_o",
         "signed_order": "order towards target",
         "rotation": "rotation",
     }
     found = {word: summary[name] for name, word in words.items()}
-    return [(word, "undefined" if n is None else f"{n:.3f}") for word, n in found.items()]
+    return ", ".join(
+        f"{word} {'undefined' if n is None else f'{n:.3f}'}" for word, n in found.items()
+    )

@@ -1,6 +1,6 @@
 """The scene of a command: a preset, a TOML file, single fields; saved beside its results."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -19,9 +19,12 @@ __all__ = [
     "changed_fields",
     "given_fields",
     "read_scene",
+    "refuse_fields_as_options",
     "save_scene",
     "scene_of",
 ]
+
+FIELDS = frozenset(FlockParameters.__dataclass_fields__)
 
 PresetOption = Annotated[
     str | None,
@@ -138,8 +141,41 @@ def changed_fields(changes: Sequence[str]) -> dict[str, Any]:
     return fields
 
 
+def refuse_fields_as_options(arguments: Sequence[str], known: Collection[str]) -> None:
+    """Refuse fields that are given as options of their own, and say how they are changed.
+
+    Parameters
+    ----------
+    arguments
+        What follows a command's name.
+    known
+        The command's own options.
+
+    Raises
+    ------
+    ParameterError
+        For ``--n_boats 27`` and the like.
+    """
+    for place, argument in enumerate(arguments):
+        option, _, value = argument.partition("=")
+        field = option.removeprefix("--").replace("-", "_")
+        if argument == "--":
+            return
+        if option.startswith("--") and field in FIELDS and option not in known:
+            following = arguments[place + 1 : place + 2]
+            words = value or next(
+                (each for each in following if not each.startswith("--")), "VALUE"
+            )
+            raise ParameterError(
+                f"{option} is no option: fields of the scene are changed with --set, "
+                f"as in --set {field}={words}"
+            )
+
+
 def _value(text: str) -> Any:
-    """Return a value as TOML has it; what is none is a word."""
+    """Return a value as TOML has it, also a pair in parentheses; what is none is a word."""
+    if text.startswith("(") and text.endswith(")"):
+        text = f"[{text[1:-1]}]"
     try:
         found = read_toml(f"value = {text}", text)
     except ParameterError:

@@ -31,6 +31,34 @@ impl Hull {
     pub fn area(&self) -> f64 {
         (std::f64::consts::PI * self.radius + 4.0 * self.half_length) * self.radius
     }
+
+    /// Radius of gyration of a hull of even mass, in cm: r/√2 for a disc.
+    pub fn gyration_radius(&self) -> f64 {
+        let (r, h) = (self.radius, self.half_length);
+        // Two half-discs, moved apart by 2h, and the rectangle between them.
+        let discs = std::f64::consts::PI * (0.5 * r * r + h * h) + 8.0 / 3.0 * h * r;
+        let rectangle = 4.0 / 3.0 * h * (h * h + r * r) / r;
+        (r * r * (discs + rectangle) / self.area()).sqrt()
+    }
+}
+
+/// The radius of gyration in cm that boats have with a resized hull: in the same ratio to that of a
+/// hull of even mass. Unchanged for sizes that are not accepted.
+pub fn resized_gyration_radius_cm(
+    parameters: &FlockParameters,
+    boat_radius_cm: f64,
+    boat_shape: f64,
+) -> f64 {
+    let resized = Hull {
+        radius: boat_radius_cm,
+        half_length: boat_shape * boat_radius_cm,
+    };
+    let ratio = resized.gyration_radius() / Hull::new(parameters).gyration_radius();
+    if ratio.is_finite() && ratio > 0.0 {
+        ratio * parameters.gyration_radius_cm
+    } else {
+        parameters.gyration_radius_cm
+    }
 }
 
 /// A pose with its direction vector worked out.

@@ -8,7 +8,7 @@ mod neighbors;
 mod pose;
 
 pub use annulus::{inner_wall_gap, outer_wall_gap};
-pub use capsule::{Hull, HullPose};
+pub use capsule::{Hull, HullPose, resized_gyration_radius_cm};
 pub use gap::{Gap, PairFeature, crossed_gap, pair_gap, pair_gaps};
 pub use lap_frame::LapFrame;
 pub use neighbors::NeighborList;

@@ -63,7 +63,8 @@ declare_parameters! {
     boat_radius_cm: f64 = 5.0, "cm", Range::Positive, "Table 3";
     /// Half-length of the hull's core segment over its radius (Table 3: p).
     boat_shape: f64 = 0.5, "", Range::NonNegative, "Table 3";
-    /// Radius of gyration (Table 3: ρ; the exact stadium has 4.690 cm).
+    /// Radius of gyration (Table 3: ρ; the exact stadium has 4.690 cm); scaled with the hull unless it is
+    /// given.
     gyration_radius_cm: f64 = 4.74, "cm", Range::Positive, "Table 3";
     /// Preferred forward speed (Table 3: v0 in fw).
     speed_cm_s: f64 = 15.0, "cm/s", Range::NonNegative, "Table 3";

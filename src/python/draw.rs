@@ -32,6 +32,11 @@ impl PyFrameRenderer {
             .draw_into(&flock.0, frame.readwrite().as_slice_mut()?);
         Ok(frame)
     }
+
+    /// Where a boat is in the frame, in pixels from the top left: (x, y, reach of its hull).
+    fn place(&self, flock: &PyFlock, boat: &Bound<'_, PyAny>) -> PyResult<(f32, f32, f32)> {
+        Ok(self.0.place(&flock.0, whole(boat, "boat")?)?)
+    }
 }
 
 /// Turns frames into the bytes of an animated PNG or a GIF.

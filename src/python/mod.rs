@@ -42,7 +42,7 @@ mod _core {
     #[pymodule_export]
     use super::parameters::{
         checked_fields, critical_bw_s, parameter_table, pool_radii_cm, preset_fields, preset_names,
-        preset_sources,
+        preset_sources, resized_gyration_radius_cm,
     };
     #[pymodule_export]
     use super::recording::{phase_names, record};

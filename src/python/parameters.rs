@@ -3,6 +3,7 @@
 
 use super::arguments::{real, text, truth, wrong_type};
 use super::settings::count;
+use crate::geometry;
 use crate::parameters::{Field, FlockParameters, Kind, Pool, Preset, Value};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
@@ -166,6 +167,22 @@ pub fn checked_fields<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     parameters.check()?;
     to_dict(py, &parameters)
+}
+
+/// The radius of gyration of parameters with a resized hull, in cm.
+#[pyfunction]
+pub fn resized_gyration_radius_cm(
+    parameters: FlockParameters,
+    boat_radius_cm: &Bound<'_, PyAny>,
+    boat_shape: &Bound<'_, PyAny>,
+) -> PyResult<f64> {
+    let radius = real(boat_radius_cm, "boat_radius_cm")?;
+    let shape = real(boat_shape, "boat_shape")?;
+    Ok(geometry::resized_gyration_radius_cm(
+        &parameters,
+        radius,
+        shape,
+    ))
 }
 
 /// The critical noise of a preset in a pool, or `None` where it has not been measured.

@@ -92,6 +92,36 @@ def test_values_that_are_no_numbers_are_type_errors_by_name(parameters, name, va
         parameters.replace(**{name: value})
 
 
+def test_a_resized_hull_has_a_radius_of_gyration_of_its_size():
+    base = flockenv.FlockParameters()
+    twice = pytest.approx(2 * base.gyration_radius_cm, rel=1e-12)
+    for resized in (
+        flockenv.FlockParameters(boat_radius_cm=10.0),
+        base.replace(boat_radius_cm=10.0),
+        flockenv.FlockParameters.from_toml("boat_radius_cm = 10.0"),
+        flockenv.LeadersEnv(boat_radius_cm=10.0, pool=(900.0, 0.0)).parameters,
+    ):
+        assert resized.gyration_radius_cm == twice
+    # A disc of even mass has r/√2, and the stadium of Table 3 4.690 cm.
+    disc = base.replace(boat_shape=0.0).gyration_radius_cm
+    assert disc == pytest.approx(4.74 * (5.0 / 2**0.5) / 4.690, rel=2e-4)
+
+
+def test_a_radius_of_gyration_that_is_given_is_kept():
+    resized = flockenv.FlockParameters(boat_radius_cm=10.0, gyration_radius_cm=4.74)
+    assert resized.gyration_radius_cm == 4.74
+    # Files state every field.
+    assert flockenv.FlockParameters.from_toml(resized.to_toml()) == resized
+    assert resized.replace(n_boats=3).gyration_radius_cm == 4.74
+    for preset in flockenv.FlockParameters.presets():
+        assert flockenv.FlockParameters.preset(preset).gyration_radius_cm == 4.74
+
+
+def test_a_noise_level_is_told_where_it_belongs():
+    with pytest.raises(TypeError, match=r"'white' or 'per-step'.*bw_s = 0\.3"):
+        flockenv.FlockParameters(noise=0.3)
+
+
 @pytest.mark.parametrize("name", CHOICES)
 def test_unknown_choices_are_refused_with_what_there_is(parameters, name):
     with pytest.raises(ParameterError, match=f'{name} = "north".*one of "'):

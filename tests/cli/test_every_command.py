@@ -55,6 +55,42 @@ def test_work_can_be_quiet_and_machine_readable(name):
     assert "--seed" in options or name in ("replay", "sweep")
 
 
+@pytest.mark.parametrize("arguments", [[], ["run"]])
+def test_help_is_also_called_h(arguments):
+    assert shown(*arguments, "-h").output == shown(*arguments, "--help").output != ""
+
+
+def test_the_package_is_the_command_line():
+    words = [sys.executable, "-m", "flockenv", "--version"]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=60, check=True)
+    assert done.stdout.strip() == flockenv.__version__
+
+
+def test_no_bar_is_left_above_an_error(tmp_path):
+    """On a terminal, the bar's last line is cleared before the error is printed."""
+    terminal, own = pty.openpty()
+    code = (
+        "import sys, flockenv.cli\n"
+        "from flockenv.errors import ParameterError\n"
+        "def simulate(*a, **k): raise ParameterError('in the middle')\n"
+        "sys.modules['flockenv.cli.run'].simulate = simulate\n"
+        "from flockenv.cli import main\n"
+        f"sys.argv = ['flockenv', 'run', '--out', {str(tmp_path / 'a.npz')!r}]\n"
+        "main()\n"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", code],
+        stderr=own,
+        env={**os.environ, "COLUMNS": "100", "TERM": "xterm"},
+    )
+    os.close(own)
+    told = everything(terminal)
+    os.close(terminal)
+    assert process.wait(timeout=60) == 2
+    bar, error = told.rindex("left:"), told.index("in the middle")
+    assert "\x1b[2K" in told[bar:error], "the line of the bar is erased"
+
+
 @pytest.mark.parametrize("name", COMMANDS)
 def test_misspelt_options_are_reported_with_exit_code_2(name):
     reported = shown(name, "--jason")

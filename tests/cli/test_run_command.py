@@ -58,6 +58,25 @@ def test_json_is_all_that_is_printed(tmp_path):
     assert summary["recording"] == str(out)
 
 
+def test_what_is_there_is_overwritten_only_if_that_is_asked_for(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for names in (["run"], ["run", "run-2"]):
+        assert command("run", *SMALL, "-q").returncode == 0
+        assert sorted(each.stem for each in Path("results").glob("*.npz")) == names
+    before = Path("results/run.npz").read_bytes()
+    refused = command("run", *SMALL, "--seed", "1", "--out", "results/run.npz", "-q")
+    assert refused.returncode == 2
+    assert "results/run.npz is there already: --force overwrites it" in refused.stderr
+    assert Path("results/run.npz").read_bytes() == before
+    forced = command("run", *SMALL, "--seed", "1", "--out", "results/run.npz", "--force", "-q")
+    assert forced.returncode == 0, forced.stderr
+    assert flockenv.Recording.load("results/run.npz").seed == 1
+    Path("mine.toml").write_text("n_boats = 3\n")
+    refused = command("run", "--params", "mine.toml", "--out", "mine.npz", "-q")
+    assert "--params mine.toml is where results would be written" in refused.stderr
+    assert not Path("mine.npz").exists()
+
+
 def test_replay_writes_a_page_beside_the_recording(run, tmp_path):
     done = command("replay", run, "--json")
     assert done.stderr == ""
@@ -74,6 +93,10 @@ def test_replay_writes_a_page_beside_the_recording(run, tmp_path):
     ("arguments", "words"),
     [
         (["run", "--set", "n_bots=3"], "n_boats"),
+        (["run", "--n_boats", "27"], "as in --set n_boats=27"),
+        (["run", "--n-boats=27"], "as in --set n_boats=27"),
+        (["run", "--n_boats", "--json"], "as in --set n_boats=VALUE"),
+        (["run", "--set", "noise=0.3"], "bw_s = 0.3"),
         (["run", "--preset", "simulaton"], "simulation"),
         (["run", "--policy", "dampd law"], "damped law"),
         (["run", "--policy", "{}/none.npz"], "cannot be read"),

@@ -22,6 +22,7 @@ def test_nothing_asked_for_is_the_preset_simulation():
         ("pool=table-1", "pool", "table-1"),
         ('pool="table-1"', "pool", "table-1"),
         ("pool=[200, 10]", "pool", (200.0, 10.0)),
+        ("pool=(300,100)", "pool", (300.0, 100.0)),
         ("pool=[inf, 0]", "pool", (float("inf"), 0.0)),
         ("target=ccw", "target", "ccw"),
         ("leaders_reverse=false", "leaders_reverse", False),

@@ -6,8 +6,9 @@
 use crate::support::{H, R, cases, core_distance};
 use flockenv::geometry::{
     Gap, Hull, HullPose, PairFeature, Pose, Vec2, inner_wall_gap, outer_wall_gap, pair_gap,
-    pair_gaps,
+    pair_gaps, resized_gyration_radius_cm,
 };
+use flockenv::parameters::{FlockParameters, Preset};
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -32,6 +33,44 @@ fn gaps(a: &Pose, b: &Pose, margin: f64) -> Vec<(PairFeature, Gap)> {
 
 fn near(a: f64, b: f64) -> bool {
     (a - b).abs() < 1e-12
+}
+
+#[test]
+fn radii_of_gyration_known_on_paper() {
+    let hull = |radius, half_length| Hull {
+        radius,
+        half_length,
+    };
+    // A disc: r/√2. A rod of length 2h: h/√3. Table 3's hull: 4.690 cm.
+    assert!(near(hull(2.0, 0.0).gyration_radius(), 2.0 / 2.0_f64.sqrt()));
+    let rod = hull(1e-4, 3.0).gyration_radius();
+    assert!((rod - 3.0_f64.sqrt()).abs() < 1e-3);
+    assert!((HULL.gyration_radius() - 4.690).abs() < 5e-4);
+}
+
+#[test]
+fn a_resized_hull_keeps_its_ratio_to_even_mass() {
+    let paper = FlockParameters::preset(Preset::Simulation);
+    let resized = |radius, shape| resized_gyration_radius_cm(&paper, radius, shape);
+    assert_eq!(resized(R, H / R), 4.74);
+    assert!(near(resized(2.0 * R, H / R), 2.0 * 4.74));
+    let even = |h| {
+        Hull {
+            radius: R,
+            half_length: h,
+        }
+        .gyration_radius()
+    };
+    assert!(near(resized(R, 1.0) / 4.74, even(R) / even(H)));
+    // What is no hull is left to the check of the parameters.
+    for (radius, shape) in [
+        (f64::NAN, 0.5),
+        (f64::INFINITY, 0.5),
+        (0.0, 0.5),
+        (5.0, f64::NAN),
+    ] {
+        assert_eq!(resized(radius, shape), 4.74);
+    }
 }
 
 #[test]

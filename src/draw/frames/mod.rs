@@ -10,6 +10,7 @@ mod water;
 
 use crate::error::{FlockError, Result};
 use crate::flock::Flock;
+use crate::geometry::Hull;
 use crate::parameters::{Pool, Target};
 use legend::Legend;
 use tiny_skia::Pixmap;
@@ -118,6 +119,22 @@ impl FrameRenderer {
         {
             rgb.copy_from_slice(&pixel[..3]);
         }
+    }
+
+    /// Where a boat is in a flock's frame, in pixels from the top left, and how far its hull reaches.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for a boat that is not there.
+    pub fn place(&self, flock: &Flock, boat: u64) -> Result<(f32, f32, f32)> {
+        let hulls = flock.hulls();
+        let found = usize::try_from(boat).ok().and_then(|at| hulls.get(at));
+        let hull = found.ok_or_else(|| {
+            FlockError::parameter("boat", boat, format!("0 to {}", hulls.len() - 1))
+        })?;
+        let view = View::of(flock, self.width(), self.height());
+        let center = view.pixel(hull.center);
+        let reach = view.length(Hull::new(flock.parameters()).reach());
+        Ok((center.x, center.y, reach))
     }
 
     fn draw_background(&mut self, flock: &Flock, view: &View) {

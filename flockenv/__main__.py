@@ -1,0 +1,5 @@
+"""`python -m flockenv`: the command line."""
+
+from flockenv.cli import main
+
+main()

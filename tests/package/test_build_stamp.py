@@ -1,0 +1,53 @@
+"""Law: `make build` builds again where another install took the place of this folder's own."""
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).parents[2]
+pytestmark = pytest.mark.skipif(shutil.which("make") is None, reason="needs make")
+
+
+@pytest.fixture
+def clone(tmp_path: Path) -> Path:
+    """A folder in which everything is built, as far as make can see."""
+    for name in ("Makefile", "pyproject.toml", "requirements-excluded.txt"):
+        shutil.copy(REPOSITORY / name, tmp_path)
+    for name in ("Cargo.toml", "Cargo.lock", "src/lib.rs"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).touch()
+    packages = tmp_path / ".venv" / "lib" / "python3.11" / "site-packages"
+    packages.mkdir(parents=True)
+    (packages / "flockenv.pth").write_text(str(tmp_path))
+    stamps = tmp_path / ".venv" / ".stamps"
+    stamps.mkdir()
+    for name in ("venv", "compare", "core"):
+        (stamps / name).touch()
+    return tmp_path
+
+
+def builds(clone: Path) -> bool:
+    """Whether `make build` would build."""
+    told = subprocess.run(
+        ["make", "--dry-run", "build"], cwd=clone, capture_output=True, text=True, check=True
+    )
+    return "maturin develop" in told.stdout
+
+
+def test_what_is_built_stays(clone: Path) -> None:
+    assert not builds(clone)
+
+
+def test_an_install_that_is_not_editable_is_replaced(clone: Path) -> None:
+    (path,) = clone.rglob("flockenv.pth")
+    path.unlink()
+    (path.parent / "flockenv").mkdir()
+    assert builds(clone)
+
+
+def test_an_install_of_another_folder_is_replaced(clone: Path) -> None:
+    (path,) = clone.rglob("flockenv.pth")
+    path.write_text("/home/somebody/flockenv")
+    assert builds(clone)
