@@ -25,6 +25,7 @@ from rich.progress import Progress
 import flockenv
 from flockenv._core import pool_radii_cm
 from flockenv._io.atomic_write import atomic_write
+from flockenv.comparison.figure import policy_colors
 from flockenv.envs.observation import observation_entries, state_entries
 from flockenv.policies.registry import named_policy
 from flockenv.reproduce.style import COLORS, column_figure, paper_style
@@ -135,8 +136,8 @@ def draw_rudders(found: dict[str, pd.DataFrame], scene: flockenv.FlockParameters
         nearly = rows[rows["misalignment_rad"].abs() < NEARLY_RIGHT_RAD]
         mean_rudder(left, nearly, "spin_rad_s", 0.8, scene)
         image = mean_rudder(right, rows, "misalignment_rad", np.pi, scene)
-        left.set_title(f"{name}, heading within {NEARLY_RIGHT_RAD:g} rad of right")
-        right.set_title(f"{name}, all")
+        left.set_title(f"{name}, heading within {NEARLY_RIGHT_RAD:g} rad of right", pad=12)
+        right.set_title(f"{name}, all", pad=12)
         left.set_ylabel("angular velocity [rad/s]")
         right.set_ylabel("misalignment [rad]")
     for axes in panels[-1]:
@@ -157,7 +158,9 @@ def mean_rudder(
         axes.axvline(end, color="0.3", linewidth=0.5)
     for phase, end in zip(PHASES, ends, strict=True):
         middle = end - getattr(scene, f"{phase}_s") / 2
-        axes.text(middle, 0.93 * most, phase, ha="center", va="top", fontsize=6)
+        # Above the panel, where no color lies under the letters.
+        above = axes.get_xaxis_transform()
+        axes.text(middle, 1.02, phase, ha="center", va="bottom", fontsize=6, transform=above)
     return axes.pcolormesh(*edges, mean.T, cmap="PuOr", vmin=-1.0, vmax=1.0, rasterized=True)
 
 
@@ -170,10 +173,16 @@ def draw_places(found: dict[str, pd.DataFrame], scene: flockenv.FlockParameters)
     }
     figure = column_figure(5.0, 17.0)
     for axes, (column, (label, edges)) in zip(figure.subplots(1, 3), shown.items(), strict=True):
-        for color, (name, rows) in zip(COLORS, found.items(), strict=False):
+        colors = policy_colors(found)
+        for name, rows in found.items():
             if np.isfinite(rows[column]).all():
                 axes.hist(
-                    rows[column], edges, density=True, histtype="step", color=color, label=name
+                    rows[column],
+                    edges,
+                    density=True,
+                    histtype="step",
+                    color=colors[name],
+                    label=name,
                 )
         axes.set_xlabel(label)
         axes.set_ylabel("probability density")

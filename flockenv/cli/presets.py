@@ -1,5 +1,6 @@
 """`flockenv presets`."""
 
+import dataclasses
 from typing import Annotated
 
 import typer
@@ -17,28 +18,29 @@ ABOUT = {
 }
 """What each preset is, in a line."""
 
-# Narrower terminals have the sources in a table of their own.
-_WIDE = 120
-
 
 def presets(
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print values and sources as JSON.")
-    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print all of it as JSON.")] = False,
 ) -> None:
-    """Print every preset, and where each number comes from (sections of Tarcai et al. 2011).
+    """Print every preset: values, units, meanings and sources (sections of Tarcai et al. 2011).
 
     Example: `flockenv presets --json`
     """
     names = FlockParameters.presets()
     values = {name: FlockParameters.preset(name).to_dict() for name in names}
     sources = {name: FlockParameters.preset_sources(name) for name in names}
+    declared = {each.name: each.metadata for each in dataclasses.fields(FlockParameters)}
     if as_json:
         data = {
             name: {
                 "about": ABOUT[name],
                 "fields": {
-                    field: {"value": value, "source": sources[name][field]}
+                    field: {
+                        "value": value,
+                        "unit": declared[field]["unit"],
+                        "meaning": declared[field]["doc"],
+                        "source": sources[name][field],
+                    }
                     for field, value in values[name].items()
                 },
             }
@@ -48,26 +50,20 @@ def presets(
         return
     for name in names:
         say(f"{name}: {ABOUT[name]}")
-    merged = {
-        field: _merged({name: source[field] for name, source in sources.items()})
-        for field in values[names[0]]
-    }
-    is_wide = console.width >= _WIDE
-    table, origins = Table("field", box=None), Table("field", "source", box=None)
-    for name in names:
-        table.add_column(name, no_wrap=True)
-    table.columns[0].no_wrap = origins.columns[0].no_wrap = True
-    if is_wide:
-        table.add_column("source")
-    for field, source in merged.items():
-        row = [field, *(str(each[field]) for each in values.values())]
-        table.add_row(*row, *([source] if is_wide else []))
-        origins.add_row(field, source)
+    numbers, meanings = Table(box=None), Table(box=None, show_header=False, padding=(0, 2, 1, 0))
+    for heading in ("field", *names):
+        numbers.add_column(heading, no_wrap=True)
+    for heading in ("field", "meaning"):
+        meanings.add_column(heading, no_wrap=heading == "field")
+    for field, metadata in declared.items():
+        numbers.add_row(field, *(str(each[field]) for each in values.values()))
+        unit = f"Unit: {metadata['unit']}. " if metadata["unit"] else ""
+        source = _merged({name: each[field] for name, each in sources.items()})
+        meanings.add_row(field, f"{metadata['doc']}\n{unit}Source: {source}")
     say("")
-    console.print(table)
-    if not is_wide:
-        say("\nWhere they come from\n")
-        console.print(origins)
+    console.print(numbers)
+    say("\nWhat the fields mean, and where the values come from\n")
+    console.print(meanings, highlight=False)
 
 
 def _merged(by_preset: dict[str, str]) -> str:
@@ -77,4 +73,4 @@ def _merged(by_preset: dict[str, str]) -> str:
         presets_of.setdefault(source, []).append(name)
     if len(presets_of) == 1:
         return next(iter(presets_of))
-    return "\n".join(f"{', '.join(names)}: {source}" for source, names in presets_of.items())
+    return "; ".join(f"{', '.join(names)}: {source}" for source, names in presets_of.items())

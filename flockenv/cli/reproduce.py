@@ -1,16 +1,19 @@
 """`flockenv reproduce`."""
 
+import textwrap
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.table import Table
 
 from flockenv.cli.console import console, errors, print_json, progress_bar, resumable, say
 from flockenv.cli.output import check_folder
 from flockenv.errors import ParameterError
 from flockenv.reproduce import names, require_packages
 from flockenv.runs.executors import named
+
+if TYPE_CHECKING:
+    from flockenv.reproduce.claim import CheckedClaim
 
 __all__ = ["reproduce"]
 
@@ -62,12 +65,13 @@ def reproduce(
             lambda line: say(f"Warning: {line}", errors),
             summary,
         )
-    rows = [{"figure": name, **each.row()} for name, list_ in claims.items() for each in list_]
     if as_json:
+        rows = [{"figure": name, **each.row()} for name, list_ in claims.items() for each in list_]
         print_json(rows)
         return
-    if rows:
-        console.print(_table(rows))
+    for name, judged in claims.items():
+        for each in judged:
+            say(_block(name, each, console.width) + "\n")
     say(f"Written to {out}")
 
 
@@ -78,10 +82,16 @@ def _check_summary(page: Path) -> None:
     check_folder(page.parent, "--summary: folder")
 
 
-def _table(rows: list[dict[str, str | float]]) -> Table:
-    table = Table("figure", "claim", "for", "measured", "interval", "claimed", "verdict")
-    for row in rows:
-        interval = f"{row['low']:.3g} to {row['high']:.3g}"
-        cells = (row["figure"], row["claim"], row["scope"], f"{row['measured']:.3g}", interval)
-        table.add_row(*map(str, cells), str(row["accepted"]), str(row["verdict"]))
-    return table
+def _block(figure: str, checked: "CheckedClaim", width: int) -> str:
+    """Return a claim in words, its verdict first, in lines of so many columns."""
+    # Only now: statistics take their time to be imported.
+    from flockenv.reproduce.claim import number
+
+    claim = checked.claim
+    measured = f"measured {number(checked.measured)}, interval {checked.ends}"
+    lines = [
+        f"{checked.verdict.upper()}  {figure}: {claim.text} (Section {claim.section})",
+        f"  for {checked.scope}: {claim.quantity}",
+        f"  {measured}, claimed {claim.accepted}" + (f"; {checked.note}" if checked.note else ""),
+    ]
+    return "\n".join(textwrap.fill(line, width, subsequent_indent="    ") for line in lines)

@@ -1,6 +1,7 @@
 """Figures. Nothing upstream imports this module."""
 
-from collections.abc import Mapping
+import itertools
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import matplotlib as mpl
@@ -13,15 +14,39 @@ from flockenv._io.atomic_write import atomic_write
 from flockenv.comparison.episodes import NO_LEADERS
 from flockenv.statistics.intervals import Line
 
-__all__ = ["leader_curve"]
+__all__ = ["COLORS", "POLICY_COLORS", "leader_curve", "policy_colors"]
 
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 """Okabe and Ito's colors, which every kind of eye distinguishes."""
+
+POLICY_COLORS: Mapping[str, str] = {
+    NO_LEADERS: "#555555",
+    "steering law": COLORS[0],
+    "tuned damped law": COLORS[1],
+    "learned": COLORS[2],
+    "tuned sign-corrected law": COLORS[3],
+    "damped law": COLORS[4],
+    "sign-corrected law": COLORS[5],
+    "steering law at every substep": "#332288",
+    "straight ahead": "#882255",
+    "random rudders": "#999933",
+}
+"""The color that a policy has in every figure."""
+
+# Of Tol's muted set, for policies of the user's own.
+_OTHERS = ("#44aa99", "#117733", "#aa4499", "#661100", "#6699cc", "#888888")
 
 _LABELS = {
     "psi_o": r"mean $\Psi_o$",
     "signed_order": r"mean signed order $\Psi_o\,\cos(\varphi_o-\varphi_\mathrm{target})$",
 }
+
+
+def policy_colors(names: Iterable[str]) -> dict[str, str]:
+    """Return a color for each policy: its own in `POLICY_COLORS`, or the next that none has."""
+    names = list(dict.fromkeys(names))
+    others = itertools.cycle(_OTHERS)
+    return {name: POLICY_COLORS.get(name) or next(others) for name in names}
 
 
 def leader_curve(
@@ -47,6 +72,7 @@ def leader_curve(
         Where to write the picture; the suffix decides its format.
     """
     policies = [name for name in runs["policy"].unique() if name != NO_LEADERS]
+    colors = policy_colors(policies)
     with mpl.rc_context({"font.size": 9, "axes.spines.top": False, "axes.spines.right": False}):
         figure = Figure(figsize=(7.5, 4.0), layout="constrained")
         for axes, quantity in zip(figure.subplots(1, 2), _LABELS, strict=True):
@@ -54,7 +80,7 @@ def leader_curve(
                 shown = _Shown(runs, means, [policy, NO_LEADERS], quantity)
                 shift = 0.1 * (place - (len(policies) - 1) / 2)
                 line = lines.get((policy, quantity))
-                _draw_policy(axes, shown, line, shift, COLORS[place % len(COLORS)])
+                _draw_policy(axes, shown, line, shift, colors[policy])
             axes.set_xlabel("number of leaders k")
             axes.set_ylabel(_LABELS[quantity])
             axes.set_xticks(sorted(runs["leaders"].unique()))

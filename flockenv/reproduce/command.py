@@ -1,7 +1,7 @@
 """`reproduce`: runs what figures need, and writes figures, data, claims and the report."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,13 +16,14 @@ from flockenv.reproduce.files import (
     write_table,
 )
 from flockenv.reproduce.report import html_report
-from flockenv.reproduce.reproduction import Results, Settings
+from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
+from flockenv.reproduce.style import mark_short
 from flockenv.reproduce.summary import Finished, markdown_summary, shown_pictures
 from flockenv.runs.executors import Engine, local
 from flockenv.runs.spec import RunSpec
 from flockenv.runs.store import RunStore, run_missing
 
-__all__ = ["RUNS_FOLDER", "Plan", "plan", "reproduce"]
+__all__ = ["RUNS_FOLDER", "Plan", "mark_where_short", "plan", "reproduce"]
 
 RUNS_FOLDER = "runs"
 """Folder of finished runs, inside the folder of results."""
@@ -121,6 +122,7 @@ def reproduce(
         figure = load(name)
         specs = list(dict.fromkeys(figure.runs(plan.settings)))
         outcome = figure.analyze(plan.settings, Results(store, specs, derived))
+        mark_where_short(figure, plan.settings, specs, outcome)
         write_outcome(outcome, folder / name)
         finished.append((figure, specs, outcome))
     if ALL in plan.given:
@@ -128,6 +130,19 @@ def reproduce(
     if summary is not None:
         _write_summary(plan, finished, summary)
     return {figure.name: outcome.claims for figure, _, outcome in finished}
+
+
+def mark_where_short(
+    figure: Reproduction, settings: Settings, specs: list[RunSpec], outcome: Outcome
+) -> None:
+    """Say so in a figure's pictures where its runs are shorter than the paper's."""
+    if settings.minutes is None:
+        return
+    own = figure.runs(replace(settings, minutes=None))
+    asked_s, own_s = (max((spec.duration_s for spec in each), default=0.0) for each in (specs, own))
+    if asked_s < own_s:
+        for picture in outcome.pictures.values():
+            mark_short(picture, asked_s / 60, own_s / 60)
 
 
 def _write_report(

@@ -10,7 +10,7 @@ from matplotlib.colors import PowerNorm
 from numpy.typing import NDArray
 
 from flockenv.reproduce.order_statistics import PHI_EDGES, PSI_EDGES, OrderStatistics
-from flockenv.reproduce.style import COLORS, DENSITY_COLORS
+from flockenv.reproduce.style import DENSITY_COLORS, LED_COLOR, NOT_LED_COLOR
 from flockenv.statistics.intervals import CONFIDENCE
 
 __all__ = ["density_map", "density_rows", "draw_curve", "interval_ends", "series_rows"]
@@ -85,9 +85,9 @@ def density_map(
     return mesh
 
 
-def draw_curve(axes: Axes, series: OrderStatistics, quantity: str, label: str, place: int) -> None:
+def draw_curve(axes: Axes, series: OrderStatistics, quantity: str, label: str, led: bool) -> None:
     """Draw means with their intervals, and the spread of the frames as a band."""
-    color, mark = COLORS[place], ("o-", "^--")[place]
+    color, mark = (LED_COLOR, "^--") if led else (NOT_LED_COLOR, "o-")
     mean, spread = series.mean(quantity), series.deviation(quantity)[:, 0]
     low, high = interval_ends(mean)
     value = mean[:, 0]

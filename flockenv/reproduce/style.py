@@ -8,9 +8,23 @@ import matplotlib as mpl
 from cycler import cycler
 from matplotlib.figure import Figure
 
-from flockenv.comparison.figure import COLORS
+from flockenv.comparison.episodes import NO_LEADERS
+from flockenv.comparison.figure import COLORS, POLICY_COLORS
 
-__all__ = ["COLORS", "COLUMN_CM", "DENSITY_COLORS", "column_figure", "paper_style"]
+__all__ = [
+    "COLORS",
+    "COLUMN_CM",
+    "DENSITY_COLORS",
+    "LED_COLOR",
+    "NOT_LED_COLOR",
+    "column_figure",
+    "mark_short",
+    "paper_style",
+]
+
+NOT_LED_COLOR = POLICY_COLORS[NO_LEADERS]
+LED_COLOR = POLICY_COLORS["steering law"]
+"""Colors of flocks without leaders and of those that the paper's law leads."""
 
 COLUMN_CM = 8.5
 """Width of a figure: a column of a journal page."""
@@ -50,3 +64,21 @@ def paper_style() -> Iterator[None]:
 def column_figure(height_cm: float, width_cm: float = COLUMN_CM) -> Figure:
     """Return an empty figure, its panels laid out without overlaps."""
     return Figure(figsize=(width_cm / 2.54, height_cm / 2.54), layout="constrained")
+
+
+def mark_short(figure: Figure, minutes: float, paper_minutes: float) -> None:
+    """Write below a figure that its runs are shorter than the paper's: it may show other states."""
+    below = 0.35 / 2.54 / figure.get_figheight()
+    layout = figure.get_layout_engine()
+    if layout is not None:
+        layout.set(rect=(0.0, below, 1.0, 1.0 - below))  # type: ignore[call-arg]
+    figure.text(
+        0.5,
+        0.3 * below,
+        f"short runs: {minutes:.3g} min, {paper_minutes:g} min in the paper",
+        ha="center",
+        va="bottom",
+        fontsize=6.5,
+        color=COLORS[1],
+        weight="bold",
+    )

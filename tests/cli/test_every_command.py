@@ -1,5 +1,6 @@
 """Law: every command explains itself in 80 columns, refuses nonsense, and says where work is."""
 
+import dataclasses
 import json
 import os
 import pty
@@ -107,6 +108,10 @@ def test_presets_in_80_columns():
         assert f"{name}: {about}" in reported.output
     for words in ("gyration_radius_cm", "4.74", "experiment: flockenv fit", "Section 5.2"):
         assert words in reported.output
+    text = " ".join(reported.output.split())
+    for field in dataclasses.fields(flockenv.FlockParameters):
+        assert field.metadata["doc"] in text
+        assert field.metadata["unit"] in text
 
 
 def test_presets_as_json_are_the_presets():
@@ -115,7 +120,8 @@ def test_presets_as_json_are_the_presets():
     for name, preset in reported.items():
         values = {field: each["value"] for field, each in preset["fields"].items()}
         assert flockenv.FlockParameters.from_dict(values) == flockenv.FlockParameters.preset(name)
-        assert all(each["source"] for each in preset["fields"].values())
+        assert all(each["source"] and each["meaning"] for each in preset["fields"].values())
+        assert preset["fields"]["speed_cm_s"]["unit"] == "cm/s"
 
 
 @pytest.mark.parametrize(

@@ -12,8 +12,9 @@ import pytest
 
 import flockenv
 from flockenv.reproduce.catalogue import load, names, resolve
-from flockenv.reproduce.command import plan, reproduce
-from flockenv.reproduce.reproduction import Settings
+from flockenv.reproduce.command import mark_where_short, plan, reproduce
+from flockenv.reproduce.reproduction import Outcome, Settings
+from flockenv.reproduce.style import column_figure, mark_short
 
 COMMAND = [sys.executable, "-c", "from flockenv.cli import main; main()", "reproduce"]
 SHORT = ["fig17", "--minutes", "0.4"]
@@ -39,6 +40,45 @@ def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert {row["verdict"] for row in claims} <= {"holds", "does not hold", "inconclusive"}
     assert done.stderr == ""
     return folder
+
+
+def test_claims_are_whole_in_80_columns(uninterrupted: Path) -> None:
+    """A block for each claim: nothing is cut off, and no line is too long."""
+    done = run(*SHORT, "--out", str(uninterrupted), "--quiet")
+    assert done.returncode == 0, done.stderr
+    assert "…" not in done.stdout
+    *blocks, last = done.stdout.strip().split("\n\n")
+    assert max(map(len, "\n".join(blocks).splitlines())) <= 80
+    assert last.startswith("Written to")
+    claims = pd.read_csv(uninterrupted / "fig17" / "claims.csv", keep_default_na=False)
+    assert len(blocks) == len(claims)
+    for block, (_, row) in zip(blocks, claims.iterrows(), strict=True):
+        text = " ".join(block.split())
+        assert text.startswith(f"{row['verdict'].upper()} fig17: {row['claim']}")
+        assert all(row[name] in text for name in ("section", "scope", "quantity", "note"))
+        assert text.count(f"claimed {row['accepted']}") == 1
+
+
+def test_short_runs_are_marked_in_the_picture(uninterrupted: Path) -> None:
+    """The words stand in the SVG as text, and below all panels."""
+    told = "short runs: 0.4 min, 60 min in the paper"
+    assert told in (uninterrupted / "fig17" / "fig17.svg").read_text()
+    figure = column_figure(6.0)
+    axes = figure.subplots()
+    axes.set_xlabel("x")
+    mark_short(figure, 0.4, 60.0)
+    figure.draw_without_rendering()
+    (words,) = figure.texts
+    assert words.get_text() == told
+    assert words.get_window_extent().y1 <= axes.get_tightbbox().y0
+
+
+def test_runs_of_the_papers_length_are_not_marked(tmp_path: Path) -> None:
+    for minutes, marked in ((None, False), (8.0, False), (7.9, True)):
+        figure, specs = load("fig12"), load("fig12").runs(Settings(0, minutes))
+        outcome = Outcome({}, {"fig12": column_figure(6.0)})
+        mark_where_short(figure, Settings(0, minutes), specs, outcome)
+        assert bool(outcome.pictures["fig12"].texts) == marked
 
 
 def test_what_is_written(uninterrupted: Path) -> None:

@@ -17,7 +17,13 @@ from flockenv.reproduce.experiment.design import (
 )
 from flockenv.reproduce.experiment.runs import line_or_none, resampled, run_rows
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
-from flockenv.reproduce.style import COLORS, DENSITY_COLORS, column_figure, paper_style
+from flockenv.reproduce.style import (
+    DENSITY_COLORS,
+    LED_COLOR,
+    NOT_LED_COLOR,
+    column_figure,
+    paper_style,
+)
 from flockenv.runs.spec import RunSpec
 from flockenv.statistics.block_bootstrap import RESAMPLES, interval
 from flockenv.statistics.intervals import CONFIDENCE, Line
@@ -56,7 +62,6 @@ def _draw_line(axes: Axes, line: Line | None, x: tuple[float, float]) -> None:
         f"{line.intercept:.3g} {sign} {abs(line.slope):.3g} x\nF = {line.f:.3g}, p = {line.p:.1g}"
     )
     axes.plot(ends, line.intercept + line.slope * ends, "k--", lw=0.8, label=label)
-    axes.legend(loc="upper right")
 
 
 # --- figure 12 -----------------------------------------------------------------------------------
@@ -90,14 +95,22 @@ def _figure12(settings: Settings, results: Results) -> Outcome:
         picture = column_figure(6.0)
         axes = picture.subplots()
         aside = runs["leaders"] + 0.3 * (runs.groupby("leaders").cumcount() / len(runs) * 5 - 0.5)
-        axes.errorbar(
-            aside, runs["psi_o"], runs["psi_o_std"], fmt="o", color=COLORS[0], elinewidth=0.4, ms=2
-        )
+        for led, color in enumerate((NOT_LED_COLOR, LED_COLOR)):
+            own = (runs["leaders"] > 0) == bool(led)
+            axes.errorbar(
+                aside[own],
+                runs["psi_o"][own],
+                runs["psi_o_std"][own],
+                fmt="o",
+                color=color,
+                elinewidth=0.4,
+                ms=2,
+            )
         means = runs.groupby("leaders")["psi_o"].mean()
-        axes.plot(means.index, means, "_", ms=14, mew=1.5, color=COLORS[1], label="mean")
+        axes.plot(means.index, means, "k_", ms=14, mew=1.5, label="mean")
         _draw_line(axes, line, (-0.2, 4.2))
-        axes.set(xlabel="number of leaders", ylabel=r"$\Psi_o$", ylim=(0, 1.4), xticks=range(5))
-        axes.set_yticks([0, 0.2, 0.4, 0.6, 0.8, 1])
+        axes.set(xlabel="number of leaders", ylabel=r"$\Psi_o$", ylim=(0, 1), xticks=range(5))
+        picture.legend(loc="outside upper center", ncols=2)
     notes = [
         "Each point is one 8-minute run, and its bar is one standard deviation of the frames.",
         _INTERVALS,
@@ -140,6 +153,8 @@ def _figure8(settings: Settings, results: Results) -> Outcome:
                 )
                 line = line_or_none(runs["bw_s"], runs[quantity] / 60)
                 _draw_line(axes, line, _span(runs, quantity))
+                if line is not None:
+                    axes.legend(loc="upper right")
                 axes.set_title(f"{name}, within {angle}")
                 # Eight minutes, and room for the legend above.
                 axes.set_ylim(0.0, 10.5)

@@ -241,7 +241,7 @@ def _curves(
         picture = column_figure(11.0)
         panels = picture.subplots(3, 1, sharex=True, sharey=True)
         for axes, (setup, each) in zip(panels, series.items(), strict=True):
-            draw_curve(axes, each, quantity, setup.name, int(setup.n_leaders > 0))
+            draw_curve(axes, each, quantity, setup.name, setup.n_leaders > 0)
             axes.set_title(setup.name)
             tables.append(series_rows(each, [quantity], {"setup": setup.name}, "bw_s"))
             axes.set_ylabel(label)

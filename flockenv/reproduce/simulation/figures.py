@@ -111,7 +111,7 @@ def _curves(name: str, quantity: str, label: str, settings: Settings, results: R
                 for led in (False, True):
                     leaders = round(0.2 * n) if led else 0
                     series = each.noise(n, led)
-                    draw_curve(axes, series, quantity, f"k = {leaders}", int(led))
+                    draw_curve(axes, series, quantity, f"k = {leaders}", led)
                     keys = {"preset": each.model.name, "n_boats": n, "n_leaders": leaders}
                     tables.append(series_rows(series, [quantity], keys, "bw_s"))
                 axes.set_title(f"{each.model.name}, n = {n}")
