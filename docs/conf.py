@@ -15,7 +15,15 @@ sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parent / "extensi
 
 import environment_pages  # noqa: E402
 
+from flockenv.replay import demo_runs, write_replay  # noqa: E402
+
 environment_pages.write()
+
+# The replay page that index.md shows is written at every build, and copied beside the pages.
+html_extra_path = ["_build/replay"]
+_replay = Path(__file__).parent / html_extra_path[0] / "demo.html"
+_replay.parent.mkdir(parents=True, exist_ok=True)
+write_replay(_replay, demo_runs())
 
 project = "flockenv"
 author = "flockenv contributors"

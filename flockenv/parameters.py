@@ -83,8 +83,8 @@ class FlockParameters:
         if type(values.get("noise")) in (int, float):
             level = values["noise"]
             raise TypeError(
-                f"noise = {level!r} is not accepted: 'white' or 'per-step'; the noise level is the "
-                f"backward duration, bw_s = {level!r}"
+                f"noise = {level!r} is not accepted: 'white' or 'per-step'. How disordered a flock "
+                f"is depends on the backward duration, bw_s = {level!r}"
             )
         return object.__new__(cls)
 

@@ -35,7 +35,8 @@ def run_shell(example: Example) -> None:
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     done = subprocess.run(
         ["bash", "-euo", "pipefail", "-c", str(example.parsed)],
-        env={**os.environ, "PATH": path},
+        # No browser is opened.
+        env={**os.environ, "PATH": path, "DISPLAY": "", "WAYLAND_DISPLAY": "", "BROWSER": ""},
         capture_output=True,
         text=True,
         timeout=240,
