@@ -91,7 +91,7 @@ class FlockParameters:
     def __post_init__(self) -> None:
         fields = asdict(self)
         if fields["gyration_radius_cm"] is None:
-            rho = _gyration_radius_cm(SimpleNamespace(**_DEFAULTS), fields)
+            rho = _gyration_radius_cm(_DEFAULTS, fields)
             object.__setattr__(self, "gyration_radius_cm", rho)
         for name, value in _core.checked_fields(self).items():
             object.__setattr__(self, name, value)
@@ -164,10 +164,7 @@ class FlockParameters:
         A hull of another size has a radius of gyration in the same ratio to that of a hull of even
         mass, unless ``gyration_radius_cm`` is among the changes.
         """
-        fields = {**self.to_dict(), **changes}
-        if _HULL & changes.keys() and "gyration_radius_cm" not in changes:
-            fields["gyration_radius_cm"] = _gyration_radius_cm(self, fields)
-        return type(self)(**fields)
+        return type(self)(**_changed(self.to_dict(), changes))
 
     def to_dict(self) -> dict[str, Any]:
         """Every field by name: ints, floats, bools, strings, and a tuple for an unnamed pool."""
@@ -192,7 +189,7 @@ class FlockParameters:
             raise TypeError(f"parameters must be a mapping of fields, not {type(values).__name__}")
         changes = {str(name): value for name, value in values.items()}
         base = _core.preset_fields(changes.pop("preset", "simulation"))
-        return cls(**{**base, **changes})
+        return cls(**_changed(base, changes))
 
     def to_toml(self) -> str:
         """Return the parameters as TOML, every field on a line of its own."""
@@ -215,9 +212,17 @@ class FlockParameters:
 _NAMES = tuple(each.name for each in fields(FlockParameters))
 
 
-def _gyration_radius_cm(base: Any, fields: Mapping[str, Any]) -> float:
+def _changed(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return fields with changes, and with a radius of gyration of the hull's size."""
+    fields = {**base, **changes}
+    if _HULL & changes.keys() and "gyration_radius_cm" not in changes:
+        fields["gyration_radius_cm"] = _gyration_radius_cm(base, fields)
+    return fields
+
+
+def _gyration_radius_cm(base: Mapping[str, Any], fields: Mapping[str, Any]) -> float:
     hull = {name: fields[name] for name in _HULL}
-    return _core.resized_gyration_radius_cm(base, **hull)
+    return _core.resized_gyration_radius_cm(SimpleNamespace(**base), **hull)
 
 
 def _refuse_unknown(names: Iterable[str]) -> None:
