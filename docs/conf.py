@@ -15,7 +15,8 @@ sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parent / "extensi
 
 import environment_pages  # noqa: E402
 
-from flockenv.replay import demo_runs, write_replay  # noqa: E402
+from flockenv.replay import write_replay  # noqa: E402
+from flockenv.replay.demo import demo_runs  # noqa: E402
 
 environment_pages.write()
 
