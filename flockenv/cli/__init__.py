@@ -55,7 +55,7 @@ def _interruptible(command: Callable[..., None]) -> Callable[..., None]:
 
 
 class _Command(typer.core.TyperCommand):
-    """A command that tells those who take a field of the scene for an option how it is changed."""
+    """A command that shows how a field of the scene is changed, which is no option of its own."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         if any(parameter.name == "changes" for parameter in self.params):

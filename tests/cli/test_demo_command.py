@@ -1,4 +1,4 @@
-"""`flockenv demo`: the two runs that the README tells of, on one page, in one command."""
+"""`flockenv demo`: the two runs of the README, on one page, in one command."""
 
 import json
 import os
@@ -28,13 +28,13 @@ def demo(folder: Path, *arguments: str, **environment: str) -> subprocess.Comple
 def test_both_runs_are_those_of_simulate(tmp_path: Path) -> None:
     done = demo(tmp_path, "--minutes", "1", "--no-open", "--json")
     assert done.stderr == ""
-    told = json.loads(done.stdout)
-    assert (tmp_path / told["html"]).stat().st_size > 100_000
-    assert list(told["runs"]) == ["paper's law", "learned"]
+    reported = json.loads(done.stdout)
+    assert (tmp_path / reported["html"]).stat().st_size > 100_000
+    assert list(reported["runs"]) == ["paper's law", "learned"]
     for name, policy in (("paper's law", "law"), ("learned", "learned")):
         run = flockenv.simulate(DEMO_SCENE, 7, 60.0, policy=policy)
         late = run.in_analysis_window & (run.time_s > 6.0)
-        assert told["runs"][name]["signed_order"] == run.order.signed_order("cw")[late].mean()
+        assert reported["runs"][name]["signed_order"] == run.order.signed_order("cw")[late].mean()
 
 
 def test_without_a_browser_it_says_where_the_page_is(tmp_path: Path) -> None:

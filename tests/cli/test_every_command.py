@@ -85,11 +85,11 @@ def test_no_bar_is_left_above_an_error(tmp_path):
         env={**os.environ, "COLUMNS": "100", "TERM": "xterm"},
     )
     os.close(own)
-    told = everything(terminal)
+    printed = everything(terminal)
     os.close(terminal)
     assert process.wait(timeout=60) == 2
-    bar, error = told.rindex("left:"), told.index("in the middle")
-    assert "\x1b[2K" in told[bar:error], "the line of the bar is erased"
+    bar, error = printed.rindex("left:"), printed.index("in the middle")
+    assert "\x1b[2K" in printed[bar:error], "the line of the bar is erased"
 
 
 @pytest.mark.parametrize("name", COMMANDS)

@@ -120,11 +120,11 @@ def play(monkeypatch, capsys, *arguments):
 def test_the_score_is_printed_beside_that_of_the_law(monkeypatch, capsys, tmp_path):
     fields = [f"--set={field}" for field in ("n_boats=9", "n_leaders=2", "pool=table-1")]
     page = tmp_path / "play.html"
-    code, told = play(
+    code, reported = play(
         monkeypatch, capsys, *fields, "--minutes", 2, "--speed", 64, "--json", "--out", page
     )
-    assert code in (None, 0), told.err
-    scores = json.loads(told.out)["runs"]
+    assert code in (None, 0), reported.err
+    scores = json.loads(reported.out)["runs"]
     assert list(scores) == ["you", "paper's law"]
     scene = flockenv.FlockParameters(n_boats=9, n_leaders=2, pool="table-1")
     law = flockenv.simulate(scene, 7, 120.0, policy=SteeringLaw())
@@ -143,7 +143,7 @@ def test_the_score_is_printed_beside_that_of_the_law(monkeypatch, capsys, tmp_pa
 )
 def test_what_cannot_be_played_is_named(arguments, driver, words, monkeypatch, capsys, tmp_path):
     monkeypatch.setattr(pygame.display, "get_driver", lambda: driver)
-    code, told = play(monkeypatch, capsys, *arguments, "--out", tmp_path / "play.html")
+    code, reported = play(monkeypatch, capsys, *arguments, "--out", tmp_path / "play.html")
     assert code == 2
-    assert words in told.err
+    assert words in reported.err
     assert list(tmp_path.iterdir()) == []

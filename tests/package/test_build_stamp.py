@@ -30,10 +30,10 @@ def clone(tmp_path: Path) -> Path:
 
 def builds(clone: Path) -> bool:
     """Whether `make build` would build."""
-    told = subprocess.run(
+    reported = subprocess.run(
         ["make", "--dry-run", "build"], cwd=clone, capture_output=True, text=True, check=True
     )
-    return "maturin develop" in told.stdout
+    return "maturin develop" in reported.stdout
 
 
 def test_what_is_built_stays(clone: Path) -> None:

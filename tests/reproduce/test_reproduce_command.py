@@ -61,15 +61,15 @@ def test_claims_are_whole_in_80_columns(uninterrupted: Path) -> None:
 
 def test_short_runs_are_marked_in_the_picture(uninterrupted: Path) -> None:
     """The words stand in the SVG as text, and below all panels."""
-    told = "short runs: 0.4 min, 60 min in the paper"
-    assert told in (uninterrupted / "fig17" / "fig17.svg").read_text()
+    marked = "short runs: 0.4 min, 60 min in the paper"
+    assert marked in (uninterrupted / "fig17" / "fig17.svg").read_text()
     figure = column_figure(6.0)
     axes = figure.subplots()
     axes.set_xlabel("x")
     mark_short(figure, 0.4, 60.0)
     figure.draw_without_rendering()
     (words,) = figure.texts
-    assert words.get_text() == told
+    assert words.get_text() == marked
     assert words.get_window_extent().y1 <= axes.get_tightbbox().y0
 
 
