@@ -11,6 +11,7 @@ JOBS ?= 2
 PYTEST_ARGS ?=
 COMPARE_ARGS ?=
 THROUGHPUT_ARGS ?=
+TRAINING_PHYSICS_ARGS ?=
 SOAK_ARGS ?=
 # `make instructions INSTRUCTIONS=--strict`: fails where there is no valgrind.
 INSTRUCTIONS ?=
@@ -46,7 +47,7 @@ TEST_EXTRAS := --extra train --extra plot --extra fit --extra render --extra swe
 .NOTPARALLEL:
 .PHONY: help setup build compare test lint format test-rust test-python test-js test-browser test-wheel test-oldest \
         test-rllib test-ray validate docs wheel audit licenses tables replay-animation \
-        instructions learning-check throughput soak fuzz speed-vs-error lint-benches clean
+        instructions learning-check training-physics throughput soak fuzz speed-vs-error lint-benches clean
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-18s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -147,6 +148,9 @@ replay-animation: $(STAMPS)/browser $(STAMPS)/core ## photograph the replay page
 
 learning-check: $(STAMPS)/test $(STAMPS)/core ## train 500 000 samples through each interface, write docs/learning-check.md
 	$(BIN)/python baselines/learning_check.py
+
+training-physics: $(STAMPS)/test $(STAMPS)/core ## compare training physics with the default, write docs/training_physics.md
+	$(BIN)/python baselines/training_physics.py $(TRAINING_PHYSICS_ARGS)
 
 # RLlib pins an older gymnasium, and the peers pin other things: environments of their own.
 test-rllib: $(STAMPS)/test ## RLlib on the parallel environment, in .venv-rllib

@@ -21,7 +21,13 @@ _FIELDS = tuple(each.name for each in fields(FlockParameters))
 _SETTINGS = tuple(
     name for name in _core.env_defaults() if name not in ("bw_range_s", "autoreset_mode")
 )
-_NAMES = ("preset", "params", *_FIELDS, *(name for name in _SETTINGS if name not in _FIELDS))
+_NAMES = (
+    "preset",
+    "params",
+    "physics",
+    *_FIELDS,
+    *(name for name in _SETTINGS if name not in _FIELDS),
+)
 #: Where neither ``params`` nor these fields are given: the paper's 27 boats, three of them leaders.
 _SCENE = {"n_boats": 27, "n_leaders": 3}
 
@@ -62,9 +68,20 @@ class EnvOptions:
         target = settings.get("target")
         if isinstance(target, str) and target in ("cw", "ccw"):
             given["target"] = target
-        parameters = _parameters(given)
+        stepping = _physics(given)
+        parameters = _parameters({**given, **stepping})
         settings.setdefault("target", parameters.target)
         return cls(parameters, settings)
+
+
+def _physics(given: dict[str, Any]) -> dict[str, Any]:
+    """Take the choice of physics out of the options, and return the fields that it sets."""
+    name = given.pop("physics", "default")
+    chosen = _core.physics_fields(name)
+    for field in chosen:
+        if field in given:
+            raise ParameterError(f"physics = {name!r} and {field} are both given: one of them")
+    return chosen
 
 
 def _parameters(given: dict[str, Any]) -> FlockParameters:
@@ -118,6 +135,8 @@ def arguments_table() -> str:
     meanings = {
         "preset": "named parameters of the scene, see `FlockParameters.presets`",
         "params": "parameters of the scene, `FlockParameters` or a dictionary, instead of a preset",
+        "physics": '"training" steps the flock by dt_s = 0.1 s with one relinearization, coarser '
+        'and cheaper; "default" as the parameters have it',
         "n_boats": declared["n_boats"],
         "n_leaders": declared["n_leaders"],
         "bw_s": f"{declared['bw_s']} In s; a pair (low, high) draws it uniformly for each episode.",
@@ -130,6 +149,7 @@ def arguments_table() -> str:
         **scene,
         **_core.env_defaults(),
         "preset": "simulation",
+        "physics": "default",
         "target": scene["target"],
         "render_size": DEFAULT_SIZE,
     }

@@ -12,4 +12,4 @@ pub use field::{Field, Kind, Range, Value};
 pub use fields::FlockParameters;
 pub(crate) use named_choice::named_choice;
 pub use pools::Pool;
-pub use presets::Preset;
+pub use presets::{Physics, Preset};

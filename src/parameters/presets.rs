@@ -14,6 +14,29 @@ named_choice! {
     }
 }
 
+named_choice! {
+    /// How finely an environment's physics is stepped.
+    pub enum Physics ("physics") {
+        /// As the parameters have it.
+        Default = "default",
+        /// Coarser, for training: fewer, longer substeps.
+        Training = "training",
+    }
+}
+
+impl Physics {
+    /// The substep in s and the relinearizations that it sets; `None` leaves both alone.
+    ///
+    /// Source: the cheapest setting of `docs/speed_vs_error.md` whose order parameters lie within three
+    /// standard errors of the reference's, and the longest substep that divides a control step of 0.1 s.
+    pub fn stepping(self) -> Option<(f64, usize)> {
+        match self {
+            Self::Default => None,
+            Self::Training => Some((0.1, 1)),
+        }
+    }
+}
+
 /// The preset `simulation` with some fields changed, and where each of their values comes from.
 macro_rules! changes {
     ($($name:ident = $value:expr, $source:literal;)*) => {{

@@ -41,8 +41,8 @@ mod _core {
     use super::order_parameters::{outward, rotation, signed_order};
     #[pymodule_export]
     use super::parameters::{
-        checked_fields, critical_bw_s, parameter_table, pool_radii_cm, preset_fields, preset_names,
-        preset_sources, resized_gyration_radius_cm,
+        checked_fields, critical_bw_s, parameter_table, physics_fields, pool_radii_cm,
+        preset_fields, preset_names, preset_sources, resized_gyration_radius_cm,
     };
     #[pymodule_export]
     use super::recording::{phase_names, record};

@@ -4,7 +4,7 @@
 use super::arguments::{real, text, truth, wrong_type};
 use super::settings::count;
 use crate::geometry;
-use crate::parameters::{Field, FlockParameters, Kind, Pool, Preset, Value};
+use crate::parameters::{Field, FlockParameters, Kind, Physics, Pool, Preset, Value};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PySequence, PyString};
@@ -136,6 +136,21 @@ pub fn preset_fields<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let preset: Preset = text(name, "preset")?.parse()?;
     to_dict(py, &FlockParameters::preset(preset))
+}
+
+/// The fields that a choice of physics sets.
+#[pyfunction]
+pub fn physics_fields<'py>(
+    py: Python<'py>,
+    name: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let physics: Physics = text(name, "physics")?.parse()?;
+    let fields = PyDict::new(py);
+    if let Some((dt_s, relinearizations)) = physics.stepping() {
+        fields.set_item("dt_s", dt_s)?;
+        fields.set_item("relinearizations", relinearizations)?;
+    }
+    Ok(fields)
 }
 
 /// The names of the presets.

@@ -53,6 +53,9 @@ def interface(request):
         ({"n_leaders": 9}, "n_boats > n_leaders"),
         ({"render_mode": "ansi"}, "render_mode = 'ansi'"),
         ({"dt_s": 0.0}, "dt_s = 0"),
+        ({"physics": "coarse"}, '"default", "training"'),
+        ({"physics": 1}, "physics"),
+        ({"physics": "training", "dt_s": 0.1}, "physics = 'training' and dt_s are both given"),
     ],
 )
 def test_options(interface, options, message):
