@@ -1,11 +1,11 @@
-"""What of a leaning law matters: groups of its weights left out, or kept alone.
+"""Measure which weights of a leaning law matter: groups are left out, or used alone.
 
     python baselines/ablate_leaning.py baselines/policies/500-boats.npz --pool 500-boats
 
-A group that is left out leans as it did on average in the states that the whole law visits, so that
-what is lost is what it distinguished. Three leaders among 27 boats, critical noise, training seeds,
-the same for all; differences from the whole law are paired by seed. What each feature is on average
-in those states, and the lean that its weight makes of it (rad), is written to NAME-lean.csv beside.
+A group that is left out contributes its average lean in the states that the whole law visits, so
+that only its dependence on the state is lost. Three leaders steer among 27 boats at the critical
+noise on the same training seeds, and differences from the whole law are paired by seed. The mean of
+each feature in those states and its contribution to the lean (rad) are written to NAME-lean.csv.
 """
 
 import argparse

@@ -1,14 +1,14 @@
-"""Make one leaning law of several: the mean of what searches from several seeds found.
+"""Take the mean of leaning laws that several searches have found.
 
     python baselines/average_policies.py results/evolution/500-boats/policy.npz \
         results/evolution/500-boats-1/policy.npz --pool 500-boats \
         --out results/evolution/500-boats-mean.npz
 
-Searches of the same form from the same beginning end around the same law, each off by the noise of
-its own episodes; their mean may be less far off. The search moves logarithms of gains, so the mean
-gain is the geometric one. The mean's `made` holds the provenance of each part. With --pool, all of
-them lead in training episodes that no search reaches, beside the tuned damped law: whether the mean
-is to ship is decided there, before it meets the seeds of a comparison.
+Searches of the same form from the same initial law end around the same law, and each differs from
+it by the noise of its own episodes. Their mean may differ less. The search moves logarithms of
+gains, so the mean gain is the geometric one. The mean's `made` holds the provenance of each part.
+With --pool, all laws and the tuned damped law lead in training episodes that no search uses; these
+decide whether the mean is distributed, before it is run on the seeds of a comparison.
 """
 
 import argparse
@@ -43,7 +43,7 @@ def average(laws: list[LeaningLaw], command: str) -> LeaningLaw:
     """Return the mean law."""
     first = laws[0]
     if any(law.observation != first.observation for law in laws):
-        raise flockenv.ParameterError("the laws look at different observations")
+        raise flockenv.ParameterError("the laws have different observations")
     logs = np.log([[law.gains[name] for name in GAINS] for law in laws])
     weights = np.mean([[law.weights.get(name, 0.0) for name in FEATURES] for law in laws], axis=0)
     parts = {

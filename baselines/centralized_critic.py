@@ -1,10 +1,10 @@
-"""A centralized critic: actors see what their leader sees, the critic sees the whole flock.
+"""A centralized critic: actors observe what their leader observes, the critic the whole flock.
 
     python baselines/centralized_critic.py --samples 200000
 
-PPO of stable-baselines3 with one policy shared by all leaders. `state()` is appended to each
-leader's observation; the actor's network gets the observation alone, the critic's gets both. Only
-the actor is needed afterwards: `predict` never reads the state.
+The example uses PPO of stable-baselines3 with one policy shared by all leaders. `state()` is
+appended to each leader's observation. The actor's network gets the observation alone, and the
+critic's network gets both. Only the actor is needed afterwards: `predict` never reads the state.
 """
 
 import argparse

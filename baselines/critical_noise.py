@@ -1,4 +1,4 @@
-"""Measure the critical noise of a pool and preset: where leaderless order is lost.
+"""Measure the critical noise of a pool and preset, at which leaderless order is lost.
 
 The critical noise is the length bw of the backward phase at which mean Ψ_o of leaderless runs falls
 through the middle between its ordered and its disordered level. The ordered level is mean Ψ_o at

@@ -1,16 +1,16 @@
-"""Train a leader policy with an evolution strategy: NumPy and flockenv alone, no torch.
+"""Train a leader policy with an evolution strategy, with NumPy and flockenv alone.
 
     python baselines/evolution_strategy.py                          # an easy scene, two minutes
     python baselines/evolution_strategy.py --pool table-1 --boats 27 --leaders 3 --noise 1 \
         --control-hz 10 --episode-s 120 --reward signed_order --generations 300 \
         --out results/evolution/table-1
 
-Gaussian perturbations of all weights are tried in pairs of opposite signs, a flock or several for
+Gaussian perturbations of all weights are tried in antithetic pairs, with one or several flocks for
 each, all in one batch of the simulator. Candidates of a generation steer the same episodes, so that
-they differ by their weights alone; their mean rewards are replaced by ranks; Adam follows the
-estimated gradient. The policy is linear feedback on the observation unless hidden layers are asked
-for; with --form leaning it is a `LeaningLaw`, which begins as the damped law. Interrupted, the same
-command resumes from the last generation. The result is a policy file:
+they differ by their weights alone. Their mean rewards are replaced by ranks, and Adam follows the
+estimated gradient. The policy is linear feedback on the observation unless hidden layers are given;
+with --form leaning it is a `LeaningLaw`, which starts as the damped law. An interrupted command
+resumes from the last generation. The result is a policy file:
 
     flockenv compare --policy "steering law" --policy results/evolution/policy.npz
 """
@@ -176,7 +176,7 @@ def next_generation(
 
 
 def identity(reported: dict[str, Any]) -> dict[str, Any]:
-    """What a stored search must have been started with to go on: most of its options."""
+    """Return the options that a stored search must share to be resumed."""
     free = ("out", "generations", "quiet", "episodes")
     whole = {"observation_version": OBSERVATION_VERSION, **reported}
     return {name: value for name, value in whole.items() if name not in free}
@@ -268,7 +268,7 @@ def main(arguments: list[str] | None = None) -> None:
         "--set", action="append", default=[], metavar="FIELD=VALUE", help="of FlockParameters"
     )
     parser.add_argument("--form", choices=("network", "leaning"), default="network")
-    parser.add_argument("--tuned", action="store_true", help="begin with the pool's tuned gains")
+    parser.add_argument("--tuned", action="store_true", help="start from the pool's tuned gains")
     parser.add_argument("--hidden", type=int, nargs="*", default=[], help="hidden layers")
     parser.add_argument("--reward", choices=TERMS, default="leader_velocity")
     parser.add_argument("--generations", type=int, default=50)

@@ -1,4 +1,4 @@
-"""Policies as vectors of numbers, which a search can move: networks and leaning laws."""
+"""Policies as vectors of numbers that a search moves: networks and leaning laws."""
 
 import itertools
 from collections.abc import Callable
@@ -72,7 +72,7 @@ class LeaningShape:
     def __init__(
         self, begin: DampedLaw, env: flockenv.LeadersVectorEnv, seeds: list[int], steps: int
     ) -> None:
-        """Look at what the law to begin with sees, so that all features get equal steps."""
+        """Measure the features of the initial law's observations, so that all get equal steps."""
         self.begin = begin
         rows, _ = env.reset(seed=seeds)
         seen = []
@@ -112,5 +112,5 @@ class LeaningShape:
         )
 
     def first(self, random: np.random.Generator) -> np.ndarray:
-        """The law to begin with."""
+        """Return the initial law."""
         return np.zeros(self.size)

@@ -1,12 +1,12 @@
-"""Train one policy for all: PPO, one network shared by one to four leaders, both pools and ways.
+"""Train one network for one to four leaders, both pools and both directions, with PPO.
 
     python baselines/ppo_shared_policy.py                        # into results/ppo_shared_policy
-    python baselines/ppo_shared_policy.py --resume               # goes on after a kill
+    python baselines/ppo_shared_policy.py --resume               # continues after a kill
     flockenv compare --policy "damped law" --policy results/ppo_shared_policy/best.npz
 
 Training starts from a clone of the damped law instead of from nothing. Episodes have between half
-and 1.25 times the critical noise of their pool. docs/train.md lists its files; what
-ships in baselines/policies was searched by evolution_strategy.py instead (docs/leaders.md).
+and 1.25 times the critical noise of their pool. docs/train.md lists the
+files. The pretrained policies were searched by evolution_strategy.py instead (docs/leaders.md).
 """
 
 import argparse

@@ -1,4 +1,4 @@
-"""What training scripts take as --seed."""
+"""The values of --seed in training scripts."""
 
 import argparse
 

@@ -1,12 +1,12 @@
-"""Choose PPO's settings by a recorded search: short runs that differ in nothing else.
+"""Choose PPO's settings by a recorded search of short runs.
 
     python baselines/search_ppo.py                      # ten runs, half an hour on one core
     flockenv train --settings results/search_ppo/best.toml --samples 4000000
 
-The settings of ppo_shared_policy.py, with those in RANGES drawn from a Latin hypercube. Each run
-ends with a validation of what it learned, always in the same training episodes; the damped law, as
-a clone of which every run begins, is validated first. Each run's settings and scores are written to
-results/search_ppo/search.csv; interrupted, the same command goes on with the runs that it lacks.
+The settings are those of ppo_shared_policy.py, with those in RANGES drawn from a Latin hypercube.
+Each run ends with a validation of its policy, always in the same training episodes. The damped law,
+as a clone of which every run starts, is validated first. Each run's settings and scores are written
+to results/search_ppo/search.csv, and an interrupted command resumes with the missing runs.
 """
 
 import argparse
@@ -75,7 +75,7 @@ def drawn(options: argparse.Namespace) -> list[training.TrainingSettings]:
 
 
 def score(settings: training.TrainingSettings, folder: Path, command: str) -> dict[str, float]:
-    """Train, or go on, or read what was found; return the final scores."""
+    """Train, resume or read a finished run, and return the final scores."""
     if (folder / "checkpoint.npz").exists():
         if training.stored_settings(folder) != settings:
             raise flockenv.ParameterError(f"{folder} is of another search: name another --out")

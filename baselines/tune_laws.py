@@ -1,13 +1,13 @@
-"""Tune the gains of the closed-form laws on training seeds: what learned leaders have to beat.
+"""Tune the gains of the closed-form laws on training seeds.
 
     python baselines/tune_laws.py                            # both laws in both pools, half an hour
     python baselines/tune_laws.py --law "damped law" --pool table-1 --generations 10
 
-CMA-ES (Hansen's covariance matrix adaptation, from the package cmaes) over logarithms of the gains.
-A candidate's score is the mean signed order of its episodes; all candidates of a generation steer
-the same training episodes, those of the next generation others. The gains that are reported are the
-search's mean at its end, which has seen all episodes, not those of the luckiest candidate.
-Every candidate is written to results/tune_laws, and what was found to gains.toml beside it.
+The search is CMA-ES (Hansen's covariance matrix adaptation, from the package cmaes) over logarithms
+of the gains. A candidate's score is the mean signed order of its episodes. All candidates of a
+generation steer the same training episodes, and those of the next generation others. The reported
+gains are the search's mean at its end, which depends on all episodes, and not those of the luckiest
+candidate. Every candidate is written to results/tune_laws, and the gains to gains.toml beside it.
 """
 
 import argparse
@@ -63,7 +63,7 @@ def tune(law: str, pool: str, options: argparse.Namespace, progress: Progress) -
     """Return the gains found, having written every candidate."""
     make, ranges = LAWS[law]
     middle, widths = np.array(list(ranges.values())).T
-    # The search wants two places at least; of a law with one gain the second does nothing.
+    # The search needs two coordinates at least; for a law with one gain the second has no effect.
     search = cmaes.CMA(mean=np.zeros(max(2, len(ranges))), sigma=0.5, seed=options.seed)
     parameters, rows = scene(pool, options), []
 

@@ -1,14 +1,13 @@
-"""Look at what leaders do: their rudders, where they sit, and their tracks, for several policies.
+"""Measure and draw how leaders move: their rudders, positions and tracks, for several policies.
 
     python baselines/understand_leaders.py --pool table-1 \\
         --policy "steering law" --policy "damped law" --out results/understand/table-1
 
-Draws rudders.png (mean rudder by time in the control cycle, against the angular velocity of a
-leader that heads nearly right, and against misalignment), places.png (how well leaders head, how
-far out and how far from each other they are) and tracks.png (two minutes of one episode), and
-writes what leaders did on average to means.csv (at_wall, beside_wall and beside_leader are shares
-of the time). Critical noise, clockwise targets, paired seeds; the first tenth of each episode is
-left out.
+The script draws rudders.png (mean rudder by time in the control cycle, against the angular velocity
+of a leader that heads nearly right, and against misalignment), places.png (headings, distances from
+the center and from each other) and tracks.png (two minutes of one episode). It writes means to
+means.csv (at_wall, beside_wall and beside_leader are shares of the time). Episodes have the
+critical noise, clockwise targets and paired seeds, and the first tenth of each is left out.
 """
 
 import argparse
@@ -45,7 +44,7 @@ NEAR_WALL_CM, FAR_FROM_WALL_CM, BESIDE_CM = 8.0, 22.0, 20.0
 def watch(
     name: str, scene: flockenv.FlockParameters, options: argparse.Namespace, progress: Progress
 ) -> tuple[pd.DataFrame, float]:
-    """Run episodes; return samples, one row per leader and time, and the mean signed order."""
+    """Run episodes, and return samples, one row per leader and time, and the mean signed order."""
     policy = named_policy(name, scene.pool)()
     if isinstance(policy, str):
         raise flockenv.ParameterError(f"{name!r} sees no observations: name another policy")

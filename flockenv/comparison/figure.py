@@ -102,7 +102,7 @@ class _Shown:
     def __init__(
         self, runs: pd.DataFrame, means: pd.DataFrame, policies: list[str], quantity: str
     ) -> None:
-        # A legend leaves out what begins with an underscore.
+        # A legend leaves out labels that start with an underscore.
         self.label = f" {policies[0]}" if policies[0].startswith("_") else policies[0]
         runs = runs[runs["policy"].isin(policies)]
         means = means[means["policy"].isin(policies)].sort_values("leaders")

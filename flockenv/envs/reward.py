@@ -4,7 +4,7 @@ from flockenv import _core
 
 __all__ = ["TERMS", "terms_table"]
 
-#: Name of each term and what it is; every term is larger for better.
+#: Name and meaning of each term; every term is larger for better.
 TERMS: dict[str, str] = dict(_core.reward_terms())
 
 

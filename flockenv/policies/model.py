@@ -173,7 +173,7 @@ class ModelPolicy:
 
 
 def as_policy(policy: Any) -> Any:
-    """Return a policy as it is, and a model of stable-baselines3 as a `ModelPolicy`.
+    """Return a policy unchanged, and a model of stable-baselines3 as a `ModelPolicy`.
 
     Raises
     ------

@@ -100,7 +100,7 @@ def tuned_law(law: str, pool: Any) -> ObservedPolicy:
 
 
 def learned(pool: Any) -> NetworkPolicy | LeaningLaw | ModelPolicy:
-    """Return the learned leaders that ship for a named pool.
+    """Return the pretrained leaders of a named pool.
 
     Raises
     ------

@@ -27,7 +27,7 @@ def save_animation(
     Parameters
     ----------
     path
-        A name that ends in ``.png`` or ``.apng`` (animated PNG: every color as it is) or ``.gif``.
+        A name that ends in ``.png`` or ``.apng`` (animated PNG: every color unchanged) or ``.gif``.
     frames
         Arrays (height, width, 3) of uint8, all of one shape.
     fps

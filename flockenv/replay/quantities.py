@@ -68,7 +68,7 @@ class ShownQuantity:
 
 
 def shown_quantities(recordings: Sequence[Recording]) -> list[ShownQuantity]:
-    """Return the quantities that recordings hold; the first is what their charts begin with.
+    """Return the quantities that recordings hold; their charts show the first one at first.
 
     Order towards the target is among them where any of the recordings has leaders.
     """

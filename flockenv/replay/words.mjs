@@ -20,7 +20,7 @@ export function fixed(value, decimals, plus = false) {
   return text.startsWith("-") ? text.replace("-", "−") : (plus ? "+" : "") + text;
 }
 
-/** A number as short as it is, with a real minus sign. */
+/** A number in its shortest form, with a real minus sign. */
 export function plain(value) {
   return String(Number(value.toPrecision(6))).replace("-", "−");
 }

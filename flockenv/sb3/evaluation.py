@@ -119,7 +119,7 @@ class FlockEvalCallback(EvalCallback):
         A `LeaderVecEnv`. In `VecNormalize` wrap it as ``VecNormalize(PerFlock(venv))``.
     seed
         Each evaluation starts with this seed of the first flock, so that models meet the same
-        flocks; None: each goes on with the next episodes.
+        flocks; None: each continues with the next episodes.
     options
         All others of `EvalCallback`; ``n_eval_episodes`` counts flocks.
 

@@ -50,7 +50,7 @@ class Progress:
 
 
 def state_of(model: PPO, settings: TrainingSettings, progress: Progress) -> State:
-    """Return what a checkpoint holds, as it is between two rollouts; nothing later changes it."""
+    """Return the contents of a checkpoint; later training does not change them."""
     env = model.env
     assert isinstance(env, PooledVecEnv)
     header = {
