@@ -83,7 +83,7 @@ def ablated(
     first: int,
     progress: Progress,
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """What every variant earns beyond the whole law, and what each weight adds to the lean."""
+    """Return each variant's order beyond the whole law, and each weight's part of the lean."""
     task = progress.add_task("states that it visits", total=1)
     means = usual(law, scene, first)
     found, rows, whole = variants(law, means), [], None

@@ -243,7 +243,7 @@ def search(options: argparse.Namespace, command: str) -> NetworkPolicy | Leaning
 
 
 def print_held_out(options: argparse.Namespace, policies: dict[str, Any]) -> None:
-    """Print what policies earn in episodes that the search has never seen."""
+    """Print the rewards of policies in episodes that the search has not used."""
     env = environment(options, options.episodes, options.leaders[0])
     for name, policy in policies.items():
         steer = lambda rows, policy=policy: policy.predict(rows)[0]  # noqa: E731

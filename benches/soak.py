@@ -25,7 +25,7 @@ ROOT = Path(__file__).parents[1]
 SCENE = {"n_boats": 27, "n_leaders": 4, "bw_s": (0.0, 1.0), "target": "random", "episode_s": 48.0}
 POOLS = ("500-boats", "table-1")
 FLOCKS = 64
-#: Of all steps, the part in which memory still settles; and how often it is read.
+#: Share of the steps before memory is stationary, and number of readings.
 SETTLING, SAMPLES = 0.2, 200
 #: Steps between two round trips through bytes, and until an average leader moves its rudder.
 STORED_EVERY, RUDDER_HELD = 1000, 5

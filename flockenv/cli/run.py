@@ -130,8 +130,8 @@ def _policy(name: str, scene: FlockParameters, trust: bool) -> LeaderPolicy | st
 
 def summary_of(recording: Recording) -> dict[str, float | int | None]:
     """Return means over the samples in the analysis window after the first tenth of the run."""
-    settled = recording.time_s > 0.1 * recording.time_s[-1]
-    window = recording.in_analysis_window & settled
+    counted = recording.time_s > 0.1 * recording.time_s[-1]
+    window = recording.in_analysis_window & counted
     order = recording.order
     series = {
         "psi_o": order.psi_o,

@@ -37,7 +37,7 @@ class Window:
     width, height
         Size in pixels.
     fps
-        Frames per second of simulated time, which sets the pace of real time.
+        Frames per second of simulated time, which sets the speed in real time.
 
     Raises
     ------

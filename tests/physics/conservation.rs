@@ -39,8 +39,8 @@ fn scattered(p: &FlockParameters, n_boats: usize, seed: u64, speed: f64) -> Floc
     let velocities: Vec<Velocity> = (0..n_boats)
         .map(|i| {
             let phase = 2.399_963 * (i as f64 + seed as f64 * 0.618);
-            let pace = speed * (0.3 + 0.7 * (0.755 * i as f64).fract());
-            Velocity::new(pace * phase.cos(), pace * phase.sin(), (3.0 * phase).sin())
+            let rate = speed * (0.3 + 0.7 * (0.755 * i as f64).fract());
+            Velocity::new(rate * phase.cos(), rate * phase.sin(), (3.0 * phase).sin())
         })
         .collect();
     flock

@@ -104,7 +104,7 @@ fn force_on_a_line(dt: f64, tolerance: f64, substeps: usize) -> f64 {
     impulses / (dt * substeps as f64)
 }
 
-/// Enough for means to settle to about 1e-3.
+/// Long enough for means to converge to about 1e-3.
 const SUBSTEPS: usize = 60_000;
 
 #[test]

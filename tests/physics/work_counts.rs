@@ -87,7 +87,7 @@ fn boats_that_stay_within_their_skin_share_one_neighbor_list() {
     assert!((9..=11).contains(&builds), "{builds}");
 }
 
-/// Twenty seconds of a scene after ten to settle, counted a substep.
+/// Twenty seconds of a scene after ten of warm-up, counted per substep.
 fn counted(n_boats: usize, bw_s: f64) -> (Statistics, f64) {
     let p = FlockParameters {
         n_boats,
