@@ -271,8 +271,8 @@ def test_ctrl_c_says_where_finished_work_is(name, tmp_path):
 @pytest.mark.parametrize(
     "reported",
     [
-        lambda: interruptible("All is kept."),
-        lambda: interruptible(lambda: "All is kept."),
+        lambda: interruptible("All is stored."),
+        lambda: interruptible(lambda: "All is stored."),
         lambda: finished_in(Path("here"), ["a"]),
         lambda: resumable(Path("here")),
     ],
@@ -290,7 +290,7 @@ def test_another_ctrl_c_does_not_cut_off_the_message(reported, monkeypatch, caps
         raise KeyboardInterrupt
     assert isinstance(ended.value, typer.Exit)
     assert ended.value.exit_code == 130
-    assert "kept" in capsys.readouterr().err
+    assert "stored" in capsys.readouterr().err
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 

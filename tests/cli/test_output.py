@@ -117,7 +117,7 @@ def test_what_cannot_be_kept_anywhere_says_so(monkeypatch, tmp_path):
 
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setattr(output, "gettempdir", lambda: str(tmp_path))
-    with pytest.raises(ParameterError, match="No space left on device, and so is every other"):
+    with pytest.raises(ParameterError, match="No space left on device, and no other folder can be written"):
         output.keep(Path("run.npz"), full)
     assert list(tmp_path.iterdir()) == []
 
