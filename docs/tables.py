@@ -311,6 +311,22 @@ def fit_variants() -> str:
     return markdown(["variant", *keys.values()], body)
 
 
+def easy() -> str:
+    """Return what PPO reached in the easy environment, per seed, beside fixed policies."""
+
+    def reward(row: Row) -> str:
+        return interval(row, "reward", "reward_low", "reward_high")
+
+    body = [[row["policy"], "", "", reward(row)] for row in rows("easy/curve.csv", seed="")]
+    curves = rows("easy/curve.csv", policy="PPO")
+    for seed in sorted({row["seed"] for row in curves}):
+        own = [row for row in curves if row["seed"] == seed]
+        for row in (own[0], own[len(own) // 2], own[-1]):
+            cpu = f"{float(row['cpu_s']):.0f} s"
+            body.append([f"PPO, seed {seed}", row["samples"], cpu, reward(row)])
+    return markdown(("policy", "samples", "processor time", "reward per control step"), body)
+
+
 def parameters() -> str:
     """Return what the core declares of each parameter, with the values of the presets."""
     presets = {name: FlockParameters.preset(name).to_dict() for name in FlockParameters.presets()}
@@ -329,6 +345,7 @@ def parameters() -> str:
 
 TABLES: dict[str, Callable[[], str]] = {
     "parameters": parameters,
+    "easy": easy,
     "leader-count": leader_count,
     "leaders-500-boats": lambda: leaders_of(
         "500-boats", ("steering law", "tuned damped law", "learned")

@@ -1,5 +1,6 @@
 """What the environment classes share: one batch of flocks in the core, its seeds and its infos."""
 
+import operator
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -96,6 +97,9 @@ def at_least_one(count: Any, name: str) -> int:
 
 def seeds_from(first: Any, flocks: int) -> list[int]:
     """Return the seeds of flocks where the first one has this seed: each has the next."""
+    if isinstance(first, float):
+        # As the core says it for a single flock.
+        raise ParameterError(f"seed = {first!r} is not accepted: a whole number")
     number = _whole(first, "seed")
     if not 0 <= number <= _SEEDS - flocks:
         raise ParameterError(
@@ -106,7 +110,11 @@ def seeds_from(first: Any, flocks: int) -> list[int]:
 
 
 def _whole(value: Any, name: str) -> int:
-    if isinstance(value, bool) or not isinstance(value, int | np.integer):
-        kind = type(value).__name__
-        raise TypeError(f"{name} must be an integer, not {value!r} of type {kind}")
-    return int(value)
+    # As the core takes whole numbers: also NumPy's, and arrays of one without a dimension.
+    try:
+        if not isinstance(value, bool | np.bool_):
+            return operator.index(value)
+    except TypeError:
+        pass
+    kind = type(value).__name__
+    raise TypeError(f"{name} must be an integer, not {value!r} of type {kind}")

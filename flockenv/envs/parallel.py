@@ -31,6 +31,9 @@ class LeadersParallelEnv(
 
     ``flockenv.parallel_env(**options)``
 
+    ## Begin here
+    {begin}
+
     ## Description
     {task}
 

@@ -23,6 +23,9 @@ class LeadersEnv(OneFlock, gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
 
     ``gymnasium.make("flockenv/Leaders-v0", **options)``
 
+    ## Begin here
+    {begin}
+
     ## Description
     {task}
 

@@ -28,6 +28,9 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
 
     ``gymnasium.make_vec("flockenv/Leaders-v0", num_envs=64, **options)``
 
+    ## Begin here
+    {begin}
+
     ## Description
     {task}
 
@@ -285,7 +288,7 @@ def _seed_each(seed: Any, num_envs: int) -> Sequence[int | None]:
     if seed is None:
         return [None] * num_envs
     seeds = seed.tolist() if isinstance(seed, np.ndarray) else seed
-    if not isinstance(seeds, Sequence) or isinstance(seeds, str):
+    if not isinstance(seeds, Sequence) or isinstance(seeds, str | bytes):
         return seeds_from(seeds, num_envs)
     if len(seeds) != num_envs:
         raise ParameterError(f"seed lists {len(seeds)} seeds, expected {num_envs}")

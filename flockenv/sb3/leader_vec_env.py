@@ -57,6 +57,9 @@ class LeaderVecEnv(VecEnv):
 
     ``flockenv.sb3.LeaderVecEnv(num_flocks=64, n_leaders=[1, 2, 3, 4], **options)``
 
+    ## Begin here
+    {begin}
+
     ## Description
     {task}
 

@@ -1,0 +1,21 @@
+"""Law: the script writes a learning curve from training seeds, scored on held-out episodes."""
+
+import csv
+
+import pytest
+
+pytest.importorskip("stable_baselines3")
+
+
+def test_a_short_run(script, tmp_path):
+    script.main(["--seeds", "3", "--samples", "4096", "--out", str(tmp_path)])
+    with (tmp_path / "curve.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    references = [row["policy"] for row in rows if not row["seed"]]
+    assert references == ["random rudders", "steering law", "damped law"]
+    curve = [row for row in rows if row["seed"] == "3"]
+    assert [row["samples"] for row in curve] == ["0", "4096"]
+    assert float(curve[1]["cpu_s"]) > 0.0
+    for row in rows:
+        assert float(row["reward_low"]) < float(row["reward"]) < float(row["reward_high"])
+    assert (tmp_path / "curve.png").stat().st_size > 1000

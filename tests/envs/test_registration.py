@@ -1,0 +1,43 @@
+"""Law: environments are made by their ids, with and without an import of the package."""
+
+import subprocess
+import sys
+
+import gymnasium
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv.envs.registration import EASY_ID, ENVIRONMENTS
+from flockenv.policies import DampedLaw, RandomRudders
+
+
+@pytest.mark.parametrize("env_id", ENVIRONMENTS)
+def test_ids_bring_their_options(env_id):
+    made = gymnasium.make(env_id).unwrapped
+    own = flockenv.LeadersEnv(**gymnasium.spec(env_id).kwargs)
+    assert made.parameters == own.parameters
+    assert made._batch.settings == own._batch.settings
+    assert gymnasium.make_vec(env_id, num_envs=2).num_envs == 2
+    assert gymnasium.make(env_id, n_boats=5).unwrapped.parameters.n_boats == 5
+
+
+@pytest.mark.parametrize("env_id", ENVIRONMENTS)
+def test_ids_import_the_package(env_id):
+    code = f"import gymnasium; print(gymnasium.make('flockenv:{env_id}').reset(seed=0)[0].shape)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("(")
+
+
+def test_the_easy_environment_tells_good_leaders_from_bad():
+    def mean_reward(policy):
+        venv = gymnasium.make_vec(EASY_ID, num_envs=32, autoreset_mode="disabled")
+        observations, _ = venv.reset(seed=0)
+        total, over = np.zeros(32), np.zeros(32, bool)
+        while not over.any():
+            observations, rewards, _, over, _ = venv.step(policy.predict(observations)[0])
+            total += rewards / 300
+        return total.mean()
+
+    assert mean_reward(DampedLaw()) > mean_reward(RandomRudders()) + 0.1

@@ -1,0 +1,96 @@
+"""Law: every interface takes the same seeds and refuses the same, with the same kind of error."""
+
+import gymnasium
+import numpy as np
+import pytest
+from pettingzoo.utils.conversions import parallel_to_aec
+
+import flockenv
+from flockenv import ParameterError
+
+OPTIONS = {"n_boats": 6, "n_leaders": 1, "episode_s": 2.0}
+SCENE = flockenv.FlockParameters(n_boats=6, n_leaders=1)
+
+
+def single(seed):
+    env = flockenv.LeadersEnv(**OPTIONS)
+    env.reset(seed=seed)
+    return env.flock.pose
+
+
+def made(seed):
+    env = gymnasium.make("flockenv/Leaders-v0", **OPTIONS)
+    env.reset(seed=seed)
+    return env.unwrapped.flock.pose
+
+
+def parallel(seed):
+    env = flockenv.parallel_env(**OPTIONS)
+    env.reset(seed=seed)
+    return env.flock.pose
+
+
+def aec(seed):
+    env = parallel_to_aec(flockenv.parallel_env(**OPTIONS))
+    env.reset(seed=seed)
+    return env.unwrapped.flock.pose
+
+
+def vector(seed):
+    env = flockenv.LeadersVectorEnv(1, **OPTIONS)
+    env.reset(seed=seed)
+    return env._batch.core.flock(0).pose
+
+
+def vector_of_a_list(seed):
+    env = flockenv.LeadersVectorEnv(1, **OPTIONS)
+    env.reset(seed=[seed])
+    return env._batch.core.flock(0).pose
+
+
+def slots(seed):
+    pytest.importorskip("stable_baselines3")
+    from flockenv.sb3 import LeaderVecEnv
+
+    env = LeaderVecEnv(1, **OPTIONS)
+    env.seed(seed)
+    env.reset()
+    return env._batch.core.flock(0).pose
+
+
+INTERFACES = [single, made, parallel, aec, vector, vector_of_a_list, slots]
+
+
+@pytest.mark.parametrize("place", INTERFACES)
+@pytest.mark.parametrize(
+    "seed", [0, 7, 2**63, 2**64 - 1, np.int64(7), np.uint64(2**64 - 1), np.array(7)], ids=repr
+)
+def test_seeds_that_are_taken(place, seed):
+    np.testing.assert_array_equal(place(seed), flockenv.Flock(SCENE, int(seed)).pose)
+
+
+@pytest.mark.parametrize("place", [lambda seed: flockenv.Flock(SCENE, seed), *INTERFACES])
+@pytest.mark.parametrize(
+    ("seed", "error"),
+    [
+        (-1, ParameterError),
+        (2**64, ParameterError),
+        (1.0, ParameterError),
+        (1.5, ParameterError),
+        (np.float64(1.0), ParameterError),
+        (float("nan"), ParameterError),
+        (True, TypeError),
+        (np.True_, TypeError),
+        ("1", TypeError),
+        (b"1", TypeError),
+        (np.float32(1.0), TypeError),
+        (1 + 0j, TypeError),
+        (np.array([[1]]), TypeError),
+        ({}, TypeError),
+    ],
+    ids=repr,
+)
+def test_seeds_that_are_refused(place, seed, error):
+    with pytest.raises((ParameterError, TypeError)) as caught:
+        place(seed)
+    assert isinstance(caught.value, error), caught.value
