@@ -20,7 +20,6 @@ EXECUTED = {
     "docs/start.md": ["python", "sh"],
     "docs/api/flock.md": ["python"],
     "docs/extend/policy.md": ["python"],
-    "docs/train_with_sb3.md": ["python", "sh"],
 }
 PAGES = sorted(
     str(path.relative_to(REPOSITORY))
