@@ -50,7 +50,7 @@ def test_claims_are_whole_in_80_columns(uninterrupted: Path) -> None:
     *blocks, last = done.stdout.strip().split("\n\n")
     assert max(map(len, "\n".join(blocks).splitlines())) <= 80
     assert last.startswith("Written to")
-    claims = pd.read_csv(uninterrupted / "fig17" / "claims.csv", keep_default_na=False)
+    claims = pd.read_csv(uninterrupted / "fig17" / "claims.csv", dtype=str, keep_default_na=False)
     assert len(blocks) == len(claims)
     for block, (_, row) in zip(blocks, claims.iterrows(), strict=True):
         text = " ".join(block.split())
