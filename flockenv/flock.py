@@ -247,6 +247,18 @@ class ContactSeries:
         names = [each.name for each in fields(self)]
         return all(np.array_equal(getattr(self, name), getattr(other, name)) for name in names)
 
+    def at(self, samples: NDArray[np.bool_]) -> Self:
+        """Return the series of some of the samples, shape (t,)."""
+        kept = np.repeat(samples, self.count)
+        return type(self)(
+            self.count[samples],
+            self.i[kept],
+            self.j[kept],
+            self.normal[kept],
+            self.force[kept],
+            self.point_cm[kept],
+        )
+
     def check(self, samples: int, boats: int) -> None:
         """Check the series of a recording.
 

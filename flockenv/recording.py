@@ -2,8 +2,9 @@
 
 import html
 import importlib
+import math
 import os
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -21,9 +22,13 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-__all__ = ["PHASES", "PRECISIONS", "Recording"]
+__all__ = ["DISCARDED_SHARE", "PHASES", "PRECISIONS", "Recording"]
 
-_FORMAT = "flockenv recording 1"
+DISCARDED_SHARE = 0.1
+"""The share of a run, at its start, that no figure uses."""
+
+_FORMAT = "flockenv recording 2"
+_FORMAT_WITHOUT_POLICY = "flockenv recording 1"
 PHASES = np.array(_core.phase_names())
 _ORDER = tuple(each.name for each in fields(OrderSeries))
 _CONTACTS = tuple(each.name for each in fields(ContactSeries))
@@ -49,8 +54,9 @@ class Recording:
     in_analysis_window : bool array, shape (t,)
         Whether each time lies in the second half of fw or the first half of nop1 (Section 4).
     pose : float64 or float32 array, shape (t, n, 3)
-        [x cm, y cm, heading rad counter-clockwise from x, not wrapped], leaders first.
-    velocity : array of the same dtype, shape (t, n, 3)
+        [x cm, y cm, heading rad counter-clockwise from x, not wrapped], leaders first. Shape
+        (t, 0, 3) where poses were not kept.
+    velocity : array of the same dtype and shape
         [cm/s, cm/s, rad/s]. With the leapfrog scheme these are means over the substep before.
     order : OrderSeries
         Order parameters of the normal boats; NaN only where they are undefined.
@@ -62,6 +68,13 @@ class Recording:
         Version of flockenv that ran it.
     contacts : ContactSeries or None
         Contacts that carried a force, if they were recorded.
+    policy : str or None
+        What steered the leaders: "law" for eq. (10) at every substep, otherwise the policy's name,
+        which for a learned one ends in the first digits of its SHA-256; None where that is not
+        known, as in files of version 0.1.0.
+    duration_s : float
+        Length of the run in s, of which the samples may be a part; that of the last sample if not
+        given.
 
     Raises
     ------
@@ -79,10 +92,13 @@ class Recording:
     seed: int
     version: str
     contacts: ContactSeries | None = None
+    policy: str | None = None
+    duration_s: float = math.nan
 
     def __post_init__(self) -> None:
         times = np.shape(self.time_s)[:1]
-        state = (*times, self.parameters.n_boats, 3)
+        with_poses = np.shape(self.pose)[1:2] != (0,)
+        state = (*times, self.parameters.n_boats if with_poses else 0, 3)
         _check("time_s", self.time_s, times, PRECISIONS[:1])
         _check("phase", self.phase, times, (PHASES.dtype,))
         _check("in_analysis_window", self.in_analysis_window, times, (np.dtype(np.bool_),))
@@ -90,8 +106,14 @@ class Recording:
         _check("velocity", self.velocity, state, (self.pose.dtype,))
         if not np.isin(self.phase, PHASES).all():
             raise ParameterError(f"phase holds other names than {', '.join(PHASES)}")
-        if times == (0,) or not (np.diff(self.time_s) > 0).all() or self.time_s[0] < 0:
-            raise ParameterError("time_s must hold at least one time, from 0 on, and increase")
+        if math.isnan(self.duration_s) and len(self.time_s) > 0:
+            object.__setattr__(self, "duration_s", float(self.time_s[-1]))
+        times_s = np.concatenate([self.time_s, [self.duration_s]])
+        if not (np.diff(self.time_s) > 0).all() or not 0 <= times_s[0] <= times_s[-2:].min():
+            raise ParameterError(
+                "time_s must increase from 0 on, not beyond duration_s, and hold at least one time "
+                "if that is not given"
+            )
         normal_boats = self.parameters.n_boats - self.parameters.n_leaders
         for name in _ORDER:
             values = getattr(self.order, name)
@@ -109,7 +131,7 @@ class Recording:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Recording):
             return NotImplemented
-        plain = ("order", "parameters", "seed", "version", "contacts")
+        plain = ("order", "parameters", "seed", "version", "contacts", "policy", "duration_s")
         return all(getattr(self, name) == getattr(other, name) for name in plain) and all(
             np.array_equal(getattr(self, name), getattr(other, name)) for name in _ARRAYS
         )
@@ -117,7 +139,7 @@ class Recording:
     def __repr__(self) -> str:
         return (
             f"<flockenv.Recording of {self.parameters.n_boats} boats, seed {self.seed}, "
-            f"{len(self)} samples to {self.time_s[-1]} s>"
+            f"{len(self)} samples to {self.duration_s} s>"
         )
 
     def flock_at(self, time_s: float) -> Flock:
@@ -228,6 +250,37 @@ class Recording:
         except ParameterError:
             return f"<code>{html.escape(repr(self))}</code>"
 
+    @property
+    def has_poses(self) -> bool:
+        """Whether poses and velocities were kept."""
+        return bool(self.pose.shape[1] > 0)
+
+    def analyzed(self, after: float = DISCARDED_SHARE) -> Self:
+        """Return the samples that figures use: those in the analysis window of a settled flock.
+
+        Parameters
+        ----------
+        after
+            Share of the run, at its start, that is left out.
+
+        Returns
+        -------
+        Recording
+            Samples within the second half of fw or the first half of nop1 (Section 4), later than
+            `after` times `duration_s`; possibly none.
+        """
+        return self._at(self.in_analysis_window & (self.time_s > after * self.duration_s))
+
+    def without_poses(self) -> Self:
+        """Return the recording without its poses and velocities."""
+        return replace(self, pose=self.pose[:, :0], velocity=self.velocity[:, :0])
+
+    def _at(self, samples: NDArray[np.bool_]) -> Self:
+        columns: dict[str, Any] = {name: getattr(self, name)[samples] for name in _ARRAYS}
+        order = OrderSeries(*(getattr(self.order, name)[samples] for name in _ORDER))
+        contacts = None if self.contacts is None else self.contacts.at(samples)
+        return replace(self, **columns, order=order, contacts=contacts)
+
     def save(self, path: str | os.PathLike[str], *, compressed: bool = False) -> None:
         """Write the recording to an ``.npz`` file, whole or not at all.
 
@@ -256,9 +309,11 @@ class Recording:
             "format": _FORMAT,
             "version": self.version,
             "parameters": self.parameters.to_toml(),
+            "policy": self.policy or "",
         }
         arrays |= {name: np.array(text) for name, text in texts.items()}
         arrays["seed"] = np.array(self.seed, np.uint64)
+        arrays["duration_s"] = np.array(self.duration_s, np.float64)
         write_arrays(path, arrays, compressed=compressed)
 
     @classmethod
@@ -280,8 +335,12 @@ class Recording:
 
     @classmethod
     def _from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> Self:
-        texts = ("format", "version", "parameters")
-        expected = {*_ARRAYS, *(f"order_{name}" for name in _ORDER), *texts, "seed"}
+        if str(arrays.get("format")) == _FORMAT_WITHOUT_POLICY:
+            last = arrays.get("time_s", np.zeros(1))[-1:].astype(np.float64).sum()
+            added = {"policy": np.array(""), "duration_s": np.array(last)}
+            arrays = {**added, **arrays, "format": np.array(_FORMAT)}
+        texts = ("format", "version", "parameters", "policy")
+        expected = {*_ARRAYS, *(f"order_{name}" for name in _ORDER), *texts, "seed", "duration_s"}
         with_contacts = {f"contacts_{name}" for name in _CONTACTS}
         has_contacts = not with_contacts.isdisjoint(arrays)
         expected |= with_contacts if has_contacts else set()
@@ -291,7 +350,8 @@ class Recording:
         if any(arrays[name].ndim or arrays[name].dtype.kind != "U" for name in texts):
             raise ParameterError(f"{', '.join(texts)} must each be one string")
         _check("seed", arrays["seed"], (), (np.dtype(np.uint64),))
-        form, version, parameters = (str(arrays[name]) for name in texts)
+        _check("duration_s", arrays["duration_s"], (), PRECISIONS[:1])
+        form, version, parameters, policy = (str(arrays[name]) for name in texts)
         if form != _FORMAT:
             raise ParameterError(f"format = {form!r} is not accepted: {_FORMAT!r}")
         return cls(
@@ -300,6 +360,8 @@ class Recording:
             parameters=FlockParameters.from_toml(parameters),
             seed=int(arrays["seed"]),
             version=version,
+            policy=policy or None,
+            duration_s=float(arrays["duration_s"]),
             contacts=ContactSeries(*(arrays[f"contacts_{name}"] for name in _CONTACTS))
             if has_contacts
             else None,

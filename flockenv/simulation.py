@@ -13,7 +13,7 @@ from flockenv.flock import ContactSeries, OrderSeries
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import LeaderPolicy, control_rate
 from flockenv.policies.model import ModelPolicy, as_policy
-from flockenv.policies.registry import EVERY_SUBSTEP, named_policy
+from flockenv.policies.registry import EVERY_SUBSTEP, named_policy, policy_name
 from flockenv.recording import PHASES, PRECISIONS, Recording
 
 __all__ = ["LeaderPolicy", "columns_of", "sample", "simulate"]
@@ -114,7 +114,13 @@ def simulate(
             f"policy = {policy!r} is not accepted: None, a policy's name or file, or an object "
             "with predict"
         )
-    return Recording(**columns, parameters=parameters, seed=int(seed), version=_core.__version__)
+    return Recording(
+        **columns,
+        parameters=parameters,
+        seed=int(seed),
+        version=_core.__version__,
+        policy=policy_name(policy),
+    )
 
 
 def _started(

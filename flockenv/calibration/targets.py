@@ -36,7 +36,6 @@ NOISE_S: Mapping[int, tuple[float, ...]] = {
 DURATION_S = 480.0
 """Length of a measurement in the experiment."""
 
-_SETTLED = 0.1
 _SAMPLE_HZ = 5.0
 _MIDDLE = 0.56
 """Ψ_o in the middle between 27 boats in order (0.95) and in disorder (0.886/√27 = 0.17)."""
@@ -104,16 +103,15 @@ def run_flock(scene: FlockParameters, seed: int) -> list[float]:
     Frames are those in the analysis window after the first tenth of the run.
     """
     run = simulate(scene, seed, DURATION_S, _SAMPLE_HZ, dtype=np.float32)
-    frames = run.in_analysis_window & (run.time_s > _SETTLED * DURATION_S)
-    states = run.order.states(scene.speed_cm_s)[frames]
+    order = run.analyzed().order
+    states = order.states(scene.speed_cm_s)
     ordered = np.char.startswith(states, "ordered")
-    off_tangent = run.order.off_tangent()[frames]
     values = (
-        run.order.psi_o[frames],
-        abs(run.order.rotation()[frames]),
+        order.psi_o,
+        abs(order.rotation()),
         ordered,
         states == "jamming",
-        np.where(ordered, off_tangent, 0.0),
+        np.where(ordered, order.off_tangent(), 0.0),
         states == f"ordered {scene.target}",
     )
     return [float(np.mean(value)) for value in values]

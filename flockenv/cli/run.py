@@ -130,17 +130,15 @@ def _policy(name: str, scene: FlockParameters, trust: bool) -> LeaderPolicy | st
 
 def summary_of(recording: Recording) -> dict[str, float | int | None]:
     """Return means over the samples in the analysis window after the first tenth of the run."""
-    counted = recording.time_s > 0.1 * recording.time_s[-1]
-    window = recording.in_analysis_window & counted
-    order = recording.order
+    order = recording.analyzed().order
     series = {
         "psi_o": order.psi_o,
         "signed_order": order.signed_order(recording.parameters.target),
         "rotation": order.rotation(),
         "psi_v_cm_s": order.psi_v,
     }
-    means = {name: _mean(values[window]) for name, values in series.items()}
-    return {"samples": len(recording), "samples_in_window": int(window.sum()), **means}
+    means = {name: _mean(values) for name, values in series.items()}
+    return {"samples": len(recording), "samples_in_window": len(order), **means}
 
 
 def _mean(values: NDArray[np.float64]) -> float | None:

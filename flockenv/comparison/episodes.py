@@ -224,15 +224,15 @@ def _simulated(
 
     def run(seed: int) -> list[float]:
         recording = simulate(scene, seed, duration_s, CONTROL_HZ, dtype=np.float32)
-        frames = recording.in_analysis_window & (recording.time_s > 0.1 * duration_s)
-        order = recording.order
-        signed = order.signed_order(scene.target)[frames]
+        order = recording.analyzed().order
+        signed = order.signed_order(scene.target)
         progress(duration_s)
         ordering = [
-            order.ordering_time(recording.time_s, within) for within in ORDERING_TIMES.values()
+            recording.order.ordering_time(recording.time_s, within)
+            for within in ORDERING_TIMES.values()
         ]
         return [
-            order.psi_o[frames].mean(),
+            order.psi_o.mean(),
             signed.mean(),
             (signed > _core.TOWARDS_TARGET).mean(),
             *ordering,

@@ -1,5 +1,6 @@
 """Learned policies in ``.npz`` files: a header that describes them, and plain arrays."""
 
+import hashlib
 import json
 import os
 from collections.abc import Mapping
@@ -13,7 +14,7 @@ from flockenv._io.npz_header import read_headed
 from flockenv.envs.observation import OBSERVATION_VERSION
 from flockenv.errors import ParameterError
 
-__all__ = ["read_policy", "write_policy"]
+__all__ = ["digest", "read_policy", "write_policy"]
 
 FORMAT = "flockenv policy 1"
 """First entry of every policy file."""
@@ -33,6 +34,16 @@ def write_policy(
     """
     whole = {"format": FORMAT, "observation_version": OBSERVATION_VERSION, **header}
     write_arrays(path, {"header": np.array(json.dumps(whole, sort_keys=True)), **arrays})
+
+
+def digest(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> str:
+    """Return the first digits of a policy's SHA-256, whatever its file tells of its making."""
+    plain = {name: value for name, value in header.items() if name != "made"}
+    whole = hashlib.sha256(json.dumps(plain, sort_keys=True).encode())
+    for name in sorted(arrays):
+        array = np.ascontiguousarray(arrays[name])
+        whole.update(f"{name} {array.shape} {array.dtype.str}".encode() + array.tobytes())
+    return f"sha256:{whole.hexdigest()[:12]}"
 
 
 def read_policy(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:

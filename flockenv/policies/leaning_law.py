@@ -11,7 +11,7 @@ from flockenv._io.npz_header import array_of, entry_of
 from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError
 from flockenv.policies.base import RowPolicy
-from flockenv.policies.files import write_policy
+from flockenv.policies.files import digest, write_policy
 from flockenv.policies.laws import DampedLaw
 
 __all__ = ["FEATURES", "GAINS", "LeaningLaw", "features", "leaned"]
@@ -208,6 +208,14 @@ class LeaningLaw(RowPolicy):
         OSError
             If the file cannot be written; what was there before is still there.
         """
+        write_policy(path, *self._contents())
+
+    @property
+    def digest(self) -> str:
+        """The first digits of the SHA-256 of gains and weights."""
+        return digest(*self._contents())
+
+    def _contents(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         header = {
             "kind": "leaning law",
             "observation": self.observation,
@@ -219,7 +227,7 @@ class LeaningLaw(RowPolicy):
             "bias": np.array(self.bias),
             "weights": self._weights,
         }
-        write_policy(path, header, arrays)
+        return header, arrays
 
     @classmethod
     def from_file(cls, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Self:

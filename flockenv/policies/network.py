@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv._io.npz_header import array_of, entry_of
 from flockenv.errors import ParameterError
 from flockenv.policies.base import RowPolicy
-from flockenv.policies.files import write_policy
+from flockenv.policies.files import digest, write_policy
 
 __all__ = ["ACTIVATIONS", "NetworkPolicy"]
 
@@ -96,6 +96,14 @@ class NetworkPolicy(RowPolicy):
         OSError
             If the file cannot be written; what was there before is still there.
         """
+        write_policy(path, *self._contents())
+
+    @property
+    def digest(self) -> str:
+        """The first digits of the SHA-256 of weights and layout."""
+        return digest(*self._contents())
+
+    def _contents(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         header = {
             "observation": self.observation,
             "mirror_to_target": self.mirror_to_target,
@@ -106,7 +114,7 @@ class NetworkPolicy(RowPolicy):
         arrays: dict[str, NDArray[Any]] = {}
         for place, (weight, bias) in enumerate(self._layers):
             arrays |= {f"weight_{place}": weight, f"bias_{place}": bias}
-        write_policy(path, header, arrays)
+        return header, arrays
 
     @classmethod
     def from_file(cls, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Self:

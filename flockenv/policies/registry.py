@@ -11,7 +11,7 @@ from flockenv.policies.constant import RandomRudders, StraightAhead
 from flockenv.policies.laws import LAWS
 from flockenv.policies.pretrained import LEARNED, TUNED_GAINS, learned, load, tuned_law
 
-__all__ = ["EVERY_SUBSTEP", "FILES", "POLICIES", "POOL_POLICIES", "named_policy", "quoted"]
+__all__ = ["EVERY_SUBSTEP", "FILES", "POLICIES", "POOL_POLICIES", "named_policy", "policy_name", "quoted"]
 
 FILES = (".npz", ".zip")
 """How the files of policies end: learned ones of this package, and models of stable-baselines3."""
@@ -32,6 +32,8 @@ POOL_POLICIES: Mapping[str, Callable[[Any], LeaderPolicy]] = {
     LEARNED: learned,
 }
 """Policies by name, each tuned or trained for a pool."""
+
+_LONGEST_NAME = 200
 
 _ALSO_CALLED = {
     EVERY_SUBSTEP: "steering law at every substep",
@@ -76,6 +78,20 @@ def named_policy(name: str, pool: Any, *, trust: bool = False) -> Callable[[], L
     else:
         hint = f"did you mean {near[0]!r}?" if near else f"there are {quoted(names)}"
     raise ParameterError(f"{name!r} is no policy and no .npz or .zip file: {hint}")
+
+
+def policy_name(policy: LeaderPolicy | str | None) -> str:
+    """Return the name under which recordings hold a policy.
+
+    That is "law" for the steering law at every substep, and otherwise what the policy prints as,
+    or its class where that is no name. A policy's ``digest`` follows, if it has one.
+    """
+    if policy is None or isinstance(policy, str):
+        return policy or EVERY_SUBSTEP
+    kind = type(policy)
+    shown = repr(policy) if kind.__repr__ is not object.__repr__ else ""
+    name = shown if 0 < len(shown) <= _LONGEST_NAME and shown.isprintable() else kind.__qualname__
+    return f"{name} {getattr(policy, 'digest', '')}".strip()
 
 
 def quoted(names: list[str]) -> str:

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from flockenv.recording import Recording
 from flockenv.reproduce.reproduction import Results
-from flockenv.runs.spec import RunResult, RunSpec
+from flockenv.runs.spec import RunSpec
 from flockenv.statistics.block_bootstrap import block_places, block_sums, block_sums_resampled
 
 __all__ = [
@@ -34,11 +35,12 @@ def block_length_s(duration_s: float) -> float:
 _PLAIN = ("frames", "psi_o", "psi_o²", "c_v", "c_v²", "rotating", "cw", "jammed", "near_zero")
 
 
-def _blocks(run: RunResult) -> NDArray[np.float64]:
+def _blocks(run: Recording) -> NDArray[np.float64]:
     """Sum what is counted of a run over its blocks: shape (b, q)."""
-    order, used = run.order, run.analyzed
-    psi, phi, c_v = (values[used] for values in (order.psi_o, order.phi_o, order.c_v))
-    states = order.states(run.spec.parameters.speed_cm_s)[used]
+    used = run.analyzed()
+    order = used.order
+    psi, phi, c_v = order.psi_o, order.phi_o, order.c_v
+    states = order.states(run.parameters.speed_cm_s)
     cw = states == "ordered cw"
     columns = [
         np.ones(len(psi)),
@@ -51,7 +53,7 @@ def _blocks(run: RunResult) -> NDArray[np.float64]:
         states == "jamming",
         abs(phi) < _PEAK_HALF_WIDTH,
     ]
-    times, length = run.time_s[used], block_length_s(run.spec.duration_s)
+    times, length = used.time_s, block_length_s(run.duration_s)
     place = block_places(times, length)
     bins = [_counts(place, phi, PHI_EDGES), _counts(place, psi, PSI_EDGES)]
     return np.hstack([block_sums(times, np.stack(columns, axis=1), length), *bins])
@@ -71,10 +73,9 @@ def _counts(
 class _Point:
     """One point of a series: sums over its runs, as they are and resampled, and over each run."""
 
-    def __init__(self, runs: Sequence[RunResult]) -> None:
+    def __init__(self, runs: Sequence[Recording], draws_seed: int) -> None:
         blocks = [_blocks(run) for run in runs]
-        # Points must not share draws, but the same point always has the same.
-        self.sums = block_sums_resampled(blocks, int(runs[0].spec.key[:8], 16))
+        self.sums = block_sums_resampled(blocks, draws_seed)
         self.run_sums = np.stack([each.sum(axis=0) for each in blocks])
 
 
@@ -104,7 +105,7 @@ class OrderStatistics:
         cls, results: Results, x: Sequence[float], points: Sequence[Sequence[RunSpec]]
     ) -> "OrderStatistics":
         """Return the statistics of a series."""
-        found = [results.derive(_Point, tuple(specs)) for specs in points]
+        found = [results.derive(_Point, tuple(specs), specs[0].draws_seed) for specs in points]
         return cls(
             np.asarray(x, float),
             np.stack([point.sums for point in found]),

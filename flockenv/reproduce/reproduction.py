@@ -8,8 +8,9 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from flockenv.errors import FlockError, ParameterError
+from flockenv.recording import Recording
 from flockenv.reproduce.claim import CheckedClaim
-from flockenv.runs.spec import RunResult, RunSpec
+from flockenv.runs.spec import RunSpec
 from flockenv.runs.store import RunStore
 
 Derived = TypeVar("Derived")
@@ -56,8 +57,8 @@ class Settings:
         return 60.0 * (paper_minutes if self.minutes is None else self.minutes)
 
 
-class Results(Mapping[RunSpec, RunResult]):
-    """Finished runs by their specs, read from the store on access.
+class Results(Mapping[RunSpec, Recording]):
+    """Finished runs by their specs, read from the store when asked for.
 
     Parameters
     ----------
@@ -76,7 +77,7 @@ class Results(Mapping[RunSpec, RunResult]):
         self._derived = {} if derived is None else derived
         self._specs = dict.fromkeys(specs)
 
-    def __getitem__(self, spec: RunSpec) -> RunResult:
+    def __getitem__(self, spec: RunSpec) -> Recording:
         if spec not in self._specs:
             raise KeyError(spec)
         result = self._store.load(spec)
@@ -85,12 +86,12 @@ class Results(Mapping[RunSpec, RunResult]):
         return result
 
     def derive(
-        self, make: Callable[[list[RunResult]], Derived], specs: tuple[RunSpec, ...]
+        self, make: Callable[..., Derived], specs: tuple[RunSpec, ...], *arguments: int
     ) -> Derived:
-        """Return ``make([run, …])`` of some runs, made once for all figures that share them."""
-        key = (make, specs)
+        """Return ``make([run, …], …)`` of some runs, made once for all figures that share them."""
+        key = (make, specs, *arguments)
         if key not in self._derived:
-            self._derived[key] = make([self[spec] for spec in specs])
+            self._derived[key] = make([self[spec] for spec in specs], *arguments)
         derived: Derived = self._derived[key]
         return derived
 

@@ -4,25 +4,21 @@ import hashlib
 import json
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flockenv.errors import ParameterError
 from flockenv.flock import OrderSeries
 from flockenv.parameters import FlockParameters
-from flockenv.recording import PHASES, Recording
+from flockenv.recording import Recording
 from flockenv.runs.protocols.hysteresis import LOOPS, simulate_loop, simulate_prepared
 from flockenv.runs.protocols.initial_state import STARTS
 from flockenv.runs.protocols.target_switching import simulate_alternating
 from flockenv.simulation import simulate
 
-__all__ = ["DISCARDED_SHARE", "KEEP", "ORDER_NAMES", "PROTOCOLS", "RunResult", "RunSpec", "execute"]
-
-DISCARDED_SHARE = 0.1
-"""The share of a run, at its start, that no figure uses."""
+__all__ = ["KEEP", "ORDER_NAMES", "PROTOCOLS", "RunSpec", "execute"]
 
 KEEP = ("window", "order", "poses")
 """What can be kept of a run: order parameters of the samples in the analysis window after the first
@@ -121,116 +117,34 @@ class RunSpec:
         return hashlib.sha256(self.to_json().encode()).hexdigest()
 
     @property
+    def draws_seed(self) -> int:
+        """A seed for draws from the run: the same for equal specs, and hardly for other ones."""
+        return int(self.key[:8], 16)
+
+    @property
     def cost(self) -> float:
         """A rough measure of the work it takes, for progress bars and for the order of starts."""
         return float(self.duration_s * self.parameters.n_boats**1.2)
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class RunResult:
-    """What is kept of a run: t samples.
-
-    Attributes
-    ----------
-    spec : RunSpec
-        What was run.
-    time_s : float64 array, shape (t,)
-        Times in s.
-    phase : uint8 array, shape (t,)
-        Place of the phase in the cycle [fw, nop1, bw, nop2].
-    in_analysis_window : bool array, shape (t,)
-        Whether each time lies in the second half of fw or the first half of nop1 (Section 4).
-    orders : dict of float32 arrays, shape (t,)
-        Order parameters of the normal boats, under the names of `OrderSeries`.
-    pose, velocity : float32 array, shape (t, n, 3), or None
-        As in a `Recording`; None unless the spec keeps poses.
-    """
-
-    spec: RunSpec
-    time_s: NDArray[np.float64]
-    phase: NDArray[np.uint8]
-    in_analysis_window: NDArray[np.bool_]
-    orders: dict[str, NDArray[np.float32]]
-    pose: NDArray[np.float32] | None = None
-    velocity: NDArray[np.float32] | None = None
-
-    @property
-    def order(self) -> OrderSeries:
-        """The order parameters as an `OrderSeries`."""
-        return OrderSeries(*(self.orders[name].astype(np.float64) for name in ORDER_NAMES))
-
-    @property
-    def analyzed(self) -> NDArray[np.bool_]:
-        """Bool array (t,): samples in the analysis window after the first tenth of the run."""
-        return self.in_analysis_window & (self.time_s > DISCARDED_SHARE * self.spec.duration_s)
-
-    def arrays(self) -> dict[str, NDArray[Any]]:
-        """Return all arrays by name, order parameters as ``order_<name>``."""
-        arrays: dict[str, NDArray[Any]] = {
-            "time_s": self.time_s,
-            "phase": self.phase,
-            "in_analysis_window": self.in_analysis_window,
-            **{f"order_{name}": self.orders[name] for name in ORDER_NAMES},
-        }
-        if self.pose is not None and self.velocity is not None:
-            arrays |= {"pose": self.pose, "velocity": self.velocity}
-        return arrays
-
-    @classmethod
-    def from_arrays(cls, spec: RunSpec, arrays: Mapping[str, NDArray[Any]]) -> "RunResult":
-        """Return the result that has these `arrays`.
-
-        Raises
-        ------
-        ParameterError
-            For missing, additional or misshapen arrays.
-        """
-        expected = _layout(spec, np.size(arrays.get("time_s", ())))
-        found = {name: (array.shape, array.dtype) for name, array in arrays.items()}
-        if found != expected:
-            names = sorted(n for n in found.keys() | expected if found.get(n) != expected.get(n))
-            raise ParameterError(f"these arrays are missing, unknown or misshapen: {names}")
-        rest = {name: array for name, array in arrays.items() if not name.startswith("order_")}
-        orders = {name: arrays[f"order_{name}"] for name in ORDER_NAMES}
-        return cls(spec=spec, orders=orders, **rest)
-
-
-def _layout(spec: RunSpec, samples: int) -> dict[str, tuple[tuple[int, ...], np.dtype[Any]]]:
-    single = np.dtype(np.float32)
-    layout: dict[str, tuple[tuple[int, ...], np.dtype[Any]]] = {
-        **{f"order_{name}": ((samples,), single) for name in ORDER_NAMES},
-        "time_s": ((samples,), np.dtype(np.float64)),
-        "phase": ((samples,), np.dtype(np.uint8)),
-        "in_analysis_window": ((samples,), np.dtype(np.bool_)),
-    }
-    if spec.keep == "poses":
-        state = (samples, spec.parameters.n_boats, 3)
-        layout |= {"pose": (state, single), "velocity": (state, single)}
-    return layout
-
-
-def execute(spec: RunSpec) -> RunResult:
+def execute(spec: RunSpec) -> Recording:
     """Make a run: a pure function, the same bits in any thread or process of a machine.
+
+    Returns
+    -------
+    Recording
+        What the spec keeps, in the precision of float32.
 
     Raises
     ------
     FlockError
         As for `simulate`.
     """
-    recording = PROTOCOLS[spec.protocol](spec)
-    kept = np.ones(len(recording), np.bool_)
+    run = replace(PROTOCOLS[spec.protocol](spec), duration_s=spec.duration_s)
     if spec.keep == "window":
-        late = recording.time_s > DISCARDED_SHARE * spec.duration_s
-        kept = recording.in_analysis_window & late
-    phase = (recording.phase[kept, None] == PHASES).argmax(axis=1).astype(np.uint8)
-    order = {name: getattr(recording.order, name)[kept] for name in ORDER_NAMES}
-    poses = spec.keep == "poses"
-    return RunResult(
-        spec=spec,
-        time_s=recording.time_s[kept],
-        phase=phase,
-        in_analysis_window=recording.in_analysis_window[kept],
-        orders={name: values.astype(np.float32) for name, values in order.items()},
-        pose=recording.pose.astype(np.float32) if poses else None,
-        velocity=recording.velocity.astype(np.float32) if poses else None,
-    )
+        run = run.analyzed()
+    if spec.keep != "poses":
+        run = run.without_poses()
+    # A store holds no more digits, and a run from it is the same as a run made now.
+    orders = (getattr(run.order, name).astype(np.float32) for name in ORDER_NAMES)
+    return replace(run, order=OrderSeries(*(values.astype(np.float64) for values in orders)))

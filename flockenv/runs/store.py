@@ -2,7 +2,7 @@
 
 import os
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -13,10 +13,13 @@ from numpy.typing import NDArray
 from flockenv import _core
 from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv.errors import FlockError, ParameterError
+from flockenv.flock import OrderSeries
+from flockenv.policies.registry import EVERY_SUBSTEP
+from flockenv.recording import PHASES, Recording
 from flockenv.runs.executors import Engine, local
-from flockenv.runs.spec import RunResult, RunSpec, execute
+from flockenv.runs.spec import ORDER_NAMES, RunSpec, execute
 
-__all__ = ["RESULTS_VERSION", "RunStore", "StorageError", "StoreWarning", "run_missing"]
+__all__ = ["RESULTS_VERSION", "RunStore", "StorageError", "StoreWarning", "columns", "run_missing"]
 
 RESULTS_VERSION = 1
 """Rises whenever the same spec comes to give other numbers: what was kept before is then redone."""
@@ -64,8 +67,8 @@ class RunStore:
         """Return where the run of a spec is or would be kept."""
         return self.folder / spec.key[:2] / f"{spec.key}.npz"
 
-    def save(self, result: RunResult) -> None:
-        """Keep a finished run.
+    def save(self, spec: RunSpec, run: Recording) -> None:
+        """Keep the finished run of a spec.
 
         Raises
         ------
@@ -76,10 +79,10 @@ class RunStore:
             "format": _FORMAT,
             "version": _core.__version__,
             "results_version": str(RESULTS_VERSION),
-            "spec": result.spec.to_json(),
+            "spec": spec.to_json(),
         }
-        arrays = result.arrays() | {name: np.array(text) for name, text in texts.items()}
-        path = self.path(result.spec)
+        arrays = columns(run) | {name: np.array(text) for name, text in texts.items()}
+        path = self.path(spec)
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             write_arrays(path, arrays)
@@ -89,7 +92,7 @@ class RunStore:
                 "are stored, and the same command resumes from them"
             ) from error
 
-    def load(self, spec: RunSpec) -> RunResult | None:
+    def load(self, spec: RunSpec) -> Recording | None:
         """Return the kept run of a spec, or None if there is none that can be used.
 
         Raises
@@ -121,7 +124,7 @@ class RunStore:
         self._notify(f"{reason}; it is done again, and the old file is now {target}")
 
 
-def _read(path: Path, spec: RunSpec) -> RunResult:
+def _read(path: Path, spec: RunSpec) -> Recording:
     arrays = read_arrays(path)
     found = {name: _text(arrays, name) for name in ("format", "version", "results_version", "spec")}
     ours = {
@@ -135,9 +138,64 @@ def _read(path: Path, spec: RunSpec) -> RunResult:
     if found["spec"] != spec.to_json():
         raise ParameterError(f"{path} holds another run than its name says")
     try:
-        return RunResult.from_arrays(spec, arrays)
+        return _recording(spec, arrays)
     except ParameterError as error:
         raise ParameterError(f"{path} is damaged: {error}") from error
+
+
+def columns(run: Recording) -> dict[str, NDArray[Any]]:
+    """Return the arrays that a store keeps of a run, by name.
+
+    They are ``time_s`` (float64), ``phase`` (uint8, its place in the cycle fw, nop1, bw, nop2),
+    ``in_analysis_window``, ``order_<name>`` (float32), and ``pose`` and ``velocity`` (float32)
+    where the run has them.
+    """
+    arrays = {
+        "time_s": run.time_s,
+        "phase": (run.phase[:, None] == PHASES).argmax(axis=1).astype(np.uint8),
+        "in_analysis_window": run.in_analysis_window,
+        **{f"order_{name}": getattr(run.order, name).astype(np.float32) for name in ORDER_NAMES},
+    }
+    if run.has_poses:
+        states = {"pose": run.pose, "velocity": run.velocity}
+        arrays |= {name: array.astype(np.float32) for name, array in states.items()}
+    return arrays
+
+
+def _recording(spec: RunSpec, arrays: Mapping[str, NDArray[Any]]) -> Recording:
+    """Return the run of a spec that has these `columns`, or raise a `ParameterError`."""
+    samples = np.size(arrays.get("time_s", ()))
+    none = np.zeros((samples, 0, 3), np.float32)
+    single = np.dtype(np.float32)
+    layout: dict[str, tuple[tuple[int, ...], np.dtype[Any]]] = {
+        "time_s": ((samples,), np.dtype(np.float64)),
+        "phase": ((samples,), np.dtype(np.uint8)),
+        "in_analysis_window": ((samples,), np.dtype(np.bool_)),
+        **{f"order_{name}": ((samples,), single) for name in ORDER_NAMES},
+    }
+    if spec.keep == "poses":
+        state = (samples, spec.parameters.n_boats, 3)
+        layout |= {"pose": (state, single), "velocity": (state, single)}
+    found = {name: (array.shape, array.dtype) for name, array in arrays.items()}
+    if found != layout:
+        names = sorted(n for n in found.keys() | layout if found.get(n) != layout.get(n))
+        raise ParameterError(f"these arrays are missing, unknown or misshapen: {names}")
+    if (arrays["phase"] >= len(PHASES)).any():
+        raise ParameterError(f"phase is not accepted: places from 0 to {len(PHASES) - 1}")
+    orders = (arrays[f"order_{name}"].astype(np.float64) for name in ORDER_NAMES)
+    return Recording(
+        time_s=arrays["time_s"],
+        phase=PHASES[arrays["phase"]],
+        in_analysis_window=arrays["in_analysis_window"],
+        pose=arrays.get("pose", none),
+        velocity=arrays.get("velocity", none),
+        order=OrderSeries(*orders),
+        parameters=spec.parameters,
+        seed=spec.seed,
+        version=_core.__version__,
+        policy=EVERY_SUBSTEP,
+        duration_s=spec.duration_s,
+    )
 
 
 def _text(arrays: dict[str, NDArray[Any]], name: str) -> str:
@@ -188,15 +246,15 @@ def run_missing(
     failures = {}
     with closing(engine(_attempt, missing, workers)) as outcomes:
         for place, outcome in outcomes:
-            if isinstance(outcome, RunResult):
-                store.save(outcome)
+            if isinstance(outcome, Recording):
+                store.save(missing[place], outcome)
             else:
                 failures[missing[place]] = outcome
             progress(missing[place])
     return failures
 
 
-def _attempt(spec: RunSpec) -> RunResult | FlockError:
+def _attempt(spec: RunSpec) -> Recording | FlockError:
     # One run that fails must not cost the others.
     try:
         return execute(spec)

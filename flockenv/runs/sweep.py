@@ -10,8 +10,9 @@ import numpy as np
 from flockenv._io.atomic_write import atomic_write
 from flockenv._io.extras import require
 from flockenv.errors import FlockError, ParameterError
+from flockenv.recording import Recording
 from flockenv.runs.executors import Engine, local
-from flockenv.runs.spec import ORDER_NAMES, RunResult, RunSpec
+from flockenv.runs.spec import ORDER_NAMES, RunSpec
 from flockenv.runs.store import RunStore, StorageError, run_missing
 from flockenv.runs.sweep_spec import SweepSpec
 
@@ -23,8 +24,8 @@ __all__ = ["load_sweep", "run_sweep", "summary", "to_xarray"]
 _AVERAGED = (*(name for name in ORDER_NAMES if name[:3] != "phi"), "rotation", "signed_order")
 
 
-def summary(run: RunResult) -> dict[str, float]:
-    """Return means and standard deviations over the analyzed frames of a run.
+def summary(run: Recording) -> dict[str, float]:
+    """Return means and standard deviations over the analysed frames of a run.
 
     Returns
     -------
@@ -33,18 +34,17 @@ def summary(run: RunResult) -> dict[str, float]:
         ``<name>_std`` of Ψ_o, C_o, Ψ_v (cm/s), C_v (cm²/s²) and the rotation Ψ_o·sin φ_o, and of
         the signed order towards the target. NaN where undefined.
     """
-    used = run.analyzed
-    order = run.order
+    order = run.analyzed().order
     series = {name: getattr(order, name) for name in _AVERAGED if name in ORDER_NAMES}
     series |= {
         "rotation": order.rotation(),
-        "signed_order": order.signed_order(run.spec.parameters.target),
+        "signed_order": order.signed_order(run.parameters.target),
     }
-    row: dict[str, float] = {"frames": int(used.sum())}
+    row: dict[str, float] = {"frames": len(order)}
     for name in _AVERAGED:
-        kept = series[name][used]
-        row[f"{name}_mean"] = float(kept.mean()) if len(kept) else np.nan
-        row[f"{name}_std"] = float(kept.std()) if len(kept) else np.nan
+        values = series[name]
+        row[f"{name}_mean"] = float(values.mean()) if len(values) else np.nan
+        row[f"{name}_std"] = float(values.std()) if len(values) else np.nan
     return row
 
 

@@ -276,7 +276,7 @@ def with_arrays(**changes) -> bytes:
     {"extra": np.zeros(3)},
     {"seed": np.array(-1)},
     {"seed": np.array([1, 2], np.uint64)},
-    {"format": np.array("flockenv recording 2")},
+    {"format": np.array("flockenv recording 3")},
     {"version": np.zeros(3)},
     {"parameters": np.array("n_boats = 'many'")},
     {"parameters": np.array("n_boat = 5")},

@@ -18,7 +18,7 @@ import pytest
 import flockenv
 from flockenv import Flock, FlockParameters, Recording
 from flockenv.runs.spec import RunSpec
-from flockenv.runs.store import RunStore
+from flockenv.runs.store import RunStore, columns
 
 FIXTURES = Path(__file__).parents[1] / "fixtures"
 VERSIONS = sorted(path.name for path in FIXTURES.iterdir())
@@ -99,7 +99,7 @@ def test_kept_runs(folder, facts, keep, tmp_path):
     assert spec.key == known["key"]
     shutil.copytree(folder / "runs", tmp_path / "runs")
     result = RunStore(tmp_path / "runs", pytest.fail).load(spec)
-    assert {name: sha(array) for name, array in result.arrays().items()} == known["arrays"]
+    assert {name: sha(array) for name, array in columns(result).items()} == known["arrays"]
 
 
 @pytest.mark.parametrize("name", ["network", "leaning"])

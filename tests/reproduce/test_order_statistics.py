@@ -9,40 +9,50 @@ import flockenv
 from flockenv.reproduce.order_statistics import PHI_EDGES, PSI_EDGES, OrderStatistics
 from flockenv.reproduce.reproduction import Results
 from flockenv.reproduce.simulation.claims import critical_noise
-from flockenv.runs.spec import ORDER_NAMES, RunResult, RunSpec
+from flockenv.runs.spec import ORDER_NAMES, RunSpec
 from flockenv.runs.store import RunStore
 
 SCENE = flockenv.FlockParameters.preset("simulation")
 
 
-def made(seed: int, order: Mapping[str, object], samples: int = 1000) -> RunResult:
+def made(seed: int, order: Mapping[str, object], samples: int = 1000) -> flockenv.Recording:
     """A run of which every second sample is in the analysis window."""
-    spec = RunSpec(parameters=SCENE, seed=seed, duration_s=samples / 10)
     time_s = np.arange(samples) / 10
     # What must not count: everything outside the window and the first tenth.
     counts = (np.arange(samples) % 2 == 0) & (time_s > samples / 100)
     orders = {
-        name: np.where(counts, order.get(name, 0.0), 0.777).astype(np.float32)  # type: ignore[arg-type]
+        name: np.where(counts, order.get(name, 0.0), 0.777)  # type: ignore[arg-type]
         for name in ORDER_NAMES
     }
-    phase = np.zeros(samples, np.uint8)
-    window = np.arange(samples) % 2 == 0
-    return RunResult(
-        spec=spec, time_s=time_s, phase=phase, in_analysis_window=window, orders=orders
+    return flockenv.Recording(
+        time_s=time_s,
+        phase=np.full(samples, "fw", "<U4"),
+        in_analysis_window=np.arange(samples) % 2 == 0,
+        pose=np.zeros((samples, 0, 3)),
+        velocity=np.zeros((samples, 0, 3)),
+        order=flockenv.OrderSeries(**orders),
+        parameters=SCENE,
+        seed=seed,
+        version=flockenv.__version__,
+        duration_s=samples / 10,
     )
 
 
-class Made(Results):
-    def __init__(self, runs: tuple[RunResult, ...]) -> None:
-        super().__init__(RunStore("nowhere"), [run.spec for run in runs])
-        self._runs = {run.spec: run for run in runs}
+def spec_of(run: flockenv.Recording) -> RunSpec:
+    return RunSpec(parameters=SCENE, seed=run.seed, duration_s=run.duration_s)
 
-    def __getitem__(self, spec: RunSpec) -> RunResult:
+
+class Made(Results):
+    def __init__(self, runs: tuple[flockenv.Recording, ...]) -> None:
+        self._runs = {spec_of(run): run for run in runs}
+        super().__init__(RunStore("nowhere"), self._runs)
+
+    def __getitem__(self, spec: RunSpec) -> flockenv.Recording:
         return self._runs[spec]
 
 
-def statistics(*runs: RunResult) -> OrderStatistics:
-    return OrderStatistics.of(Made(runs), [0.0], [[run.spec for run in runs]])
+def statistics(*runs: flockenv.Recording) -> OrderStatistics:
+    return OrderStatistics.of(Made(runs), [0.0], [[spec_of(run) for run in runs]])
 
 
 def test_means_shares_and_directions() -> None:

@@ -36,7 +36,7 @@ from flockenv.reproduce.transition.order import (
 )
 from flockenv.runs.protocols.hysteresis import LOOPS
 from flockenv.runs.protocols.initial_state import STARTS
-from flockenv.runs.spec import ORDER_NAMES, RunResult, RunSpec
+from flockenv.runs.spec import ORDER_NAMES
 from flockenv.runs.store import RunStore, run_missing
 
 
@@ -49,27 +49,31 @@ def test_binder() -> None:
     assert np.isnan(binder(np.zeros(1), np.zeros(1))).all()
 
 
-def made(outward: NDArray[np.float64], m: NDArray[np.float64], protocol: str) -> RunResult:
+def made(outward: NDArray[np.float64], m: NDArray[np.float64]) -> flockenv.Recording:
     """A run of 1000 samples whose Ψ_o cos φ_o and m are these."""
     scene = flockenv.FlockParameters.preset("simulation")
-    spec = RunSpec(parameters=scene, seed=0, duration_s=100.0, protocol=protocol, keep="order")
     samples = 1000
-    orders = {name: np.zeros(samples, np.float32) for name in ORDER_NAMES}
-    orders["psi_o"] = np.hypot(outward, m).astype(np.float32)
-    orders["phi_o"] = np.arctan2(m, outward).astype(np.float32)
-    orders["c_v"] = np.full(samples, 100.0, np.float32)
-    return RunResult(
-        spec=spec,
+    orders = {name: np.zeros(samples) for name in ORDER_NAMES}
+    orders["psi_o"] = np.hypot(outward, m)
+    orders["phi_o"] = np.arctan2(m, outward)
+    orders["c_v"] = np.full(samples, 100.0)
+    return flockenv.Recording(
         time_s=np.arange(samples) / 10,
-        phase=np.zeros(samples, np.uint8),
+        phase=np.full(samples, "fw", "<U4"),
         in_analysis_window=np.ones(samples, np.bool_),
-        orders=orders,
+        pose=np.zeros((samples, 0, 3)),
+        velocity=np.zeros((samples, 0, 3)),
+        order=flockenv.OrderSeries(**orders),
+        parameters=scene,
+        seed=0,
+        version=flockenv.__version__,
+        duration_s=100.0,
     )
 
 
 def test_an_open_loop() -> None:
     there = np.arange(1000) < 500
-    run = made(np.where(there, 0.1, 0.7), np.where(there, -0.9, 0.0), "rotating-noise-loop")
+    run = made(np.where(there, 0.1, 0.7), np.where(there, -0.9, 0.0))
     up, down = hysteresis(run)
     assert up == pytest.approx(0.1)
     assert down == pytest.approx(0.7)
@@ -78,7 +82,7 @@ def test_an_open_loop() -> None:
 
 def test_runs_at_one_density_count_in_their_second_half() -> None:
     late = np.arange(1000) > 500
-    jam = Still([made(np.where(late, 0.8, 0.0), np.where(late, 0.1, 1.0), "jammed")] * 2)
+    jam = Still([made(np.where(late, 0.8, 0.0), np.where(late, 0.1, 1.0))] * 2, 7)
     assert jam.outward == pytest.approx([0.8, 0.8])
     # |m| is the same in all that counts, as is C_v.
     assert jam.binder_m == pytest.approx(2 / 3, abs=1e-6)
@@ -190,9 +194,9 @@ def test_a_loop_that_never_jams_is_no_closed_loop(back: float, verdict: str, not
         sizes=(400,), densities={growth.way: (20,)}, runs=2, still_minutes=1.0, loop_minutes=1.0
     )
     steady = np.full(1000, 0.1)
-    still = Still([made(steady, steady, "jammed")] * 2)
+    still = Still([made(steady, steady)] * 2, 7)
     there = np.arange(1000) < 450
-    loop = Loops([made(np.where(there, 0.1, back), steady, "rotating-length-loop")] * 2)
+    loop = Loops([made(np.where(there, 0.1, back), steady)] * 2)
     measured = Measured(
         design,
         {(growth, 20, start): still for start in STARTS},

@@ -7,16 +7,15 @@ import pandas as pd
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from flockenv.recording import Recording
 from flockenv.reproduce.experiment.state_figures import (
     LEVELS_S,
     drawn,
     pose_points,
     pose_runs,
-    poses_of,
 )
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
 from flockenv.reproduce.style import COLORS, column_figure, paper_style
-from flockenv.runs.spec import RunResult
 from flockenv.statistics import structure
 from flockenv.statistics.block_bootstrap import interval
 from flockenv.statistics.intervals import CONFIDENCE
@@ -31,7 +30,7 @@ def _motion(settings: Settings, results: Results) -> Outcome:
     lagged, pairs, walls = [], [], []
     for bw_s, specs in pose_points(settings).items():
         runs = [results[spec] for spec in specs]
-        lagged.append(_lagged_rows(bw_s, runs))
+        lagged.append(_lagged_rows(bw_s, specs[0].sample_hz, runs))
         pairs.append(_pair_rows(bw_s, runs))
         walls.append(_wall_row(bw_s, runs))
     moved, near, wall = pd.concat(lagged), pd.concat(pairs), pd.DataFrame(walls)
@@ -84,11 +83,11 @@ def _motion(settings: Settings, results: Results) -> Outcome:
     return Outcome(tables, {"motion": picture}, [], notes)
 
 
-def _lagged_rows(bw_s: float, runs: Sequence[RunResult]) -> pd.DataFrame:
-    lags = [lag for lag in _LAGS_S if lag < runs[0].spec.duration_s]
-    samples = [round(lag * runs[0].spec.sample_hz) for lag in lags]
-    squares = [structure.mean_square_displacement(poses_of(run), samples) for run in runs]
-    cosines = [structure.heading_correlation(poses_of(run), samples) for run in runs]
+def _lagged_rows(bw_s: float, sample_hz: float, runs: Sequence[Recording]) -> pd.DataFrame:
+    lags = [lag for lag in _LAGS_S if lag < runs[0].duration_s]
+    samples = [round(lag * sample_hz) for lag in lags]
+    squares = [structure.mean_square_displacement(run.pose, samples) for run in runs]
+    cosines = [structure.heading_correlation(run.pose, samples) for run in runs]
     columns = {"bw_s": bw_s, "lag_s": lags}
     return pd.DataFrame(
         {**columns, **_over_runs("msd_cm2", squares), **_over_runs("heading_correlation", cosines)}
@@ -106,19 +105,14 @@ def _band(axes: Axes, table: pd.DataFrame, x: str, y: str, color: str, label: st
     axes.plot(table[x], table[y], color=color, label=label)
 
 
-def _pair_rows(bw_s: float, runs: Sequence[RunResult]) -> pd.DataFrame:
-    found = [
-        structure.pair_distribution(poses_of(run)[run.analyzed][::3], _EDGES_CM) for run in runs
-    ]
+def _pair_rows(bw_s: float, runs: Sequence[Recording]) -> pd.DataFrame:
+    found = [structure.pair_distribution(run.analyzed().pose[::3], _EDGES_CM) for run in runs]
     distances = (_EDGES_CM[:-1] + _EDGES_CM[1:]) / 2
     return pd.DataFrame({"bw_s": bw_s, "distance_cm": distances, **_over_runs("g", found)})
 
 
-def _wall_row(bw_s: float, runs: Sequence[RunResult]) -> dict[str, float]:
-    means = [
-        structure.on_outer_wall(run.spec.parameters, poses_of(run)[run.analyzed]).mean()
-        for run in runs
-    ]
+def _wall_row(bw_s: float, runs: Sequence[Recording]) -> dict[str, float]:
+    means = [structure.on_outer_wall(run.parameters, run.analyzed().pose).mean() for run in runs]
     mean, low, high = interval(drawn(np.array(means)))
     return {
         "bw_s": bw_s,

@@ -6,8 +6,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from flockenv.recording import Recording
 from flockenv.reproduce.reproduction import Results
-from flockenv.runs.spec import RunResult, RunSpec
+from flockenv.runs.spec import RunSpec
 from flockenv.statistics.block_bootstrap import RESAMPLES
 from flockenv.statistics.intervals import Line, fit_line
 
@@ -37,13 +38,13 @@ def run_rows(
     return pd.DataFrame(rows)
 
 
-def _row(run: RunResult) -> dict[str, float]:
-    order, used = run.order, run.analyzed
+def _row(run: Recording) -> dict[str, float]:
+    order, used = run.order, run.analyzed().order
     wide = order.ordering_time(run.time_s, WIDE)
     after = order.psi_o[run.time_s >= wide]
     return {
-        "psi_o": float(order.psi_o[used].mean()),
-        "psi_o_std": float(order.psi_o[used].std()),
+        "psi_o": float(used.psi_o.mean()),
+        "psi_o_std": float(used.psi_o.std()),
         "ordering_s": order.ordering_time(run.time_s),
         "ordering_wide_s": wide,
         "psi_o_after": float(after.mean()) if len(after) else float("nan"),

@@ -8,18 +8,19 @@ from numpy.typing import NDArray
 
 from flockenv._core import Flock
 from flockenv.flock import STATES
+from flockenv.recording import Recording
 from flockenv.rendering.frames import frame
 from flockenv.reproduce.claim import CheckedClaim, Claim
 from flockenv.reproduce.experiment.design import scene
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
 from flockenv.reproduce.style import COLORS, column_figure, paper_style
-from flockenv.runs.spec import RunResult, RunSpec
+from flockenv.runs.spec import RunSpec
 from flockenv.statistics import structure
 from flockenv.statistics.block_bootstrap import RESAMPLES, block_sums_resampled, interval
 from flockenv.statistics.dwell_times import DwellTimes, dwell_times
 from flockenv.statistics.intervals import CONFIDENCE
 
-__all__ = ["LEVELS_S", "REPRODUCTIONS", "drawn", "pose_points", "pose_runs", "poses_of"]
+__all__ = ["LEVELS_S", "REPRODUCTIONS", "drawn", "pose_points", "pose_runs"]
 
 LEVELS_S = (0.4, 0.8, 1.2, 1.6, 2.0, 2.4, 2.8)
 _MINUTES = 16.0
@@ -52,23 +53,16 @@ def pose_runs(settings: Settings) -> list[RunSpec]:
     return [spec for specs in pose_points(settings).values() for spec in specs]
 
 
-def poses_of(run: RunResult) -> NDArray[np.float32]:
-    """Return the poses that these runs keep."""
-    if run.pose is None:
-        raise AssertionError("these runs keep their poses")
-    return run.pose
-
-
-def _frame_states(run: RunResult) -> tuple[NDArray[np.intp], NDArray[np.str_], NDArray[np.float64]]:
+def _frame_states(run: Recording) -> tuple[NDArray[np.intp], NDArray[np.str_], NDArray[np.float64]]:
     """Return the samples in the analysis window, their states, and their largest clusters."""
     samples = np.flatnonzero(run.in_analysis_window)
     clusters = np.zeros(len(run.time_s))
-    clusters[samples] = structure.largest_cluster(run.spec.parameters, poses_of(run)[samples])
-    states = run.order.states(run.spec.parameters.speed_cm_s, clusters)
+    clusters[samples] = structure.largest_cluster(run.parameters, run.pose[samples])
+    states = run.order.states(run.parameters.speed_cm_s, clusters)
     return samples, states[samples], clusters[samples]
 
 
-def _cycle_states(run: RunResult) -> NDArray[np.str_]:
+def _cycle_states(run: Recording) -> NDArray[np.str_]:
     """Return the most frequent state of each analysis window."""
     samples, states, _ = _frame_states(run)
     window = np.cumsum(np.diff(run.time_s[samples], prepend=-10.0) > 1.0) - 1
@@ -270,11 +264,11 @@ def _figure4(settings: Settings, results: Results) -> Outcome:
             else:
                 run, sample, frames = best
                 axes.imshow(_image(run, sample))
-                order = f"$\\Psi_o$ = {run.orders['psi_o'][sample]:.2f}"
+                order = f"$\\Psi_o$ = {run.order.psi_o[sample]:.2f}"
                 axes.text(
                     0.5,
                     0.5,
-                    f"bw = {run.spec.parameters.bw_s} s\n{order}",
+                    f"bw = {run.parameters.bw_s} s\n{order}",
                     transform=axes.transAxes,
                     ha="center",
                     va="center",
@@ -293,7 +287,7 @@ def _figure4(settings: Settings, results: Results) -> Outcome:
 
 
 _PIXELS = 600
-Snapshot = tuple[RunResult, int, int]
+Snapshot = tuple[Recording, int, int]
 
 
 def _snapshots(settings: Settings, results: Results) -> dict[tuple[str, ...], Snapshot]:
@@ -317,10 +311,10 @@ def _snapshots(settings: Settings, results: Results) -> dict[tuple[str, ...], Sn
     }
 
 
-def _image(run: RunResult, sample: int) -> NDArray[np.uint8]:
-    flock = Flock(run.spec.parameters, run.spec.seed)
-    pose = poses_of(run)[sample].astype(np.float64)
-    velocity = np.asarray(run.velocity, np.float64)[sample]
+def _image(run: Recording, sample: int) -> NDArray[np.uint8]:
+    flock = Flock(run.parameters, run.seed)
+    pose = run.pose[sample].astype(np.float64)
+    velocity = run.velocity[sample].astype(np.float64)
     # Single precision leaves overlaps of a rounding.
     flock.set_state(pose, velocity, float(run.time_s[sample]), allow_overlap=True)
     picture = frame(flock, _PIXELS, _PIXELS)
@@ -332,13 +326,13 @@ def _image(run: RunResult, sample: int) -> NDArray[np.uint8]:
     return picture
 
 
-def _snapshot_row(title: str, run: RunResult, sample: int, frames: int) -> dict[str, object]:
+def _snapshot_row(title: str, run: Recording, sample: int, frames: int) -> dict[str, object]:
     order = run.order[sample]
     return {
         "state": title,
         "frames": frames,
-        "bw_s": run.spec.parameters.bw_s,
-        "seed": run.spec.seed,
+        "bw_s": run.parameters.bw_s,
+        "seed": run.seed,
         "time_s": run.time_s[sample],
         "psi_o": order.psi_o,
         "phi_o": order.phi_o,

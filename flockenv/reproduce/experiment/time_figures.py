@@ -6,12 +6,13 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from flockenv.recording import Recording
 from flockenv.reproduce.claim import CheckedClaim, Claim
 from flockenv.reproduce.experiment.design import GUIDED_S, scene
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
 from flockenv.reproduce.style import COLORS, column_figure, paper_style
 from flockenv.runs.protocols.target_switching import PERIOD_S, TARGETS, target_at
-from flockenv.runs.spec import RunResult, RunSpec
+from flockenv.runs.spec import RunSpec
 from flockenv.statistics.block_bootstrap import RESAMPLES, interval
 from flockenv.statistics.intervals import CONFIDENCE
 
@@ -38,23 +39,27 @@ def _specs(settings: Settings, bw_s: float, leaders: int = 0) -> list[RunSpec]:
     ]
 
 
-def _cycles(run: RunResult) -> pd.DataFrame:
+def _cycles(run: Recording) -> pd.DataFrame:
     """Mean order parameters of each analysis window; angles are those of mean vectors."""
-    used = run.in_analysis_window
-    window = np.cumsum(np.diff(run.time_s[used], prepend=-1.0) > 1.0)
-    order = run.order
-    columns = {"time_s": run.time_s, "psi_o": order.psi_o, "psi_v": order.psi_v, "c_v": order.c_v}
+    used = run.analyzed(after=0.0)
+    window = np.cumsum(np.diff(used.time_s, prepend=-1.0) > 1.0)
+    order = used.order
+    columns = {"time_s": used.time_s, "psi_o": order.psi_o, "psi_v": order.psi_v, "c_v": order.c_v}
     columns |= {"x": order.outward(), "y": order.rotation()}
-    frame = pd.DataFrame({name: values[used] for name, values in columns.items()})
-    means = frame.groupby(window).mean()
+    means = pd.DataFrame(columns).groupby(window).mean()
     means["phi_o"] = np.arctan2(means["y"], means["x"])
     return means.drop(columns=["x"]).rename(columns={"y": "rotation"})
 
 
-def _typical(runs: Sequence[RunResult]) -> RunResult:
+def _typical(runs: Sequence[Recording]) -> Recording:
     """Return the run whose mean Ψ_o is the median: what is shown is not picked by eye."""
-    means = [float(run.orders["psi_o"][run.analyzed].mean()) for run in runs]
+    means = [_mean_psi_o(run) for run in runs]
     return runs[int(np.argsort(means, kind="stable")[len(means) // 2])]
+
+
+def _mean_psi_o(run: Recording) -> np.float32:
+    # A mean of what is stored, in the precision that it is stored in.
+    return np.float32(run.analyzed().order.psi_o.astype(np.float32).mean())
 
 
 def _over_runs(values: Sequence[float]) -> tuple[float, float, float]:
@@ -66,7 +71,7 @@ def _over_runs(values: Sequence[float]) -> tuple[float, float, float]:
     return interval(np.append(known.mean(), known[drawn].mean(axis=1)))
 
 
-def _picture(name: str, shown: RunResult, cycles: pd.DataFrame, led: bool) -> Outcome:
+def _picture(name: str, shown: Recording, cycles: pd.DataFrame, led: bool) -> Outcome:
     minutes = cycles["time_s"] / 60
     with paper_style():
         picture = column_figure(9.0)
@@ -79,13 +84,13 @@ def _picture(name: str, shown: RunResult, cycles: pd.DataFrame, led: bool) -> Ou
         panels[2].plot(minutes, cycles["psi_v"], color=COLORS[1])
         panels[2].set(ylabel=r"$\Psi_v$ (cm/s)", ylim=(0, _SPEED_CM_S))
         if led:
-            for start in np.arange(0.0, shown.spec.duration_s - 1e-6, PERIOD_S):
+            for start in np.arange(0.0, shown.duration_s - 1e-6, PERIOD_S):
                 panels[1].axvline(start / 60, color="0.6", lw=0.6)
-                end = min(start + PERIOD_S, shown.spec.duration_s)
+                end = min(start + PERIOD_S, shown.duration_s)
                 word = target_at(start).upper()
                 panels[1].text((start + end) / 120, 2.5, word, ha="center", fontsize=6)
         panels[2].set_xlabel("time (min)")
-        picture.suptitle(f"bw = {shown.spec.parameters.bw_s} s, seed {shown.spec.seed}", fontsize=7)
+        picture.suptitle(f"bw = {shown.parameters.bw_s} s, seed {shown.seed}", fontsize=7)
     notes = [
         f"The figure shows the run with the median mean Ψ_o of {_SEEDS} runs, as {_CYCLE}.",
         f"Intervals ({CONFIDENCE:.0%}) are of a bootstrap over runs.",
@@ -192,10 +197,7 @@ def _figure7(settings: Settings, results: Results) -> Outcome:
         ends = (cycles["rotation"] * target)[late].groupby(stretch).mean()
         reached.append(float((ends > 0).mean()))
     free = [results[spec] for spec in _specs(settings, GUIDED_S)]
-    gain = [
-        float(a.orders["psi_o"][a.analyzed].mean() - b.orders["psi_o"][b.analyzed].mean())
-        for a, b in zip(runs, free, strict=True)
-    ]
+    gain = [float(_mean_psi_o(a) - _mean_psi_o(b)) for a, b in zip(runs, free, strict=True)]
     stretches = f"the 4-minute stretches ({'-'.join(TARGETS * 2).upper()})"
     outcome.claims.extend(
         [

@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+from flockenv.recording import Recording
 from flockenv.reproduce.order_statistics import block_length_s
 from flockenv.reproduce.transition.design import Growth, TransitionDesign
 from flockenv.runs.protocols.hysteresis import loop_position
 from flockenv.runs.protocols.initial_state import STARTS
-from flockenv.runs.spec import RunResult
 from flockenv.statistics.block_bootstrap import block_sums, block_sums_resampled
 from flockenv.statistics.intervals import CONFIDENCE
 
@@ -60,18 +60,18 @@ class Still:
         Histograms over `M_EDGES` and `C_V_EDGES`.
     """
 
-    def __init__(self, runs: Sequence[RunResult]) -> None:
+    def __init__(self, runs: Sequence[Recording], draws_seed: int) -> None:
         outward, blocks, ms, c_vs = [], [], [], []
         for run in runs:
-            used = run.in_analysis_window & (run.time_s > run.spec.duration_s / 2)
-            m, c_v = run.order.rotation()[used], run.order.c_v[used]
-            outward.append(run.order.outward()[used].mean())
+            used = run.analyzed(after=0.5)
+            m, c_v = used.order.rotation(), used.order.c_v
+            outward.append(used.order.outward().mean())
             powers = np.stack([np.ones(len(m)), m**2, m**4, c_v**2, c_v**4], axis=1)
-            length = block_length_s(run.spec.duration_s)
-            blocks.append(block_sums(run.time_s[used], powers, length))
+            length = block_length_s(run.duration_s)
+            blocks.append(block_sums(used.time_s, powers, length))
             ms.append(m)
             c_vs.append(c_v)
-        sums = block_sums_resampled(blocks, int(runs[0].spec.key[:8], 16))
+        sums = block_sums_resampled(blocks, draws_seed)
         means = (sums[:, 1:] / sums[:, :1]).T
         self.outward = np.array(outward)
         self.binder_m, self.binder_c_v = binder(means[0], means[1]), binder(means[2], means[3])
@@ -83,7 +83,7 @@ def _density(values: NDArray[np.float64], edges: NDArray[np.float64]) -> NDArray
     return np.asarray(np.histogram(values, edges)[0] / len(values) / np.diff(edges))
 
 
-def hysteresis(run: RunResult) -> NDArray[np.float64]:
+def hysteresis(run: Recording) -> NDArray[np.float64]:
     """Return mean Ψ_o cos φ_o on the way there and on the way back, by position in the loop.
 
     Returns
@@ -91,15 +91,15 @@ def hysteresis(run: RunResult) -> NDArray[np.float64]:
     float64 array, shape (2, 12)
         Of analyzed frames, from the loop's first scene to its last; NaN in bins without any.
     """
-    position = loop_position(run.time_s, run.spec.duration_s)
+    used = run.analyzed(after=0.0)
+    position = loop_position(used.time_s, used.duration_s)
     place = np.minimum((position * _LOOP_BINS).astype(int), _LOOP_BINS - 1)
-    there = run.time_s < run.spec.duration_s / 2
-    outward = run.order.outward()
+    there = used.time_s < used.duration_s / 2
+    outward = used.order.outward()
     ways = []
     for way in (there, ~there):
-        used = run.in_analysis_window & way
-        count = np.bincount(place[used], minlength=_LOOP_BINS)
-        total = np.bincount(place[used], outward[used], minlength=_LOOP_BINS)
+        count = np.bincount(place[way], minlength=_LOOP_BINS)
+        total = np.bincount(place[way], outward[way], minlength=_LOOP_BINS)
         with np.errstate(invalid="ignore"):
             ways.append(total / count)
     return np.array(ways)
@@ -120,7 +120,7 @@ class Loops:
         Mean Ψ_o cos φ_o around the loop's last scene, on both ways.
     """
 
-    def __init__(self, runs: Sequence[RunResult]) -> None:
+    def __init__(self, runs: Sequence[Recording]) -> None:
         branches = np.array([hysteresis(run) for run in runs])
         self.there, self.back = _known_mean(branches, 0)
         self.bands = np.stack([branches.min(axis=0), branches.max(axis=0)], axis=1)

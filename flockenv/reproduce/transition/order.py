@@ -10,6 +10,7 @@ where few of the frames rotate, which means coexistence only where runs forget t
 """
 
 from collections.abc import Sequence
+from itertools import product
 
 import pandas as pd
 
@@ -124,14 +125,12 @@ def _measured(claim: CheckedClaim) -> str:
 
 
 def _analyse(design: TransitionDesign, settings: Settings, results: Results) -> Outcome:
-    still = {
-        (growth, density, start): results.derive(
-            Still, design.still(settings, growth, density, start)
-        )
-        for growth in design.growths()
-        for density in design.densities[growth.way]
-        for start in STARTS
-    }
+    still = {}
+    for growth in design.growths():
+        for density, start in product(design.densities[growth.way], STARTS):
+            specs = design.still(settings, growth, density, start)
+            runs = results.derive(Still, specs, specs[0].draws_seed)
+            still[growth, density, start] = runs
     loops = {
         (growth, kind): results.derive(Loops, design.loop(settings, growth, kind))
         for growth in design.growths()

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from flockenv import _core
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
+from flockenv.policies.registry import EVERY_SUBSTEP
 from flockenv.recording import Recording
 from flockenv.runs.protocols.initial_state import prepared_flock
 from flockenv.simulation import columns_of, sample
@@ -172,7 +173,11 @@ def _recorded(
         flock.advance((place + 1) / sample_hz - flock.time_s)
         samples.append(sample(flock, np.dtype(np.float32)))
     return Recording(
-        **columns_of(samples), parameters=parameters, seed=seed, version=_core.__version__
+        **columns_of(samples),
+        parameters=parameters,
+        seed=seed,
+        version=_core.__version__,
+        policy=EVERY_SUBSTEP,
     )
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from flockenv import _core
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
+from flockenv.policies.registry import EVERY_SUBSTEP
 from flockenv.recording import Recording
 from flockenv.simulation import columns_of, sample
 
@@ -58,5 +59,9 @@ def simulate_alternating(
             flock.set_target(TARGETS[place // samples % len(TARGETS)])
         rows.append(sample(flock, np.dtype(np.float32)))
     return Recording(
-        **columns_of(rows), parameters=parameters, seed=int(seed), version=_core.__version__
+        **columns_of(rows),
+        parameters=parameters,
+        seed=int(seed),
+        version=_core.__version__,
+        policy=EVERY_SUBSTEP,
     )

@@ -1,0 +1,50 @@
+//! What changes while a flock moves: its target, or its whole scene.
+
+use super::flock::Flock;
+use crate::error::Result;
+use crate::geometry::Pose;
+use crate::parameters::{FlockParameters, Pool, Target};
+
+/// A change of a flock at some time.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Change {
+    /// The direction that leaders follow from now on.
+    Target(Target),
+    /// The parameters from now on. Boats keep their headings and velocities; where the pool changes, each boat keeps
+    /// its angle about the center and its share of the way between the walls.
+    Parameters(Box<FlockParameters>),
+}
+
+impl Flock {
+    /// Changes the flock at this time. New parameters restart the random streams from the flock's seed.
+    ///
+    /// # Errors
+    /// As for [`Flock::new`] and [`Flock::set_state`]; the flock is unchanged then.
+    pub fn change(&mut self, change: &Change) -> Result<()> {
+        match change {
+            Change::Target(target) => self.set_target(*target),
+            Change::Parameters(parameters) => {
+                let poses = moved(self.poses(), self.parameters().pool, parameters.pool);
+                let mut next = Self::new(FlockParameters::clone(parameters), self.seed())?;
+                // A smaller pool may let hulls overlap a little; the contact solver parts them.
+                next.set_state(&poses, self.velocities(), self.time_s(), true)?;
+                *self = next;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn moved(poses: &[Pose], old: Pool, new: Pool) -> Vec<Pose> {
+    let mut poses = poses.to_vec();
+    if old == new {
+        return poses;
+    }
+    let width = |pool: Pool| pool.outer_radius_cm - pool.inner_radius_cm;
+    for Pose { position, .. } in &mut poses {
+        let distance = position.x.hypot(position.y);
+        let share = (distance - old.inner_radius_cm) / width(old);
+        *position *= (new.inner_radius_cm + share * width(new)) / distance;
+    }
+    poses
+}
