@@ -33,10 +33,8 @@ POOLS = ("500-boats", "table-1")
 
 def order_of_run(scene: flockenv.FlockParameters, seed: int, minutes: float) -> dict[str, float]:
     """Mean Ψ_o and mean |Ψ_o sin φ_o| in the analysis window after the first tenth of a run."""
-    run = flockenv.simulate(scene, seed, minutes * 60, dtype=np.float32)
-    frames = run.in_analysis_window & (run.time_s > 6 * minutes)
-    rotation = abs(run.order.rotation()[frames]).mean()
-    return {"psi_o": run.order.psi_o[frames].mean(), "rotation": rotation}
+    order = flockenv.simulate(scene, seed, minutes * 60, dtype=np.float32).analyzed().order
+    return {"psi_o": order.psi_o.mean(), "rotation": abs(order.rotation()).mean()}
 
 
 def critical_noise(means: pd.DataFrame) -> float:

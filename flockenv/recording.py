@@ -108,8 +108,9 @@ class Recording:
             raise ParameterError(f"phase holds other names than {', '.join(PHASES)}")
         if math.isnan(self.duration_s) and len(self.time_s) > 0:
             object.__setattr__(self, "duration_s", float(self.time_s[-1]))
-        times_s = np.concatenate([self.time_s, [self.duration_s]])
-        if not (np.diff(self.time_s) > 0).all() or not 0 <= times_s[0] <= times_s[-2:].min():
+        # Times are rounded to a nanosecond, and may lie beyond the end by that.
+        ends = np.array([0.0, *self.time_s[:1], *self.time_s[-1:], self.duration_s + 1e-9])
+        if not (np.diff(self.time_s) > 0).all() or not (np.diff(ends) >= 0).all():
             raise ParameterError(
                 "time_s must increase from 0 on, not beyond duration_s, and hold at least one time "
                 "if that is not given"

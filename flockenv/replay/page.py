@@ -100,7 +100,8 @@ def write_replay(
     Raises
     ------
     ParameterError
-        For no recording or more than two, and for one too large to be shown at all.
+        For no recording or more than two, for one without samples or poses, and for one too large
+        to be shown at all.
     OSError
         If the file cannot be written; the file from before remains then.
     """
@@ -146,6 +147,9 @@ def replay_page(
     longest = max(len(recording) for recording in recordings.values())
     # Samples that are further apart compress no better: nothing is packed that cannot fit.
     least_every = max(1.0, longest / _MOST_SAMPLES)
+    for name, recording in recordings.items():
+        if len(recording) == 0 or not recording.has_poses:
+            raise ParameterError(f"recording {name!r} is not accepted: samples with their poses")
     for every in _THINNING:
         if every < least_every:
             continue

@@ -5,6 +5,7 @@ import copy
 import dataclasses
 import math
 import pickle
+import re
 import tempfile
 import zipfile
 from pathlib import Path
@@ -241,6 +242,8 @@ def test_a_missing_file_is_an_os_error(tmp_path):
     {"time_s": RUN.time_s[::-1].copy()},
     {"time_s": RUN.time_s - 1},
     {"time_s": RUN.time_s[:0]},
+    {"duration_s": 0.95},
+    {"duration_s": -1.0},
     {"phase": np.array(["up"] * 11)},
     {"phase": np.array(["up"] * 11, dtype="<U4")},
     {"in_analysis_window": np.zeros(11)},
@@ -278,6 +281,9 @@ def with_arrays(**changes) -> bytes:
     {"seed": np.array([1, 2], np.uint64)},
     {"format": np.array("flockenv recording 3")},
     {"version": np.zeros(3)},
+    {"policy": np.zeros(3)},
+    {"duration_s": np.array("long")},
+    {"duration_s": None},
     {"parameters": np.array("n_boats = 'many'")},
     {"parameters": np.array("n_boat = 5")},
     {"parameters": np.array("{")},
@@ -287,6 +293,76 @@ def with_arrays(**changes) -> bytes:
 def test_files_of_something_else_are_refused(change):
     with pytest.raises(ParameterError, match=r"run\.npz is no recording of flockenv"):
         load(with_arrays(**change))
+
+
+def test_analyzed_samples_are_those_of_the_window_after_a_share_of_the_run():
+    run = simulate(PARAMETERS, seed=3, duration_s=40.0, sample_hz=4.0, contacts=True)
+    for after, start_s in ((0.1, 4.0), (0.5, 20.0), (0.0, 0.0)):
+        frames = run.in_analysis_window & (run.time_s > start_s)
+        late = run.analyzed(after) if after != 0.1 else run.analyzed()
+        assert 0 < frames.sum() == len(late) == len(late.order)
+        assert np.array_equal(late.time_s, run.time_s[frames])
+        assert np.array_equal(late.phase, run.phase[frames])
+        assert np.array_equal(late.pose, run.pose[frames])
+        assert np.array_equal(late.order.phi_o, run.order.phi_o[frames])
+        assert late.duration_s == 40.0
+        assert load(saved(late)) == late
+        # What is left out stays out: the rule counts from the start of the run.
+        assert late.analyzed(after) == late
+
+
+def test_contacts_stay_with_their_samples():
+    run = simulate(PARAMETERS.replace(n_boats=20), 3, 20.0, 4.0, contacts=True)
+    late = run.analyzed()
+    first = np.concatenate([[0], np.cumsum(run.contacts.count)])
+    at = 0
+    for place in np.flatnonzero(np.isin(run.time_s, late.time_s)):
+        span = slice(first[place], first[place + 1])
+        count = run.contacts.count[place]
+        assert np.array_equal(late.contacts.force[at : at + count], run.contacts.force[span])
+        at += count
+    assert at == len(late.contacts.i) > 0
+
+
+def test_a_recording_may_have_no_samples_and_no_poses():
+    bare = RUN.without_poses()
+    assert (bare.has_poses, RUN.has_poses) == (False, True)
+    assert bare.pose.shape == (11, 0, 3)
+    assert bare.order == RUN.order
+    nothing = bare.analyzed(after=1.0)
+    assert (len(nothing), nothing.duration_s) == (0, 1.0)
+    assert load(saved(nothing)) == nothing
+
+
+class Waiting:
+    """A policy of a user's own, without a name."""
+
+    def predict(self, observation, state=None, episode_start=None):
+        return np.zeros(PARAMETERS.n_leaders), state
+
+
+def test_what_steered_is_recorded():
+    learned = flockenv.policies.load("learned", pool="table-1")
+    tuned = flockenv.policies.DampedLaw(gain=2.0)
+    named = {
+        "law": None,
+        repr(tuned): tuned,
+        "Waiting": Waiting(),
+        f"{learned!r} {learned.digest}": learned,
+    }
+    for name, policy in named.items():
+        run = simulate(PARAMETERS, 3, 1.0, policy=policy)
+        assert run.policy == name
+        assert load(saved(run)).policy == name
+    assert re.fullmatch(r"sha256:[0-9a-f]{12}", learned.digest)
+
+
+def test_the_digest_is_that_of_the_numbers(tmp_path):
+    policy = flockenv.policies.load("learned", pool="table-1")
+    policy.save(tmp_path / "copy.npz")
+    copied = flockenv.policies.load(tmp_path / "copy.npz")
+    assert copied.digest == policy.digest
+    assert flockenv.policies.load("learned", pool="500-boats").digest != policy.digest
 
 
 def test_pickled_objects_are_never_loaded(tmp_path):

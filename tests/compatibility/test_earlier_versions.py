@@ -21,7 +21,7 @@ from flockenv.runs.spec import RunSpec
 from flockenv.runs.store import RunStore, columns
 
 FIXTURES = Path(__file__).parents[1] / "fixtures"
-VERSIONS = sorted(path.name for path in FIXTURES.iterdir())
+VERSIONS = sorted(path.name for path in FIXTURES.glob("v*"))
 SMALL = {"n_boats": 6, "n_leaders": 2, "episode_s": 8.0}
 
 
@@ -58,6 +58,19 @@ def test_recordings(folder, facts, name):
     assert sha(recording.order.psi_o) == known["psi_o"]
     if "impulses" in known:
         assert sha(recording.contacts.force) == known["impulses"]
+
+
+def test_recordings_without_a_policy_say_so(folder):
+    recording = Recording.load(folder / "recording.npz")
+    assert recording.policy is None
+    assert recording.duration_s == recording.time_s[-1]
+
+
+def test_recordings_in_format_2():
+    recording = Recording.load(FIXTURES / "recording_format_2.npz")
+    assert (len(recording), recording.duration_s, recording.policy) == (5, 6.0, "SteeringLaw()")
+    assert sha(recording.pose)[:16] == "f5d9bac3e8bd3447"
+    assert sha(recording.order.psi_o)[:16] == "b012db28434fb341"
 
 
 def test_snapshots(folder, facts):

@@ -60,11 +60,6 @@ def load_run(path: Path):
     return found
 
 
-def same_run(found) -> bool:
-    pairs = zip(found.arrays().items(), RESULT.arrays().items(), strict=True)
-    return all(a == b and np.array_equal(x, y, equal_nan=True) for (a, x), (b, y) in pairs)
-
-
 def same_policy(found) -> bool:
     return found.weights[0].tobytes() == POLICY.weights[0].tobytes()
 
@@ -79,7 +74,7 @@ KINDS = {
             or Path(path).write_bytes(kept(Path(path).parent / "made"))
         ),
         load_run,
-        same_run,
+        lambda found: found == RESULT,
     ),
     "sweep": (
         lambda path: Path(path).write_text(SWEEP),
@@ -98,7 +93,7 @@ archives = st.sampled_from(["recording", "policy", "kept run"])
 
 def kept(folder: Path) -> bytes:
     store = RunStore(folder)
-    store.save(RESULT)
+    store.save(SPEC, RESULT)
     return store.path(SPEC).read_bytes()
 
 
@@ -286,7 +281,7 @@ def test_an_archive_that_would_fill_the_memory_is_refused_unread(tmp_path):
 WRITERS = {
     "recording": lambda path: RUN.save(path.with_suffix(".npz")),
     "policy": lambda path: POLICY.save(path.with_suffix(".npz")),
-    "kept run": lambda path: RunStore(path.parent / "runs").save(RESULT),
+    "kept run": lambda path: RunStore(path.parent / "runs").save(SPEC, RESULT),
     "parameters": lambda path: save_scene(path.with_suffix(".toml"), PARAMETERS, "seed 1"),
     "page": lambda path: write_replay(path.with_suffix(".html"), {"run": RUN}),
     "GIF": lambda path: save_animation(

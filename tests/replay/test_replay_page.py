@@ -82,6 +82,14 @@ def test_one_or_two_recordings(count, tmp_path):
         write_replay(tmp_path / "x.html", {str(k): run for k in range(count)})
 
 
+def test_what_cannot_be_played_is_named(tmp_path):
+    run = flockenv.simulate(flockenv.FlockParameters(n_boats=2), 1, 1.0)
+    for other in (run.without_poses(), run.analyzed(after=1.0)):
+        with pytest.raises(flockenv.ParameterError, match="recording 'page'"):
+            write_replay(tmp_path / "page.html", other)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_open_water_far_out_and_one_sample(tmp_path):
     scene = SCENE.replace(pool=(np.inf, 0.0), n_leaders=0)
     assert write_replay(tmp_path / "x.html", {"x": flockenv.simulate(scene, 7, 0.0)}).every == 1
