@@ -25,7 +25,7 @@ _AVERAGED = (*(name for name in ORDER_NAMES if name[:3] != "phi"), "rotation", "
 
 
 def summary(run: Recording) -> dict[str, float]:
-    """Return means and standard deviations over the analysed frames of a run.
+    """Return means and standard deviations over the analyzed frames of a run.
 
     Returns
     -------
