@@ -68,7 +68,7 @@ def test_a_policy_that_sees_its_mirror_image_steers_the_mirror_image() -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"policy": "lore"}, "None, 'law'"),
+        ({"policy": "lore"}, "'lore' is no policy"),
         ({"policy": Constant(np.nan)}, "rudder"),
         ({"control_hz": 0.0}, "control_hz"),
         ({"duration_s": np.inf}, "duration_s"),
