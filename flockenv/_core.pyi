@@ -96,13 +96,13 @@ def ordering_time(
     within: float,
 ) -> float: ...
 def record(
-    parameters: FlockParameters,
-    seed: int,
+    flock: Flock,
     duration_s: float,
     sample_hz: float,
     kept: dict[str, bool],
+    changes: list[tuple[float, str | FlockParameters]],
+    control: dict[str, Any] | None = None,
     progress: Callable[[float], object] | None = None,
-    start: Flock | None = None,
 ) -> dict[str, Any]: ...
 def outward(psi_o: NDArray[np.float64], phi_o: NDArray[np.float64]) -> NDArray[np.float64]: ...
 def rotation(psi_o: NDArray[np.float64], phi_o: NDArray[np.float64]) -> NDArray[np.float64]: ...

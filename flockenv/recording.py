@@ -73,8 +73,8 @@ class Recording:
         which for a learned one ends in the first digits of its SHA-256; None where that is not
         known, as in files of version 0.1.0.
     duration_s : float
-        Length of the run in s, of which the samples may be a part; that of the last sample if not
-        given.
+        When the run ended, in s from time 0; the samples may be a part of it. The time of the last
+        sample if not given.
 
     Raises
     ------
@@ -152,8 +152,10 @@ class Recording:
         Raises
         ------
         ParameterError
-            For a time outside the recording.
+            For a time outside the recording, and a recording without samples or poses.
         """
+        if len(self) == 0 or not self.has_poses:
+            raise ParameterError("this recording holds no poses, of which a flock is made")
         begin, end = self.time_s[0], self.time_s[-1]
         if not begin <= time_s <= end:
             raise ParameterError(

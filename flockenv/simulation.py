@@ -1,24 +1,23 @@
 """`simulate`: a seeded run from a random start, recorded."""
 
-import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import DTypeLike
+from numpy.typing import DTypeLike, NDArray
 
 from flockenv import _core
 from flockenv.errors import ParameterError
-from flockenv.flock import ContactSeries, OrderSeries
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import LeaderPolicy, control_rate
 from flockenv.policies.model import ModelPolicy, as_policy
-from flockenv.policies.registry import EVERY_SUBSTEP, named_policy, policy_name
+from flockenv.policies.registry import named_policy, policy_name
 from flockenv.recording import PHASES, PRECISIONS, Recording
 
-__all__ = ["LeaderPolicy", "columns_of", "sample", "simulate"]
+__all__ = ["Change", "LeaderPolicy", "recorded", "simulate"]
 
-_TICKS_A_SECOND = 1e9
+Change = tuple[float, str | FlockParameters]
+"""A time in s from the beginning of a run, and the target or the parameters from then on."""
 
 
 def simulate(
@@ -92,34 +91,27 @@ def simulate(
     SolverError
         If the motion left its range of 1e9 (cm, cm/s, rad, rad/s).
     """
-    precision = _precision(dtype)
-    begun = None if start is None else _started(parameters, seed, start)
     if isinstance(policy, str):
-        policy = named_policy(policy, parameters.pool)()
+        named = named_policy(policy, parameters.pool)()
+        policy = None if isinstance(named, str) else named
     policy = as_policy(policy)
-    if policy is None or policy == EVERY_SUBSTEP:
-        kept = {"single_precision": bool(precision == np.float32), "contacts": contacts}
-        columns = _core.record(parameters, seed, duration_s, sample_hz, kept, progress, begun)
-        columns["phase"] = PHASES[columns["phase"]]
-    elif hasattr(policy, "predict"):
-        if isinstance(policy, ModelPolicy) and parameters.n_leaders > 0:
-            policy.check_leaders(parameters.n_leaders)
-        control_hz = control_rate(policy) if control_hz is None else control_hz
-        _check_rates(duration_s, sample_hz, control_hz)
-        steps = _reported(_events(duration_s, sample_hz, control_hz), progress)
-        flock = begun or _core.Flock(parameters, seed)
-        columns = _steered(flock, steps, policy, precision, contacts)
-    else:
+    if policy is not None and not hasattr(policy, "predict"):
         raise ParameterError(
             f"policy = {policy!r} is not accepted: None, a policy's name or file, or an object "
             "with predict"
         )
-    return Recording(
-        **columns,
-        parameters=parameters,
-        seed=int(seed),
-        version=_core.__version__,
-        policy=policy_name(policy),
+    if isinstance(policy, ModelPolicy) and parameters.n_leaders > 0:
+        policy.check_leaders(parameters.n_leaders)
+    return recorded(
+        _core.Flock(parameters, seed) if start is None else _started(parameters, seed, start),
+        parameters,
+        duration_s,
+        sample_hz,
+        policy=policy,
+        control_hz=control_hz,
+        dtype=dtype,
+        contacts=contacts,
+        progress=progress,
     )
 
 
@@ -141,95 +133,68 @@ def _started(
     return flock
 
 
-def _check_rates(duration_s: float, sample_hz: float, control_hz: float) -> None:
-    for name, rate in (("sample_hz", sample_hz), ("control_hz", control_hz)):
-        if not 0.0 < rate <= 1e6:
-            raise ParameterError(
-                f"{name} = {rate!r} is not accepted: a positive rate of at most 1e6"
-            )
-    if not 0.0 <= duration_s * max(sample_hz, control_hz) <= 1e8:
-        raise ParameterError(
-            f"duration_s = {duration_s!r} is not accepted: from 0 s to 1e8 samples or control steps"
-        )
-
-
-def _steered(
+def recorded(
     flock: _core.Flock,
-    steps: Iterable[tuple[int, bool, bool]],
-    policy: LeaderPolicy,
-    precision: np.dtype[Any],
-    contacts: bool,
+    parameters: FlockParameters,
+    duration_s: float,
+    sample_hz: float,
+    *,
+    changes: Sequence[Change] = (),
+    policy: LeaderPolicy | None = None,
+    control_hz: float | None = None,
+    dtype: DTypeLike = np.float32,
+    contacts: bool = False,
+    progress: Callable[[float], object] | None = None,
+) -> Recording:
+    """Record a run from where a flock is; the flock itself stays there.
+
+    Parameters
+    ----------
+    flock
+        Where the run begins.
+    parameters
+        What the recording tells of the run.
+    changes
+        What changes on the way: at each of these times, after the sample at that time, the target
+        or all parameters. With another pool each boat keeps its angle about the center and its
+        share of the way between the walls.
+    policy
+        None for the steering law at every substep.
+    duration_s, sample_hz, control_hz, dtype, contacts, progress
+        As for `simulate`, as are the errors.
+    """
+    single = bool(_precision(dtype) == np.float32)
+    kept = {"single_precision": single, "contacts": contacts}
+    control = None if policy is None else _control(policy, flock.parameters, control_hz)
+    columns = _core.record(flock, duration_s, sample_hz, kept, list(changes), control, progress)
+    columns["phase"] = PHASES[columns["phase"]]
+    return Recording(
+        **columns,
+        parameters=parameters,
+        seed=flock.seed,
+        version=_core.__version__,
+        policy=policy_name(policy),
+    )
+
+
+def _control(
+    policy: LeaderPolicy, parameters: FlockParameters, control_hz: float | None
 ) -> dict[str, Any]:
-    parameters = flock.parameters
-    mirrored = getattr(policy, "mirror_to_target", False)
+    mirrored = bool(getattr(policy, "mirror_to_target", False))
     sign = -1.0 if mirrored and parameters.target == "ccw" else 1.0
-    layout = getattr(policy, "observation", None)
-    rudder, state = np.zeros(parameters.n_leaders), None
-    samples, touching = [], []
-    now = 0
-    for tick, is_sample, is_control in steps:
-        flock.advance((tick - now) / _TICKS_A_SECOND, rudder)
-        now = tick
-        if is_sample:
-            samples.append(sample(flock, precision))
-            if contacts:
-                touching.append(flock.contacts())
-        if is_control and parameters.n_leaders > 0:
-            seen = _core.observe(flock, dict(layout or {}), mirrored, rudder)
-            actions, state = policy.predict(seen, state)
-            rudder = sign * np.clip(np.asarray(actions, np.float64).reshape(-1), -1.0, 1.0)
-    series = ContactSeries.of(touching) if contacts else None
-    return {**columns_of(samples), "contacts": series}
+    state = None
 
+    def steer(observation: NDArray[np.float32]) -> NDArray[np.float64]:
+        nonlocal state
+        actions, state = policy.predict(observation, state)
+        return sign * np.clip(np.asarray(actions, np.float64).reshape(-1), -1.0, 1.0)
 
-def _events(
-    duration_s: float, sample_hz: float, control_hz: float
-) -> Iterator[tuple[int, bool, bool]]:
-    """Yield times, in ticks, at which something is sampled or steered, in order."""
-    last = math.floor(duration_s * sample_hz * (1 + 1e-12)) / sample_hz
-
-    def ticks(rate: float) -> set[int]:
-        count = math.floor(last * rate * (1 + 1e-12)) + 1
-        return {round(place / rate * _TICKS_A_SECOND) for place in range(count)}
-
-    sampled, steered = ticks(sample_hz), ticks(control_hz)
-    for tick in sorted(sampled | steered):
-        yield tick, tick in sampled, tick in steered
-
-
-def _reported(
-    steps: Iterable[tuple[int, bool, bool]], progress: Callable[[float], object] | None
-) -> Iterator[tuple[int, bool, bool]]:
-    """Pass steps on, and report every 10 s of them."""
-    reported = 0
-    for step in steps:
-        if progress is not None and step[0] - reported >= 10 * _TICKS_A_SECOND:
-            progress((step[0] - reported) / _TICKS_A_SECOND)
-            reported = step[0]
-        yield step
-
-
-def sample(flock: _core.Flock, precision: np.dtype[Any]) -> dict[str, Any]:
-    """Return one sample of a `Recording` by field, its order parameters as a list under "order"."""
-    has_normal_boats = flock.parameters.n_leaders < flock.parameters.n_boats
-    order = flock.order_parameters() if has_normal_boats else None
-    names = OrderSeries.__dataclass_fields__
     return {
-        "time_s": flock.time_s,
-        "phase": flock.phase,
-        "in_analysis_window": flock.in_analysis_window,
-        "pose": flock.pose.astype(precision),
-        "velocity": flock.velocity.astype(precision),
-        "order": [getattr(order, name) if order else math.nan for name in names],
+        "steer": steer,
+        "observation": dict(getattr(policy, "observation", None) or {}),
+        "mirror_to_target": mirrored,
+        "control_hz": control_rate(policy) if control_hz is None else control_hz,
     }
-
-
-def columns_of(samples: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Return samples as the arrays of a `Recording`, by field."""
-    columns = {name: np.array([each[name] for each in samples]) for name in samples[0]}
-    columns["phase"] = columns["phase"].astype(PHASES.dtype)
-    orders = columns.pop("order").T
-    return {**columns, "order": OrderSeries(*orders)}
 
 
 def _precision(dtype: DTypeLike) -> np.dtype[Any]:

@@ -1,5 +1,6 @@
 //! A flock that is placed, advanced, recorded, stored and brought back.
 
+mod change;
 #[allow(
     clippy::module_inception,
     reason = "the file is named after the noun it owns"
@@ -9,6 +10,7 @@ mod placement;
 mod recorder;
 mod snapshot;
 
+pub use change::Change;
 pub use flock::{ContactForce, Flock, LATEST, State};
-pub use recorder::{ContactSamples, Real, Recorder, Recording, Sampling};
+pub use recorder::{ContactSamples, Pause, Real, Recorder, Recording, Sampling};
 pub use snapshot::Snapshot;

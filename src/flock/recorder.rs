@@ -1,11 +1,13 @@
 //! A run sampled at a fixed rate: what sweeps and figures are made of.
 
+use super::change::Change;
 use super::flock::{ContactForce, Flock};
 use crate::analysis::OrderParameters;
 use crate::clock::{Ticks, seconds, ticks};
 use crate::error::{FlockError, Result};
 use crate::integrator::{Phase, Steering};
 use crate::parameters::FlockParameters;
+use std::collections::VecDeque;
 
 /// When samples are taken: at 0, 1/rate, 2/rate … up to and including the duration. Each time is
 /// rounded to a tick by itself, so that errors do not add up.
@@ -196,18 +198,45 @@ impl<T: Real> Recording<T> {
     }
 }
 
-/// A flock steered by the paper's law while it is recorded.
+/// Why a run pauses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pause {
+    /// The work it was given is done; it can go on at any time.
+    Work,
+    /// A control step begins: [`Recorder::steer`] may give other rudder commands.
+    Control,
+    /// The last sample is taken.
+    End,
+}
+
+/// Rudder commands that are held between control steps.
+#[derive(Debug, Clone)]
+struct Control {
+    hz: f64,
+    begun: u64,
+    rudder: Vec<f64>,
+}
+
+impl Control {
+    fn next(&self) -> Ticks {
+        ticks(self.begun as f64 / self.hz)
+    }
+}
+
+/// A flock that moves by a schedule while it is recorded.
 #[derive(Debug, Clone)]
 pub struct Recorder<T> {
     flock: Flock,
     sampling: Sampling,
     begin: Ticks,
     taken: u64,
+    changes: VecDeque<(Ticks, Change)>,
+    control: Option<Control>,
     recording: Recording<T>,
 }
 
 impl<T: Real> Recorder<T> {
-    /// A run from where a flock is now, with nothing recorded yet.
+    /// A run from where a flock is now, under the steering law, with nothing recorded yet.
     ///
     /// # Errors
     /// As for [`Recording::with_room_for`], and for a run that would end later than any flock may.
@@ -217,6 +246,8 @@ impl<T: Real> Recorder<T> {
             recording: Recording::with_room_for(&sampling, flock.parameters())?,
             begin: flock.time(),
             taken: 0,
+            changes: VecDeque::new(),
+            control: None,
             flock,
             sampling,
         })
@@ -229,36 +260,117 @@ impl<T: Real> Recorder<T> {
         self
     }
 
-    /// Continues for about this many substeps times boats; returns whether the recording is complete.
-    /// Where it pauses changes nothing.
+    /// The same run with changes at times from its beginning on, after the sample at that time.
+    #[must_use]
+    pub fn with_changes(mut self, mut changes: Vec<(Ticks, Change)>) -> Self {
+        changes.sort_by_key(|&(time, _)| time);
+        self.changes = changes.into();
+        self
+    }
+
+    /// The same run with rudders that are held between control steps, from amidships.
     ///
     /// # Errors
-    /// As for [`Flock::advance_to`].
-    pub fn run(&mut self, boat_substeps: u64) -> Result<bool> {
-        let before = self.work();
-        while self.taken < self.sampling.count() {
-            let done = self.work() - before;
-            if done >= boat_substeps {
-                return Ok(false);
-            }
-            let next = self.begin + self.sampling.time(self.taken);
-            let left = boat_substeps - done;
-            if self.flock.advance_towards(next, Steering::Law, left)? {
-                self.recording.push(&self.flock);
-                self.taken += 1;
-            }
+    /// [`FlockError::Parameter`] for a rate out of range.
+    pub fn with_control(mut self, control_hz: f64) -> Result<Self> {
+        if !(control_hz > 0.0 && control_hz <= Sampling::FASTEST_HZ) {
+            let accepted = "a positive rate of at most 1e6 control steps a second";
+            return Err(FlockError::parameter("control_hz", control_hz, accepted));
         }
-        Ok(true)
+        self.control = Some(Control {
+            hz: control_hz,
+            begun: 0,
+            rudder: vec![0.0; self.flock.parameters().n_leaders],
+        });
+        Ok(self)
+    }
+
+    /// The flock as it is now.
+    pub fn flock(&self) -> &Flock {
+        &self.flock
+    }
+
+    /// The rudder commands that are held; none under the steering law.
+    pub fn rudder(&self) -> &[f64] {
+        self.control
+            .as_ref()
+            .map_or(&[], |control| &control.rudder[..])
+    }
+
+    /// Holds these rudder commands from now on, if the run has control steps.
+    ///
+    /// # Errors
+    /// As for [`Flock::check_rudder`].
+    pub fn steer(&mut self, rudder: Vec<f64>) -> Result<()> {
+        self.flock.check_rudder(Some(&rudder))?;
+        if let Some(control) = &mut self.control {
+            control.rudder = rudder;
+        }
+        Ok(())
+    }
+
+    /// Continues for about this many substeps times boats, to the next control step, or to the end.
+    /// Where it pauses for its work changes nothing.
+    ///
+    /// # Errors
+    /// As for [`Flock::advance_to`] and [`Flock::change`].
+    pub fn run(&mut self, boat_substeps: u64) -> Result<Pause> {
+        let mut left = boat_substeps;
+        loop {
+            let now = self.flock.time() - self.begin;
+            self.sample_and_change(now)?;
+            if let Some(control) = &mut self.control
+                && control.next() <= now
+                && !control.rudder.is_empty()
+            {
+                control.begun += 1;
+                return Ok(Pause::Control);
+            }
+            if self.taken == self.sampling.count() {
+                return Ok(Pause::End);
+            }
+            if left == 0 {
+                return Ok(Pause::Work);
+            }
+            let next = self.begin + self.next_event();
+            let steering = match &self.control {
+                Some(control) => Steering::Held(&control.rudder),
+                None => Steering::Law,
+            };
+            let before = self.flock.statistics().substeps;
+            self.flock.advance_towards(next, steering, left)?;
+            let substeps = self.flock.statistics().substeps - before;
+            left = left.saturating_sub(substeps * self.flock.parameters().n_boats as u64);
+        }
+    }
+
+    fn sample_and_change(&mut self, now: Ticks) -> Result<()> {
+        if self.taken < self.sampling.count() && self.sampling.time(self.taken) == now {
+            self.recording.push(&self.flock);
+            self.taken += 1;
+        }
+        while let Some((_, change)) = self.changes.pop_front_if(|(time, _)| *time <= now) {
+            self.flock.change(&change)?;
+        }
+        Ok(())
+    }
+
+    fn next_event(&self) -> Ticks {
+        let mut next = self.sampling.time(self.taken);
+        if let Some(&(time, _)) = self.changes.front() {
+            next = next.min(time);
+        }
+        if let Some(control) = &self.control
+            && !control.rudder.is_empty()
+        {
+            next = next.min(control.next());
+        }
+        next
     }
 
     /// Seconds from the beginning of the run to where it is now.
     pub fn elapsed_s(&self) -> f64 {
         seconds(self.flock.time() - self.begin)
-    }
-
-    fn work(&self) -> u64 {
-        let p = self.flock.parameters();
-        self.flock.statistics().substeps * p.n_boats as u64
     }
 
     /// What has been recorded.

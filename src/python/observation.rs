@@ -6,9 +6,11 @@ use super::settings::{count, layout_from};
 use crate::boat::Law;
 use crate::environment::RudderSettings;
 use crate::environment::observation::{
-    BOAT, Entry, FlockView, OBSERVATION_VERSION, ObservedLaw, Observer, state_entries,
+    BOAT, Entry, FlockView, OBSERVATION_VERSION, ObservationLayout, ObservedLaw, Observer,
+    state_entries,
 };
 use crate::error::FlockError;
+use crate::flock::Flock;
 use crate::parameters::FlockParameters;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -88,13 +90,24 @@ pub fn observe<'py>(
     mirror_to_target: bool,
     rudder: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-    let layout = layout_from(blocks, mirror_to_target)?;
     let flock = &flock.0;
-    let parameters = flock.parameters();
-    let leaders = parameters.n_leaders;
+    let leaders = flock.parameters().n_leaders;
     let rudder = rudder.map(|rudder| floats(rudder, "rudder", &[leaders]));
     let rudder = rudder.transpose()?;
     flock.check_rudder(rudder.as_deref())?;
+    let layout = layout_from(blocks, mirror_to_target)?;
+    observed(py, flock, layout, rudder.as_deref().unwrap_or_default())
+}
+
+/// What the leaders of a flock observe, given the rudders as they stand.
+pub fn observed<'py>(
+    py: Python<'py>,
+    flock: &Flock,
+    layout: ObservationLayout,
+    rudders: &[f64],
+) -> PyResult<Bound<'py, PyArray2<f32>>> {
+    let parameters = flock.parameters();
+    let leaders = parameters.n_leaders;
     let order = flock.order_parameters(false);
     let order = if layout.order {
         Some(order?)
@@ -109,7 +122,7 @@ pub fn observe<'py>(
         phase: flock.phase(),
         bw_s: parameters.bw_s,
         target: parameters.target,
-        rudders: rudder.as_deref().unwrap_or_default(),
+        rudders,
         order: order.as_ref(),
     };
     let array = PyArray2::zeros(py, [leaders, layout.size()], false);

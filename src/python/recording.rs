@@ -1,14 +1,16 @@
 //! The loop of `flockenv.simulate`.
 
-use super::arguments::{DurationS, SampleHz, Seed};
+use super::arguments::{DurationS, SampleHz, floats, real, text};
 use super::flock::{BOAT_SUBSTEPS_A_PIECE, PyFlock};
+use super::observation::observed;
 use super::results;
-use crate::flock::{Flock, Real, Recorder, Recording, Sampling};
+use super::settings::layout_from;
+use crate::clock::{Ticks, ticks};
+use crate::flock::{Change, Flock, Pause, Real, Recorder, Recording, Sampling};
 use crate::integrator::Phase;
-use crate::parameters::FlockParameters;
 use numpy::{Element, PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyString};
 
 /// The phases in the order of a cycle; samples hold their place in it.
 #[pyfunction]
@@ -24,71 +26,111 @@ pub struct Kept {
     contacts: bool,
 }
 
-/// Records a run under the steering law: the fields of a `flockenv.Recording` that a run fills. It goes
-/// on from where `start` is, which stays there; without one, from a random start.
+/// What steers at every control step: a function of the leaders' observation (k, size) that returns rudders (k,).
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Control<'py> {
+    steer: Bound<'py, PyAny>,
+    observation: Bound<'py, PyAny>,
+    mirror_to_target: bool,
+    control_hz: Bound<'py, PyAny>,
+}
+
+/// Records a run from where a flock is, which stays there: the fields of a `flockenv.Recording` that a run fills.
+///
+/// `changes` are times in s from the beginning of the run and what changes then: a target or parameters. Without
+/// `control` leaders follow the steering law.
 #[pyfunction]
-#[pyo3(signature = (parameters, seed, duration_s, sample_hz, kept, progress=None, start=None))]
-#[expect(clippy::too_many_arguments, reason = "the arguments of `simulate`")]
+#[pyo3(signature = (flock, duration_s, sample_hz, kept, changes, control=None, progress=None))]
+#[expect(clippy::too_many_arguments, reason = "as many as a run has")]
 pub fn record<'py>(
     py: Python<'py>,
-    parameters: FlockParameters,
-    seed: Seed,
+    flock: &PyFlock,
     duration_s: DurationS,
     sample_hz: SampleHz,
     kept: Kept,
+    changes: Vec<(f64, Bound<'py, PyAny>)>,
+    control: Option<Control<'py>>,
     progress: Option<Bound<'py, PyAny>>,
-    start: Option<PyRef<'py, PyFlock>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let start = start.map(|start| start.0.clone());
     let sampling = Sampling::new(duration_s.0, sample_hz.0)?;
-    let contacts = kept.contacts;
+    let changes = changes
+        .into_iter()
+        .map(|(time_s, change)| Ok((ticks(time_s), change_from(&change)?)))
+        .collect::<PyResult<Vec<_>>>()?;
+    let run = Run {
+        flock: flock.0.clone(),
+        sampling,
+        contacts: kept.contacts,
+        changes,
+        control,
+        progress,
+    };
     if kept.single_precision {
-        let flock = placed::<f32>(py, parameters, seed.0, &sampling, start)?;
-        run::<f32>(py, flock, sampling, contacts, progress.as_ref())
+        run.recorded::<f32>(py)
     } else {
-        let flock = placed::<f64>(py, parameters, seed.0, &sampling, start)?;
-        run::<f64>(py, flock, sampling, contacts, progress.as_ref())
+        run.recorded::<f64>(py)
     }
 }
 
-/// The flock that a run begins with; what does not fit memory is refused before boats are placed.
-fn placed<T: Real>(
-    py: Python<'_>,
-    parameters: FlockParameters,
-    seed: u64,
-    sampling: &Sampling,
-    start: Option<Flock>,
-) -> PyResult<Flock> {
-    parameters.check()?;
-    Recording::<T>::with_room_for(sampling, &parameters)?;
-    match start {
-        Some(flock) => Ok(flock),
-        None => Ok(py.detach(|| Flock::new(parameters, seed))?),
+fn change_from(value: &Bound<'_, PyAny>) -> PyResult<Change> {
+    if value.is_instance_of::<PyString>() {
+        return Ok(Change::Target(text(value, "target")?.parse()?));
     }
+    Ok(Change::Parameters(Box::new(value.extract()?)))
 }
 
-fn run<'py, T: Real + Element>(
-    py: Python<'py>,
+struct Run<'py> {
     flock: Flock,
     sampling: Sampling,
     contacts: bool,
-    progress: Option<&Bound<'py, PyAny>>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let boats = flock.parameters().n_boats;
-    let mut recorder = Recorder::<T>::new(flock, sampling)?;
-    if contacts {
-        recorder = recorder.with_contacts();
-    }
-    let mut told_s = 0.0;
-    while !py.detach(|| recorder.run(BOAT_SUBSTEPS_A_PIECE))? {
-        py.check_signals()?;
-        if let Some(progress) = progress {
-            let elapsed_s = recorder.elapsed_s();
-            progress.call1((elapsed_s - told_s,))?;
-            told_s = elapsed_s;
+    changes: Vec<(Ticks, Change)>,
+    control: Option<Control<'py>>,
+    progress: Option<Bound<'py, PyAny>>,
+}
+
+impl<'py> Run<'py> {
+    fn recorded<T: Real + Element>(self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        const REPORTED_EVERY_S: f64 = 10.0;
+        let boats = self.flock.parameters().n_boats;
+        let mut recorder =
+            Recorder::<T>::new(self.flock, self.sampling)?.with_changes(self.changes);
+        if self.contacts {
+            recorder = recorder.with_contacts();
         }
+        if let Some(control) = &self.control {
+            recorder = recorder.with_control(real(&control.control_hz, "control_hz")?)?;
+        }
+        let mut reported_s = 0.0;
+        loop {
+            let pause = py.detach(|| recorder.run(BOAT_SUBSTEPS_A_PIECE))?;
+            match (pause, &self.control) {
+                (Pause::End, _) => break,
+                (Pause::Control, Some(control)) => steer(py, &mut recorder, control)?,
+                _ => py.check_signals()?,
+            }
+            let since_s = recorder.elapsed_s() - reported_s;
+            if pause == Pause::Work || since_s >= REPORTED_EVERY_S {
+                if let Some(progress) = &self.progress {
+                    progress.call1((since_s,))?;
+                }
+                reported_s += since_s;
+            }
+        }
+        fields(py, recorder.into_recording(), boats)
     }
-    fields(py, recorder.into_recording(), boats)
+}
+
+fn steer<T: Real>(
+    py: Python<'_>,
+    recorder: &mut Recorder<T>,
+    control: &Control<'_>,
+) -> PyResult<()> {
+    let layout = layout_from(&control.observation, control.mirror_to_target)?;
+    let observation = observed(py, recorder.flock(), layout, recorder.rudder())?;
+    let rudder = control.steer.call1((observation,))?;
+    let leaders = recorder.flock().parameters().n_leaders;
+    Ok(recorder.steer(floats(&rudder, "rudder", &[leaders])?)?)
 }
 
 fn fields<T: Element>(

@@ -9,6 +9,7 @@ little overlap that makes as the pool shrinks, the contact solver takes out agai
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +17,9 @@ from numpy.typing import NDArray
 from flockenv import _core
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
-from flockenv.policies.registry import EVERY_SUBSTEP
 from flockenv.recording import Recording
 from flockenv.runs.protocols.initial_state import prepared_flock
-from flockenv.simulation import columns_of, sample
+from flockenv.simulation import Change, recorded
 
 __all__ = [
     "DENSITY_RATIO",
@@ -140,7 +140,8 @@ def simulate_loop(
         half = density_scenes(parameters, fixed_width=kind == "rotating-length-loop")
     scenes = [*half, *half[-2::-1]]
     flock = prepared_flock(scenes[0], seed, "rotating")
-    return _recorded(flock, scenes, parameters, seed, duration_s, sample_hz)
+    changes = _changes(scenes, duration_s, sample_hz)
+    return recorded(flock, parameters, duration_s, sample_hz, changes=changes)
 
 
 def simulate_prepared(
@@ -152,42 +153,17 @@ def simulate_prepared(
     `flockenv.runs.protocols.initial_state.STARTS`.
     """
     flock = prepared_flock(parameters, seed, start)
-    return _recorded(flock, [parameters], parameters, seed, duration_s, sample_hz)
+    return recorded(flock, parameters, duration_s, sample_hz)
 
 
-def _recorded(
-    flock: _core.Flock,
-    scenes: Sequence[FlockParameters],
-    parameters: FlockParameters,
-    seed: int,
-    duration_s: float,
-    sample_hz: float,
-) -> Recording:
+def _changes(
+    scenes: Sequence[FlockParameters], duration_s: float, sample_hz: float
+) -> list[Change]:
+    """Return when each of the scenes begins, at samples; the first has begun already."""
     count = math.floor(duration_s * sample_hz * (1 + 1e-12))
     turns = [place * len(scenes) // max(count, 1) for place in range(count)]
-    samples = [sample(flock, np.dtype(np.float32))]
-    now = 0
-    for place, turn in enumerate(turns):
-        if turn != now:
-            flock, now = _moved(flock, scenes[turn], seed), turn
-        flock.advance((place + 1) / sample_hz - flock.time_s)
-        samples.append(sample(flock, np.dtype(np.float32)))
-    return Recording(
-        **columns_of(samples),
-        parameters=parameters,
-        seed=seed,
-        version=_core.__version__,
-        policy=EVERY_SUBSTEP,
-    )
-
-
-def _moved(flock: _core.Flock, scene: FlockParameters, seed: int) -> _core.Flock:
-    pose, velocity = flock.pose, flock.velocity
-    old, new = radii_cm(flock.parameters.pool), radii_cm(scene.pool)
-    if old != new:
-        distance = np.hypot(pose[:, 0], pose[:, 1])
-        share = (distance - old[1]) / (old[0] - old[1])
-        pose[:, :2] *= ((new[1] + share * (new[0] - new[1])) / distance)[:, None]
-    moved = _core.Flock(scene, seed)
-    moved.set_state(pose, velocity, flock.time_s, allow_overlap=True)
-    return moved
+    return [
+        (place / sample_hz, scenes[turn])
+        for place, (before, turn) in enumerate(pairwise([0, *turns]))
+        if turn != before
+    ]

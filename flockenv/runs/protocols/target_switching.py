@@ -1,15 +1,13 @@
 """Leaders that change their direction again and again, as in figure 7."""
 
+import math
 from collections.abc import Sequence
-
-import numpy as np
 
 from flockenv import _core
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
-from flockenv.policies.registry import EVERY_SUBSTEP
 from flockenv.recording import Recording
-from flockenv.simulation import columns_of, sample
+from flockenv.simulation import recorded
 
 __all__ = ["PERIOD_S", "TARGETS", "simulate_alternating", "target_at"]
 
@@ -51,17 +49,10 @@ def simulate_alternating(
             f"period_s = {period_s!r} is not accepted: a whole number of samples at "
             f"{sample_hz!r} a second"
         )
+    stretches = int(duration_s / period_s) + 1 if math.isfinite(duration_s) else 0
+    changes = [
+        (stretch * samples / sample_hz, TARGETS[stretch % len(TARGETS)])
+        for stretch in range(stretches)
+    ]
     flock = _core.Flock(parameters, seed)
-    rows = []
-    for place in range(int(duration_s * sample_hz * (1 + 1e-12)) + 1):
-        flock.advance(max(place / sample_hz - flock.time_s, 0.0))
-        if place % samples == 0:
-            flock.set_target(TARGETS[place // samples % len(TARGETS)])
-        rows.append(sample(flock, np.dtype(np.float32)))
-    return Recording(
-        **columns_of(rows),
-        parameters=parameters,
-        seed=int(seed),
-        version=_core.__version__,
-        policy=EVERY_SUBSTEP,
-    )
+    return recorded(flock, parameters, duration_s, sample_hz, changes=changes)
