@@ -11,9 +11,7 @@ not taken for order; the disordered level is mean Ψ_o at the highest noise.
 """
 
 import argparse
-import os
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from itertools import product
 from pathlib import Path
 
@@ -22,6 +20,7 @@ import pandas as pd
 from rich.progress import track
 
 import flockenv
+from flockenv.runs.executors import local
 
 NOISE_S = {
     "simulation": np.round(np.arange(0.0, 0.91, 0.05), 2),
@@ -75,9 +74,8 @@ def main(arguments: list[str] | None = None) -> None:
         return {"preset": preset, "pool": pool, "bw_s": bw_s, "seed": seed, **order}
 
     try:
-        # Threads suffice: the simulator lets go of the interpreter while it runs.
-        with ThreadPoolExecutor(os.cpu_count()) as pool:
-            rows = list(track(pool.map(run, cells), "simulating", total=len(cells)))
+        found = dict(track(local(run, cells), "simulating", total=len(cells)))
+        rows = [found[place] for place in range(len(cells))]
     except KeyboardInterrupt:
         sys.exit("Interrupted: nothing was written")
     except flockenv.FlockError as error:

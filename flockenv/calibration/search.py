@@ -10,7 +10,6 @@ are measured on seeds that the search has not used.
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
@@ -24,6 +23,7 @@ from flockenv.calibration.targets import NOISE_S, TARGETS, FlockRuns, loss, meas
 from flockenv.calibration.targets import single_boat as measure_boat
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
+from flockenv.runs.executors import in_order
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -211,9 +211,7 @@ def run_flocks(
         progress()
         return measured
 
-    # Threads suffice: the simulator releases the interpreter lock while it runs.
-    with ThreadPoolExecutor(jobs) as pool:
-        rows = iter(list(pool.map(run, cells)))
+    rows = iter(in_order(run, cells, jobs))
     values = {
         k: np.array([[next(rows) for _ in seeds] for _ in levels]) for k, levels in noise_s.items()
     }

@@ -1,8 +1,6 @@
 """Leader policies against each other: seeded episodes, order by number of leaders (figure 12)."""
 
-import os
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +14,7 @@ from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import CONTROL_HZ, LeaderPolicy, control_rate
 from flockenv.policies.model import ModelPolicy, as_policy
+from flockenv.runs.executors import in_order
 from flockenv.runs.seeds import check_evaluation_seeds
 from flockenv.simulation import simulate
 
@@ -238,7 +237,5 @@ def _simulated(
             *ordering,
         ]
 
-    # Threads suffice: the simulator lets go of the interpreter while it runs.
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        means = np.array(list(pool.map(run, flock_seeds)))
+    means = np.array(in_order(run, flock_seeds))
     return dict(zip((*QUANTITIES, *ORDERING_TIMES), means.T, strict=True))

@@ -13,10 +13,17 @@ from typing import Any, Protocol, TypeVar
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError
 
-__all__ = ["ENGINES", "Engine", "joblib", "local", "named", "ray"]
+__all__ = ["ENGINES", "Engine", "cores", "in_order", "joblib", "local", "named", "ray"]
 
 Item = TypeVar("Item")
 Value = TypeVar("Value")
+
+
+def cores() -> int:
+    """Return how many cores this process may use, which a container or a queue may limit."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 class Engine(Protocol):
@@ -35,13 +42,21 @@ def local(
 
     On Ctrl-C runs under way are waited for, all others are dropped.
     """
-    pool = ThreadPoolExecutor(workers or os.cpu_count())
+    pool = ThreadPoolExecutor(workers or cores())
     try:
         places = {pool.submit(function, item): place for place, item in enumerate(items)}
         for future in as_completed(places):
             yield places.pop(future), future.result()
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+def in_order(
+    function: Callable[[Item], Value], items: Sequence[Item], workers: int | None = None
+) -> list[Value]:
+    """Return the values of a function in the order of the items, computed as by `local`."""
+    values = dict(local(function, items, workers))
+    return [values[place] for place in range(len(items))]
 
 
 def joblib(
@@ -102,7 +117,7 @@ def ray(
 def _start_ray(package: Any, workers: int | None) -> None:
     options: dict[str, Any] = {"log_to_driver": False}
     if not os.environ.get("RAY_ADDRESS"):
-        options |= {"num_cpus": workers or os.cpu_count(), "include_dashboard": False}
+        options |= {"num_cpus": workers or cores(), "include_dashboard": False}
     package.init(**options)
 
 

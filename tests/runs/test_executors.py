@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import flockenv
-from flockenv.runs.executors import ENGINES, Engine, joblib, local, named
+from flockenv.runs.executors import ENGINES, Engine, cores, in_order, joblib, local, named
 from flockenv.runs.spec import RunSpec
 from flockenv.runs.store import RunStore, run_missing
 
@@ -69,6 +69,31 @@ def test_local_yields_what_is_finished_while_others_run() -> None:
 def test_an_error_in_an_item_ends_the_work() -> None:
     with pytest.raises(ZeroDivisionError):
         list(local(lambda item: 1 // item, [1, 0, 1], workers=1))
+
+
+def test_values_in_the_order_of_the_items_whatever_finishes_first() -> None:
+    gate = threading.Event()
+
+    def work(item: int) -> int:
+        if item == 0:
+            assert gate.wait(timeout=60)
+        elif item == 2:
+            gate.set()
+        return 10 * item
+
+    assert in_order(work, [0, 1, 2], workers=2) == [0, 10, 20]
+    assert in_order(work, []) == []
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="affinity is Linux's")
+def test_cores_are_those_that_the_process_may_use() -> None:
+    allowed = os.sched_getaffinity(0)
+    assert cores() == len(allowed)
+    os.sched_setaffinity(0, {min(allowed)})
+    try:
+        assert cores() == 1
+    finally:
+        os.sched_setaffinity(0, allowed)
 
 
 def process(item: int) -> int:
