@@ -21,6 +21,7 @@ from rich.progress import track
 
 import flockenv
 from flockenv.runs.executors import local
+from flockenv.statistics.intervals import percentile_ends
 
 NOISE_S = {
     "simulation": np.round(np.arange(0.0, 0.91, 0.05), 2),
@@ -97,7 +98,7 @@ def main(arguments: list[str] | None = None) -> None:
             )
             for chosen in rng.integers(0, options.seeds, (200, options.seeds))
         ]
-        low, high = np.percentile(resampled, [2.5, 97.5])
+        low, high = percentile_ends(np.array(resampled))
         print(f"{preset:10} {pool:9} {critical_noise(means):.3f} s  [{low:.3f}, {high:.3f}]")
 
 

@@ -11,7 +11,7 @@ MOVED = {
     "alternation": "runs.protocols.target_switching",
     "analysis": "statistics.intervals",
     "arrangement": "statistics.structure",
-    "block_bootstrap": "statistics.block_bootstrap",
+    "block_bootstrap": "statistics.intervals",
     "comparison_report": "comparison.report",
     "contacts": "flock",
     "dwelling": "statistics.dwell_times",

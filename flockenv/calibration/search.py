@@ -24,6 +24,7 @@ from flockenv.calibration.targets import single_boat as measure_boat
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.runs.executors import in_order
+from flockenv.statistics.intervals import percentile_ends
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -276,7 +277,7 @@ def residuals(scene: FlockParameters, runs: FlockRuns, resamples: int = 1000) ->
     for target in TARGETS:
         sample = np.array([each[target.key] for each in drawn])
         defined = sample[np.isfinite(sample)]
-        low, high = np.percentile(defined, [2.5, 97.5]) if len(defined) else (math.nan, math.nan)
+        low, high = percentile_ends(defined) if len(defined) else (math.nan, math.nan)
         value = values[target.key]
         rows.append(
             {

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from flockenv.recording import Recording
 from flockenv.reproduce.reproduction import Results
 from flockenv.runs.spec import RunSpec
-from flockenv.statistics.block_bootstrap import block_places, block_sums, block_sums_resampled
+from flockenv.statistics.intervals import block_places, block_sums, block_sums_resampled
 
 __all__ = [
     "PHI_EDGES",
@@ -84,7 +84,7 @@ class OrderStatistics:
     """Sums over the analyzed frames of a series of p points, each of some runs.
 
     Every method's result has r replicates along axis 1: first as measured, then as resampled by
-    `flockenv.statistics.block_bootstrap`, independently at each point.
+    `flockenv.statistics.intervals`, independently at each point.
 
     Attributes
     ----------

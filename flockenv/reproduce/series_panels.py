@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from flockenv.reproduce.order_statistics import PHI_EDGES, PSI_EDGES, OrderStatistics
 from flockenv.reproduce.style import DENSITY_COLORS, LED_COLOR, NOT_LED_COLOR
-from flockenv.statistics.intervals import CONFIDENCE
+from flockenv.statistics.intervals import percentile_ends
 
 __all__ = ["density_map", "density_rows", "draw_curve", "interval_ends", "series_rows"]
 
@@ -20,9 +20,7 @@ def interval_ends(
     replicates: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the ends of the intervals of replicates, shape (p, r): two arrays of shape (p,)."""
-    tail = (1 - CONFIDENCE) / 2
-    low, high = np.quantile(replicates[:, 1:], [tail, 1 - tail], axis=1)
-    return low, high
+    return percentile_ends(replicates[:, 1:], axis=1)
 
 
 def series_rows(

@@ -1,24 +1,54 @@
-"""Statistics of finished runs: means with intervals, and the straight line of figure 12."""
+"""Intervals: of means of independent runs, of time averages, and of a straight line.
+
+Independent values have a BCa bootstrap (`mean_interval`, `paired_difference`), a percentile
+bootstrap (`mean_replicates`, `grouped_replicates`, then `interval`), or, where they are few,
+Student's interval.
+
+Samples of one run are correlated over seconds to minutes, and a run may stay in one state for all
+of its length while another run stays in another. So time averages have both resampled: runs out of
+the runs, then blocks out of each run's blocks (Künsch 1989, with blocks that do not overlap;
+Davison and Hinkley 1997, section 3.8, for the two stages).
+"""
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from flockenv._io.extras import require
 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Difference", "Line", "fit_line", "mean_interval", "paired_difference", "summarize"]
+__all__ = [
+    "CONFIDENCE",
+    "RESAMPLES",
+    "Difference",
+    "Line",
+    "block_places",
+    "block_sums",
+    "block_sums_resampled",
+    "fit_line",
+    "grouped_replicates",
+    "interval",
+    "mean_interval",
+    "mean_replicates",
+    "paired_difference",
+    "percentile_ends",
+    "student_interval",
+    "summarize",
+]
 
 CONFIDENCE = 0.95
 """Level of every interval."""
 
-_RESAMPLES = 9999
+_BCA_RESAMPLES = 9999
+
+RESAMPLES = 499
+"""How many times blocks and runs are drawn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,7 +193,7 @@ def _interval(
         statistic,
         paired=True,
         confidence_level=CONFIDENCE,
-        n_resamples=_RESAMPLES,
+        n_resamples=_BCA_RESAMPLES,
         rng=np.random.default_rng(seed),
     )
     low, high = result.confidence_interval
@@ -198,3 +228,153 @@ def summarize(runs: "pd.DataFrame", by: list[str], quantities: list[str]) -> "pd
         rows.append(row)
     means: pd.DataFrame = pandas.DataFrame(rows)
     return means
+
+
+def percentile_ends(
+    values: NDArray[np.float64], axis: int = -1
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the ends of the percentile interval of replicates, along an axis."""
+    tail = (1 - CONFIDENCE) / 2
+    low, high = np.quantile(values, [tail, 1 - tail], axis=axis)
+    return low, high
+
+
+def mean_replicates(values: NDArray[np.float64], seed: int = 0) -> NDArray[np.float64]:
+    """Return the mean of independent values as they are, then of values drawn anew.
+
+    Returns
+    -------
+    float64 array, shape (RESAMPLES + 1,)
+        As `interval` takes it.
+    """
+    places = np.random.default_rng(seed).integers(0, len(values), (RESAMPLES, len(values)))
+    return np.append(values.mean(), values[places].mean(axis=1))
+
+
+def grouped_replicates(
+    groups: Sequence[NDArray[np.int64]],
+    statistic: Callable[[NDArray[np.int64]], float],
+    seed: int = 0,
+) -> NDArray[np.float64]:
+    """Return a statistic of rows as they are, then of rows drawn anew within each group.
+
+    Parameters
+    ----------
+    groups
+        For each group the places of its rows.
+    statistic
+        A function of the places of rows.
+    seed
+        Of the draws.
+
+    Returns
+    -------
+    float64 array, shape (RESAMPLES + 1,)
+        As `interval` takes it.
+    """
+    rng = np.random.default_rng(seed)
+    values = [statistic(np.sort(np.concatenate(groups)))]
+    for _ in range(RESAMPLES):
+        values.append(statistic(np.concatenate([rng.choice(rows, len(rows)) for rows in groups])))
+    return np.array(values)
+
+
+def student_interval(values: NDArray[np.float64]) -> tuple[float, float, float]:
+    """Return the mean of a few independent values with Student's interval; NaN ends for one."""
+    mean, count = float(values.mean()), len(values)
+    if count < 2:
+        return mean, math.nan, math.nan
+    stats = require("scipy.stats", "plot")
+    quantile = float(stats.t.ppf((1 + CONFIDENCE) / 2, count - 1))
+    half = quantile * float(values.std(ddof=1)) / count**0.5
+    return mean, mean - half, mean + half
+
+
+def block_sums(
+    time_s: NDArray[np.float64], values: ArrayLike, block_s: float
+) -> NDArray[np.float64]:
+    """Sum samples over blocks of time.
+
+    Parameters
+    ----------
+    time_s
+        Times of the t samples in s, increasing.
+    values
+        Shape (t, q): q quantities.
+    block_s
+        Length of a block in s. It should be well above the correlation time.
+
+    Returns
+    -------
+    float64 array, shape (b, q)
+        The sums over each block that holds a sample. The last block may be shorter.
+
+    Raises
+    ------
+    ValueError
+        Without samples.
+    """
+    starts = np.flatnonzero(np.diff(block_places(time_s, block_s), prepend=-1))
+    return np.add.reduceat(np.asarray(values, np.float64), starts, axis=0)
+
+
+def block_places(time_s: NDArray[np.float64], block_s: float) -> NDArray[np.int64]:
+    """Return in which block each sample lies, counted over those that hold one: shape (t,).
+
+    Raises
+    ------
+    ValueError
+        Without samples.
+    """
+    if len(time_s) == 0:
+        raise ValueError("there are no samples to average")
+    steps = np.diff(np.floor((time_s - time_s[0]) / block_s), prepend=0.0)
+    return np.cumsum(steps > 0)
+
+
+def block_sums_resampled(
+    runs: Sequence[NDArray[np.float64]], seed: int, resamples: int = RESAMPLES
+) -> NDArray[np.float64]:
+    """Sum blocks over runs: as they are, and as drawn again and again.
+
+    Parameters
+    ----------
+    runs
+        For each run the sums over its blocks, shape (b, q); see `block_sums`.
+    seed
+        Of the draws.
+    resamples
+        How many draws.
+
+    Returns
+    -------
+    float64 array, shape (resamples + 1, q)
+        Sums over all runs; the first row is that of the runs as they are. Means are quotients of
+        two columns, taken row by row.
+    """
+    rng = np.random.default_rng(seed)
+    chosen = rng.multinomial(len(runs), np.full(len(runs), 1 / len(runs)), resamples)
+    sums = np.zeros((resamples + 1, runs[0].shape[1]))
+    for times, blocks in zip(chosen.T, runs, strict=True):
+        count = len(blocks)
+        drawn = rng.multinomial(times * count, np.full(count, 1 / count))
+        sums[0] += blocks.sum(axis=0)
+        sums[1:] += drawn @ blocks
+    return sums
+
+
+def interval(replicates: NDArray[np.float64]) -> tuple[float, float, float]:
+    """Return the first value, as measured, and the percentile interval of the others.
+
+    Parameters
+    ----------
+    replicates
+        Shape (resamples + 1,), of a quantity derived from `block_sums_resampled`. Draws in which it
+        is undefined (NaN) are left out, and if they are more than half, so are the ends.
+    """
+    drawn = replicates[1:]
+    drawn = drawn[np.isfinite(drawn)]
+    if len(drawn) < len(replicates) / 2:
+        return float(replicates[0]), float("nan"), float("nan")
+    low, high = percentile_ends(drawn)
+    return float(replicates[0]), float(low), float(high)

@@ -8,10 +8,9 @@ from flockenv.reproduce.catalogue import load
 from flockenv.reproduce.command import plan, reproduce
 from flockenv.reproduce.experiment.design import LEVELS_S, SETUPS, noise_series
 from flockenv.reproduce.experiment.runs import line_or_none, resampled
-from flockenv.reproduce.experiment.state_figures import drawn
 from flockenv.reproduce.experiment.time_figures import _flips, _longest
 from flockenv.reproduce.reproduction import Settings
-from flockenv.statistics.block_bootstrap import RESAMPLES, interval
+from flockenv.statistics.intervals import RESAMPLES, interval, mean_replicates
 
 SHORT = Settings(minutes=1 / 3)
 FIGURES = ("fig4", "fig5", "fig6", "fig7", "fig8", "fig9", "fig10", "fig11", "fig12")
@@ -64,7 +63,7 @@ def test_a_line_needs_three_known_points():
 
 
 def test_means_over_runs_are_drawn_from_them():
-    values = drawn(np.array([0.0, 1.0]))
+    values = mean_replicates(np.array([0.0, 1.0]))
     assert values[0] == 0.5
     assert set(values[1:]) == {0.0, 0.5, 1.0}
 

@@ -24,7 +24,6 @@ from flockenv.reproduce.transition.measured import (
     Still,
     binder,
     hysteresis,
-    student,
 )
 from flockenv.reproduce.transition.order import (
     BISTABILITY,
@@ -38,6 +37,7 @@ from flockenv.runs.protocols.hysteresis import LOOPS
 from flockenv.runs.protocols.initial_state import STARTS
 from flockenv.runs.spec import ORDER_NAMES
 from flockenv.runs.store import RunStore, run_missing
+from flockenv.statistics.intervals import student_interval
 
 
 def test_binder() -> None:
@@ -92,8 +92,8 @@ def test_runs_at_one_density_count_in_their_second_half() -> None:
 
 def test_student() -> None:
     # On paper: s = sqrt(2), t(0.975, 1) = 12.706, so ± 12.706.
-    assert student(np.array([1.0, 3.0])) == pytest.approx((2.0, -10.706, 14.706), abs=1e-3)
-    assert np.isnan(student(np.array([1.0]))[1:]).all()
+    assert student_interval(np.array([1.0, 3.0])) == pytest.approx((2.0, -10.706, 14.706), abs=1e-3)
+    assert np.isnan(student_interval(np.array([1.0]))[1:]).all()
 
 
 def test_growing_keeps_the_density() -> None:

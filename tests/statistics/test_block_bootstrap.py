@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from flockenv.statistics.block_bootstrap import block_sums, block_sums_resampled, interval
+from flockenv.statistics.intervals import block_sums, block_sums_resampled, interval
 
 A = 0.9
 SAMPLES = 4000

@@ -25,8 +25,7 @@ from flockenv.reproduce.style import (
     paper_style,
 )
 from flockenv.runs.spec import RunSpec
-from flockenv.statistics.block_bootstrap import RESAMPLES, interval
-from flockenv.statistics.intervals import CONFIDENCE, Line
+from flockenv.statistics.intervals import CONFIDENCE, RESAMPLES, Line, interval
 
 __all__ = ["REPRODUCTIONS"]
 

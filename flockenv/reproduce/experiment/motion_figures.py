@@ -10,15 +10,13 @@ from numpy.typing import NDArray
 from flockenv.recording import Recording
 from flockenv.reproduce.experiment.state_figures import (
     LEVELS_S,
-    drawn,
     pose_points,
     pose_runs,
 )
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
 from flockenv.reproduce.style import COLORS, column_figure, paper_style
 from flockenv.statistics import structure
-from flockenv.statistics.block_bootstrap import interval
-from flockenv.statistics.intervals import CONFIDENCE
+from flockenv.statistics.intervals import CONFIDENCE, interval, mean_replicates
 
 __all__ = ["REPRODUCTIONS"]
 
@@ -96,7 +94,7 @@ def _lagged_rows(bw_s: float, sample_hz: float, runs: Sequence[Recording]) -> pd
 
 def _over_runs(name: str, runs: Sequence[NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
     """Return means over runs and the ends of their intervals, as columns."""
-    ends = np.array([interval(drawn(values)) for values in np.transpose(runs)])
+    ends = np.array([interval(mean_replicates(values)) for values in np.transpose(runs)])
     return {name: ends[:, 0], f"{name}_low": ends[:, 1], f"{name}_high": ends[:, 2]}
 
 
@@ -113,7 +111,7 @@ def _pair_rows(bw_s: float, runs: Sequence[Recording]) -> pd.DataFrame:
 
 def _wall_row(bw_s: float, runs: Sequence[Recording]) -> dict[str, float]:
     means = [structure.on_outer_wall(run.parameters, run.analyzed().pose).mean() for run in runs]
-    mean, low, high = interval(drawn(np.array(means)))
+    mean, low, high = interval(mean_replicates(np.array(means)))
     return {
         "bw_s": bw_s,
         "on_outer_wall": mean,

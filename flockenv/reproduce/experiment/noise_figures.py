@@ -28,8 +28,7 @@ from flockenv.reproduce.series_panels import (
 from flockenv.reproduce.simulation.claims import critical_noise
 from flockenv.reproduce.style import column_figure, paper_style
 from flockenv.runs.spec import RunSpec
-from flockenv.statistics.block_bootstrap import RESAMPLES, interval
-from flockenv.statistics.intervals import CONFIDENCE
+from flockenv.statistics.intervals import CONFIDENCE, RESAMPLES, interval
 
 __all__ = ["REPRODUCTIONS"]
 

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 from flockenv.recording import Recording
 from flockenv.reproduce.reproduction import Results
 from flockenv.runs.spec import RunSpec
-from flockenv.statistics.block_bootstrap import RESAMPLES
-from flockenv.statistics.intervals import Line, fit_line
+from flockenv.statistics.intervals import Line, fit_line, grouped_replicates
 
 __all__ = ["WIDE", "line_or_none", "resampled", "run_rows"]
 
@@ -62,15 +61,10 @@ def resampled(
     Returns
     -------
     float64 array, shape (RESAMPLES + 1,)
-        As `flockenv.statistics.block_bootstrap.interval` takes it.
+        As `flockenv.statistics.intervals.interval` takes it.
     """
-    rng = np.random.default_rng(seed)
-    places = [np.flatnonzero(runs[by] == value) for value in runs[by].unique()]
-    values = [statistic(runs)]
-    for _ in range(RESAMPLES):
-        drawn = np.concatenate([rng.choice(group, len(group)) for group in places])
-        values.append(statistic(runs.iloc[drawn]))
-    return np.array(values)
+    groups = [np.flatnonzero(runs[by] == value) for value in runs[by].unique()]
+    return grouped_replicates(groups, lambda places: statistic(runs.iloc[places]), seed)
 
 
 def line_or_none(x: "pd.Series[float]", y: "pd.Series[float]") -> Line | None:

@@ -16,11 +16,15 @@ from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Sett
 from flockenv.reproduce.style import COLORS, column_figure, paper_style
 from flockenv.runs.spec import RunSpec
 from flockenv.statistics import structure
-from flockenv.statistics.block_bootstrap import RESAMPLES, block_sums_resampled, interval
 from flockenv.statistics.dwell_times import DwellTimes, dwell_times
-from flockenv.statistics.intervals import CONFIDENCE
+from flockenv.statistics.intervals import (
+    CONFIDENCE,
+    block_sums_resampled,
+    interval,
+    mean_replicates,
+)
 
-__all__ = ["LEVELS_S", "REPRODUCTIONS", "drawn", "pose_points", "pose_runs"]
+__all__ = ["LEVELS_S", "REPRODUCTIONS", "pose_points", "pose_runs"]
 
 LEVELS_S = (0.4, 0.8, 1.2, 1.6, 2.0, 2.4, 2.8)
 _MINUTES = 16.0
@@ -95,7 +99,9 @@ def _table2(settings: Settings, results: Results) -> Outcome:
         picture = column_figure(7.0)
         axes = picture.subplots()
         for place, (state, mark) in enumerate(zip(STATES, "^vosDx", strict=True)):
-            ends = np.array([interval(drawn(shares[bw_s][:, place])) for bw_s in LEVELS_S])
+            ends = np.array(
+                [interval(mean_replicates(shares[bw_s][:, place])) for bw_s in LEVELS_S]
+            )
             bars = np.maximum([ends[:, 0] - ends[:, 1], ends[:, 2] - ends[:, 0]], 0.0)
             color = COLORS[place] if state != "between" else "0.6"
             # Side by side, or the bars would hide each other.
@@ -130,7 +136,7 @@ def _state_rows(
 ) -> list[dict[str, object]]:
     rows = []
     for place, state in enumerate(STATES.tolist()):
-        share, low, high = interval(drawn(shares[:, place]))
+        share, low, high = interval(mean_replicates(shares[:, place]))
         with np.errstate(invalid="ignore", divide="ignore"):
             # The interval is that of the rate: a state that no draw leaves has no longest stay.
             _, slowest, fastest = interval(leaving[:, 1, place] / leaving[:, 0, place])
@@ -164,19 +170,13 @@ def _rate_rows(bw_s: float, stays: DwellTimes) -> list[dict[str, object]]:
     ]
 
 
-def drawn(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the mean over runs: as they are, then as drawn anew."""
-    places = np.random.default_rng(0).integers(0, len(values), (RESAMPLES, len(values)))
-    return np.append(values.mean(), values[places].mean(axis=1))
-
-
 def _state_claims(
     shares: dict[float, NDArray[np.float64]], leaving: dict[float, NDArray[np.float64]]
 ) -> list[CheckedClaim]:
     def share(names: Sequence[str], low_s: float, high_s: float) -> NDArray[np.float64]:
         columns = np.isin(STATES, names)
         levels = [each for bw_s, each in shares.items() if low_s <= bw_s <= high_s]
-        return drawn(np.concatenate(levels)[:, columns].sum(axis=1))
+        return mean_replicates(np.concatenate(levels)[:, columns].sum(axis=1))
 
     def claim(
         text: str, quantity: str, values: NDArray[np.float64], low: float, high: float = np.inf

@@ -13,8 +13,7 @@ from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Sett
 from flockenv.reproduce.style import COLORS, column_figure, paper_style
 from flockenv.runs.protocols.target_switching import PERIOD_S, TARGETS, target_at
 from flockenv.runs.spec import RunSpec
-from flockenv.statistics.block_bootstrap import RESAMPLES, interval
-from flockenv.statistics.intervals import CONFIDENCE
+from flockenv.statistics.intervals import CONFIDENCE, interval, mean_replicates
 
 __all__ = ["REPRODUCTIONS"]
 
@@ -67,8 +66,7 @@ def _over_runs(values: Sequence[float]) -> tuple[float, float, float]:
     known = np.array([value for value in values if np.isfinite(value)])
     if len(known) < 2:
         return float("nan"), float("nan"), float("nan")
-    drawn = np.random.default_rng(0).integers(0, len(known), (RESAMPLES, len(known)))
-    return interval(np.append(known.mean(), known[drawn].mean(axis=1)))
+    return interval(mean_replicates(known))
 
 
 def _picture(name: str, shown: Recording, cycles: pd.DataFrame, led: bool) -> Outcome:

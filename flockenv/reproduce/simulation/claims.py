@@ -13,8 +13,7 @@ from flockenv.reproduce.order_statistics import OrderStatistics
 from flockenv.reproduce.reproduction import Results, Settings
 from flockenv.reproduce.simulation.design import Design, Model
 from flockenv.runs.spec import RunSpec
-from flockenv.statistics.block_bootstrap import interval
-from flockenv.statistics.intervals import CONFIDENCE
+from flockenv.statistics.intervals import CONFIDENCE, interval
 
 __all__ = ["CLAIMS", "Evidence", "check", "critical_noise", "runs_needed"]
 

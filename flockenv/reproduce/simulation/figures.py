@@ -19,8 +19,7 @@ from flockenv.reproduce.simulation.claims import Evidence, check
 from flockenv.reproduce.simulation.design import FIGURES, PRESETS
 from flockenv.reproduce.style import COLORS, column_figure, paper_style
 from flockenv.runs.spec import RunSpec
-from flockenv.statistics.block_bootstrap import RESAMPLES
-from flockenv.statistics.intervals import CONFIDENCE
+from flockenv.statistics.intervals import CONFIDENCE, RESAMPLES
 
 __all__ = ["REPRODUCTIONS"]
 

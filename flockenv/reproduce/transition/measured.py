@@ -5,15 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 
 from flockenv.recording import Recording
 from flockenv.reproduce.order_statistics import block_length_s
 from flockenv.reproduce.transition.design import Growth, TransitionDesign
 from flockenv.runs.protocols.hysteresis import loop_position
 from flockenv.runs.protocols.initial_state import STARTS
-from flockenv.statistics.block_bootstrap import block_sums, block_sums_resampled
-from flockenv.statistics.intervals import CONFIDENCE
+from flockenv.statistics.intervals import block_sums, block_sums_resampled, student_interval
 
 __all__ = [
     "CENTERS",
@@ -24,7 +22,6 @@ __all__ = [
     "Still",
     "binder",
     "hysteresis",
-    "student",
 ]
 
 Ends = tuple[float, float, float]
@@ -135,16 +132,6 @@ def _known_mean(values: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
         return np.asarray(np.where(known, values, 0.0).sum(axis) / known.sum(axis))
 
 
-def student(values: NDArray[np.float64]) -> Ends:
-    """Return the mean of a few independent values with Student's interval."""
-    mean, count = float(values.mean()), len(values)
-    if count < 2:
-        return mean, float("nan"), float("nan")
-    quantile = float(stats.t.ppf((1 + CONFIDENCE) / 2, count - 1))
-    half = quantile * float(values.std(ddof=1)) / count**0.5
-    return mean, mean - half, mean + half
-
-
 @dataclass(frozen=True, slots=True)
 class Measured:
     """What was measured of a design.
@@ -166,4 +153,4 @@ class Measured:
     def gap(self, growth: Growth, density: int) -> Ends:
         """Return the difference of Ψ_o cos φ_o between the two starts, seed by seed."""
         rotating, jammed = (self.still[growth, density, start].outward for start in STARTS)
-        return student(jammed - rotating)
+        return student_interval(jammed - rotating)

@@ -32,12 +32,11 @@ from flockenv.reproduce.transition.measured import (
     Loops,
     Measured,
     Still,
-    student,
 )
 from flockenv.reproduce.transition.pictures import pictures
 from flockenv.runs.protocols.hysteresis import DENSITY_RATIO
 from flockenv.runs.protocols.initial_state import STARTS
-from flockenv.statistics.block_bootstrap import interval
+from flockenv.statistics.intervals import interval, student_interval
 
 __all__ = [
     "BISTABILITY",
@@ -202,16 +201,16 @@ def judge(measured: Measured, growth: Growth) -> tuple[CheckedClaim, ...]:
     # A loop on which nothing jammed is closed whatever the transition, and one that never opened
     # cannot close.
     jammed = bool(slow.at_turn.mean() >= _JAMMED)
-    opened = jammed and student(fast.openings)[0] >= HYSTERESIS.low
+    opened = jammed and student_interval(fast.openings)[0] >= HYSTERESIS.low
     return (
         BISTABILITY.check(*gap, scope, f"at density {density}"),
         HYSTERESIS.check(
-            *(student(slow.openings) if jammed else nothing),
+            *(student_interval(slow.openings) if jammed else nothing),
             scope,
             "" if jammed else "the loop never left rotation",
         ),
         NO_LAG.check(
-            *(student(slow.openings - 0.7 * fast.openings) if opened else nothing),
+            *(student_interval(slow.openings - 0.7 * fast.openings) if opened else nothing),
             scope,
             "" if opened else "the faster loop did not open",
         ),
@@ -224,7 +223,7 @@ def _points_table(measured: Measured) -> pd.DataFrame:
         row: dict[str, object] = {"way": growth.way, "n_boats": growth.n_boats}
         row |= {"density": density, "start": start}
         for name, ends in (
-            ("outward", student(still.outward)),
+            ("outward", student_interval(still.outward)),
             ("binder_m", interval(still.binder_m)),
             ("binder_c_v", interval(still.binder_c_v)),
         ):
@@ -237,7 +236,7 @@ def _loops_table(measured: Measured) -> pd.DataFrame:
     tables = []
     for (growth, kind), loop in measured.loops.items():
         keys = {"way": growth.way, "n_boats": growth.n_boats, "loop": kind}
-        value, low, high = student(loop.openings)
+        value, low, high = student_interval(loop.openings)
         columns = {"position": CENTERS, "there": loop.there, "back": loop.back}
         ends = {"opening": value, "opening_low": low, "opening_high": high}
         tables.append(pd.DataFrame({**keys, **columns, **ends}))

@@ -18,11 +18,10 @@ from flockenv.reproduce.transition.measured import (
     Loops,
     Measured,
     Still,
-    student,
 )
 from flockenv.runs.protocols.hysteresis import DENSITY_RATIO
 from flockenv.runs.protocols.initial_state import STARTS
-from flockenv.statistics.block_bootstrap import interval
+from flockenv.statistics.intervals import interval, student_interval
 
 __all__ = ["pictures"]
 
@@ -96,7 +95,7 @@ def _loops(measured: Measured) -> Figure:
 
 def _draw_states(axes: Axes, measured: Measured, growth: Growth, start: str, color: str) -> None:
     densities = measured.design.densities[growth.way]
-    ends = np.array([student(measured.still[growth, d, start].outward) for d in densities])
+    ends = np.array([student_interval(measured.still[growth, d, start].outward) for d in densities])
     bars = [ends[:, 0] - ends[:, 1], ends[:, 2] - ends[:, 0]]
     # Sizes side by side, or their bars hide each other.
     shift = 1.04 ** (measured.design.sizes.index(growth.n_boats) - len(measured.design.sizes) // 2)
@@ -113,7 +112,9 @@ def _draw_loop(axes: Axes, x: NDArray[np.float64], loop: Loops, color: str) -> N
 def _draw_openings(axes: Axes, measured: Measured, way: str) -> None:
     sizes = measured.design.sizes
     for place, kind in enumerate(LOOPS):
-        ends = np.array([student(measured.loops[Growth(way, n), kind].openings) for n in sizes])
+        ends = np.array(
+            [student_interval(measured.loops[Growth(way, n), kind].openings) for n in sizes]
+        )
         bars = [ends[:, 0] - ends[:, 1], ends[:, 2] - ends[:, 0]]
         x = np.array(sizes) * 1.12 ** (place - 1)
         marker, color = f"{_MARKS[place]}-", COLORS[place + 3]
