@@ -1,0 +1,120 @@
+"""Law: a recorded run is bit for bit that of a flock moved by hand, whatever changes on the way."""
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv import Flock, ParameterError
+from flockenv.simulation import recorded
+
+SCENE = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="table-1", bw_s=0.5)
+
+
+def same(run: flockenv.Recording, place: int, flock: Flock) -> bool:
+    return (
+        run.time_s[place] == flock.time_s
+        and run.phase[place] == flock.phase
+        and np.array_equal(run.pose[place], flock.pose)
+        and np.array_equal(run.velocity[place], flock.velocity)
+        and run.order[place] == flock.order_parameters()
+    )
+
+
+def advance_to(flock: Flock, time_s: float, rudder=None) -> None:
+    flock.advance(max(time_s - flock.time_s, 0.0), rudder)
+
+
+def test_targets_change_after_the_sample_at_their_time():
+    start = Flock(SCENE, 3)
+    changes = [(4.0, "cw"), (2.0, "ccw"), (50.0, "ccw")]
+    run = recorded(start, SCENE, 8.0, 5.0, changes=changes, dtype=np.float64)
+    flock = Flock(SCENE, 3)
+    for place in range(41):
+        advance_to(flock, place / 5)
+        assert same(run, place, flock)
+        if place in (10, 20):
+            flock.set_target({10: "ccw", 20: "cw"}[place])
+    assert flock.order_parameters() != recorded(start, SCENE, 8.0, 5.0).order[-1]
+    assert start.time_s == 0.0
+
+
+def test_boats_keep_their_share_of_the_way_between_the_walls():
+    other = SCENE.replace(pool=(120.0, 40.0), bw_s=0.2)
+    run = recorded(Flock(SCENE, 3), SCENE, 8.0, 5.0, changes=[(3.2, other)], dtype=np.float64)
+    flock = Flock(SCENE, 3)
+    for place in range(41):
+        advance_to(flock, place / 5)
+        assert same(run, place, flock)
+        if place == 16:
+            pose = flock.pose
+            distance = np.hypot(pose[:, 0], pose[:, 1])
+            share = (distance - 48.5) / (90.0 - 48.5)
+            pose[:, :2] *= ((40.0 + share * (120.0 - 40.0)) / distance)[:, None]
+            moved = Flock(other, 3)
+            moved.set_state(pose, flock.velocity, flock.time_s, allow_overlap=True)
+            flock = moved
+
+
+class Watching:
+    """Rudders from what is seen, and how often they were asked for."""
+
+    def __init__(self, mirror_to_target: bool = False) -> None:
+        self.asked, self.mirror_to_target = 0, mirror_to_target
+
+    def predict(self, observation, state=None, episode_start=None):
+        self.asked += 1
+        turns = 0 if state is None else state
+        return 2.0 * np.sin(observation[:, :3].sum(axis=1) + turns), turns + 1
+
+
+@pytest.mark.parametrize("control_hz", [10.0, 3.0])
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_rudders_are_held_between_control_steps(control_hz, mirrored):
+    scene = SCENE.replace(target="ccw")
+    policy = Watching(mirrored)
+    run = flockenv.simulate(scene, 3, 6.0, 5.0, policy, control_hz=control_hz)
+    by_hand, flock, rudder = Watching(mirrored), Flock(scene, 3), np.zeros(2)
+    samples, steps = np.arange(31) / 5, np.arange(int(6 * control_hz) + 1) / control_hz
+    state, place = None, 0
+    for time_s in np.unique(np.round(np.concatenate([samples, steps]), 9)):
+        advance_to(flock, time_s, rudder)
+        if np.isclose(samples, time_s).any():
+            assert same(run, place, flock)
+            place += 1
+        if np.isclose(steps, time_s).any():
+            seen = flockenv.envs.observation.observe(
+                flock, mirror_to_target=mirrored, rudder=rudder
+            )
+            actions, state = by_hand.predict(seen, state)
+            rudder = np.clip(actions, -1.0, 1.0) * (-1.0 if mirrored else 1.0)
+    assert (place, policy.asked) == (31, by_hand.asked)
+
+
+def test_a_policy_without_leaders_is_not_asked():
+    policy = Watching()
+    flockenv.simulate(SCENE.replace(n_leaders=0), 3, 2.0, policy=policy)
+    assert policy.asked == 0
+
+
+def test_progress_is_reported_with_and_without_a_policy():
+    for policy in (None, Watching()):
+        told = []
+        flockenv.simulate(SCENE, 3, 1800.0, 1.0, policy, control_hz=1.0, progress=told.append)
+        assert len(told) > 2
+        assert 1200.0 < sum(told) <= 1800.0
+        assert min(told) > 0.0
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ("left", "target"),
+        (SCENE.replace(n_boats=9), "pose"),
+        (SCENE.replace(pool=(20.0, 15.0)), "n_boats"),
+    ],
+)
+def test_changes_that_cannot_be_are_refused(change, words):
+    with pytest.raises(ParameterError, match=words):
+        recorded(Flock(SCENE, 3), SCENE, 8.0, 5.0, changes=[(1.0, change)])
+    with pytest.raises(TypeError, match="parameters"):
+        recorded(Flock(SCENE, 3), SCENE, 8.0, 5.0, changes=[(1.0, 7)])
