@@ -1,8 +1,25 @@
 import subprocess
 import sys
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
+from matplotlib.colors import to_rgb
+from matplotlib.image import imread
+
+
+@pytest.fixture
+def curves_in() -> Callable[[Path], int]:
+    """Count the policies whose color is in the picture of a comparison."""
+
+    def count(path: Path) -> int:
+        from flockenv.comparison.figure import COLORS
+
+        pixels = imread(path)[..., :3]
+        near = [abs(pixels - to_rgb(color)).max(axis=-1) < 0.02 for color in COLORS]
+        return sum(int(each.sum() > 500) for each in near)
+
+    return count
 
 
 @pytest.fixture
