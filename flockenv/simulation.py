@@ -153,7 +153,7 @@ def recorded(
     flock
         Where the run begins.
     parameters
-        What the recording tells of the run.
+        What the recording says of the run.
     changes
         What changes on the way: at each of these times, after the sample at that time, the target
         or all parameters. With another pool each boat keeps its angle about the center and its

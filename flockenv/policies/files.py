@@ -37,7 +37,7 @@ def write_policy(
 
 
 def digest(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> str:
-    """Return the first digits of a policy's SHA-256, whatever its file tells of its making."""
+    """Return the first digits of a policy's SHA-256, whatever its file says of its making."""
     plain = {name: value for name, value in header.items() if name != "made"}
     whole = hashlib.sha256(json.dumps(plain, sort_keys=True).encode())
     for name in sorted(arrays):

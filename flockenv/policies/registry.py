@@ -11,7 +11,15 @@ from flockenv.policies.constant import RandomRudders, StraightAhead
 from flockenv.policies.laws import LAWS
 from flockenv.policies.pretrained import LEARNED, TUNED_GAINS, learned, load, tuned_law
 
-__all__ = ["EVERY_SUBSTEP", "FILES", "POLICIES", "POOL_POLICIES", "named_policy", "policy_name", "quoted"]
+__all__ = [
+    "EVERY_SUBSTEP",
+    "FILES",
+    "POLICIES",
+    "POOL_POLICIES",
+    "named_policy",
+    "policy_name",
+    "quoted",
+]
 
 FILES = (".npz", ".zip")
 """How the files of policies end: learned ones of this package, and models of stable-baselines3."""

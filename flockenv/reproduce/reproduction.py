@@ -58,7 +58,7 @@ class Settings:
 
 
 class Results(Mapping[RunSpec, Recording]):
-    """Finished runs by their specs, read from the store when asked for.
+    """Finished runs by their specs, read from the store when they are needed.
 
     Parameters
     ----------

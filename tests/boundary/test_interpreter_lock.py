@@ -1,7 +1,7 @@
 """Law: while a flock moves, other Python threads run; a flock in use elsewhere says so.
 
-Threads are told not to take the interpreter from each other for a minute: this one goes on only
-where the other one lets go of it. How long the other one takes does not matter.
+Threads may not take the interpreter from each other for a minute: this one goes on only where the
+other one releases it. How long the other one takes does not matter.
 """
 
 import sys
@@ -50,10 +50,6 @@ def test_simulate_lets_other_threads_run(parameters):
 
 
 def test_one_flock_in_two_threads_is_an_error_and_no_more(flock):
-    with (
-        beside(lambda: flock.advance(600.0)) as finished,
-        pytest.raises(RuntimeError, match="borrowed"),
-    ):
+    with beside(lambda: flock.advance(600.0)), pytest.raises(RuntimeError, match="borrowed"):
         flock.advance(0)
-        assert not finished.is_set()
     assert flock.time_s == 600.0

@@ -56,7 +56,7 @@ def test_boats_keep_their_share_of_the_way_between_the_walls():
 
 
 class Watching:
-    """Rudders from what is seen, and how often they were asked for."""
+    """Rudders from what is seen, and how often they were requested."""
 
     def __init__(self, mirror_to_target: bool = False) -> None:
         self.asked, self.mirror_to_target = 0, mirror_to_target
@@ -98,11 +98,11 @@ def test_a_policy_without_leaders_is_not_asked():
 
 def test_progress_is_reported_with_and_without_a_policy():
     for policy in (None, Watching()):
-        told = []
-        flockenv.simulate(SCENE, 3, 1800.0, 1.0, policy, control_hz=1.0, progress=told.append)
-        assert len(told) > 2
-        assert 1200.0 < sum(told) <= 1800.0
-        assert min(told) > 0.0
+        reported = []
+        flockenv.simulate(SCENE, 3, 1800.0, 1.0, policy, control_hz=1.0, progress=reported.append)
+        assert len(reported) > 2
+        assert 1200.0 < sum(reported) <= 1800.0
+        assert min(reported) > 0.0
 
 
 @pytest.mark.parametrize(
