@@ -209,6 +209,8 @@ class FlockParameters:
         return cls.from_dict(read_toml(text, "the text of parameters"))
 
 
+_core.set_parameters_class(FlockParameters)
+
 _NAMES = tuple(each.name for each in fields(FlockParameters))
 
 

@@ -4,7 +4,8 @@ import html
 import importlib
 import math
 import os
-from dataclasses import dataclass, fields, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -28,10 +29,15 @@ DISCARDED_SHARE = 0.1
 """The share of a run, at its start, that no figure uses."""
 
 _FORMAT = "flockenv recording 2"
-_FORMAT_WITHOUT_POLICY = "flockenv recording 1"
 PHASES = np.array(_core.phase_names())
-_ORDER = tuple(each.name for each in fields(OrderSeries))
-_CONTACTS = tuple(each.name for each in fields(ContactSeries))
+# Format 1 held Section 3.2's six order parameters, and neither the policy nor the duration; later
+# files hold the quantities that were recorded at the time.
+_FIRST_FORMAT = "flockenv recording 1"
+_FIRST_ORDER = ("psi_o", "phi_o", "c_o", "psi_v", "phi_v", "c_v")
+RECORDED = tuple(each for each in _core.quantities() if each.kind == "recorded")
+"""The quantities that are recorded with every sample, entries of the table."""
+_ORDER = tuple(each.name for each in RECORDED)
+_CONTACTS = ("count", "i", "j", "normal", "force", "point_cm")
 _TIMES = ("time_s", "phase", "in_analysis_window")
 _ARRAYS = (*_TIMES, "pose", "velocity")
 _COMPONENTS = {
@@ -116,15 +122,15 @@ class Recording:
                 "if that is not given"
             )
         normal_boats = self.parameters.n_boats - self.parameters.n_leaders
-        for name in _ORDER:
-            values = getattr(self.order, name)
-            undefined = normal_boats == 0 or (normal_boats == 1 and name in ("c_o", "c_v"))
-            _check(f"order.{name}", values, times, PRECISIONS[:1], all_nan=undefined)
+        for each in RECORDED:
+            values = getattr(self.order, each.name)
+            undefined = normal_boats < each.least_boats
+            _check(f"order.{each.name}", values, times, PRECISIONS[:1], all_nan=undefined)
         seed: Any = self.seed
         if not isinstance(seed, int) or not 0 <= seed < 2**64:
             raise ParameterError(f"seed = {seed!r} is not accepted: an int from 0 to 2^64 - 1")
         if self.contacts is not None:
-            self.contacts.check(len(self), self.parameters.n_boats)
+            _check_contacts(self.contacts, len(self), self.parameters.n_boats)
 
     def __len__(self) -> int:
         return len(self.time_s)
@@ -280,8 +286,8 @@ class Recording:
 
     def _at(self, samples: NDArray[np.bool_]) -> Self:
         columns: dict[str, Any] = {name: getattr(self, name)[samples] for name in _ARRAYS}
-        order = OrderSeries(*(getattr(self.order, name)[samples] for name in _ORDER))
-        contacts = None if self.contacts is None else self.contacts.at(samples)
+        order = OrderSeries(**{name: getattr(self.order, name)[samples] for name in _ORDER})
+        contacts = None if self.contacts is None else _contacts_at(self.contacts, samples)
         return replace(self, **columns, order=order, contacts=contacts)
 
     def save(self, path: str | os.PathLike[str], *, compressed: bool = False) -> None:
@@ -338,12 +344,13 @@ class Recording:
 
     @classmethod
     def _from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> Self:
-        if str(arrays.get("format")) == _FORMAT_WITHOUT_POLICY:
+        if str(arrays.get("format")) == _FIRST_FORMAT:
             last = arrays.get("time_s", np.zeros(1))[-1:].astype(np.float64).sum()
             added = {"policy": np.array(""), "duration_s": np.array(last)}
             arrays = {**added, **arrays, "format": np.array(_FORMAT)}
         texts = ("format", "version", "parameters", "policy")
-        expected = {*_ARRAYS, *(f"order_{name}" for name in _ORDER), *texts, "seed", "duration_s"}
+        order = [name for name in _ORDER if name in _FIRST_ORDER or f"order_{name}" in arrays]
+        expected = {*_ARRAYS, *(f"order_{name}" for name in order), *texts, "seed", "duration_s"}
         with_contacts = {f"contacts_{name}" for name in _CONTACTS}
         has_contacts = not with_contacts.isdisjoint(arrays)
         expected |= with_contacts if has_contacts else set()
@@ -357,10 +364,12 @@ class Recording:
         form, version, parameters, policy = (str(arrays[name]) for name in texts)
         if form != _FORMAT:
             raise ParameterError(f"format = {form!r} is not accepted: {_FORMAT!r}")
+        held = {name: arrays[f"order_{name}"] for name in order}
+        scene = FlockParameters.from_toml(parameters)
         return cls(
             **{name: arrays[name] for name in _ARRAYS},
-            order=OrderSeries(*(arrays[f"order_{name}"] for name in _ORDER)),
-            parameters=FlockParameters.from_toml(parameters),
+            order=_whole_order(held, [arrays["pose"], arrays["velocity"]], scene),
+            parameters=scene,
             seed=int(arrays["seed"]),
             version=version,
             policy=policy or None,
@@ -386,3 +395,52 @@ def _check(
         raise ParameterError(f"{name} has shape {array.shape}, expected {shape}")
     if array.dtype.kind == "f" and not (np.isnan if all_nan else np.isfinite)(array).all():
         raise ParameterError(f"{name} must be {'undefined (NaN)' if all_nan else 'finite'}")
+
+
+def _whole_order(
+    held: dict[str, NDArray[Any]],
+    states: Sequence[NDArray[Any]],
+    parameters: FlockParameters,
+) -> OrderSeries:
+    """Return the quantities that a file holds, and from its poses those that it lacks."""
+    n = parameters.n_boats
+    are_states = all(each.dtype in PRECISIONS and each.shape[1:] == (n, 3) for each in states)
+    is_whole = len(held) == len(_ORDER) or parameters.n_leaders == n
+    if is_whole or not are_states or len(states[0]) != len(states[1]):
+        return OrderSeries(**held)
+    normal = slice(parameters.n_leaders, None)
+    series = _core.order_series(*(each[:, normal].astype(np.float64) for each in states))
+    return OrderSeries(**{name: held.get(name, getattr(series, name)) for name in _ORDER})
+
+
+def _contacts_at(contacts: ContactSeries, samples: NDArray[np.bool_]) -> ContactSeries:
+    """Return the contacts of some of the samples, shape (t,)."""
+    kept = np.repeat(samples, contacts.count)
+    each = (getattr(contacts, name)[kept] for name in _CONTACTS[1:])
+    return ContactSeries(contacts.count[samples], *each)
+
+
+def _check_contacts(contacts: ContactSeries, samples: int, boats: int) -> None:
+    c = len(contacts.i) if np.ndim(contacts.i) else 0
+    shapes = {"count": (samples,), "normal": (c, 2), "point_cm": (c, 2)}
+    dtypes = {"count": np.int64, "i": np.int32, "j": np.int32}
+    for name in _CONTACTS:
+        array: Any = getattr(contacts, name)
+        shape, dtype = shapes.get(name, (c,)), dtypes.get(name, np.float32)
+        if not isinstance(array, np.ndarray) or array.dtype != dtype or array.shape != shape:
+            raise ParameterError(
+                f"contacts.{name} must be an array of {np.dtype(dtype)}, shape {shape}"
+            )
+        if not np.isfinite(array).all():
+            raise ParameterError(f"contacts.{name} must be finite")
+    count = contacts.count
+    if (count < 0).any() or (count > c).any() or count.sum() != c:
+        raise ParameterError(f"contacts.count must add up to the {c} contacts there are")
+    if not (_within(contacts.i, 0, boats) and _within(contacts.j, -2, boats)):
+        raise ParameterError(f"contacts.i and contacts.j must be among {boats} boats")
+    if not (contacts.force > 0).all():
+        raise ParameterError("contacts.force must be positive")
+
+
+def _within(numbers: NDArray[np.int32], low: int, end: int) -> bool:
+    return bool(((numbers >= low) & (numbers < end)).all())

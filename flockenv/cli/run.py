@@ -8,6 +8,7 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
+from flockenv import _core
 from flockenv.cli.console import interruptible, print_json, progress_bar, say
 from flockenv.cli.output import check_file, keep, printable, refuse_overwriting
 from flockenv.cli.scene import (
@@ -130,15 +131,18 @@ def _policy(name: str, scene: FlockParameters, trust: bool) -> LeaderPolicy | st
 
 def summary_of(recording: Recording) -> dict[str, float | int | None]:
     """Return means over the samples in the analysis window after the first tenth of the run."""
-    order = recording.analyzed().order
-    series = {
-        "psi_o": order.psi_o,
-        "signed_order": order.signed_order(recording.parameters.target),
-        "rotation": order.rotation(),
-        "psi_v_cm_s": order.psi_v,
+    used = recording.analyzed()
+    target = recording.parameters.target
+    means = {
+        each.name + _suffix(each.unit): _mean(used.order.series(each.name, target))
+        for each in _core.quantities()
+        if each.is_averaged
     }
-    means = {name: _mean(values) for name, values in series.items()}
-    return {"samples": len(recording), "samples_in_window": len(order), **means}
+    return {"samples": len(recording), "samples_in_window": len(used), **means}
+
+
+def _suffix(unit: str) -> str:
+    return "_" + unit.replace("/", "_").replace("²", "2") if unit else ""
 
 
 def _mean(values: NDArray[np.float64]) -> float | None:
@@ -147,13 +151,14 @@ def _mean(values: NDArray[np.float64]) -> float | None:
 
 
 def in_words(summary: dict[str, float | int | None]) -> str:
-    """Return what a summary says, in one line."""
-    words = {
-        "psi_o": "mean Ψ_o",
-        "signed_order": "order towards target",
-        "rotation": "rotation",
-    }
-    found = {word: summary[name] for name, word in words.items()}
+    """Return what a summary says, in one line: its quantities without a unit."""
+    table = {each.name: each for each in _core.quantities()}
+    found = {_word(table[name]): n for name, n in summary.items() if name in table}
     return ", ".join(
         f"{word} {'undefined' if n is None else f'{n:.3f}'}" for word, n in found.items()
     )
+
+
+def _word(quantity: _core.Quantity) -> str:
+    symbol = quantity.symbol
+    return f"mean {symbol}" if "_" in symbol else quantity.label.partition(",")[0]

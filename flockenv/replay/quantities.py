@@ -2,14 +2,13 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
-from operator import attrgetter
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv.flock import OrderSeries
+from flockenv import _core
 from flockenv.recording import Recording
 
 __all__ = ["ShownQuantity", "shown_quantities", "telling_minute"]
@@ -18,17 +17,7 @@ _Series = Callable[[Recording], NDArray[np.float64]]
 
 _MINUTE_S = 60.0
 _STEP_S = 0.5
-# What a quantity is called, its unit and its range; the range of others is that of the data.
-_KNOWN: dict[str, tuple[str, str, tuple[float, float] | None]] = {
-    "signed_order": ("order towards target", "", (-1.0, 1.0)),
-    "rotation": ("rotation, clockwise positive", "", (-1.0, 1.0)),
-    "psi_o": ("order Ψₒ", "", (0.0, 1.0)),
-    "phi_o": ("angle φₒ", "rad", (-math.pi, math.pi)),
-    "c_o": ("correlation Cₒ", "", None),
-    "psi_v": ("velocity Ψᵥ", "cm/s", None),
-    "phi_v": ("angle φᵥ", "rad", (-math.pi, math.pi)),
-    "c_v": ("correlation Cᵥ", "cm²/s²", None),
-}
+_SMALL = str.maketrans({"o": "ₒ", "v": "ᵥ", "n": "ₙ"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,16 +61,19 @@ def shown_quantities(recordings: Sequence[Recording]) -> list[ShownQuantity]:
 
     Order towards the target is among them where any of the recordings has leaders.
     """
-    series: dict[str, _Series] = {}
-    if any(recording.parameters.n_leaders for recording in recordings):
-        series["signed_order"] = _signed_order
-    series["rotation"] = lambda recording: recording.order.rotation()
-    series |= {each.name: attrgetter(f"order.{each.name}") for each in fields(OrderSeries)}
-    return [_shown(key, of, recordings) for key, of in series.items()]
+    table = {each.name: each for each in _core.quantities() if each.kind != "structure"}
+    has_leaders = any(recording.parameters.n_leaders for recording in recordings)
+    first = ["signed_order", "rotation"] if has_leaders else ["rotation"]
+    recorded = [each.name for each in table.values() if each.kind == "recorded"]
+    return [_shown(table[name], recordings) for name in (*first, *recorded)]
 
 
-def _shown(key: str, of: _Series, recordings: Sequence[Recording]) -> ShownQuantity:
-    words, unit, limits = _KNOWN.get(key, (key, "", None))
+def _shown(entry: _core.Quantity, recordings: Sequence[Recording]) -> ShownQuantity:
+    limits = entry.range
+
+    def of(recording: Recording) -> NDArray[np.float64]:
+        return recording.order.series(entry.name, recording.parameters.target)
+
     values = [of(recording) for recording in recordings]
     largest = max(
         (float(np.nanmax(np.abs(each))) for each in values if _is_defined(each)), default=1.0
@@ -89,7 +81,10 @@ def _shown(key: str, of: _Series, recordings: Sequence[Recording]) -> ShownQuant
     largest = max(map(abs, limits)) if limits else largest
     # Three digits of numbers around the largest, and no more than 6 behind the point.
     decimals = 2 - math.floor(math.log10(largest) + 0.3) if largest > 0 else 2
-    return ShownQuantity(key, words, unit, limits, min(max(decimals, 0), 6), of)
+    name, _, index = entry.symbol.partition("_")
+    symbol = f" {name}{index.translate(_SMALL)}" if index else ""
+    words = f"{entry.label}{symbol}"
+    return ShownQuantity(entry.name, words, entry.unit, limits, min(max(decimals, 0), 6), of)
 
 
 def _signed_order(recording: Recording) -> NDArray[np.float64]:

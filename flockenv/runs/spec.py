@@ -12,7 +12,7 @@ import numpy as np
 from flockenv.errors import ParameterError
 from flockenv.flock import OrderSeries
 from flockenv.parameters import FlockParameters
-from flockenv.recording import Recording
+from flockenv.recording import RECORDED, Recording
 from flockenv.runs.protocols.hysteresis import LOOPS, simulate_loop, simulate_prepared
 from flockenv.runs.protocols.initial_state import STARTS
 from flockenv.runs.protocols.target_switching import simulate_alternating
@@ -24,7 +24,7 @@ KEEP = ("window", "order", "poses")
 """What can be kept of a run: order parameters of the samples in the analysis window after the first
 tenth; of all samples; or these and all poses and velocities."""
 
-ORDER_NAMES = tuple(each.name for each in fields(OrderSeries))
+ORDER_NAMES = tuple(each.name for each in RECORDED)
 
 
 def _law(spec: "RunSpec") -> Recording:
@@ -146,5 +146,6 @@ def execute(spec: RunSpec) -> Recording:
     if spec.keep != "poses":
         run = run.without_poses()
     # A store holds no more digits, and a run from it is the same as a run made now.
-    orders = (getattr(run.order, name).astype(np.float32) for name in ORDER_NAMES)
-    return replace(run, order=OrderSeries(*(values.astype(np.float64) for values in orders)))
+    orders = {name: getattr(run.order, name).astype(np.float32) for name in ORDER_NAMES}
+    doubles = {name: values.astype(np.float64) for name, values in orders.items()}
+    return replace(run, order=OrderSeries(**doubles))

@@ -21,10 +21,10 @@ from flockenv.runs.spec import ORDER_NAMES, RunSpec, execute
 
 __all__ = ["RESULTS_VERSION", "RunStore", "StorageError", "StoreWarning", "columns", "run_missing"]
 
-RESULTS_VERSION = 1
+RESULTS_VERSION = 2
 """Rises whenever the same spec comes to give other numbers: what was kept before is then redone."""
 
-_FORMAT = "flockenv run 1"
+_FORMAT = "flockenv run 2"
 
 
 class StorageError(FlockError, OSError):
@@ -182,14 +182,14 @@ def _recording(spec: RunSpec, arrays: Mapping[str, NDArray[Any]]) -> Recording:
         raise ParameterError(f"these arrays are missing, unknown or misshapen: {names}")
     if (arrays["phase"] >= len(PHASES)).any():
         raise ParameterError(f"phase is not accepted: places from 0 to {len(PHASES) - 1}")
-    orders = (arrays[f"order_{name}"].astype(np.float64) for name in ORDER_NAMES)
+    orders = {name: arrays[f"order_{name}"].astype(np.float64) for name in ORDER_NAMES}
     return Recording(
         time_s=arrays["time_s"],
         phase=PHASES[arrays["phase"]],
         in_analysis_window=arrays["in_analysis_window"],
         pose=arrays.get("pose", none),
         velocity=arrays.get("velocity", none),
-        order=OrderSeries(*orders),
+        order=OrderSeries(**orders),
         parameters=spec.parameters,
         seed=spec.seed,
         version=_core.__version__,

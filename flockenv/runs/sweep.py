@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flockenv import _core
 from flockenv._io.atomic_write import atomic_write
 from flockenv._io.extras import require
 from flockenv.errors import FlockError, ParameterError
 from flockenv.recording import Recording
 from flockenv.runs.executors import Engine, local
-from flockenv.runs.spec import ORDER_NAMES, RunSpec
+from flockenv.runs.spec import RunSpec
 from flockenv.runs.store import RunStore, StorageError, run_missing
 from flockenv.runs.sweep_spec import SweepSpec
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["load_sweep", "run_sweep", "summary", "to_xarray"]
 
-_AVERAGED = (*(name for name in ORDER_NAMES if name[:3] != "phi"), "rotation", "signed_order")
+_AVERAGED = tuple(each.name for each in _core.quantities() if each.is_averaged)
 
 
 def summary(run: Recording) -> dict[str, float]:
@@ -31,20 +32,17 @@ def summary(run: Recording) -> dict[str, float]:
     -------
     dict
         ``frames``, how many there are (analysis window, after the first tenth); ``<name>_mean`` and
-        ``<name>_std`` of Ψ_o, C_o, Ψ_v (cm/s), C_v (cm²/s²) and the rotation Ψ_o·sin φ_o, and of
-        the signed order towards the target. NaN where undefined.
+        ``<name>_std`` of each averaged quantity of the table: Ψ_o, C_o, Ψ_v (cm/s), C_v (cm²/s²),
+        the nematic order, milling, the signed order towards the target and the rotation
+        Ψ_o·sin φ_o. NaN where undefined.
     """
-    order = run.analyzed().order
-    series = {name: getattr(order, name) for name in _AVERAGED if name in ORDER_NAMES}
-    series |= {
-        "rotation": order.rotation(),
-        "signed_order": order.signed_order(run.parameters.target),
-    }
-    row: dict[str, float] = {"frames": len(order)}
+    used = run.analyzed()
+    order, target = used.order, run.parameters.target
+    row: dict[str, float] = {"frames": len(used)}
     for name in _AVERAGED:
-        values = series[name]
-        row[f"{name}_mean"] = float(values.mean()) if len(values) else np.nan
-        row[f"{name}_std"] = float(values.std()) if len(values) else np.nan
+        kept = order.series(name, target)
+        row[f"{name}_mean"] = float(kept.mean()) if len(kept) else np.nan
+        row[f"{name}_std"] = float(kept.std()) if len(kept) else np.nan
     return row
 
 

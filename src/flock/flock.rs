@@ -2,6 +2,7 @@
 
 use super::placement;
 use crate::analysis::OrderParameters;
+use crate::analysis::quantities::{self, Recorded};
 use crate::clock::{Ticks, seconds, ticks};
 use crate::contact::{Contact, Partner, Statistics};
 use crate::error::{FlockError, Result};
@@ -335,12 +336,23 @@ impl Flock {
     /// # Errors
     /// [`FlockError::Parameter`] if there is no such boat.
     pub fn order_parameters(&self, include_leaders: bool) -> Result<OrderParameters> {
-        let first = if include_leaders {
-            0
-        } else {
-            self.parameters.n_leaders
-        };
-        OrderParameters::of_hulls(&self.hulls()[first..], &self.velocities()[first..])
+        let (hulls, velocities) = self.measured(include_leaders);
+        OrderParameters::of_hulls(hulls, velocities)
+    }
+
+    /// The recorded quantities of the normal boats, or of all, in the order of the table.
+    ///
+    /// # Errors
+    /// As for [`Self::order_parameters`].
+    pub fn recorded(&self, include_leaders: bool) -> Result<Recorded> {
+        let (hulls, velocities) = self.measured(include_leaders);
+        quantities::recorded(hulls, velocities)
+    }
+
+    fn measured(&self, include_leaders: bool) -> (&[HullPose], &[Velocity]) {
+        let leaders = self.parameters.n_leaders;
+        let first = if include_leaders { 0 } else { leaders };
+        (&self.hulls()[first..], &self.velocities()[first..])
     }
 
     /// Contacts and near-contacts of the last substep: gaps now, forces as means over the last change of velocity.

@@ -2,7 +2,7 @@
 
 use super::change::Change;
 use super::flock::{ContactForce, Flock};
-use crate::analysis::OrderParameters;
+use crate::analysis::quantities::{RECORDED, Recorded};
 use crate::clock::{Ticks, seconds, ticks};
 use crate::error::{FlockError, Result};
 use crate::integrator::{Phase, Steering};
@@ -110,8 +110,8 @@ pub struct Recording<T> {
     pub pose: Vec<T>,
     /// Velocities [cm/s, cm/s, rad/s] of all boats, sample after sample.
     pub velocity: Vec<T>,
-    /// Order parameters of the normal boats; all NaN where there is none.
-    pub order: Vec<OrderParameters>,
+    /// Recorded quantities of the normal boats; all NaN where there is none.
+    pub order: Vec<Recorded>,
     /// Contacts, if they are recorded.
     pub contacts: Option<ContactSamples>,
 }
@@ -127,7 +127,7 @@ impl<T: Real> Recording<T> {
     pub fn with_room_for(sampling: &Sampling, parameters: &FlockParameters) -> Result<Self> {
         let samples = sampling.count();
         let state = 6 * parameters.n_boats as u64 * size_of::<T>() as u64;
-        let other = (size_of::<OrderParameters>() + size_of::<f64>() + 2) as u64;
+        let other = (size_of::<Recorded>() + size_of::<f64>() + 2) as u64;
         let bytes = samples.saturating_mul(state + other);
         let mut recording = Self::empty();
         if bytes > Self::MOST_BYTES || recording.reserve(samples, parameters.n_boats).is_none() {
@@ -170,14 +170,6 @@ impl<T: Real> Recording<T> {
 
     /// Takes a sample of a flock as it is now.
     pub fn push(&mut self, flock: &Flock) {
-        const NO_BOAT: OrderParameters = OrderParameters {
-            psi_o: f64::NAN,
-            phi_o: f64::NAN,
-            c_o: f64::NAN,
-            psi_v: f64::NAN,
-            phi_v: f64::NAN,
-            c_v: f64::NAN,
-        };
         self.time_s.push(flock.time_s());
         self.phase.push(flock.phase().phase);
         self.in_analysis_window
@@ -191,7 +183,7 @@ impl<T: Real> Recording<T> {
             self.velocity.extend(numbers.map(T::nearest));
         }
         self.order
-            .push(flock.order_parameters(false).unwrap_or(NO_BOAT));
+            .push(flock.recorded(false).unwrap_or([f64::NAN; RECORDED]));
         if let Some(contacts) = &mut self.contacts {
             contacts.push(flock);
         }

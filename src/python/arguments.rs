@@ -231,3 +231,16 @@ pub fn shown(object: &Bound<'_, PyAny>) -> String {
     }
     full.chars().take(LONGEST).chain("…".chars()).collect()
 }
+
+/// Refuses a series of another length than those it belongs to.
+pub fn same_length(field: &'static str, found: usize, expected: usize) -> PyResult<()> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(FlockError::Shape {
+        field,
+        found: shape_text(&[found]),
+        expected: shape_text(&[expected]),
+    }
+    .into())
+}

@@ -1,8 +1,10 @@
 //! `flockenv.Flock`.
 
 use super::arguments::{Seconds, Seed, TimeS, floats, real, text, truth, wrong_type};
+use super::contacts::PyContacts;
+use super::order::PyOrderParameters;
 use super::parameters::to_python;
-use super::results;
+use super::statistics::PyStatistics;
 use crate::clock::{Ticks, seconds};
 use crate::draw::FrameRenderer;
 use crate::error::FlockError;
@@ -139,8 +141,8 @@ impl PyFlock {
 
     /// What the substeps since the flock was made did: a `Statistics`.
     #[getter]
-    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        results::statistics(py, self.0.statistics())
+    fn statistics(&self) -> PyStatistics {
+        self.0.statistics().into()
     }
 
     /// Put the boats somewhere else.
@@ -242,18 +244,14 @@ impl PyFlock {
     /// ParameterError
     ///     If there is no such boat.
     #[pyo3(signature = (include_leaders=false))]
-    fn order_parameters<'py>(
-        &self,
-        py: Python<'py>,
-        include_leaders: bool,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        results::order_parameters(py, &self.0.order_parameters(include_leaders)?)
+    fn order_parameters(&self, include_leaders: bool) -> PyResult<PyOrderParameters> {
+        Ok(PyOrderParameters(self.0.recorded(include_leaders)?))
     }
 
     /// Contacts and near-contacts of the last substep: a `Contacts`. None after a state was set or
     /// restored, until the next substep.
-    fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        results::contacts(py, &self.0.contacts())
+    fn contacts(&self, py: Python<'_>) -> PyResult<PyContacts> {
+        PyContacts::of(py, &self.0.contacts())
     }
 
     /// The whole state as bytes; continuing from them is bit-identical on the same machine.

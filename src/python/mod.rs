@@ -2,16 +2,17 @@
 
 pub mod arguments;
 pub mod batch;
-pub mod collective_state;
+pub mod contacts;
 pub mod draw;
 pub mod error;
 pub mod flock;
 pub mod observation;
-pub mod order_parameters;
+pub mod order;
 pub mod parameters;
 pub mod recording;
-pub mod results;
+pub mod result;
 pub mod settings;
+pub mod statistics;
 pub mod structure;
 
 use pyo3::prelude::*;
@@ -25,9 +26,7 @@ mod _core {
     #[pymodule_export]
     use super::batch::PyEnvBatch;
     #[pymodule_export]
-    use super::collective_state::{
-        collective_state_names, collective_states, off_tangents, ordering_time,
-    };
+    use super::contacts::{PyContactSeries, PyContacts};
     #[pymodule_export]
     use super::draw::{PyAnimationEncoder, PyFrameRenderer};
     #[pymodule_export]
@@ -38,16 +37,22 @@ mod _core {
         observe, state_table,
     };
     #[pymodule_export]
-    use super::order_parameters::{outward, rotation, signed_order};
+    use super::order::{
+        PyOrderParameters, PyOrderSeries, PyQuantity, collective_state_names, order_series,
+        quantities,
+    };
     #[pymodule_export]
     use super::parameters::{
         checked_fields, critical_bw_s, parameter_table, physics_fields, pool_radii_cm,
         preset_fields, preset_names, preset_sources, resized_gyration_radius_cm,
+        set_parameters_class,
     };
     #[pymodule_export]
     use super::recording::{phase_names, record};
     #[pymodule_export]
     use super::settings::{env_defaults, env_meanings, reward_terms};
+    #[pymodule_export]
+    use super::statistics::PyStatistics;
     #[pymodule_export]
     use super::structure::{
         lagged_motion, lap_orientation, largest_cluster, on_outer_wall, pair_counts,
@@ -56,6 +61,7 @@ mod _core {
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         crate::parallel::note_process();
+        error::add_exceptions(module)?;
         module.add("TOWARDS_TARGET", crate::environment::TOWARDS_TARGET)?;
         module.add(
             "ORDERED_WITHIN",

@@ -7,6 +7,7 @@ use crate::geometry;
 use crate::parameters::{Field, FlockParameters, Kind, Physics, Pool, Preset, Value};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PySequence, PyString};
 
 impl<'py> FromPyObject<'_, 'py> for FlockParameters {
@@ -117,15 +118,26 @@ fn accepted(field: &Field) -> String {
     }
 }
 
-/// The parameters as a `flockenv.FlockParameters`.
+/// The class that parameters are handed out as.
+static CLASS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+
+/// Names the class that parameters are handed out as, once: it takes the fields as keyword arguments.
+/// Without one they are handed out as a dict.
+#[pyfunction]
+pub fn set_parameters_class(py: Python<'_>, class: Py<PyAny>) {
+    CLASS.get_or_init(py, || class);
+}
+
+/// The parameters as users know them.
 pub fn to_python<'py>(
     py: Python<'py>,
     parameters: &FlockParameters,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let class = py
-        .import("flockenv.parameters")?
-        .getattr("FlockParameters")?;
-    class.call((), Some(&to_dict(py, parameters)?))
+    let fields = to_dict(py, parameters)?;
+    match CLASS.get(py) {
+        Some(class) => class.bind(py).call((), Some(&fields)),
+        None => Ok(fields.into_any()),
+    }
 }
 
 /// The fields of a preset.

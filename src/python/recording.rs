@@ -1,9 +1,10 @@
 //! The loop of `flockenv.simulate`.
 
 use super::arguments::{DurationS, SampleHz, floats, real, text};
+use super::contacts::PyContactSeries;
 use super::flock::{BOAT_SUBSTEPS_A_PIECE, PyFlock};
 use super::observation::observed;
-use super::results;
+use super::order::PyOrderSeries;
 use super::settings::layout_from;
 use crate::clock::{Ticks, ticks};
 use crate::flock::{Change, Flock, Pause, Real, Recorder, Recording, Sampling};
@@ -143,14 +144,14 @@ fn fields<T: Element>(
     let rows = |numbers| PyArray1::from_vec(py, numbers).reshape([samples, boats, 3]);
     let fields = PyDict::new(py);
     fields.set_item("phase", PyArray1::from_iter(py, phases))?;
-    fields.set_item("order", results::order_series(py, &recording.order)?)?;
+    fields.set_item("order", PyOrderSeries::of(py, &recording.order))?;
     fields.set_item("time_s", PyArray1::from_vec(py, recording.time_s))?;
     let window = PyArray1::from_vec(py, recording.in_analysis_window);
     fields.set_item("in_analysis_window", window)?;
     fields.set_item("pose", rows(recording.pose)?)?;
     fields.set_item("velocity", rows(recording.velocity)?)?;
     let contacts = recording.contacts.as_ref();
-    let contacts = contacts.map(|samples| results::contact_series(py, samples));
+    let contacts = contacts.map(|samples| PyContactSeries::recorded(py, samples));
     fields.set_item("contacts", contacts.transpose()?)?;
     Ok(fields)
 }

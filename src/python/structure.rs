@@ -18,7 +18,7 @@ pub fn largest_cluster<'py>(
     parameters: FlockParameters,
     pose: PyReadonlyArray3<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let samples = Samples::read(&pose)?;
+    let samples = Samples::read(&pose, "pose")?;
     let share = |poses| structure::largest_cluster(poses, &parameters);
     let shares: Vec<f64> = py.detach(|| samples.each().map(share).collect());
     Ok(PyArray1::from_vec(py, shares))
@@ -31,7 +31,7 @@ pub fn on_outer_wall<'py>(
     parameters: FlockParameters,
     pose: PyReadonlyArray3<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let samples = Samples::read(&pose)?;
+    let samples = Samples::read(&pose, "pose")?;
     let shares = samples.each();
     let shares = shares.map(|poses| structure::on_outer_wall(poses, &parameters));
     Ok(PyArray1::from_iter(py, shares))
@@ -43,7 +43,7 @@ pub fn lap_orientation<'py>(
     py: Python<'py>,
     pose: PyReadonlyArray3<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let samples = Samples::read(&pose)?;
+    let samples = Samples::read(&pose, "pose")?;
     let angles = samples.poses.iter().map(orientation).collect();
     PyArray1::from_vec(py, angles).reshape([samples.poses.len() / samples.boats, samples.boats])
 }
@@ -55,7 +55,7 @@ pub fn pair_counts<'py>(
     pose: PyReadonlyArray3<'py, f64>,
     edges: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Pairs<'py>> {
-    let samples = Samples::read(&pose)?;
+    let samples = Samples::read(&pose, "pose")?;
     let edges = edges.to_vec()?;
     let rising = edges.windows(2).all(|pair| pair[0] < pair[1]);
     if edges.len() < 2 || !rising || !edges.iter().all(|edge| edge.is_finite()) {
@@ -81,7 +81,7 @@ pub fn lagged_motion<'py>(
     pose: PyReadonlyArray3<'py, f64>,
     lags: Vec<usize>,
 ) -> PyResult<Pairs<'py>> {
-    let samples = Samples::read(&pose)?;
+    let samples = Samples::read(&pose, "pose")?;
     let rows: Vec<&[Pose]> = samples.each().collect();
     let squares = |&lag: &usize| structure::mean_square_displacement(&rows, lag);
     let cosines = |&lag: &usize| structure::heading_correlation(&rows, lag);
@@ -93,25 +93,26 @@ pub fn lagged_motion<'py>(
     ))
 }
 
-/// Poses sample after sample.
-struct Samples {
+/// Poses, or velocities, sample after sample.
+pub struct Samples {
     poses: Vec<Pose>,
     boats: usize,
 }
 
 impl Samples {
-    fn read(pose: &PyReadonlyArray3<'_, f64>) -> PyResult<Self> {
-        let pose = pose.as_array();
-        let (times, boats, numbers) = pose.dim();
+    /// Of an array of shape (t, n, 3).
+    pub fn read(array: &PyReadonlyArray3<'_, f64>, name: &'static str) -> PyResult<Self> {
+        let array = array.as_array();
+        let (times, boats, numbers) = array.dim();
         if numbers != 3 || boats == 0 {
             return Err(FlockError::Shape {
-                field: "pose",
+                field: name,
                 found: format!("({times}, {boats}, {numbers})"),
                 expected: "(t, n, 3) of at least one boat".to_owned(),
             }
             .into());
         }
-        let rows = pose.rows();
+        let rows = array.rows();
         let poses = rows
             .into_iter()
             .map(|row| Pose::new(row[0], row[1], row[2]));
@@ -121,7 +122,22 @@ impl Samples {
         })
     }
 
-    fn each(&self) -> impl Iterator<Item = &[Pose]> {
+    /// Refuses velocities of other times or boats than the poses.
+    pub fn check_same_shape(&self, velocities: &Self) -> PyResult<()> {
+        let shape = |samples: &Self| (samples.poses.len() / samples.boats, samples.boats, 3);
+        if shape(self) == shape(velocities) {
+            return Ok(());
+        }
+        Err(FlockError::Shape {
+            field: "velocity",
+            found: format!("{:?}", shape(velocities)),
+            expected: format!("{:?}, that of pose", shape(self)),
+        }
+        .into())
+    }
+
+    /// One sample after another.
+    pub fn each(&self) -> impl Iterator<Item = &[Pose]> {
         self.poses.chunks_exact(self.boats)
     }
 }

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv import Flock, OrderParameters, ParameterError, _core
+from flockenv import Flock, OrderParameters, OrderSeries, ParameterError
 
 
 def circling(parameters, n, n_leaders=0, speed=10.0):
@@ -24,7 +24,7 @@ def circling(parameters, n, n_leaders=0, speed=10.0):
 def test_clockwise_circling_is_perfect_order(parameters):
     order = circling(parameters, 10).order_parameters()
     expected = OrderParameters(1.0, math.pi / 2, 1.0, 10.0, math.pi / 2, 100.0)
-    for name in OrderParameters.__slots__:
+    for name in ("psi_o", "phi_o", "c_o", "psi_v", "phi_v", "c_v"):
         assert getattr(order, name) == pytest.approx(getattr(expected, name)), name
 
 
@@ -65,7 +65,27 @@ def test_a_series_compares_and_indexes(parameters):
 
 
 def test_series_of_different_lengths_are_refused():
-    signed = (lambda *series: _core.signed_order(*series, "cw"), _core.rotation, _core.outward)
-    for derive in signed:
+    series = OrderSeries(psi_o=np.ones(3), phi_o=np.ones(2))
+    for derive in (lambda: series.signed_order("cw"), series.rotation, series.outward):
         with pytest.raises(ParameterError, match="phi_o"):
-            derive(np.ones(3), np.ones(2))
+            derive()
+
+
+def test_arguments_and_attributes_that_are_unknown_are_named():
+    with pytest.raises(TypeError, match="'psi'"):
+        OrderParameters(psi=1.0)
+    with pytest.raises(TypeError, match="two values of 'psi_o'"):
+        OrderSeries(np.ones(2), psi_o=np.ones(2))
+    with pytest.raises(AttributeError, match="no attribute 'psi'"):
+        _ = OrderParameters(1.0).psi
+    with pytest.raises(ParameterError, match="psi_o, phi_o"):
+        OrderSeries(np.ones(2)).series("psi")
+
+
+def test_values_that_are_not_given_are_undefined():
+    order = OrderParameters(1.0, milling=0.5)
+    assert (order.psi_o, order.milling) == (1.0, 0.5)
+    assert math.isnan(order.c_v)
+    assert order == OrderParameters(psi_o=1.0, milling=0.5)
+    assert hash(order) == hash(OrderParameters(psi_o=1.0, milling=0.5))
+    assert np.isnan(OrderSeries(np.ones(4)).nematic).all()

@@ -16,7 +16,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import flockenv
-from flockenv import Flock, FlockError, FlockParameters, ParameterError, Recording, simulate
+from flockenv import (
+    Flock,
+    FlockError,
+    FlockParameters,
+    OrderSeries,
+    ParameterError,
+    Recording,
+    simulate,
+)
+from flockenv.recording import RECORDED
 
 PARAMETERS = FlockParameters(n_boats=5, n_leaders=1, pool="table-1")
 RUN = simulate(PARAMETERS, seed=3, duration_s=1.0)
@@ -248,7 +257,7 @@ def test_a_missing_file_is_an_os_error(tmp_path):
     {"phase": np.array(["up"] * 11, dtype="<U4")},
     {"in_analysis_window": np.zeros(11)},
     {"parameters": PARAMETERS.replace(n_boats=6)},
-    {"order": dataclasses.replace(RUN.order, c_o=np.full(11, np.nan))},
+    {"order": OrderSeries(RUN.order.psi_o)},
     {"seed": -1},
     {"seed": 2**64},
 ])  # fmt: skip
@@ -412,7 +421,7 @@ def test_a_run_goes_on_from_a_snapshot_with_the_same_bits():
     assert np.array_equal(rest.time_s, whole.time_s[400:])
     assert np.array_equal(rest.pose, whole.pose[400:])
     assert rest.order == type(rest.order)(
-        *(getattr(whole.order, each.name)[400:] for each in dataclasses.fields(whole.order))
+        *(getattr(whole.order, each.name)[400:] for each in RECORDED)
     )
 
 

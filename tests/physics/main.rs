@@ -23,6 +23,7 @@ mod phases;
 mod placement;
 mod published;
 mod pushing;
+mod quantities;
 mod sliding;
 mod slivers;
 mod solver;

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import flockenv
+from flockenv import _core
 from flockenv.flock import OrderSeries
 from flockenv.replay.quantities import shown_quantities, telling_minute
 
@@ -21,7 +22,9 @@ def with_signed_order(recording: flockenv.Recording, values) -> flockenv.Recordi
     """The recording with this signed order: Ψ_o its size, φ_o along or against the target."""
     values = np.asarray(values, float)
     phi = np.where(values < 0, -np.pi / 2, np.pi / 2)
-    order = dataclasses.replace(recording.order, psi_o=np.abs(values), phi_o=phi)
+    names = [each.name for each in _core.quantities() if each.kind == "recorded"]
+    columns = {name: getattr(recording.order, name) for name in names}
+    order = OrderSeries(**columns | {"psi_o": np.abs(values), "phi_o": phi})
     return dataclasses.replace(recording, order=order)
 
 
@@ -62,7 +65,7 @@ def test_without_a_minute_or_normal_boats_it_is_the_start(still):
 
 def test_order_towards_the_target_comes_first_where_there_are_leaders(still):
     free = flockenv.simulate(SCENE.replace(n_leaders=0), 1, 1.0)
-    fields = [each.name for each in dataclasses.fields(OrderSeries)]
+    fields = [each.name for each in _core.quantities() if each.kind == "recorded"]
     keys = [each.key for each in shown_quantities([still])]
     assert keys == ["signed_order", "rotation", *fields]
     assert [each.key for each in shown_quantities([free])] == ["rotation", *fields]

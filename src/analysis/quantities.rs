@@ -1,0 +1,212 @@
+//! The table of quantities: all that is measured of a flock at one time, each with its name, unit, meaning
+//! and formula. Recordings, tables of sweeps, the command line, episode summaries and the replay page
+//! iterate over it.
+
+use super::OrderParameters;
+use super::structure::{largest_cluster, on_outer_wall};
+use crate::error::{FlockError, Result};
+use crate::geometry::{HullPose, LapFrame, Pose, Vec2, Velocity, cross};
+use crate::parameters::{FlockParameters, Target};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Boats at one time, with the sums that several quantities share.
+#[derive(Debug, Clone, Copy)]
+pub struct Boats<'a> {
+    /// Their hulls.
+    pub hulls: &'a [HullPose],
+    /// Their velocities.
+    pub velocities: &'a [Velocity],
+    /// Section 3.2's order parameters of them.
+    pub order: OrderParameters,
+}
+
+impl Boats<'_> {
+    /// Mean over the boats of a vector in LAP axes, made of a boat's orientation in LAP axes.
+    fn mean(&self, vector: impl Fn(Vec2) -> Vec2) -> Vec2 {
+        let sum = self.hulls.iter().fold(Vec2::zeros(), |sum, hull| {
+            sum + vector(LapFrame::at(hull.center).components(hull.axis))
+        });
+        sum / self.hulls.len() as f64
+    }
+}
+
+/// What a quantity is a function of, and the function.
+#[derive(Debug, Clone, Copy)]
+pub enum Formula {
+    /// Of the boats at a time. Recordings keep it with every sample.
+    Recorded(fn(&Boats) -> f64),
+    /// Of order parameters and the target direction.
+    Derived(fn(&OrderParameters, Target) -> f64),
+    /// Of poses, hull and pool; slower, so that it is computed on request.
+    Structure(fn(&[Pose], &FlockParameters) -> f64),
+}
+
+/// An entry of the table.
+#[derive(Debug, Clone, Copy)]
+pub struct Quantity {
+    /// Name in recordings, tables and files.
+    pub name: &'static str,
+    /// What it is in a few words.
+    pub label: &'static str,
+    /// Symbol, empty for none.
+    pub symbol: &'static str,
+    /// Unit, empty for none.
+    pub unit: &'static str,
+    /// What it is, with its sign.
+    pub meaning: &'static str,
+    /// Where it is defined.
+    pub source: &'static str,
+    /// Least and greatest value, where there are such.
+    pub range: Option<(f64, f64)>,
+    /// Fewer boats leave it undefined.
+    pub least_boats: usize,
+    /// Whether its mean over a run is shown; the mean of an angle is not.
+    pub is_averaged: bool,
+    /// The formula.
+    pub formula: Formula,
+}
+
+const UNIT: Option<(f64, f64)> = Some((0.0, 1.0));
+const SIGNED: Option<(f64, f64)> = Some((-1.0, 1.0));
+const ANGLE: Option<(f64, f64)> = Some((-PI, PI));
+
+/// Every quantity, the recorded ones first.
+#[rustfmt::skip]
+pub const QUANTITIES: &[Quantity] = &[
+    Quantity {
+        name: "psi_o", label: "order", symbol: "Ψ_o", unit: "", range: UNIT, least_boats: 1, is_averaged: true,
+        meaning: "length of the mean orientation; some 0.886/√N for N disordered boats", source: "eq. (1)",
+        formula: Formula::Recorded(|boats| boats.order.psi_o),
+    },
+    Quantity {
+        name: "phi_o", label: "angle", symbol: "φ_o", unit: "rad", range: ANGLE, least_boats: 1, is_averaged: false,
+        meaning: "angle of the mean orientation: 0 is jammed outward, +π/2 clockwise", source: "eq. (3)",
+        formula: Formula::Recorded(|boats| boats.order.phi_o),
+    },
+    Quantity {
+        name: "c_o", label: "correlation", symbol: "C_o", unit: "", range: None, least_boats: 2, is_averaged: true,
+        meaning: "mean dot product of the orientations of two different boats, in [-1, 1]",
+        source: "eq. (2), each pair once",
+        formula: Formula::Recorded(|boats| boats.order.c_o),
+    },
+    Quantity {
+        name: "psi_v", label: "velocity", symbol: "Ψ_v", unit: "cm/s", range: None, least_boats: 1, is_averaged: true,
+        meaning: "length of the mean velocity", source: "eq. (4)",
+        formula: Formula::Recorded(|boats| boats.order.psi_v),
+    },
+    Quantity {
+        name: "phi_v", label: "angle", symbol: "φ_v", unit: "rad", range: ANGLE, least_boats: 1, is_averaged: false,
+        meaning: "angle of the mean velocity", source: "eq. (6)",
+        formula: Formula::Recorded(|boats| boats.order.phi_v),
+    },
+    Quantity {
+        name: "c_v", label: "correlation", symbol: "C_v", unit: "cm²/s²", range: None, least_boats: 2, is_averaged: true,
+        meaning: "mean dot product of the velocities of two different boats", source: "eq. (5)",
+        formula: Formula::Recorded(|boats| boats.order.c_v),
+    },
+    Quantity {
+        name: "nematic", label: "nematic order", symbol: "Ψ_n", unit: "", range: UNIT, least_boats: 1, is_averaged: true,
+        meaning: "|mean exp(2iφ)| of the LAP orientations φ: 1 also where boats head against each other",
+        source: "two-dimensional nematic order parameter",
+        formula: Formula::Recorded(|boats| {
+            boats.mean(|o| Vec2::new(o.x * o.x - o.y * o.y, 2.0 * o.x * o.y)).norm()
+        }),
+    },
+    Quantity {
+        name: "milling", label: "milling", symbol: "M", unit: "", range: SIGNED, least_boats: 1, is_averaged: true,
+        meaning: "angular momentum about the pool's center over its greatest value at these speeds and radii: \
+                  +1 all clockwise; 0 where nothing moves",
+        source: "Σ r×v / Σ|r||v|",
+        formula: Formula::Recorded(|boats| {
+            let (mut momentum, mut greatest) = (0.0, 0.0);
+            for (hull, velocity) in boats.hulls.iter().zip(boats.velocities) {
+                momentum -= cross(hull.center, velocity.linear);
+                greatest += hull.center.norm() * velocity.linear.norm();
+            }
+            if greatest > 0.0 { momentum / greatest } else { 0.0 }
+        }),
+    },
+    Quantity {
+        name: "signed_order", label: "order towards target", symbol: "", unit: "", range: SIGNED, least_boats: 1,
+        is_averaged: true, meaning: "Ψ_o·cos(φ_o - φ_target)", source: "the reward of the environments",
+        formula: Formula::Derived(|order, target| order.signed_order(target)),
+    },
+    Quantity {
+        name: "rotation", label: "rotation, clockwise positive", symbol: "m", unit: "", range: SIGNED, least_boats: 1,
+        is_averaged: true, meaning: "Ψ_o·sin φ_o: ±1 for rotation in order, 0 for a jam", source: "",
+        formula: Formula::Derived(|order, _| order.rotation()),
+    },
+    Quantity {
+        name: "outward", label: "outward order", symbol: "", unit: "", range: SIGNED, least_boats: 1, is_averaged: false,
+        meaning: "Ψ_o·cos φ_o: 1 for a jam, near 0 for streams along the pool", source: "",
+        formula: Formula::Derived(|order, _| order.outward()),
+    },
+    Quantity {
+        name: "off_tangent", label: "angle off the tangent", symbol: "", unit: "rad", range: Some((0.0, FRAC_PI_2)),
+        least_boats: 1, is_averaged: false, meaning: "||φ_o| - π/2|: 0 for boats that point along the pool",
+        source: "eq. (7)",
+        formula: Formula::Derived(|order, _| super::collective_state::off_tangent(order.phi_o)),
+    },
+    Quantity {
+        name: "largest_cluster", label: "largest cluster", symbol: "", unit: "", range: UNIT, least_boats: 1,
+        is_averaged: false, meaning: "part of the boats that the largest cluster holds: boats joined by gaps below \
+                                      0.5 cm", source: "",
+        formula: Formula::Structure(largest_cluster),
+    },
+    Quantity {
+        name: "on_outer_wall", label: "on the outer wall", symbol: "", unit: "", range: UNIT, least_boats: 1,
+        is_averaged: false, meaning: "part of the boats within 0.5 cm of the outer wall", source: "",
+        formula: Formula::Structure(on_outer_wall),
+    },
+];
+
+/// How many quantities are recorded.
+pub const RECORDED: usize = {
+    let (mut count, mut place) = (0, 0);
+    while place < QUANTITIES.len() {
+        if matches!(QUANTITIES[place].formula, Formula::Recorded(_)) {
+            assert!(
+                place == count,
+                "recorded quantities come first in the table"
+            );
+            count += 1;
+        }
+        place += 1;
+    }
+    count
+};
+
+/// The recorded quantities of a sample, in the order of the table.
+pub type Recorded = [f64; RECORDED];
+
+/// The recorded quantities of boats (two slices of equal length).
+///
+/// # Errors
+/// [`FlockError::Parameter`] if there is no boat.
+pub fn recorded(hulls: &[HullPose], velocities: &[Velocity]) -> Result<Recorded> {
+    let boats = Boats {
+        hulls,
+        velocities,
+        order: OrderParameters::of_hulls(hulls, velocities)?,
+    };
+    let mut values = [f64::NAN; RECORDED];
+    for (value, quantity) in values.iter_mut().zip(QUANTITIES) {
+        if let Formula::Recorded(formula) = quantity.formula {
+            *value = formula(&boats);
+        }
+    }
+    Ok(values)
+}
+
+/// The entry of a name.
+///
+/// # Errors
+/// [`FlockError::Parameter`] lists the names there are.
+pub fn quantity(name: &str) -> Result<&'static Quantity> {
+    let found = QUANTITIES.iter().find(|each| each.name == name);
+    found.ok_or_else(|| {
+        let names: Vec<_> = QUANTITIES.iter().map(|each| each.name).collect();
+        let accepted = format!("one of {}", names.join(", "));
+        FlockError::parameter("quantity", format!("{name:?}"), accepted)
+    })
+}

@@ -1,0 +1,104 @@
+//! `flockenv.Statistics`.
+
+use super::result::repr_of;
+use crate::contact::Statistics;
+use pyo3::exceptions::PyDeprecationWarning;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+macro_rules! statistics {
+    ($($name:ident: $type:ty),+ $(,)?) => {
+        /// Running totals and worst cases since the flock was made or reset; snapshots carry them.
+        ///
+        /// Attributes
+        /// ----------
+        /// substeps : int
+        ///     Substeps taken.
+        /// solves : int
+        ///     Contact problems solved; substeps without a contact have none.
+        /// contacts : int
+        ///     Contacts and near-contacts, summed over substeps.
+        /// islands : int
+        ///     Islands (boats joined by contacts), summed over solves.
+        /// solver_iterations : int
+        ///     Solver iterations, summed over solves and islands.
+        /// factored_rows : int
+        ///     Rows of Cholesky factors computed.
+        /// most_factor_entries : int
+        ///     Most numbers that the Cholesky factors of one solve held.
+        /// unsolved : int
+        ///     Solves whose constraints contradicted each other or that exceeded their residual.
+        /// depenetration_passes : int
+        ///     Passes that moved deeply overlapping hulls apart.
+        /// neighbor_builds : int
+        ///     Substeps that had to rebuild the neighbor list.
+        /// worst_residual_cm_s : float
+        ///     Largest natural residual of a solve in cm/s.
+        /// worst_overlap_cm : float
+        ///     Deepest overlap at the beginning of a substep in cm, positive.
+        #[pyclass(name = "Statistics", module = "flockenv.flock", frozen, get_all, eq)]
+        #[derive(PartialEq)]
+        pub struct PyStatistics { $($name: $type),+ }
+
+        impl From<&Statistics> for PyStatistics {
+            fn from(statistics: &Statistics) -> Self {
+                let Statistics { $($name),+ } = *statistics;
+                Self { $($name),+ }
+            }
+        }
+
+        #[pymethods]
+        impl PyStatistics {
+            #[new]
+            #[pyo3(signature = (*, $($name),+))]
+            fn new($($name: $type),+) -> Self {
+                Self { $($name),+ }
+            }
+
+            fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
+                let mut values: Vec<Bound<'_, PyAny>> = Vec::new();
+                $(values.push(self.$name.into_pyobject(py)?.into_any());)+
+                PyTuple::new(py, values)?.hash()
+            }
+
+            fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+                let mut values: Vec<(&'static str, Bound<'_, PyAny>)> = Vec::new();
+                $(values.push((stringify!($name), self.$name.into_pyobject(py)?.into_any()));)+
+                repr_of(py, "Statistics", values.into_iter())
+            }
+
+            fn __reduce__<'py>(
+                slf: &Bound<'py, Self>,
+            ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+                let fields = PyDict::new(slf.py());
+                $(fields.set_item(stringify!($name), slf.get().$name)?;)+
+                let partial = slf.py().import("functools")?.getattr("partial")?;
+                let made = partial.call((slf.get_type(),), Some(&fields))?;
+                Ok((made, PyTuple::empty(slf.py())))
+            }
+
+            /// Earlier name of `depenetration_passes`.
+            #[getter]
+            fn recovery_passes(&self, py: Python<'_>) -> PyResult<u64> {
+                let message = c"Statistics.recovery_passes is called depenetration_passes";
+                PyErr::warn(py, &py.get_type::<PyDeprecationWarning>(), message, 1)?;
+                Ok(self.depenetration_passes)
+            }
+        }
+    };
+}
+
+statistics! {
+    substeps: u64,
+    solves: u64,
+    contacts: u64,
+    islands: u64,
+    solver_iterations: u64,
+    factored_rows: u64,
+    most_factor_entries: u64,
+    unsolved: u64,
+    depenetration_passes: u64,
+    neighbor_builds: u64,
+    worst_residual_cm_s: f64,
+    worst_overlap_cm: f64,
+}

@@ -1,0 +1,93 @@
+"""Law: a quantity of the table is in recordings, sweep tables, commands and the replay page."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import flockenv
+from flockenv import FlockParameters, ParameterError, Recording, _core
+from flockenv.cli import app
+from flockenv.replay.quantities import shown_quantities
+from flockenv.runs.spec import RunSpec, execute
+from flockenv.runs.sweep import summary
+
+FIXTURES = Path(__file__).parents[1] / "fixtures" / "v0.1.0"
+TABLE = _core.quantities()
+RECORDED = [each.name for each in TABLE if each.kind == "recorded"]
+AVERAGED = [each.name for each in TABLE if each.is_averaged]
+SCENE = FlockParameters(n_boats=5, n_leaders=1, pool="table-1")
+
+
+@pytest.fixture(scope="module")
+def run():
+    return flockenv.simulate(SCENE, seed=3, duration_s=20.0)
+
+
+def test_the_table_begins_with_the_order_parameters_of_the_paper():
+    assert RECORDED[:6] == ["psi_o", "phi_o", "c_o", "psi_v", "phi_v", "c_v"]
+    assert {"nematic", "milling"} <= set(RECORDED)
+
+
+def test_a_flock_and_its_recording_have_the_same_values(run):
+    flock = flockenv.Flock(SCENE, seed=3)
+    flock.advance(20.0)
+    assert flock.order_parameters() == run.order[-1]
+    assert set(RECORDED) <= set(dir(run.order)) & set(dir(flock.order_parameters()))
+
+
+def test_plain_arrays_have_the_values_of_the_recording(run):
+    assert _core.order_series(run.pose[:, 1:], run.velocity[:, 1:]) == run.order
+    with pytest.raises(ParameterError, match="velocity"):
+        _core.order_series(run.pose, run.velocity[:, 1:])
+
+
+def test_nematic_order_and_milling_from_their_definitions(run):
+    x, y, heading = np.moveaxis(run.pose[:, 1:], 2, 0)
+    vx, vy, _ = np.moveaxis(run.velocity[:, 1:], 2, 0)
+    doubled = np.exp(2j * (np.arctan2(y, x) - heading))
+    assert run.order.nematic == pytest.approx(np.abs(doubled.mean(axis=1)), abs=1e-12)
+    around, greatest = y * vx - x * vy, np.hypot(x, y) * np.hypot(vx, vy)
+    moving = greatest.sum(axis=1) > 0
+    expected = around.sum(axis=1)[moving] / greatest.sum(axis=1)[moving]
+    assert run.order.milling[moving] == pytest.approx(expected, abs=1e-12)
+    assert (run.order.milling[~moving] == 0.0).all()
+
+
+def test_recordings_keep_every_recorded_quantity(run, tmp_path):
+    run.save(tmp_path / "run.npz")
+    with np.load(tmp_path / "run.npz") as file:
+        assert {f"order_{name}" for name in RECORDED} <= set(file)
+    assert Recording.load(tmp_path / "run.npz") == run
+
+
+def test_recordings_of_earlier_versions_get_what_came_later_from_their_poses():
+    with np.load(FIXTURES / "recording.npz") as file:
+        assert "order_nematic" not in file
+        psi_o = file["order_psi_o"]
+    recording = Recording.load(FIXTURES / "recording.npz")
+    assert (recording.order.psi_o == psi_o).all()
+    k = recording.parameters.n_leaders
+    states = (each[:, k:].astype(float) for each in (recording.pose, recording.velocity))
+    computed = _core.order_series(*states)
+    assert (recording.order.nematic == computed.nematic).all()
+    assert (recording.order.milling == computed.milling).all()
+
+
+def test_tables_of_sweeps_have_every_averaged_quantity():
+    result = execute(RunSpec(parameters=SCENE, seed=3, duration_s=20.0))
+    row = summary(result)
+    assert {f"{name}_mean" for name in AVERAGED} <= row.keys()
+    assert row["nematic_mean"] == pytest.approx(result.orders["nematic"].mean(), abs=1e-6)
+
+
+def test_the_command_line_and_the_replay_page_show_the_table(run, tmp_path):
+    options = ["--set", "n_boats=5", "--set", "n_leaders=1", "--minutes", "0.3", "--json"]
+    done = CliRunner().invoke(app, ["run", *options, "--out", str(tmp_path / "run.npz")])
+    assert done.exit_code == 0
+    shown = json.loads(done.stdout)
+    assert {"nematic", "milling", "psi_v_cm_s", "signed_order"} <= shown.keys()
+    keys = [each.key for each in shown_quantities([run])]
+    assert keys == ["signed_order", "rotation", *RECORDED]
