@@ -129,7 +129,7 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         name: "signed_order", label: "order towards target", symbol: "", unit: "", range: SIGNED, least_boats: 1,
         is_averaged: true, meaning: "Ψ_o·cos(φ_o - φ_target)", source: "the reward of the environments",
-        formula: Formula::Derived(|order, target| order.signed_order(target)),
+        formula: Formula::Derived(OrderParameters::signed_order),
     },
     Quantity {
         name: "rotation", label: "rotation, clockwise positive", symbol: "m", unit: "", range: SIGNED, least_boats: 1,

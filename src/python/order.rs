@@ -188,7 +188,7 @@ impl PyOrderSeries {
 
     fn column<'py>(&self, py: Python<'py>, name: &str) -> PyResult<PyReadonlyArray1<'py, f64>> {
         let column = self.0[place_of("OrderSeries", name)?].bind(py);
-        Ok(column.extract()?)
+        column.extract()
     }
 
     /// The order parameters that derived quantities and states follow from.
@@ -241,7 +241,7 @@ impl PyOrderSeries {
     ) -> PyResult<Self> {
         let given = arguments("OrderSeries", columns, named)?;
         let first = given.iter().flatten().next();
-        let length = first.map_or(Ok(0), |column| column.len())?;
+        let length = first.map_or(Ok(0), PyAnyMethods::len)?;
         let undefined = || PyArray1::from_vec(py, vec![f64::NAN; length]).into_any();
         let columns = given
             .into_iter()

@@ -2,6 +2,7 @@
 
 use super::result::repr_of;
 use crate::contact::Statistics;
+use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyDeprecationWarning;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -50,20 +51,19 @@ macro_rules! statistics {
         #[pymethods]
         impl PyStatistics {
             #[new]
+            #[expect(clippy::too_many_arguments, reason = "one for each field")]
             #[pyo3(signature = (*, $($name),+))]
             fn new($($name: $type),+) -> Self {
                 Self { $($name),+ }
             }
 
             fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
-                let mut values: Vec<Bound<'_, PyAny>> = Vec::new();
-                $(values.push(self.$name.into_pyobject(py)?.into_any());)+
+                let values = vec![$(self.$name.into_bound_py_any(py)?),+];
                 PyTuple::new(py, values)?.hash()
             }
 
             fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-                let mut values: Vec<(&'static str, Bound<'_, PyAny>)> = Vec::new();
-                $(values.push((stringify!($name), self.$name.into_pyobject(py)?.into_any()));)+
+                let values = vec![$((stringify!($name), self.$name.into_bound_py_any(py)?)),+];
                 repr_of(py, "Statistics", values.into_iter())
             }
 
