@@ -126,7 +126,7 @@ impl BlockPivoting {
         let impulse = (-right / (diagonal * (1.0 + self.regularization))).max(0.0);
         impulses[k] = impulse;
         problem.apply(k, impulse, velocities);
-        let compliance = if self.regularization < island_solver::TOLERANCE {
+        let compliance = if self.regularization < rows::TOLERANCE {
             0.0
         } else {
             self.regularization

@@ -6,7 +6,7 @@
 //! non-negative and every step lowers the dual, so that no active set comes twice.
 
 use super::IslandSolver;
-use super::island_solver::TOLERANCE;
+use super::rows::TOLERANCE;
 use crate::contact::solver::SolveReport;
 
 /// Impulses (times A_kk, in cm/s) that only constraints which contradict each other demand.

@@ -1,12 +1,10 @@
 //! Block principal pivoting on one island.
 
 use super::factor::Factor;
-use super::rows::Rows;
+use super::rows::{Rows, TOLERANCE};
 use crate::contact::ContactProblem;
 use crate::contact::solver::{EXACT, SolveReport};
 
-/// Signs are judged with this tolerance in cm/s, well below [`EXACT`].
-pub const TOLERANCE: f64 = 1e-11;
 /// Rounds without fewer violations before the descent takes over.
 const PATIENCE: u32 = 5;
 

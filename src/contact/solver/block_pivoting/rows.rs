@@ -1,7 +1,9 @@
 //! The contact problem of one island in numbers of its own: rows of J, and the boats they join.
 
-use super::island_solver::TOLERANCE;
 use crate::contact::{Contact, ContactProblem};
+
+/// Signs are judged with this tolerance in cm/s, well below [`EXACT`](crate::contact::solver::EXACT).
+pub const TOLERANCE: f64 = 1e-11;
 
 /// No row.
 pub const NONE: u32 = u32::MAX;
