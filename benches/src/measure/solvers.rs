@@ -69,7 +69,7 @@ impl Problem {
             contacts: &self.contacts,
             inertia: &self.inertia,
             free: &self.free,
-            bounds: &self.bounds,
+            biases: &self.bounds,
         })
     }
 }
