@@ -10,7 +10,13 @@ from flockenv.envs.parallel import LeadersParallelEnv, parallel_env
 from flockenv.envs.registration import register
 from flockenv.envs.single import LeadersEnv
 from flockenv.envs.vector import LeadersVectorEnv
-from flockenv.errors import EpisodeError, FlockError, ParameterError, SolverError
+from flockenv.errors import (
+    EpisodeError,
+    FlockError,
+    InUseError,
+    ParameterError,
+    SolverError,
+)
 from flockenv.flock import Contacts, ContactSeries, Flock, OrderParameters, OrderSeries, Statistics
 from flockenv.parameters import FlockParameters
 from flockenv.recording import Recording
@@ -23,6 +29,7 @@ __all__ = [
     "Flock",
     "FlockError",
     "FlockParameters",
+    "InUseError",
     "LeadersEnv",
     "LeadersParallelEnv",
     "LeadersVectorEnv",

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from flockenv import _core
 from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv._io.extras import require
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, shown
 from flockenv.flock import ContactSeries, Flock, OrderSeries
 from flockenv.parameters import FlockParameters
 
@@ -128,7 +128,7 @@ class Recording:
             _check(f"order.{each.name}", values, times, PRECISIONS[:1], all_nan=undefined)
         seed: Any = self.seed
         if not isinstance(seed, int) or not 0 <= seed < 2**64:
-            raise ParameterError(f"seed = {seed!r} is not accepted: an int from 0 to 2^64 - 1")
+            raise ParameterError(f"seed = {shown(seed)} is not accepted: an int from 0 to 2^64 - 1")
         if self.contacts is not None:
             _check_contacts(self.contacts, len(self), self.parameters.n_boats)
 

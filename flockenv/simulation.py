@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from flockenv import _core
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, shown
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import LeaderPolicy, control_rate
 from flockenv.policies.model import ModelPolicy, as_policy
@@ -97,8 +97,8 @@ def simulate(
     policy = as_policy(policy)
     if policy is not None and not hasattr(policy, "predict"):
         raise ParameterError(
-            f"policy = {policy!r} is not accepted: None, a policy's name or file, or an object "
-            "with predict"
+            f"policy = {shown(policy)} is not accepted: None, a policy's name or file, or an "
+            "object with predict"
         )
     if isinstance(policy, ModelPolicy) and parameters.n_leaders > 0:
         policy.check_leaders(parameters.n_leaders)
@@ -120,14 +120,14 @@ def _started(
 ) -> _core.Flock:
     if not isinstance(start, bytes):
         if not isinstance(start, Mapping):
-            raise TypeError(f"start must be a snapshot or a dictionary, not {start!r}")
+            raise TypeError(f"start must be a snapshot or a dictionary, not {shown(start)}")
         return _core.Flock.from_state(parameters, seed, dict(start))
     flock = _core.Flock.from_snapshot(start)
     if flock.parameters.replace(target=parameters.target) != parameters:
         raise ParameterError("start is a snapshot of a flock with other parameters")
     if flock.seed != seed:
         raise ParameterError(
-            f"seed = {seed!r} is not accepted: start is a snapshot of {flock.seed}"
+            f"seed = {shown(seed)} is not accepted: start is a snapshot of {flock.seed}"
         )
     flock.set_target(parameters.target)
     return flock

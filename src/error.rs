@@ -51,6 +51,12 @@ pub enum FlockError {
     /// The motion left the range that states may have; the flock is as it was before the call.
     #[error("{0}")]
     Solver(String),
+    /// Long work was told not to go on; nothing has changed.
+    #[error("interrupted")]
+    Interrupted,
+    /// An object is at work in another thread.
+    #[error("{0} is in use in another thread: each thread needs one of its own")]
+    InUse(&'static str),
 }
 
 impl FlockError {

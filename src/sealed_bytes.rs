@@ -23,6 +23,14 @@ pub fn seal<T: Serialize>(magic: [u8; 8], state: &T) -> Vec<u8> {
 /// # Errors
 /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed state of this kind.
 pub fn unseal<T: DeserializeOwned>(magic: [u8; 8], bytes: &[u8]) -> Result<T> {
+    decode(opened(magic, bytes)?)
+}
+
+/// The encoded state in bytes that [`seal`] made with the same magic.
+///
+/// # Errors
+/// As for [`unseal`].
+pub fn opened(magic: [u8; 8], bytes: &[u8]) -> Result<&[u8]> {
     let refuse = |why: &str| Err(FlockError::Snapshot(why.to_owned()));
     let Some((found, rest)) = bytes.split_at_checked(8) else {
         return refuse("the bytes are too short to be a snapshot");
@@ -36,6 +44,14 @@ pub fn unseal<T: DeserializeOwned>(magic: [u8; 8], bytes: &[u8]) -> Result<T> {
     if sum != checksum(body).to_le_bytes() {
         return refuse("the snapshot is damaged or cut off (checksum differs)");
     }
+    Ok(body)
+}
+
+/// A state from its encoding.
+///
+/// # Errors
+/// [`FlockError::Snapshot`] for an encoding of something else.
+pub fn decode<T: DeserializeOwned>(body: &[u8]) -> Result<T> {
     postcard::from_bytes(body).map_err(|error| {
         FlockError::Snapshot(format!("the snapshot's content is not readable: {error}"))
     })

@@ -6,6 +6,7 @@ some ten kinds of exceptions for damaged files. Here sizes are checked first and
 
 import math
 import os
+import stat
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -42,31 +43,42 @@ def write_arrays(
         save(file, allow_pickle=False, **dict(arrays))
 
 
-def read_arrays(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
+def read_arrays(
+    path: str | os.PathLike[str], most_bytes: int = _MOST_BYTES
+) -> dict[str, NDArray[Any]]:
     """Read all arrays of a file; nothing in it is ever executed.
+
+    Parameters
+    ----------
+    path
+        The file.
+    most_bytes
+        What all arrays together may hold.
 
     Raises
     ------
     OSError
         If the file cannot be opened.
     ParameterError
-        If it is no ``.npz`` file of plain numbers and strings, cut off or damaged.
+        If it is no ``.npz`` file of plain numbers and strings, cut off, damaged or too large.
     """
+    if not stat.S_ISREG(os.stat(path).st_mode) and not os.path.isdir(path):
+        raise ParameterError(f"{path} is no .npz file but a device, a pipe or a socket")
     with Path(path).open("rb") as file:
         try:
-            return _read(file)
+            return _read(file, most_bytes)
         except Exception as error:
             # zipfile, zlib and NumPy's header parser raise very different things for damaged bytes.
             reason = str(error) or type(error).__name__
             raise ParameterError(f"{path} is no whole, unharmed .npz file: {reason}") from error
 
 
-def _read(file: IO[bytes]) -> dict[str, NDArray[Any]]:
+def _read(file: IO[bytes], most_bytes: int) -> dict[str, NDArray[Any]]:
     arrays: dict[str, NDArray[Any]] = {}
     with zipfile.ZipFile(file) as archive:
         claimed = sum(entry.file_size for entry in archive.infolist())
         size = file.seek(0, os.SEEK_END)
-        if claimed > _MOST_BYTES or claimed > max(_MOST_INFLATED_BYTES, _INFLATED_RATIO * size):
+        if claimed > most_bytes or claimed > max(_MOST_INFLATED_BYTES, _INFLATED_RATIO * size):
             raise ValueError(f"its {size} bytes claim to hold {claimed} bytes of data")
         for entry in archive.infolist():
             name = entry.filename.removesuffix(".npy")

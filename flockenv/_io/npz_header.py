@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv._io.array_file import read_arrays
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, shown
 
 __all__ = ["array_of", "entry_of", "read_headed"]
 
 
 def read_headed(
-    path: str | os.PathLike[str], kind: str, form: str
+    path: str | os.PathLike[str], kind: str, form: str, **limits: int
 ) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
     """Return the header and the other arrays of a file; nothing in it is ever executed.
 
@@ -27,6 +27,8 @@ def read_headed(
         What errors say it is not, such as "policy".
     form
         What its header must have as ``format``.
+    limits
+        As `read_arrays` takes them.
 
     Raises
     ------
@@ -36,7 +38,7 @@ def read_headed(
         If it is no file in this format, is damaged, or was made for another version of the
         observation.
     """
-    arrays = read_arrays(path)
+    arrays = read_arrays(path, **limits)
     if "header" not in arrays:
         raise ParameterError(f"{path} is no {kind}: it has no header")
     try:
@@ -74,7 +76,7 @@ def entry_of(header: Mapping[str, Any], name: str, kind: type[Kind]) -> Kind:
         raise ParameterError(f"{name} is missing in its header")
     value = header[name]
     if type(value) is not kind:
-        raise ParameterError(f"{name} = {value!r} is not accepted: {_KINDS[kind]}")
+        raise ParameterError(f"{name} = {shown(value)} is not accepted: {_KINDS[kind]}")
     found: Kind = value
     return found
 

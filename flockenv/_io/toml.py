@@ -1,11 +1,42 @@
 """TOML as a dictionary, with one kind of error for text that is none."""
 
+import os
 import tomllib
 from typing import Any
 
 from flockenv.errors import ParameterError
 
-__all__ = ["read_toml"]
+__all__ = ["read_toml", "read_toml_file"]
+
+_MOST_BYTES = 1 << 20
+
+
+def read_toml_file(path: str | os.PathLike[str], what: str) -> dict[str, Any]:
+    """Return the values in a TOML file.
+
+    Parameters
+    ----------
+    path
+        A file of at most 1 MiB, or a pipe or device that gives no more.
+    what
+        What errors call it.
+
+    Raises
+    ------
+    ParameterError
+        For a file that cannot be read, is larger, or is no TOML.
+    """
+    try:
+        with open(path, "rb") as file:
+            data = file.read(_MOST_BYTES + 1)
+    except OSError as error:
+        raise ParameterError(f"{what} cannot be read: {error.strerror}") from error
+    if len(data) > _MOST_BYTES:
+        raise ParameterError(f"{what} is no TOML: it is larger than {_MOST_BYTES} bytes")
+    try:
+        return read_toml(data.decode(), what)
+    except UnicodeDecodeError as error:
+        raise ParameterError(f"{what} is no TOML: {error}") from error
 
 
 def read_toml(text: str, what: str) -> dict[str, Any]:
@@ -28,7 +59,7 @@ def read_toml(text: str, what: str) -> dict[str, Any]:
     if not isinstance(text, str):
         raise TypeError(f"{what} must be a string, not {type(text).__name__}")
     try:
-        return tomllib.loads(text)
+        return tomllib.loads(text.removeprefix("\ufeff"))
     except RecursionError as error:
         raise ParameterError(f"{what} is no TOML: it is nested too deeply") from error
     except ValueError as error:  # Also of integers of thousands of digits.

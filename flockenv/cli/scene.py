@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from flockenv._io.atomic_write import write_text
-from flockenv._io.toml import read_toml
+from flockenv._io.toml import read_toml, read_toml_file
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 
@@ -114,12 +114,7 @@ def save_scene(path: Path, parameters: FlockParameters, remark: str) -> None:
 
 
 def _file_fields(path: Path) -> dict[str, Any]:
-    try:
-        return read_toml(path.read_text("utf-8"), f"--params {path}")
-    except OSError as error:
-        raise ParameterError(f"--params {path} cannot be read: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise ParameterError(f"--params {path} is no TOML: {error}") from error
+    return read_toml_file(path, f"--params {path}")
 
 
 def changed_fields(changes: Sequence[str]) -> dict[str, Any]:

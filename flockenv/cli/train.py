@@ -7,8 +7,9 @@ from typing import Annotated, Any
 
 import typer
 
+from flockenv._io.toml import read_toml_file
 from flockenv.cli.console import interruptible, print_json, progress_bar, say
-from flockenv.cli.output import check_folder
+from flockenv.cli.output import check_folder, printable, refuse_overwriting
 from flockenv.cli.scene import changed_fields
 from flockenv.errors import ParameterError
 
@@ -55,6 +56,9 @@ def train(
     else:
         wanted = _settings(settings, change or [], samples, seed)
         check_folder(out)
+        refuse_overwriting(settings, "--settings", [out / "settings.toml"])
+        policies = [out / f"{name}.npz" for name in ("best", "last", "start")]
+        refuse_overwriting(wanted.start, "start", policies)
     with interruptible(lambda: _last_checkpoint(out)), progress_bar(quiet or as_json) as bar:
         task = bar.add_task("beginning", total=wanted.samples)
 
@@ -67,7 +71,7 @@ def train(
         if resume:
             result = training.resume(out, samples=samples, report=report)
         else:
-            command = shlex.join(["flockenv", *sys.argv[1:]])
+            command = printable(shlex.join(["flockenv", *sys.argv[1:]]))
             result = training.train(wanted, out, command=command, report=report)
     progress = result.progress
     if as_json:
@@ -85,11 +89,10 @@ def _settings(path: Path | None, change: list[str], samples: int | None, seed: i
 
     values: dict[str, Any] = {}
     if path is not None:
+        values = read_toml_file(path, f"--settings {path}")
         try:
-            values = TrainingSettings.from_toml(path.read_text("utf-8")).to_dict()
-        except OSError as error:
-            raise ParameterError(f"--settings {path} cannot be read: {error.strerror}") from error
-        except (ParameterError, UnicodeDecodeError) as error:
+            values = TrainingSettings.from_dict(values).to_dict()
+        except ParameterError as error:
             raise ParameterError(f"--settings {path}: {error}") from error
     values |= changed_fields(change)
     given = {"samples": samples, "seed": seed}

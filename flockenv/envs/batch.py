@@ -11,7 +11,7 @@ from flockenv import _core
 from flockenv.envs.observation import state_space
 from flockenv.envs.options import EnvOptions, known_reset_options
 from flockenv.envs.reward import TERMS
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, shown
 
 __all__ = ["LeaderBatch", "at_least_one", "drawn_seed", "seeds_from"]
 
@@ -91,7 +91,7 @@ def at_least_one(count: Any, name: str) -> int:
     """Return a count of flocks or leaders as an int, or raise the error that names it."""
     number = _whole(count, name)
     if not 1 <= number <= _MOST:
-        raise ParameterError(f"{name} = {number} is not accepted: 1 to {_MOST}")
+        raise ParameterError(f"{name} = {shown(number)} is not accepted: 1 to {_MOST}")
     return number
 
 
@@ -103,7 +103,7 @@ def seeds_from(first: Any, flocks: int) -> list[int]:
     number = _whole(first, "seed")
     if not 0 <= number <= _SEEDS - flocks:
         raise ParameterError(
-            f"seed = {number} is not accepted: at least 0, and below 2^64 for the last of "
+            f"seed = {shown(number)} is not accepted: at least 0, and below 2^64 for the last of "
             f"{flocks} flocks"
         )
     return [number + flock for flock in range(flocks)]
@@ -117,4 +117,4 @@ def _whole(value: Any, name: str) -> int:
     except TypeError:
         pass
     kind = type(value).__name__
-    raise TypeError(f"{name} must be an integer, not {value!r} of type {kind}")
+    raise TypeError(f"{name} must be an integer, not {shown(value)} of type {kind}")

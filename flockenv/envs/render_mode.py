@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, shown
 from flockenv.rendering.frames import frame, renderer
 from flockenv.rendering.window import Window, require_pygame
 
@@ -37,7 +37,7 @@ class Screen:
             names = ", ".join(repr(name) for name in modes)
             raise ParameterError(f"render_mode = {mode!r} is not accepted: None, {names}")
         if not isinstance(size, tuple | list) or len(size) != 2:
-            raise ParameterError(f"render_size = {size!r} is not accepted: (width, height)")
+            raise ParameterError(f"render_size = {shown(size)} is not accepted: (width, height)")
         self.mode = mode
         self.size = (size[0], size[1])
         self.fps = fps

@@ -58,4 +58,4 @@ def read_policy(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str,
     """
     if os.path.getsize(path) > _LARGEST_FILE:
         raise ParameterError(f"{path} is no policy: it is larger than {_LARGEST_FILE} bytes")
-    return read_headed(path, "policy", FORMAT)
+    return read_headed(path, "policy", FORMAT, most_bytes=_LARGEST_FILE)

@@ -8,7 +8,7 @@ import numpy as np
 
 from flockenv._core import Flock
 from flockenv._io.extras import require
-from flockenv.errors import FlockError, ParameterError
+from flockenv.errors import FlockError, ParameterError, shown
 from flockenv.rendering.frames import renderer
 
 __all__ = ["SteeringWindow", "Window", "require_pygame"]
@@ -55,7 +55,7 @@ class Window:
     def __init__(self, width: int, height: int, fps: float) -> None:
         self._pygame = require_pygame()
         if not 0.0 < fps < np.inf:
-            raise ParameterError(f"fps = {fps!r} is not accepted: a positive rate")
+            raise ParameterError(f"fps = {shown(fps)} is not accepted: a positive rate")
         self._renderer = renderer(width, height)
         self._fps = fps
         self._due = self._drawn = -np.inf

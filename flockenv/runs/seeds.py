@@ -1,8 +1,9 @@
 """Seeds for training and seeds for evaluation: two ranges that never meet."""
 
+import itertools
 from collections.abc import Iterable
 
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, shown
 
 __all__ = ["FIRST_TRAINING_SEED", "check_evaluation_seeds", "training_seed"]
 
@@ -19,7 +20,7 @@ def training_seed(number: int) -> int:
         For numbers out of range.
     """
     if not 0 <= number < 1 << 63:
-        raise ParameterError(f"seed = {number!r} is not accepted: from 0 to 2^63 - 1")
+        raise ParameterError(f"seed = {shown(number)} is not accepted: from 0 to 2^63 - 1")
     return FIRST_TRAINING_SEED + number
 
 
@@ -31,9 +32,11 @@ def check_evaluation_seeds(seeds: Iterable[int]) -> None:
     ParameterError
         For a seed out of range.
     """
-    for seed in seeds:
+    # Of a range the ends tell all, however long it is.
+    ends = (seeds[:1], seeds[-1:]) if isinstance(seeds, range) else (seeds,)
+    for seed in itertools.chain(*ends):
         if not 0 <= seed < FIRST_TRAINING_SEED:
             raise ParameterError(
-                f"seed = {seed!r} is not accepted: seeds for evaluation are from 0 to 2^32 - 1, "
-                "those above are for training"
+                f"seed = {shown(seed)} is not accepted: seeds for evaluation are from 0 to "
+                "2^32 - 1, those above are for training"
             )

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, shown
 from flockenv.flock import OrderSeries
 from flockenv.parameters import FlockParameters
 from flockenv.recording import RECORDED, Recording
@@ -98,7 +98,7 @@ class RunSpec:
                 raise ParameterError(f"{name} = {value!r} is not accepted: {', '.join(known)}")
         seed: Any = self.seed
         if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**64:
-            raise ParameterError(f"seed = {seed!r} is not accepted: an int from 0 to 2^64 - 1")
+            raise ParameterError(f"seed = {shown(seed)} is not accepted: an int from 0 to 2^64 - 1")
         for name in ("duration_s", "sample_hz"):
             object.__setattr__(self, name, float(getattr(self, name)))
             if not 0.0 < getattr(self, name) < math.inf:

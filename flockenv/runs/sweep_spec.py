@@ -31,10 +31,9 @@ import itertools
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-from flockenv._io.toml import read_toml
+from flockenv._io.toml import read_toml_file
 from flockenv.errors import FlockError, ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.runs.spec import RunSpec
@@ -79,13 +78,7 @@ def read_sweep(path: str | os.PathLike[str]) -> SweepSpec:
         name), axes that are no lists, and values that `FlockParameters` or `RunSpec` refuse. The
         message names the file.
     """
-    try:
-        text = Path(path).read_text("utf-8")
-    except OSError as error:
-        raise ParameterError(f"{path} cannot be read: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise ParameterError(f"{path} is no TOML: {error}") from error
-    values = read_toml(text, str(path))
+    values = read_toml_file(path, str(path))
     try:
         return _parse(values)
     except (FlockError, TypeError) as error:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, shown
 
 __all__ = ["DwellTimes", "dwell_times"]
 
@@ -74,7 +74,9 @@ def dwell_times(
         For a name that is not among the states, or an interval that is not positive.
     """
     if not interval_s > 0.0:
-        raise ParameterError(f"interval_s = {interval_s!r} is not accepted: a positive time in s")
+        raise ParameterError(
+            f"interval_s = {shown(interval_s)} is not accepted: a positive time in s"
+        )
     place = {name: index for index, name in enumerate(states)}
     count = len(place)
     times, stays = np.zeros(count), np.zeros(count, np.int64)

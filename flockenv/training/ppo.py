@@ -4,7 +4,7 @@ import math
 import time
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -17,7 +17,8 @@ from stable_baselines3.common.logger import KVWriter, Logger, TensorBoardOutputF
 from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.utils import FloatSchedule
 
-from flockenv._io.atomic_write import atomic_write
+from flockenv._io.atomic_write import write_text
+from flockenv._io.locks import held
 from flockenv._io.provenance import made_by
 from flockenv.errors import ParameterError
 from flockenv.policies import ModelPolicy, NetworkPolicy, load
@@ -95,24 +96,40 @@ def train(
     ------
     ParameterError
         If the folder holds a run already, and for a policy to start from that does not fit.
+    InUseError
+        If another training is at work in the folder.
     TrainingError
         If the loss is not finite or a file cannot be written; the last checkpoint is intact.
     """
     folder = Path(folder)
-    if (folder / "checkpoint.npz").exists():
-        raise ParameterError(f"{folder} holds a run already: resume it, or name another folder")
+    _refuse_another_run(folder)
     with one_thread():
         model = _model(settings)
         start = _start(settings, command)
         if start is not None:
             copy_into_actor(start, _actor(model), settings)
+        with _alone_in(folder):
+            _refuse_another_run(folder)
+            with _written(folder, Progress()):
+                write_text(folder / "settings.toml", settings.to_toml())
+                if start is not None:
+                    start.save(folder / "start.npz")
+            return _Run(model, settings, folder, Progress(command), report).go_on()
+
+
+def _refuse_another_run(folder: Path) -> None:
+    if (folder / "checkpoint.npz").exists():
+        raise ParameterError(f"{folder} holds a run already: resume it, or name another folder")
+
+
+@contextmanager
+def _alone_in(folder: Path) -> Iterator[None]:
+    """Make a folder and hold it: two trainings at once would mix their files."""
+    with ExitStack() as stack:
         with _written(folder, Progress()):
             folder.mkdir(parents=True, exist_ok=True)
-            with atomic_write(folder / "settings.toml") as file:
-                file.write(settings.to_toml().encode())
-            if start is not None:
-                start.save(folder / "start.npz")
-        return _Run(model, settings, folder, Progress(command), report).go_on()
+            stack.enter_context(held(folder / ".lock", str(folder)))
+        yield
 
 
 def resume(
@@ -136,12 +153,15 @@ def resume(
     ------
     ParameterError
         If there is no checkpoint, or a damaged one.
+    InUseError
+        If another training is at work in the folder.
     TrainingError
         As for `train`.
     """
     folder = Path(folder)
-    settings = stored_settings(folder, samples)
-    with one_thread():
+    stored_settings(folder, samples)
+    with _alone_in(folder), one_thread():
+        settings = stored_settings(folder, samples)
         model = _model(settings)
         progress = checkpoint.restore(folder / "checkpoint.npz", model)
         return _Run(model, settings, folder, progress, report).go_on()

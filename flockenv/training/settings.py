@@ -9,7 +9,7 @@ import tomli_w
 from flockenv._io.toml import read_toml
 from flockenv.envs.batch import LeaderBatch
 from flockenv.envs.options import EnvOptions, refuse_unknown
-from flockenv.errors import FlockError, ParameterError
+from flockenv.errors import FlockError, ParameterError, shown
 from flockenv.parameters import FlockParameters
 from flockenv.policies.network import ACTIVATIONS
 
@@ -258,23 +258,25 @@ def _checked(name: str, value: Any) -> Any:
     if name in _RANGES:
         return _checked_number(name, value, whole=isinstance(default, int))
     if isinstance(default, bool) and not isinstance(value, bool):
-        raise ParameterError(f"{name} = {value!r} is not accepted: true or false")
+        raise ParameterError(f"{name} = {shown(value)} is not accepted: true or false")
     if isinstance(default, str) and not isinstance(value, str):
-        raise ParameterError(f"{name} = {value!r} is not accepted: a text")
+        raise ParameterError(f"{name} = {shown(value)} is not accepted: a text")
     if name in _CHOICES and value not in _CHOICES[name]:
-        raise ParameterError(f"{name} = {value!r} is not accepted: {', '.join(_CHOICES[name])}")
+        raise ParameterError(
+            f"{name} = {shown(value)} is not accepted: {', '.join(_CHOICES[name])}"
+        )
     if name in ("observation", "reward", "options"):
         if not isinstance(value, Mapping):
-            raise ParameterError(f"{name} = {value!r} is not accepted: a table")
+            raise ParameterError(f"{name} = {shown(value)} is not accepted: a table")
         return dict(value)
     return value
 
 
 def _checked_list(name: str, value: Any, default: tuple[Any, ...]) -> tuple[Any, ...]:
     if not isinstance(value, list | tuple) or (not value and name != "net_arch"):
-        raise ParameterError(f"{name} = {value!r} is not accepted: a list")
+        raise ParameterError(f"{name} = {shown(value)} is not accepted: a list")
     if name == "noise" and len(value) != 2:
-        raise ParameterError(f"noise = {value!r} is not accepted: (lowest, highest)")
+        raise ParameterError(f"noise = {shown(value)} is not accepted: (lowest, highest)")
     if name == "pools":
         return tuple(str(pool) for pool in value)
     return tuple(_checked_number(name, each, whole=isinstance(default[0], int)) for each in value)
@@ -285,5 +287,7 @@ def _checked_number(name: str, value: Any, whole: bool) -> Any:
     kinds = int if whole else int | float
     if isinstance(value, bool) or not isinstance(value, kinds) or not low <= value <= high:
         what = "a whole number" if whole else "a number"
-        raise ParameterError(f"{name} = {value!r} is not accepted: {what} in [{low:g}, {high:g}]")
+        raise ParameterError(
+            f"{name} = {shown(value)} is not accepted: {what} in [{low:g}, {high:g}]"
+        )
     return value if whole else float(value)

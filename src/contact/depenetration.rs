@@ -8,10 +8,15 @@ use super::solver::ContactSolver;
 use super::{Contact, ContactDetector, ContactProblem, InverseInertia};
 use crate::geometry::{HullPose, Pose, Velocity};
 
-/// Overlaps beyond this (cm) are undone by moving poses; smaller ones are left to the velocities.
-pub const PENETRATION_SLOP: f64 = 0.01;
-/// The most that one pass opens a gap by, in cm: beyond it the linearization means little.
-const LARGEST_STEP: f64 = 1.0;
+/// Overlaps beyond this, in boat radii (0.01 cm of 5), are undone by moving poses; smaller ones are left
+/// to the velocities.
+pub const PENETRATION_SLOP: f64 = 0.002;
+/// The most that one pass opens a gap or moves a boat by, in boat radii (1 cm of 5): beyond it the
+/// linearization means little. A boat turns by 1 rad at most.
+const LARGEST_STEP: f64 = 0.2;
+
+/// Asked now and then in long work: whether to go on.
+pub type KeepGoing<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// A projection of poses, with its scratch space.
 #[derive(Debug, Clone)]
@@ -21,13 +26,14 @@ pub struct Depenetration {
     biases: Vec<f64>,
     rest: Vec<Velocity>,
     inertia: Vec<InverseInertia>,
+    largest_step_cm: f64,
     /// Passes made so far.
     pub passes: u64,
 }
 
 impl Depenetration {
-    /// For `boats` boats of radius of gyration ρ.
-    pub fn new(boats: usize, gyration_radius: f64) -> Self {
+    /// For `boats` boats of a radius and a radius of gyration ρ.
+    pub fn new(boats: usize, boat_radius: f64, gyration_radius: f64) -> Self {
         let inertia = InverseInertia {
             linear: 1.0,
             angular: 1.0 / (gyration_radius * gyration_radius),
@@ -39,12 +45,13 @@ impl Depenetration {
             biases: Vec::new(),
             rest: vec![Velocity::default(); boats],
             inertia: vec![inertia; boats],
+            largest_step_cm: LARGEST_STEP * boat_radius,
             passes: 0,
         }
     }
 
-    /// Displaces poses until no overlap exceeds `allowed` (cm, positive) or `most_passes` are made;
-    /// returns the smallest gap seen last.
+    /// Displaces poses until no overlap exceeds `allowed` (cm, positive), `most_passes` are made or
+    /// `keep_going` says no; returns the smallest gap seen last.
     pub fn run(
         &mut self,
         detector: &mut ContactDetector,
@@ -52,12 +59,13 @@ impl Depenetration {
         boats: &mut Vec<HullPose>,
         allowed: f64,
         most_passes: u32,
+        keep_going: KeepGoing,
     ) -> f64 {
         let margin = 0.5 * detector.hull().radius;
         for _ in 0..most_passes {
             detector.detect(boats, margin, &mut self.contacts);
             let smallest = self.smallest_gap();
-            if smallest >= -allowed {
+            if smallest >= -allowed || !keep_going() {
                 return smallest;
             }
             self.passes += 1;
@@ -80,7 +88,7 @@ impl Depenetration {
         self.biases.extend(
             self.contacts
                 .iter()
-                .map(|contact| contact.gap.gap.max(-LARGEST_STEP)),
+                .map(|contact| contact.gap.gap.max(-self.largest_step_cm)),
         );
         self.solver.active.clear();
         self.solver
@@ -97,9 +105,9 @@ impl Depenetration {
         };
         self.solver.solve(&problem);
         for (pose, step) in poses.iter_mut().zip(&self.solver.velocities) {
-            let length = step.linear.norm().max(step.angular.abs());
-            if length.is_finite() {
-                *pose = pose.moved(step, (LARGEST_STEP / length.max(LARGEST_STEP)).min(1.0));
+            let steps = (step.linear.norm() / self.largest_step_cm).max(step.angular.abs());
+            if steps.is_finite() {
+                *pose = pose.moved(step, 1.0 / steps.max(1.0));
             }
         }
     }
@@ -109,16 +117,19 @@ impl Depenetration {
 pub fn push_apart(
     detector: &mut ContactDetector,
     poses: &mut [Pose],
+    boat_radius: f64,
     gyration_radius: f64,
     most_passes: u32,
+    keep_going: KeepGoing,
 ) -> f64 {
     let mut boats = Vec::with_capacity(poses.len());
     HullPose::replace_all(&mut boats, poses);
-    Depenetration::new(poses.len(), gyration_radius).run(
+    Depenetration::new(poses.len(), boat_radius, gyration_radius).run(
         detector,
         poses,
         &mut boats,
         0.0,
         most_passes,
+        keep_going,
     )
 }

@@ -20,7 +20,7 @@ mod velocity_bias;
 mod warm_start;
 
 pub use contact::{Contact, ContactKey, Partner};
-pub use depenetration::push_apart;
+pub use depenetration::{KeepGoing, push_apart};
 pub use detection::ContactDetector;
 pub use island::Islands;
 pub use problem::{ContactProblem, InverseInertia};

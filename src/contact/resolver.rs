@@ -8,7 +8,7 @@ use super::velocity_bias::VelocityBias;
 use super::warm_start::{CachedImpulse, WarmStartCache};
 use super::{Contact, ContactDetector, ContactProblem, InverseInertia, Statistics};
 use crate::clock::{seconds, ticks};
-use crate::geometry::{HullPose, NeighborList, Pose, Vec2, Velocity};
+use crate::geometry::{HullPose, NeighborList, Pose, Vec2, Velocity, cross};
 use crate::parameters::{FlockParameters, Scheme, Solver};
 
 /// Relinearization passes after which a substep is taken as it is.
@@ -43,6 +43,7 @@ pub struct ContactResolver {
     trial: Vec<HullPose>,
     /// Overlap in cm at a substep's end that relinearization stops at; `None` without it.
     allowed_overlap: Option<f64>,
+    boat_radius: f64,
     gyration_radius: f64,
     /// Overlaps beyond this (cm) are undone by moving poses.
     penetration_slop: f64,
@@ -53,6 +54,7 @@ pub struct ContactResolver {
 impl ContactResolver {
     /// For checked parameters.
     pub fn new(parameters: &FlockParameters) -> Self {
+        let penetration_slop = PENETRATION_SLOP * parameters.boat_radius_cm;
         Self {
             detector: ContactDetector::new(parameters),
             solver: ContactSolver::new(parameters.solver),
@@ -68,11 +70,12 @@ impl ContactResolver {
                 .get(parameters.relinearizations)
                 .copied()
                 .flatten(),
+            boat_radius: parameters.boat_radius_cm,
             gyration_radius: parameters.gyration_radius_cm,
             // Overlaps that the paper's scheme accepts are left alone.
             penetration_slop: match parameters.scheme {
-                Scheme::Paper => PENETRATION_SLOP.max(2.0 * parameters.overlap_tolerance_cm),
-                Scheme::Leapfrog | Scheme::Moreau => PENETRATION_SLOP,
+                Scheme::Paper => penetration_slop.max(2.0 * parameters.overlap_tolerance_cm),
+                Scheme::Leapfrog | Scheme::Moreau => penetration_slop,
             },
             whole_substep_s: seconds(ticks(parameters.dt_s)),
         }
@@ -147,7 +150,7 @@ impl ContactResolver {
         }
         statistics.worst_overlap_cm = statistics.worst_overlap_cm.max(-smallest);
         if smallest < -self.penetration_slop {
-            self.depenetrate(poses, boats, statistics);
+            self.depenetrate(poses, boats, velocities, statistics);
             self.detector.detect(boats, margin, &mut self.contacts);
         }
         statistics.contacts += self.contacts.len() as u64;
@@ -160,20 +163,26 @@ impl ContactResolver {
         &mut self,
         poses: &mut [Pose],
         boats: &mut Vec<HullPose>,
+        velocities: &[Velocity],
         statistics: &mut Statistics,
     ) {
-        let depenetration = self
-            .depenetration
-            .get_or_insert_with(|| Box::new(Depenetration::new(poses.len(), self.gyration_radius)));
-        let before = depenetration.passes;
+        let (radius, gyration_radius) = (self.boat_radius, self.gyration_radius);
+        let depenetration = self.depenetration.get_or_insert_with(|| {
+            Box::new(Depenetration::new(poses.len(), radius, gyration_radius))
+        });
+        let passes = depenetration.passes;
+        let angular_momentum = orbital_angular_momentum(poses, velocities);
         depenetration.run(
             &mut self.detector,
             poses,
             boats,
             0.1 * self.penetration_slop,
             8,
+            &|| true,
         );
-        statistics.depenetration_passes += depenetration.passes - before;
+        statistics.depenetration_passes += depenetration.passes - passes;
+        statistics.displaced_angular_momentum_cm2_s +=
+            (orbital_angular_momentum(poses, velocities) - angular_momentum).abs();
     }
 
     /// Guesses that contacts which carried an impulse still do.
@@ -418,4 +427,12 @@ impl ContactResolver {
             }
         }
     }
+}
+
+/// Σx×v about the pool's center: what moving poses alone changes of the angular momentum, in cm²/s.
+fn orbital_angular_momentum(poses: &[Pose], velocities: &[Velocity]) -> f64 {
+    let pairs = poses.iter().zip(velocities);
+    pairs
+        .map(|(pose, velocity)| cross(pose.position, velocity.linear))
+        .sum()
 }

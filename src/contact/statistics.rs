@@ -30,6 +30,10 @@ pub struct Statistics {
     pub worst_residual_cm_s: f64,
     /// Deepest overlap met at the beginning of a substep in cm, positive.
     pub worst_overlap_cm: f64,
+    /// Angular momentum about the pool's center that came or went where deep overlaps were undone, in
+    /// cm²/s: its changes, each positive, summed. Hulls that slide past each other while they overlap
+    /// have no way apart that keeps it.
+    pub displaced_angular_momentum_cm2_s: f64,
 }
 
 impl Statistics {

@@ -3,6 +3,7 @@
 
 use super::flock_env::StoredEnv;
 use super::{EnvSettings, FlockEnv, ResetRequest};
+use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
 use crate::parallel;
 use crate::parameters::FlockParameters;
@@ -51,6 +52,7 @@ impl EnvBatch {
             parameters.check()?;
             settings.check(parameters)?;
         }
+        check_memory(&settings, &members)?;
         Ok(Self {
             rows: members.iter().map(|p| p.n_leaders).sum(),
             envs: members
@@ -129,6 +131,18 @@ impl EnvBatch {
     /// # Errors
     /// The first error of a request; [`FlockError::Shape`] for another number of requests.
     pub fn reset(&mut self, requests: &[Option<ResetRequest>]) -> Result<()> {
+        self.reset_while(&|| true, requests)
+    }
+
+    /// As [`Self::reset`], but large flocks take seconds to place: it asks now and then whether to go on.
+    ///
+    /// # Errors
+    /// As for [`Self::reset`]; [`FlockError::Interrupted`] where `keep_going` said no.
+    pub fn reset_while(
+        &mut self,
+        keep_going: KeepGoing,
+        requests: &[Option<ResetRequest>],
+    ) -> Result<()> {
         if requests.len() != self.envs.len() {
             return Err(FlockError::Shape {
                 field: "reset requests",
@@ -140,7 +154,7 @@ impl EnvBatch {
         let prepare = |(env, request): (&FlockEnv, &Option<ResetRequest>)| {
             let request = request.as_ref();
             request
-                .map(|request| env.prepare(settings, request))
+                .map(|request| env.prepare(settings, request, keep_going))
                 .transpose()
         };
         let pairs: Vec<_> = self.envs.iter().zip(requests).collect();
@@ -215,6 +229,37 @@ impl EnvBatch {
         *self = restored;
         Ok(())
     }
+}
+
+/// Batches beyond this many bytes (16 GiB) are taken for a mistake.
+const MOST_BYTES: u64 = 16 << 30;
+/// What a flock takes at most, however few its boats, and what a boat takes with its contacts.
+const BYTES_A_FLOCK: u64 = 16 << 10;
+const BYTES_A_BOAT: u64 = 2 << 10;
+
+/// Refuses a batch that would end the process for want of memory.
+fn check_memory(settings: &EnvSettings, members: &[FlockParameters]) -> Result<()> {
+    // Observations are held by the caller too, and at the end of an episode by the environment.
+    let bytes_a_leader = 4 * size_of::<f32>() as u64 * settings.observation.size() as u64;
+    let bytes: u64 = members
+        .iter()
+        .map(|p| {
+            let (boats, leaders) = (p.n_boats as u64, p.n_leaders as u64);
+            BYTES_A_FLOCK + BYTES_A_BOAT * boats + bytes_a_leader * leaders
+        })
+        .sum();
+    let mut room: Vec<u8> = Vec::new();
+    if bytes <= MOST_BYTES && room.try_reserve_exact(bytes as usize).is_ok() {
+        return Ok(());
+    }
+    Err(FlockError::parameter(
+        "num_envs",
+        members.len(),
+        format!(
+            "{bytes} bytes do not fit; at most {MOST_BYTES} bytes, and the memory there is: fewer \
+             flocks or fewer boats"
+        ),
+    ))
 }
 
 /// Cuts the rows into one share a flock.

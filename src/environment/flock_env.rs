@@ -3,6 +3,7 @@
 use super::episode::StoredEpisode;
 use super::observation::StateObserver;
 use super::{Autoreset, EnvSettings, Episode, EpisodeSeeds, EpisodeSummary, ResetRequest, Servo};
+use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
 use crate::parameters::FlockParameters;
 
@@ -82,13 +83,15 @@ impl FlockEnv {
         &self,
         settings: &EnvSettings,
         request: &ResetRequest,
+        keep_going: KeepGoing,
     ) -> Result<(EpisodeSeeds, Episode)> {
         let Some(mut seeds) = request.seed.map(EpisodeSeeds::new).or(self.seeds) else {
             let message = "the first reset of an environment needs a seed";
             return Err(FlockError::Episode(message.to_owned()));
         };
         let flock_seed = seeds.next_seed();
-        let (schedule, flock) = request.build(settings, &self.parameters, flock_seed)?;
+        let (schedule, flock) =
+            request.build(settings, &self.parameters, flock_seed, keep_going)?;
         Ok((seeds, Episode::new(settings, schedule, flock)))
     }
 
@@ -156,7 +159,7 @@ impl FlockEnv {
     }
 
     fn start_next(&mut self, settings: &EnvSettings, observations: &mut [f32]) -> Result<()> {
-        self.start(self.prepare(settings, &ResetRequest::default())?);
+        self.start(self.prepare(settings, &ResetRequest::default(), &|| true)?);
         self.observe_start(observations);
         Ok(())
     }

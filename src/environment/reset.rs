@@ -1,6 +1,7 @@
 //! Options of a reset, and the initial flock of an episode.
 
 use super::{EnvSettings, EpisodeSchedule, TargetChoice};
+use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
 use crate::flock::{Flock, LATEST, State};
 use crate::parameters::FlockParameters;
@@ -40,6 +41,7 @@ impl ResetRequest {
         settings: &EnvSettings,
         parameters: &FlockParameters,
         flock_seed: u64,
+        keep_going: KeepGoing,
     ) -> Result<(EpisodeSchedule, Flock)> {
         let mut plan = settings.episode;
         // The length belongs to the environment, whatever the target of this episode.
@@ -53,7 +55,7 @@ impl ResetRequest {
         };
         let mut flock = match &self.start {
             Start::Snapshot(bytes) => flock_from(bytes, parameters)?,
-            Start::Random => Flock::new(own, flock_seed)?,
+            Start::Random => Flock::new_while(keep_going, own, flock_seed)?,
             Start::State(state) => Flock::from_state(own, flock_seed, state)?,
         };
         if flock.time() + plan.time_of(schedule.steps) > LATEST {

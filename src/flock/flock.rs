@@ -4,7 +4,7 @@ use super::placement;
 use crate::analysis::OrderParameters;
 use crate::analysis::quantities::{self, Recorded};
 use crate::clock::{Ticks, seconds, ticks};
-use crate::contact::{Contact, Partner, Statistics};
+use crate::contact::{Contact, KeepGoing, Partner, Statistics};
 use crate::error::{FlockError, Result};
 use crate::geometry::{HullPose, Pose, Vec2, Velocity};
 use crate::integrator::{
@@ -58,8 +58,20 @@ impl Flock {
     /// [`FlockError::Parameter`] for parameters out of range, [`FlockError::Placement`] if the boats
     /// do not fit.
     pub fn new(parameters: FlockParameters, seed: u64) -> Result<Self> {
+        Self::new_while(&|| true, parameters, seed)
+    }
+
+    /// As [`Self::new`], but large flocks take seconds to place: it asks now and then whether to go on.
+    ///
+    /// # Errors
+    /// As for [`Self::new`]; [`FlockError::Interrupted`] where `keep_going` said no.
+    pub fn new_while(
+        keep_going: KeepGoing,
+        parameters: FlockParameters,
+        seed: u64,
+    ) -> Result<Self> {
         parameters.check()?;
-        let poses = placement::place(&parameters, seed)?;
+        let poses = placement::place(&parameters, seed, keep_going)?;
         let mut flock = Self::unplaced(parameters, seed);
         flock
             .integrator
@@ -99,7 +111,15 @@ impl Flock {
     /// # Errors
     /// [`FlockError::Placement`]; the flock is unchanged then.
     pub fn reset(&mut self, seed: u64) -> Result<()> {
-        *self = Self::new(self.parameters.clone(), seed)?;
+        self.reset_while(&|| true, seed)
+    }
+
+    /// As [`Self::reset`], asking now and then whether to go on.
+    ///
+    /// # Errors
+    /// As for [`Self::new_while`]; the flock is unchanged then.
+    pub fn reset_while(&mut self, keep_going: KeepGoing, seed: u64) -> Result<()> {
+        *self = Self::new_while(keep_going, self.parameters.clone(), seed)?;
         Ok(())
     }
 

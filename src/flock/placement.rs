@@ -4,7 +4,7 @@
 //! that fails, hulls start small at uniform places, grow, and are pushed apart by the least
 //! displacement; their directions keep their random start but for what the pushing turns.
 
-use crate::contact::{ContactDetector, push_apart};
+use crate::contact::{ContactDetector, KeepGoing, push_apart};
 use crate::error::{FlockError, Result};
 use crate::geometry::{Hull, HullPose, Pose, inner_wall_gap, outer_wall_gap, pair_gaps};
 use crate::parameters::{FlockParameters, Pool};
@@ -30,8 +30,9 @@ const OPEN_WATER_AREAS: f64 = 25.0;
 /// Places all boats of checked parameters.
 ///
 /// # Errors
-/// [`FlockError::Placement`] if no placement without overlap was found.
-pub fn place(parameters: &FlockParameters, seed: u64) -> Result<Vec<Pose>> {
+/// [`FlockError::Placement`] if no placement without overlap was found, [`FlockError::Interrupted`]
+/// where `keep_going` said no.
+pub fn place(parameters: &FlockParameters, seed: u64, keep_going: KeepGoing) -> Result<Vec<Pose>> {
     let mut rng = Stream::Placement.rng(seed);
     let region = Region::new(parameters);
     if !region.holds_a_boat() {
@@ -40,7 +41,7 @@ pub fn place(parameters: &FlockParameters, seed: u64) -> Result<Vec<Pose>> {
             placed: 0,
         });
     }
-    if let Some(poses) = by_rejection(parameters.n_boats, &region, &mut rng) {
+    if let Some(poses) = by_rejection(parameters.n_boats, &region, &mut rng, keep_going) {
         return Ok(poses);
     }
     // Hulls that cover nearly all of the water cannot be disjoint. Trying would only take time; how
@@ -53,7 +54,10 @@ pub fn place(parameters: &FlockParameters, seed: u64) -> Result<Vec<Pose>> {
     };
     let mut most = 0;
     for _ in 0..attempts {
-        let poses = by_growth(parameters, boats, &region, &mut rng);
+        let poses = by_growth(parameters, boats, &region, &mut rng, keep_going);
+        if !keep_going() {
+            return Err(FlockError::Interrupted);
+        }
         let placed = region.count_disjoint(&poses);
         if placed == parameters.n_boats {
             return Ok(poses);
@@ -156,22 +160,32 @@ impl Region {
     }
 }
 
-fn by_rejection(boats: usize, region: &Region, rng: &mut StreamRng) -> Option<Vec<Pose>> {
+fn by_rejection(
+    boats: usize,
+    region: &Region,
+    rng: &mut StreamRng,
+    keep_going: KeepGoing,
+) -> Option<Vec<Pose>> {
     // Random sequential addition of stadiums stalls near half the area; do not even begin there. The
     // quadratic search would also be slow for very large flocks, which growing handles.
     if boats as f64 * region.hull.area() > 0.4 * region.area() || boats > 4000 {
         return None;
     }
-    let poses = greedily(boats, region, rng);
+    let poses = greedily(boats, region, rng, keep_going);
     (poses.len() == boats).then_some(poses)
 }
 
 /// Adds boats one by one until one finds no place.
-fn greedily(boats: usize, region: &Region, rng: &mut StreamRng) -> Vec<Pose> {
+fn greedily(
+    boats: usize,
+    region: &Region,
+    rng: &mut StreamRng,
+    keep_going: KeepGoing,
+) -> Vec<Pose> {
     let clearance = CLEARANCE * region.hull.radius;
     let mut poses = Vec::new();
     let mut placed: Vec<HullPose> = Vec::new();
-    while poses.len() < boats {
+    while poses.len() < boats && keep_going() {
         let found = (0..TRIES_PER_BOAT).find_map(|_| {
             let pose = region.draw(rng);
             let boat = HullPose::new(&pose);
@@ -191,6 +205,7 @@ fn by_growth(
     boats: usize,
     region: &Region,
     rng: &mut StreamRng,
+    keep_going: KeepGoing,
 ) -> Vec<Pose> {
     let mut poses: Vec<Pose> = (0..boats).map(|_| region.draw(rng)).collect();
     for size in GROWTH {
@@ -201,7 +216,14 @@ fn by_growth(
             ..parameters.clone()
         };
         let mut detector = ContactDetector::new(&grown);
-        push_apart(&mut detector, &mut poses, parameters.gyration_radius_cm, 60);
+        push_apart(
+            &mut detector,
+            &mut poses,
+            parameters.boat_radius_cm,
+            parameters.gyration_radius_cm,
+            60,
+            keep_going,
+        );
     }
     for pose in &mut poses {
         pose.heading = pose.heading.rem_euclid(TAU);

@@ -1,13 +1,14 @@
 //! `flockenv._core.EnvBatch`: what all environment classes sit on.
 
 use super::arguments::{real, text, whole, wrong_type};
+use super::exclusive::{Exclusive, interruptible};
 use super::flock::{PyFlock, state_from};
 use super::parameters::to_python;
 use super::settings::{settings_from, settings_to_dict, term_names};
 use crate::environment::{
     BatchRows, EnvBatch, Episode, EpisodeSummary, FlockEnv, ResetRequest, Start, TERMS,
 };
-use crate::error::FlockError;
+use crate::error::{FlockError, Result};
 use crate::parameters::FlockParameters;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -21,75 +22,85 @@ type Step<'py> = (
 );
 
 /// Many flocks with their episodes, stepped at once; one row per leader, flock after flock.
-#[pyclass(name = "EnvBatch", module = "flockenv._core")]
-pub struct PyEnvBatch(EnvBatch);
+#[pyclass(name = "EnvBatch", module = "flockenv._core", frozen)]
+pub struct PyEnvBatch(Exclusive<EnvBatch>);
 
 impl PyEnvBatch {
-    fn env(&self, flock: usize) -> PyResult<&FlockEnv> {
-        let envs = self.0.envs();
-        Ok(envs.get(flock).ok_or_else(|| {
-            FlockError::parameter("flock", flock, format!("0 to {}", envs.len() - 1))
-        })?)
+    fn of(batch: EnvBatch) -> Self {
+        Self(Exclusive::new(batch, "the environment"))
     }
+}
 
-    fn episode_of(&self, flock: usize) -> PyResult<&Episode> {
-        let episode = self.env(flock)?.episode();
-        Ok(episode
-            .ok_or_else(|| FlockError::Episode("reset has not been called yet".to_owned()))?)
-    }
+fn env_of(batch: &EnvBatch, flock: usize) -> Result<&FlockEnv> {
+    let envs = batch.envs();
+    envs.get(flock)
+        .ok_or_else(|| FlockError::parameter("flock", flock, format!("0 to {}", envs.len() - 1)))
+}
 
-    fn matrix<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f32>> {
-        PyArray2::zeros(py, [self.0.rows(), self.0.observation_size()], false)
-    }
+fn episode_of(batch: &EnvBatch, flock: usize) -> Result<&Episode> {
+    env_of(batch, flock)?.episode().ok_or_else(never_reset)
+}
+
+fn never_reset() -> FlockError {
+    FlockError::Episode("reset has not been called yet".to_owned())
+}
+
+fn matrix<'py>(py: Python<'py>, batch: &EnvBatch) -> Bound<'py, PyArray2<f32>> {
+    PyArray2::zeros(py, [batch.rows(), batch.observation_size()], false)
 }
 
 #[pymethods]
 impl PyEnvBatch {
     #[new]
     fn new(parameters: Vec<FlockParameters>, options: &Bound<'_, PyDict>) -> PyResult<Self> {
-        Ok(Self(EnvBatch::new(settings_from(options)?, parameters)?))
+        let batch = EnvBatch::new(settings_from(options)?, parameters)?;
+        Ok(Self::of(batch))
     }
 
     #[getter]
-    fn num_flocks(&self) -> usize {
-        self.0.envs().len()
+    fn num_flocks(&self) -> Result<usize> {
+        Ok(self.0.read()?.envs().len())
     }
 
     #[getter]
-    fn leaders(&self) -> Vec<usize> {
-        let envs = self.0.envs().iter();
-        envs.map(|env| env.parameters().n_leaders).collect()
+    fn leaders(&self) -> Result<Vec<usize>> {
+        let batch = self.0.read()?;
+        let envs = batch.envs().iter();
+        Ok(envs.map(|env| env.parameters().n_leaders).collect())
     }
 
     #[getter]
-    fn observation_size(&self) -> usize {
-        self.0.observation_size()
+    fn observation_size(&self) -> Result<usize> {
+        Ok(self.0.read()?.observation_size())
     }
 
     #[getter]
-    fn episode_steps(&self) -> u32 {
-        self.0.settings().episode.steps()
+    fn episode_steps(&self) -> Result<u32> {
+        Ok(self.0.read()?.settings().episode.steps())
     }
 
     #[getter]
     fn options<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        settings_to_dict(py, self.0.settings())
+        settings_to_dict(py, self.0.read()?.settings())
     }
 
     fn parameters<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Bound<'py, PyAny>> {
-        to_python(py, self.env(flock)?.parameters())
+        let batch = self.0.read()?;
+        to_python(py, env_of(&batch, flock)?.parameters())
     }
 
     fn step<'py>(
-        &mut self,
+        &self,
         py: Python<'py>,
         actions: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Step<'py>> {
+        let mut batch = self.0.write()?;
+        let batch = &mut *batch;
         // A copy, since other Python threads may write to the array meanwhile.
         let actions = actions.as_array().to_vec();
-        let observations = self.matrix(py);
-        let rewards = PyArray1::zeros(py, self.0.rows(), false);
-        let truncated = PyArray1::zeros(py, self.0.envs().len(), false);
+        let observations = matrix(py, batch);
+        let rewards = PyArray1::zeros(py, batch.rows(), false);
+        let truncated = PyArray1::zeros(py, batch.envs().len(), false);
         let (mut o, mut r, mut t) = (
             observations.readwrite(),
             rewards.readwrite(),
@@ -100,29 +111,37 @@ impl PyEnvBatch {
             rewards: r.as_slice_mut()?,
             truncated: t.as_slice_mut()?,
         };
-        py.detach(|| self.0.step(&actions, rows))?;
+        py.detach(|| batch.step(&actions, rows))?;
         Ok((observations, rewards, truncated))
     }
 
-    fn reset(&mut self, py: Python<'_>, requests: Vec<Option<Bound<'_, PyDict>>>) -> PyResult<()> {
-        let shapes: Vec<_> = self
-            .0
-            .envs()
-            .iter()
-            .map(|env| env.parameters().n_boats)
-            .collect();
+    fn reset(&self, py: Python<'_>, requests: Vec<Option<Bound<'_, PyDict>>>) -> PyResult<()> {
+        let shapes: Vec<_> = {
+            let batch = self.0.read()?;
+            let envs = batch.envs().iter();
+            envs.map(|env| env.parameters().n_boats).collect()
+        };
         let mut read = Vec::with_capacity(requests.len());
         for (flock, request) in requests.iter().enumerate() {
             let boats = shapes.get(flock).copied().unwrap_or_default();
             let request = request.as_ref().map(|request| request_from(request, boats));
             read.push(request.transpose()?);
         }
-        Ok(py.detach(|| self.0.reset(&read))?)
+        let asked = shapes.iter().zip(&read);
+        let boats = asked.filter_map(|(boats, request)| request.as_ref().map(|_| boats));
+        let boats = boats.sum();
+        let mut batch = self.0.write()?;
+        let batch = &mut *batch;
+        interruptible(py, boats, |keep_going| batch.reset_while(keep_going, &read))
     }
 
-    fn observe<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let array = self.matrix(py);
-        self.0.observe(array.readwrite().as_slice_mut()?);
+    fn observe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let mut batch = self.0.write()?;
+        if batch.envs().iter().all(|env| env.episode().is_none()) {
+            return Err(never_reset().into());
+        }
+        let array = matrix(py, &batch);
+        batch.observe(array.readwrite().as_slice_mut()?);
         Ok(array)
     }
 
@@ -131,8 +150,9 @@ impl PyEnvBatch {
         py: Python<'py>,
         flock: usize,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let numbers = self.env(flock)?.final_observation();
-        let size = self.0.observation_size();
+        let batch = self.0.read()?;
+        let numbers = env_of(&batch, flock)?.final_observation();
+        let size = batch.observation_size();
         PyArray1::from_slice(py, numbers).reshape([numbers.len() / size, size])
     }
 
@@ -141,15 +161,22 @@ impl PyEnvBatch {
         py: Python<'py>,
         flock: usize,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        Ok(PyArray1::from_slice(py, self.env(flock)?.final_state()))
+        let batch = self.0.read()?;
+        Ok(PyArray1::from_slice(
+            py,
+            env_of(&batch, flock)?.final_state(),
+        ))
     }
 
     fn state_size(&self, flock: usize) -> PyResult<usize> {
-        Ok(self.env(flock)?.state_size())
+        let batch = self.0.read()?;
+        Ok(env_of(&batch, flock)?.state_size())
     }
 
     fn state<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let env = self.env(flock)?;
+        let batch = self.0.read()?;
+        let env = env_of(&batch, flock)?;
+        env.episode().ok_or_else(never_reset)?;
         let array = PyArray1::zeros(py, env.state_size(), false);
         env.observe_state(array.readwrite().as_slice_mut()?);
         Ok(array)
@@ -157,11 +184,12 @@ impl PyEnvBatch {
 
     /// Reward terms of the last step: (terms, rows).
     fn reward_terms<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let rows = self.0.rows();
+        let batch = self.0.read()?;
+        let rows = batch.rows();
         let mut terms = vec![0.0; TERMS * rows];
         let mut row = 0;
-        for flock in 0..self.0.envs().len() {
-            for own in self.episode_of(flock)?.terms() {
+        for flock in 0..batch.envs().len() {
+            for own in episode_of(&batch, flock)?.terms() {
                 for (term, &value) in own.iter().enumerate() {
                     terms[term * rows + row] = value;
                 }
@@ -174,22 +202,28 @@ impl PyEnvBatch {
     /// Order parameters of the normal boats: (flocks, 6) [psi_o, phi_o, c_o, psi_v, phi_v, c_v], NaN
     /// where a flock has none.
     fn order_parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let flocks = self.0.envs().len();
+        let batch = self.0.read()?;
+        let flocks = batch.envs().len();
         let mut numbers = Vec::with_capacity(6 * flocks);
         for flock in 0..flocks {
-            numbers.extend(self.episode_of(flock)?.order().map_or([f64::NAN; 6], |o| {
-                [o.psi_o, o.phi_o, o.c_o, o.psi_v, o.phi_v, o.c_v]
-            }));
+            numbers.extend(
+                episode_of(&batch, flock)?
+                    .order()
+                    .map_or([f64::NAN; 6], |o| {
+                        [o.psi_o, o.phi_o, o.c_o, o.psi_v, o.phi_v, o.c_v]
+                    }),
+            );
         }
         PyArray1::from_vec(py, numbers).reshape([flocks, 6])
     }
 
     /// Whether each flock is in the analysis window.
     fn in_analysis_window<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        let flocks = 0..self.0.envs().len();
+        let batch = self.0.read()?;
+        let flocks = 0..batch.envs().len();
         let windows: PyResult<Vec<bool>> = flocks
             .map(|flock| {
-                let flock = self.episode_of(flock)?.flock();
+                let flock = episode_of(&batch, flock)?.flock();
                 Ok(flock.schedule().in_analysis_window(flock.time()))
             })
             .collect();
@@ -198,34 +232,38 @@ impl PyEnvBatch {
 
     /// Rudders as they stand: (rows,), positive counter-clockwise.
     fn rudders<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let mut rudders = Vec::with_capacity(self.0.rows());
-        for flock in 0..self.0.envs().len() {
-            rudders.extend_from_slice(self.episode_of(flock)?.rudders());
+        let batch = self.0.read()?;
+        let mut rudders = Vec::with_capacity(batch.rows());
+        for flock in 0..batch.envs().len() {
+            rudders.extend_from_slice(episode_of(&batch, flock)?.rudders());
         }
         Ok(PyArray1::from_vec(py, rudders))
     }
 
     /// Whether a flock has ever been given a seed.
     fn is_seeded(&self, flock: usize) -> PyResult<bool> {
-        Ok(self.env(flock)?.is_seeded())
+        let batch = self.0.read()?;
+        Ok(env_of(&batch, flock)?.is_seeded())
     }
 
     /// Whether a flock has an episode under way.
     fn is_running(&self, flock: usize) -> PyResult<bool> {
-        Ok(self
-            .env(flock)?
+        let batch = self.0.read()?;
+        Ok(env_of(&batch, flock)?
             .episode()
             .is_some_and(|episode| !episode.has_ended()))
     }
 
     /// A copy of a flock.
     fn flock(&self, flock: usize) -> PyResult<PyFlock> {
-        Ok(PyFlock(self.episode_of(flock)?.flock().clone()))
+        let batch = self.0.read()?;
+        Ok(PyFlock::of(episode_of(&batch, flock)?.flock().clone()))
     }
 
     /// A flock's target, step, backward duration and seed.
     fn episode<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Bound<'py, PyDict>> {
-        let schedule = self.episode_of(flock)?.schedule();
+        let batch = self.0.read()?;
+        let schedule = episode_of(&batch, flock)?.schedule();
         let dict = PyDict::new(py);
         dict.set_item("target", schedule.target().name())?;
         dict.set_item("bw_s", schedule.bw_s)?;
@@ -236,34 +274,36 @@ impl PyEnvBatch {
 
     /// Summary of the episode under way.
     fn summary<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Bound<'py, PyDict>> {
-        summary_dict(py, &self.episode_of(flock)?.summary())
+        let batch = self.0.read()?;
+        summary_dict(py, &episode_of(&batch, flock)?.summary())
     }
 
     /// Summary of the last episode that reached its end.
     fn finished<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let summary = self.env(flock)?.finished();
+        let batch = self.0.read()?;
+        let summary = env_of(&batch, flock)?.finished();
         summary.map(|summary| summary_dict(py, summary)).transpose()
     }
 
-    fn to_bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
-        PyBytes::new(py, &self.0.to_bytes())
+    fn to_bytes<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyBytes>> {
+        Ok(PyBytes::new(py, &self.0.read()?.to_bytes()))
     }
 
     #[classmethod]
     fn from_bytes(_class: &Bound<'_, PyType>, state: &Bound<'_, PyBytes>) -> PyResult<Self> {
-        Ok(Self(EnvBatch::from_bytes(state.as_bytes())?))
+        Ok(Self::of(EnvBatch::from_bytes(state.as_bytes())?))
     }
 
-    fn restore(&mut self, state: &Bound<'_, PyBytes>) -> PyResult<()> {
-        Ok(self.0.restore(state.as_bytes())?)
+    fn restore(&self, state: &Bound<'_, PyBytes>) -> Result<()> {
+        self.0.write()?.restore(state.as_bytes())
     }
 
-    fn __copy__(&self) -> Self {
-        Self(self.0.clone())
+    fn __copy__(&self) -> Result<Self> {
+        Ok(Self::of(self.0.read()?.clone()))
     }
 
-    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
-        Self(self.0.clone())
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Result<Self> {
+        self.__copy__()
     }
 
     fn __reduce__<'py>(
@@ -271,7 +311,7 @@ impl PyEnvBatch {
         py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
         let class = py.get_type::<Self>();
-        Ok((class.getattr("from_bytes")?, (self.to_bytes(py),)))
+        Ok((class.getattr("from_bytes")?, (self.to_bytes(py)?,)))
     }
 }
 

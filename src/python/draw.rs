@@ -29,13 +29,13 @@ impl PyFrameRenderer {
         let (height, width) = (self.0.height() as usize, self.0.width() as usize);
         let frame = PyArray3::zeros(py, [height, width, 3], false);
         self.0
-            .draw_into(&flock.0, frame.readwrite().as_slice_mut()?);
+            .draw_into(&*flock.read()?, frame.readwrite().as_slice_mut()?);
         Ok(frame)
     }
 
     /// Where a boat is in the frame, in pixels from the top left: (x, y, reach of its hull).
     fn place(&self, flock: &PyFlock, boat: &Bound<'_, PyAny>) -> PyResult<(f32, f32, f32)> {
-        Ok(self.0.place(&flock.0, whole(boat, "boat")?)?)
+        Ok(self.0.place(&*flock.read()?, whole(boat, "boat")?)?)
     }
 }
 

@@ -2,7 +2,7 @@
 //! `?` does it elsewhere.
 
 use crate::error::FlockError;
-use pyo3::exceptions::{PyException, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyException, PyKeyboardInterrupt, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple, PyType};
@@ -13,6 +13,7 @@ struct Exceptions {
     parameter: Py<PyType>,
     episode: Py<PyType>,
     solver: Py<PyType>,
+    in_use: Py<PyType>,
 }
 
 static EXCEPTIONS: PyOnceLock<Exceptions> = PyOnceLock::new();
@@ -51,6 +52,12 @@ impl Exceptions {
                 py.get_type::<PyRuntimeError>(),
             )?
             .unbind(),
+            in_use: kind(
+                "InUseError",
+                "A flock or an environment is at work in another thread: each thread needs one of its own.",
+                py.get_type::<PyRuntimeError>(),
+            )?
+            .unbind(),
             flock: flock.unbind(),
         })
     }
@@ -78,7 +85,8 @@ pub fn add_exceptions(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("FlockError", &exceptions.flock)?;
     module.add("ParameterError", &exceptions.parameter)?;
     module.add("EpisodeError", &exceptions.episode)?;
-    module.add("SolverError", &exceptions.solver)
+    module.add("SolverError", &exceptions.solver)?;
+    module.add("InUseError", &exceptions.in_use)
 }
 
 impl From<FlockError> for PyErr {
@@ -97,6 +105,8 @@ impl From<FlockError> for PyErr {
                 | FlockError::Snapshot(_) => &exceptions.parameter,
                 FlockError::Episode(_) => &exceptions.episode,
                 FlockError::Solver(_) => &exceptions.solver,
+                FlockError::InUse(_) => &exceptions.in_use,
+                FlockError::Interrupted => return PyKeyboardInterrupt::new_err(()),
             };
             PyErr::from_type(class.bind(py).clone(), message)
         })

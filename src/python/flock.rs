@@ -2,12 +2,13 @@
 
 use super::arguments::{Seconds, Seed, TimeS, floats, real, text, truth, wrong_type};
 use super::contacts::PyContacts;
+use super::exclusive::{Exclusive, interruptible};
 use super::order::PyOrderParameters;
 use super::parameters::to_python;
 use super::statistics::PyStatistics;
 use crate::clock::{Ticks, seconds};
 use crate::draw::FrameRenderer;
-use crate::error::FlockError;
+use crate::error::{FlockError, Result};
 use crate::flock::{Flock, State};
 use crate::geometry::{Pose, Velocity};
 use crate::integrator::Steering;
@@ -15,6 +16,7 @@ use crate::parameters::FlockParameters;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
+use std::sync::RwLockReadGuard;
 
 /// A flock of boats in a pool.
 ///
@@ -33,14 +35,32 @@ use pyo3::types::{PyBytes, PyDict, PyType};
 /// ------
 /// ParameterError
 ///     If the boats do not fit the pool, and for a seed out of range.
-#[pyclass(name = "Flock", module = "flockenv")]
-pub struct PyFlock(pub Flock);
+#[pyclass(name = "Flock", module = "flockenv", frozen)]
+pub struct PyFlock(Exclusive<Flock>);
+
+impl PyFlock {
+    /// A flock for Python.
+    pub fn of(flock: Flock) -> Self {
+        Self(Exclusive::new(flock, "the flock"))
+    }
+
+    /// The flock, to look at.
+    ///
+    /// # Errors
+    /// [`FlockError::InUse`] while another thread changes it.
+    pub fn read(&self) -> Result<RwLockReadGuard<'_, Flock>> {
+        self.0.read()
+    }
+}
 
 #[pymethods]
 impl PyFlock {
     #[new]
     fn new(py: Python<'_>, parameters: FlockParameters, seed: Seed) -> PyResult<Self> {
-        Ok(Self(py.detach(|| Flock::new(parameters, seed.0))?))
+        let flock = interruptible(py, parameters.n_boats, |keep_going| {
+            Flock::new_while(keep_going, parameters, seed.0)
+        })?;
+        Ok(Self::of(flock))
     }
 
     /// The flock of a snapshot.
@@ -51,7 +71,7 @@ impl PyFlock {
     ///     For bytes that are no whole, unharmed snapshot.
     #[classmethod]
     fn from_snapshot(_class: &Bound<'_, PyType>, snapshot: &Bound<'_, PyBytes>) -> PyResult<Self> {
-        Ok(Self(Flock::from_snapshot(snapshot.as_bytes())?))
+        Ok(Self::of(Flock::from_snapshot(snapshot.as_bytes())?))
     }
 
     /// A flock in a given state.
@@ -81,7 +101,7 @@ impl PyFlock {
     ) -> PyResult<Self> {
         parameters.check()?;
         let state = state_from(state, parameters.n_boats)?;
-        Ok(Self(Flock::from_state(parameters, seed.0, &state)?))
+        Ok(Self::of(Flock::from_state(parameters, seed.0, &state)?))
     }
 
     /// Start over with another seed, as a new flock with these parameters.
@@ -90,26 +110,31 @@ impl PyFlock {
     /// ------
     /// ParameterError
     ///     If the boats do not fit the pool; the flock is unchanged then.
-    fn reset(&mut self, py: Python<'_>, seed: Seed) -> PyResult<()> {
-        Ok(py.detach(|| self.0.reset(seed.0))?)
+    fn reset(&self, py: Python<'_>, seed: Seed) -> PyResult<()> {
+        let mut flock = self.0.write()?;
+        let flock = &mut *flock;
+        interruptible(py, flock.parameters().n_boats, |keep_going| {
+            flock.reset_while(keep_going, seed.0)
+        })
     }
 
     /// The parameters, with the target that holds now.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        to_python(py, self.0.parameters())
+        to_python(py, self.read()?.parameters())
     }
 
     /// Seed of all random streams.
     #[getter]
-    fn seed(&self) -> u64 {
-        self.0.seed()
+    fn seed(&self) -> Result<u64> {
+        Ok(self.read()?.seed())
     }
 
     /// Poses, a copy: (n, 3) [x cm, y cm, heading rad counter-clockwise from x, not wrapped].
     #[getter]
     fn pose<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let rows = self.0.poses().iter();
+        let flock = self.read()?;
+        let rows = flock.poses().iter();
         rows_of_three(py, rows.map(|p| [p.position.x, p.position.y, p.heading]))
     }
 
@@ -117,32 +142,34 @@ impl PyFlock {
     /// the last substep.
     #[getter]
     fn velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let rows = self.0.velocities().iter();
+        let flock = self.read()?;
+        let rows = flock.velocities().iter();
         rows_of_three(py, rows.map(|v| [v.linear.x, v.linear.y, v.angular]))
     }
 
     /// Time in s.
     #[getter]
-    fn time_s(&self) -> f64 {
-        self.0.time_s()
+    fn time_s(&self) -> Result<f64> {
+        Ok(self.read()?.time_s())
     }
 
     /// Whether the flock is in the second half of fw or the first half of nop1 now.
     #[getter]
-    fn in_analysis_window(&self) -> bool {
-        self.0.schedule().in_analysis_window(self.0.time())
+    fn in_analysis_window(&self) -> Result<bool> {
+        let flock = self.read()?;
+        Ok(flock.schedule().in_analysis_window(flock.time()))
     }
 
     /// Phase that holds from now on: "fw", "nop1", "bw" or "nop2".
     #[getter]
-    fn phase(&self) -> &'static str {
-        self.0.phase().phase.name()
+    fn phase(&self) -> Result<&'static str> {
+        Ok(self.read()?.phase().phase.name())
     }
 
     /// What the substeps since the flock was made did: a `Statistics`.
     #[getter]
-    fn statistics(&self) -> PyStatistics {
-        self.0.statistics().into()
+    fn statistics(&self) -> PyResult<PyStatistics> {
+        Ok(self.read()?.statistics().into())
     }
 
     /// Put the boats somewhere else.
@@ -169,13 +196,13 @@ impl PyFlock {
         text_signature = "($self, pose, velocity, time_s=0.0, *, allow_overlap=False)"
     )]
     fn set_state(
-        &mut self,
+        &self,
         pose: &Bound<'_, PyAny>,
         velocity: &Bound<'_, PyAny>,
         time_s: TimeS,
         allow_overlap: bool,
     ) -> PyResult<()> {
-        let shape = [self.0.parameters().n_boats, 3];
+        let shape = [self.read()?.parameters().n_boats, 3];
         let pose = floats(pose, "pose", &shape)?;
         let velocity = floats(velocity, "velocity", &shape)?;
         let poses: Vec<_> = rows(&pose).map(|[x, y, a]| Pose::new(x, y, a)).collect();
@@ -184,6 +211,7 @@ impl PyFlock {
             .collect();
         Ok(self
             .0
+            .write()?
             .set_state(&poses, &velocities, time_s.0, allow_overlap)?)
     }
 
@@ -193,8 +221,9 @@ impl PyFlock {
     /// ------
     /// ParameterError
     ///     For another name.
-    fn set_target(&mut self, target: &Bound<'_, PyAny>) -> PyResult<()> {
-        self.0.set_target(text(target, "target")?.parse()?);
+    fn set_target(&self, target: &Bound<'_, PyAny>) -> PyResult<()> {
+        let target = text(target, "target")?.parse()?;
+        self.0.write()?.set_target(target);
         Ok(())
     }
 
@@ -216,15 +245,16 @@ impl PyFlock {
     ///     If the motion left its range of 1e9 (cm, cm/s, rad, rad/s); poses, velocities and time are those before the call.
     #[pyo3(signature = (seconds, rudder=None))]
     fn advance(
-        &mut self,
+        &self,
         py: Python<'_>,
         seconds: Seconds,
         rudder: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
-        let flock = &mut self.0;
-        let leaders = [flock.parameters().n_leaders];
+        let leaders = [self.read()?.parameters().n_leaders];
         let rudder = rudder.map(|rudder| floats(rudder, "rudder", &leaders));
         let rudder = rudder.transpose()?;
+        let mut flock = self.0.write()?;
+        let flock = &mut *flock;
         flock.check_rudder(rudder.as_deref())?;
         let end = flock.end_of(seconds.0)?;
         let steering = rudder.as_deref().map_or(Steering::Law, Steering::Held);
@@ -232,9 +262,11 @@ impl PyFlock {
     }
 
     /// Rudder commands of the steering law, eq. (10), for where the leaders are now: (k,).
-    fn steering_law<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        let leaders = 0..self.0.parameters().n_leaders;
-        PyArray1::from_iter(py, leaders.map(|leader| self.0.steering_law(leader)))
+    fn steering_law<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyArray1<f64>>> {
+        let flock = self.read()?;
+        let leaders = 0..flock.parameters().n_leaders;
+        let rudders = leaders.map(|leader| flock.steering_law(leader));
+        Ok(PyArray1::from_iter(py, rudders))
     }
 
     /// Order parameters of the normal boats, or of all boats, now: an `OrderParameters`.
@@ -245,18 +277,18 @@ impl PyFlock {
     ///     If there is no such boat.
     #[pyo3(signature = (include_leaders=false))]
     fn order_parameters(&self, include_leaders: bool) -> PyResult<PyOrderParameters> {
-        Ok(PyOrderParameters(self.0.recorded(include_leaders)?))
+        Ok(PyOrderParameters(self.read()?.recorded(include_leaders)?))
     }
 
     /// Contacts and near-contacts of the last substep: a `Contacts`. None after a state was set or
     /// restored, until the next substep.
     fn contacts(&self, py: Python<'_>) -> PyResult<PyContacts> {
-        PyContacts::of(py, &self.0.contacts())
+        PyContacts::of(py, &self.read()?.contacts())
     }
 
     /// The whole state as bytes; continuing from them is bit-identical on the same machine.
-    fn snapshot<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
-        PyBytes::new(py, &self.0.snapshot())
+    fn snapshot<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyBytes>> {
+        Ok(PyBytes::new(py, &self.read()?.snapshot()))
     }
 
     /// Continue from a snapshot of a flock with the same parameters, the target aside.
@@ -266,48 +298,49 @@ impl PyFlock {
     /// ParameterError
     ///     For bytes that are no whole, unharmed snapshot, or one of a flock with other parameters;
     ///     the flock is unchanged then.
-    fn restore(&mut self, snapshot: &Bound<'_, PyBytes>) -> PyResult<()> {
-        Ok(self.0.restore(snapshot.as_bytes())?)
+    fn restore(&self, snapshot: &Bound<'_, PyBytes>) -> Result<()> {
+        self.0.write()?.restore(snapshot.as_bytes())
     }
 
-    fn __copy__(&self) -> Self {
-        Self(self.0.clone())
+    fn __copy__(&self) -> Result<Self> {
+        Ok(Self::of(self.read()?.clone()))
     }
 
-    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
-        Self(self.0.clone())
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Result<Self> {
+        self.__copy__()
     }
 
     fn __reduce__<'py>(
         slf: &Bound<'py, Self>,
     ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
-        let snapshot = slf.try_borrow()?.snapshot(slf.py());
+        let snapshot = slf.get().snapshot(slf.py())?;
         Ok((slf.get_type().getattr("from_snapshot")?, (snapshot,)))
     }
 
     /// The flock as a picture, for notebooks.
     fn _repr_html_(&self, py: Python<'_>) -> PyResult<String> {
-        let png = FrameRenderer::new(NOTEBOOK_PIXELS, NOTEBOOK_PIXELS)?.png(&self.0)?;
+        let png = FrameRenderer::new(NOTEBOOK_PIXELS, NOTEBOOK_PIXELS)?.png(&*self.read()?)?;
         let encoded = py
             .import("base64")?
             .call_method1("b64encode", (PyBytes::new(py, &png),))?;
         let encoded: String = encoded.call_method1("decode", ("ascii",))?.extract()?;
-        let words = self.__repr__();
+        let words = self.__repr__()?;
         let words = words.trim_matches(['<', '>']);
         Ok(format!(
             "<img alt=\"{words}\" src=\"data:image/png;base64,{encoded}\">"
         ))
     }
 
-    fn __repr__(&self) -> String {
-        let p = self.0.parameters();
-        format!(
+    fn __repr__(&self) -> Result<String> {
+        let flock = self.read()?;
+        let p = flock.parameters();
+        Ok(format!(
             "<flockenv.Flock of {} boats, {} of them leaders, seed {}, time {} s>",
             p.n_boats,
             p.n_leaders,
-            self.0.seed(),
-            self.0.time_s()
-        )
+            flock.seed(),
+            flock.time_s()
+        ))
     }
 }
 

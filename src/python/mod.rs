@@ -5,6 +5,7 @@ pub mod batch;
 pub mod contacts;
 pub mod draw;
 pub mod error;
+pub mod exclusive;
 pub mod flock;
 pub mod observation;
 pub mod order;

@@ -90,13 +90,13 @@ pub fn observe<'py>(
     mirror_to_target: bool,
     rudder: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-    let flock = &flock.0;
+    let flock = flock.read()?;
     let leaders = flock.parameters().n_leaders;
     let rudder = rudder.map(|rudder| floats(rudder, "rudder", &[leaders]));
     let rudder = rudder.transpose()?;
     flock.check_rudder(rudder.as_deref())?;
     let layout = layout_from(blocks, mirror_to_target)?;
-    observed(py, flock, layout, rudder.as_deref().unwrap_or_default())
+    observed(py, &flock, layout, rudder.as_deref().unwrap_or_default())
 }
 
 /// What the leaders of a flock observe, given the rudders as they stand.

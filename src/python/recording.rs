@@ -60,7 +60,7 @@ pub fn record<'py>(
         .map(|(time_s, change)| Ok((ticks(time_s), change_from(&change)?)))
         .collect::<PyResult<Vec<_>>>()?;
     let run = Run {
-        flock: flock.0.clone(),
+        flock: flock.read()?.clone(),
         sampling,
         contacts: kept.contacts,
         changes,

@@ -37,6 +37,9 @@ macro_rules! statistics {
         ///     Largest natural residual of a solve in cm/s.
         /// worst_overlap_cm : float
         ///     Deepest overlap at the beginning of a substep in cm, positive.
+        /// displaced_angular_momentum_cm2_s : float
+        ///     Angular momentum about the pool's center that came or went where hulls that overlapped
+        ///     deeply were moved apart, in cm²/s for boats of mass 1: its changes, each positive, summed.
         #[pyclass(name = "Statistics", module = "flockenv.flock", frozen, get_all, eq)]
         #[derive(PartialEq)]
         pub struct PyStatistics { $($name: $type),+ }
@@ -101,4 +104,5 @@ statistics! {
     neighbor_builds: u64,
     worst_residual_cm_s: f64,
     worst_overlap_cm: f64,
+    displaced_angular_momentum_cm2_s: f64,
 }

@@ -4,14 +4,17 @@ Threads may not take the interpreter from each other for a minute: this one goes
 other one releases it. How long the other one takes does not matter.
 """
 
+import copy
 import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+import numpy as np
 import pytest
 
 import flockenv
+from flockenv import Flock, InUseError, LeadersEnv
 
 
 @contextmanager
@@ -49,7 +52,19 @@ def test_simulate_lets_other_threads_run(parameters):
         assert not finished.is_set()
 
 
-def test_one_flock_in_two_threads_is_an_error_and_no_more(flock):
-    with beside(lambda: flock.advance(600.0)), pytest.raises(RuntimeError, match="borrowed"):
-        flock.advance(0)
+@pytest.mark.parametrize("use", [lambda each: each.advance(0), Flock.snapshot, copy.copy, repr])
+def test_one_flock_in_two_threads_is_an_error_and_no_more(flock, use):
+    message = "the flock is in use in another thread: each thread needs one of its own"
+    with beside(lambda: flock.advance(600.0)), pytest.raises(InUseError, match=message):
+        use(flock)
     assert flock.time_s == 600.0
+
+
+@pytest.mark.parametrize(
+    "use", [lambda env: env.step(np.zeros(2)), lambda env: env.reset(seed=1), LeadersEnv.get_state]
+)
+def test_one_environment_in_two_threads_is_an_error_and_no_more(use):
+    env = LeadersEnv(n_boats=400, n_leaders=2, control_hz=0.1, episode_s=1e5)
+    env.reset(seed=1)
+    with beside(lambda: env.step(np.zeros(2))), pytest.raises(InUseError, match="the environment"):
+        use(env)

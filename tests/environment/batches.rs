@@ -135,3 +135,23 @@ fn one_exploding_flock_does_not_hold_up_its_batch() {
     assert!((time_s(&batch, 1) - (moved - 0.1)).abs() < 1e-9);
     assert_eq!(time_s(&batch, 2), time_s(&batch, 0));
 }
+
+#[test]
+fn a_batch_larger_than_memory_is_refused_before_it_is_made() {
+    let members = vec![
+        FlockParameters {
+            n_boats: 100_000,
+            ..parameters(1)
+        };
+        200
+    ];
+    match EnvBatch::new(settings(10), members) {
+        Err(FlockError::Parameter {
+            field, accepted, ..
+        }) => {
+            assert_eq!(field, "num_envs");
+            assert!(accepted.contains("bytes do not fit"), "{accepted}");
+        }
+        other => panic!("{:?}", other.map(|batch| batch.rows())),
+    }
+}

@@ -1,5 +1,8 @@
 """Law: bad input is a named error, and nothing has moved."""
 
+import subprocess
+import sys
+
 import gymnasium
 import numpy as np
 import pytest
@@ -316,3 +319,29 @@ def test_gymnasium_order_enforcing():
     env = gymnasium.make("flockenv/Leaders-v0", **OPTIONS)
     with pytest.raises(gymnasium.error.ResetNeeded):
         env.step(np.zeros(2))
+
+
+@pytest.mark.parametrize(
+    "env",
+    [flockenv.LeadersEnv(), flockenv.LeadersParallelEnv(), flockenv.LeadersVectorEnv(2)],
+    ids=["single", "parallel", "vector"],
+)
+@pytest.mark.parametrize("name", ["observe", "state"])
+def test_nothing_is_observed_before_the_first_reset(env, name):
+    with pytest.raises(flockenv.EpisodeError, match="reset has not been called yet"):
+        getattr(env, name)()
+
+
+LIMITED = """
+import resource
+import flockenv
+resource.setrlimit(resource.RLIMIT_AS, (3 << 30, 3 << 30))
+flockenv.LeadersVectorEnv(20_000, n_boats=100)
+"""
+
+
+def test_a_batch_larger_than_the_memory_there_is_is_refused():
+    done = subprocess.run([sys.executable, "-c", LIMITED], capture_output=True, text=True)
+    assert done.returncode == 1, done.stderr
+    assert "ParameterError: num_envs = 20000 is not accepted" in done.stderr
+    assert "bytes do not fit" in done.stderr

@@ -24,6 +24,7 @@ mod placement;
 mod published;
 mod pushing;
 mod quantities;
+mod scaling;
 mod sliding;
 mod slivers;
 mod solver;

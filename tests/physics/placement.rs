@@ -8,6 +8,7 @@ use flockenv::geometry::Velocity;
 use flockenv::geometry::lap_frame::orientation;
 use flockenv::parameters::{Pool, Preset};
 use flockenv::{Flock, FlockError, FlockParameters};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 fn placed(n_boats: usize, pool: Pool, seed: u64) -> Result<Flock, FlockError> {
     let p = FlockParameters {
@@ -96,6 +97,29 @@ fn too_many_boats_are_an_error_that_says_how_many_fitted() {
                 assert!((13..n).contains(&placed), "{n}: {placed}");
             }
             other => panic!("{n}: {other:?}"),
+        }
+    }
+}
+
+#[test]
+fn placement_ends_where_it_is_told_to() {
+    // 50 boats are placed by rejection, 2000 by growth, 2400 do not fit.
+    let pool = Pool {
+        outer_radius_cm: 360.0,
+        inner_radius_cm: 0.0,
+    };
+    for n_boats in [50, 2000, 2400] {
+        for patience in [0, 3] {
+            let p = FlockParameters {
+                n_boats,
+                pool,
+                ..FlockParameters::preset(Preset::Simulation)
+            };
+            let asked = AtomicU32::new(0);
+            let keep_going = || asked.fetch_add(1, Ordering::Relaxed) < patience;
+            let placed = Flock::new_while(&keep_going, p, 1);
+            assert_eq!(placed.err(), Some(FlockError::Interrupted), "{n_boats}");
+            assert!(asked.into_inner() < 50, "it goes on asking");
         }
     }
 }

@@ -9,7 +9,7 @@ import pytest
 import torch
 
 import flockenv
-from flockenv import training
+from flockenv import InUseError, ParameterError, training
 from flockenv._io.atomic_write import atomic_write
 from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy, load
@@ -36,6 +36,20 @@ def killed_after(samples: int):
             raise Killed
 
     return report
+
+
+def test_a_folder_takes_one_training_at_a_time(tiny: TrainingSettings, tmp_path: Path) -> None:
+    refused = []
+
+    def meanwhile(progress: checkpoint.Progress) -> None:
+        with pytest.raises(InUseError, match="is in use by another process") as raised:
+            training.resume(tmp_path) if progress.samples else training.train(tiny, tmp_path)
+        refused.append(raised)
+
+    training.train(tiny.replace(samples=192), tmp_path, report=meanwhile)
+    assert len(refused) == 2
+    with pytest.raises(ParameterError, match="holds a run already"):
+        training.train(tiny, tmp_path)
 
 
 @pytest.mark.parametrize("use_sde", [False, True])

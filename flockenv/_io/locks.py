@@ -1,0 +1,81 @@
+"""Files that one process holds at a time; the system lets go of them when the process ends."""
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, Any
+
+from flockenv.errors import InUseError
+
+__all__ = ["held", "hold"]
+
+if sys.platform == "win32":
+    import msvcrt
+
+    # A byte beyond every file's end: what others read stays readable.
+    _FAR = 1 << 30
+
+    def hold(file: IO[Any]) -> bool:
+        """Hold an open file until it is closed; return whether nobody else holds it.
+
+        Raises
+        ------
+        OSError
+            Where the file system has no locks.
+        """
+        place = file.tell()
+        file.seek(_FAR)
+        try:
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        except PermissionError:
+            return False
+        finally:
+            file.seek(place)
+        return True
+
+else:
+    import fcntl
+
+    def hold(file: IO[Any]) -> bool:
+        """Hold an open file until it is closed; return whether nobody else holds it.
+
+        Raises
+        ------
+        OSError
+            Where the file system has no locks.
+        """
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return False
+        return True
+
+
+@contextmanager
+def held(path: Path, what: str) -> Iterator[None]:
+    """Hold a file, which stays behind empty, within a `with` block.
+
+    Parameters
+    ----------
+    path
+        The file; its folder must be there.
+    what
+        What errors say is in use.
+
+    Raises
+    ------
+    InUseError
+        If another process, or another thread, holds it.
+    OSError
+        If the file cannot be opened.
+    """
+    with open(os.open(path, os.O_RDWR | os.O_CREAT, 0o666), "r+b") as file:
+        try:
+            free = hold(file)
+        except OSError:  # Without locks everybody looks after their own folder.
+            free = True
+        if not free:
+            raise InUseError(f"{what} is in use by another process: name another, or wait")
+        yield

@@ -1,0 +1,135 @@
+"""Law: files are read without trust and written whole; what killed writers left is removed, and
+what living ones hold is not."""
+
+import io
+import os
+import signal
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from flockenv import FlockError, FlockParameters, InUseError, ParameterError, Recording
+from flockenv._io import array_file
+from flockenv._io.atomic_write import atomic_write, write_text
+from flockenv._io.locks import held
+from flockenv._io.toml import read_toml_file
+from flockenv.policies import load
+
+KILLED = """
+import os, signal, sys
+from flockenv._io.atomic_write import atomic_write
+with atomic_write(sys.argv[1]) as file:
+    file.write(b"half")
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+HOLDING = """
+import sys
+from pathlib import Path
+from flockenv._io.locks import held
+with held(Path(sys.argv[1]), "it"):
+    print("held", flush=True)
+    sys.stdin.read()
+"""
+
+
+def left_in(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_the_next_write_removes_what_a_killed_writer_left(tmp_path):
+    for name in ("a.txt", "b.txt"):
+        done = subprocess.run([sys.executable, "-c", KILLED, str(tmp_path / name)], timeout=60)
+        assert done.returncode == -signal.SIGKILL
+    assert [name[:6] for name in left_in(tmp_path)] == [".a.txt", ".b.txt"]
+    write_text(tmp_path / "a.txt", "whole")
+    assert [name[:6] for name in left_in(tmp_path)] == [".b.txt", "a.txt"]
+    write_text(tmp_path / "b.txt", "whole")
+    assert left_in(tmp_path) == ["a.txt", "b.txt"]
+
+
+def test_what_a_living_writer_holds_stays(tmp_path):
+    path = tmp_path / "[a]*.txt"
+    with atomic_write(path) as file:
+        file.write(b"first")
+        write_text(path, "second")
+        assert len(left_in(tmp_path)) == 2
+    assert left_in(tmp_path) == [path.name]
+    assert path.read_bytes() == b"first"
+
+
+def test_what_only_looks_alike_stays(tmp_path):
+    others = [".a.txt.tmp", ".a.txt.0123456x.tmp", ".b.a.txt.01234567.tmp", "a.txt.01234567.tmp"]
+    for name in others:
+        (tmp_path / name).touch()
+    write_text(tmp_path / "a.txt", "whole")
+    assert left_in(tmp_path) == sorted([*others, "a.txt"])
+
+
+def test_names_may_be_as_long_as_the_file_system_takes(tmp_path):
+    for name in ("x" * 251 + ".txt", "ü" * 125 + ".txt"):
+        write_text(tmp_path / name, "whole")
+        assert (tmp_path / name).read_text() == "whole"
+
+
+def test_what_is_held_is_let_go_of_when_its_holder_is_killed(tmp_path):
+    lock = tmp_path / ".lock"
+    words = [sys.executable, "-c", HOLDING, str(lock)]
+    holder = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    try:
+        assert holder.stdout.readline() == b"held\n"
+        with pytest.raises(InUseError, match="runs is in use"), held(lock, "runs"):
+            pass
+    finally:
+        holder.kill()
+        holder.communicate()
+    with held(lock, "runs"), pytest.raises(InUseError), held(lock, "runs"):
+        pass
+    with held(lock, "runs"):
+        pass
+
+
+def zeros(path: Path, header: str, count: int) -> None:
+    """A small file that claims to hold a policy of so many bytes of zeros."""
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        buffer = io.BytesIO()
+        np.save(buffer, np.array(header))
+        archive.writestr("header.npy", buffer.getvalue())
+        np.save(buffer := io.BytesIO(), np.zeros(count, np.uint8))
+        archive.writestr("weight_0.npy", buffer.getvalue())
+
+
+def test_a_policy_that_inflates_is_refused_unread(tmp_path, monkeypatch):
+    zeros(tmp_path / "bomb.npz", '{"format": "flockenv policy 1"}', 100_000_000)
+    assert (tmp_path / "bomb.npz").stat().st_size < 200_000
+    monkeypatch.setattr(array_file, "_read_entry", lambda archive, entry: pytest.fail("read"))
+    with pytest.raises(ParameterError, match="bytes claim to hold"):
+        load(tmp_path / "bomb.npz")
+
+
+@pytest.mark.parametrize("read", [load, Recording.load])
+def test_devices_and_pipes_are_no_npz_files(read, tmp_path):
+    os.mkfifo(tmp_path / "pipe.npz")
+    for path in ("/dev/zero", "/dev/null", tmp_path / "pipe.npz"):
+        with pytest.raises(FlockError, match="is no "):
+            read(path)
+
+
+def test_a_device_is_no_toml():
+    with pytest.raises(ParameterError, match="/dev/zero is no TOML: it is larger than 1048576"):
+        read_toml_file("/dev/zero", "/dev/zero")
+
+
+def test_toml_with_a_byte_order_mark_is_read(tmp_path):
+    (tmp_path / "a.toml").write_bytes(b"\xef\xbb\xbfn_boats = 7\n")
+    assert read_toml_file(tmp_path / "a.toml", "it") == {"n_boats": 7}
+    assert FlockParameters.from_toml("\ufeffn_boats = 7").n_boats == 7
+    for data, words in [(b"\xff\xfe", "is no TOML"), (b"\0", "is no TOML")]:
+        (tmp_path / "a.toml").write_bytes(data)
+        with pytest.raises(ParameterError, match=words):
+            read_toml_file(tmp_path / "a.toml", "it")
+    with pytest.raises(ParameterError, match="cannot be read: No such file"):
+        read_toml_file(tmp_path / "none.toml", "it")
