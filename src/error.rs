@@ -51,7 +51,7 @@ pub enum FlockError {
     /// The motion left the range that states may have; the flock is as it was before the call.
     #[error("{0}")]
     Solver(String),
-    /// Long work was told not to go on; nothing has changed.
+    /// Long work was stopped by a signal; nothing has changed.
     #[error("interrupted")]
     Interrupted,
     /// An object is at work in another thread.

@@ -32,7 +32,7 @@ def check_evaluation_seeds(seeds: Iterable[int]) -> None:
     ParameterError
         For a seed out of range.
     """
-    # Of a range the ends tell all, however long it is.
+    # Of a range the ends are enough, however long it is.
     ends = (seeds[:1], seeds[-1:]) if isinstance(seeds, range) else (seeds,)
     for seed in itertools.chain(*ends):
         if not 0 <= seed < FIRST_TRAINING_SEED:

@@ -55,7 +55,7 @@ const FEW_BOATS: usize = 1000;
 /// Time between two looks at Python's signals.
 const PATIENCE: Duration = Duration::from_millis(20);
 
-/// Work on so many boats, without the interpreter lock, that is told to stop where a signal's handler
+/// Work on so many boats, without the interpreter lock, that stops where a signal's handler
 /// raises: it has a thread of its own then, since Python looks at signals in this one.
 pub fn interruptible<T: Send>(
     py: Python<'_>,

@@ -18,7 +18,7 @@ import pytest
 import flockenv
 from flockenv import Flock, FlockParameters, Recording
 from flockenv.runs.spec import RunSpec
-from flockenv.runs.store import RunStore, columns
+from flockenv.runs.store import RunStore
 
 FIXTURES = Path(__file__).parents[1] / "fixtures"
 VERSIONS = sorted(path.name for path in FIXTURES.glob("v*"))
@@ -106,13 +106,16 @@ def test_keys_of_runs(facts):
 
 
 @pytest.mark.parametrize("keep", ["window", "order", "poses"])
-def test_kept_runs(folder, facts, keep, tmp_path):
+def test_kept_runs_of_other_results_say_so_and_stay(folder, facts, keep, tmp_path):
     scene, known = FlockParameters.from_dict(facts["parameters"]), facts["runs"][keep]
     spec = RunSpec(parameters=scene, seed=3, duration_s=10.0, keep=keep)
     assert spec.key == known["key"]
     shutil.copytree(folder / "runs", tmp_path / "runs")
-    result = RunStore(tmp_path / "runs", pytest.fail).load(spec)
-    assert {name: sha(array) for name, array in columns(result).items()} == known["arrays"]
+    lines = []
+    # The numbers of 0.1.0 differ from today's by rounding: they are not mixed with new ones.
+    assert RunStore(tmp_path / "runs", lines.append).load(spec) is None
+    assert "is of another version" in lines[0]
+    assert len(list((tmp_path / "runs" / "set_aside").iterdir())) == 1
 
 
 @pytest.mark.parametrize("name", ["network", "leaning"])
