@@ -5,6 +5,7 @@ import json
 import os
 import pickle
 import zipfile
+from dataclasses import replace
 
 import gymnasium
 import numpy as np
@@ -214,7 +215,10 @@ def test_layouts_are_asked_for_where_the_space_does_not_say():
     reported.policy.load_state_dict(model.policy.state_dict())
     ccw = SCENE.replace(target="ccw")
     run = flockenv.simulate(ccw, 0, 1.0, policy=policy, control_hz=5.0)
-    assert run == flockenv.simulate(ccw, 0, 1.0, policy=reported)
+    other = flockenv.simulate(ccw, 0, 1.0, policy=reported)
+    # The model that says its rate itself has it in its name.
+    assert (run.policy, other.policy) == (repr(policy), repr(ModelPolicy(reported)))
+    assert replace(run, policy=other.policy) == other
 
 
 def test_normalized_observations_are_normalized_wherever_it_steers():
