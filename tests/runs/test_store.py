@@ -150,7 +150,7 @@ def test_a_full_disk_is_named_and_leaves_no_half_file(spec: RunSpec, tmp_path: P
     handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_FSIZE, (1024, kept[1]))
     try:
-        with pytest.raises(StorageError, match=r"cannot be written.*goes on"):
+        with pytest.raises(StorageError, match=r"cannot be written.*resumes"):
             store.save(spec, result)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, kept)
