@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from flockenv._io.atomic_write import atomic_write
 from flockenv.errors import ParameterError
 
-__all__ = ["read_arrays", "write_arrays"]
+__all__ = ["is_special", "read_arrays", "write_arrays"]
 
 _MOST_BYTES = 16 << 30
 # What is compressed better than anything measured may not fill the memory with it.
@@ -43,6 +43,18 @@ def write_arrays(
         save(file, allow_pickle=False, **dict(arrays))
 
 
+def is_special(path: str | os.PathLike[str]) -> bool:
+    """Return whether a path is a device, a pipe or a socket, which may be without end.
+
+    Raises
+    ------
+    OSError
+        If there is no such file.
+    """
+    mode = os.stat(path).st_mode
+    return not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))
+
+
 def read_arrays(
     path: str | os.PathLike[str], most_bytes: int = _MOST_BYTES
 ) -> dict[str, NDArray[Any]]:
@@ -62,7 +74,7 @@ def read_arrays(
     ParameterError
         If it is no ``.npz`` file of plain numbers and strings, cut off, damaged or too large.
     """
-    if not stat.S_ISREG(os.stat(path).st_mode) and not os.path.isdir(path):
+    if is_special(path):
         raise ParameterError(f"{path} is no .npz file but a device, a pipe or a socket")
     with Path(path).open("rb") as file:
         try:

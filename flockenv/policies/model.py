@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
+from flockenv._io.array_file import is_special
 from flockenv._io.extras import require
 from flockenv.envs.observation import ObservationSpace, observation_space
 from flockenv.errors import ParameterError
@@ -193,6 +194,8 @@ def is_model_file(path: str | os.PathLike[str]) -> bool:
     OSError
         If the file cannot be opened.
     """
+    if is_special(path):
+        return False
     with open(path, "rb") as file:
         try:
             return _WEIGHTS in zipfile.ZipFile(file).namelist()
