@@ -3,7 +3,7 @@
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any
 
@@ -55,7 +55,7 @@ else:
 
 @contextmanager
 def held(path: Path, what: str) -> Iterator[None]:
-    """Hold a file, which stays behind empty, within a `with` block.
+    """Hold a file within a `with` block; it is gone afterwards, unless the process was killed.
 
     Parameters
     ----------
@@ -78,4 +78,9 @@ def held(path: Path, what: str) -> Iterator[None]:
             free = True
         if not free:
             raise InUseError(f"{what} is in use by another process: name another, or wait")
-        yield
+        try:
+            yield
+        finally:
+            # Still held here; Windows keeps a file that is open.
+            with suppress(OSError):
+                path.unlink()
