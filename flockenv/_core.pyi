@@ -9,7 +9,6 @@ from flockenv.parameters import FlockParameters
 __all__ = [
     "ORDERED_WITHIN",
     "TOWARDS_TARGET",
-    "AnimationEncoder",
     "ContactSeries",
     "Contacts",
     "EnvBatch",
@@ -178,12 +177,6 @@ class FrameRenderer:
     def __new__(cls, width: int, height: int) -> Self: ...
     def draw(self, flock: Flock) -> NDArray[np.uint8]: ...
     def place(self, flock: Flock, boat: int) -> tuple[float, float, float]: ...
-
-@final
-class AnimationEncoder:
-    def __new__(cls, file_format: str, width: int, height: int, fps: float) -> Self: ...
-    def add(self, frame: NDArray[np.uint8]) -> None: ...
-    def finish(self) -> bytes: ...
 
 @final
 class Flock:

@@ -1,33 +1,43 @@
-"""Moving pictures in a file."""
+"""Moving pictures in a file, written by Pillow."""
 
 import os
-from collections.abc import Iterable
+import struct
+from collections.abc import Iterable, Iterator
+from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv._core import AnimationEncoder
 from flockenv._io.atomic_write import atomic_write
-from flockenv.errors import ParameterError
+from flockenv._io.extras import require
+from flockenv.errors import ParameterError, shown
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
 
 __all__ = ["save_animation"]
 
-_FORMATS = {".png": "apng", ".apng": "apng", ".gif": "gif"}
+# Pillow's format of each suffix, and the unit in ms in which it stores how long a frame is shown.
+_FORMATS = {".png": ("PNG", 1), ".apng": ("PNG", 1), ".gif": ("GIF", 10)}
+_LONGEST_SIDE = 65_535  # GIF counts in 16 bits
+_SLOWEST, _FASTEST = 0.1, 100.0
 
 
 def save_animation(
     path: str | os.PathLike[str], frames: Iterable[NDArray[np.uint8]], fps: float
 ) -> None:
-    """Write frames as a moving picture that repeats.
+    """Write frames as a moving picture that repeats (extra ``render``).
 
-    Frames are compressed one by one as they come, so that an iterator needs little memory.
+    Frames in a row that are equal are stored as one that is shown for longer. Until the file is
+    written, memory holds a byte per pixel and frame for GIF, and three for PNG.
 
     Parameters
     ----------
     path
-        A name that ends in ``.png`` or ``.apng`` (animated PNG: every color unchanged) or ``.gif``.
+        A name that ends in ``.png`` or ``.apng`` (animated PNG: every color unchanged) or ``.gif``
+        (256 colors a frame).
     frames
         Arrays (height, width, 3) of uint8, all of one shape.
     fps
@@ -36,31 +46,68 @@ def save_animation(
     Raises
     ------
     ParameterError
-        For another ending, a rate out of range, no frames, or frames of different shapes.
+        For another ending, a rate out of range, no frames, frames of different shapes, and a
+        picture that stands still for longer than the format can say (65 s of PNG, 655 s of GIF).
     TypeError
         For frames that are not arrays of uint8 with three axes.
     OSError
         If the file cannot be written; what was there before is still there.
+    MissingExtraError
+        If the extra ``render`` is not installed.
     """
     suffix = Path(path).suffix.lower()
     if suffix not in _FORMATS:
         names = ", ".join(_FORMATS)
         raise ParameterError(f"path = {os.fspath(path)!r} is not accepted: a name in {names}")
-    encoder = None
-    for each in frames:
-        if encoder is None:
-            height, width = _rows_and_columns(each)
-            encoder = AnimationEncoder(_FORMATS[suffix], width, height, fps)
-        encoder.add(each)
-    if encoder is None:
+    name, unit_ms = _FORMATS[suffix]
+    images = _images(frames, _rate(fps), unit_ms)
+    first = next(images, None)
+    if first is None:
         raise ParameterError("frames are none: at least one")
-    content = encoder.finish()
+    content = BytesIO()
+    # Pillow reads the frames of a GIF one after another, those of a PNG more than once.
+    rest = images if name == "GIF" else list(images)
+    try:
+        first.save(content, name, save_all=True, append_images=rest, loop=0)
+    except struct.error as error:
+        accepted = f"a change at least every {unit_ms * 65.535:.0f} s"
+        raise ParameterError(f"frames that stand still are not accepted: {accepted}") from error
     with atomic_write(path) as file:
-        file.write(content)
+        file.write(content.getbuffer())
 
 
-def _rows_and_columns(array: Any) -> tuple[int, int]:
-    shape = np.shape(array)
-    if len(shape) != 3:
-        raise TypeError(f"frame must be an array (height, width, 3) of uint8, not of shape {shape}")
-    return shape[0], shape[1]
+def _rate(fps: Any) -> float:
+    if isinstance(fps, bool) or not isinstance(fps, int | float | np.integer | np.floating):
+        raise TypeError(f"fps must be a number, not {shown(fps)}")
+    if not _SLOWEST <= fps <= _FASTEST:
+        accepted = f"{_SLOWEST} to {_FASTEST:.0f} frames per second"
+        raise ParameterError(f"fps = {shown(fps)} is not accepted: {accepted}")
+    return float(fps)
+
+
+def _images(frames: Iterable[Any], fps: float, unit_ms: int) -> "Iterator[Image]":
+    """Yield Pillow's images, each with how long it is shown, so that the sum of all stays true."""
+    image = require("PIL.Image", "render")
+    shape: tuple[int, ...] | None = None
+    shown_until = 0
+    for count, frame in enumerate(frames, start=1):
+        shape = _checked(frame, shape)
+        picture = image.fromarray(np.ascontiguousarray(frame))
+        end = round(count * 1000 / (fps * unit_ms)) * unit_ms
+        picture.info["duration"] = end - shown_until
+        shown_until = end
+        yield picture
+
+
+def _checked(frame: Any, shape: tuple[int, ...] | None) -> tuple[int, ...]:
+    """Return the frame's shape, which is that of the frames before it."""
+    if not isinstance(frame, np.ndarray) or frame.dtype != np.uint8 or frame.ndim != 3:
+        kind = f"{frame.dtype} {frame.shape}" if isinstance(frame, np.ndarray) else type(frame)
+        raise TypeError(f"frame must be an array (height, width, 3) of uint8, not {kind}")
+    for name, side in zip(("height", "width"), frame.shape, strict=False):
+        if not 1 <= side <= _LONGEST_SIDE:
+            raise ParameterError(f"{name} = {side} is not accepted: 1 to {_LONGEST_SIDE} pixels")
+    expected = shape or (*frame.shape[:2], 3)
+    if frame.shape != expected:
+        raise ParameterError(f"frame has shape {frame.shape}, expected {expected}")
+    return expected

@@ -1,7 +1,5 @@
-//! Pictures of flocks, and animations of pictures.
+//! Pictures of flocks.
 
-mod animation;
 mod frames;
 
-pub use animation::{AnimationEncoder, AnimationFormat};
 pub use frames::FrameRenderer;

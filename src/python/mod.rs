@@ -29,7 +29,7 @@ mod _core {
     #[pymodule_export]
     use super::contacts::{PyContactSeries, PyContacts};
     #[pymodule_export]
-    use super::draw::{PyAnimationEncoder, PyFrameRenderer};
+    use super::draw::PyFrameRenderer;
     #[pymodule_export]
     use super::flock::PyFlock;
     #[pymodule_export]

@@ -1,6 +1,5 @@
 //! The environment's core without Python, one file per law.
 
-mod animation;
 mod batches;
 mod episodes;
 mod frame_image;

@@ -100,7 +100,7 @@ def kept(folder: Path) -> bytes:
 @cache
 def written(kind: str) -> bytes:
     with TemporaryDirectory() as folder:
-        path = Path(folder, "file")
+        path = Path(folder, "file.npz")
         KINDS[kind][0](path)
         return path.read_bytes()
 
@@ -108,7 +108,7 @@ def written(kind: str) -> bytes:
 def read(kind: str, blob: bytes):
     """What is read from a file of these bytes; None where a named error is raised."""
     with TemporaryDirectory() as folder:
-        path = Path(folder, "file")
+        path = Path(folder, "file.npz")
         path.write_bytes(blob)
         try:
             return KINDS[kind][1](path)

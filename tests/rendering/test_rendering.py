@@ -7,6 +7,7 @@ import warnings
 
 import gymnasium
 import numpy as np
+import PIL.Image
 import pytest
 from gymnasium.wrappers import RecordVideo
 from pettingzoo.test import render_test
@@ -180,14 +181,13 @@ def test_gymnasium_records_a_video(tmp_path):
 
 @pytest.mark.parametrize("suffix", [".gif", ".png", ".apng"])
 def test_animation_files(tmp_path, suffix):
-    image = pytest.importorskip("PIL.Image")
     scene, frames = flock(), []
     for _ in range(4):
         frames.append(rendering.frame(scene, 120, 100))
         scene.advance(0.5)
     path = tmp_path / f"run{suffix}"
     rendering.save_animation(path, iter(frames), fps=10)
-    with image.open(path) as file:
+    with PIL.Image.open(path) as file:
         assert file.n_frames == 4
         assert file.info["loop"] == 0
         for index, frame in enumerate(frames):
@@ -197,6 +197,35 @@ def test_animation_files(tmp_path, suffix):
             assert error == 0.0 if suffix != ".gif" else error < 2.0
         assert file.info["duration"] == 100
     assert [each.name for each in tmp_path.iterdir()] == [path.name]
+
+
+def plain(level):
+    return np.full((30, 40, 3), level, np.uint8)
+
+
+@pytest.mark.parametrize(
+    ("suffix", "durations"), [(".gif", [30, 40, 30, 70]), (".png", [33, 34, 33, 67])]
+)
+def test_animations_keep_time_and_few_colors(tmp_path, suffix, durations):
+    # 33.3 ms a frame in whole ms (PNG) or hundredths of a second (GIF); two equal frames are one.
+    path = tmp_path / f"run{suffix}"
+    levels = [7, 200, 90, 13, 13]
+    rendering.save_animation(path, map(plain, levels), fps=30)
+    with PIL.Image.open(path) as file:
+        assert file.n_frames == 4
+        for index, duration in enumerate(durations):
+            file.seek(index)
+            assert file.info["duration"] == duration
+            assert file.convert("RGB").getpixel((20, 10)) == (levels[index],) * 3
+
+
+@pytest.mark.parametrize(("name", "longest"), [("run.gif", 65), ("run.png", 6)])
+def test_a_still_longer_than_the_format_can_say(tmp_path, name, longest):
+    rendering.save_animation(tmp_path / name, [plain(1), *[plain(2)] * longest], 0.1)
+    before = (tmp_path / name).read_bytes()
+    with pytest.raises(flockenv.ParameterError, match="stand still"):
+        rendering.save_animation(tmp_path / name, [plain(1), *[plain(2)] * (longest + 1)], 0.1)
+    assert (tmp_path / name).read_bytes() == before
 
 
 @pytest.mark.parametrize(
@@ -211,6 +240,10 @@ def test_animation_files(tmp_path, suffix):
         ("run.png", [np.zeros((4, 4), np.uint8)], 10, TypeError),
         ("run.png", [np.zeros((4, 4, 4), np.uint8)], 10, flockenv.ParameterError),
         ("run.png", [None], 10, TypeError),
+        ("run.gif", [np.zeros((4, 0, 3), np.uint8)], 10, flockenv.ParameterError),
+        ("run.png", [np.zeros((65_536, 1, 3), np.uint8)], 10, flockenv.ParameterError),
+        ("run.png", [np.zeros((4, 4, 3), np.uint8)], 101, flockenv.ParameterError),
+        ("run.png", [np.zeros((4, 4, 3), np.uint8)], True, TypeError),
         (
             "run.png",
             [np.zeros((4, 4, 3), np.uint8), np.zeros((4, 5, 3), np.uint8)],

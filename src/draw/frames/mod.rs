@@ -87,17 +87,9 @@ impl FrameRenderer {
     /// # Errors
     /// [`FlockError::Parameter`] if the picture cannot be encoded.
     pub fn png(&mut self, flock: &Flock) -> Result<Vec<u8>> {
-        let frame = self.draw(flock);
-        let refused = |error: png::EncodingError| {
-            FlockError::parameter("frame", error, "a picture that PNG can hold")
-        };
-        let mut file = Vec::new();
-        let mut encoder = png::Encoder::new(&mut file, self.width(), self.height());
-        encoder.set_color(png::ColorType::Rgb);
-        let mut writer = encoder.write_header().map_err(refused)?;
-        writer.write_image_data(&frame).map_err(refused)?;
-        writer.finish().map_err(refused)?;
-        Ok(file)
+        self.draw_canvas(flock);
+        let refused = |error| FlockError::parameter("frame", error, "a picture that PNG can hold");
+        self.canvas.encode_png().map_err(refused)
     }
 
     /// The same into a buffer of [`Self::frame_len`] bytes.
@@ -106,12 +98,7 @@ impl FrameRenderer {
     /// If the buffer has another length.
     pub fn draw_into(&mut self, flock: &Flock, frame: &mut [u8]) {
         assert_eq!(frame.len(), self.frame_len(), "a buffer of one frame");
-        let view = View::of(flock, self.width(), self.height());
-        self.draw_background(flock, &view);
-        boats::draw(&mut self.canvas, flock, &view);
-        let open = !flock.parameters().pool.has_outer_wall();
-        let grid_cm = open.then(|| water::grid_spacing(&view));
-        self.legend.draw(&mut self.canvas, flock, grid_cm);
+        self.draw_canvas(flock);
         // The canvas is opaque throughout, so that premultiplied colors are plain ones.
         for (rgb, pixel) in frame
             .chunks_exact_mut(3)
@@ -119,6 +106,15 @@ impl FrameRenderer {
         {
             rgb.copy_from_slice(&pixel[..3]);
         }
+    }
+
+    fn draw_canvas(&mut self, flock: &Flock) {
+        let view = View::of(flock, self.width(), self.height());
+        self.draw_background(flock, &view);
+        boats::draw(&mut self.canvas, flock, &view);
+        let open = !flock.parameters().pool.has_outer_wall();
+        let grid_cm = open.then(|| water::grid_spacing(&view));
+        self.legend.draw(&mut self.canvas, flock, grid_cm);
     }
 
     /// Where a boat is in a flock's frame, in pixels from the top left, and how far its hull reaches.
