@@ -7,9 +7,12 @@ use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
 use crate::parallel;
 use crate::parameters::FlockParameters;
-use crate::sealed_bytes::{seal, unseal};
+use crate::sealed_bytes::{Magic, seal, unseal};
 
-const MAGIC: [u8; 8] = *b"flocken1";
+const MAGIC: Magic = Magic {
+    now: *b"flocken2",
+    earlier: &[*b"flocken1"],
+};
 
 /// Where a step writes: one row per leader, flock after flock, and one flag per flock.
 #[derive(Debug)]
@@ -188,7 +191,7 @@ impl EnvBatch {
     pub fn to_bytes(&self) -> Vec<u8> {
         let members: Vec<_> = self.envs.iter().map(FlockEnv::parameters).collect();
         let states: Vec<_> = self.envs.iter().map(FlockEnv::stored).collect();
-        seal(MAGIC, &(self.settings, members, states))
+        seal(&MAGIC, &(self.settings, members, states))
     }
 
     /// A batch from its bytes.
@@ -197,7 +200,7 @@ impl EnvBatch {
     /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed batch.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         type Stored = (EnvSettings, Vec<FlockParameters>, Vec<StoredEnv>);
-        let (settings, members, states) = unseal::<Stored>(MAGIC, bytes)?;
+        let (settings, members, states) = unseal::<Stored>(&MAGIC, bytes)?;
         let mut batch = Self::new(settings, members)?;
         if states.len() != batch.envs.len() {
             return Err(FlockError::Snapshot("the batch is not whole".to_owned()));

@@ -13,4 +13,3 @@ mod snapshot;
 pub use change::Change;
 pub use flock::{ContactForce, Flock, LATEST, State};
 pub use recorder::{ContactSamples, Pause, Real, Recorder, Recording, Sampling};
-pub use snapshot::Snapshot;

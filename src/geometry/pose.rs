@@ -10,7 +10,6 @@ pub const LARGEST: f64 = 1e9;
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Pose {
     /// Centroid in cm, world axes.
-    #[serde(with = "pair")]
     pub position: Vec2,
     /// Heading α in rad, counter-clockwise from x; not wrapped, so that turns can be counted.
     pub heading: f64,
@@ -49,7 +48,6 @@ impl Pose {
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Velocity {
     /// Velocity of the centroid in cm/s, world axes.
-    #[serde(with = "pair")]
     pub linear: Vec2,
     /// Angular velocity in rad/s, counter-clockwise.
     pub angular: f64,
@@ -72,19 +70,5 @@ impl Velocity {
     /// Whether a flock may hold this velocity: nothing beyond [`LARGEST`].
     pub fn is_in_range(&self) -> bool {
         self.linear.amax() <= LARGEST && self.angular.abs() <= LARGEST && self.is_finite()
-    }
-}
-
-/// A vector is stored as its two coordinates.
-mod pair {
-    use super::Vec2;
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    pub fn serialize<S: Serializer>(vector: &Vec2, serializer: S) -> Result<S::Ok, S::Error> {
-        [vector.x, vector.y].serialize(serializer)
-    }
-
-    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec2, D::Error> {
-        <[f64; 2]>::deserialize(deserializer).map(|[x, y]| Vec2::new(x, y))
     }
 }

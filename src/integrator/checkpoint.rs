@@ -6,18 +6,19 @@ use crate::contact::{CachedImpulse, Statistics};
 use crate::geometry::{Pose, Vec2, Velocity};
 
 /// The complete state of the motion, apart from parameters, seed and time.
-#[derive(Debug, Clone, Default)]
+/// Snapshots store the fields in this order.
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct Checkpoint {
     /// Poses of all boats.
     pub poses: Vec<Pose>,
     /// Velocities of all boats.
     pub velocities: Vec<Velocity>,
-    /// What leapfrog remembers.
-    pub last: LastSubstep,
     /// Contacts that carried an impulse in the last substep.
     pub warm_start: Vec<CachedImpulse>,
     /// Centers that the neighbor list was built from, and within which distance.
     pub neighbor_reference: (Vec<Vec2>, f64),
+    /// What leapfrog remembers.
+    pub last: LastSubstep,
     /// What impulses are divided by to give forces, in s.
     pub step_length_s: f64,
     /// Running statistics.

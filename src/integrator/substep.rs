@@ -37,7 +37,8 @@ pub enum StepOutcome {
 }
 
 /// What the leapfrog scheme remembers of the substep before: its second half belongs to the next kick.
-#[derive(Debug, PartialEq, Default)]
+/// Snapshots store the fields in this order.
+#[derive(Debug, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct LastSubstep {
     /// Its length; 0 if there was none since the state was set.
     pub length: Ticks,

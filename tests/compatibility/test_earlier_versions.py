@@ -82,6 +82,34 @@ def test_snapshots(folder, facts):
     assert np.isfinite(flock.pose).all()
 
 
+def test_every_format_of_a_snapshot_is_read_as_the_same_state():
+    # Format 2 has FNV-1a for a checksum, format 3 CRC-32.
+    old, new = (FIXTURES / f"snapshot_format_{each}.snapshot" for each in (2, 3))
+    assert old.read_bytes()[:8] == b"flockst2"
+    flock = Flock.from_snapshot(old.read_bytes())
+    assert (flock.time_s, len(flock.pose)) == (12.3, 6)
+    assert flock.snapshot() == new.read_bytes()
+    assert Flock.from_snapshot(new.read_bytes()).snapshot() == new.read_bytes()
+
+
+@pytest.mark.parametrize("place", [20, 300])
+def test_damage_shows_in_every_format_of_a_snapshot(place):
+    for path in [*FIXTURES.glob("*.snapshot"), FIXTURES / "v0.1.0" / "flock.snapshot"]:
+        content = bytearray(path.read_bytes())
+        content[place] ^= 1
+        with pytest.raises(flockenv.ParameterError, match="checksum differs"):
+            Flock.from_snapshot(bytes(content))
+
+
+def test_every_format_of_an_environments_state_is_read_as_the_same_state():
+    env = gymnasium.make("flockenv/Leaders-v0", **SMALL).unwrapped
+    old, new = (FIXTURES / f"environment_format_{each}.state" for each in (1, 2))
+    for path in (old, new):
+        env.reset(seed=2)
+        env.set_state(path.read_bytes())
+        assert env.get_state() == new.read_bytes()
+
+
 def test_states_of_an_environment(folder, facts):
     env, known = gymnasium.make("flockenv/Leaders-v0", **SMALL).unwrapped, facts["environment"]
     env.reset(seed=1)

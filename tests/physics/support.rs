@@ -1,7 +1,6 @@
 //! Small scenes to check laws on, what is measured of them, and a Runge–Kutta reference.
 
-use flockenv::contact::Statistics;
-use flockenv::flock::Snapshot;
+use flockenv::flock::State;
 use flockenv::geometry::{Pose, Vec2, Velocity, cross};
 use flockenv::parameters::{Noise, Pool, Preset, Scheme};
 use flockenv::{Flock, FlockParameters};
@@ -99,10 +98,7 @@ pub fn flock_of(parameters: &FlockParameters, states: &[([f64; 3], [f64; 3])]) -
         ..parameters.clone()
     };
     let mut flock = Flock::new(parameters, 1).expect("the pool holds the flock");
-    let (poses, velocities): (Vec<_>, Vec<_>) = states
-        .iter()
-        .map(|([x, y, a], [u, v, w])| (Pose::new(*x, *y, *a), Velocity::new(*u, *v, *w)))
-        .unzip();
+    let (poses, velocities) = poses_and_velocities(states);
     flock
         .set_state(&poses, &velocities, 0.0, false)
         .expect("a state without overlap");
@@ -116,26 +112,21 @@ pub fn crowded(p: &FlockParameters, states: &[([f64; 3], [f64; 3])]) -> Flock {
         n_boats,
         ..p.clone()
     };
-    let snapshot = Snapshot {
-        parameters: p,
-        seed: 1,
-        time: 0,
-        poses: states
-            .iter()
-            .map(|([x, y, a], _)| Pose::new(*x, *y, *a))
-            .collect(),
-        velocities: states
-            .iter()
-            .map(|(_, [x, y, w])| Velocity::new(*x, *y, *w))
-            .collect(),
-        warm_start: Vec::new(),
-        neighbor_reference: (Vec::new(), 0.0),
-        last_substep: (0, 0, None),
-        persistent_acceleration: Vec::new(),
-        step_length_s: 0.0,
-        statistics: Statistics::default(),
+    let (poses, velocities) = poses_and_velocities(states);
+    let state = State {
+        poses,
+        velocities,
+        time_s: 0.0,
+        allow_overlap: true,
     };
-    Flock::from_snapshot(&snapshot.to_bytes()).expect("a finite state")
+    Flock::from_state(p, 1, &state).expect("a finite state")
+}
+
+fn poses_and_velocities(states: &[([f64; 3], [f64; 3])]) -> (Vec<Pose>, Vec<Velocity>) {
+    let state = |([x, y, a], [u, v, w]): &([f64; 3], [f64; 3])| {
+        (Pose::new(*x, *y, *a), Velocity::new(*u, *v, *w))
+    };
+    states.iter().map(state).unzip()
 }
 
 /// Takes `count` full substeps.
