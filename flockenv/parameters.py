@@ -89,9 +89,10 @@ class FlockParameters:
         return object.__new__(cls)
 
     def __post_init__(self) -> None:
-        fields = asdict(self)
-        if fields["gyration_radius_cm"] is None:
-            rho = _gyration_radius_cm(_DEFAULTS, fields)
+        # No `asdict`: it copies, and a view of one number can claim petabytes.
+        given = {name: getattr(self, name) for name in _NAMES}
+        if given["gyration_radius_cm"] is None:
+            rho = _gyration_radius_cm(_DEFAULTS, given)
             object.__setattr__(self, "gyration_radius_cm", rho)
         for name, value in _core.checked_fields(self).items():
             object.__setattr__(self, name, value)

@@ -80,7 +80,7 @@ def test_tables_of_sweeps_have_every_averaged_quantity():
     result = execute(RunSpec(parameters=SCENE, seed=3, duration_s=20.0))
     row = summary(result)
     assert {f"{name}_mean" for name in AVERAGED} <= row.keys()
-    assert row["nematic_mean"] == pytest.approx(result.orders["nematic"].mean(), abs=1e-6)
+    assert row["nematic_mean"] == pytest.approx(result.analyzed().order.nematic.mean(), abs=1e-6)
 
 
 def test_the_command_line_and_the_replay_page_show_the_table(run, tmp_path):

@@ -13,10 +13,12 @@ def curves_in() -> Callable[[Path], int]:
     """Count the policies whose color is in the picture of a comparison."""
 
     def count(path: Path) -> int:
-        from flockenv.comparison.figure import COLORS
+        from flockenv.comparison.figure import COLORS, POLICY_COLORS, policy_colors
 
+        # Not the grays, which labels have too.
+        colors = {*COLORS, *POLICY_COLORS.values(), *policy_colors("abcde").values()} - {"#555555"}
         pixels = imread(path)[..., :3]
-        near = [abs(pixels - to_rgb(color)).max(axis=-1) < 0.02 for color in COLORS]
+        near = [abs(pixels - to_rgb(color)).max(axis=-1) < 0.02 for color in colors]
         return sum(int(each.sum() > 500) for each in near)
 
     return count

@@ -41,7 +41,7 @@ def test_the_card_reports_what_made_it_and_how_it_compares(
         "seeds 0 to 2",
     ):
         assert text in card
-    assert curves_in(out / "table-1-bw-0.4" / "leader_curve.png") == 4
+    assert curves_in(out / "table-1-bw-0.4" / "leader_curve.png") == 3
 
 
 def test_alternating_targets_and_drop_outs(flockenv: Run, tmp_path: Path) -> None:

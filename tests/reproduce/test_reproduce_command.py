@@ -126,10 +126,10 @@ def test_killed_and_resumed_it_writes_the_same_bytes(uninterrupted: Path, tmp_pa
     assert written(tmp_path) == written(uninterrupted)
 
 
-def test_ctrl_c_says_that_work_can_go_on(tmp_path: Path) -> None:
+def test_ctrl_c_says_that_work_can_resume(tmp_path: Path) -> None:
     code, said = interrupted(tmp_path, signal.SIGINT)
     assert code == 130
-    assert "the same command goes on" in said
+    assert "the same command resumes" in said
     assert "Waiting for the runs under way" in said
 
 
