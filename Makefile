@@ -61,7 +61,7 @@ setup: $(STAMPS)/test
 
 build: $(STAMPS)/core ## build the simulator and install the package, editable, into .venv
 
-lint: $(STAMPS)/test $(STAMPS)/core ## formatting, clippy, Rust module cycles, ruff, import layers, mypy, stubs, spelling, wording
+lint: $(STAMPS)/test $(STAMPS)/core ## formatting, clippy without and with all features, Rust module cycles, ruff, import layers, mypy, stubs, spelling, wording
 	cargo fmt --check
 	$(BIN)/ruff format --check
 	cargo clippy --locked --all-targets -- -D warnings
@@ -80,7 +80,7 @@ format: $(STAMPS)/test ## format the Rust and Python sources
 	$(BIN)/ruff format
 
 test-rust: ## the physics alone, no Python
-	cargo test --locked
+	cargo test --locked --features clarabel,draw
 
 # One thread for each worker's linear algebra, or the workers fight over the cores.
 test-python: $(STAMPS)/test $(STAMPS)/core ## the Python package
@@ -134,7 +134,7 @@ licenses: ## collect the notices of the crates that are compiled in, into LICENS
 	cargo about generate --locked --all-features about.hbs --output-file LICENSES/crates.txt
 
 validate: $(STAMPS)/test $(STAMPS)/core ## the slow tests and the published curves
-	cargo test --locked -- --ignored
+	cargo test --locked --features clarabel,draw -- --ignored
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) -m "slow or validation" --timeout 3600 $(PYTEST_ARGS)
 
 tables: $(STAMPS)/compare $(STAMPS)/core ## fill the tables of README and docs from the committed data

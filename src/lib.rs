@@ -3,7 +3,11 @@
 //!
 //! # Flow
 //! [`parameters`] → [`geometry`] → [`boat`] → [`contact`] → [`integrator`] → [`flock`] → [`environment`] →
-//! policy (Python). What is measured stands in [`analysis`], pictures in [`draw`].
+//! policy (Python). What is measured stands in [`analysis`], pictures in `draw`.
+//!
+//! # Features
+//! `draw` has pictures of flocks, `clarabel` a third contact solver to check the others against, and `python` the
+//! bindings together with both.
 //!
 //! # Units
 //! | quantity | unit |
@@ -24,6 +28,7 @@ pub mod analysis;
 pub mod boat;
 pub mod clock;
 pub mod contact;
+#[cfg(feature = "draw")]
 pub mod draw;
 pub mod environment;
 pub mod error;
@@ -39,6 +44,7 @@ mod sealed_bytes;
 mod python;
 
 pub use analysis::OrderParameters;
+#[cfg(feature = "draw")]
 pub use draw::FrameRenderer;
 pub use error::{FlockError, Result};
 pub use flock::Flock;

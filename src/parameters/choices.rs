@@ -62,6 +62,6 @@ named_choice! {
         /// Projected Gauss–Seidel, for comparison.
         GaussSeidel = "gauss-seidel",
         /// The interior-point solver clarabel, for comparison (residual 1e-4…1e-7 cm/s).
-        Clarabel = "clarabel",
+        Clarabel = "clarabel" if "clarabel",
     }
 }

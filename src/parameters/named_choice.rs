@@ -1,21 +1,22 @@
 //! Choices that users make by name.
 
-/// Declares an enum whose variants have public names, with parsing that lists what there is.
+/// Declares an enum whose variants have public names, with parsing that lists what there is. A choice may
+/// need a feature of the crate.
 macro_rules! named_choice {
     ($(#[$meta:meta])* $visibility:vis enum $type:ident ($field:literal) {
-        $($(#[$variant_meta:meta])* $variant:ident = $name:literal,)+
+        $($(#[$variant_meta:meta])* $variant:ident = $name:literal $(if $feature:literal)?,)+
     }) => {
         $(#[$meta])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-        $visibility enum $type { $($(#[$variant_meta])* $variant,)+ }
+        $visibility enum $type { $($(#[cfg(feature = $feature)])? $(#[$variant_meta])* $variant,)+ }
 
         impl $type {
             /// Every choice, in the order of documentation.
-            pub const ALL: &'static [Self] = &[$(Self::$variant,)+];
+            pub const ALL: &'static [Self] = &[$($(#[cfg(feature = $feature)])? Self::$variant,)+];
 
             /// The public name.
             pub fn name(self) -> &'static str {
-                match self { $(Self::$variant => $name,)+ }
+                match self { $($(#[cfg(feature = $feature)])? Self::$variant => $name,)+ }
             }
         }
 

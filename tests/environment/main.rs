@@ -2,7 +2,6 @@
 
 mod batches;
 mod episodes;
-mod frame_image;
 mod observations;
 mod stored_states;
 mod support;

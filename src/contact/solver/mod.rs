@@ -1,8 +1,8 @@
 //! How the contact problem is solved.
 
 mod block_pivoting;
+#[cfg(feature = "clarabel")]
 mod clarabel;
-
 mod gauss_seidel;
 
 use super::{Contact, ContactProblem, Islands};
@@ -99,6 +99,7 @@ impl ContactSolver {
             Solver::GaussSeidel => {
                 gauss_seidel::solve(problem, &mut self.impulses, &mut self.velocities)
             }
+            #[cfg(feature = "clarabel")]
             Solver::Clarabel => clarabel::solve(problem, &mut self.impulses, &mut self.velocities),
         };
         if kind != Solver::BlockPivoting {
