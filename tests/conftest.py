@@ -1,7 +1,11 @@
+import io
 import itertools
 import os
 import random
 import signal
+import subprocess
+import sys
+from functools import partial
 
 import gymnasium
 import hypothesis
@@ -44,3 +48,71 @@ def _no_chance(monkeypatch: pytest.MonkeyPatch) -> None:
         "np_random",
         lambda seed=None: seeded(next(numbers) if seed is None else seed),
     )
+
+
+@pytest.fixture
+def _quick_clones(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let trainings start from a clone that saw little: how near it is, test_cloning.py tests."""
+    from flockenv.training import ppo
+
+    monkeypatch.setattr(ppo, "clone_law", partial(ppo.clone_law, samples=600, epochs=2))
+
+
+class CommandLine:
+    """`flockenv` as tests call it. Variables are set in the environment, or unset by None."""
+
+    CALL = "from flockenv.cli import main; main()"
+
+    def __call__(self, *words: object, **variables: str | None) -> subprocess.CompletedProcess[str]:
+        """Run a command in this process, which has imported already what commands import."""
+        from flockenv.cli import main
+
+        streams = [io.TextIOWrapper(io.BytesIO(), "utf-8", write_through=True) for _ in range(2)]
+        arguments = list(map(str, words))
+        with pytest.MonkeyPatch.context() as patch:
+            for name, stream in zip(("stdout", "stderr"), streams, strict=True):
+                patch.setattr(sys, name, stream)
+            for name, value in {"COLUMNS": "80", "NO_COLOR": "1", **variables}.items():
+                patch.delenv(name, raising=False)
+                if value is not None:
+                    patch.setenv(name, value)
+            patch.setattr(sys, "argv", ["flockenv", *arguments])
+            with pytest.raises(SystemExit) as ended:
+                main()
+        texts = (each.buffer.getvalue().decode("utf-8", "surrogateescape") for each in streams)
+        return subprocess.CompletedProcess(arguments, ended.value.code or 0, *texts)
+
+    def process(
+        self, *words: object, before: str = "", **variables: str | None
+    ) -> subprocess.CompletedProcess[str]:
+        """Run a command in a process of its own, after some Python code; wait for its end."""
+        with self.start(*words, before=before, stdout=subprocess.PIPE, **variables) as process:
+            try:
+                texts = process.communicate(timeout=120)
+            finally:
+                process.kill()
+        return subprocess.CompletedProcess(process.args, process.returncode, *texts)
+
+    def start(
+        self,
+        *words: object,
+        before: str = "",
+        stdout: int | None = None,
+        stderr: int = subprocess.PIPE,
+        **variables: str | None,
+    ) -> subprocess.Popen[str]:
+        """Start a command in a process and session of its own, after some Python code."""
+        every = {**os.environ, "COLUMNS": "80", **variables}
+        return subprocess.Popen(
+            [sys.executable, "-c", f"{before}\n{self.CALL}", *map(str, words)],
+            stdout=stdout,
+            stderr=stderr,
+            text=True,
+            env={name: value for name, value in every.items() if value is not None},
+            start_new_session=True,
+        )
+
+
+@pytest.fixture(scope="session")
+def cli() -> CommandLine:
+    return CommandLine()

@@ -36,6 +36,8 @@ POLICY_COLORS: Mapping[str, str] = {
 # Of Tol's muted set, for policies of the user's own.
 _OTHERS = ("#44aa99", "#117733", "#aa4499", "#661100", "#6699cc", "#888888")
 
+_LONGEST_LABEL = 40
+
 _LABELS = {
     "psi_o": r"mean $\Psi_o$",
     "signed_order": r"mean signed order $\Psi_o\,\cos(\varphi_o-\varphi_\mathrm{target})$",
@@ -96,14 +98,21 @@ def leader_curve(
             figure.savefig(file, dpi=200, format=path.suffix.removeprefix("."))
 
 
+def _legend_label(policy: str) -> str:
+    """Shorten a long path to its end, so that the legend leaves room for the panels."""
+    if len(policy) > _LONGEST_LABEL:
+        return "…" + policy[1 - _LONGEST_LABEL :]
+    # A legend leaves out labels that start with an underscore.
+    return f" {policy}" if policy.startswith("_") else policy
+
+
 class _Shown:
     """One quantity of one policy: episodes, means by number of leaders, and their intervals."""
 
     def __init__(
         self, runs: pd.DataFrame, means: pd.DataFrame, policies: list[str], quantity: str
     ) -> None:
-        # A legend leaves out labels that start with an underscore.
-        self.label = f" {policies[0]}" if policies[0].startswith("_") else policies[0]
+        self.label = _legend_label(policies[0])
         runs = runs[runs["policy"].isin(policies)]
         means = means[means["policy"].isin(policies)].sort_values("leaders")
         self.leaders, self.values = runs["leaders"].to_numpy(), runs[quantity].to_numpy()

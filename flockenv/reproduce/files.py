@@ -1,6 +1,7 @@
 """The files of a reproduction: pictures, tables, claims; each written whole or not at all."""
 
 import io
+import re
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -40,7 +41,17 @@ def picture_bytes(figure: Figure, form: str) -> bytes:
     metadata = {"Date": None} if form == "svg" else {"Software": None}
     with paper_style():
         figure.savefig(buffer, format=form, dpi=PNG_DPI, metadata=metadata)
-    return buffer.getvalue()
+    return _with_numbered_clips(buffer.getvalue()) if form == "svg" else buffer.getvalue()
+
+
+def _with_numbered_clips(svg: bytes) -> bytes:
+    """Rename clips by number: matplotlib's names depend on the last bits of coordinates."""
+    numbers: dict[bytes, int] = {}
+    return re.sub(
+        rb"(?<=[\"#])p[0-9a-f]{10}(?=[\")])",
+        lambda name: b"clip%d" % numbers.setdefault(name[0], len(numbers)),
+        svg,
+    )
 
 
 def write_table(table: pd.DataFrame, stem: Path) -> None:

@@ -7,7 +7,7 @@ pytest.importorskip("stable_baselines3")
 
 
 def test_a_short_run(script, tmp_path):
-    script.main(["--samples", "500", "--flocks", "2", "--out", str(tmp_path / "policy")])
+    script.main(["--samples", "500", "--flocks", "1", "--out", str(tmp_path / "policy")])
     assert (tmp_path / "policy.zip").is_file()
 
 

@@ -1,13 +1,21 @@
 """Law: the script writes a learning curve from training seeds, scored on held-out episodes."""
 
 import csv
+import pickle
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
 pytest.importorskip("stable_baselines3")
 
 
-def test_a_short_run(script, tmp_path):
+def test_a_short_run(script, tmp_path, monkeypatch):
+    # A thread needs no PyTorch of its own; a process could be given the same task.
+    assert pickle.loads(pickle.dumps(script.learn)) is script.learn
+    monkeypatch.setattr(
+        script, "ProcessPoolExecutor", lambda workers, mp_context: ThreadPoolExecutor(workers)
+    )
+    monkeypatch.setattr(script, "EPISODES", 8)
     script.main(["--seeds", "3", "--samples", "4096", "--out", str(tmp_path)])
     with (tmp_path / "curve.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))

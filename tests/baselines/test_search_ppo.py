@@ -15,7 +15,7 @@ QUICK = ["--samples", "64", "--episodes", "2", "--quiet"]
 
 
 @pytest.fixture
-def short(script, monkeypatch: pytest.MonkeyPatch) -> None:
+def short(_quick_clones, script, monkeypatch: pytest.MonkeyPatch) -> None:
     settings = script.SETTINGS.replace(**SHORT, validation_s=5.0)
     monkeypatch.setattr(script, "SETTINGS", settings)
     monkeypatch.setitem(script.RANGES, "n_steps", script.one_of(16, 32))
@@ -33,7 +33,7 @@ def test_ranges_end_where_they_say(script) -> None:
         assert script.RANGES[name](1.0 - 1e-12) == pytest.approx(high, rel=1e-3)
 
 
-def test_it_keeps_every_run_and_goes_on(short, script, tmp_path: Path, capsys) -> None:
+def test_it_stores_every_run_and_resumes(short, script, tmp_path: Path, capsys) -> None:
     arguments = [*QUICK, "--runs", "2", "--out", str(tmp_path)]
     script.main(arguments)
     path = tmp_path / "search.csv"

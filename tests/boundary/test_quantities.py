@@ -5,11 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import flockenv
 from flockenv import FlockParameters, ParameterError, Recording, _core
-from flockenv.cli import app
 from flockenv.replay.quantities import shown_quantities
 from flockenv.runs.spec import RunSpec, execute
 from flockenv.runs.sweep import summary
@@ -83,10 +81,10 @@ def test_tables_of_sweeps_have_every_averaged_quantity():
     assert row["nematic_mean"] == pytest.approx(result.analyzed().order.nematic.mean(), abs=1e-6)
 
 
-def test_the_command_line_and_the_replay_page_show_the_table(run, tmp_path):
+def test_the_command_line_and_the_replay_page_show_the_table(cli, run, tmp_path):
     options = ["--set", "n_boats=5", "--set", "n_leaders=1", "--minutes", "0.3", "--json"]
-    done = CliRunner().invoke(app, ["run", *options, "--out", str(tmp_path / "run.npz")])
-    assert done.exit_code == 0
+    done = cli("run", *options, "--out", tmp_path / "run.npz")
+    assert done.returncode == 0, done.stderr
     shown = json.loads(done.stdout)
     assert {"nematic", "milling", "psi_v_cm_s", "signed_order"} <= shown.keys()
     keys = [each.key for each in shown_quantities([run])]

@@ -1,34 +1,28 @@
 """`flockenv compare` prints and writes what it measured, and refuses nonsense in words."""
 
 import json
-import subprocess
-import sys
-from collections.abc import Callable
 from pathlib import Path
 
-
-def flockenv(*arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-c", "from flockenv.cli import main; main()", *arguments]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120)
-
+from flockenv.comparison.figure import policy_colors
 
 BRIEF = ["--episodes", "3", "--minutes", "0.5", "--most-leaders", "1"]
 SHORT = [*BRIEF, "--set", "n_boats=8"]
 
 
-def test_the_table_and_the_files(tmp_path: Path, curves_in: Callable[[Path], int]) -> None:
-    done = flockenv("compare", *SHORT, "--out", str(tmp_path))
+def test_the_table_and_the_files(cli, tmp_path: Path, colors_in) -> None:
+    done = cli("compare", *SHORT, "--out", str(tmp_path))
     assert done.returncode == 0, done.stderr
+    colors = {*policy_colors(["steering law", "tuned damped law", "learned"]).values()}
     for pool in ("500-boats", "table-1"):
         assert f"pool {pool}" in done.stdout
-        assert curves_in(tmp_path / pool / "leader_curve.png") == 3
+        assert colors_in(tmp_path / pool / "leader_curve.png") == colors
     assert "F = " in done.stdout
     assert "steering law" in done.stdout
 
 
-def test_json_is_all_that_is_printed(tmp_path: Path) -> None:
+def test_json_is_all_that_is_printed(cli, tmp_path: Path) -> None:
     arguments = ["--pool", "table-1", "--json", "--out", str(tmp_path)]
-    done = flockenv("compare", *SHORT, *arguments)
+    done = cli("compare", *SHORT, *arguments)
     means = json.loads(done.stdout)["table-1"]
     assert [row["leaders"] for row in means] == [0, 1, 1, 1]
     policies = [row["policy"] for row in means]
@@ -37,30 +31,30 @@ def test_json_is_all_that_is_printed(tmp_path: Path) -> None:
     assert done.stderr == ""
 
 
-def test_a_pool_that_nothing_was_made_for(tmp_path: Path) -> None:
+def test_a_pool_that_nothing_was_made_for(cli, tmp_path: Path) -> None:
     arguments = ["--set", "pool=[90.0, 30.0]", "--set", "bw_s=0.3", "--out", str(tmp_path)]
-    done = flockenv("compare", *SHORT, *arguments, "--quiet")
+    done = cli("compare", *SHORT, *arguments, "--quiet")
     assert done.returncode == 0, done.stderr
     assert "Left out, learned: pool = (90.0, 30.0)" in done.stderr
     assert "steering law" in done.stdout
     assert "tuned" not in done.stdout
 
 
-def test_errors_are_one_line_with_exit_code_2(tmp_path: Path) -> None:
+def test_errors_are_one_line_with_exit_code_2(cli, tmp_path: Path) -> None:
     for arguments, words in (
         (["--set", "n_boats=2000"], "do not fit"),
         (["--preset", "simulaton"], "simulation"),
         (["--set", "target=left"], "ccw"),
         (["--set", "bw_s=-1"], "bw_s"),
     ):
-        done = flockenv("compare", *BRIEF, *arguments, "--out", str(tmp_path))
+        done = cli("compare", *BRIEF, *arguments, "--out", str(tmp_path))
         assert done.returncode == 2
         assert words in done.stderr
         assert "Traceback" not in done.stderr
     assert not any(tmp_path.iterdir())
 
 
-def test_presets_lists_every_field() -> None:
-    done = flockenv("presets")
+def test_presets_lists_every_field(cli) -> None:
+    done = cli("presets")
     assert done.returncode == 0
     assert "gyration_radius_cm" in done.stdout

@@ -1,32 +1,23 @@
 """`flockenv demo`: the two runs of the README, on one page, in one command."""
 
 import json
-import os
-import subprocess
-import sys
 from pathlib import Path
+
+import pytest
 
 import flockenv
 from flockenv.replay.demo import DEMO_SCENE
 
-COMMAND = [sys.executable, "-m", "flockenv", "demo"]
+NO_SCREEN = {"DISPLAY": None, "WAYLAND_DISPLAY": None}
 
 
-def demo(folder: Path, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    plain = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
-    return subprocess.run(
-        [*COMMAND, *arguments],
-        cwd=folder,
-        env={**plain, "COLUMNS": "80", **environment},
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
+@pytest.fixture(autouse=True)
+def _in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
 
 
-def test_both_runs_are_those_of_simulate(tmp_path: Path) -> None:
-    done = demo(tmp_path, "--minutes", "1", "--no-open", "--json")
+def test_both_runs_are_those_of_simulate(cli, tmp_path: Path) -> None:
+    done = cli("demo", "--minutes", "1", "--no-open", "--json")
     assert done.stderr == ""
     reported = json.loads(done.stdout)
     assert (tmp_path / reported["html"]).stat().st_size > 100_000
@@ -37,21 +28,22 @@ def test_both_runs_are_those_of_simulate(tmp_path: Path) -> None:
         assert reported["runs"][name]["signed_order"] == run.order.signed_order("cw")[late].mean()
 
 
-def test_without_a_browser_it_says_where_the_page_is(tmp_path: Path) -> None:
-    done = demo(tmp_path, "--minutes", "0.2", "-q", BROWSER="")
+def test_without_a_browser_it_says_where_the_page_is(cli, tmp_path: Path) -> None:
+    done = cli.process("demo", "--minutes", "0.2", "-q", BROWSER="", **NO_SCREEN)
     assert done.returncode == 0
     page = tmp_path / "results" / "demo.html"
     assert page.resolve().as_uri() in done.stderr
     assert "order towards target" in done.stdout
 
 
-def test_the_page_is_opened_unless_it_is_not_wanted(tmp_path: Path) -> None:
+def test_the_page_is_opened_unless_it_is_not_wanted(cli, tmp_path: Path) -> None:
     browser = tmp_path / "browser.sh"
     browser.write_text(f'#!/bin/sh\necho "$1" >> {tmp_path}/opened\n')
     browser.chmod(0o755)
     quick = ["--minutes", "0.2", "-q", "--out", "page.html"]
-    assert demo(tmp_path, *quick, "--no-open", BROWSER=f"{browser} %s").returncode == 0
+    opened_by = {"BROWSER": f"{browser} %s", **NO_SCREEN}
+    assert cli.process("demo", *quick, "--no-open", **opened_by).returncode == 0
     assert not (tmp_path / "opened").exists()
-    done = demo(tmp_path, *quick, BROWSER=f"{browser} %s")
+    done = cli.process("demo", *quick, **opened_by)
     assert done.stderr == ""
     assert (tmp_path / "opened").read_text().strip() == (tmp_path / "page.html").as_uri()

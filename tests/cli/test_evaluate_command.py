@@ -1,16 +1,13 @@
 """`flockenv evaluate` compares one policy with others on the same seeds, and writes its card."""
 
 import json
-import subprocess
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
+from flockenv.comparison.figure import policy_colors
 from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy
-
-Run = Callable[..., subprocess.CompletedProcess[str]]
 
 SHORT = ["--episodes", "3", "--minutes", "0.5", "--set", "n_boats=8", "--pool", "table-1"]
 
@@ -24,12 +21,10 @@ def learned(folder: Path) -> str:
     return str(folder / "leaning.npz")
 
 
-def test_the_card_reports_what_made_it_and_how_it_compares(
-    flockenv: Run, tmp_path: Path, curves_in: Callable[[Path], int]
-) -> None:
+def test_the_card_reports_what_made_it_and_how_it_compares(cli, tmp_path: Path, colors_in) -> None:
     out = tmp_path / "out"
     arguments = ["--leaders", "2", "--bw-s", "0.2", "--bw-s", "0.4", "--out", str(out)]
-    done = flockenv("evaluate", learned(tmp_path), *SHORT, *arguments)
+    done = cli("evaluate", learned(tmp_path), *SHORT, *arguments)
     assert done.returncode == 0, done.stderr
     card = (out / "card.md").read_text("utf-8")
     assert card.startswith("# leaning\n")
@@ -41,13 +36,14 @@ def test_the_card_reports_what_made_it_and_how_it_compares(
         "seeds 0 to 2",
     ):
         assert text in card
-    assert curves_in(out / "table-1-bw-0.4" / "leader_curve.png") == 3
+    colors = policy_colors(["leaning.npz", "steering law", "tuned damped law"])
+    assert colors_in(out / "table-1-bw-0.4" / "leader_curve.png") == {*colors.values()}
 
 
-def test_alternating_targets_and_drop_outs(flockenv: Run, tmp_path: Path) -> None:
+def test_alternating_targets_and_drop_outs(cli, tmp_path: Path) -> None:
     arguments = ["--leaders", "1", "--alternate", "--dropout-rate", "0.01", "--json"]
     out = ["--against", "straight ahead", "--out", str(tmp_path)]
-    done = flockenv("evaluate", "damped law", *SHORT, *arguments, *out)
+    done = cli("evaluate", "damped law", *SHORT, *arguments, *out)
     assert done.returncode == 0, done.stderr
     assert "alternating targets, 1 % of positions dropped" in (tmp_path / "card.md").read_text()
     (row,) = json.loads(done.stdout)["table-1-bw-0.45"]
@@ -55,34 +51,32 @@ def test_alternating_targets_and_drop_outs(flockenv: Run, tmp_path: Path) -> Non
     assert row["low"] <= row["mean"] <= row["high"]
 
 
-def test_a_policy_that_is_a_default_reference_is_left_out_there(
-    flockenv: Run, tmp_path: Path
-) -> None:
+def test_a_policy_that_is_a_default_reference_is_left_out_there(cli, tmp_path: Path) -> None:
     arguments = ["--leaders", "1", "--json", "--out", str(tmp_path)]
-    done = flockenv("evaluate", "steering law", *SHORT, *arguments)
+    done = cli("evaluate", "steering law", *SHORT, *arguments)
     assert done.returncode == 0, done.stderr
     (row,) = json.loads(done.stdout)["table-1-bw-0.45"]
     assert (row["policy"], row["reference"]) == ("steering law", "tuned damped law")
 
 
-def test_a_file_called_like_a_reference_is_not_it(flockenv: Run, tmp_path: Path) -> None:
+def test_a_file_called_like_a_reference_is_not_it(cli, tmp_path: Path) -> None:
     file = Path(learned(tmp_path)).rename(tmp_path / "learned.npz")
     arguments = ["--against", "learned", "--leaders", "1", "--json", "--out", str(tmp_path)]
-    done = flockenv("evaluate", str(file), *SHORT, *arguments)
+    done = cli("evaluate", str(file), *SHORT, *arguments)
     assert done.returncode == 0, done.stderr
     (row,) = json.loads(done.stdout)["table-1-bw-0.45"]
     assert (row["policy"], row["reference"]) == (str(file), "learned")
 
 
-def test_the_card_of_the_law_at_every_substep(flockenv: Run, tmp_path: Path) -> None:
+def test_the_card_of_the_law_at_every_substep(cli, tmp_path: Path) -> None:
     arguments = ["--against", "straight ahead", "--leaders", "1", "--out", str(tmp_path)]
-    done = flockenv("evaluate", "steering law at every substep", *SHORT, *arguments)
+    done = cli("evaluate", "steering law at every substep", *SHORT, *arguments)
     assert done.returncode == 0, done.stderr
     card = (tmp_path / "card.md").read_text("utf-8")
     assert "The policy is the paper's law, eq. (10), from the pose at every substep." in card
 
 
-def test_errors_are_named(flockenv: Run, tmp_path: Path) -> None:
+def test_errors_are_named(cli, tmp_path: Path) -> None:
     (tmp_path / "broken.npz").write_bytes(b"PK nothing")
     for arguments, words in (
         (["dampd law"], "did you mean 'damped law'"),
@@ -95,22 +89,22 @@ def test_errors_are_named(flockenv: Run, tmp_path: Path) -> None:
             "options",
         ),
     ):
-        done = flockenv("evaluate", *arguments, *SHORT, "--out", str(tmp_path / "out"))
+        done = cli("evaluate", *arguments, *SHORT, "--out", str(tmp_path / "out"))
         assert done.returncode == 2, done.stderr
         assert words in done.stderr
         assert "Traceback" not in done.stderr
     assert not (tmp_path / "out").exists()
 
 
-def test_what_ships_for_a_pool(flockenv: Run, tmp_path: Path) -> None:
+def test_what_ships_for_a_pool(cli, tmp_path: Path) -> None:
     out = ["--out", str(tmp_path / "out")]
-    done = flockenv("evaluate", "learned", *out)
+    done = cli("evaluate", "learned", *out)
     assert done.returncode == 2
     assert "another policy in each pool" in done.stderr
     assert not (tmp_path / "out").exists()
-    done = flockenv("evaluate", "learned", *SHORT, "--leaders", "1", *out)
+    done = cli("evaluate", "learned", *SHORT, "--leaders", "1", *out)
     assert done.returncode == 0, done.stderr
     assert "baselines/" in (tmp_path / "out" / "card.md").read_text("utf-8")
-    done = flockenv("evaluate", "learned", "--set", "pool=[90.0, 20.0]", "--bw-s", "0.3", *out)
+    done = cli("evaluate", "learned", "--set", "pool=[90.0, 20.0]", "--bw-s", "0.3", *out)
     assert done.returncode == 2
     assert "tuned and learned leaders are for 500-boats, table-1" in done.stderr

@@ -12,14 +12,12 @@ from pathlib import Path
 
 import pytest
 import typer
-from typer.testing import CliRunner
 
 import flockenv
 from flockenv.cli import app
 from flockenv.cli.console import finished_in, interruptible, resumable
 from flockenv.cli.presets import ABOUT
 
-COMMAND = [sys.executable, "-c", "from flockenv.cli import main; main()"]
 COMMANDS = sorted(command.callback.__name__ for command in app.registered_commands)
 SPEC = """
 minutes = 600
@@ -30,60 +28,43 @@ n_boats = [20]
 TINY = ["--episodes", "2", "--minutes", "0.2", "--set", "n_boats=5"]
 
 
-def shown(*arguments: str, columns: int = 80):
-    return CliRunner().invoke(app, arguments, env={"COLUMNS": str(columns), "NO_COLOR": "1"})
-
-
-def flockenv_cli(*arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:
-    words = [*COMMAND, *map(str, arguments)]
-    variables = {**os.environ, "COLUMNS": "80", **environment}
-    return subprocess.run(words, capture_output=True, text=True, timeout=120, env=variables)
-
-
 @pytest.mark.parametrize("name", COMMANDS)
-def test_help_has_an_example_and_fits(name):
-    reported = shown(name, "--help")
-    assert reported.exit_code == 0
-    assert f"Example: flockenv {name}" in reported.output
-    assert max(map(len, reported.output.splitlines())) <= 80
+def test_help_has_an_example_and_fits(cli, name):
+    reported = cli(name, "--help")
+    assert reported.returncode == 0
+    assert f"Example: flockenv {name}" in reported.stdout
+    assert max(map(len, reported.stdout.splitlines())) <= 80
 
 
 @pytest.mark.parametrize("name", sorted({*COMMANDS} - {"presets"}))
-def test_work_can_be_quiet_and_machine_readable(name):
-    options = shown(name, "--help").output
+def test_work_can_be_quiet_and_machine_readable(cli, name):
+    options = cli(name, "--help").stdout
     for option in ("--json", "--quiet", "-q", "--html" if name == "replay" else "--out"):
         assert option in options
     assert "--seed" in options or name in ("replay", "sweep")
 
 
 @pytest.mark.parametrize("arguments", [[], ["run"]])
-def test_help_is_also_called_h(arguments):
-    assert shown(*arguments, "-h").output == shown(*arguments, "--help").output != ""
+def test_help_is_also_called_h(cli, arguments):
+    assert cli(*arguments, "-h").stdout == cli(*arguments, "--help").stdout != ""
 
 
 def test_the_package_is_the_command_line():
     words = [sys.executable, "-m", "flockenv", "--version"]
-    done = subprocess.run(words, capture_output=True, text=True, timeout=60, check=True)
-    assert done.stdout.strip() == flockenv.__version__
+    assert subprocess.check_output(words, text=True, timeout=60).strip() == flockenv.__version__
 
 
-def test_no_bar_is_left_above_an_error(tmp_path):
+def test_no_bar_is_left_above_an_error(cli, tmp_path):
     """On a terminal, the bar's last line is cleared before the error is printed."""
     terminal, own = pty.openpty()
-    code = (
+    fails = (
         "import sys, flockenv.cli\n"
         "from flockenv.errors import ParameterError\n"
         "def simulate(*a, **k): raise ParameterError('in the middle')\n"
         "sys.modules['flockenv.cli.run'].simulate = simulate\n"
-        "from flockenv.cli import main\n"
-        f"sys.argv = ['flockenv', 'run', '--out', {str(tmp_path / 'a.npz')!r}]\n"
-        "main()\n"
     )
-    process = subprocess.Popen(
-        [sys.executable, "-c", code],
-        stderr=own,
-        env={**os.environ, "COLUMNS": "100", "TERM": "xterm"},
-    )
+    arguments = ["run", "--out", tmp_path / "a.npz"]
+    process = cli.start(*arguments, before=fails, stderr=own, COLUMNS="100", TERM="xterm")
     os.close(own)
     printed = everything(terminal)
     os.close(terminal)
@@ -93,29 +74,29 @@ def test_no_bar_is_left_above_an_error(tmp_path):
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_misspelt_options_are_reported_with_exit_code_2(name):
-    reported = shown(name, "--jason")
-    assert reported.exit_code == 2
-    assert "--jason" in reported.output
+def test_misspelt_options_are_reported_with_exit_code_2(cli, name):
+    reported = cli(name, "--jason")
+    assert reported.returncode == 2
+    assert "--jason" in reported.stderr
 
 
-def test_presets_in_80_columns():
-    reported = shown("presets")
-    assert reported.exit_code == 0
-    assert max(map(len, reported.output.splitlines())) <= 100
-    assert "…" not in reported.output
+def test_presets_in_80_columns(cli):
+    reported = cli("presets")
+    assert reported.returncode == 0
+    assert max(map(len, reported.stdout.splitlines())) <= 100
+    assert "…" not in reported.stdout
     for name, about in ABOUT.items():
-        assert f"{name}: {about}" in reported.output
+        assert f"{name}: {about}" in reported.stdout
     for words in ("gyration_radius_cm", "4.74", "experiment: flockenv fit", "Section 5.2"):
-        assert words in reported.output
-    text = " ".join(reported.output.split())
+        assert words in reported.stdout
+    text = " ".join(reported.stdout.split())
     for field in dataclasses.fields(flockenv.FlockParameters):
         assert field.metadata["doc"] in text
         assert field.metadata["unit"] in text
 
 
-def test_presets_as_json_are_the_presets():
-    reported = json.loads(shown("presets", "--json").output)
+def test_presets_as_json_are_the_presets(cli):
+    reported = json.loads(cli("presets", "--json").stdout)
     assert list(reported) == list(ABOUT) == flockenv.FlockParameters.presets()
     for name, preset in reported.items():
         values = {field: each["value"] for field, each in preset["fields"].items()}
@@ -133,7 +114,7 @@ def test_presets_as_json_are_the_presets():
         ("complete_bash", "flockenv run --see", ["--seed"]),
     ],
 )
-def test_shells_complete(variable, line, words):
+def test_shells_complete(cli, variable, line, words):
     environment = {
         "_FLOCKENV_COMPLETE": variable,
         "_TYPER_COMPLETE_ARGS": line,
@@ -141,14 +122,7 @@ def test_shells_complete(variable, line, words):
         "COMP_WORDS": line,
         "COMP_CWORD": str(len(line.split()) - 1),
     }
-    code = "import sys; sys.argv[0] = 'flockenv'; from flockenv.cli import main; main()"
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        env={**os.environ, **environment},
-    )
+    done = cli.process(before="import sys; sys.argv[0] = 'flockenv'", **environment)
     assert all(word in done.stdout for word in words), (done.stdout, done.stderr)
     assert "sweep" not in done.stdout
 
@@ -175,56 +149,50 @@ def test_shells_complete(variable, line, words):
         (["replay", "{}/file"], "file"),
     ],
 )
-def test_errors_are_one_line_with_exit_code_2(arguments, words, tmp_path, monkeypatch, capsys):
+def test_errors_are_one_line_with_exit_code_2(cli, arguments, words, tmp_path, monkeypatch):
     (tmp_path / "file").write_text("here already")
     (tmp_path / "spec.toml").write_text(SPEC)
     (tmp_path / "wall.toml").write_text('pool = "table-1"\n')
     before = sorted(tmp_path.rglob("*"))
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "argv", ["flockenv", *(a.replace("{}", ".") for a in arguments)])
-    with pytest.raises(SystemExit) as ended:
-        flockenv.cli.main()
-    reported = capsys.readouterr().err
-    assert ended.value.code == 2, reported
-    assert words in reported.replace("\n", " ")
-    assert "Traceback" not in reported
+    done = cli(*(a.replace("{}", ".") for a in arguments))
+    assert done.returncode == 2, done.stderr
+    assert words in done.stderr.replace("\n", " ")
     assert sorted(tmp_path.rglob("*")) == before
 
 
-def test_saved_parameters_compare_the_same_again(tmp_path):
-    first = flockenv_cli("compare", "--pool", "table-1", *TINY, "--json", "--out", tmp_path / "a")
+def test_saved_parameters_compare_the_same_again(cli, tmp_path):
+    first = cli("compare", "--pool", "table-1", *TINY, "--json", "--out", tmp_path / "a")
     assert first.returncode == 0, first.stderr
     params = tmp_path / "a" / "table-1" / "parameters.toml"
     scene = flockenv.FlockParameters.from_toml(params.read_text())
     assert (scene.n_boats, scene.pool) == (5, "table-1")
     assert scene.bw_s == flockenv.FlockParameters.critical_bw_s("simulation", "table-1")
-    again = flockenv_cli(
-        "compare", "--params", params, *TINY[:4], "--json", "--out", tmp_path / "b"
-    )
+    again = cli("compare", "--params", params, *TINY[:4], "--json", "--out", tmp_path / "b")
     assert json.loads(again.stdout) == json.loads(first.stdout)
 
 
-def test_a_pool_of_ones_own(tmp_path):
+def test_a_pool_of_ones_own(cli, tmp_path):
     scene = ["--set", "pool=[150, 30]", "--set", "bw_s=0.2", "--set", "target=ccw"]
     arguments = ["--against", "straight ahead", "--leaders", "1", "--json", "--out", tmp_path]
-    done = flockenv_cli("evaluate", "damped law", *scene, *TINY, *arguments)
+    done = cli("evaluate", "damped law", *scene, *TINY, *arguments)
     assert done.returncode == 0, done.stderr
     assert list(json.loads(done.stdout)) == ["150x30-bw-0.2"]
     text = (tmp_path / "150x30-bw-0.2" / "parameters.toml").read_text()
     assert flockenv.FlockParameters.from_toml(text).target == "ccw"
 
 
-def test_a_table_in_80_columns(tmp_path):
-    done = flockenv_cli("compare", "--pool", "table-1", *TINY, "-q", "--out", tmp_path)
+def test_a_table_in_80_columns(cli, tmp_path):
+    done = cli("compare", "--pool", "table-1", *TINY, "-q", "--out", tmp_path)
     assert done.stderr == ""
     table, _ = done.stdout.split("means over")
     assert max(map(len, table.splitlines())) <= 80
     assert "…" not in table
 
 
-def test_a_sweep_keeps_what_was_asked_beside_its_table(tmp_path):
+def test_a_sweep_keeps_what_was_asked_beside_its_table(cli, tmp_path):
     (tmp_path / "small.toml").write_text("minutes = 0.1\nseeds = 1\n[[grid]]\nn_boats = [3]\n")
-    done = flockenv_cli("sweep", tmp_path / "small.toml", "--out", tmp_path / "out", "-q")
+    done = cli("sweep", tmp_path / "small.toml", "--out", tmp_path / "out", "-q")
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "out" / "sweep.toml").read_bytes() == (tmp_path / "small.toml").read_bytes()
 
@@ -239,18 +207,14 @@ LONG = {
 
 
 @pytest.mark.parametrize("name", LONG)
-def test_ctrl_c_says_where_finished_work_is(name, tmp_path):
+def test_ctrl_c_says_where_finished_work_is(cli, name, tmp_path):
     (tmp_path / "spec.toml").write_text(SPEC)
     arguments, words = LONG[name]
     arguments = [each.replace("{}", str(tmp_path)) for each in arguments]
     # A bar is drawn on a terminal only.
     terminal, own = pty.openpty()
-    process = subprocess.Popen(
-        [*COMMAND, name, *arguments, "--out", str(tmp_path / "out")],
-        stderr=own,
-        env={**os.environ, "COLUMNS": "200", "TERM": "xterm"},
-        start_new_session=True,
-    )
+    out = ["--out", tmp_path / "out"]
+    process = cli.start(name, *arguments, *out, stderr=own, COLUMNS="200", TERM="xterm")
     os.close(own)
     try:
         # The bar appears when the work begins.
@@ -315,10 +279,9 @@ def test_another_ctrl_c_does_not_disturb_the_end(code, ignored, monkeypatch):
         ("pandas", "fit", ["fit", "--check", "experiment"]),
     ],
 )
-def test_a_missing_extra_is_named_before_any_work(package, extra, arguments, tmp_path):
+def test_a_missing_extra_is_named_before_any_work(cli, package, extra, arguments, tmp_path):
     forbid = f"import sys; sys.modules[{package!r}] = None"
-    words = [COMMAND[0], "-c", f"{forbid}; {COMMAND[2]}", *arguments, "--out", str(tmp_path / "a")]
-    done = subprocess.run(words, capture_output=True, text=True, timeout=60, check=False)
+    done = cli.process(*arguments, "--out", tmp_path / "a", before=forbid)
     assert done.returncode == 2
     assert f"{package} is not installed: pip install 'flockenv[{extra}]'" in done.stderr
     assert not (tmp_path / "a").exists()

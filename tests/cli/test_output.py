@@ -1,7 +1,6 @@
 """Law: a finished run is always written, nothing that a user gave is written over, and commands at
 work in one folder do not disturb each other."""
 
-import io
 import os
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -23,23 +22,6 @@ EPISODES = [*SHORT, "--pool", "table-1", "--set", "n_boats=5"]
 @pytest.fixture(autouse=True)
 def _in_a_folder_of_its_own(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-
-
-@pytest.fixture
-def cli(monkeypatch):
-    """Run a command line in this process: its exit code, and what it printed."""
-
-    def run(*arguments: str) -> tuple[int, str]:
-        raw = io.BytesIO()
-        for name in ("stdout", "stderr"):
-            stream = io.TextIOWrapper(raw, "utf-8", write_through=True)
-            monkeypatch.setattr(sys, name, stream)
-        monkeypatch.setattr(sys, "argv", ["flockenv", *arguments])
-        with pytest.raises(SystemExit) as ended:
-            flockenv.cli.main()
-        return ended.value.code or 0, raw.getvalue().decode("utf-8", "surrogateescape")
-
-    return run
 
 
 def test_checking_a_folder_leaves_alone_what_another_command_makes_meanwhile(monkeypatch):
@@ -86,12 +68,11 @@ def test_a_run_whose_folder_was_taken_away_is_kept_elsewhere(cli, tmp_path, monk
         return simulate(*arguments, **options)
 
     monkeypatch.setattr(sys.modules["flockenv.cli.run"], "simulate", meanwhile)
-    code, reported = cli("run", *TINY)
-    assert code == 2
+    done = cli("run", *TINY)
+    assert done.returncode == 2
     (kept,) = tmp_path.glob("flockenv-*/run.npz")
-    reported = reported.replace("\n", "")
-    assert str(kept) in reported
-    assert "results/run.npz cannot be written" in reported
+    assert str(kept) in done.stderr
+    assert "results/run.npz cannot be written" in done.stderr
     assert len(flockenv.Recording.load(kept)) == 13
     assert kept.with_suffix(".toml").is_file()
 
@@ -104,10 +85,10 @@ def test_a_comparison_whose_folder_was_taken_away_is_kept_elsewhere(cli, tmp_pat
         return compare_leaders(*arguments, **options)
 
     monkeypatch.setattr(report, "compare_leaders", meanwhile)
-    code, reported = cli("compare", *EPISODES, "--most-leaders", "1", "--policy", "straight ahead")
-    assert code == 2
+    done = cli("compare", *EPISODES, "--most-leaders", "1", "--policy", "straight ahead")
+    assert done.returncode == 2
     (kept,) = tmp_path.glob("flockenv-*/table-1")
-    assert str(kept) in reported.replace("\n", "")
+    assert str(kept) in done.stderr.replace("\n", "")
     assert {"runs.csv", "leader_curve.png", "run.toml"} <= {each.name for each in kept.iterdir()}
 
 
@@ -151,9 +132,9 @@ def test_what_the_user_gave_is_not_written_over(cli, arguments, given, tmp_path)
     size = len(flockenv.envs.observation.observation_entries())
     flockenv.policies.NetworkPolicy([[[0.0]] * size], [[0.0]]).save(tmp_path / "p.npz")
     before = {path: path.read_bytes() for path in tmp_path.rglob("*.*")}
-    code, reported = cli(*arguments)
-    assert code == 2, reported
-    assert f"{given} is where results would be written" in reported.replace("\n", " ")
+    done = cli(*arguments)
+    assert done.returncode == 2
+    assert f"{given} is where results would be written" in done.stderr.replace("\n", " ")
     assert {path: path.read_bytes() for path in tmp_path.rglob("*.*")} == before
 
 
@@ -164,14 +145,14 @@ def test_names_that_are_no_utf_8_replay(cli, tmp_path):
         Path(name).unlink()
     except OSError:
         pytest.skip("this file system takes UTF-8 names only")
-    code, reported = cli("run", *TINY, "--out", name)
-    assert code == 0, reported
-    code, reported = cli("replay", name, "-q", "--html", "page.html")
-    assert code == 0, reported
+    done = cli("run", *TINY, "--out", name)
+    assert done.returncode == 0, done.stderr
+    done = cli("replay", name, "-q", "--html", "page.html")
+    assert done.returncode == 0, done.stderr
     assert "<title>\ufffd\ufffd run" in Path("page.html").read_text("utf-8")
     for title in (name, "[/b] $x$ <b>"):
-        code, reported = cli("replay", name, "-q", "--html", "page.html", "--name", title)
-        assert code == 0, reported
+        done = cli("replay", name, "-q", "--html", "page.html", "--name", title)
+        assert done.returncode == 0, done.stderr
 
 
 def test_policies_may_have_any_name(cli, tmp_path):
@@ -185,14 +166,14 @@ def test_policies_may_have_any_name(cli, tmp_path):
         except OSError:
             pytest.skip("this file system takes UTF-8 names only")
     wanted = [word for name in names for word in ("--policy", name)]
-    code, reported = cli("compare", *EPISODES, "--most-leaders", "1", *wanted)
-    assert code == 0, reported
-    assert "x[/b] $a_{ $.npz" in reported.replace("\n", "")
+    done = cli("compare", *EPISODES, "--most-leaders", "1", *wanted)
+    assert done.returncode == 0, done.stderr
+    assert "x[/b] $a_{ $.npz" in done.stdout.replace("\n", "")
     assert (tmp_path / "c" / "table-1" / "leader_curve.png").stat().st_size > 0
     assert "\ufffd.npz" in (tmp_path / "c" / "table-1" / "run.toml").read_text("utf-8")
     evaluated = ["--against", names[0], "--leaders", "1"]
-    code, reported = cli("evaluate", names[2], *EPISODES, *evaluated)
-    assert code == 0, reported
+    done = cli("evaluate", names[2], *EPISODES, *evaluated)
+    assert done.returncode == 0, done.stderr
     assert (tmp_path / "c" / "card.md").read_text("utf-8").startswith("# \ufffd\n")
-    code, reported = cli("run", *TINY, "--set", "n_leaders=1", "--policy", names[2])
-    assert code == 0, reported
+    done = cli("run", *TINY, "--set", "n_leaders=1", "--policy", names[2])
+    assert done.returncode == 0, done.stderr

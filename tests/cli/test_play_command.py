@@ -114,21 +114,12 @@ def test_other_keys_change_the_speed_and_pause():
     assert (window.paused, window.rudder) == (False, -1.0)
 
 
-def play(monkeypatch, capsys, *arguments):
-    monkeypatch.setattr("sys.argv", ["flockenv", "play", *map(str, arguments)])
-    with pytest.raises(SystemExit) as ended:
-        flockenv.cli.main()
-    return ended.value.code, capsys.readouterr()
-
-
-def test_the_score_is_printed_beside_that_of_the_law(monkeypatch, capsys, tmp_path):
+def test_the_score_is_printed_beside_that_of_the_law(cli, tmp_path):
     fields = [f"--set={field}" for field in ("n_boats=9", "n_leaders=2", "pool=table-1")]
     page = tmp_path / "play.html"
-    code, reported = play(
-        monkeypatch, capsys, *fields, "--minutes", 2, "--speed", 64, "--json", "--out", page
-    )
-    assert code in (None, 0), reported.err
-    scores = json.loads(reported.out)["runs"]
+    done = cli("play", *fields, "--minutes", 2, "--speed", 64, "--json", "--out", page)
+    assert done.returncode == 0, done.stderr
+    scores = json.loads(done.stdout)["runs"]
     assert list(scores) == ["you", "paper's law"]
     scene = flockenv.FlockParameters(n_boats=9, n_leaders=2, pool="table-1")
     law = flockenv.simulate(scene, 7, 120.0, policy=SteeringLaw())
@@ -145,9 +136,9 @@ def test_the_score_is_printed_beside_that_of_the_law(monkeypatch, capsys, tmp_pa
         ([], "offscreen", "there is no screen here"),
     ],
 )
-def test_what_cannot_be_played_is_named(arguments, driver, words, monkeypatch, capsys, tmp_path):
+def test_what_cannot_be_played_is_named(arguments, driver, words, cli, monkeypatch, tmp_path):
     monkeypatch.setattr(pygame.display, "get_driver", lambda: driver)
-    code, reported = play(monkeypatch, capsys, *arguments, "--out", tmp_path / "play.html")
-    assert code == 2
-    assert words in reported.err
+    done = cli("play", *arguments, "--out", tmp_path / "play.html")
+    assert done.returncode == 2
+    assert words in done.stderr
     assert list(tmp_path.iterdir()) == []

@@ -1,10 +1,7 @@
 """`flockenv run` and `flockenv replay`: they write the given run, completely."""
 
 import json
-import os
 import signal
-import subprocess
-import sys
 import time
 from pathlib import Path
 
@@ -12,19 +9,13 @@ import pytest
 
 import flockenv
 
-COMMAND = [sys.executable, "-c", "from flockenv.cli import main; main()"]
 SMALL = ["--set", "n_boats=8", "--set", "n_leaders=2", "--set", "pool=table-1", "--minutes", "0.2"]
 
 
-def command(*arguments: object) -> subprocess.CompletedProcess[str]:
-    words = [*COMMAND, *map(str, arguments)]
-    return subprocess.run(words, capture_output=True, text=True, timeout=120)
-
-
 @pytest.fixture(scope="module")
-def run(tmp_path_factory) -> Path:
+def run(cli, tmp_path_factory) -> Path:
     out = tmp_path_factory.mktemp("runs") / "law.npz"
-    done = command("run", *SMALL, "--seed", "7", "--out", out)
+    done = cli("run", *SMALL, "--seed", "7", "--out", out)
     assert done.returncode == 0, done.stderr
     assert f"flockenv replay {out}" in done.stdout.replace("\n", "")
     return out
@@ -35,19 +26,19 @@ def test_the_recording_is_what_simulate_returns(run):
     assert flockenv.Recording.load(run) == flockenv.simulate(scene, 7, 12.0, contacts=True)
 
 
-def test_the_parameters_beside_it_run_it_again(run, tmp_path):
+def test_the_parameters_beside_it_run_it_again(cli, run, tmp_path):
     again = tmp_path / "again.npz"
     toml = run.with_suffix(".toml")
-    done = command("run", "--params", toml, "--minutes", "0.2", "--seed", "7", "--out", again)
+    done = cli("run", "--params", toml, "--minutes", "0.2", "--seed", "7", "--out", again)
     assert done.returncode == 0, done.stderr
     assert flockenv.Recording.load(again) == flockenv.Recording.load(run)
     assert "seed 7, policy law" in toml.read_text()
 
 
-def test_json_is_all_that_is_printed(tmp_path):
+def test_json_is_all_that_is_printed(cli, tmp_path):
     out = tmp_path / "run.npz"
     policy = ["--policy", "damped law", "--no-contacts", "--hz", "5"]
-    done = command("run", *SMALL, *policy, "--json", "--out", out)
+    done = cli("run", *SMALL, *policy, "--json", "--out", out)
     assert done.stderr == ""
     summary = json.loads(done.stdout)
     recording = flockenv.Recording.load(out)
@@ -58,33 +49,33 @@ def test_json_is_all_that_is_printed(tmp_path):
     assert summary["recording"] == str(out)
 
 
-def test_what_is_there_is_overwritten_only_if_that_is_asked_for(tmp_path, monkeypatch):
+def test_what_is_there_is_overwritten_only_if_that_is_asked_for(cli, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for names in (["run"], ["run", "run-2"]):
-        assert command("run", *SMALL, "-q").returncode == 0
+        assert cli("run", *SMALL, "-q").returncode == 0
         assert sorted(each.stem for each in Path("results").glob("*.npz")) == names
     before = Path("results/run.npz").read_bytes()
-    refused = command("run", *SMALL, "--seed", "1", "--out", "results/run.npz", "-q")
+    refused = cli("run", *SMALL, "--seed", "1", "--out", "results/run.npz", "-q")
     assert refused.returncode == 2
     assert "results/run.npz is there already: --force overwrites it" in refused.stderr
     assert Path("results/run.npz").read_bytes() == before
-    forced = command("run", *SMALL, "--seed", "1", "--out", "results/run.npz", "--force", "-q")
+    forced = cli("run", *SMALL, "--seed", "1", "--out", "results/run.npz", "--force", "-q")
     assert forced.returncode == 0, forced.stderr
     assert flockenv.Recording.load("results/run.npz").seed == 1
     Path("mine.toml").write_text("n_boats = 3\n")
-    refused = command("run", "--params", "mine.toml", "--out", "mine.npz", "-q")
+    refused = cli("run", "--params", "mine.toml", "--out", "mine.npz", "-q")
     assert "--params mine.toml is where results would be written" in refused.stderr
     assert not Path("mine.npz").exists()
 
 
-def test_replay_writes_a_page_beside_the_recording(run, tmp_path):
-    done = command("replay", run, "--json")
+def test_replay_writes_a_page_beside_the_recording(cli, run, tmp_path):
+    done = cli("replay", run, "--json")
     assert done.stderr == ""
     written = json.loads(done.stdout)
     page = run.with_suffix(".html")
     assert written == {"html": str(page), "bytes": page.stat().st_size, "every": 1}
     pair = tmp_path / "sub" / "pair.html"
-    done = command("replay", run, run, "--html", pair)
+    done = cli("replay", run, run, "--html", pair)
     assert done.returncode == 0, done.stderr
     assert "<title>law (1) and law (2) – flockenv replay</title>" in pair.read_text()
 
@@ -117,7 +108,7 @@ def test_replay_writes_a_page_beside_the_recording(run, tmp_path):
         (["replay", "{}/good.npz", "--name", "a", "--name", "b"], "2 times for 1"),
     ],
 )
-def test_errors_are_named_with_exit_code_2(arguments, words, run, tmp_path):
+def test_errors_are_named_with_exit_code_2(cli, arguments, words, run, tmp_path):
     good = run.read_bytes()
     (tmp_path / "good.npz").write_bytes(good)
     (tmp_path / "damaged.npz").write_bytes(good[:3000] + bytes(200) + good[3200:])
@@ -125,7 +116,7 @@ def test_errors_are_named_with_exit_code_2(arguments, words, run, tmp_path):
     (tmp_path / "folder.npz").mkdir()
     (tmp_path / "a.toml").mkdir()
     before = sorted(tmp_path.iterdir())
-    done = command(*(word.replace("{}", str(tmp_path)) for word in arguments), "--quiet")
+    done = cli(*(word.replace("{}", str(tmp_path)) for word in arguments), "--quiet")
     assert done.returncode == 2
     assert words in done.stderr
     assert "Traceback" not in done.stderr
@@ -133,16 +124,11 @@ def test_errors_are_named_with_exit_code_2(arguments, words, run, tmp_path):
 
 
 @pytest.mark.parametrize("policy", ["law", "steering law"])
-def test_ctrl_c_says_what_became_of_the_work(policy, tmp_path):
+def test_ctrl_c_says_what_became_of_the_work(cli, policy, tmp_path):
     out = tmp_path / "sub" / "run.npz"
     long = ["run", "--minutes", "6000", "--hz", "0.01", "--policy", policy, "--set", "n_leaders=1"]
-    process = subprocess.Popen(
-        [*COMMAND, *long, "--out", str(out)],
-        stderr=subprocess.PIPE,
-        text=True,
-        env={**os.environ, "FORCE_COLOR": "1"},
-    )
-    # The bar, drawn because of FORCE_COLOR, appears when the run begins.
+    process = cli.start(*long, "--out", out, FORCE_COLOR="1")
+    # The bar, drawn because of FORCE_COLOR, appears when the run starts.
     assert process.stderr.read(1)
     time.sleep(1.0)
     process.send_signal(signal.SIGINT)
@@ -165,14 +151,14 @@ def model(tmp_path_factory) -> Path:
     return path
 
 
-def test_models_of_stable_baselines3_steer_with_trust(model, tmp_path):
+def test_models_of_stable_baselines3_steer_with_trust(cli, model, tmp_path):
     out = tmp_path / "run.npz"
-    done = command("run", *SMALL, "--seed", "3", "--policy", model, "--out", out)
+    done = cli("run", *SMALL, "--seed", "3", "--policy", model, "--out", out)
     assert done.returncode == 2
     assert "--trust" in done.stderr
     assert not out.exists()
     trusted = ["--policy", model, "--trust", "--no-contacts"]
-    done = command("run", *SMALL, "--seed", "3", *trusted, "--out", out)
+    done = cli("run", *SMALL, "--seed", "3", *trusted, "--out", out)
     assert done.returncode == 0, done.stderr
     policy = flockenv.policies.load(model, trust=True)
     scene = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="table-1")
@@ -180,15 +166,15 @@ def test_models_of_stable_baselines3_steer_with_trust(model, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["compare", "evaluate"])
-def test_models_of_stable_baselines3_are_compared_with_trust(name, model, tmp_path):
+def test_models_of_stable_baselines3_are_compared_with_trust(cli, name, model, tmp_path):
     short = ["--pool", "table-1", "--episodes", "2", "--minutes", "0.1", "--set", "n_boats=6"]
     if name == "compare":
         call = ["compare", "--policy", model, "--policy", "steering law", "--most-leaders", "1"]
     else:
         call = ["evaluate", model, "--leaders", "1"]
-    refused = command(*call, *short, "--out", tmp_path / "out")
+    refused = cli(*call, *short, "--out", tmp_path / "out")
     assert (refused.returncode, "--trust" in refused.stderr) == (2, True)
-    done = command(*call, *short, "--trust", "--out", tmp_path / "out")
+    done = cli(*call, *short, "--trust", "--out", tmp_path / "out")
     assert done.returncode == 0, done.stderr
     if name == "evaluate":
         assert "sha256" in (tmp_path / "out" / "card.md").read_text()

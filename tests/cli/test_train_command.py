@@ -1,9 +1,7 @@
-"""`flockenv train` trains, goes on, and says in words what is missing."""
+"""`flockenv train` trains, resumes, and names what is missing."""
 
 import json
 import signal
-import subprocess
-import sys
 import time
 from pathlib import Path
 
@@ -39,10 +37,10 @@ def tiny(tmp_path: Path) -> str:
     return str(path)
 
 
-def test_it_trains_and_goes_on(flockenv, tiny: str, tmp_path: Path) -> None:
+def test_it_trains_and_resumes(cli, tiny: str, tmp_path: Path) -> None:
     out = str(tmp_path / "run")
     arguments = ["--settings", tiny, "--set", "net_arch=[4]", "--seed", "5", "--out", out]
-    done = flockenv("train", *arguments, "--json")
+    done = cli("train", *arguments, "--json")
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["samples"] == 192
     assert done.stderr == ""
@@ -50,13 +48,13 @@ def test_it_trains_and_goes_on(flockenv, tiny: str, tmp_path: Path) -> None:
     assert policy.weights[0].shape[1] == 4
     assert policy.made["seed"] == "5"
     assert "train --settings" in policy.made["command"]
-    more = flockenv("train", "--resume", "--samples", "384", "--out", out, "--quiet")
+    more = cli("train", "--resume", "--samples", "384", "--out", out, "--quiet")
     assert more.returncode == 0, more.stderr
     assert "samples: 384" in more.stdout
     assert "best.npz" in more.stdout
 
 
-def test_errors_are_one_line_with_exit_code_2(flockenv, tiny: str, tmp_path: Path) -> None:
+def test_errors_are_one_line_with_exit_code_2(cli, tiny: str, tmp_path: Path) -> None:
     (tmp_path / "torn.toml").write_text("samples = ")
     (tmp_path / "misspelt.toml").write_text("sample = 3")
     for arguments, words in (
@@ -68,7 +66,7 @@ def test_errors_are_one_line_with_exit_code_2(flockenv, tiny: str, tmp_path: Pat
         (["--resume"], "no checkpoint"),
         (["--resume", "--seed", "3"], "only --samples"),
     ):
-        done = flockenv("train", *arguments, "--out", str(tmp_path / "run"))
+        done = cli("train", *arguments, "--out", str(tmp_path / "run"))
         assert done.returncode == 2, done.stderr
         assert words in done.stderr
         assert "Traceback" not in done.stderr
@@ -76,20 +74,17 @@ def test_errors_are_one_line_with_exit_code_2(flockenv, tiny: str, tmp_path: Pat
         assert done.stderr.startswith("Error:") or words == "start"
 
 
-def test_the_missing_extra_is_named(tmp_path: Path) -> None:
+def test_the_missing_extra_is_named(cli, tmp_path: Path) -> None:
     forbid = "import sys; sys.modules.update(torch=None, stable_baselines3=None)"
-    run = "from flockenv.cli import main; main()"
-    command = [sys.executable, "-c", f"{forbid}; {run}", "train", "--out", str(tmp_path)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    done = cli.process("train", "--out", tmp_path, before=forbid)
     assert done.returncode == 2
     assert "pip install 'flockenv[train]'" in done.stderr
 
 
-def test_an_interrupt_names_the_command_that_resumes(tiny: str, tmp_path: Path) -> None:
+def test_an_interrupt_names_the_command_that_resumes(cli, tiny: str, tmp_path: Path) -> None:
     out = tmp_path / "run"
-    command = [sys.executable, "-c", "from flockenv.cli import main; main()", "train", "--quiet"]
-    arguments = ["--settings", tiny, "--samples", "100000000", "--out", str(out)]
-    run = subprocess.Popen([*command, *arguments], stderr=subprocess.PIPE, text=True)
+    arguments = ["--settings", tiny, "--samples", "100000000", "--out", out]
+    run = cli.start("train", "--quiet", *arguments)
     deadline = time.monotonic() + 120
     while not (out / "checkpoint.npz").exists():
         assert time.monotonic() < deadline

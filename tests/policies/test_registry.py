@@ -1,8 +1,6 @@
 """Law: a policy's name, its file and the object itself steer the same, wherever they are given."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -76,18 +74,13 @@ def test_no_name_holds_a_comma_and_older_names_are_known() -> None:
         assert named_policy(name, "table-1")() == EVERY_SUBSTEP
 
 
-def test_the_command_line_knows_names_in_any_folder(tmp_path: Path) -> None:
+def test_the_command_line_knows_names_in_any_folder(
+    cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     fields = [f"--set={field}" for field in ("n_boats=6", "n_leaders=2", "pool=table-1")]
-    command = "from flockenv.cli import main; main()"
-    words = ["run", *fields, "--policy", "learned", "--minutes", "0.2", "--seed", "3", "--json"]
-    done = subprocess.run(
-        [sys.executable, "-c", command, *words],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=True,
-    )
+    monkeypatch.chdir(tmp_path)
+    words = ["--policy", "learned", "--minutes", "0.2", "--seed", "3", "--json"]
+    done = cli("run", *fields, *words)
     assert json.loads(done.stdout)["policy"] == "learned"
     (path,) = tmp_path.rglob("*.npz")
     expected = flockenv.simulate(SCENE, 3, 12.0, policy="learned")

@@ -2,8 +2,6 @@
 
 import json
 import signal
-import subprocess
-import sys
 import time
 from pathlib import Path
 
@@ -16,14 +14,7 @@ from flockenv.reproduce.command import mark_where_short, plan, reproduce
 from flockenv.reproduce.reproduction import Outcome, Settings
 from flockenv.reproduce.style import column_figure, mark_short
 
-COMMAND = [sys.executable, "-c", "from flockenv.cli import main; main()", "reproduce"]
 SHORT = ["fig17", "--minutes", "0.4"]
-
-
-def run(*arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [*COMMAND, *arguments], capture_output=True, text=True, timeout=280, check=False
-    )
 
 
 def written(folder: Path) -> dict[str, bytes]:
@@ -31,9 +22,9 @@ def written(folder: Path) -> dict[str, bytes]:
 
 
 @pytest.fixture(scope="module")
-def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def uninterrupted(cli, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("uninterrupted")
-    done = run(*SHORT, "--out", str(folder), "--json")
+    done = cli("reproduce", *SHORT, "--out", str(folder), "--json")
     assert done.returncode == 0, done.stderr
     claims = json.loads(done.stdout)
     assert {row["figure"] for row in claims} == {"fig17"}
@@ -42,9 +33,9 @@ def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_claims_are_whole_in_80_columns(uninterrupted: Path) -> None:
+def test_claims_are_whole_in_80_columns(cli, uninterrupted: Path) -> None:
     """A block for each claim: nothing is cut off, and no line is too long."""
-    done = run(*SHORT, "--out", str(uninterrupted), "--quiet")
+    done = cli("reproduce", *SHORT, "--out", str(uninterrupted), "--quiet")
     assert done.returncode == 0, done.stderr
     assert "…" not in done.stdout
     *blocks, last = done.stdout.strip().split("\n\n")
@@ -100,10 +91,9 @@ def test_what_is_written(uninterrupted: Path) -> None:
     assert len(pd.read_parquet(folder / "fig17.parquet")) == len(table)
 
 
-def interrupted(folder: Path, how: signal.Signals) -> tuple[int, str]:
+def interrupted(cli, folder: Path, how: signal.Signals) -> tuple[int, str]:
     """Start it, stop it after some runs; return the exit code and what it said."""
-    arguments = [*COMMAND, *SHORT, "--out", str(folder), "--quiet"]
-    with subprocess.Popen(arguments, stderr=subprocess.PIPE, text=True) as process:
+    with cli.start("reproduce", *SHORT, "--out", folder, "--quiet") as process:
         deadline = time.monotonic() + 120
         while len(list(folder.rglob("*.npz"))) < 10:
             assert process.poll() is None, "it ended before it could be stopped"
@@ -116,35 +106,37 @@ def interrupted(folder: Path, how: signal.Signals) -> tuple[int, str]:
     return process.returncode, said
 
 
-def test_killed_and_resumed_it_writes_the_same_bytes(uninterrupted: Path, tmp_path: Path) -> None:
-    code, _ = interrupted(tmp_path, signal.SIGKILL)
+def test_killed_and_resumed_it_writes_the_same_bytes(
+    cli, uninterrupted: Path, tmp_path: Path
+) -> None:
+    code, _ = interrupted(cli, tmp_path, signal.SIGKILL)
     assert code == -signal.SIGKILL
     kept = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.npz")}
-    done = run(*SHORT, "--out", str(tmp_path))
+    done = cli("reproduce", *SHORT, "--out", str(tmp_path))
     assert done.returncode == 0, done.stderr
     assert all(path.stat().st_mtime_ns == then for path, then in kept.items())
     assert written(tmp_path) == written(uninterrupted)
 
 
-def test_ctrl_c_says_that_work_can_resume(tmp_path: Path) -> None:
-    code, said = interrupted(tmp_path, signal.SIGINT)
+def test_ctrl_c_says_that_work_can_be_resumed(cli, tmp_path: Path) -> None:
+    code, said = interrupted(cli, tmp_path, signal.SIGINT)
     assert code == 130
-    assert "the same command resumes" in said
+    assert "the same command resumes from them" in said
     assert "Waiting for the runs under way" in said
 
 
-def test_a_damaged_run_is_named_and_made_again(uninterrupted: Path) -> None:
+def test_a_damaged_run_is_named_and_made_again(cli, uninterrupted: Path) -> None:
     before = written(uninterrupted)
     path = sorted((uninterrupted / "runs").rglob("*.npz"))[0]
     path.write_bytes(path.read_bytes()[:1000])
-    done = run(*SHORT, "--out", str(uninterrupted))
+    done = cli("reproduce", *SHORT, "--out", str(uninterrupted))
     assert done.returncode == 0, done.stderr
     assert path.name in done.stderr
     assert "done again" in done.stderr
     assert written(uninterrupted) == before
 
 
-def test_what_is_not_there_is_refused_before_anything_is_written(tmp_path: Path) -> None:
+def test_what_is_not_there_is_refused_before_anything_is_written(cli, tmp_path: Path) -> None:
     for arguments, words in (
         (["fig99"], "fig14, fig15, fig16, fig17"),
         (["fig17", "--engine", "slurm"], "local, joblib, ray"),
@@ -153,7 +145,7 @@ def test_what_is_not_there_is_refused_before_anything_is_written(tmp_path: Path)
         (["fig17", "--summary", "page"], "ends in .md"),
         (["fig17", "--summary", "/dev/null/page.md"], "--summary: folder /dev/null"),
     ):
-        done = run(*arguments, "--out", str(tmp_path / "out"))
+        done = cli("reproduce", *arguments, "--out", str(tmp_path / "out"))
         assert done.returncode == 2
         assert words in " ".join(done.stderr.split())
         assert "Traceback" not in done.stderr

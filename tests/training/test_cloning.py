@@ -26,6 +26,7 @@ def test_the_same_seed_clones_the_same_bits(tiny: TrainingSettings) -> None:
         np.testing.assert_array_equal(own, other)
 
 
+@pytest.mark.usefixtures("_quick_clones")
 def test_a_run_starts_from_a_clone_of_a_leaning_law(tiny: TrainingSettings, tmp_path: Path) -> None:
     gains = {"gain": 1.0, "backward_gain": 2.0, "damping": 9.0}
     LeaningLaw(gains, 0.1, {"near": 0.2}).save(tmp_path / "law.npz")
