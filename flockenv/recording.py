@@ -28,11 +28,12 @@ __all__ = ["DISCARDED_SHARE", "PHASES", "PRECISIONS", "Recording"]
 DISCARDED_SHARE = 0.1
 """The share of a run, at its start, that no figure uses."""
 
-_FORMAT = "flockenv recording 2"
+_FORMAT = "flockenv recording 3"
 PHASES = np.array(_core.phase_names())
 # Format 1 held Section 3.2's six order parameters, and neither the policy nor the duration; later
-# files hold the quantities that were recorded at the time.
+# files hold the quantities that were recorded at the time. Format 2 held no rudders.
 _FIRST_FORMAT = "flockenv recording 1"
+_SECOND_FORMAT = "flockenv recording 2"
 _FIRST_ORDER = ("psi_o", "phi_o", "c_o", "psi_v", "phi_v", "c_v")
 RECORDED = tuple(each for each in _core.quantities() if each.kind == "recorded")
 """The quantities that are recorded with every sample, entries of the table."""
@@ -72,6 +73,10 @@ class Recording:
         Seed of all random streams.
     version : str
         Version of flockenv that ran it.
+    rudder : float64 array, shape (t, k), or None
+        Rudder commands of the leaders in [-1, 1]: eq. (10) at each pose under the law, otherwise
+        what was held up to each time, 0 at the start. None where they were not recorded, as in
+        files of version 0.1.0 and in runs of a `RunStore`.
     contacts : ContactSeries or None
         Contacts that carried a force, if they were recorded.
     policy : str or None
@@ -98,6 +103,7 @@ class Recording:
     seed: int
     version: str
     contacts: ContactSeries | None = None
+    rudder: NDArray[np.float64] | None = None
     policy: str | None = None
     duration_s: float = math.nan
 
@@ -129,6 +135,10 @@ class Recording:
         seed: Any = self.seed
         if not isinstance(seed, int) or not 0 <= seed < 2**64:
             raise ParameterError(f"seed = {shown(seed)} is not accepted: an int from 0 to 2^64 - 1")
+        if self.rudder is not None:
+            _check("rudder", self.rudder, (*times, self.parameters.n_leaders), PRECISIONS[:1])
+            if (np.abs(self.rudder) > 1.0).any():
+                raise ParameterError("rudder must be within [-1, 1]")
         if self.contacts is not None:
             _check_contacts(self.contacts, len(self), self.parameters.n_boats)
 
@@ -140,7 +150,8 @@ class Recording:
             return NotImplemented
         plain = ("order", "parameters", "seed", "version", "contacts", "policy", "duration_s")
         return all(getattr(self, name) == getattr(other, name) for name in plain) and all(
-            np.array_equal(getattr(self, name), getattr(other, name)) for name in _ARRAYS
+            np.array_equal(getattr(self, name), getattr(other, name))
+            for name in (*_ARRAYS, "rudder")
         )
 
     def __repr__(self) -> str:
@@ -288,7 +299,8 @@ class Recording:
         columns: dict[str, Any] = {name: getattr(self, name)[samples] for name in _ARRAYS}
         order = OrderSeries(**{name: getattr(self.order, name)[samples] for name in _ORDER})
         contacts = None if self.contacts is None else _contacts_at(self.contacts, samples)
-        return replace(self, **columns, order=order, contacts=contacts)
+        rudder = None if self.rudder is None else self.rudder[samples]
+        return replace(self, **columns, order=order, contacts=contacts, rudder=rudder)
 
     def save(self, path: str | os.PathLike[str], *, compressed: bool = False) -> None:
         """Write the recording to an ``.npz`` file, whole or not at all.
@@ -312,6 +324,8 @@ class Recording:
             )
         arrays = {name: getattr(self, name) for name in _ARRAYS}
         arrays |= {f"order_{name}": getattr(self.order, name) for name in _ORDER}
+        if self.rudder is not None:
+            arrays["rudder"] = self.rudder
         if self.contacts is not None:
             arrays |= {f"contacts_{name}": getattr(self.contacts, name) for name in _CONTACTS}
         texts = {
@@ -347,7 +361,7 @@ class Recording:
         if str(arrays.get("format")) == _FIRST_FORMAT:
             last = arrays.get("time_s", np.zeros(1))[-1:].astype(np.float64).sum()
             added = {"policy": np.array(""), "duration_s": np.array(last)}
-            arrays = {**added, **arrays, "format": np.array(_FORMAT)}
+            arrays = {**added, **arrays, "format": np.array(_SECOND_FORMAT)}
         texts = ("format", "version", "parameters", "policy")
         order = [name for name in _ORDER if name in _FIRST_ORDER or f"order_{name}" in arrays]
         expected = {*_ARRAYS, *(f"order_{name}" for name in order), *texts, "seed", "duration_s"}
@@ -362,8 +376,10 @@ class Recording:
         _check("seed", arrays["seed"], (), (np.dtype(np.uint64),))
         _check("duration_s", arrays["duration_s"], (), PRECISIONS[:1])
         form, version, parameters, policy = (str(arrays[name]) for name in texts)
-        if form != _FORMAT:
-            raise ParameterError(f"format = {form!r} is not accepted: {_FORMAT!r}")
+        if form not in (_SECOND_FORMAT, _FORMAT):
+            raise ParameterError(
+                f"format = {form!r} is not accepted: {_FORMAT!r} or one before it"
+            )
         held = {name: arrays[f"order_{name}"] for name in order}
         scene = FlockParameters.from_toml(parameters)
         return cls(
@@ -374,6 +390,7 @@ class Recording:
             version=version,
             policy=policy or None,
             duration_s=float(arrays["duration_s"]),
+            rudder=arrays.get("rudder"),
             contacts=ContactSeries(*(arrays[f"contacts_{name}"] for name in _CONTACTS))
             if has_contacts
             else None,

@@ -140,7 +140,8 @@ def execute(spec: RunSpec) -> Recording:
     FlockError
         As for `simulate`.
     """
-    run = replace(PROTOCOLS[spec.protocol](spec), duration_s=spec.duration_s)
+    # What the law commands follows from the poses.
+    run = replace(PROTOCOLS[spec.protocol](spec), duration_s=spec.duration_s, rudder=None)
     if spec.keep == "window":
         run = run.analyzed()
     if spec.keep != "poses":

@@ -110,6 +110,9 @@ pub struct Recording<T> {
     pub pose: Vec<T>,
     /// Velocities [cm/s, cm/s, rad/s] of all boats, sample after sample.
     pub velocity: Vec<T>,
+    /// Rudder commands of the leaders, sample after sample: those held up to each time, or under the
+    /// steering law those at its poses.
+    pub rudder: Vec<f64>,
     /// Recorded quantities of the normal boats; all NaN where there is none.
     pub order: Vec<Recorded>,
     /// Contacts, if they are recorded.
@@ -127,10 +130,11 @@ impl<T: Real> Recording<T> {
     pub fn with_room_for(sampling: &Sampling, parameters: &FlockParameters) -> Result<Self> {
         let samples = sampling.count();
         let state = 6 * parameters.n_boats as u64 * size_of::<T>() as u64;
-        let other = (size_of::<Recorded>() + size_of::<f64>() + 2) as u64;
+        let rudders = parameters.n_leaders * size_of::<f64>();
+        let other = (size_of::<Recorded>() + size_of::<f64>() + 2 + rudders) as u64;
         let bytes = samples.saturating_mul(state + other);
         let mut recording = Self::empty();
-        if bytes > Self::MOST_BYTES || recording.reserve(samples, parameters.n_boats).is_none() {
+        if bytes > Self::MOST_BYTES || recording.reserve(samples, parameters).is_none() {
             return Err(FlockError::parameter(
                 "duration_s * sample_hz",
                 format!("{} samples of {} boats", samples, parameters.n_boats),
@@ -152,14 +156,17 @@ impl<T: Real> Recording<T> {
             in_analysis_window: Vec::new(),
             pose: Vec::new(),
             velocity: Vec::new(),
+            rudder: Vec::new(),
             order: Vec::new(),
             contacts: None,
         }
     }
 
-    fn reserve(&mut self, samples: u64, boats: usize) -> Option<()> {
+    fn reserve(&mut self, samples: u64, parameters: &FlockParameters) -> Option<()> {
         let samples = usize::try_from(samples).ok()?;
-        let numbers = samples.checked_mul(boats)?.checked_mul(3)?;
+        let numbers = samples.checked_mul(parameters.n_boats)?.checked_mul(3)?;
+        let rudders = samples.checked_mul(parameters.n_leaders)?;
+        self.rudder.try_reserve_exact(rudders).ok()?;
         self.time_s.try_reserve_exact(samples).ok()?;
         self.phase.try_reserve_exact(samples).ok()?;
         self.in_analysis_window.try_reserve_exact(samples).ok()?;
@@ -168,8 +175,8 @@ impl<T: Real> Recording<T> {
         self.velocity.try_reserve_exact(numbers).ok()
     }
 
-    /// Takes a sample of a flock as it is now.
-    pub fn push(&mut self, flock: &Flock) {
+    /// Takes a sample of a flock as it is now, with the rudders that are held; `None`: the steering law.
+    pub fn push(&mut self, flock: &Flock, rudder: Option<&[f64]>) {
         self.time_s.push(flock.time_s());
         self.phase.push(flock.phase().phase);
         self.in_analysis_window
@@ -181,6 +188,11 @@ impl<T: Real> Recording<T> {
         for velocity in flock.velocities() {
             let numbers = [velocity.linear.x, velocity.linear.y, velocity.angular];
             self.velocity.extend(numbers.map(T::nearest));
+        }
+        let leaders = 0..flock.parameters().n_leaders;
+        match rudder {
+            Some(held) => self.rudder.extend(held),
+            None => self.rudder.extend(leaders.map(|k| flock.steering_law(k))),
         }
         self.order
             .push(flock.recorded(false).unwrap_or([f64::NAN; RECORDED]));
@@ -338,7 +350,8 @@ impl<T: Real> Recorder<T> {
 
     fn sample_and_change(&mut self, now: Ticks) -> Result<()> {
         if self.taken < self.sampling.count() && self.sampling.time(self.taken) == now {
-            self.recording.push(&self.flock);
+            let held = self.control.as_ref().map(|control| &control.rudder[..]);
+            self.recording.push(&self.flock, held);
             self.taken += 1;
         }
         while let Some((_, change)) = self.changes.pop_front_if(|(time, _)| *time <= now) {

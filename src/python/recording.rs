@@ -94,6 +94,7 @@ impl<'py> Run<'py> {
     fn recorded<T: Real + Element>(self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         const REPORTED_EVERY_S: f64 = 10.0;
         let boats = self.flock.parameters().n_boats;
+        let leaders = self.flock.parameters().n_leaders;
         let mut recorder =
             Recorder::<T>::new(self.flock, self.sampling)?.with_changes(self.changes);
         if self.contacts {
@@ -118,7 +119,7 @@ impl<'py> Run<'py> {
                 reported_s += since_s;
             }
         }
-        fields(py, recorder.into_recording(), boats)
+        fields(py, recorder.into_recording(), boats, leaders)
     }
 }
 
@@ -138,6 +139,7 @@ fn fields<T: Element>(
     py: Python<'_>,
     recording: Recording<T>,
     boats: usize,
+    leaders: usize,
 ) -> PyResult<Bound<'_, PyDict>> {
     let samples = recording.time_s.len();
     let phases = recording.phase.iter().map(|phase| phase.index() as u8);
@@ -150,6 +152,8 @@ fn fields<T: Element>(
     fields.set_item("in_analysis_window", window)?;
     fields.set_item("pose", rows(recording.pose)?)?;
     fields.set_item("velocity", rows(recording.velocity)?)?;
+    let rudder = PyArray1::from_vec(py, recording.rudder).reshape([samples, leaders])?;
+    fields.set_item("rudder", rudder)?;
     let contacts = recording.contacts.as_ref();
     let contacts = contacts.map(|samples| PyContactSeries::recorded(py, samples));
     fields.set_item("contacts", contacts.transpose()?)?;

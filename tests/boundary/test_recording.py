@@ -473,3 +473,38 @@ def test_a_recording_reports_its_flock_at_a_time():
     for time_s in (-0.1, 10.1, np.nan):
         with pytest.raises(flockenv.ParameterError, match=r"from 0\.0 to 10\.0 s"):
             run.flock_at(time_s)
+
+
+def test_rudders_under_the_law_are_those_of_the_poses():
+    run = simulate(PARAMETERS, 3, 10.0)
+    assert run.rudder.shape == (101, 1)
+    for sample in (0, 37, 100):
+        assert np.array_equal(run.rudder[sample], run.flock_at(run.time_s[sample]).steering_law())
+
+
+def test_rudders_of_a_policy_are_those_held_up_to_each_time():
+    class Rising:
+        def __init__(self):
+            self.calls = 0
+
+        def predict(self, observation, state=None):
+            self.calls += 1
+            return np.full((1, 1), self.calls / 4), state
+
+    run = simulate(PARAMETERS, 3, 1.0, 4.0, policy=Rising(), control_hz=2.0)
+    assert run.rudder[:, 0].tolist() == [0.0, 0.25, 0.25, 0.5, 0.5]
+
+
+def test_rudders_are_saved_checked_and_may_be_missing():
+    assert np.array_equal(load(saved()).rudder, RUN.rudder)
+    without = dataclasses.replace(RUN, rudder=None)
+    assert load(saved(without)).rudder is None
+    assert load(saved(without)) == without != RUN
+    for rudder in (
+        RUN.rudder[:-1],
+        RUN.rudder.astype(np.float32),
+        RUN.rudder + 2,
+        RUN.rudder * np.nan,
+    ):
+        with pytest.raises(ParameterError, match="rudder"):
+            dataclasses.replace(RUN, rudder=rudder)
