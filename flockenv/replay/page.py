@@ -55,6 +55,7 @@ _MOST_RUNS = 2
 _MOST_SAMPLES = 400_000
 # What numbers are rounded to: finer than a page shows them, in cm, rad, cm/s, rad/s, cm/s².
 _POSITION, _ANGLE, _SPEED, _TURNING, _FORCE = 0.01, 0.001, 0.05, 0.005, 0.1
+_RUDDER = 0.002
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,6 +265,8 @@ def _series(recording: Recording, every: int, quantities: list[ShownQuantity]) -
     if leaders > 0:
         phi = _core.lap_orientation(pose[:, :leaders].astype(np.float64))
         packer.add("leader_phi", np.unwrap(phi, axis=0), _ANGLE)
+    if recording.rudder is not None:
+        packer.add_plain("rudder", recording.rudder[shown], _RUDDER)
     for quantity in quantities:
         values = quantity.of(recording)[shown]
         if np.isfinite(values).all():

@@ -73,6 +73,8 @@ def test_hovering_reports_a_boats_numbers(page, law):
         angles = page.driver.find_elements("css selector", ".card dd[data-number='φ']")
         assert len(angles) == (boat < 2)
         if boat < 2:
+            rudder = law.rudder[k, boat]
+            assert page.number("dd[data-number='rudder']", 0) == pytest.approx(rudder, abs=0.0061)
             # Figure 3: 0 points outward, clockwise is positive.
             phi = np.arctan2(y, x) - heading
             assert np.cos(page.number("dd[data-number='φ']", 0) - phi) == pytest.approx(
