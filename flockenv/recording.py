@@ -365,6 +365,7 @@ class Recording:
         texts = ("format", "version", "parameters", "policy")
         order = [name for name in _ORDER if name in _FIRST_ORDER or f"order_{name}" in arrays]
         expected = {*_ARRAYS, *(f"order_{name}" for name in order), *texts, "seed", "duration_s"}
+        expected |= {"rudder"} & arrays.keys()
         with_contacts = {f"contacts_{name}" for name in _CONTACTS}
         has_contacts = not with_contacts.isdisjoint(arrays)
         expected |= with_contacts if has_contacts else set()
@@ -378,7 +379,7 @@ class Recording:
         form, version, parameters, policy = (str(arrays[name]) for name in texts)
         if form not in (_SECOND_FORMAT, _FORMAT):
             raise ParameterError(
-                f"format = {form!r} is not accepted: {_FORMAT!r} or one before it"
+                f"format = {form!r} is not accepted: {_FORMAT!r} or an earlier one"
             )
         held = {name: arrays[f"order_{name}"] for name in order}
         scene = FlockParameters.from_toml(parameters)

@@ -288,7 +288,7 @@ def with_arrays(**changes) -> bytes:
     {"extra": np.zeros(3)},
     {"seed": np.array(-1)},
     {"seed": np.array([1, 2], np.uint64)},
-    {"format": np.array("flockenv recording 3")},
+    {"format": np.array("flockenv recording 4")},
     {"version": np.zeros(3)},
     {"policy": np.zeros(3)},
     {"duration_s": np.array("long")},

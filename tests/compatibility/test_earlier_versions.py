@@ -71,6 +71,17 @@ def test_recordings_in_format_2():
     assert (len(recording), recording.duration_s, recording.policy) == (5, 6.0, "SteeringLaw()")
     assert sha(recording.pose)[:16] == "f5d9bac3e8bd3447"
     assert sha(recording.order.psi_o)[:16] == "b012db28434fb341"
+    assert recording.rudder is None
+
+
+def test_recordings_in_format_3():
+    recording = Recording.load(FIXTURES / "recording_format_3.npz")
+    assert (len(recording), recording.policy) == (
+        5,
+        "DampedLaw(gain=1.90986, backward_gain=1.90986, damping=3)",
+    )
+    assert sha(recording.pose)[:16] == "1edad91c4770bdbb"
+    assert sha(recording.rudder)[:16] == "110ccdb33da0756c"
 
 
 def test_snapshots(folder, facts):
