@@ -3,6 +3,7 @@ from typing import Any, Self, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import disjoint_base
 
 from flockenv.parameters import FlockParameters
 
@@ -257,7 +258,7 @@ class OrderParameters:
     def __hash__(self) -> int: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
 
-@final
+@disjoint_base
 class OrderSeries:
     def __new__(cls, *columns: Any, **named: Any) -> Self: ...
     def __getattr__(self, name: str, /) -> NDArray[np.float64]: ...

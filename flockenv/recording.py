@@ -22,8 +22,9 @@ from flockenv.parameters import FlockParameters
 if TYPE_CHECKING:
     import pandas
     import xarray
+    from matplotlib.axes import Axes
 
-__all__ = ["DISCARDED_SHARE", "PHASES", "PRECISIONS", "Recording"]
+__all__ = ["DISCARDED_SHARE", "PHASES", "PRECISIONS", "RecordedOrder", "Recording"]
 
 DISCARDED_SHARE = 0.1
 """The share of a run, at its start, that no figure uses."""
@@ -48,6 +49,76 @@ _COMPONENTS = {
 PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
 
 
+class RecordedOrder(OrderSeries):
+    """Order parameters of a recording: an `OrderSeries` that knows its times.
+
+    Attributes
+    ----------
+    time_s : float64 array, shape (t,)
+        Times in s.
+    """
+
+    time_s: NDArray[np.float64]
+
+    def __new__(cls, time_s: NDArray[np.float64], order: OrderSeries) -> Self:
+        """Take the columns of a series, and its times."""
+        series = super().__new__(cls, *(getattr(order, name) for name in _ORDER))
+        series.time_s = time_s
+        return series
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return what it is made of, for pickle and copy."""
+        plain = OrderSeries(*(getattr(self, name) for name in _ORDER))
+        return type(self), (self.time_s, plain)
+
+    def plot(self, *names: str, target: str = "cw", ax: "Axes | None" = None) -> "Axes":
+        """Draw quantities against time (extra ``plot``).
+
+        Parameters
+        ----------
+        names
+            Recorded and derived quantities of the table, such as "psi_v" or "signed_order". None:
+            the recorded ones that have no unit and lie within known bounds.
+        target
+            Direction that signed quantities count towards, "cw" or "ccw".
+        ax
+            Axes of matplotlib to draw into. None: those of a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            With one labeled line per quantity; time in s.
+
+        Raises
+        ------
+        ParameterError
+            For an unknown name or target.
+        MissingExtraError
+            If matplotlib is not installed.
+        """
+        pyplot = require("matplotlib.pyplot", "plot")
+        known = {each.name: each for each in _core.quantities() if each.kind != "structure"}
+        bounded = (each.name for each in RECORDED if each.range is not None and not each.unit)
+        shown_names = names or tuple(bounded)
+        if unknown := [name for name in shown_names if name not in known]:
+            raise ParameterError(
+                f"quantity {shown(unknown[0])} is not accepted: {', '.join(known)}"
+            )
+        columns = {name: self.series(name, target) for name in shown_names}
+        axes: Axes = pyplot.subplots()[1] if ax is None else ax
+        for name, values in columns.items():
+            axes.plot(self.time_s, values, label=_title(known[name]), linewidth=1.0)
+        axes.set_xlabel("time [s]")
+        axes.legend()
+        return axes
+
+
+def _title(quantity: "_core.Quantity") -> str:
+    symbol = f" {quantity.symbol}" if quantity.symbol else ""
+    unit = f" [{quantity.unit}]" if quantity.unit else ""
+    return f"{quantity.label}{symbol}{unit}"
+
+
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Recording:
     """A run sampled t times, of n boats; checked on construction.
@@ -65,8 +136,9 @@ class Recording:
         (t, 0, 3) where poses were not kept.
     velocity : array of the same dtype and shape
         [cm/s, cm/s, rad/s]. With the leapfrog scheme these are means over the substep before.
-    order : OrderSeries
-        Order parameters of the normal boats; NaN only where they are undefined.
+    order : RecordedOrder
+        Order parameters of the normal boats, made of an `OrderSeries`; NaN only where they are
+        undefined.
     parameters : FlockParameters
         What was run.
     seed : int
@@ -98,7 +170,7 @@ class Recording:
     in_analysis_window: NDArray[np.bool_]
     pose: NDArray[np.floating[Any]]
     velocity: NDArray[np.floating[Any]]
-    order: OrderSeries
+    order: RecordedOrder
     parameters: FlockParameters
     seed: int
     version: str
@@ -132,6 +204,7 @@ class Recording:
             values = getattr(self.order, each.name)
             undefined = normal_boats < each.least_boats
             _check(f"order.{each.name}", values, times, PRECISIONS[:1], all_nan=undefined)
+        object.__setattr__(self, "order", RecordedOrder(self.time_s, self.order))
         seed: Any = self.seed
         if not isinstance(seed, int) or not 0 <= seed < 2**64:
             raise ParameterError(f"seed = {shown(seed)} is not accepted: an int from 0 to 2^64 - 1")
@@ -297,7 +370,8 @@ class Recording:
 
     def _at(self, samples: NDArray[np.bool_]) -> Self:
         columns: dict[str, Any] = {name: getattr(self, name)[samples] for name in _ARRAYS}
-        order = OrderSeries(**{name: getattr(self.order, name)[samples] for name in _ORDER})
+        held = OrderSeries(**{name: getattr(self.order, name)[samples] for name in _ORDER})
+        order = RecordedOrder(columns["time_s"], held)
         contacts = None if self.contacts is None else _contacts_at(self.contacts, samples)
         rudder = None if self.rudder is None else self.rudder[samples]
         return replace(self, **columns, order=order, contacts=contacts, rudder=rudder)
@@ -385,7 +459,9 @@ class Recording:
         scene = FlockParameters.from_toml(parameters)
         return cls(
             **{name: arrays[name] for name in _ARRAYS},
-            order=_whole_order(held, [arrays["pose"], arrays["velocity"]], scene),
+            order=RecordedOrder(
+                arrays["time_s"], _whole_order(held, [arrays["pose"], arrays["velocity"]], scene)
+            ),
             parameters=scene,
             seed=int(arrays["seed"]),
             version=version,

@@ -12,7 +12,7 @@ import numpy as np
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import OrderSeries
 from flockenv.parameters import FlockParameters
-from flockenv.recording import RECORDED, Recording
+from flockenv.recording import RECORDED, RecordedOrder, Recording
 from flockenv.runs.protocols.hysteresis import LOOPS, simulate_loop, simulate_prepared
 from flockenv.runs.protocols.initial_state import STARTS
 from flockenv.runs.protocols.target_switching import simulate_alternating
@@ -149,4 +149,4 @@ def execute(spec: RunSpec) -> Recording:
     # A store holds no more digits, and a run from it is the same as a run made now.
     orders = {name: getattr(run.order, name).astype(np.float32) for name in ORDER_NAMES}
     doubles = {name: values.astype(np.float64) for name, values in orders.items()}
-    return replace(run, order=OrderSeries(**doubles))
+    return replace(run, order=RecordedOrder(run.time_s, OrderSeries(**doubles)))

@@ -15,7 +15,7 @@ from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv.errors import FlockError, ParameterError
 from flockenv.flock import OrderSeries
 from flockenv.policies.registry import EVERY_SUBSTEP
-from flockenv.recording import PHASES, Recording
+from flockenv.recording import PHASES, RecordedOrder, Recording
 from flockenv.runs.executors import Engine, local
 from flockenv.runs.spec import ORDER_NAMES, RunSpec, execute
 
@@ -189,7 +189,7 @@ def _recording(spec: RunSpec, arrays: Mapping[str, NDArray[Any]]) -> Recording:
         in_analysis_window=arrays["in_analysis_window"],
         pose=arrays.get("pose", none),
         velocity=arrays.get("velocity", none),
-        order=OrderSeries(**orders),
+        order=RecordedOrder(arrays["time_s"], OrderSeries(**orders)),
         parameters=spec.parameters,
         seed=spec.seed,
         version=_core.__version__,

@@ -173,7 +173,7 @@ impl PyOrderParameters {
 ///
 /// All NaN if there is no boat to take them of; ``c_o`` and ``c_v`` NaN for a single boat. Columns that
 /// are not given are NaN.
-#[pyclass(name = "OrderSeries", module = "flockenv.flock", frozen)]
+#[pyclass(name = "OrderSeries", module = "flockenv.flock", frozen, subclass)]
 pub struct PyOrderSeries(Vec<Py<PyAny>>);
 
 impl PyOrderSeries {

@@ -420,7 +420,7 @@ def test_a_run_goes_on_from_a_snapshot_with_the_same_bits():
     assert rest.time_s[0] == 40.0
     assert np.array_equal(rest.time_s, whole.time_s[400:])
     assert np.array_equal(rest.pose, whole.pose[400:])
-    assert rest.order == type(rest.order)(
+    assert rest.order == flockenv.OrderSeries(
         *(getattr(whole.order, each.name)[400:] for each in RECORDED)
     )
 

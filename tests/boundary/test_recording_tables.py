@@ -1,5 +1,7 @@
 """Law: a recording's tables hold its numbers, in the libraries that the user has."""
 
+import copy
+import pickle
 import sys
 
 import numpy as np
@@ -49,6 +51,48 @@ def test_a_dataset_by_time_and_boat(run):
     assert (data.attrs["seed"], data.attrs["version"]) == (3, run.version)
 
 
+def test_order_is_drawn_against_time(run):
+    figure = pytest.importorskip("matplotlib.figure").Figure()
+    axes = figure.subplots()
+    assert run.order.plot("psi_v", "signed_order", target="ccw", ax=axes) is axes
+    velocity, signed = axes.lines
+    assert np.array_equal(velocity.get_xdata(), run.time_s)
+    assert np.array_equal(velocity.get_ydata(), run.order.psi_v)
+    assert np.array_equal(signed.get_ydata(), run.order.signed_order("ccw"))
+    assert [velocity.get_label(), signed.get_label()] == [
+        "velocity Ψ_v [cm/s]",
+        "order towards target",
+    ]
+    assert axes.get_xlabel() == "time [s]"
+
+
+def test_what_is_drawn_without_names_has_no_unit(run):
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    axes = copy.deepcopy(run).order.plot()
+    assert [line.get_label() for line in axes.lines] == [
+        "order Ψ_o",
+        "nematic order Ψ_n",
+        "milling M",
+    ]
+    assert np.array_equal(axes.lines[0].get_xdata(), run.time_s)
+    pyplot.close(axes.figure)
+
+
+def test_a_quantity_that_is_none_is_not_drawn(run):
+    for name in ("psi", "largest_cluster"):
+        with pytest.raises(flockenv.ParameterError, match=f"quantity '{name}' is not .*psi_o"):
+            run.order.plot(name)
+    with pytest.raises(flockenv.ParameterError, match="target"):
+        run.order.plot(target="up")
+
+
+def test_order_is_equal_to_the_same_series_without_times(run):
+    columns = {name: getattr(run.order, name) for name in ORDER}
+    plain = flockenv.OrderSeries(**columns, nematic=run.order.nematic, milling=run.order.milling)
+    assert run.order == plain == pickle.loads(pickle.dumps(run.order))
+    assert np.array_equal(pickle.loads(pickle.dumps(run.order)).time_s, run.time_s)
+
+
 @pytest.mark.parametrize(
     ("method", "package", "extra"),
     [("to_dataframe", "pandas", "plot"), ("to_xarray", "xarray", "sweep")],
@@ -59,6 +103,12 @@ def test_a_missing_library_is_named_with_its_extra(run, monkeypatch, method, pac
         MissingExtraError, match=rf"{package} is not installed: .*flockenv\[{extra}\]"
     ):
         getattr(run, method)()
+
+
+def test_matplotlib_that_is_missing_is_named_with_its_extra(run, monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib.pyplot", None)
+    with pytest.raises(MissingExtraError, match=r"matplotlib is not .*flockenv\[plot\]"):
+        run.order.plot()
 
 
 @pytest.mark.parametrize("name", ["m.csv", "m.parquet", "m", "m.npz.gz"])

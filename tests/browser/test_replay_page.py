@@ -123,15 +123,15 @@ def test_the_chart_follows_and_leads(page, law):
 
 
 def test_a_quantity_that_is_new_is_charted(open_page, law, tmp_path, monkeypatch):
-    milling = ShownQuantity("milling", "milling", "", None, 3, lambda run: run.order.psi_o / 2)
+    halved = ShownQuantity("halved", "halved order", "", None, 3, lambda run: run.order.psi_o / 2)
     shown = replay_page.shown_quantities
-    monkeypatch.setattr(replay_page, "shown_quantities", lambda runs: [*shown(runs), milling])
+    monkeypatch.setattr(replay_page, "shown_quantities", lambda runs: [*shown(runs), halved])
     write_replay(tmp_path / "new.html", law)
     page = open_page(tmp_path / "new.html")
     assert page.driver.title == "new – flockenv replay"
     page.script("player.seek(60)")
-    page.choose("#quantity", "milling")
-    assert page.text("#legend").startswith("milling")
+    page.choose("#quantity", "halved")
+    assert page.text("#legend").startswith("halved order")
     assert page.number("#legend b") == pytest.approx(law.order.psi_o[600] / 2, abs=1e-3)
 
 
