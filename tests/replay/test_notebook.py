@@ -28,7 +28,9 @@ def test_a_flock_is_its_frame():
     alt, data = re.fullmatch(r'<img alt="(.*)" src="data:image/png;base64,(.*)">', element).groups()
     assert alt == "flockenv.Flock of 27 boats, 3 of them leaders, seed 7, time 0 s"
     image = matplotlib.image.imread(io.BytesIO(base64.b64decode(data, validate=True)), "png")
-    assert np.array_equal((255 * image).round().astype(np.uint8), frame(flock, 400, 400))
+    pixels = (255 * image).round().astype(np.uint8)
+    assert np.array_equal(pixels[..., :3], frame(flock, 400, 400))
+    assert (pixels[..., 3:] == 255).all()
 
 
 def test_a_recording_is_a_sandboxed_page():
