@@ -4,7 +4,7 @@
 //! a control step, and no sliver of a step is left by rounding where the two meet.
 
 /// Ticks in a second.
-pub const TICKS_PER_SECOND: f64 = 1e9;
+pub(crate) const TICKS_PER_SECOND: f64 = 1e9;
 
 /// A time or duration in ticks of 1 ns.
 pub type Ticks = u64;

@@ -23,14 +23,14 @@ named_choice! {
 }
 
 /// Ψ_o above this is high: the level of eq. (7).
-pub const HIGH_ORDER: f64 = 0.8;
+pub(crate) const HIGH_ORDER: f64 = 0.8;
 /// Ψ_o below this is low: about the middle between an ordered and a disordered flock of 27.
-pub const LOW_ORDER: f64 = 0.5;
+pub(crate) const LOW_ORDER: f64 = 0.5;
 /// Mean velocities above this part of the preferred forward speed are collective motion. In the
 /// analysis window a boat from rest has 0.5 to 0.9 of it, a jammed one less than 0.1.
-pub const MOVING: f64 = 0.25;
+pub(crate) const MOVING: f64 = 0.25;
 /// A cluster that holds at least this part of the boats is the flock.
-pub const CLUSTERED: f64 = 0.75;
+pub(crate) const CLUSTERED: f64 = 0.75;
 
 impl CollectiveState {
     /// The state of a flock in the analysis window with these order parameters, whose boats prefer
@@ -73,7 +73,13 @@ pub struct OrderingWatch {
 impl OrderingWatch {
     /// Records the order at a time since the run started. `is_late` marks the second half of the
     /// run; an orientation is tangential that is less than `within` (rad) off.
-    pub fn note(&mut self, time_s: f64, order: &OrderParameters, within: f64, is_late: bool) {
+    pub(crate) fn note(
+        &mut self,
+        time_s: f64,
+        order: &OrderParameters,
+        within: f64,
+        is_late: bool,
+    ) {
         if is_late {
             self.late_samples += 1;
             self.late_order += order.psi_o;

@@ -38,7 +38,7 @@ impl OrderParameters {
     ///
     /// # Errors
     /// [`FlockError::Parameter`] if there is no boat.
-    pub fn of_hulls(hulls: &[HullPose], velocities: &[Velocity]) -> Result<Self> {
+    pub(crate) fn of_hulls(hulls: &[HullPose], velocities: &[Velocity]) -> Result<Self> {
         if hulls.is_empty() {
             return Err(FlockError::parameter(
                 "n_boats - n_leaders",

@@ -88,7 +88,13 @@ impl FreeMotion {
 
     /// Change of the velocity over `dt` without contacts, with drag centered in the substep.
     #[inline]
-    pub fn centered_change(&self, velocity: Vec2, axis: Vec2, drive: &Drive, dt: f64) -> Vec2 {
+    pub(crate) fn centered_change(
+        &self,
+        velocity: Vec2,
+        axis: Vec2,
+        drive: &Drive,
+        dt: f64,
+    ) -> Vec2 {
         self.linear_acceleration(velocity, axis, drive) * (dt * self.linear_mobility(dt))
     }
 

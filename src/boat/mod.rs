@@ -4,4 +4,4 @@ mod free_motion;
 mod steering;
 
 pub use free_motion::{Drive, FreeMotion, FreeVelocity};
-pub use steering::{Law, PAPER_GAIN, misalignment, steering_law};
+pub use steering::{Law, misalignment, steering_law};

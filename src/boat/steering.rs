@@ -42,7 +42,7 @@ pub enum Law {
 }
 
 /// The gain of eq. (10) in 1/rad: full rudder from 30° of misalignment on.
-pub const PAPER_GAIN: f64 = 6.0 / PI;
+pub(crate) const PAPER_GAIN: f64 = 6.0 / PI;
 
 impl Law {
     /// Checks the gains.

@@ -34,7 +34,7 @@ pub type ContactKey = (u32, Partner, u8);
 
 impl Contact {
     /// A contact of two boats.
-    pub fn of_pair(first: u32, second: u32, feature: PairFeature, gap: Gap) -> Self {
+    pub(crate) fn of_pair(first: u32, second: u32, feature: PairFeature, gap: Gap) -> Self {
         Self {
             boat: first,
             partner: Partner::Boat(second),
@@ -73,7 +73,7 @@ impl Contact {
 
     /// Rate of change of the gap at given velocities of all boats, in cm/s.
     #[inline]
-    pub fn gap_rate(&self, velocities: &[Velocity]) -> f64 {
+    pub(crate) fn gap_rate(&self, velocities: &[Velocity]) -> f64 {
         let gap = &self.gap;
         let first = &velocities[self.boat as usize];
         let rate = gap.normal.dot(&first.linear) + gap.arm_i * first.angular;

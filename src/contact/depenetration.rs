@@ -114,7 +114,7 @@ impl Depenetration {
 }
 
 /// Moves hulls apart until none overlaps, for placement; returns the smallest gap reached.
-pub fn push_apart(
+pub(crate) fn push_apart(
     detector: &mut ContactDetector,
     poses: &mut [Pose],
     boat_radius: f64,

@@ -14,7 +14,7 @@ pub struct ContactDetector {
     hull: Hull,
     pool: Pool,
     /// Candidate pairs.
-    pub neighbors: NeighborList,
+    pub(crate) neighbors: NeighborList,
     skin: f64,
 }
 
@@ -128,7 +128,12 @@ impl ContactDetector {
 
     /// The gaps of the two ends of a pair's first hull at other poses, where they face the second.
     /// Crossed cores count for both.
-    pub fn pair_gaps_at(&self, first: u32, second: usize, boats: &[HullPose]) -> [Option<f64>; 2] {
+    pub(crate) fn pair_gaps_at(
+        &self,
+        first: u32,
+        second: usize,
+        boats: &[HullPose],
+    ) -> [Option<f64>; 2] {
         let mut gaps = [None; 2];
         let (a, b) = (&boats[first as usize], &boats[second]);
         pair_gaps(
@@ -146,7 +151,7 @@ impl ContactDetector {
     }
 
     /// The gap of a known contact at other poses.
-    pub fn gap_at(&self, contact: &Contact, boats: &[HullPose]) -> Gap {
+    pub(crate) fn gap_at(&self, contact: &Contact, boats: &[HullPose]) -> Gap {
         let first = &boats[contact.boat as usize];
         match contact.partner {
             Partner::OuterWall => outer_wall_gap(

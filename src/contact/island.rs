@@ -79,12 +79,7 @@ impl Islands {
         self.len() == 0
     }
 
-    /// Contact indices, island by island.
-    pub fn all_contacts(&self) -> &[u32] {
-        &self.members
-    }
-
-    /// Where the contacts of an island stand in [`Self::all_contacts`].
+    /// Where the contacts of an island stand, island by island.
     pub fn range(&self, island: usize) -> Range<usize> {
         self.starts[island] as usize..self.starts[island + 1] as usize
     }

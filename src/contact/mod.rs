@@ -20,10 +20,11 @@ mod velocity_bias;
 mod warm_start;
 
 pub use contact::{Contact, ContactKey, Partner};
-pub use depenetration::{KeepGoing, push_apart};
+pub use depenetration::KeepGoing;
+pub(crate) use depenetration::push_apart;
 pub use detection::ContactDetector;
 pub use island::Islands;
 pub use problem::{ContactProblem, InverseInertia};
-pub use resolver::{ContactOutcome, ContactResolver};
+pub(crate) use resolver::{ContactOutcome, ContactResolver};
 pub use statistics::Statistics;
-pub use warm_start::CachedImpulse;
+pub(crate) use warm_start::CachedImpulse;

@@ -36,7 +36,7 @@ impl ContactProblem<'_> {
 
     /// Changes velocities by an impulse at contact k.
     #[inline]
-    pub fn apply(&self, k: usize, impulse: f64, velocities: &mut [Velocity]) {
+    pub(crate) fn apply(&self, k: usize, impulse: f64, velocities: &mut [Velocity]) {
         let contact = &self.contacts[k];
         let gap = &contact.gap;
         let i = contact.boat as usize;
@@ -52,7 +52,7 @@ impl ContactProblem<'_> {
 
     /// A_kk: how much an impulse at contact k opens its own gap.
     #[inline]
-    pub fn diagonal(&self, k: usize) -> f64 {
+    pub(crate) fn diagonal(&self, k: usize) -> f64 {
         let contact = &self.contacts[k];
         let gap = &contact.gap;
         let first = &self.inertia[contact.boat as usize];
@@ -75,7 +75,7 @@ impl ContactProblem<'_> {
 
     /// Natural residual max|min(A_kk·λ_k, w_k)| of impulses and the velocities they give, in cm/s: 0
     /// exactly at a solution.
-    pub fn natural_residual(&self, impulses: &[f64], velocities: &[Velocity]) -> f64 {
+    pub(crate) fn natural_residual(&self, impulses: &[f64], velocities: &[Velocity]) -> f64 {
         (0..self.contacts.len())
             .map(|k| {
                 (self.diagonal(k) * impulses[k])

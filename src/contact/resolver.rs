@@ -102,7 +102,7 @@ impl ContactResolver {
     }
 
     /// Geometry of the flock and its pool, to detect contacts with.
-    pub fn detector_mut(&mut self) -> &mut ContactDetector {
+    pub(crate) fn detector_mut(&mut self) -> &mut ContactDetector {
         &mut self.detector
     }
 
@@ -112,12 +112,12 @@ impl ContactResolver {
     }
 
     /// Contacts that carried an impulse in the last substep.
-    pub fn warm_start_impulses(&self) -> impl Iterator<Item = CachedImpulse> {
+    pub(crate) fn warm_start_impulses(&self) -> impl Iterator<Item = CachedImpulse> {
         self.warm_start_cache.impulses()
     }
 
     /// Puts back what [`Self::warm_start_impulses`] gave.
-    pub fn set_warm_start(&mut self, impulses: &[CachedImpulse]) {
+    pub(crate) fn set_warm_start(&mut self, impulses: &[CachedImpulse]) {
         self.warm_start_cache.replace(impulses.iter().copied());
     }
 
@@ -196,7 +196,7 @@ impl ContactResolver {
     }
 
     /// Whether moving with these velocities for `dt` overlaps anything found last by more than `allowed`.
-    pub fn overlaps_after(
+    pub(crate) fn overlaps_after(
         &mut self,
         poses: &[Pose],
         velocities: &[Velocity],
@@ -233,7 +233,7 @@ impl ContactResolver {
     /// [`Self::velocities`]. Poses are those at the substep's beginning.
     ///
     /// [`ContactOutcome::TooLong`] changes nothing but the statistics.
-    pub fn resolve(
+    pub(crate) fn resolve(
         &mut self,
         poses: &[Pose],
         free: &[Velocity],
@@ -401,14 +401,14 @@ impl ContactResolver {
     }
 
     /// Forgets the impulses: nothing touched in this substep, and nothing near carried an impulse.
-    pub fn clear_warm_start(&mut self) {
+    pub(crate) fn clear_warm_start(&mut self) {
         self.warm_start_cache.clear();
         self.solver.impulses.fill(0.0);
     }
 
     /// Adds to each boat the linear acceleration from contacts that carried an impulse both in this
     /// kick, of length `dt`, and in the one before: which are likely to continue.
-    pub fn add_persistent_acceleration(
+    pub(crate) fn add_persistent_acceleration(
         &self,
         inertia: &[InverseInertia],
         dt: f64,

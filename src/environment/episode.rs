@@ -138,13 +138,13 @@ impl Episode {
     }
 
     /// Writes what leaders see in the course of the episode, and counts what was clipped.
-    pub fn observe_and_count(&mut self, out: &mut [f32]) {
+    pub(crate) fn observe_and_count(&mut self, out: &mut [f32]) {
         let clipped = self.observe(out);
         self.statistics.count_clipped(clipped, out.len());
     }
 
     /// Writes the global state, which no camera stands before.
-    pub fn observe_state(&self, observer: &StateObserver, out: &mut [f32]) {
+    pub(crate) fn observe_state(&self, observer: &StateObserver, out: &mut [f32]) {
         observer.observe(&self.state.view(), self.state.schedule.elapsed(), out);
     }
 
@@ -213,7 +213,7 @@ impl Episode {
     }
 
     /// The episode, to be stored.
-    pub fn stored(&self) -> StoredEpisode {
+    pub(crate) fn stored(&self) -> StoredEpisode {
         StoredEpisode {
             flock: self.state.flock.snapshot(),
             schedule: self.state.schedule.clone(),

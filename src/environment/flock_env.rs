@@ -79,7 +79,7 @@ impl FlockEnv {
     ///
     /// # Errors
     /// [`FlockError::Episode`] without any seed yet, and errors of the request.
-    pub fn prepare(
+    pub(crate) fn prepare(
         &self,
         settings: &EnvSettings,
         request: &ResetRequest,
@@ -104,7 +104,7 @@ impl FlockEnv {
     ///
     /// # Errors
     /// [`FlockError::Episode`] if the environment has to be reset first.
-    pub fn check_ready(&self, autoreset: Autoreset) -> Result<()> {
+    pub(crate) fn check_ready(&self, autoreset: Autoreset) -> Result<()> {
         let message = match &self.episode {
             None => "step was called before the first reset",
             Some(episode) if episode.has_ended() && autoreset == Autoreset::Disabled => {
@@ -165,7 +165,7 @@ impl FlockEnv {
     }
 
     /// Writes the first observations of an episode.
-    pub fn observe_start(&mut self, out: &mut [f32]) {
+    pub(crate) fn observe_start(&mut self, out: &mut [f32]) {
         if let Some(episode) = &mut self.episode {
             episode.observe_and_count(out);
         }
@@ -195,7 +195,7 @@ impl FlockEnv {
     }
 
     /// The environment, to be stored.
-    pub fn stored(&self) -> StoredEnv {
+    pub(crate) fn stored(&self) -> StoredEnv {
         StoredEnv {
             seeds: self.seeds,
             episode: self.episode.as_ref().map(Episode::stored),
@@ -209,7 +209,7 @@ impl FlockEnv {
     ///
     /// # Errors
     /// [`FlockError::Snapshot`] if the state does not belong to such an environment.
-    pub fn restored(&self, settings: &EnvSettings, stored: StoredEnv) -> Result<Self> {
+    pub(crate) fn restored(&self, settings: &EnvSettings, stored: StoredEnv) -> Result<Self> {
         let whole = self.parameters.n_leaders * settings.observation.size();
         let episode = stored
             .episode
@@ -227,7 +227,7 @@ impl FlockEnv {
         let mut restored = Self::new(settings, self.parameters.clone());
         restored.seeds = stored.seeds;
         restored.episode = episode;
-        restored.finished = stored.finished.map(EpisodeSummary::from_stored);
+        restored.finished = stored.finished.map(EpisodeSummary::repaired);
         restored.final_observation = stored.final_observation;
         restored.final_state = stored.final_state;
         Ok(restored)

@@ -30,7 +30,7 @@ pub type RewardTerms = [f64; TERMS];
 
 impl RewardTerm {
     /// Whether the term is about the normal boats, so that it needs at least one.
-    pub fn needs_normal_boats(self) -> bool {
+    pub(crate) fn needs_normal_boats(self) -> bool {
         matches!(
             self,
             Self::SignedOrder | Self::TangentialVelocity | Self::Jam

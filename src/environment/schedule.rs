@@ -93,7 +93,7 @@ impl EpisodeSettings {
 
     /// Time from an episode's start to the end of so many control steps, to the nearest tick: where a
     /// period is no whole number of ticks, rounding does not add up.
-    pub fn time_of(&self, steps: u32) -> Ticks {
+    pub(crate) fn time_of(&self, steps: u32) -> Ticks {
         ticks(f64::from(steps) / self.control_hz)
     }
 }
@@ -167,7 +167,7 @@ impl EpisodeSchedule {
     }
 
     /// Whether the time limit is reached.
-    pub fn is_over(&self) -> bool {
+    pub(crate) fn is_over(&self) -> bool {
         self.step >= self.steps
     }
 }

@@ -110,7 +110,7 @@ impl EpisodeSummary {
     /// The summary as a stored state of any version has it: version 0.1.0 wrote NaN for ordering times
     /// that never came.
     #[must_use]
-    pub fn from_stored(mut self) -> Self {
+    pub(crate) fn repaired(mut self) -> Self {
         for time in &mut self.ordering_times_s {
             if time.is_nan() {
                 *time = f64::INFINITY;

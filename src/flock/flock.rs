@@ -13,7 +13,7 @@ use crate::integrator::{
 use crate::parameters::{FlockParameters, Target};
 
 /// The latest time a flock may reach: 10⁹ s.
-pub const LATEST: Ticks = 1_000_000_000_000_000_000;
+pub(crate) const LATEST: Ticks = 1_000_000_000_000_000_000;
 
 /// A contact with the force it carried.
 #[derive(Debug, Clone, Copy, PartialEq)]

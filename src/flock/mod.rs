@@ -11,5 +11,6 @@ mod recorder;
 mod snapshot;
 
 pub use change::Change;
-pub use flock::{ContactForce, Flock, LATEST, State};
+pub(crate) use flock::LATEST;
+pub use flock::{ContactForce, Flock, State};
 pub use recorder::{ContactSamples, Pause, Real, Recorder, Recording, Sampling};

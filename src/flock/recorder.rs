@@ -19,9 +19,9 @@ pub struct Sampling {
 
 impl Sampling {
     /// The highest rate that samples may be taken at, in 1/s.
-    pub const FASTEST_HZ: f64 = 1e6;
+    pub(crate) const FASTEST_HZ: f64 = 1e6;
     /// The longest run in s.
-    pub const LONGEST_S: f64 = 1e9;
+    pub(crate) const LONGEST_S: f64 = 1e9;
 
     /// Samples of a run of this duration.
     ///

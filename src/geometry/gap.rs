@@ -39,7 +39,7 @@ pub enum PairFeature {
 
 impl PairFeature {
     /// The feature of a code; any code beyond the two ends counts as crossed.
-    pub fn from_code(code: u8) -> Self {
+    pub(crate) fn from_code(code: u8) -> Self {
         match code {
             0 => Self::Stern,
             1 => Self::Bow,
@@ -213,7 +213,7 @@ pub fn pair_gap(feature: PairFeature, a: &HullPose, b: &HullPose, hull: Hull) ->
 
 /// The gap of crossed cores: the least distance by which one core's end must be moved across the
 /// other's line, and as much more as makes the hulls touch.
-pub fn crossed_gap(a: &HullPose, b: &HullPose, hull: Hull) -> Gap {
+pub(crate) fn crossed_gap(a: &HullPose, b: &HullPose, hull: Hull) -> Gap {
     let h = hull.half_length;
     let along = |distance: f64, normal, p: Vec2, q: Vec2| Gap {
         gap: distance - 2.0 * hull.radius,

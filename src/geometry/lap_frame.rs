@@ -26,7 +26,7 @@ impl LapFrame {
     }
 
     /// LAP components (outward, clockwise) of a world vector.
-    pub fn components(&self, world: Vec2) -> Vec2 {
+    pub(crate) fn components(&self, world: Vec2) -> Vec2 {
         Vec2::new(world.dot(&self.outward), world.dot(&self.clockwise))
     }
 }

@@ -9,10 +9,10 @@ mod pose;
 
 pub use annulus::{inner_wall_gap, outer_wall_gap};
 pub use capsule::{Hull, HullPose, resized_gyration_radius_cm};
-pub use gap::{Gap, PairFeature, crossed_gap, pair_gap, pair_gaps};
-pub use lap_frame::LapFrame;
-pub use neighbors::NeighborList;
-pub use pose::{LARGEST, Pose, Velocity};
+pub use gap::{Gap, PairFeature, pair_gap, pair_gaps};
+pub(crate) use lap_frame::LapFrame;
+pub(crate) use neighbors::NeighborList;
+pub use pose::{Pose, Velocity};
 
 /// A vector in the plane, in cm or cm/s.
 pub type Vec2 = nalgebra::Vector2<f64>;

@@ -44,7 +44,7 @@ impl NeighborList {
 
     /// Makes sure that every pair of centers within `distance` is listed, with `skin` to spare when
     /// the list is built.
-    pub fn update(
+    pub(crate) fn update(
         &mut self,
         centers: impl ExactSizeIterator<Item = Vec2> + Clone,
         distance: f64,
@@ -75,7 +75,7 @@ impl NeighborList {
     }
 
     /// Center distance within which the list is complete at the reference.
-    pub fn cutoff(&self) -> f64 {
+    pub(crate) fn cutoff(&self) -> f64 {
         self.cutoff
     }
 

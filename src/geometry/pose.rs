@@ -4,7 +4,7 @@ use super::Vec2;
 
 /// The largest position (cm), heading (rad), velocity (cm/s) or angular velocity (rad/s) that a state
 /// may hold: squares and products of such numbers are far from overflowing.
-pub const LARGEST: f64 = 1e9;
+pub(crate) const LARGEST: f64 = 1e9;
 
 /// Position and heading of a boat.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
@@ -39,7 +39,7 @@ impl Pose {
     }
 
     /// Whether a flock may hold this pose: nothing beyond [`LARGEST`].
-    pub fn is_in_range(&self) -> bool {
+    pub(crate) fn is_in_range(&self) -> bool {
         self.position.amax() <= LARGEST && self.heading.abs() <= LARGEST && self.is_finite()
     }
 }
@@ -68,7 +68,7 @@ impl Velocity {
     }
 
     /// Whether a flock may hold this velocity: nothing beyond [`LARGEST`].
-    pub fn is_in_range(&self) -> bool {
+    pub(crate) fn is_in_range(&self) -> bool {
         self.linear.amax() <= LARGEST && self.angular.abs() <= LARGEST && self.is_finite()
     }
 }

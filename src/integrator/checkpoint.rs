@@ -27,14 +27,14 @@ pub struct Checkpoint {
 
 impl Integrator {
     /// The motion as it is, to return to.
-    pub fn checkpoint(&self) -> Checkpoint {
+    pub(crate) fn checkpoint(&self) -> Checkpoint {
         let mut checkpoint = Checkpoint::default();
         self.save(&mut checkpoint);
         checkpoint
     }
 
     /// Writes the motion as it is over a checkpoint, whose memory is used again.
-    pub fn save(&self, into: &mut Checkpoint) {
+    pub(crate) fn save(&self, into: &mut Checkpoint) {
         into.poses.clone_from(&self.poses);
         into.velocities.clone_from(&self.velocities);
         into.last.clone_from(&self.last);
@@ -51,7 +51,7 @@ impl Integrator {
     }
 
     /// Continues from a checkpoint, bit for bit.
-    pub fn return_to(&mut self, checkpoint: &Checkpoint) {
+    pub(crate) fn return_to(&mut self, checkpoint: &Checkpoint) {
         self.place(&checkpoint.poses, &checkpoint.velocities);
         self.last.clone_from(&checkpoint.last);
         self.contacts.set_warm_start(&checkpoint.warm_start);

@@ -1,6 +1,6 @@
 //! How a flock moves from one substep to the next.
 //!
-//! [`Integrator`] holds the state. A substep draws noise, works out what drives the boats, moves their
+//! `Integrator` holds the state. A substep draws noise, works out what drives the boats, moves their
 //! velocities without contacts, solves the contacts and moves the poses; the scheme decides where in the
 //! substep each of these happens.
 
@@ -16,7 +16,8 @@ mod phase_schedule;
 mod state;
 mod substep;
 
-pub use checkpoint::Checkpoint;
+pub(crate) use checkpoint::Checkpoint;
 pub use phase_schedule::{Phase, PhaseMoment, PhaseSchedule};
-pub use state::Integrator;
-pub use substep::{LastSubstep, Steering, StepOutcome, Substep};
+pub(crate) use state::Integrator;
+pub use substep::Steering;
+pub(crate) use substep::{StepOutcome, Substep};

@@ -81,7 +81,7 @@ impl Integrator {
     }
 
     /// Works out the direction vectors of the poses.
-    pub fn update_boats(&mut self) {
+    pub(crate) fn update_boats(&mut self) {
         HullPose::replace_all(&mut self.boats, &self.poses);
     }
 
@@ -94,7 +94,7 @@ impl Integrator {
     }
 
     /// Whether every pose and velocity is one that a flock may hold.
-    pub fn is_in_range(&self) -> bool {
+    pub(crate) fn is_in_range(&self) -> bool {
         self.poses.iter().all(Pose::is_in_range)
             && self.velocities.iter().all(Velocity::is_in_range)
     }

@@ -23,7 +23,7 @@ impl Pool {
         inner_radius_cm: 97.0,
     };
     /// Names of the pools, as users write them.
-    pub const NAMED: [(&'static str, Self); 2] = [
+    pub(crate) const NAMED: [(&'static str, Self); 2] = [
         ("500-boats", Self::FIVE_HUNDRED_BOATS),
         ("table-1", Self::TABLE_1),
     ];

@@ -131,7 +131,7 @@ impl BrownianPaths {
     }
 
     /// Draws keyed by a time, for noise that is defined a step at a time.
-    pub fn step_draws(&mut self, time: u64, draws: &mut [f64]) {
+    pub(crate) fn step_draws(&mut self, time: u64, draws: &mut [f64]) {
         self.normals.fill(time, 0, draws);
     }
 

@@ -4,4 +4,4 @@ mod brownian;
 mod streams;
 
 pub use brownian::BrownianPaths;
-pub use streams::{Stream, StreamRng};
+pub(crate) use streams::{Stream, StreamRng};

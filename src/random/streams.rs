@@ -42,7 +42,7 @@ impl Stream {
     }
 
     /// The generator of this stream for a seed, at its beginning.
-    pub fn rng(self, seed: u64) -> StreamRng {
+    pub(crate) fn rng(self, seed: u64) -> StreamRng {
         let mut key = [0_u8; 32];
         key[..8].copy_from_slice(&seed.to_le_bytes());
         let name = self.name();

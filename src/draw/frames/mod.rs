@@ -34,7 +34,7 @@ struct Background {
 
 impl FrameRenderer {
     /// The shortest side of a frame, in pixels.
-    pub const SHORTEST: u32 = 64;
+    pub(crate) const SHORTEST: u32 = 64;
     /// The longest side of a frame, in pixels.
     pub const LONGEST: u32 = 4096;
     /// Backgrounds that are kept: both targets of two pools.

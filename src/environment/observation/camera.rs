@@ -42,7 +42,7 @@ impl CameraSettings {
     }
 
     /// Whether the picture differs from the flock at all.
-    pub fn is_active(&self) -> bool {
+    pub(crate) fn is_active(&self) -> bool {
         self.dropout_rate > 0.0 || self.delay_frames > 0
     }
 }
@@ -97,7 +97,7 @@ impl Camera {
     }
 
     /// A camera without a picture yet.
-    pub fn unexposed(settings: CameraSettings, seed: u64) -> Self {
+    pub(crate) fn unexposed(settings: CameraSettings, seed: u64) -> Self {
         Self {
             settings,
             rng: Stream::Sensing.rng(seed),
@@ -110,7 +110,7 @@ impl Camera {
     }
 
     /// Takes the next frame. Which boats drop out depends on the seed and the frame's number alone.
-    pub fn expose(&mut self, leaders: usize, poses: &[Pose], velocities: &[Velocity]) {
+    pub(crate) fn expose(&mut self, leaders: usize, poses: &[Pose], velocities: &[Velocity]) {
         self.frame += 1;
         self.rng.set_stream(self.frame);
         self.rng.set_word_pos(0);

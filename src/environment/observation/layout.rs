@@ -8,7 +8,7 @@ use crate::parameters::named_choice;
 pub const OBSERVATION_VERSION: u32 = 1;
 
 /// The most neighbors that a leader may observe.
-pub const MOST_NEIGHBORS: usize = 64;
+pub(crate) const MOST_NEIGHBORS: usize = 64;
 
 named_choice! {
     /// A part of the observation that can be switched off.
@@ -100,7 +100,7 @@ impl ObservationLayout {
     }
 
     /// The entries of a block; those of `Neighbors` are one neighbor's.
-    pub fn entries_of(block: Block) -> &'static [Entry] {
+    pub(crate) fn entries_of(block: Block) -> &'static [Entry] {
         match block {
             Block::Own => &OWN,
             Block::Phase => &PHASE,

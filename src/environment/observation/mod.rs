@@ -6,8 +6,11 @@ mod layout;
 mod observed_law;
 mod observer;
 
-pub use camera::{Camera, CameraSettings, CameraState};
-pub use entry::{ANGULAR_VELOCITY_SCALE, BOAT, Entry, Scale, speed_scale_cm_s};
-pub use layout::{Block, MOST_NEIGHBORS, OBSERVATION_VERSION, ObservationLayout, state_entries};
+pub use camera::CameraSettings;
+pub(crate) use camera::{Camera, CameraState};
+pub(crate) use entry::{ANGULAR_VELOCITY_SCALE, speed_scale_cm_s};
+pub use entry::{BOAT, Entry, Scale};
+pub use layout::{Block, OBSERVATION_VERSION, ObservationLayout, state_entries};
 pub use observed_law::ObservedLaw;
-pub use observer::{FlockView, Observer, StateObserver};
+pub(crate) use observer::StateObserver;
+pub use observer::{FlockView, Observer};
