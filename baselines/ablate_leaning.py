@@ -23,7 +23,7 @@ from flockenv.comparison import run_episodes
 from flockenv.envs.observation import observation_entries
 from flockenv.policies import LeaningLaw, load
 from flockenv.policies.leaning_law import FEATURES, features
-from flockenv.runs.seeds import training_seed
+from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.statistics.intervals import paired_difference
 
 GROUPS = {
@@ -37,16 +37,16 @@ GROUPS = {
     ),
     "other leaders": tuple(name for name in FEATURES if name.startswith("leaders")),
 }
-#: Beyond what tune_laws.py and evolution_strategy.py reach with ordinary seeds.
-FIRST_SEED = 1 << 40
-SEEDS_OF_A_RUN = 1 << 20
+SEEDS = POLICY_SEEDS["ablation"]
+#: In which the mean features are measured.
+FLOCKS = 32
 
 
-def usual(law: LeaningLaw, scene: flockenv.FlockParameters, first: int) -> dict[str, float]:
-    """Mean of each feature in the states that a law visits, with training seeds from a first."""
+def usual(law: LeaningLaw, scene: flockenv.FlockParameters, run: int) -> dict[str, float]:
+    """Mean of each feature in the states that a law visits."""
     names = [entry.name for entry in observation_entries()]
-    env = flockenv.LeadersVectorEnv(32, params=scene, mirror_to_target=True, target="random")
-    rows, _ = env.reset(seed=[training_seed(first + i) for i in range(32)])
+    env = flockenv.LeadersVectorEnv(FLOCKS, params=scene, mirror_to_target=True, target="random")
+    rows, _ = env.reset(seed=list(SEEDS.seeds(FLOCKS, run)))
     seen = []
     for _ in range(2400):
         rows, *_ = env.step(law.predict(rows)[0])
@@ -78,14 +78,15 @@ def variants(law: LeaningLaw, means: dict[str, float]) -> dict[str, LeaningLaw]:
 def ablated(
     law: LeaningLaw,
     scene: flockenv.FlockParameters,
-    seeds: list[int],
+    episodes: int,
     duration_s: float,
-    first: int,
+    run: int,
     progress: Progress,
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Return each variant's order beyond the whole law, and each weight's part of the lean."""
     task = progress.add_task("states that it visits", total=1)
-    means = usual(law, scene, first)
+    means = usual(law, scene, run)
+    seeds = SEEDS.seeds(episodes, run, start=FLOCKS)
     found, rows, whole = variants(law, means), [], None
     progress.update(task, total=1 + len(found), completed=1)
     for name, each in found.items():
@@ -120,14 +121,14 @@ def main(arguments: list[str] | None = None) -> None:
     )
     if options.episodes < 2:
         parser.error("--episodes is at least 2")
-    first = FIRST_SEED + options.seed * SEEDS_OF_A_RUN
-    seeds = [training_seed(first + 1000 + i) for i in range(options.episodes)]
     try:
         law = load(options.law)
         if not isinstance(law, LeaningLaw):
             raise flockenv.ParameterError(f"{options.law} is a {law!r}, not a leaning law")
         with Progress(disable=options.quiet) as progress:
-            table, lean = ablated(law, scene, seeds, options.minutes * 60.0, first, progress)
+            table, lean = ablated(
+                law, scene, options.episodes, options.minutes * 60.0, options.seed, progress
+            )
         options.out.parent.mkdir(parents=True, exist_ok=True)
         tables = {
             options.out: table,

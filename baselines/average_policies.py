@@ -25,11 +25,9 @@ from flockenv.comparison import run_episodes
 from flockenv.policies import LeaningLaw, load
 from flockenv.policies.leaning_law import FEATURES, GAINS
 from flockenv.policies.pretrained import tuned_law
-from flockenv.runs.seeds import training_seed
+from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.statistics.intervals import mean_interval
 
-#: Beyond what searches and ablate_leaning.py reach with ordinary seeds.
-FIRST_SEED = 1 << 42
 #: Provenance of each part.
 LISTED = ("command", "commit", "seed", "samples", "wall_s")
 
@@ -70,7 +68,7 @@ def validate(laws: dict[str, Any], options: argparse.Namespace) -> None:
         n_leaders=3,
         bw_s=flockenv.FlockParameters.critical_bw_s("simulation", options.pool),
     )
-    seeds = [training_seed(FIRST_SEED + number) for number in range(options.episodes)]
+    seeds = POLICY_SEEDS["averaging"].seeds(options.episodes)
     for name, law in laws.items():
         orders = run_episodes(scene, law, seeds, 60.0 * options.minutes)["signed_order"]
         value, low, high = mean_interval(orders)

@@ -21,6 +21,7 @@ from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.vec_env import VecEnvWrapper
 
 import flockenv
+from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import LeaderVecEnv
 
 
@@ -97,10 +98,12 @@ def train(samples: int, flocks: int, seed: int, **options: Any) -> PPO:
         batch_size=256,
         gamma=0.995,
         policy_kwargs={"seen": seen},
-        seed=seed,
         device="cpu",
         verbose=1,
     )
+    # PPO's own `seed` would seed the environment with seeds of evaluations.
+    model.set_random_seed(seed)
+    model.get_env().seed(POLICY_SEEDS["centralized critic"].seeds(1, seed)[0])
     return model.learn(samples)
 
 

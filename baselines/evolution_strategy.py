@@ -38,9 +38,9 @@ from flockenv.envs.observation import OBSERVATION_VERSION
 from flockenv.envs.reward import TERMS
 from flockenv.policies import DampedLaw, LeaningLaw, NetworkPolicy
 from flockenv.policies.pretrained import TUNED_GAINS
-from flockenv.runs.seeds import training_seed
+from flockenv.runs.seeds import POLICY_SEEDS
 
-SEEDS_OF_A_RUN = 1 << 24
+SEEDS = POLICY_SEEDS["evolution strategy"]
 DECAY_1, DECAY_2 = 0.9, 0.99
 ROUGH_GAINS = {"gain": 1.9, "backward_gain": 3.0, "damping": 20.0}
 LIBERAL_STEPS = {"dt_s": 0.1, "relinearizations": 1}
@@ -87,7 +87,7 @@ def scene(options: argparse.Namespace, leaders: int) -> flockenv.FlockParameters
 def leaning_shape(options: argparse.Namespace) -> LeaningShape:
     """The form of a leaning law, measured in the scene of the search."""
     gains = TUNED_GAINS["damped law"][options.pool] if options.tuned else ROUGH_GAINS
-    seeds = [training_seed(options.seed * SEEDS_OF_A_RUN + i) for i in range(16)]
+    seeds = list(SEEDS.seeds(16, options.seed))
     env = environment(options, len(seeds), options.leaders[0])
     steps = round(min(60.0, options.episode_s) * options.control_hz)
     return LeaningShape(DampedLaw(**gains, mirror_to_target=True), env, seeds, steps)
@@ -158,8 +158,7 @@ def next_generation(
     random = np.random.default_rng([options.seed, number])
     half = random.standard_normal((options.pairs, shape.size))
     candidates = state.weights + options.sigma * np.concatenate([half, -half])
-    first = options.seed * SEEDS_OF_A_RUN + number * options.flocks
-    seeds = [training_seed(first + flock) for flock in range(options.flocks)]
+    seeds = list(SEEDS.seeds(options.flocks, options.seed, number * options.flocks))
     found = scores(env, shape, candidates, seeds)
     ranks = centered_ranks(found)
     gradient = (ranks[: options.pairs] - ranks[options.pairs :]) @ half
@@ -178,7 +177,11 @@ def next_generation(
 def identity(reported: dict[str, Any]) -> dict[str, Any]:
     """Return the options that a stored search must share to be resumed."""
     free = ("out", "generations", "quiet", "episodes")
-    whole = {"observation_version": OBSERVATION_VERSION, **reported}
+    whole = {
+        "observation_version": OBSERVATION_VERSION,
+        "first_seed": SEEDS.first,
+        **reported,
+    }
     return {name: value for name, value in whole.items() if name not in free}
 
 
@@ -247,7 +250,7 @@ def print_held_out(options: argparse.Namespace, policies: dict[str, Any]) -> Non
     env = environment(options, options.episodes, options.leaders[0])
     for name, policy in policies.items():
         steer = lambda rows, policy=policy: policy.predict(rows)[0]  # noqa: E731
-        found = mean_rewards(env, list(range(options.episodes)), steer)
+        found = mean_rewards(env, list(POLICY_SEEDS["evaluation"].seeds(options.episodes)), steer)
         for what, values in zip((options.reward, "signed order"), found, strict=True):
             half = 1.96 * values.std(ddof=1) / np.sqrt(options.episodes)
             print(f"{name}: mean {what} {values.mean():.3f} ± {half:.3f}")

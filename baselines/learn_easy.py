@@ -29,7 +29,7 @@ from stable_baselines3.common.callbacks import BaseCallback
 
 import flockenv  # noqa: F401 - registers the environment
 from flockenv.policies import DampedLaw, RandomRudders, SteeringLaw
-from flockenv.runs.seeds import training_seed
+from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import LeaderVecEnv, evaluate_flocks
 
 ENV_ID = "flockenv/Circulate-easy-v0"
@@ -96,7 +96,7 @@ def learn(seed: int, samples: int) -> list[dict[str, Any]]:
     torch.set_num_threads(1)
     model = ppo()
     model.set_random_seed(seed)
-    model.get_env().seed(training_seed(100_000 * seed))
+    model.get_env().seed(POLICY_SEEDS["easy environment"].seeds(1, seed)[0])
     curve = Curve(seed, max(samples // 10, 1))
     model.learn(samples, callback=curve)
     curve.note()

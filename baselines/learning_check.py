@@ -26,6 +26,7 @@ from stable_baselines3 import PPO
 from stable_baselines3.common.vec_env import DummyVecEnv, VecEnv
 
 import flockenv
+from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import LeaderVecEnv
 
 #: The scene `easy`.
@@ -39,8 +40,6 @@ EASY: dict[str, Any] = {
     "episode_s": 60.0,
     "reward": {"leader_velocity": 1.0},
 }
-#: Training seeds start here, far from those of the evaluation, which start at 0.
-TRAINING_SEEDS = 1_000_000
 RESULTS = Path(__file__).parents[1] / "docs" / "learning-check.md"
 
 
@@ -110,7 +109,8 @@ INTERFACES: dict[str, Callable[[], VecEnv]] = {
 def train(interface: str, samples: int, seed: int) -> tuple[PPO, float]:
     """Return a policy trained through a interface, and the seconds it took."""
     env = INTERFACES[interface]()
-    env.seed(TRAINING_SEEDS + seed)
+    (first,) = POLICY_SEEDS["learning check"].seeds(1, seed)
+    env.seed(first)
     model = PPO(
         "MlpPolicy",
         env,
@@ -125,7 +125,7 @@ def train(interface: str, samples: int, seed: int) -> tuple[PPO, float]:
     )
     # The seed of PPO itself would seed the environment too, with other seeds than those above.
     model.set_random_seed(seed)
-    env.seed(TRAINING_SEEDS + seed)
+    env.seed(first)
     begin = time.perf_counter()
     model.learn(samples)
     return model, time.perf_counter() - begin

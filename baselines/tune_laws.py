@@ -30,7 +30,7 @@ from flockenv._io.atomic_write import atomic_write
 from flockenv._io.provenance import made_by
 from flockenv.comparison import run_episodes
 from flockenv.policies import DampedLaw, SignCorrectedLaw
-from flockenv.runs.seeds import training_seed
+from flockenv.runs.seeds import POLICY_SEEDS
 
 #: Law and its gains, each with the middle and the width (in factors of e) of the first generation.
 LAWS: dict[str, tuple[Any, dict[str, tuple[float, float]]]] = {
@@ -45,7 +45,6 @@ LAWS: dict[str, tuple[Any, dict[str, tuple[float, float]]]] = {
     ),
 }
 POOLS = ("500-boats", "table-1")
-SEEDS_OF_A_RUN = 1 << 24
 
 
 def scene(pool: str, options: argparse.Namespace) -> flockenv.FlockParameters:
@@ -73,8 +72,8 @@ def tune(law: str, pool: str, options: argparse.Namespace, progress: Progress) -
 
     task = progress.add_task(f"{law}, {pool}", total=options.generations)
     for generation in range(options.generations):
-        first = options.seed * SEEDS_OF_A_RUN + generation * options.episodes
-        seeds = [training_seed(first + episode) for episode in range(options.episodes)]
+        start = generation * options.episodes
+        seeds = POLICY_SEEDS["law tuning"].seeds(options.episodes, options.seed, start)
         reported = []
         for _ in range(search.population_size):
             place = search.ask()

@@ -11,9 +11,10 @@ from rich.table import Table
 from flockenv import _core
 from flockenv._io.atomic_write import atomic_write
 from flockenv._io.extras import require
-from flockenv.calibration.search import HELD_OUT, Fit, Trial, residuals, run_flocks
+from flockenv.calibration.search import Fit, Trial, residuals, run_flocks
 from flockenv.calibration.targets import NOISE_S, TARGETS
 from flockenv.parameters import FlockParameters
+from flockenv.runs.seeds import MODEL_SEEDS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -79,7 +80,7 @@ def report(
     fit
         The search.
     held_out
-        Seeds, from `HELD_OUT` on.
+        Seeds, of the range ``"calibration check"`` of `flockenv.runs.seeds.MODEL_SEEDS`.
     folder
         Where to write.
     progress
@@ -106,7 +107,7 @@ def report(
         progress(f"trial {len(trials)}, least loss {best:.2f}", 1)
     finals = fit.finals(trials, lambda: progress("finalists", 1))
     scene = fit.scene.replace(**_rounded(finals[0])).replace(dt_s=VERIFIED_DT_S)
-    seeds = range(HELD_OUT, HELD_OUT + held_out)
+    seeds = MODEL_SEEDS["calibration check"].seeds(held_out)
     table = _residuals(scene, seeds, fit.jobs, progress)
     table["best_seen"] = _best_seen(fit, trials)
     _write(folder / "parameters.toml", header + scene.to_toml())
@@ -125,7 +126,7 @@ def check(
         Without pandas, of the extra ``fit``; nothing is run then.
     """
     require("pandas", "fit")
-    seeds = range(HELD_OUT, HELD_OUT + held_out)
+    seeds = MODEL_SEEDS["calibration check"].seeds(held_out)
     return FitReport(scene, _residuals(scene, seeds, jobs, progress))
 
 

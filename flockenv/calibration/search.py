@@ -24,6 +24,7 @@ from flockenv.calibration.targets import single_boat as measure_boat
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.runs.executors import in_order
+from flockenv.runs.seeds import MODEL_SEEDS
 from flockenv.statistics.intervals import percentile_ends
 
 if TYPE_CHECKING:
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BOUNDS",
-    "HELD_OUT",
     "Fit",
     "Trial",
     "experiment_scene",
@@ -54,9 +54,6 @@ BOUNDS: Mapping[str, tuple[float, float]] = {
 
 MODEL_CONSTANTS = ("c1", "c2", "c3", "c4", "reverse_speed_cm_s")
 """Default of the fitted constants: no optional effects."""
-
-HELD_OUT = 1_000_000
-"""First of the seeds that no search uses."""
 
 _BOAT_TARGETS = ("backing_turn", "backing_speed")
 
@@ -151,7 +148,7 @@ class Fit:
                 if len(done) < len(known):
                     trial = _same(known[len(done)], constants, log)
                 else:
-                    trial = self.trial(constants, range(self.seeds))
+                    trial = self.trial(constants, MODEL_SEEDS["calibration"].seeds(self.seeds))
                 done.append(trial)
                 if len(done) > len(known):
                     _write_log(log, done)
@@ -165,9 +162,10 @@ class Fit:
         """Run the best trials again on other seeds, and return them best first."""
         ranked = sorted(trials, key=lambda trial: trial.loss)[: self.finalists]
         smooth = surface_minimum(self._with_flocks(trials), self.only, self.seed)
+        others = MODEL_SEEDS["calibration"].seeds(4 * self.seeds, start=self.seeds)
         again = []
         for constants in [*(trial.constants for trial in ranked), *smooth]:
-            again.append(self.trial(constants, range(self.seeds, 5 * self.seeds)))
+            again.append(self.trial(constants, others))
             progress()
         return sorted(again, key=lambda trial: trial.loss)
 

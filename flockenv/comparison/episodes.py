@@ -70,7 +70,7 @@ def compare_leaders(
         What makes each policy, by the name to list it under: such as those of `POLICIES`, or of
         your own, such as models of stable-baselines3. Each is made anew for each number of leaders.
     seeds
-        One episode each; below `flockenv.runs.seeds.FIRST_TRAINING_SEED`.
+        One episode each; of the range ``"evaluation"`` of `flockenv.runs.seeds.POLICY_SEEDS`.
     duration_s
         Length of an episode in s.
     progress

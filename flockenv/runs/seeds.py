@@ -1,24 +1,114 @@
-"""Seeds for training and seeds for evaluation: two ranges that never meet."""
+"""One table of seed ranges by use: none of the seeds that made a policy is used to judge it."""
 
 import itertools
-from collections.abc import Iterable
+import warnings
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 
 from flockenv.errors import ParameterError, shown
 
-__all__ = ["FIRST_TRAINING_SEED", "check_evaluation_seeds", "training_seed"]
+__all__ = [
+    "FIRST_TRAINING_SEED",
+    "MODEL_SEEDS",
+    "POLICY_SEEDS",
+    "SeedRange",
+    "check_evaluation_seeds",
+    "training_seed",
+]
 
 FIRST_TRAINING_SEED = 1 << 32
-"""Seeds from here on are for training and tuning, those below for evaluation."""
+"""Seeds from here on make policies, those below judge them."""
+
+
+@dataclass(frozen=True, slots=True)
+class SeedRange:
+    """The seeds of one use, in equal parts for its runs.
+
+    Attributes
+    ----------
+    use : str
+        What the seeds are for.
+    first : int
+        First seed of run 0.
+    of_a_run, runs : int
+        Seeds of each run, and number of runs.
+    """
+
+    use: str
+    first: int
+    of_a_run: int
+    runs: int = 1
+
+    @property
+    def every(self) -> range:
+        """All seeds of all runs."""
+        return range(self.first, self.first + self.runs * self.of_a_run)
+
+    def seeds(self, count: int, run: int = 0, start: int = 0) -> range:
+        """Return `count` seeds of a run, from its `start`-th on.
+
+        Raises
+        ------
+        ParameterError
+            For a run, or seeds, that the range has not.
+        """
+        if not 0 <= run < self.runs:
+            raise ParameterError(f"seed = {shown(run)} is not accepted: from 0 to {self.runs - 1}")
+        if not 0 <= start <= start + count <= self.of_a_run:
+            raise ParameterError(
+                f"{shown(start + count)} seeds are not accepted: there are {self.of_a_run} for "
+                f"each run of {self.use}"
+            )
+        first = self.first + run * self.of_a_run + start
+        return range(first, first + count)
+
+
+# Runs are numbered by 32 bits, as CMA-ES and NumPy take them. A search takes at most 2^24 seeds.
+_RUNS = 1 << 32
+
+
+def _search(use: str, place: int) -> SeedRange:
+    return SeedRange(use, FIRST_TRAINING_SEED + place * (_RUNS << 24), 1 << 24, _RUNS)
+
+
+POLICY_SEEDS: Mapping[str, SeedRange] = {
+    each.use: each
+    for each in (
+        SeedRange("evaluation", 0, FIRST_TRAINING_SEED),
+        SeedRange("training", FIRST_TRAINING_SEED, 1 << 20, _RUNS),
+        _search("law tuning", 1),
+        _search("evolution strategy", 2),
+        _search("ablation", 3),
+        _search("averaging", 4),
+        _search("easy environment", 5),
+        _search("learning check", 6),
+        _search("centralized critic", 7),
+        SeedRange("validation", FIRST_TRAINING_SEED + (1 << 62), 1 << 32),
+    )
+}
+"""Seeds of what makes and judges policies, by use; no two ranges meet."""
+
+MODEL_SEEDS: Mapping[str, SeedRange] = {
+    each.use: each
+    for each in (
+        SeedRange("calibration", 0, 1_000_000),
+        SeedRange("calibration check", 1_000_000, 1_000_000),
+    )
+}
+"""Seeds of the fit of the model's constants and of its held-out runs, where no policy is made."""
 
 
 def training_seed(number: int) -> int:
-    """Return the training seed of a number from 0 to 2^63 - 1.
+    """Return the training seed of a number from 0 to 2^63 - 1; deprecated, see `POLICY_SEEDS`.
 
     Raises
     ------
     ParameterError
         For numbers out of range.
     """
+    warnings.warn(
+        "training_seed is replaced by POLICY_SEEDS[use].seeds(...)", DeprecationWarning, 2
+    )
     if not 0 <= number < 1 << 63:
         raise ParameterError(f"seed = {shown(number)} is not accepted: from 0 to 2^63 - 1")
     return FIRST_TRAINING_SEED + number

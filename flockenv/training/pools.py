@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv.errors import ParameterError
-from flockenv.runs.seeds import training_seed
+from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import LeaderVecEnv
 from flockenv.training.settings import TrainingSettings
 
@@ -15,8 +15,6 @@ from flockenv.training.settings import TrainingSettings
 from stable_baselines3.common.vec_env import VecEnv  # isort: skip
 
 __all__ = ["PooledVecEnv"]
-
-_SEEDS_OF_A_RUN = 1 << 20
 
 
 class PooledVecEnv(VecEnv):
@@ -39,15 +37,14 @@ class PooledVecEnv(VecEnv):
         ]
         first = self.parts[0]
         self._ends = np.cumsum([part.num_envs for part in self.parts])
-        self._first_seed = training_seed(settings.seed * _SEEDS_OF_A_RUN)
+        flocks = len(self.parts) * settings.num_flocks
+        self._first_seeds = POLICY_SEEDS["training"].seeds(flocks, settings.seed)
         super().__init__(int(self._ends[-1]), first.observation_space, first.action_space)
 
     def reset(self) -> NDArray[np.float32]:
         """Start again with the run's training seeds."""
-        seed = self._first_seed
-        for part in self.parts:
-            part.seed(seed)
-            seed += part.num_flocks
+        for number, part in enumerate(self.parts):
+            part.seed(self._first_seeds[number * part.num_flocks])
         return np.concatenate([part.reset() for part in self.parts])
 
     def step_async(self, actions: NDArray[Any]) -> None:

@@ -60,7 +60,7 @@ class TrainingSettings:
         Exploration: logarithm of the first standard deviation, whether it depends on the state
         (gSDE), and control steps after which it is drawn again.
     seed
-        Number of the training run; the flocks' seeds come from it (`runs.seeds.training_seed`).
+        Number of the training run; the flocks' seeds come from it (`runs.seeds.POLICY_SEEDS`).
     start
         A network's ``.npz`` file to start from, whose hidden layers and layout these must be; or a
         leaning law's file or the name of a closed-form law, which is cloned first; empty: from

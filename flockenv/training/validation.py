@@ -7,13 +7,10 @@ import numpy as np
 from flockenv.comparison.episodes import run_episodes
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import LeaderPolicy
-from flockenv.runs.seeds import training_seed
+from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.training.settings import TrainingSettings
 
 __all__ = ["scene_names", "validation_scores"]
-
-# The best policy is chosen by these, so they are training seeds; no training run reaches them.
-_FIRST_NUMBER = 1 << 62
 
 
 def validation_scores(policy: LeaderPolicy, settings: TrainingSettings) -> dict[str, float]:
@@ -24,8 +21,7 @@ def validation_scores(policy: LeaderPolicy, settings: TrainingSettings) -> dict[
     dict
         One number for each pool, number of leaders and, without mirroring, direction.
     """
-    first = training_seed(_FIRST_NUMBER)
-    seeds = range(first, first + settings.validation_episodes)
+    seeds = POLICY_SEEDS["validation"].seeds(settings.validation_episodes)
     options = {**settings.options, "control_hz": settings.validation_hz}
     scores = {}
     for name, scene in _scenes(settings):

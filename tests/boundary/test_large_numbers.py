@@ -6,7 +6,7 @@ import flockenv
 from flockenv import FlockParameters, ParameterError
 from flockenv.errors import shown
 from flockenv.policies import SteeringLaw
-from flockenv.runs.seeds import check_evaluation_seeds, training_seed
+from flockenv.runs.seeds import POLICY_SEEDS, check_evaluation_seeds
 
 HUGE = 10**5000
 SMALL = FlockParameters(n_boats=4, n_leaders=1)
@@ -30,7 +30,8 @@ SMALL = FlockParameters(n_boats=4, n_leaders=1)
         lambda: flockenv.LeadersEnv(render_mode="rgb_array", render_size=(HUGE, HUGE)),
         lambda: check_evaluation_seeds([HUGE]),
         lambda: check_evaluation_seeds(range(HUGE)),
-        lambda: training_seed(HUGE),
+        lambda: POLICY_SEEDS["training"].seeds(1, HUGE),
+        lambda: POLICY_SEEDS["training"].seeds(HUGE),
     ],
 )
 def test_whole_numbers_that_cannot_be_printed_are_named_errors(use):

@@ -13,7 +13,7 @@ from flockenv.comparison import NO_LEADERS, POLICIES, compare_leaders, named_pol
 from flockenv.comparison.report import report
 from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy
-from flockenv.runs.seeds import training_seed
+from flockenv.runs.seeds import POLICY_SEEDS
 
 LAW = {"steering law": POLICIES["steering law"]}
 
@@ -171,8 +171,6 @@ def test_what_is_measured_in_steps_is_what_the_recording_says() -> None:
 
 
 def test_training_seeds_are_refused(scene: flockenv.FlockParameters) -> None:
-    for seed in (training_seed(0), training_seed(5), -1):
+    for seed in (*POLICY_SEEDS["training"].seeds(2), *POLICY_SEEDS["validation"].seeds(1), -1):
         with pytest.raises(flockenv.ParameterError, match="for training"):
             compare_leaders(scene, [0], {}, [0, seed], 10.0)
-    with pytest.raises(flockenv.ParameterError, match="seed = -1"):
-        training_seed(-1)
