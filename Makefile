@@ -46,7 +46,7 @@ TEST_EXTRAS := --extra train --extra plot --extra fit --extra render --extra swe
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .PHONY: help setup build compare test lint format test-rust test-python test-js test-browser test-wheel test-oldest \
-        test-rllib test-ray validate docs wheel audit licenses tables replay-animation \
+        test-rllib test-ray test-slurm validate docs wheel audit licenses tables replay-animation \
         instructions learning-check training-physics throughput soak fuzz speed-vs-error lint-benches clean
 
 help: ## list the commands
@@ -155,7 +155,7 @@ training-physics: $(STAMPS)/test $(STAMPS)/core ## compare training physics with
 # RLlib pins an older gymnasium, and the peers pin other things: environments of their own.
 test-rllib: $(STAMPS)/test ## RLlib on the parallel environment, in .venv-rllib
 	$(PYTHON) -m venv .venv-rllib
-	VIRTUAL_ENV="$(CURDIR)/.venv-rllib" $(BIN)/uv pip install -r pyproject.toml --extra ray pytest \
+	VIRTUAL_ENV="$(CURDIR)/.venv-rllib" $(BIN)/uv pip install -r pyproject.toml --extra ray hypothesis pytest \
 	  pytest-timeout "torch>=2.5" --excludes requirements-excluded.txt
 	VIRTUAL_ENV="$(CURDIR)/.venv-rllib" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
 	OMP_NUM_THREADS=1 .venv-rllib/bin/python -m pytest -m rllib tests/envs/test_rllib.py
@@ -163,9 +163,14 @@ test-rllib: $(STAMPS)/test ## RLlib on the parallel environment, in .venv-rllib
 # Ray core without RLlib pins nothing, but what it starts outlives a test that fails: kept apart.
 test-ray: $(STAMPS)/test ## the ray engine on a real local Ray, in .venv-ray
 	$(PYTHON) -m venv .venv-ray
-	VIRTUAL_ENV="$(CURDIR)/.venv-ray" $(BIN)/uv pip install -r pyproject.toml --extra sweep "ray>=2.40" pytest pytest-timeout
+	VIRTUAL_ENV="$(CURDIR)/.venv-ray" $(BIN)/uv pip install -r pyproject.toml --extra plot --extra sweep "ray>=2.40" \
+	  hypothesis pytest pytest-timeout
 	VIRTUAL_ENV="$(CURDIR)/.venv-ray" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
-	.venv-ray/bin/python -m pytest -m ray tests/runs/test_executors.py
+	.venv-ray/bin/python -m pytest -m ray tests/runs/test_executors.py tests/cluster
+
+test-slurm: $(STAMPS)/test $(STAMPS)/core ## the recipe for Slurm on a real one of one node, started here (Linux, root)
+	@tests/need.sh "munged slurmctld slurmd sbatch" "slurm-wlm munge"
+	$(BIN)/python -m pytest -m slurm tests/cluster $(PYTEST_ARGS)
 
 throughput: $(STAMPS)/test $(STAMPS)/core ## measure speed beside VMAS and MPE2, write docs/throughput.md
 	$(PYTHON) -m venv .venv-peers
@@ -178,7 +183,7 @@ soak: $(STAMPS)/test $(STAMPS)/core ## ten million control steps with random rud
 
 # Counts hold on a busy machine, unlike times. INSTRUCTIONS=--write pins them anew.
 instructions: ## count instructions of substeps and control steps, compare with benches/instructions.csv
-	@benches/need_valgrind.sh || true
+	@tests/need.sh valgrind valgrind || true
 	cargo bench --locked --bench instructions -- $(INSTRUCTIONS)
 
 # Timed parts run one after another, the rest on all cores. Measure on a machine that does nothing else.

@@ -6,11 +6,22 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from flockenv.cli.console import console, errors, print_json, progress_bar, resumable, say
+from flockenv.cli.console import console, print_json, progress_bar, resumable, say
 from flockenv.cli.output import check_folder
+from flockenv.cli.workload import (
+    DryRun,
+    EngineName,
+    ShardOf,
+    Workers,
+    chosen_shard,
+    make_shard,
+    show_workload,
+    warn,
+)
 from flockenv.errors import ParameterError
 from flockenv.reproduce import names, require_packages
 from flockenv.runs.executors import named
+from flockenv.runs.store import RUNS_FOLDER
 
 if TYPE_CHECKING:
     from flockenv.reproduce.claim import CheckedClaim
@@ -28,7 +39,10 @@ def reproduce(
     budget: Annotated[
         float, typer.Option(help="Core-minutes that transition-order may take.")
     ] = 40.0,
-    engine: Annotated[str, typer.Option(help="Where to run: local, joblib or ray.")] = "local",
+    engine: EngineName = "local",
+    workers: Workers = None,
+    shard: ShardOf = None,
+    dry_run: DryRun = False,
     seed: Annotated[int, typer.Option(min=0, help="First seed.")] = 0,
     out: Annotated[Path, typer.Option(help="Folder for results.")] = Path("results/reproduce"),
     summary: Annotated[
@@ -42,7 +56,9 @@ def reproduce(
 
     Writes each figure (PNG and SVG), its data (CSV and Parquet) and a table of claims with measured
     values, intervals and verdicts; for `all` also one HTML report. Finished runs are stored
-    in `runs/`, and an interrupted command resumes when it is given again.
+    in `runs/`, and an interrupted command resumes when it is given again. Several machines that
+    share a folder make one shard each, with `--shard 1/8` to `--shard 8/8`; the command without
+    `--shard` then writes the figures.
 
     Example: `flockenv reproduce fig14 fig17`
     """
@@ -50,20 +66,27 @@ def reproduce(
     from flockenv.reproduce.command import plan, reproduce
     from flockenv.reproduce.reproduction import Settings
 
-    where = named(engine)
+    where, part = named(engine), chosen_shard(shard)
     work = plan(what, Settings(seed, minutes, budget))
+    if dry_run:
+        show_workload(work.specs, out / RUNS_FOLDER, part, as_json)
+        return
     check_folder(out)
+    if part is not None:
+        make_shard(work.specs, out / RUNS_FOLDER, part, where, workers, quiet)
+        return
     if summary is not None:
         _check_summary(summary)
-    with resumable(out / "runs"), progress_bar(quiet or as_json) as progress:
+    with resumable(out / RUNS_FOLDER), progress_bar(quiet or as_json) as progress:
         task = progress.add_task(f"{len(work.specs)} runs", total=work.cost)
         claims = reproduce(
             work,
             out,
             where,
             lambda spec: progress.advance(task, spec.cost),
-            lambda line: say(f"Warning: {line}", errors),
+            warn,
             summary,
+            workers,
         )
     if as_json:
         rows = [{"figure": name, **each.row()} for name, list_ in claims.items() for each in list_]

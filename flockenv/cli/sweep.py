@@ -9,14 +9,28 @@ import typer
 from flockenv._io.atomic_write import atomic_write
 from flockenv.cli.console import errors, print_json, progress_bar, resumable, say
 from flockenv.cli.output import check_folder, writable
+from flockenv.cli.workload import (
+    DryRun,
+    EngineName,
+    ShardOf,
+    Workers,
+    chosen_shard,
+    make_shard,
+    show_workload,
+    warn,
+)
 from flockenv.runs.executors import named
+from flockenv.runs.store import RUNS_FOLDER
 
 __all__ = ["sweep"]
 
 
 def sweep(
     spec: Annotated[Path, typer.Argument(help="What to run: a TOML file.")],
-    engine: Annotated[str, typer.Option(help="Where to run: local, joblib or ray.")] = "local",
+    engine: EngineName = "local",
+    workers: Workers = None,
+    shard: ShardOf = None,
+    dry_run: DryRun = False,
     out: Annotated[
         Path | None, typer.Option(help="Folder for results. [results/sweep/NAME]")
     ] = None,
@@ -28,6 +42,8 @@ def sweep(
     Writes `sweep.csv` and `sweep.parquet`, one row per run, which `flockenv.runs.sweep.load_sweep`
     reads, and beside them the TOML file as `sweep.toml`.
     Finished runs are stored in `runs/`, and an interrupted sweep resumes with the same command.
+    Several machines that share a folder make one shard each, with `--shard 1/8` to `--shard 8/8`;
+    the command without `--shard` then writes the table.
     `docs/sweep.md` describes the TOML file.
 
     Example: `flockenv sweep docs/sweep-example.toml`
@@ -35,21 +51,28 @@ def sweep(
     from flockenv.runs.sweep import run_sweep
     from flockenv.runs.sweep_spec import read_sweep
 
-    where = named(engine)
+    where, part = named(engine), chosen_shard(shard)
     work = read_sweep(spec)
     folder = out or Path("results/sweep") / spec.stem
+    if dry_run:
+        show_workload(work.runs, folder / RUNS_FOLDER, part, as_json)
+        return
     check_folder(folder)
     given = spec.read_bytes()
     with writable(folder / "sweep.toml") as path, atomic_write(path) as file:
         file.write(given)
-    with resumable(folder / "runs"), progress_bar(quiet or as_json) as progress:
+    if part is not None:
+        make_shard(work.runs, folder / RUNS_FOLDER, part, where, workers, quiet)
+        return
+    with resumable(folder / RUNS_FOLDER), progress_bar(quiet or as_json) as progress:
         task = progress.add_task(f"{len(work.runs)} runs", total=sum(run.cost for run in work.runs))
         table = run_sweep(
             work,
             folder,
             where,
             lambda run: progress.advance(task, run.cost),
-            lambda line: say(f"Warning: {line}", errors),
+            warn,
+            workers,
         )
     failed = int((table["failure"] != "").sum())
     if failed:

@@ -21,12 +21,9 @@ from flockenv.reproduce.style import mark_short
 from flockenv.reproduce.summary import Finished, markdown_summary, shown_pictures
 from flockenv.runs.executors import Engine, local
 from flockenv.runs.spec import RunSpec
-from flockenv.runs.store import RunStore, run_missing
+from flockenv.runs.store import RUNS_FOLDER, RunStore, run_missing
 
-__all__ = ["RUNS_FOLDER", "Plan", "mark_where_short", "plan", "reproduce"]
-
-RUNS_FOLDER = "runs"
-"""Folder of finished runs, inside the folder of results."""
+__all__ = ["Plan", "mark_where_short", "plan", "reproduce"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +76,7 @@ def reproduce(
     progress: Callable[[RunSpec], None] = lambda spec: None,
     notify: Callable[[str], None] | None = None,
     summary: Path | None = None,
+    workers: int | None = None,
 ) -> dict[str, list[CheckedClaim]]:
     """Make the missing runs, then write ``<folder>/<name>/`` for each name.
 
@@ -100,6 +98,8 @@ def reproduce(
     summary
         Where to write a page of claims and pictures, like ``summary.md``; the pictures go into a
         folder of the same name beside it.
+    workers
+        How many runs at a time; every core that this process may use by default.
 
     Returns
     -------
@@ -113,7 +113,7 @@ def reproduce(
     """
     runs = folder / RUNS_FOLDER
     store = RunStore(runs, notify) if notify else RunStore(runs)
-    failures = run_missing(plan.specs, store, engine, progress)
+    failures = run_missing(plan.specs, store, engine, progress, workers)
     for spec, error in failures.items():
         raise FlockError(f"{len(failures)} runs failed, the first of seed {spec.seed}: {error}")
     finished = []

@@ -5,6 +5,8 @@ item and the function's value of it, as they are finished and so in any order. W
 must be pure and, but for `local`, picklable: then results do not depend on the engine.
 """
 
+import functools
+import itertools
 import os
 from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
@@ -60,19 +62,45 @@ def in_order(
 
 
 def joblib(
-    function: Callable[[Item], Value], items: Sequence[Item], workers: int | None = None
+    function: Callable[[Item], Value],
+    items: Sequence[Item],
+    workers: int | None = None,
+    backend: str | None = None,
 ) -> Generator[tuple[int, Value], None, None]:
-    """Run in joblib's worker processes, or on the backend chosen by `joblib.parallel_config`.
+    """Run in joblib's worker processes, or on another backend of joblib.
+
+    Parameters
+    ----------
+    function, items, workers
+        As for every engine.
+    backend
+        "loky", "threading", "dask" or one that was registered; None for loky, or what
+        `joblib.parallel_config` chose.
 
     Raises
     ------
     MissingExtraError
         Without the extra ``sweep``.
+    ParameterError
+        For an unknown backend, and for one that yields nothing before everything is finished, such
+        as "multiprocessing": all would be lost with the first interruption.
     """
-    package = require("joblib", "sweep")
-    parallel = package.Parallel(n_jobs=workers or -1, return_as="generator_unordered")
-    task = package.delayed(_numbered)
+    task = require("joblib", "sweep").delayed(_numbered)
+    parallel = _parallel(workers or -1, backend)
     yield from parallel(task(function, place, item) for place, item in enumerate(items))
+
+
+def _parallel(workers: int, backend: str | None) -> Any:
+    package = require("joblib", "sweep")
+    try:
+        return package.Parallel(workers, backend=backend, return_as="generator_unordered")
+    except ImportError as error:
+        raise ParameterError(f"joblib's backend {backend!r} cannot be used: {error}") from error
+    except ValueError as error:
+        raise ParameterError(
+            f"joblib's backend {backend!r} is not accepted: one that yields each result as it is "
+            "finished, such as loky, threading or dask"
+        ) from error
 
 
 def _numbered(
@@ -84,10 +112,11 @@ def _numbered(
 def ray(
     function: Callable[[Item], Value], items: Sequence[Item], workers: int | None = None
 ) -> Generator[tuple[int, Value], None, None]:
-    """Run as Ray tasks of one core each.
+    """Run as Ray tasks of one core each, two for each core of the cluster at a time.
 
     On the cluster that is connected already or that ``RAY_ADDRESS`` names; otherwise on a local
-    Ray of `workers` cores, which is started and stopped here. Every node needs flockenv.
+    Ray of `workers` cores, which is started and stopped here. Every node needs flockenv. What a
+    node that dies was working on is done again on another one.
 
     Raises
     ------
@@ -99,14 +128,20 @@ def ray(
     if started:
         _start_ray(package, workers)
     tasks: dict[Any, int] = {}
+    waiting = iter(range(len(items)))
     try:
-        remote = package.remote(num_cpus=1)(function)
-        tasks = {remote.remote(item): place for place, item in enumerate(items)}
-        while tasks:
+        # Repeated without end where a worker or its node is lost; an error of the function is not.
+        remote = package.remote(num_cpus=1, max_retries=-1)(function)
+        while True:
+            # Asked again each time: nodes come and go.
+            at_once = max(2, 2 * int(package.cluster_resources().get("CPU", 0)))
+            for place in itertools.islice(waiting, max(0, at_once - len(tasks))):
+                tasks[remote.remote(items[place])] = place
+            if not tasks:
+                return
             finished, _ = package.wait(list(tasks), num_returns=1)
             for task in finished:
-                place = tasks.pop(task)
-                yield place, package.get(task)
+                yield tasks.pop(task), package.get(task)
     finally:
         for task in tasks:
             package.cancel(task)
@@ -126,13 +161,20 @@ ENGINES: Mapping[str, Engine] = {"local": local, "joblib": joblib, "ray": ray}
 
 
 def named(name: str) -> Engine:
-    """Return an engine by its name.
+    """Return an engine by its name, with a backend of joblib as in "joblib:threading".
 
     Raises
     ------
     ParameterError
-        For an unknown name; the message lists those there are.
+        For an unknown name, where the message lists those there are, or as for `joblib`.
+    MissingExtraError
+        As for `joblib`.
     """
+    engine, _, backend = name.partition(":")
+    if engine == "joblib" and backend:
+        _parallel(2, backend)
+        return functools.partial(joblib, backend=backend)
     if name not in ENGINES:
-        raise ParameterError(f"engine = {name!r} is not accepted: {', '.join(ENGINES)}")
+        names = ", ".join([*ENGINES, "joblib:BACKEND"])
+        raise ParameterError(f"engine = {name!r} is not accepted: {names}")
     return ENGINES[name]

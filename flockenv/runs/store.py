@@ -19,7 +19,18 @@ from flockenv.recording import PHASES, RecordedOrder, Recording
 from flockenv.runs.executors import Engine, local
 from flockenv.runs.spec import ORDER_NAMES, RunSpec, execute
 
-__all__ = ["RESULTS_VERSION", "RunStore", "StorageError", "StoreWarning", "columns", "run_missing"]
+__all__ = [
+    "RESULTS_VERSION",
+    "RUNS_FOLDER",
+    "RunStore",
+    "StorageError",
+    "StoreWarning",
+    "columns",
+    "run_missing",
+]
+
+RUNS_FOLDER = "runs"
+"""Folder of finished runs, inside a folder of results."""
 
 RESULTS_VERSION = 2
 """Rises whenever the same spec comes to give other numbers: what was kept before is then redone."""

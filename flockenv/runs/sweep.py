@@ -14,7 +14,7 @@ from flockenv.errors import FlockError, ParameterError
 from flockenv.recording import Recording
 from flockenv.runs.executors import Engine, local
 from flockenv.runs.spec import RunSpec
-from flockenv.runs.store import RunStore, StorageError, run_missing
+from flockenv.runs.store import RUNS_FOLDER, RunStore, StorageError, run_missing
 from flockenv.runs.sweep_spec import SweepSpec
 
 if TYPE_CHECKING:
@@ -52,6 +52,7 @@ def run_sweep(
     engine: Engine = local,
     progress: Callable[[RunSpec], None] = lambda spec: None,
     notify: Callable[[str], None] | None = None,
+    workers: int | None = None,
 ) -> "pd.DataFrame":
     """Make the runs of a sweep that a folder lacks, and write its table.
 
@@ -69,6 +70,8 @@ def run_sweep(
         Called with each spec once its run is there.
     notify
         See `RunStore`.
+    workers
+        How many runs at a time; every core that this process may use by default.
 
     Returns
     -------
@@ -85,9 +88,9 @@ def run_sweep(
     pandas = require("pandas", "plot")
     require("pyarrow", "plot")
     folder = Path(folder)
-    runs = folder / "runs"
+    runs = folder / RUNS_FOLDER
     store = RunStore(runs, notify) if notify else RunStore(runs)
-    failures = run_missing(sweep.runs, store, engine, progress)
+    failures = run_missing(sweep.runs, store, engine, progress, workers)
     table: pd.DataFrame = pandas.DataFrame(
         [
             {**_point(sweep, spec), "seed": spec.seed, **_outcome(spec, store, failures)}

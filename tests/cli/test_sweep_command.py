@@ -26,10 +26,39 @@ def test_the_table_and_the_files(cli, tmp_path: Path) -> None:
 
 def test_errors_are_one_line_with_exit_code_2(cli, tmp_path: Path) -> None:
     spec = tmp_path / "noise.toml"
-    for text, words in ((SPEC.replace("bw_s", "bws"), "bw_s"), ("", "grid")):
+    for text, options, words in (
+        (SPEC.replace("bw_s", "bws"), [], "bw_s"),
+        ("", [], "grid"),
+        (SPEC, ["--shard", "3/2"], "shard 3/2"),
+        (SPEC, ["--shard", "half"], "such as 3/8"),
+        (SPEC, ["--engine", "joblib:multiprocessing"], "loky, threading or dask"),
+        (SPEC, ["--engine", "slurm"], "joblib:BACKEND"),
+    ):
         spec.write_text(text)
-        done = cli("sweep", str(spec), "--out", str(tmp_path / "out"))
+        done = cli("sweep", str(spec), "--out", str(tmp_path / "out"), *options)
         assert done.returncode == 2
         assert words in done.stderr
         assert "Traceback" not in done.stderr
     assert not (tmp_path / "out").exists()
+
+
+def test_shards_make_the_table_of_one_command(cli, tmp_path: Path) -> None:
+    spec = tmp_path / "noise.toml"
+    spec.write_text(SPEC)
+    sweep = ["sweep", str(spec), "--quiet", "--workers", "1", "--out"]
+    looked = cli(*sweep, str(tmp_path / "out"), "--dry-run", "--shard", "1/2", "--json")
+    workload = json.loads(looked.stdout)
+    assert 0 < workload["runs"] < 8
+    assert workload["stored"] == 0
+    assert not (tmp_path / "out").exists()
+    for shard in ("1/2", "2/2"):
+        done = cli(*sweep, str(tmp_path / "out"), "--shard", shard)
+        assert done.returncode == 0, done.stderr
+        assert f"Shard {shard}" in done.stdout
+        assert not (tmp_path / "out" / "sweep.csv").exists()
+        stored = len(list((tmp_path / "out").rglob("*.npz")))
+        assert stored == (workload["runs"] if shard == "1/2" else 8)
+    for out in ("out", "alone"):
+        assert cli(*sweep, str(tmp_path / out)).returncode == 0
+    for name in ("sweep.csv", "sweep.parquet"):
+        assert (tmp_path / "out" / name).read_bytes() == (tmp_path / "alone" / name).read_bytes()

@@ -106,6 +106,17 @@ def test_joblib_runs_in_other_processes() -> None:
     assert os.getpid() not in pids
 
 
+def test_a_backend_of_joblib_by_name(tmp_path: Path) -> None:
+    check_same_files(named("joblib:threading"), tmp_path)
+    assert {pid for _, pid in named("joblib:threading")(process, range(2))} == {os.getpid()}
+
+
+@pytest.mark.parametrize("backend", ["multiprocessing", "abacus"])
+def test_backends_that_yield_all_at_the_end_are_refused(backend: str) -> None:
+    with pytest.raises(flockenv.ParameterError, match=f"{backend}.*loky, threading or dask"):
+        named(f"joblib:{backend}")
+
+
 def test_an_unknown_engine_is_refused() -> None:
     with pytest.raises(flockenv.ParameterError, match="local, joblib, ray"):
         named("slurm")

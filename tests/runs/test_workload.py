@@ -1,0 +1,93 @@
+"""Shards hold every run once, the same on every machine; a workload is what is missing."""
+
+import math
+import re
+
+import pytest
+
+import flockenv
+from flockenv.runs.spec import RunSpec, execute
+from flockenv.runs.store import RunStore
+from flockenv.runs.workload import Shard, measure_workload
+
+SCENE = flockenv.FlockParameters.preset("paper").replace(n_boats=8)
+SPECS = [RunSpec(parameters=SCENE, seed=seed, duration_s=60.0) for seed in range(300)]
+
+
+@pytest.mark.parametrize("of", [1, 2, 7, 300])
+def test_shards_hold_every_run_once_in_its_order(of):
+    shares = [Shard(number, of).runs_of(SPECS) for number in range(1, of + 1)]
+    assert sorted((spec for share in shares for spec in share), key=SPECS.index) == SPECS
+    for share in shares:
+        assert share == sorted(share, key=SPECS.index)
+
+
+def test_shards_are_about_equally_large():
+    sizes = [len(Shard(number, 3).runs_of(SPECS)) for number in (1, 2, 3)]
+    # Of a binomial distribution of 300 in thirds the standard deviation is 8.
+    assert all(70 <= size <= 130 for size in sizes)
+
+
+def test_a_run_stays_in_its_shard_whatever_else_is_run():
+    assert Shard(2, 5).runs_of(SPECS[:100]) == [
+        spec for spec in Shard(2, 5).runs_of(SPECS) if spec in SPECS[:100]
+    ]
+
+
+def test_the_hash_of_the_spec_decides():
+    spec = SPECS[0]
+    assert Shard(int(spec.key, 16) % 1000 + 1, 1000).runs_of([spec]) == [spec]
+
+
+def test_texts():
+    assert Shard.parse("3/8") == Shard.parse(" 3 / 8 ") == Shard(3, 8)
+    assert str(Shard(3, 8)) == "3/8"
+
+
+@pytest.mark.parametrize("text", ["", "3", "3/", "/8", "3/8/9", "-1/8", "1.5/8", "a/b", "٣/٨"])
+def test_other_texts_are_refused(text):
+    with pytest.raises(flockenv.ParameterError, match="such as 3/8"):
+        Shard.parse(text)
+
+
+@pytest.mark.parametrize("text", ["0/8", "9/8", "0/0", "1/0"])
+def test_shards_that_there_are_not_are_refused(text):
+    with pytest.raises(flockenv.ParameterError, match=re.escape(f"shard {text} is not accepted")):
+        Shard.parse(text)
+
+
+def test_a_workload_counts_runs_once_and_leaves_out_stored_ones(tmp_path):
+    specs = [*SPECS[:6], SPECS[0]]
+    store = RunStore(tmp_path)
+    work = measure_workload(specs, store)
+    assert (work.runs, work.stored) == (6, 0)
+    assert work.flock_hours == pytest.approx(0.1)
+    assert 0.0 < work.core_hours < 0.1
+    assert not list(tmp_path.iterdir())
+    store.save(SPECS[0], execute(SPECS[0]))
+    work = measure_workload(specs, store)
+    assert (work.runs, work.stored) == (6, 1)
+    assert work.flock_hours == pytest.approx(5 / 60)
+
+
+def test_nothing_to_do_takes_no_time(tmp_path):
+    work = measure_workload([], RunStore(tmp_path))
+    assert (work.runs, work.flock_hours, work.core_hours) == (0, 0.0, 0.0)
+
+
+def test_each_run_takes_the_rate_of_the_trial_nearest_in_size(tmp_path, monkeypatch):
+    # Trials are of at most a minute; here the clock of the processor is a made-up one.
+    clock = iter([0.0, 1.0, 10.0, 14.0])
+    monkeypatch.setattr("time.process_time", lambda: next(clock))
+    large = SCENE.replace(n_boats=20)
+    specs = [RunSpec(parameters=scene, seed=0, duration_s=600.0) for scene in (SCENE, large)]
+    work = measure_workload(specs, RunStore(tmp_path))
+    assert work.core_hours * 3600 == pytest.approx(10 * 1.0 + 10 * 4.0)
+
+
+def test_scenes_that_cannot_be_made_have_no_time(tmp_path):
+    crowded = SCENE.replace(n_boats=300, pool="table-1")
+    work = measure_workload(
+        [RunSpec(parameters=crowded, seed=0, duration_s=60.0)], RunStore(tmp_path)
+    )
+    assert math.isnan(work.core_hours)
