@@ -23,7 +23,7 @@ __all__ = ["is_special", "read_arrays", "write_arrays"]
 
 _MOST_BYTES = 16 << 30
 # What is compressed better than anything measured may not fill the memory with it.
-_MOST_INFLATED_BYTES, _INFLATED_RATIO = 1 << 30, 20
+_MOST_INFLATED_BYTES, _INFLATED_RATIO = 1 << 28, 20
 # Deflate cannot do better; an entry that claims more is a lie that would fill the memory.
 _HIGHEST_RATIO = 1100
 
@@ -41,6 +41,11 @@ def write_arrays(
     save = np.savez_compressed if compressed else np.savez
     with atomic_write(path) as file:
         save(file, allow_pickle=False, **dict(arrays))
+        if compressed and _inflates(sum(array.nbytes for array in arrays.values()), file.tell()):
+            # Constants compress beyond what is read again.
+            file.seek(0)
+            file.truncate()
+            np.savez(file, allow_pickle=False, **dict(arrays))
 
 
 def is_special(path: str | os.PathLike[str]) -> bool:
@@ -90,7 +95,7 @@ def _read(file: IO[bytes], most_bytes: int) -> dict[str, NDArray[Any]]:
     with zipfile.ZipFile(file) as archive:
         claimed = sum(entry.file_size for entry in archive.infolist())
         size = file.seek(0, os.SEEK_END)
-        if claimed > most_bytes or claimed > max(_MOST_INFLATED_BYTES, _INFLATED_RATIO * size):
+        if claimed > most_bytes or _inflates(claimed, size):
             raise ValueError(f"its {size} bytes claim to hold {claimed} bytes of data")
         for entry in archive.infolist():
             name = entry.filename.removesuffix(".npy")
@@ -98,6 +103,11 @@ def _read(file: IO[bytes], most_bytes: int) -> dict[str, NDArray[Any]]:
                 raise ValueError(f"{name} is there twice")
             arrays[name] = _read_entry(archive, entry)
     return arrays
+
+
+def _inflates(held: int, size: int) -> bool:
+    """Return whether a file of this size holds too many bytes for what it takes."""
+    return held > max(_MOST_INFLATED_BYTES, _INFLATED_RATIO * size)
 
 
 def _read_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> NDArray[Any]:

@@ -11,6 +11,7 @@ from rich.table import Table
 from flockenv import _core
 from flockenv._io.atomic_write import atomic_write
 from flockenv._io.extras import require
+from flockenv._io.locks import held
 from flockenv.calibration.search import Fit, Trial, residuals, run_flocks
 from flockenv.calibration.targets import NOISE_S, TARGETS
 from flockenv.parameters import FlockParameters
@@ -92,10 +93,20 @@ def report(
         If the folder holds another fit's log.
     MissingExtraError
         Without the extra ``fit``; nothing is written then.
+    InUseError
+        If another fit is at work in the folder.
     """
     # Both are required before hours of trials.
     for package in ("cmaes", "pandas"):
         require(package, "fit")
+    folder.mkdir(parents=True, exist_ok=True)
+    with held(folder / ".lock", str(folder)):
+        return _reported(fit, held_out, folder, progress)
+
+
+def _reported(
+    fit: Fit, held_out: int, folder: Path, progress: Callable[[str, float], None]
+) -> FitReport:
     options = asdict(fit) | {"scene": fit.scene.to_dict(), "held_out": held_out}
     header = f"# flockenv {_core.__version__}\n"
     _write(folder / "fit.toml", header + tomli_w.dumps(options))

@@ -10,7 +10,7 @@ import typer
 from flockenv._io.toml import read_toml_file
 from flockenv.cli.console import interruptible, print_json, progress_bar, say
 from flockenv.cli.output import check_folder, printable, refuse_overwriting
-from flockenv.cli.scene import changed_fields
+from flockenv.cli.scene import TrustOption, changed_fields
 from flockenv.errors import ParameterError
 
 __all__ = ["train"]
@@ -28,6 +28,7 @@ def train(
         int | None, typer.Option(min=1, help="When to stop: leaders' control steps.")
     ] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="Number of the training run.")] = None,
+    trust: TrustOption = False,
     out: Annotated[Path, typer.Option(help="Folder for the policy and the run.")] = Path(
         "results/train"
     ),
@@ -72,7 +73,7 @@ def train(
             result = training.resume(out, samples=samples, report=report)
         else:
             command = printable(shlex.join(["flockenv", *sys.argv[1:]]))
-            result = training.train(wanted, out, command=command, report=report)
+            result = training.train(wanted, out, command=command, report=report, trust=trust)
     progress = result.progress
     if as_json:
         last = {"samples": progress.samples, "wall_s": round(progress.wall_s, 1)}

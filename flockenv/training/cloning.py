@@ -8,6 +8,7 @@ import torch
 from numpy.typing import NDArray
 
 from flockenv._io.provenance import made_by
+from flockenv.envs.observation import BLOCKS
 from flockenv.errors import ParameterError
 from flockenv.policies import ModelPolicy, NetworkPolicy
 from flockenv.policies.base import RowPolicy
@@ -53,8 +54,8 @@ def clone_law(
     TrainingError
         If the loss is not finite.
     """
-    own = (law.observation, law.mirror_to_target)
-    asked = (dict(settings.observation), settings.mirror_to_target)
+    own = ({**BLOCKS, **law.observation}, law.mirror_to_target)
+    asked = ({**BLOCKS, **settings.observation}, settings.mirror_to_target)
     if own != asked:
         raise ParameterError(f"the law's layout is {own!r}, that of the settings {asked!r}")
     begin = time.perf_counter()

@@ -76,6 +76,7 @@ def train(
     *,
     command: str = "",
     report: Report = lambda progress: None,
+    trust: bool = False,
 ) -> TrainingResult:
     """Train a policy into an empty folder.
 
@@ -91,11 +92,15 @@ def train(
         Provenance, stored in the policies' ``made``.
     report
         Called after each rollout.
+    trust
+        Whether the ``.zip`` file of a model to start from may execute the code in it; see
+        `flockenv.policies.load`.
 
     Raises
     ------
     ParameterError
-        If the folder holds a run already, and for a policy to start from that does not fit.
+        If the folder holds a run already, for a policy to start from that does not fit, and for a
+        model's file without `trust`.
     InUseError
         If another training is at work in the folder.
     TrainingError
@@ -105,7 +110,7 @@ def train(
     _refuse_another_run(folder)
     with one_thread():
         model = _model(settings)
-        start = _start(settings, command)
+        start = _start(settings, command, trust)
         if start is not None:
             copy_into_actor(start, _actor(model), settings)
         with _alone_in(folder):
@@ -372,7 +377,7 @@ def _actor(model: PPO) -> ActorCriticPolicy:
     return model.policy
 
 
-def _start(settings: TrainingSettings, command: str) -> NetworkPolicy | None:
+def _start(settings: TrainingSettings, command: str, trust: bool) -> NetworkPolicy | None:
     if not settings.start:
         return None
     found: RowPolicy | ModelPolicy
@@ -382,7 +387,7 @@ def _start(settings: TrainingSettings, command: str) -> NetworkPolicy | None:
         )
     else:
         try:
-            found = load(settings.start)
+            found = load(settings.start, trust=trust)
         except OSError as error:
             raise ParameterError(
                 f"start = {settings.start!r} is neither {' nor '.join(LAWS)}, and as a policy's "
@@ -390,6 +395,9 @@ def _start(settings: TrainingSettings, command: str) -> NetworkPolicy | None:
             ) from error
     if isinstance(found, NetworkPolicy):
         return found
+    if isinstance(found, ModelPolicy):
+        for leaders in settings.n_leaders:
+            found.check_leaders(leaders)
     return clone_law(found, settings, command=command)
 
 

@@ -63,8 +63,8 @@ class TrainingSettings:
         Number of the training run; the flocks' seeds come from it (`runs.seeds.POLICY_SEEDS`).
     start
         A network's ``.npz`` file to start from, whose hidden layers and layout these must be; or a
-        leaning law's file or the name of a closed-form law, which is cloned first; empty: from
-        nothing.
+        leaning law's file, the ``.zip`` file of a model of stable-baselines3 or the name of a
+        closed-form law, which is cloned first; empty: from nothing.
     checkpoint_every
         Samples between checkpoints.
     validate_every, validation_episodes, validation_s, validation_hz

@@ -3,37 +3,49 @@
 use super::arguments::whole;
 use super::flock::PyFlock;
 use crate::draw::FrameRenderer;
-use numpy::{PyArray3, PyArrayMethods};
+use crate::error::Result;
+use numpy::{PyArray1, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Draws flocks at one size.
-#[pyclass(name = "FrameRenderer", module = "flockenv._core")]
-pub struct PyFrameRenderer(FrameRenderer);
+/// Draws flocks at one size, for one thread at a time: others wait.
+#[pyclass(name = "FrameRenderer", module = "flockenv._core", frozen)]
+pub struct PyFrameRenderer(Mutex<FrameRenderer>);
+
+impl PyFrameRenderer {
+    fn lock(&self) -> MutexGuard<'_, FrameRenderer> {
+        // Every frame is drawn anew: nothing remains of one that was not finished.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
 
 #[pymethods]
 impl PyFrameRenderer {
     #[new]
     fn new(width: &Bound<'_, PyAny>, height: &Bound<'_, PyAny>) -> PyResult<Self> {
         let (width, height) = (side(width, "width")?, side(height, "height")?);
-        Ok(Self(FrameRenderer::new(width, height)?))
+        Ok(Self(Mutex::new(FrameRenderer::new(width, height)?)))
     }
 
     /// A flock as it is now: (height, width, 3), uint8.
-    fn draw<'py>(
-        &mut self,
-        py: Python<'py>,
-        flock: &PyFlock,
-    ) -> PyResult<Bound<'py, PyArray3<u8>>> {
-        let (height, width) = (self.0.height() as usize, self.0.width() as usize);
-        let frame = PyArray3::zeros(py, [height, width, 3], false);
-        self.0
-            .draw_into(&*flock.read()?, frame.readwrite().as_slice_mut()?);
-        Ok(frame)
+    fn draw<'py>(&self, py: Python<'py>, flock: &PyFlock) -> PyResult<Bound<'py, PyArray3<u8>>> {
+        let (shape, frame) = py.detach(|| -> Result<_> {
+            let mut renderer = self.lock();
+            let shape = [renderer.height() as usize, renderer.width() as usize, 3];
+            Ok((shape, renderer.draw(&*flock.read()?)))
+        })?;
+        PyArray1::from_vec(py, frame).reshape(shape)
     }
 
     /// Where a boat is in the frame, in pixels from the top left: (x, y, reach of its hull).
-    fn place(&self, flock: &PyFlock, boat: &Bound<'_, PyAny>) -> PyResult<(f32, f32, f32)> {
-        Ok(self.0.place(&*flock.read()?, whole(boat, "boat")?)?)
+    fn place(
+        &self,
+        py: Python<'_>,
+        flock: &PyFlock,
+        boat: &Bound<'_, PyAny>,
+    ) -> PyResult<(f32, f32, f32)> {
+        let boat = whole(boat, "boat")?;
+        Ok(py.detach(|| self.lock().place(&*flock.read()?, boat))?)
     }
 }
 

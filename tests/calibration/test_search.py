@@ -114,6 +114,21 @@ def test_a_fit_is_written_and_reported(quick, tmp_path):
     assert result.table().row_count == len(result.residuals)
 
 
+def test_a_folder_takes_one_fit_at_a_time(quick, tmp_path):
+    refused = []
+
+    def meanwhile(words, count):
+        with pytest.raises(flockenv.InUseError, match="is in use by another process"):
+            fit_report.report(fit, 4, tmp_path, lambda words, count: None)
+        refused.append(words)
+
+    fit = Fit(trials=2, seeds=1, finalists=1)
+    fit_report.report(fit, 4, tmp_path, meanwhile)
+    assert refused
+    names = {"fit.toml", "trials.csv", "parameters.toml", "residuals.csv"}
+    assert {path.name for path in tmp_path.iterdir()} == names
+
+
 @pytest.mark.parametrize(
     "options",
     [

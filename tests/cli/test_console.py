@@ -3,6 +3,7 @@
 import io
 import json
 import os
+import subprocess
 import sys
 
 import pytest
@@ -47,3 +48,33 @@ def test_json_is_the_same_on_every_console(printed):
         reported = printed(encoding, data, print_one=print_json)
         assert reported.isascii()
         assert json.loads(reported) == data
+
+
+# Ctrl-C as soon as a package is looked for.
+PRESSED = """
+import signal, sys
+class Finder:
+    def find_spec(name, path, target=None):
+        if name == {name!r}:
+            signal.raise_signal(signal.SIGINT)
+sys.meta_path.insert(0, Finder)
+"""
+
+
+@pytest.mark.parametrize("name", ["flockenv", "numpy", "flockenv.cli.train"])
+def test_an_interrupt_while_packages_are_imported_ends_in_a_line(name):
+    source = f"{PRESSED.format(name=name)}\nfrom flockenv_command import main\nmain()"
+    done = subprocess.run(
+        [sys.executable, "-c", source, "presets"], capture_output=True, text=True, timeout=60
+    )
+    assert (done.returncode, done.stdout) == (130, "")
+    assert done.stderr == "Interrupted. Nothing was written.\n"
+
+
+def test_an_interrupt_that_is_ignored_stays_so_while_packages_are_imported():
+    ignored = "import signal\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\n"
+    source = f"{ignored}{PRESSED.format(name='numpy')}\nfrom flockenv_command import main\nmain()"
+    done = subprocess.run(
+        [sys.executable, "-c", source, "--version"], capture_output=True, text=True, timeout=60
+    )
+    assert (done.returncode, done.stderr) == (0, "")

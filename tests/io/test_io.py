@@ -110,6 +110,26 @@ def test_a_policy_that_inflates_is_refused_unread(tmp_path, monkeypatch):
         load(tmp_path / "bomb.npz")
 
 
+def test_a_recording_that_inflates_is_refused_unread(tmp_path, monkeypatch):
+    zeros(tmp_path / "bomb.npz", "flockenv recording 3", 300_000_000)
+    assert (tmp_path / "bomb.npz").stat().st_size < 1_000_000
+    monkeypatch.setattr(array_file, "_read_entry", lambda archive, entry: pytest.fail("read"))
+    with pytest.raises(ParameterError, match=r"bomb\.npz is no whole.* claim to hold 300000"):
+        Recording.load(tmp_path / "bomb.npz")
+
+
+def test_what_would_compress_too_well_to_be_read_is_stored_plainly(tmp_path, monkeypatch):
+    monkeypatch.setattr(array_file, "_MOST_INFLATED_BYTES", 10_000)
+    numbers = np.random.default_rng(0).random(10_000)
+    for name, array in [("constants", np.zeros(10_000)), ("numbers", numbers)]:
+        path = tmp_path / f"{name}.npz"
+        array_file.write_arrays(path, {"a": array}, compressed=True)
+        assert np.array_equal(array_file.read_arrays(path)["a"], array)
+        with zipfile.ZipFile(path) as archive:
+            stored = archive.infolist()[0].compress_type == zipfile.ZIP_STORED
+        assert stored == (name == "constants")
+
+
 @pytest.mark.parametrize("read", [load, Recording.load])
 def test_devices_and_pipes_are_no_npz_files(read, tmp_path):
     os.mkfifo(tmp_path / "pipe.npz")

@@ -86,6 +86,28 @@ const HASHES: [u64; 3] = [
 ];
 
 #[test]
+fn without_leaders_there_is_no_target_in_the_picture() {
+    let leaderless = |target| {
+        let mut flock = circling(Pool::TABLE_1, target);
+        let parameters = FlockParameters {
+            n_leaders: 0,
+            ..flock.parameters().clone()
+        };
+        let (poses, velocities) = (flock.poses().to_vec(), flock.velocities().to_vec());
+        flock = Flock::new(parameters, 1).unwrap();
+        flock.set_state(&poses, &velocities, 12.5, false).unwrap();
+        drawn(&flock, 300, 300)
+    };
+    let frame = leaderless(Target::Clockwise);
+    assert_eq!(frame, leaderless(Target::CounterClockwise));
+    // The lowest point of the arrow's circle, at two thirds of the obstacle's radius.
+    let below = -0.66 * Pool::TABLE_1.inner_radius_cm;
+    let led = drawn(&circling(Pool::TABLE_1, Target::Clockwise), 300, 300);
+    assert_ne!(color_at(&led, 0.0, below), color_at(&led, 0.0, 0.0));
+    assert_eq!(color_at(&frame, 0.0, below), color_at(&frame, 0.0, 0.0));
+}
+
+#[test]
 fn what_was_drawn_before_leaves_no_trace() {
     let scenes = [
         circling(Pool::TABLE_1, Target::Clockwise),

@@ -4,6 +4,7 @@ import copy
 import subprocess
 import sys
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 
 import gymnasium
 import numpy as np
@@ -64,6 +65,25 @@ def test_a_returned_frame_is_never_written_to_again():
     scene.advance(3.0)
     rendering.frame(scene, 100, 100)
     np.testing.assert_array_equal(first, kept)
+
+
+def test_frames_may_be_drawn_in_several_threads():
+    scenes = [flock(n_boats=n, pool=pool) for n in (3, 8) for pool in ("500-boats", "table-1")]
+    alone = [rendering.frame(scene, 160, 120) for scene in scenes]
+    with ThreadPoolExecutor(len(scenes)) as threads:
+        # All of them share one renderer.
+        for _ in range(25):
+            together = threads.map(lambda scene: rendering.frame(scene, 160, 120), scenes)
+            for ours, theirs in zip(alone, together, strict=True):
+                np.testing.assert_array_equal(ours, theirs)
+
+
+def test_a_frame_without_leaders_shows_no_target():
+    pictures = [
+        rendering.frame(flock(n_leaders=0, pool="table-1", target=target), 300, 300)
+        for target in ("cw", "ccw")
+    ]
+    np.testing.assert_array_equal(*pictures)
 
 
 @pytest.mark.parametrize("size", [(63, 100), (100, 4097), (-1, 100), (2**40, 100)])

@@ -4,9 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from stable_baselines3 import PPO
 
-from flockenv import ParameterError
+from flockenv import LeadersEnv, ParameterError
 from flockenv.policies import DampedLaw, LeaningLaw, SignCorrectedLaw, load
+from flockenv.sb3 import LeaderVecEnv
 from flockenv.training import TrainingSettings, clone_law, train
 
 
@@ -35,6 +37,30 @@ def test_a_run_starts_from_a_clone_of_a_leaning_law(tiny: TrainingSettings, tmp_
     start = load(tmp_path / "run" / "start.npz")
     assert start.made["cloned"].startswith("LeaningLaw")
     assert [matrix.shape[1] for matrix in start.weights] == [8, 1]
+
+
+@pytest.mark.usefixtures("_quick_clones")
+def test_a_run_starts_from_a_trusted_model(tiny: TrainingSettings, tmp_path: Path) -> None:
+    path = tmp_path / "model.zip"
+    env = LeaderVecEnv(2, n_boats=6, n_leaders=2, mirror_to_target=True)
+    PPO("MlpPolicy", env, n_steps=8, batch_size=8, device="cpu").save(path)
+    settings = tiny.replace(start=str(path), samples=192)
+    with pytest.raises(ParameterError, match="on the command line --trust"):
+        train(settings, tmp_path / "run")
+    assert not (tmp_path / "run").exists()
+    train(settings, tmp_path / "run", trust=True)
+    start = load(tmp_path / "run" / "start.npz")
+    assert start.made["cloned"].startswith("ModelPolicy(model.zip")
+
+
+def test_a_model_of_two_leaders_at_once_is_no_start_for_one(
+    tiny: TrainingSettings, tmp_path: Path
+) -> None:
+    path = tmp_path / "model.zip"
+    env = LeadersEnv(n_boats=6, n_leaders=2, mirror_to_target=True)
+    PPO("MlpPolicy", env, n_steps=8, batch_size=8, device="cpu").save(path)
+    with pytest.raises(ParameterError, match="n_leaders = 1 is not accepted"):
+        train(tiny.replace(start=str(path)), tmp_path / "run", trust=True)
 
 
 def test_another_layout_is_refused(tiny: TrainingSettings) -> None:

@@ -1,6 +1,7 @@
 //! The legend in the frame's four corners, which a round pool leaves free.
 
 use super::palette::{AGAINST, FAINT, INK, LEADER, Rgb, TOWARDS, TRACK};
+use super::target_of;
 use super::text::Typeface;
 use crate::analysis::OrderParameters;
 use crate::flock::Flock;
@@ -57,7 +58,11 @@ impl Legend {
         sheet.task(flock);
         let order = flock.order_parameters(false).ok();
         sheet.order(order.as_ref());
-        sheet.signed_order(order.map(|order| order.signed_order(flock.parameters().target)));
+        let (words, towards) = match target_of(flock) {
+            Some(target) => ("towards target", target),
+            None => ("clockwise", Target::Clockwise),
+        };
+        sheet.signed_order(words, order.map(|order| order.signed_order(towards)));
     }
 }
 
@@ -99,17 +104,21 @@ impl Sheet<'_> {
         }
     }
 
-    /// Top right: the target, the backward duration and the leaders.
+    /// Top right: the backward duration, and above and below it the target and the leaders that there are.
     fn task(&mut self, flock: &Flock) {
         let parameters = flock.parameters();
-        let target = match parameters.target {
-            Target::Clockwise => "target ↻ cw",
-            Target::CounterClockwise => "target ↺ ccw",
+        let backward = format!("bw {:.2} s", parameters.bw_s);
+        let target = match target_of(flock) {
+            Some(Target::Clockwise) => "target ↻ cw",
+            Some(Target::CounterClockwise) => "target ↺ ccw",
+            None => {
+                self.write_to_right(&backward, self.top(0), INK);
+                return;
+            }
         };
         self.write_to_right(target, self.top(0), INK);
-        self.write_to_right(&format!("bw {:.2} s", parameters.bw_s), self.top(1), INK);
+        self.write_to_right(&backward, self.top(1), INK);
         let leaders = match parameters.n_leaders {
-            0 => return,
             1 => "1 leader".to_owned(),
             several => format!("{several} leaders"),
         };
@@ -132,16 +141,16 @@ impl Sheet<'_> {
         }
     }
 
-    /// Bottom right: order towards the target, from −1 to 1.
-    fn signed_order(&mut self, signed: Option<f64>) {
+    /// Bottom right: order towards the target, or the sense of rotation, from −1 to 1.
+    fn signed_order(&mut self, words: &str, signed: Option<f64>) {
         let half = 0.5 * GAUGE * self.em;
         let middle = self.width - EDGE * self.em - half;
         self.gauge(middle - half, 2.0 * half, TRACK);
         let Some(signed) = signed else {
-            self.write_to_right("towards target -", self.bottom(), INK);
+            self.write_to_right(&format!("{words} -"), self.bottom(), INK);
             return;
         };
-        let text = format!("towards target {}", signed_text(signed));
+        let text = format!("{words} {}", signed_text(signed));
         self.write_to_right(&text, self.bottom(), INK);
         let (length, color) = (
             half * signed.abs() as f32,

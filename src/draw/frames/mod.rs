@@ -28,8 +28,14 @@ pub struct FrameRenderer {
 #[derive(Debug, Clone)]
 struct Background {
     pool: Pool,
-    target: Target,
+    target: Option<Target>,
     image: Pixmap,
+}
+
+/// Where leaders head; without leaders nobody does.
+fn target_of(flock: &Flock) -> Option<Target> {
+    let parameters = flock.parameters();
+    (parameters.n_leaders > 0).then_some(parameters.target)
 }
 
 impl FrameRenderer {
@@ -70,15 +76,14 @@ impl FrameRenderer {
         self.canvas.height()
     }
 
-    /// Bytes of a frame: red, green and blue of each pixel, row by row from the top left.
-    pub fn frame_len(&self) -> usize {
-        self.canvas.pixels().len() * 3
-    }
-
-    /// A flock as it is now, as [`Self::frame_len`] bytes.
+    /// A flock as it is now: red, green and blue of each pixel, row by row from the top left.
     pub fn draw(&mut self, flock: &Flock) -> Vec<u8> {
-        let mut frame = vec![0; self.frame_len()];
-        self.draw_into(flock, &mut frame);
+        self.draw_canvas(flock);
+        let mut frame = Vec::with_capacity(self.canvas.pixels().len() * 3);
+        // The canvas is opaque throughout, so that premultiplied colors are plain ones.
+        for pixel in self.canvas.data().chunks_exact(4) {
+            frame.extend_from_slice(&pixel[..3]);
+        }
         frame
     }
 
@@ -90,22 +95,6 @@ impl FrameRenderer {
         self.draw_canvas(flock);
         let refused = |error| FlockError::parameter("frame", error, "a picture that PNG can hold");
         self.canvas.encode_png().map_err(refused)
-    }
-
-    /// The same into a buffer of [`Self::frame_len`] bytes.
-    ///
-    /// # Panics
-    /// If the buffer has another length.
-    pub fn draw_into(&mut self, flock: &Flock, frame: &mut [u8]) {
-        assert_eq!(frame.len(), self.frame_len(), "a buffer of one frame");
-        self.draw_canvas(flock);
-        // The canvas is opaque throughout, so that premultiplied colors are plain ones.
-        for (rgb, pixel) in frame
-            .chunks_exact_mut(3)
-            .zip(self.canvas.data().chunks_exact(4))
-        {
-            rgb.copy_from_slice(&pixel[..3]);
-        }
     }
 
     fn draw_canvas(&mut self, flock: &Flock) {
@@ -134,7 +123,7 @@ impl FrameRenderer {
     }
 
     fn draw_background(&mut self, flock: &Flock, view: &View) {
-        let (pool, target) = (flock.parameters().pool, flock.parameters().target);
+        let (pool, target) = (flock.parameters().pool, target_of(flock));
         if !pool.has_outer_wall() {
             water::draw(&mut self.canvas, &pool, target, view);
             return;

@@ -13,7 +13,7 @@ const LEAST_SPACING: f64 = 60.0;
 const LEAST_ISLAND: f32 = 24.0;
 
 /// Draws all of it.
-pub fn draw(canvas: &mut Pixmap, pool: &Pool, target: Target, view: &View) {
+pub fn draw(canvas: &mut Pixmap, pool: &Pool, target: Option<Target>, view: &View) {
     let wall = wall_width(canvas);
     if pool.has_outer_wall() {
         canvas.fill(GROUND.color());
@@ -28,7 +28,9 @@ pub fn draw(canvas: &mut Pixmap, pool: &Pool, target: Target, view: &View) {
         let radius = view.length(pool.inner_radius_cm);
         disc(canvas, view, radius, WALL);
         disc(canvas, view, radius - wall, GROUND);
-        if radius >= LEAST_ISLAND {
+        if let Some(target) = target
+            && radius >= LEAST_ISLAND
+        {
             arrow(canvas, view.pixel(Vec2::zeros()), 0.66 * radius, target);
         }
     } else {
