@@ -70,7 +70,7 @@ lint: $(STAMPS)/test $(STAMPS)/core ## formatting, clippy without and with all f
 	$(BIN)/ruff check
 	$(BIN)/lint-imports --no-logo --no-cache
 	$(BIN)/mypy
-	$(if $(wildcard $(STUBS)),$(BIN)/stubtest flockenv._core --mypy-config-file pyproject.toml --allowlist tests/modules/stubtest_allowlist.txt)
+	$(if $(wildcard $(STUBS)),$(BIN)/stubtest flockenv._core --mypy-config-file tests/modules/stubtest.ini --allowlist tests/modules/stubtest_allowlist.txt)
 	git ls-files -z | xargs -0 $(BIN)/codespell
 	$(BIN)/python docs/wording.py
 
