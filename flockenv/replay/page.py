@@ -282,14 +282,11 @@ def _add_contacts(
     sample = np.repeat(np.arange(len(recording)), contacts.count)
     kept = sample % every == 0
     sample, i, normal = sample[kept], contacts.i[kept], contacts.normal[kept]
-    # A hull's surface point is its foot on the core and the normal: one number remains.
-    pose = recording.pose[sample, i]
-    foot = contacts.point_cm[kept] - pose[:, :2]
-    foot += recording.parameters.boat_radius_cm * normal
-    axis = np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])], axis=1)
+    # Points move with their boats while the page plays from one sample to the next.
+    offset = contacts.point_cm[kept] - recording.pose[sample, i, :2]
     packer.add_plain("contact_count", contacts.count[::every])
     packer.add_plain("contact_i", i)
     packer.add_plain("contact_j", contacts.j[kept])
-    packer.add_plain("contact_along_cm", (foot * axis).sum(axis=1), 0.1)
+    packer.add_plain("contact_offset_cm", offset, 0.1)
     packer.add_plain("contact_angle", np.arctan2(normal[:, 1], normal[:, 0]), 0.02)
     packer.add_plain("contact_force", np.minimum(contacts.force[kept], 1e6), _FORCE)

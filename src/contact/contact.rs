@@ -1,6 +1,6 @@
 //! One place where a hull is near another hull or a wall.
 
-use crate::geometry::{Gap, Hull, HullPose, PairFeature, Vec2, Velocity, cross};
+use crate::geometry::{Gap, Hull, HullPose, PairFeature, Vec2, Velocity};
 
 /// What a boat is near to.
 #[derive(
@@ -59,15 +59,7 @@ impl Contact {
 
     /// Where the normal pushes the first hull: a point of its surface.
     pub fn point(&self, boat: &HullPose, hull: Hull) -> Vec2 {
-        let (normal, h) = (self.gap.normal, hull.half_length);
-        // The lever arm gives the place along the core, but not of a push along the core: that is on
-        // the end.
-        let across = cross(boat.axis, normal);
-        let along = if across.abs() > 1e-9 {
-            (self.gap.arm_i / across).clamp(-h, h)
-        } else {
-            h * -boat.axis.dot(&normal).signum()
-        };
+        let Gap { along, normal, .. } = self.gap;
         boat.center + boat.axis * along - normal * hull.radius
     }
 

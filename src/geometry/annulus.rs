@@ -16,6 +16,7 @@ pub fn outer_wall_gap(boat: &HullPose, side: f64, hull: Hull, outer_radius: f64)
     Gap {
         gap: outer_radius - hull.radius - distance,
         normal,
+        along: side * hull.half_length,
         arm_i: side * hull.half_length * cross(boat.axis, normal),
         arm_j: 0.0,
         bend: 0.0,
@@ -39,6 +40,7 @@ pub fn inner_wall_gap(boat: &HullPose, hull: Hull, inner_radius: f64) -> Gap {
     Gap {
         gap: distance - hull.radius - inner_radius,
         normal,
+        along,
         arm_i: along * cross(boat.axis, normal),
         arm_j: 0.0,
         bend: if along.abs() < h { -distance } else { 0.0 },

@@ -16,6 +16,8 @@ pub struct Gap {
     pub gap: f64,
     /// Unit vector along which the first body is pushed.
     pub normal: Vec2,
+    /// Where the first hull is pushed: the coordinate along its core, from its center to the bow, in cm.
+    pub along: f64,
     /// Lever arm of the normal about the first body's center in cm.
     pub arm_i: f64,
     /// Lever arm of the normal about the second body's center in cm; 0 for a wall.
@@ -98,6 +100,7 @@ impl<'a> Pair<'a> {
         Some(Gap {
             gap: distance - 2.0 * self.hull.radius,
             normal,
+            along: touch.along_a,
             arm_i: touch.along_a * cross(self.a.axis, normal),
             arm_j: touch.along_b * cross(self.b.axis, normal),
             bend: 0.0,
@@ -218,6 +221,7 @@ pub(crate) fn crossed_gap(a: &HullPose, b: &HullPose, hull: Hull) -> Gap {
     let along = |distance: f64, normal, p: Vec2, q: Vec2| Gap {
         gap: distance - 2.0 * hull.radius,
         normal,
+        along: (p - a.center).dot(&a.axis).clamp(-h, h),
         arm_i: cross(p - a.center, normal),
         arm_j: cross(q - b.center, normal),
         bend: 0.0,

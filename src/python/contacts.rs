@@ -1,4 +1,4 @@
-//! `flockenv.Contacts` and `flockenv.ContactSeries`.
+//! `flockenv.Contacts` and `flockenv.ContactSeries`: columns of one value or vector per contact.
 
 use super::result::{arrays_equal, repr_of};
 use crate::contact::Partner;
@@ -8,36 +8,81 @@ use numpy::{Element, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyTuple, PyType};
 
-/// Contacts and near-contacts of a flock's last substep, c of them.
-///
-/// Snapshots do not hold them: a flock that was restored or unpickled has none until its next
-/// substep, and continues from the same warm-start cache.
-///
-/// Two nearly parallel hulls, and a hull along the outer wall, touch at two points: two entries.
-///
-/// Attributes
-/// ----------
-/// i : int64 array, shape (c,)
-///     The boat that the normal pushes.
-/// j : int64 array, shape (c,)
-///     The other boat, or -1 for the outer wall, -2 for the inner wall.
-/// gap_cm : float64 array, shape (c,)
-///     Distance between the hulls now in cm, negative for overlap.
-/// normal : float64 array, shape (c, 2)
-///     Unit vector along which boat i is pushed, world axes.
-/// force : float64 array, shape (c,)
-///     Mean force on boat i along the normal over the last substep in cm/s² (mass 1), at least 0;
-///     boat j feels its opposite.
-/// point_cm : float64 array, shape (c, 2)
-///     Where boat i is pushed: a point of its hull, world axes.
-#[pyclass(name = "Contacts", module = "flockenv.flock", frozen, get_all)]
-pub struct PyContacts {
-    i: Py<PyAny>,
-    j: Py<PyAny>,
-    gap_cm: Py<PyAny>,
-    normal: Py<PyAny>,
-    force: Py<PyAny>,
-    point_cm: Py<PyAny>,
+/// A class of columns, which are its arguments and attributes in this order.
+macro_rules! columns {
+    (
+        $(#[$meta:meta])*
+        pub struct $class:ident { $($column:ident),+ $(,)? }
+
+        named $name:literal;
+        $($method:item)*
+    ) => {
+        $(#[$meta])*
+        pub struct $class {
+            $($column: Py<PyAny>,)+
+        }
+
+        impl $class {
+            fn columns(&self) -> Vec<(&'static str, &Py<PyAny>)> {
+                vec![$((stringify!($column), &self.$column)),+]
+            }
+        }
+
+        #[pymethods]
+        impl $class {
+            #[new]
+            fn new($($column: Py<PyAny>),+) -> Self {
+                Self { $($column),+ }
+            }
+
+            fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+                repr_of(py, $name, self.columns().into_iter())
+            }
+
+            fn __reduce__<'py>(
+                slf: &Bound<'py, Self>,
+            ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+                let columns = slf.get().columns().into_iter().map(|(_, column)| column);
+                let columns = PyTuple::new(slf.py(), columns.collect::<Vec<_>>())?;
+                Ok((slf.get_type().into_any(), columns))
+            }
+
+            $($method)*
+        }
+    };
+}
+
+columns! {
+    /// Contacts and near-contacts of a flock's last substep, c of them.
+    ///
+    /// Snapshots do not hold them: a flock that was restored or unpickled has none until its next
+    /// substep, and continues from the same warm-start cache.
+    ///
+    /// Two nearly parallel hulls, and a hull along the outer wall, touch at two points: two entries.
+    ///
+    /// Attributes
+    /// ----------
+    /// i : int64 array, shape (c,)
+    ///     The boat that the normal pushes.
+    /// j : int64 array, shape (c,)
+    ///     The other boat, or -1 for the outer wall, -2 for the inner wall.
+    /// gap_cm : float64 array, shape (c,)
+    ///     Distance between the hulls now in cm, negative for overlap.
+    /// normal : float64 array, shape (c, 2)
+    ///     Unit vector along which boat i is pushed, world axes.
+    /// force : float64 array, shape (c,)
+    ///     Mean force on boat i along the normal over the last substep in cm/s² (mass 1), at least 0;
+    ///     boat j feels its opposite.
+    /// point_cm : float64 array, shape (c, 2)
+    ///     Where boat i is pushed: a point of its hull, world axes.
+    #[pyclass(name = "Contacts", module = "flockenv.flock", frozen, get_all)]
+    pub struct PyContacts { i, j, gap_cm, normal, force, point_cm }
+
+    named "Contacts";
+
+    fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
+        self.i.bind(py).len()
+    }
 }
 
 impl PyContacts {
@@ -53,78 +98,67 @@ impl PyContacts {
             point_cm: pairs(py, contacts, |c| c.point, |x| x)?,
         })
     }
-
-    fn fields(&self) -> [(&'static str, &Py<PyAny>); 6] {
-        [
-            ("i", &self.i),
-            ("j", &self.j),
-            ("gap_cm", &self.gap_cm),
-            ("normal", &self.normal),
-            ("force", &self.force),
-            ("point_cm", &self.point_cm),
-        ]
-    }
 }
 
-#[pymethods]
-impl PyContacts {
-    #[new]
-    fn new(
-        i: Py<PyAny>,
-        j: Py<PyAny>,
-        gap_cm: Py<PyAny>,
-        normal: Py<PyAny>,
-        force: Py<PyAny>,
-        point_cm: Py<PyAny>,
-    ) -> Self {
-        Self {
-            i,
-            j,
-            gap_cm,
-            normal,
-            force,
-            point_cm,
+columns! {
+    /// Contacts that carried a force, sample after sample: c of them in t samples.
+    ///
+    /// Attributes
+    /// ----------
+    /// count : int64 array, shape (t,)
+    ///     How many contacts each sample has; they follow one another in the other arrays.
+    /// i, j : int32 array, shape (c,)
+    ///     The boats, as in `Contacts`: j is -1 for the outer wall, -2 for the inner wall.
+    /// normal : float32 array, shape (c, 2)
+    ///     Unit vector along which boat i is pushed, world axes.
+    /// force : float32 array, shape (c,)
+    ///     Mean force over the substep before the sample in cm/s² (mass 1), above 0.
+    /// point_cm : float32 array, shape (c, 2)
+    ///     Where boat i is pushed: a point of its hull, world axes.
+    #[pyclass(name = "ContactSeries", module = "flockenv.flock", frozen, get_all)]
+    pub struct PyContactSeries { count, i, j, normal, force, point_cm }
+
+    named "ContactSeries";
+
+    /// Return the series of contacts that were looked up sample by sample.
+    #[classmethod]
+    fn of(
+        _class: &Bound<'_, PyType>,
+        py: Python<'_>,
+        samples: Vec<PyRef<'_, PyContacts>>,
+    ) -> PyResult<Self> {
+        let numpy = py.import("numpy")?;
+        let mut counts = Vec::with_capacity(samples.len());
+        let mut pushing = Vec::with_capacity(samples.len());
+        for sample in &samples {
+            let each = numpy.call_method1("greater", (sample.force.bind(py), 0.0))?;
+            counts.push(each.call_method0("sum")?.extract::<i64>()?);
+            pushing.push(each);
         }
+        let joined = |column: fn(&PyContacts) -> &Py<PyAny>, dtype: &str| -> PyResult<Py<PyAny>> {
+            let parts = samples.iter().zip(&pushing);
+            let parts = parts.map(|(sample, pushing)| column(sample).bind(py).get_item(pushing));
+            let parts = parts.collect::<PyResult<Vec<_>>>()?;
+            let whole = numpy.call_method1("concatenate", (parts,))?;
+            Ok(whole.call_method1("astype", (dtype,))?.unbind())
+        };
+        Ok(Self {
+            count: array(py, counts.into_iter()),
+            i: joined(|sample| &sample.i, "int32")?,
+            j: joined(|sample| &sample.j, "int32")?,
+            normal: joined(|sample| &sample.normal, "float32")?,
+            force: joined(|sample| &sample.force, "float32")?,
+            point_cm: joined(|sample| &sample.point_cm, "float32")?,
+        })
     }
 
-    fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
-        self.i.bind(py).len()
+    fn __eq__(&self, py: Python<'_>, other: &Self) -> PyResult<bool> {
+        let columns = |series: &Self| -> Vec<_> {
+            let each = series.columns().into_iter();
+            each.map(|(_, column)| column.clone_ref(py)).collect()
+        };
+        arrays_equal(py, &columns(self), &columns(other))
     }
-
-    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        repr_of(py, "Contacts", self.fields().into_iter())
-    }
-
-    fn __reduce__<'py>(
-        slf: &Bound<'py, Self>,
-    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let fields = slf.get().fields().map(|(_, field)| field);
-        Ok((slf.get_type().into_any(), PyTuple::new(slf.py(), fields)?))
-    }
-}
-
-/// Contacts that carried a force, sample after sample: c of them in t samples.
-///
-/// Attributes
-/// ----------
-/// count : int64 array, shape (t,)
-///     How many contacts each sample has; they follow one another in the other arrays.
-/// i, j : int32 array, shape (c,)
-///     The boats, as in `Contacts`: j is -1 for the outer wall, -2 for the inner wall.
-/// normal : float32 array, shape (c, 2)
-///     Unit vector along which boat i is pushed, world axes.
-/// force : float32 array, shape (c,)
-///     Mean force over the substep before the sample in cm/s² (mass 1), above 0.
-/// point_cm : float32 array, shape (c, 2)
-///     Where boat i is pushed: a point of its hull, world axes.
-#[pyclass(name = "ContactSeries", module = "flockenv.flock", frozen, get_all)]
-pub struct PyContactSeries {
-    count: Py<PyAny>,
-    i: Py<PyAny>,
-    j: Py<PyAny>,
-    normal: Py<PyAny>,
-    force: Py<PyAny>,
-    point_cm: Py<PyAny>,
 }
 
 impl PyContactSeries {
@@ -140,94 +174,6 @@ impl PyContactSeries {
             force: array(py, each.map(|c| c.force as f32)),
             point_cm: pairs(py, contacts, |c| c.point, |x| x as f32)?,
         })
-    }
-
-    fn fields(&self) -> [(&'static str, &Py<PyAny>); 6] {
-        [
-            ("count", &self.count),
-            ("i", &self.i),
-            ("j", &self.j),
-            ("normal", &self.normal),
-            ("force", &self.force),
-            ("point_cm", &self.point_cm),
-        ]
-    }
-}
-
-#[pymethods]
-impl PyContactSeries {
-    #[new]
-    fn new(
-        count: Py<PyAny>,
-        i: Py<PyAny>,
-        j: Py<PyAny>,
-        normal: Py<PyAny>,
-        force: Py<PyAny>,
-        point_cm: Py<PyAny>,
-    ) -> Self {
-        Self {
-            count,
-            i,
-            j,
-            normal,
-            force,
-            point_cm,
-        }
-    }
-
-    /// Return the series of contacts that were looked up sample by sample.
-    #[classmethod]
-    fn of(
-        _class: &Bound<'_, PyType>,
-        py: Python<'_>,
-        samples: Vec<PyRef<'_, PyContacts>>,
-    ) -> PyResult<Self> {
-        let numpy = py.import("numpy")?;
-        let mut counts = Vec::with_capacity(samples.len());
-        let mut kept: [Vec<Bound<'_, PyAny>>; 5] = Default::default();
-        for sample in &samples {
-            let pushing = numpy.call_method1("greater", (sample.force.bind(py), 0.0))?;
-            counts.push(pushing.call_method0("sum")?.extract::<i64>()?);
-            let columns = [
-                &sample.i,
-                &sample.j,
-                &sample.normal,
-                &sample.force,
-                &sample.point_cm,
-            ];
-            for (parts, column) in kept.iter_mut().zip(columns) {
-                parts.push(column.bind(py).get_item(&pushing)?);
-            }
-        }
-        let [i, j, normal, force, point_cm] = kept;
-        let joined = |parts: Vec<Bound<'_, PyAny>>, dtype: &str| -> PyResult<Py<PyAny>> {
-            let whole = numpy.call_method1("concatenate", (parts,))?;
-            Ok(whole.call_method1("astype", (dtype,))?.unbind())
-        };
-        Ok(Self {
-            count: array(py, counts.into_iter()),
-            i: joined(i, "int32")?,
-            j: joined(j, "int32")?,
-            normal: joined(normal, "float32")?,
-            force: joined(force, "float32")?,
-            point_cm: joined(point_cm, "float32")?,
-        })
-    }
-
-    fn __eq__(&self, py: Python<'_>, other: &Self) -> PyResult<bool> {
-        let fields = |series: &Self| series.fields().map(|(_, field)| field.clone_ref(py));
-        arrays_equal(py, &fields(self), &fields(other))
-    }
-
-    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        repr_of(py, "ContactSeries", self.fields().into_iter())
-    }
-
-    fn __reduce__<'py>(
-        slf: &Bound<'py, Self>,
-    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let fields = slf.get().fields().map(|(_, field)| field);
-        Ok((slf.get_type().into_any(), PyTuple::new(slf.py(), fields)?))
     }
 }
 
