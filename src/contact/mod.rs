@@ -16,6 +16,7 @@ mod problem;
 mod resolver;
 pub mod solver;
 mod statistics;
+mod trial;
 mod velocity_bias;
 mod warm_start;
 

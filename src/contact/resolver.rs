@@ -4,6 +4,7 @@
 use super::depenetration::{Depenetration, PENETRATION_SLOP};
 use super::passivity::{self, Passivity};
 use super::solver::ContactSolver;
+use super::trial::Trial;
 use super::velocity_bias::VelocityBias;
 use super::warm_start::{CachedImpulse, WarmStartCache};
 use super::{Contact, ContactDetector, ContactProblem, InverseInertia, Statistics};
@@ -38,9 +39,7 @@ pub struct ContactResolver {
     warm_start_cache: WarmStartCache,
     depenetration: Option<Box<Depenetration>>,
     passivity: Passivity,
-    /// Poses and hulls where a solve would move the boats.
-    moved: Vec<Pose>,
-    trial: Vec<HullPose>,
+    trial: Trial,
     /// Overlap in cm at a substep's end that relinearization stops at; `None` without it.
     allowed_overlap: Option<f64>,
     boat_radius: f64,
@@ -64,8 +63,7 @@ impl ContactResolver {
             warm_start_cache: WarmStartCache::default(),
             depenetration: None,
             passivity: Passivity::default(),
-            moved: Vec::new(),
-            trial: Vec::new(),
+            trial: Trial::default(),
             allowed_overlap: [None, Some(1e-6), Some(1e-9)]
                 .get(parameters.relinearizations)
                 .copied()
@@ -203,30 +201,8 @@ impl ContactResolver {
         dt: f64,
         allowed: f64,
     ) -> bool {
-        self.set_trial(poses, velocities, dt);
-        let Self {
-            contacts,
-            detector,
-            trial,
-            ..
-        } = self;
-        contacts.iter().any(|contact| match contact.second() {
-            Some(second) => {
-                let gaps = detector.pair_gaps_at(contact.boat, second, trial);
-                gaps.into_iter().flatten().any(|gap| gap < -allowed)
-            }
-            None => detector.gap_at(contact, trial).gap < -allowed,
-        })
-    }
-
-    fn set_trial(&mut self, poses: &[Pose], velocities: &[Velocity], dt: f64) {
-        let moved = poses
-            .iter()
-            .zip(velocities)
-            .map(|(pose, velocity)| pose.moved(velocity, dt));
-        self.moved.clear();
-        self.moved.extend(moved);
-        HullPose::replace_all(&mut self.trial, &self.moved);
+        self.trial.place(poses, velocities, dt);
+        self.trial.overlaps(&self.detector, &self.contacts, allowed)
     }
 
     /// Solves the contacts found last for free velocities and effective inertia; the result is in
@@ -356,48 +332,19 @@ impl ContactResolver {
     /// substep leaves its share of an overlap from before, which does not count.
     fn relinearize(&mut self, poses: &[Pose], dt: f64) -> f64 {
         let velocities = std::mem::take(&mut self.solver.velocities);
-        self.set_trial(poses, &velocities, dt);
+        self.trial.place(poses, &velocities, dt);
         let left_over = 1.0 - dt / dt.max(self.whole_substep_s);
         let mut deepest = 0.0_f64;
         for (k, contact) in self.contacts.iter().enumerate() {
             if contact.gap.gap >= -self.penetration_slop {
-                let end_gap = self.end_gap(k) - left_over * contact.gap.gap.min(0.0);
+                let end_gap = self.trial.gap(&self.detector, &self.contacts, k)
+                    - left_over * contact.gap.gap.min(0.0);
                 deepest = deepest.max(-end_gap);
                 self.biases[k] = end_gap / dt - contact.gap_rate(&velocities);
             }
         }
         self.solver.velocities = velocities;
         deepest
-    }
-
-    /// The gap of contact k at the trial poses. Between two hulls the touch may have passed from one
-    /// end to the other without moving: a contact follows it, and the only contact of a pair stands
-    /// for the whole pair.
-    fn end_gap(&self, k: usize) -> f64 {
-        let contact = &self.contacts[k];
-        let own = |detector: &ContactDetector| detector.gap_at(contact, &self.trial).gap;
-        let (Some(second), 0 | 1) = (contact.second(), contact.feature) else {
-            return own(&self.detector);
-        };
-        let is_twin = |other: Option<&Contact>| {
-            other
-                .is_some_and(|other| (other.boat, other.partner) == (contact.boat, contact.partner))
-        };
-        let has_twin = is_twin(self.contacts.get(k + 1))
-            || is_twin(
-                k.checked_sub(1)
-                    .and_then(|before| self.contacts.get(before)),
-            );
-        let gaps = self
-            .detector
-            .pair_gaps_at(contact.boat, second, &self.trial);
-        let end = usize::from(contact.feature);
-        match (gaps[end], gaps[1 - end]) {
-            (Some(same), Some(other)) if !has_twin => same.min(other),
-            (Some(same), _) => same,
-            (None, Some(other)) if !has_twin => other,
-            (None, _) => own(&self.detector),
-        }
     }
 
     /// Forgets the impulses: nothing touched in this substep, and nothing near carried an impulse.

@@ -9,8 +9,10 @@ mod flock;
 mod placement;
 mod recorder;
 mod snapshot;
+mod state;
 
 pub use change::Change;
 pub(crate) use flock::LATEST;
-pub use flock::{ContactForce, Flock, State};
+pub use flock::{ContactForce, Flock};
 pub use recorder::{ContactSamples, Pause, Real, Recorder, Recording, Sampling};
+pub use state::State;

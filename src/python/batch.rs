@@ -2,9 +2,10 @@
 
 use super::arguments::{real, text, whole, wrong_type};
 use super::exclusive::{Exclusive, interruptible};
-use super::flock::{PyFlock, state_from};
+use super::flock::PyFlock;
 use super::parameters::to_python;
 use super::settings::{settings_from, settings_to_dict, term_names};
+use super::state::state_from;
 use crate::environment::{
     BatchRows, EnvBatch, Episode, EpisodeSummary, FlockEnv, ResetRequest, Start, TERMS,
 };

@@ -1,21 +1,21 @@
 //! `flockenv.Flock`.
 
-use super::arguments::{Seconds, Seed, TimeS, floats, real, text, truth, wrong_type};
+use super::arguments::{Seconds, Seed, TimeS, floats, text};
 use super::contacts::PyContacts;
 use super::exclusive::{Exclusive, interruptible};
 use super::order::PyOrderParameters;
 use super::parameters::to_python;
+use super::state::{poses_of, rows_of_three, state_from, velocities_of};
 use super::statistics::PyStatistics;
 use crate::clock::{Ticks, seconds};
 use crate::draw::FrameRenderer;
-use crate::error::{FlockError, Result};
-use crate::flock::{Flock, State};
-use crate::geometry::{Pose, Velocity};
+use crate::error::Result;
+use crate::flock::Flock;
 use crate::integrator::Steering;
 use crate::parameters::FlockParameters;
-use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyType};
+use pyo3::types::{PyBytes, PyType};
 use std::sync::RwLockReadGuard;
 
 /// A flock of boats in a pool.
@@ -205,10 +205,7 @@ impl PyFlock {
         let shape = [self.read()?.parameters().n_boats, 3];
         let pose = floats(pose, "pose", &shape)?;
         let velocity = floats(velocity, "velocity", &shape)?;
-        let poses: Vec<_> = rows(&pose).map(|[x, y, a]| Pose::new(x, y, a)).collect();
-        let velocities: Vec<_> = rows(&velocity)
-            .map(|[x, y, w]| Velocity::new(x, y, w))
-            .collect();
+        let (poses, velocities) = (poses_of(&pose), velocities_of(&velocity));
         Ok(self
             .0
             .write()?
@@ -381,52 +378,4 @@ fn advance_in_pieces(
         py.check_signals()?;
     }
     Ok(())
-}
-
-/// {"pose": (n, 3), "velocity": (n, 3), "time_s": float, "allow_overlap": bool}; the pose alone will do.
-pub fn state_from(value: &Bound<'_, PyAny>, boats: usize) -> PyResult<State> {
-    let accepted = "a dictionary with pose and, if need be, velocity, time_s and allow_overlap";
-    let state = value.cast::<PyDict>();
-    let state = state.map_err(|_| wrong_type(value, "state", accepted))?;
-    let mut pose = None;
-    let mut velocity = vec![0.0; 3 * boats];
-    let (mut time_s, mut allow_overlap) = (0.0, false);
-    for (name, value) in state {
-        match text(&name, "state")?.as_str() {
-            "pose" => pose = Some(floats(&value, "pose", &[boats, 3])?),
-            "velocity" => velocity = floats(&value, "velocity", &[boats, 3])?,
-            "time_s" => time_s = real(&value, "time_s")?,
-            "allow_overlap" => allow_overlap = truth(&value, "allow_overlap")?,
-            other => {
-                return Err(FlockError::parameter("state", format!("{other:?}"), accepted).into());
-            }
-        }
-    }
-    let Some(pose) = pose else {
-        return Err(FlockError::parameter("state", "without pose", accepted).into());
-    };
-    let (poses, _) = pose.as_chunks::<3>();
-    let (velocities, _) = velocity.as_chunks::<3>();
-    Ok(State {
-        poses: poses.iter().map(|&[x, y, a]| Pose::new(x, y, a)).collect(),
-        velocities: velocities
-            .iter()
-            .map(|&[x, y, w]| Velocity::new(x, y, w))
-            .collect(),
-        time_s,
-        allow_overlap,
-    })
-}
-
-fn rows(numbers: &[f64]) -> impl Iterator<Item = [f64; 3]> {
-    numbers.chunks_exact(3).map(|row| [row[0], row[1], row[2]])
-}
-
-fn rows_of_three(
-    py: Python<'_>,
-    rows: impl Iterator<Item = [f64; 3]>,
-) -> PyResult<Bound<'_, PyArray2<f64>>> {
-    let numbers: Vec<f64> = rows.flatten().collect();
-    let count = numbers.len() / 3;
-    PyArray1::from_vec(py, numbers).reshape([count, 3])
 }

@@ -10,9 +10,11 @@ pub mod flock;
 pub mod observation;
 pub mod order;
 pub mod parameters;
+pub mod quantities;
 pub mod recording;
 pub mod result;
 pub mod settings;
+pub mod state;
 pub mod statistics;
 pub mod structure;
 
@@ -38,16 +40,15 @@ mod _core {
         observe, state_table,
     };
     #[pymodule_export]
-    use super::order::{
-        PyOrderParameters, PyOrderSeries, PyQuantity, collective_state_names, order_series,
-        quantities,
-    };
+    use super::order::{PyOrderParameters, PyOrderSeries, collective_state_names, order_series};
     #[pymodule_export]
     use super::parameters::{
         checked_fields, critical_bw_s, parameter_table, physics_fields, pool_radii_cm,
         preset_fields, preset_names, preset_sources, resized_gyration_radius_cm,
         set_parameters_class,
     };
+    #[pymodule_export]
+    use super::quantities::{PyQuantity, quantities};
     #[pymodule_export]
     use super::recording::{phase_names, record};
     #[pymodule_export]

@@ -1,0 +1,59 @@
+//! The boats where a solve would move them, and the gaps there.
+
+use super::{Contact, ContactDetector};
+use crate::geometry::{HullPose, Pose, Velocity};
+
+/// Poses at a substep's end, on trial.
+#[derive(Debug, Clone, Default)]
+pub struct Trial {
+    poses: Vec<Pose>,
+    hulls: Vec<HullPose>,
+}
+
+impl Trial {
+    /// Moves boats from these poses with these velocities for `dt`.
+    pub fn place(&mut self, poses: &[Pose], velocities: &[Velocity], dt: f64) {
+        let moved = poses
+            .iter()
+            .zip(velocities)
+            .map(|(pose, velocity)| pose.moved(velocity, dt));
+        self.poses.clear();
+        self.poses.extend(moved);
+        HullPose::replace_all(&mut self.hulls, &self.poses);
+    }
+
+    /// Whether anything found as a contact overlaps by more than `allowed`.
+    pub fn overlaps(&self, detector: &ContactDetector, contacts: &[Contact], allowed: f64) -> bool {
+        contacts.iter().any(|contact| match contact.second() {
+            Some(second) => {
+                let gaps = detector.pair_gaps_at(contact.boat, second, &self.hulls);
+                gaps.into_iter().flatten().any(|gap| gap < -allowed)
+            }
+            None => detector.gap_at(contact, &self.hulls).gap < -allowed,
+        })
+    }
+
+    /// The gap of contact k. Between two hulls the touch may have passed from one end to the other
+    /// without moving: a contact follows it, and the only contact of a pair stands for the whole pair.
+    pub fn gap(&self, detector: &ContactDetector, contacts: &[Contact], k: usize) -> f64 {
+        let contact = &contacts[k];
+        let own = || detector.gap_at(contact, &self.hulls).gap;
+        let (Some(second), 0 | 1) = (contact.second(), contact.feature) else {
+            return own();
+        };
+        let is_twin = |other: Option<&Contact>| {
+            other
+                .is_some_and(|other| (other.boat, other.partner) == (contact.boat, contact.partner))
+        };
+        let has_twin = is_twin(contacts.get(k + 1))
+            || is_twin(k.checked_sub(1).and_then(|before| contacts.get(before)));
+        let gaps = detector.pair_gaps_at(contact.boat, second, &self.hulls);
+        let end = usize::from(contact.feature);
+        match (gaps[end], gaps[1 - end]) {
+            (Some(same), Some(other)) if !has_twin => same.min(other),
+            (Some(same), _) => same,
+            (None, Some(other)) if !has_twin => other,
+            (None, _) => own(),
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Flocks in a given state.
+
+use super::flock::{Flock, LATEST};
+use crate::clock::{Ticks, seconds, ticks};
+use crate::contact::Partner;
+use crate::error::{FlockError, Result};
+use crate::geometry::{Pose, Velocity};
+use crate::integrator::Integrator;
+use crate::parameters::FlockParameters;
+
+/// Where the boats of a flock are, and when.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// Poses of all boats.
+    pub poses: Vec<Pose>,
+    /// Velocities of all boats.
+    pub velocities: Vec<Velocity>,
+    /// The flock's time in s.
+    pub time_s: f64,
+    /// Whether hulls may overlap.
+    pub allow_overlap: bool,
+}
+
+impl Flock {
+    /// A flock with given poses of its boats.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for parameters out of range, otherwise as for [`Self::set_state`].
+    pub fn from_state(parameters: FlockParameters, seed: u64, state: &State) -> Result<Self> {
+        parameters.check()?;
+        let mut flock = Self::unplaced(parameters, seed);
+        flock.set_state(
+            &state.poses,
+            &state.velocities,
+            state.time_s,
+            state.allow_overlap,
+        )?;
+        Ok(flock)
+    }
+
+    /// Puts the boats somewhere else.
+    ///
+    /// # Errors
+    /// [`FlockError::Shape`] for wrong lengths, [`FlockError::Parameter`] for numbers that are not
+    /// finite or out of range, [`FlockError::Overlap`] for overlapping hulls unless allowed. The
+    /// flock is unchanged then.
+    pub fn set_state(
+        &mut self,
+        poses: &[Pose],
+        velocities: &[Velocity],
+        time_s: f64,
+        allow_overlap: bool,
+    ) -> Result<()> {
+        let n = self.parameters.n_boats;
+        for (field, length) in [("pose", poses.len()), ("velocity", velocities.len())] {
+            if length != n {
+                return Err(FlockError::Shape {
+                    field,
+                    found: format!("({length}, 3)"),
+                    expected: format!("({n}, 3)"),
+                });
+            }
+        }
+        let accepted = "finite numbers within -1e9 to 1e9";
+        if let Some(boat) = poses.iter().position(|pose| !pose.is_in_range()) {
+            let Pose { position, heading } = poses[boat];
+            let value = format!("[{}, {}, {heading}] of boat {boat}", position.x, position.y);
+            return Err(FlockError::parameter("pose", value, accepted));
+        }
+        if let Some(boat) = velocities.iter().position(|v| !v.is_in_range()) {
+            let Velocity { linear, angular } = velocities[boat];
+            let value = format!("[{}, {}, {angular}] of boat {boat}", linear.x, linear.y);
+            return Err(FlockError::parameter("velocity", value, accepted));
+        }
+        let time = time_from(time_s)?;
+        let mut integrator = self.integrator.clone();
+        integrator.place(poses, velocities);
+        if !allow_overlap {
+            refuse_overlap(&mut integrator)?;
+        }
+        (self.integrator, self.time) = (integrator, time);
+        Ok(())
+    }
+}
+
+fn time_from(time_s: f64) -> Result<Ticks> {
+    if time_s >= 0.0 && time_s <= seconds(LATEST) {
+        return Ok(ticks(time_s));
+    }
+    Err(FlockError::parameter(
+        "time_s",
+        time_s,
+        "a finite time of at least 0 s, at most 1e9 s",
+    ))
+}
+
+/// Overlap in cm that a given state may have: rounding of poses that are meant to touch.
+const ROUNDING: f64 = 1e-9;
+
+fn refuse_overlap(integrator: &mut Integrator) -> Result<()> {
+    let mut contacts = Vec::new();
+    integrator
+        .contacts
+        .detector_mut()
+        .detect(&integrator.boats, 0.0, &mut contacts);
+    integrator.contacts.forget();
+    let deepest = contacts
+        .iter()
+        .min_by(|a, b| a.gap.gap.total_cmp(&b.gap.gap));
+    match deepest {
+        Some(contact) if contact.gap.gap < -ROUNDING => Err(FlockError::Overlap {
+            what: match contact.partner {
+                Partner::Boat(second) => format!("boats {} and {second}", contact.boat),
+                Partner::OuterWall => format!("boat {} and the outer wall", contact.boat),
+                Partner::InnerWall => format!("boat {} and the inner wall", contact.boat),
+            },
+            overlap_cm: -contact.gap.gap,
+        }),
+        _ => Ok(()),
+    }
+}

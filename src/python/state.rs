@@ -1,0 +1,61 @@
+//! States of flocks as dictionaries and arrays.
+
+use super::arguments::{floats, real, text, truth, wrong_type};
+use crate::error::FlockError;
+use crate::flock::State;
+use crate::geometry::{Pose, Velocity};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// {"pose": (n, 3), "velocity": (n, 3), "time_s": float, "allow_overlap": bool}; the pose alone will do.
+pub fn state_from(value: &Bound<'_, PyAny>, boats: usize) -> PyResult<State> {
+    let accepted = "a dictionary with pose and, if need be, velocity, time_s and allow_overlap";
+    let state = value.cast::<PyDict>();
+    let state = state.map_err(|_| wrong_type(value, "state", accepted))?;
+    let mut pose = None;
+    let mut velocity = vec![0.0; 3 * boats];
+    let (mut time_s, mut allow_overlap) = (0.0, false);
+    for (name, value) in state {
+        match text(&name, "state")?.as_str() {
+            "pose" => pose = Some(floats(&value, "pose", &[boats, 3])?),
+            "velocity" => velocity = floats(&value, "velocity", &[boats, 3])?,
+            "time_s" => time_s = real(&value, "time_s")?,
+            "allow_overlap" => allow_overlap = truth(&value, "allow_overlap")?,
+            other => {
+                return Err(FlockError::parameter("state", format!("{other:?}"), accepted).into());
+            }
+        }
+    }
+    let Some(pose) = pose else {
+        return Err(FlockError::parameter("state", "without pose", accepted).into());
+    };
+    Ok(State {
+        poses: poses_of(&pose),
+        velocities: velocities_of(&velocity),
+        time_s,
+        allow_overlap,
+    })
+}
+
+/// Poses of the numbers in an array (n, 3).
+pub fn poses_of(numbers: &[f64]) -> Vec<Pose> {
+    let rows = numbers.as_chunks::<3>().0.iter();
+    rows.map(|&[x, y, a]| Pose::new(x, y, a)).collect()
+}
+
+/// Velocities of the numbers in an array (n, 3).
+pub fn velocities_of(numbers: &[f64]) -> Vec<Velocity> {
+    let rows = numbers.as_chunks::<3>().0.iter();
+    rows.map(|&[x, y, w]| Velocity::new(x, y, w)).collect()
+}
+
+/// Rows of three numbers as an array (n, 3).
+pub fn rows_of_three(
+    py: Python<'_>,
+    rows: impl Iterator<Item = [f64; 3]>,
+) -> PyResult<Bound<'_, PyArray2<f64>>> {
+    let numbers: Vec<f64> = rows.flatten().collect();
+    let count = numbers.len() / 3;
+    PyArray1::from_vec(py, numbers).reshape([count, 3])
+}
