@@ -28,6 +28,7 @@ __all__ = [
     "__version__",
     "checked_fields",
     "collective_state_names",
+    "contact_along_cm",
     "critical_bw_s",
     "env_defaults",
     "env_meanings",
@@ -83,6 +84,12 @@ def largest_cluster(
 ) -> NDArray[np.float64]: ...
 def on_outer_wall(
     parameters: FlockParameters, pose: NDArray[np.float64]
+) -> NDArray[np.float64]: ...
+def contact_along_cm(
+    pose: NDArray[np.float64],
+    normal: NDArray[np.float32],
+    point_cm: NDArray[np.float32],
+    radius_cm: float,
 ) -> NDArray[np.float64]: ...
 def lap_orientation(pose: NDArray[np.float64]) -> NDArray[np.float64]: ...
 def pair_counts(

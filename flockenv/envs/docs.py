@@ -3,6 +3,7 @@
 import inspect
 from typing import TypeVar
 
+from flockenv import _core
 from flockenv.envs.observation import (
     OBSERVATION_VERSION,
     observation_entries,
@@ -44,13 +45,18 @@ set for one episode: `target`, `bw_s`, `state` (a dictionary with pose (n, 3) an
 velocity (n, 3), time_s and allow_overlap as in `Flock.set_state`) or `snapshot` (bytes of
 `Flock.snapshot`)."""
 
-_END = """After `episode_s` the episode is truncated; it never terminates. The `"episode_summary"`
+_MEANS = ", ".join(
+    f"`{each.name}`" for each in _core.quantities() if each.is_averaged and each.kind != "structure"
+)
+
+_END = f"""After `episode_s` the episode is truncated; it never terminates. The `"episode_summary"`
 has the episode's `flock_seed`, `bw_s`, `steps` (control steps), `total_reward` and means of the
-`reward_terms` over steps and leaders; means of `signed_order`, `psi_o` and `share_towards_target`
-(part of the time with a signed order above 0.5) over the analysis window after the first tenth of
-the episode; `ordering_time_s` and `ordering_time_wide_s` (eq. 7, with the angle π/20 as printed and
-with π/4); and `clip_rate`. An ordering time that never came is infinite. An episode that ends
-before its first analysis window has no means over it: those three entries are left out."""
+`reward_terms` over steps and leaders; means of quantities of the normal boats over the analysis
+window after the first tenth of the episode ({_MEANS}) and `share_towards_target`
+(part of that time with a signed order above 0.5); `ordering_time_s` and `ordering_time_wide_s`
+(eq. 7, with the angle π/20 as printed and with π/4); and `clip_rate`. An ordering time that never
+came is infinite. An episode that ends before its first analysis window has no means over it: those
+entries are left out."""
 
 _HISTORY = f"- v0, observation version {OBSERVATION_VERSION}: initial version."
 

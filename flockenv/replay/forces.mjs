@@ -39,13 +39,17 @@ export function barOf(force, scale) {
  */
 export function drawForces(scene, sample, scale) {
   const { run } = scene;
-  for (const { i, j, dx, dy, angle, force } of run.contacts(sample)) {
+  const { hull_radius_cm: radius } = run.lengths;
+  for (const { i, j, along, angle, force } of run.contacts(sample)) {
     const bar = barOf(force, scale);
     if (bar.widths === 0) {
       continue;
     }
-    const [x, y] = scene.poses[i];
-    const point = [x + dx, y + dy];
+    const [x, y, heading] = scene.poses[i];
+    const point = [
+      x + along * Math.cos(heading) - radius * Math.cos(angle),
+      y + along * Math.sin(heading) - radius * Math.sin(angle),
+    ];
     drawBar(scene, point, angle, bar);
     if (j >= 0) {
       drawBar(scene, point, angle + Math.PI, bar);

@@ -282,11 +282,13 @@ def _add_contacts(
     sample = np.repeat(np.arange(len(recording)), contacts.count)
     kept = sample % every == 0
     sample, i, normal = sample[kept], contacts.i[kept], contacts.normal[kept]
-    # Points move with their boats while the page plays from one sample to the next.
-    offset = contacts.point_cm[kept] - recording.pose[sample, i, :2]
+    # A hull's surface point is its place along the core and the normal: one number remains.
+    pose = recording.pose[sample, i].astype(np.float64)
+    radius_cm = recording.parameters.boat_radius_cm
+    along_cm = _core.contact_along_cm(pose, normal, contacts.point_cm[kept], radius_cm)
     packer.add_plain("contact_count", contacts.count[::every])
     packer.add_plain("contact_i", i)
     packer.add_plain("contact_j", contacts.j[kept])
-    packer.add_plain("contact_offset_cm", offset, 0.1)
+    packer.add_plain("contact_along_cm", along_cm, 0.1)
     packer.add_plain("contact_angle", np.arctan2(normal[:, 1], normal[:, 0]), 0.02)
     packer.add_plain("contact_force", np.minimum(contacts.force[kept], 1e6), _FORCE)

@@ -82,7 +82,7 @@ export class Run {
     return boat < this.leaders ? this.columns.get("leader_phi")?.at(sample, boat) : undefined;
   }
 
-  /** Contacts that carried a force at a sample: boats, point from the center of the first, direction, force. */
+  /** Contacts that carried a force at a sample: boats, foot along the core, direction, force. */
   contacts(sample) {
     const found = [];
     const column = (name) => this.columns.get(`contact_${name}`);
@@ -90,8 +90,7 @@ export class Run {
       found.push({
         i: column("i").at(k),
         j: column("j").at(k),
-        dx: column("offset_cm").at(k, 0),
-        dy: column("offset_cm").at(k, 1),
+        along: column("along_cm").at(k),
         angle: column("angle").at(k),
         force: column("force").at(k),
       });

@@ -160,6 +160,41 @@ pub const QUANTITIES: &[Quantity] = &[
     },
 ];
 
+impl Quantity {
+    /// Whether summaries of episodes hold its mean.
+    const fn is_summarized(&self) -> bool {
+        self.is_averaged && !matches!(self.formula, Formula::Structure(_))
+    }
+}
+
+/// How many quantities summaries of episodes hold means of.
+pub(crate) const SUMMARIZED: usize = {
+    let (mut count, mut place) = (0, 0);
+    while place < QUANTITIES.len() {
+        count += QUANTITIES[place].is_summarized() as usize;
+        place += 1;
+    }
+    count
+};
+
+/// The quantities that summaries of episodes hold means of, in the order of the table.
+pub fn summarized() -> impl Iterator<Item = &'static Quantity> {
+    QUANTITIES.iter().filter(|each| each.is_summarized())
+}
+
+/// What the summarized quantities of boats are now.
+pub(crate) fn summarized_values(boats: &Boats, target: Target) -> [f64; SUMMARIZED] {
+    let mut values = [f64::NAN; SUMMARIZED];
+    for (value, quantity) in values.iter_mut().zip(summarized()) {
+        match quantity.formula {
+            Formula::Recorded(formula) => *value = formula(boats),
+            Formula::Derived(formula) => *value = formula(&boats.order, target),
+            Formula::Structure(_) => {}
+        }
+    }
+    values
+}
+
 /// How many quantities are recorded.
 pub const RECORDED: usize = {
     let (mut count, mut place) = (0, 0);

@@ -1,13 +1,15 @@
 //! Many environments stepped in parallel. Each one's bits are its own: they depend neither on the batch
 //! it is in nor on the number of threads.
 
+use super::averages::FirstAverages;
 use super::flock_env::StoredEnv;
-use super::{EnvSettings, FlockEnv, ResetRequest};
+use super::{Averages, EnvSettings, FlockEnv, ResetRequest};
 use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
 use crate::parallel;
 use crate::parameters::FlockParameters;
 use crate::sealed_bytes::{Magic, seal, unseal};
+use serde::de::DeserializeOwned;
 
 const MAGIC: Magic = Magic {
     now: *b"flocken2",
@@ -199,8 +201,19 @@ impl EnvBatch {
     /// # Errors
     /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed batch.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        type Stored = (EnvSettings, Vec<FlockParameters>, Vec<StoredEnv>);
-        let (settings, members, states) = unseal::<Stored>(&MAGIC, bytes)?;
+        if bytes.starts_with(&MAGIC.now) {
+            Self::read::<Averages>(bytes)
+        } else {
+            Self::read::<FirstAverages>(bytes)
+        }
+    }
+
+    fn read<A: DeserializeOwned>(bytes: &[u8]) -> Result<Self>
+    where
+        Averages: From<A>,
+    {
+        type Stored<A> = (EnvSettings, Vec<FlockParameters>, Vec<StoredEnv<A>>);
+        let (settings, members, states) = unseal::<Stored<A>>(&MAGIC, bytes)?;
         let mut batch = Self::new(settings, members)?;
         if states.len() != batch.envs.len() {
             return Err(FlockError::Snapshot("the batch is not whole".to_owned()));

@@ -3,8 +3,11 @@
 use super::observation::{Camera, CameraState, FlockView, Observer, StateObserver};
 use super::reset::flock_from;
 use super::statistics::EpisodeStatistics;
-use super::{EnvSettings, EpisodeSchedule, EpisodeSummary, Reward, RewardTerms, Servo, TERMS};
+use super::{
+    Averages, EnvSettings, EpisodeSchedule, EpisodeSummary, Reward, RewardTerms, Servo, TERMS,
+};
 use crate::analysis::OrderParameters;
+use crate::analysis::quantities::Boats;
 use crate::clock::seconds;
 use crate::error::{FlockError, Result};
 use crate::flock::Flock;
@@ -40,13 +43,13 @@ impl EpisodeState {
 
 /// What is stored of an episode.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-pub struct StoredEpisode {
+pub struct StoredEpisode<A = Averages> {
     flock: Vec<u8>,
     schedule: EpisodeSchedule,
     rudders: Vec<f64>,
     camera: Option<CameraState>,
     terms: Vec<RewardTerms>,
-    statistics: EpisodeStatistics,
+    statistics: EpisodeStatistics<A>,
     ended: bool,
 }
 
@@ -195,7 +198,13 @@ impl Episode {
             let is_late = 2 * (u64::from(schedule.step) + 1) >= u64::from(schedule.steps);
             self.statistics.watch_order(order, time_s, is_late);
             if counted && flock.schedule().in_analysis_window(flock.time()) {
-                self.statistics.add_window(order, view.target);
+                let leaders = flock.parameters().n_leaders;
+                let boats = Boats {
+                    hulls: &view.hulls[leaders..],
+                    velocities: &view.velocities[leaders..],
+                    order: *order,
+                };
+                self.statistics.add_window(&boats, view.target);
             }
         }
     }
@@ -229,11 +238,14 @@ impl Episode {
     ///
     /// # Errors
     /// [`FlockError::Snapshot`] if it does not belong there.
-    pub fn restored(
+    pub(crate) fn restored<A>(
         settings: &EnvSettings,
         parameters: &FlockParameters,
-        stored: StoredEpisode,
-    ) -> Result<Self> {
+        stored: StoredEpisode<A>,
+    ) -> Result<Self>
+    where
+        Averages: From<A>,
+    {
         let (leaders, boats) = (parameters.n_leaders, parameters.n_boats);
         let flock = flock_from(&stored.flock, parameters)?;
         let fits = stored.rudders.len() == leaders
@@ -260,7 +272,7 @@ impl Episode {
             camera
         });
         episode.terms = stored.terms;
-        episode.statistics = stored.statistics;
+        episode.statistics = stored.statistics.restored();
         episode.ended = stored.ended;
         Ok(episode)
     }

@@ -2,17 +2,19 @@
 
 use super::episode::StoredEpisode;
 use super::observation::StateObserver;
-use super::{Autoreset, EnvSettings, Episode, EpisodeSeeds, EpisodeSummary, ResetRequest, Servo};
+use super::{
+    Autoreset, Averages, EnvSettings, Episode, EpisodeSeeds, EpisodeSummary, ResetRequest, Servo,
+};
 use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
 use crate::parameters::FlockParameters;
 
 /// What is stored of an environment.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-pub struct StoredEnv {
+pub struct StoredEnv<A = Averages> {
     seeds: Option<EpisodeSeeds>,
-    episode: Option<StoredEpisode>,
-    finished: Option<EpisodeSummary>,
+    episode: Option<StoredEpisode<A>>,
+    finished: Option<EpisodeSummary<A>>,
     final_observation: Vec<f32>,
     final_state: Vec<f32>,
 }
@@ -209,7 +211,10 @@ impl FlockEnv {
     ///
     /// # Errors
     /// [`FlockError::Snapshot`] if the state does not belong to such an environment.
-    pub(crate) fn restored(&self, settings: &EnvSettings, stored: StoredEnv) -> Result<Self> {
+    pub(crate) fn restored<A>(&self, settings: &EnvSettings, stored: StoredEnv<A>) -> Result<Self>
+    where
+        Averages: From<A>,
+    {
         let whole = self.parameters.n_leaders * settings.observation.size();
         let episode = stored
             .episode
@@ -227,7 +232,7 @@ impl FlockEnv {
         let mut restored = Self::new(settings, self.parameters.clone());
         restored.seeds = stored.seeds;
         restored.episode = episode;
-        restored.finished = stored.finished.map(EpisodeSummary::repaired);
+        restored.finished = stored.finished.map(EpisodeSummary::restored);
         restored.final_observation = stored.final_observation;
         restored.final_state = stored.final_state;
         Ok(restored)

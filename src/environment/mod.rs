@@ -1,5 +1,6 @@
 //! The task that leaders are trained on: episodes, observations, rewards, many flocks at once.
 
+mod averages;
 mod batch;
 mod episode;
 mod flock_env;
@@ -12,6 +13,7 @@ mod schedule;
 mod settings;
 mod statistics;
 
+pub use averages::Averages;
 pub use batch::{BatchRows, EnvBatch};
 pub use episode::Episode;
 pub use flock_env::FlockEnv;

@@ -1,8 +1,10 @@
 //! Sums over an episode, and the summary given at its end.
 
+use super::Averages;
 use super::{EpisodeSchedule, RewardTerms, TERMS};
 use crate::analysis::OrderParameters;
 use crate::analysis::collective_state::OrderingWatch;
+use crate::analysis::quantities::Boats;
 use crate::parameters::Target;
 use std::f64::consts::PI;
 
@@ -14,16 +16,31 @@ pub const ORDERED_WITHIN: [f64; 2] = [PI / 20.0, PI / 4.0];
 
 /// Sums over the control steps of an episode.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
-pub struct EpisodeStatistics {
+pub struct EpisodeStatistics<A = Averages> {
     terms: RewardTerms,
     reward: f64,
     window_steps: u32,
-    signed_order: f64,
-    psi_o: f64,
+    averages: A,
     steps_towards_target: u32,
     ordering: [OrderingWatch; 2],
     clipped: u64,
     observed: u64,
+}
+
+impl<A> EpisodeStatistics<A> {
+    /// The statistics as a state of any format has them.
+    pub fn restored<B: From<A>>(self) -> EpisodeStatistics<B> {
+        EpisodeStatistics {
+            terms: self.terms,
+            reward: self.reward,
+            window_steps: self.window_steps,
+            averages: self.averages.into(),
+            steps_towards_target: self.steps_towards_target,
+            ordering: self.ordering,
+            clipped: self.clipped,
+            observed: self.observed,
+        }
+    }
 }
 
 impl EpisodeStatistics {
@@ -36,11 +53,10 @@ impl EpisodeStatistics {
     }
 
     /// Adds a step inside the analysis window.
-    pub fn add_window(&mut self, order: &OrderParameters, target: Target) {
+    pub fn add_window(&mut self, boats: &Boats, target: Target) {
         self.window_steps += 1;
-        self.signed_order += order.signed_order(target);
-        self.psi_o += order.psi_o;
-        self.steps_towards_target += u32::from(order.signed_order(target) > TOWARDS_TARGET);
+        self.averages.add(boats, target);
+        self.steps_towards_target += u32::from(boats.order.signed_order(target) > TOWARDS_TARGET);
     }
 
     /// Takes note of the order at a time since the episode began; `is_late` in its second half.
@@ -70,8 +86,7 @@ impl EpisodeStatistics {
             steps: schedule.step,
             total_reward: self.reward,
             terms,
-            signed_order: self.signed_order / window,
-            psi_o: self.psi_o / window,
+            averages: self.averages.over(window),
             share_towards_target: f64::from(self.steps_towards_target) / window,
             ordering_times_s: self.ordering.map(|watch| watch.ordering_time_s()),
             clip_rate: self.clipped as f64 / self.observed as f64,
@@ -81,7 +96,7 @@ impl EpisodeStatistics {
 
 /// The summary of an episode.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct EpisodeSummary {
+pub struct EpisodeSummary<A = Averages> {
     /// Seed of its flock.
     pub flock_seed: u64,
     /// Its backward duration: length of the backward phase in s.
@@ -92,11 +107,9 @@ pub struct EpisodeSummary {
     pub total_reward: f64,
     /// Each reward term, mean over steps and leaders; NaN before the first step.
     pub terms: RewardTerms,
-    /// Signed order, mean over the control steps in the analysis window after the first tenth of the
-    /// episode; NaN where there is none.
-    pub signed_order: f64,
-    /// Ψ_o, mean over the same steps.
-    pub psi_o: f64,
+    /// Means over the control steps in the analysis window after the first tenth of the episode; NaN
+    /// where there is none.
+    pub averages: A,
     /// Part of the same steps in which the signed order exceeds [`TOWARDS_TARGET`].
     pub share_towards_target: f64,
     /// Ordering time (eq. 7) in s since the episode began, with the angle as printed, π/20, and with
@@ -106,16 +119,21 @@ pub struct EpisodeSummary {
     pub clip_rate: f64,
 }
 
-impl EpisodeSummary {
+impl<A> EpisodeSummary<A> {
     /// The summary as a stored state of any version has it: version 0.1.0 wrote NaN for ordering times
     /// that never came.
-    #[must_use]
-    pub(crate) fn repaired(mut self) -> Self {
-        for time in &mut self.ordering_times_s {
-            if time.is_nan() {
-                *time = f64::INFINITY;
-            }
+    pub(crate) fn restored<B: From<A>>(self) -> EpisodeSummary<B> {
+        let or_never = |time: f64| if time.is_nan() { f64::INFINITY } else { time };
+        EpisodeSummary {
+            flock_seed: self.flock_seed,
+            bw_s: self.bw_s,
+            steps: self.steps,
+            total_reward: self.total_reward,
+            terms: self.terms,
+            averages: self.averages.into(),
+            share_towards_target: self.share_towards_target,
+            ordering_times_s: self.ordering_times_s.map(or_never),
+            clip_rate: self.clip_rate,
         }
-        self
     }
 }

@@ -327,11 +327,8 @@ fn summary_dict<'py>(py: Python<'py>, summary: &EpisodeSummary) -> PyResult<Boun
     dict.set_item("steps", summary.steps)?;
     dict.set_item("total_reward", summary.total_reward)?;
     dict.set_item("reward_terms", terms)?;
-    for (name, mean) in [
-        ("signed_order", summary.signed_order),
-        ("psi_o", summary.psi_o),
-        ("share_towards_target", summary.share_towards_target),
-    ] {
+    let share = ("share_towards_target", summary.share_towards_target);
+    for (name, mean) in summary.averages.named().chain([share]) {
         // A mean over an analysis window that the episode did not reach: infos hold no NaN.
         if !mean.is_nan() {
             dict.set_item(name, mean)?;

@@ -1,10 +1,12 @@
 //! `flockenv.Contacts` and `flockenv.ContactSeries`: columns of one value or vector per contact.
 
+use super::arguments::same_length;
 use super::result::{arrays_equal, repr_of};
-use crate::contact::Partner;
+use super::state::poses_of;
+use crate::contact::{Partner, along_core};
 use crate::flock::{ContactForce, ContactSamples};
-use crate::geometry::Vec2;
-use numpy::{Element, PyArray1, PyArray2, PyArrayMethods};
+use crate::geometry::{HullPose, Vec2};
+use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyTuple, PyType};
 
@@ -175,6 +177,34 @@ impl PyContactSeries {
             point_cm: pairs(py, contacts, |c| c.point, |x| x as f32)?,
         })
     }
+}
+
+/// Where along the cores of hulls recorded contacts push, from their centers to the bows, in cm: of the pushed
+/// boats' poses (c, 3), the normals and points (c, 2) of a `ContactSeries`, and the hulls' radius.
+#[pyfunction]
+pub fn contact_along_cm<'py>(
+    py: Python<'py>,
+    pose: PyReadonlyArray2<'py, f64>,
+    normal: PyReadonlyArray2<'py, f32>,
+    point_cm: PyReadonlyArray2<'py, f32>,
+    radius_cm: f64,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let poses = poses_of(&pose.to_vec()?);
+    let (normals, points) = (vectors_of(&normal)?, vectors_of(&point_cm)?);
+    same_length("normal", normals.len(), poses.len())?;
+    same_length("point_cm", points.len(), poses.len())?;
+    let each = poses.iter().zip(normals).zip(points);
+    let along = each
+        .map(|((pose, normal), point)| along_core(&HullPose::new(pose), normal, point, radius_cm));
+    Ok(PyArray1::from_iter(py, along))
+}
+
+fn vectors_of(array: &PyReadonlyArray2<'_, f32>) -> PyResult<Vec<Vec2>> {
+    let numbers = array.to_vec()?;
+    let vectors = numbers.as_chunks::<2>().0.iter();
+    Ok(vectors
+        .map(|&[x, y]| Vec2::new(x.into(), y.into()))
+        .collect())
 }
 
 /// Walls are numbered −1 (outer) and −2 (inner).

@@ -29,7 +29,7 @@ mod _core {
     #[pymodule_export]
     use super::batch::PyEnvBatch;
     #[pymodule_export]
-    use super::contacts::{PyContactSeries, PyContacts};
+    use super::contacts::{PyContactSeries, PyContacts, contact_along_cm};
     #[pymodule_export]
     use super::draw::PyFrameRenderer;
     #[pymodule_export]

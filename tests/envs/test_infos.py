@@ -6,9 +6,16 @@ import numpy as np
 import pytest
 
 import flockenv
+from flockenv import _core
 
 SMALL = {"n_boats": 6, "n_leaders": 2}
-WINDOW_MEANS = {"signed_order", "psi_o", "share_towards_target"}
+QUANTITIES = [
+    each.name
+    for each in _core.quantities()
+    if each.is_averaged and each.kind in ("recorded", "derived")
+]
+RECORDED = [each.name for each in _core.quantities() if each.kind == "recorded"]
+WINDOW_MEANS = {*QUANTITIES, "share_towards_target"}
 
 
 def numbers(value):
@@ -36,6 +43,23 @@ def test_a_time_that_never_came_is_infinite():
     summary = last_info(episode_s=8.0)["episode_summary"]
     assert summary["ordering_time_s"] == summary["ordering_time_wide_s"] == math.inf
     assert summary.keys() >= WINDOW_MEANS
+
+
+def test_means_are_those_of_the_normal_boats_in_the_window():
+    env = flockenv.LeadersEnv(episode_s=8.0, target="cw", **SMALL)
+    env.reset(seed=3)
+    seen, over = [], False
+    while not over:
+        _, _, _, over, info = env.step(np.array([0.4, -0.1]))
+        if env.flock.in_analysis_window and env.flock.time_s > 0.8:
+            seen.append(env.flock.order_parameters())
+    series = flockenv.OrderSeries(
+        **{name: np.array([getattr(each, name) for each in seen]) for name in RECORDED}
+    )
+    assert len(seen) > 10
+    for name in QUANTITIES:
+        mean = info["episode_summary"][name]
+        assert mean == pytest.approx(series.series(name, "cw").mean(), rel=1e-12), name
 
 
 def test_means_over_a_window_that_was_not_reached_are_left_out():

@@ -24,7 +24,7 @@ export function runOf(forces = [5, 20, 40]) {
     contact_count: column([0, forces.length - 1, 1]),
     contact_i: column(forces.map((_, k) => Math.min(k, 1))),
     contact_j: column(forces.map((_, k) => (k === 0 ? 1 : -1))),
-    contact_offset_cm: column([...forces.map(() => 3), ...forces.map(() => -4)], 1, 2),
+    contact_along_cm: column(forces.map(() => 0)),
     contact_angle: column(forces.map(() => 0)),
     contact_force: column(forces),
   }));
