@@ -19,7 +19,9 @@ pub fn seal<T: Serialize>(magic: &Magic, state: &T) -> Vec<u8> {
     let mut bytes = magic.now.to_vec();
     bytes.extend_from_slice(&[0; 8]);
     // Writing to a Vec fails only out of memory, where the allocator ends the process first.
-    let mut bytes = postcard::to_extend(state, bytes).unwrap_or_default();
+    let bytes = postcard::to_extend(state, bytes);
+    debug_assert!(bytes.is_ok(), "{:?}", bytes.err());
+    let mut bytes = bytes.unwrap_or_default();
     let sum = crc_32(bytes.get(16..).unwrap_or_default());
     if let Some(place) = bytes.get_mut(8..16) {
         place.copy_from_slice(&sum.to_le_bytes());

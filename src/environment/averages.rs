@@ -46,7 +46,8 @@ impl Averages {
 
 impl Serialize for Averages {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(self.named())
+        let named: Vec<_> = self.named().collect();
+        named.serialize(serializer)
     }
 }
 
