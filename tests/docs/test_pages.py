@@ -1,9 +1,7 @@
 """Law: what the pages show runs as it stands, in their order; what they name is there."""
 
-import os
 import re
-import subprocess
-import sys
+import shlex
 from pathlib import Path
 
 import pytest
@@ -20,6 +18,7 @@ EXECUTED = {
     "docs/start.md": ["python", "sh"],
     "docs/api/flock.md": ["python"],
     "docs/extend/policy.md": ["python"],
+    "docs/train_with_sb3.md": ["python", "sh"],
 }
 PAGES = sorted(
     str(path.relative_to(REPOSITORY))
@@ -35,23 +34,25 @@ NO_FILES_YET = {
 }
 
 
-def run_shell(example: Example) -> None:
-    """Run a block as a user's shell does in an environment that has flockenv."""
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    done = subprocess.run(
-        ["bash", "-euo", "pipefail", "-c", str(example.parsed)],
-        # No browser is opened.
-        env={**os.environ, "PATH": path, "DISPLAY": "", "WAYLAND_DISPLAY": "", "BROWSER": ""},
-        capture_output=True,
-        text=True,
-        timeout=240,
-        check=False,
-    )
-    assert done.returncode == 0, f"{example.path}, line {example.line}: {done.stderr}"
+@pytest.fixture
+def run_shell(cli):
+    """Run a block of commands as a user does, in this process, which has imported their libraries.
+
+    No browser is opened.
+    """
+
+    def run(example: Example) -> None:
+        for line in example.parsed.replace("\\\n", " ").splitlines():
+            program, *words = shlex.split(line, comments=True)
+            assert program == "flockenv", f"{example.path}, line {example.line}: skip this block"
+            done = cli(*words, DISPLAY="", WAYLAND_DISPLAY="", BROWSER="")
+            assert done.returncode == 0, f"{example.path}, line {example.line}: {done.stderr}"
+
+    return run
 
 
 @pytest.mark.parametrize("page", EXECUTED)
-def test_blocks_run(page, tmp_path, monkeypatch):
+def test_blocks_run(page, tmp_path, monkeypatch, run_shell):
     monkeypatch.chdir(tmp_path)
     parsers = {"python": PythonCodeBlockParser(), "sh": CodeBlockParser("sh", run_shell)}
     chosen = [parsers[language] for language in EXECUTED[page]]
