@@ -1,0 +1,102 @@
+"""Law: the names that a user's notebook relies on keep their import paths and their meaning."""
+
+import inspect
+from pathlib import Path
+
+import gymnasium
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv.cli import COMMANDS
+
+SCENE = flockenv.FlockParameters(n_boats=4, n_leaders=1, pool="table-1")
+#: Names by the object that has them.
+NAMES = {
+    "": "Flock FlockError FlockParameters LeadersEnv LeadersParallelEnv LeadersVectorEnv "
+    "ParameterError Recording SolverError parallel_env policies simulate",
+    "FlockParameters": "preset presets replace to_dict from_dict to_toml from_toml",
+    "Flock": "set_state pose velocity time_s phase advance order_parameters contacts statistics "
+    "snapshot restore",
+    "Recording": "time_s phase pose velocity order save load",
+    "OrderParameters": "psi_o phi_o c_o psi_v phi_v c_v",
+    "OrderSeries": "psi_o phi_o c_o psi_v phi_v c_v",
+    "Contacts": "gap_cm normal force",
+    "policies": "SteeringLaw load",
+}
+FIELDS = (
+    "n_boats n_leaders pool boat_radius_cm boat_shape gyration_radius_cm speed_cm_s "
+    "reverse_speed_cm_s c0 c1 c2 c3 c4 fw_s nop1_s bw_s nop2_s leaders_reverse target scheme noise "
+    "solver dt_s overlap_tolerance_cm relinearizations"
+)
+SIGNATURES = {
+    "Flock": ["parameters", "seed"],
+    "simulate": ["parameters", "seed", "duration_s", "sample_hz", "policy"],
+}
+
+
+@pytest.mark.parametrize("owner", NAMES)
+def test_names_are_where_they_were(owner):
+    flock = flockenv.Flock(SCENE, seed=1)
+    run = flockenv.simulate(SCENE, 1, 0.1)
+    made = {
+        "Flock": flock,
+        "Recording": run,
+        "OrderParameters": flock.order_parameters(),
+        "OrderSeries": run.order,
+        "Contacts": flock.contacts(),
+    }
+    thing = getattr(flockenv, owner) if owner else flockenv
+    if owner in made:
+        assert isinstance(made[owner], thing)
+        thing = made[owner]
+    assert [name for name in NAMES[owner].split() if not hasattr(thing, name)] == []
+
+
+def test_parameters_have_their_fields():
+    assert set(FIELDS.split()) <= {*SCENE.to_dict()}
+    assert flockenv.FlockParameters.preset("experiment").leaders_reverse is False
+    for name, bw_s in (("simulation", 0.3), ("paper", 0.6)):
+        preset = flockenv.FlockParameters.preset(name)
+        assert (preset.pool, preset.n_boats, preset.n_leaders) == ("500-boats", 20, 0)
+        assert (preset.bw_s, preset.leaders_reverse) == (bw_s, True)
+
+
+@pytest.mark.parametrize("name", SIGNATURES)
+def test_arguments_keep_their_names_and_order(name):
+    arguments = list(inspect.signature(getattr(flockenv, name)).parameters)
+    assert arguments[: len(SIGNATURES[name])] == SIGNATURES[name]
+
+
+def test_environments_are_made_as_they_were():
+    options = {"n_boats": 4, "n_leaders": 2, "target": "random", "episode_s": 1.0, "control_hz": 2}
+    agents = flockenv.parallel_env(**options)
+    agents.reset(seed=0)
+    assert agents.agents == ["leader_0", "leader_1"]
+    single = gymnasium.make("flockenv/Leaders-v0", **options)
+    assert single.action_space.shape == (2,)
+    several = gymnasium.make_vec("flockenv/Leaders-v0", num_envs=3, **options)
+    assert isinstance(several.unwrapped, flockenv.LeadersVectorEnv)
+    observations, _ = single.reset(seed=0)
+    assert np.isfinite(flockenv.policies.SteeringLaw().predict(observations)[0]).all()
+
+
+def test_leaders_are_slots_of_stable_baselines3():
+    pytest.importorskip("stable_baselines3")
+    assert flockenv.sb3.LeaderVecEnv(num_flocks=3, n_leaders=2).num_envs == 6
+
+
+def test_commands_keep_their_names():
+    names = {command.__name__ for command in COMMANDS}
+    wanted = "run compare reproduce sweep train evaluate replay presets demo fit play"
+    assert set(wanted.split()) <= names
+
+
+def test_errors_are_of_their_classes():
+    assert {flockenv.FlockError, ValueError} <= {*flockenv.ParameterError.__mro__}
+    assert {flockenv.FlockError, RuntimeError} <= {*flockenv.SolverError.__mro__}
+
+
+def test_at_most_eight_modules_lie_beside_the_packages():
+    modules = sorted(path.name for path in Path(flockenv.__file__).parent.glob("*.py"))
+    assert len(modules) <= 8, modules
