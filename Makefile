@@ -23,7 +23,7 @@ SPEED_ARGS ?=
 VENV := .venv
 BIN := $(VENV)/bin
 STAMPS := $(VENV)/.stamps
-# Compiled once here, where Python itself may be told not to: imports take half the time.
+# Compiled once here, where Python itself may not be allowed to: imports take half the time.
 UV := VIRTUAL_ENV="$(CURDIR)/$(VENV)" UV_COMPILE_BYTECODE=1 $(BIN)/uv
 # Directories are listed too: their times change when a file is removed.
 RUST_SOURCES := Cargo.toml Cargo.lock $(shell find src)

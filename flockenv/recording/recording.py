@@ -4,119 +4,35 @@ import html
 import importlib
 import math
 import os
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv import _core
 from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import ContactSeries, Flock, OrderSeries
 from flockenv.parameters import FlockParameters
+from flockenv.recording.checks import CONTACTS, PHASES, PRECISIONS, check_array, check_contacts
+from flockenv.recording.order import ORDER, RECORDED, RecordedOrder
+from flockenv.recording.stored import ARRAYS, TIMES, arrays_of, fields_from
 
 if TYPE_CHECKING:
     import pandas
     import xarray
-    from matplotlib.axes import Axes
 
-__all__ = ["DISCARDED_SHARE", "PHASES", "PRECISIONS", "RecordedOrder", "Recording"]
+__all__ = ["DISCARDED_SHARE", "Recording"]
 
 DISCARDED_SHARE = 0.1
 """The share of a run, at its start, that no figure uses."""
 
-_FORMAT = "flockenv recording 3"
-PHASES = np.array(_core.phase_names())
-# Format 1 held Section 3.2's six order parameters, and neither the policy nor the duration; later
-# files hold the quantities that were recorded at the time. Format 2 held no rudders.
-_FIRST_FORMAT = "flockenv recording 1"
-_SECOND_FORMAT = "flockenv recording 2"
-_FIRST_ORDER = ("psi_o", "phi_o", "c_o", "psi_v", "phi_v", "c_v")
-RECORDED = tuple(each for each in _core.quantities() if each.kind == "recorded")
-"""The quantities that are recorded with every sample, entries of the table."""
-_ORDER = tuple(each.name for each in RECORDED)
-_CONTACTS = ("count", "i", "j", "normal", "force", "point_cm")
-_TIMES = ("time_s", "phase", "in_analysis_window")
-_ARRAYS = (*_TIMES, "pose", "velocity")
 _COMPONENTS = {
     "pose": ("x_cm", "y_cm", "heading_rad"),
     "velocity": ("velocity_x_cm_s", "velocity_y_cm_s", "angular_velocity_rad_s"),
 }
-PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
-
-
-class RecordedOrder(OrderSeries):
-    """Order parameters of a recording: an `OrderSeries` that knows its times.
-
-    Attributes
-    ----------
-    time_s : float64 array, shape (t,)
-        Times in s.
-    """
-
-    time_s: NDArray[np.float64]
-
-    def __new__(cls, time_s: NDArray[np.float64], order: OrderSeries) -> Self:
-        """Take the columns of a series, and its times."""
-        series = super().__new__(cls, *(getattr(order, name) for name in _ORDER))
-        series.time_s = time_s
-        return series
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Return what it is made of, for pickle and copy."""
-        plain = OrderSeries(*(getattr(self, name) for name in _ORDER))
-        return type(self), (self.time_s, plain)
-
-    def plot(self, *names: str, target: str = "cw", ax: "Axes | None" = None) -> "Axes":
-        """Draw quantities against time (extra ``plot``).
-
-        Parameters
-        ----------
-        names
-            Recorded and derived quantities of the table, such as "psi_v" or "signed_order". None:
-            the recorded ones that have no unit and lie within known bounds.
-        target
-            Direction that signed quantities count towards, "cw" or "ccw".
-        ax
-            Axes of matplotlib to draw into. None: those of a new figure.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            With one labeled line per quantity; time in s.
-
-        Raises
-        ------
-        ParameterError
-            For an unknown name or target.
-        MissingExtraError
-            If matplotlib is not installed.
-        """
-        pyplot = require("matplotlib.pyplot", "plot")
-        known = {each.name: each for each in _core.quantities() if each.kind != "structure"}
-        bounded = (each.name for each in RECORDED if each.range is not None and not each.unit)
-        shown_names = names or tuple(bounded)
-        if unknown := [name for name in shown_names if name not in known]:
-            raise ParameterError(
-                f"quantity {shown(unknown[0])} is not accepted: {', '.join(known)}"
-            )
-        columns = {name: self.series(name, target) for name in shown_names}
-        axes: Axes = pyplot.subplots()[1] if ax is None else ax
-        for name, values in columns.items():
-            axes.plot(self.time_s, values, label=_title(known[name]), linewidth=1.0)
-        axes.set_xlabel("time [s]")
-        axes.legend()
-        return axes
-
-
-def _title(quantity: "_core.Quantity") -> str:
-    symbol = f" {quantity.symbol}" if quantity.symbol else ""
-    unit = f" [{quantity.unit}]" if quantity.unit else ""
-    return f"{quantity.label}{symbol}{unit}"
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -183,11 +99,11 @@ class Recording:
         times = np.shape(self.time_s)[:1]
         with_poses = np.shape(self.pose)[1:2] != (0,)
         state = (*times, self.parameters.n_boats if with_poses else 0, 3)
-        _check("time_s", self.time_s, times, PRECISIONS[:1])
-        _check("phase", self.phase, times, (PHASES.dtype,))
-        _check("in_analysis_window", self.in_analysis_window, times, (np.dtype(np.bool_),))
-        _check("pose", self.pose, state, PRECISIONS)
-        _check("velocity", self.velocity, state, (self.pose.dtype,))
+        check_array("time_s", self.time_s, times, PRECISIONS[:1])
+        check_array("phase", self.phase, times, (PHASES.dtype,))
+        check_array("in_analysis_window", self.in_analysis_window, times, (np.dtype(np.bool_),))
+        check_array("pose", self.pose, state, PRECISIONS)
+        check_array("velocity", self.velocity, state, (self.pose.dtype,))
         if not np.isin(self.phase, PHASES).all():
             raise ParameterError(f"phase holds other names than {', '.join(PHASES)}")
         if math.isnan(self.duration_s) and len(self.time_s) > 0:
@@ -203,17 +119,17 @@ class Recording:
         for each in RECORDED:
             values = getattr(self.order, each.name)
             undefined = normal_boats < each.least_boats
-            _check(f"order.{each.name}", values, times, PRECISIONS[:1], all_nan=undefined)
+            check_array(f"order.{each.name}", values, times, PRECISIONS[:1], all_nan=undefined)
         object.__setattr__(self, "order", RecordedOrder(self.time_s, self.order))
         seed: Any = self.seed
         if not isinstance(seed, int) or not 0 <= seed < 2**64:
             raise ParameterError(f"seed = {shown(seed)} is not accepted: an int from 0 to 2^64 - 1")
         if self.rudder is not None:
-            _check("rudder", self.rudder, (*times, self.parameters.n_leaders), PRECISIONS[:1])
+            check_array("rudder", self.rudder, (*times, self.parameters.n_leaders), PRECISIONS[:1])
             if (np.abs(self.rudder) > 1.0).any():
                 raise ParameterError("rudder must be within [-1, 1]")
         if self.contacts is not None:
-            _check_contacts(self.contacts, len(self), self.parameters.n_boats)
+            check_contacts(self.contacts, len(self), self.parameters.n_boats)
 
     def __len__(self) -> int:
         return len(self.time_s)
@@ -224,7 +140,7 @@ class Recording:
         plain = ("order", "parameters", "seed", "version", "contacts", "policy", "duration_s")
         return all(getattr(self, name) == getattr(other, name) for name in plain) and all(
             np.array_equal(getattr(self, name), getattr(other, name))
-            for name in (*_ARRAYS, "rudder")
+            for name in (*ARRAYS, "rudder")
         )
 
     def __repr__(self) -> str:
@@ -283,9 +199,9 @@ class Recording:
             If pandas is not installed.
         """
         dataframe: type[pandas.DataFrame] = require("pandas", "plot").DataFrame
-        columns: dict[str, NDArray[Any]] = {name: getattr(self, name) for name in _TIMES}
+        columns: dict[str, NDArray[Any]] = {name: getattr(self, name) for name in TIMES}
         if not boats:
-            return dataframe(columns | {name: getattr(self.order, name) for name in _ORDER})
+            return dataframe(columns | {name: getattr(self.order, name) for name in ORDER})
         count = self.pose.shape[1]
         columns = {name: np.repeat(values, count) for name, values in columns.items()}
         columns["boat"] = np.tile(np.arange(count), len(self))
@@ -311,8 +227,8 @@ class Recording:
         """
         dataset: type[xarray.Dataset] = require("xarray", "sweep").Dataset
         boats = np.arange(self.pose.shape[1])
-        by_time = {name: getattr(self, name) for name in _TIMES[1:]}
-        by_time |= {name: getattr(self.order, name) for name in _ORDER}
+        by_time = {name: getattr(self, name) for name in TIMES[1:]}
+        by_time |= {name: getattr(self.order, name) for name in ORDER}
         variables: dict[str, Any] = {name: ("time_s", each) for name, each in by_time.items()}
         variables |= {name: (("time_s", "boat"), each) for name, each in self._motion().items()}
         is_leader = ("boat", boats < self.parameters.n_leaders)
@@ -369,8 +285,8 @@ class Recording:
         return replace(self, pose=self.pose[:, :0], velocity=self.velocity[:, :0])
 
     def _at(self, samples: NDArray[np.bool_]) -> Self:
-        columns: dict[str, Any] = {name: getattr(self, name)[samples] for name in _ARRAYS}
-        held = OrderSeries(**{name: getattr(self.order, name)[samples] for name in _ORDER})
+        columns: dict[str, Any] = {name: getattr(self, name)[samples] for name in ARRAYS}
+        held = OrderSeries(**{name: getattr(self.order, name)[samples] for name in ORDER})
         order = RecordedOrder(columns["time_s"], held)
         contacts = None if self.contacts is None else _contacts_at(self.contacts, samples)
         rudder = None if self.rudder is None else self.rudder[samples]
@@ -396,22 +312,8 @@ class Recording:
                 f"path = {os.fspath(path)!r} is not accepted: a name that ends in .npz; "
                 "to_dataframe() has to_csv(), to_parquet() and others"
             )
-        arrays = {name: getattr(self, name) for name in _ARRAYS}
-        arrays |= {f"order_{name}": getattr(self.order, name) for name in _ORDER}
-        if self.rudder is not None:
-            arrays["rudder"] = self.rudder
-        if self.contacts is not None:
-            arrays |= {f"contacts_{name}": getattr(self.contacts, name) for name in _CONTACTS}
-        texts = {
-            "format": _FORMAT,
-            "version": self.version,
-            "parameters": self.parameters.to_toml(),
-            "policy": self.policy or "",
-        }
-        arrays |= {name: np.array(text) for name, text in texts.items()}
-        arrays["seed"] = np.array(self.seed, np.uint64)
-        arrays["duration_s"] = np.array(self.duration_s, np.float64)
-        write_arrays(path, arrays, compressed=compressed)
+        own = {each.name: getattr(self, each.name) for each in fields(self)}
+        write_arrays(path, arrays_of(own), compressed=compressed)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
@@ -426,115 +328,13 @@ class Recording:
         """
         arrays = read_arrays(path)
         try:
-            return cls._from_arrays(arrays)
+            return cls(**fields_from(arrays))
         except (ParameterError, TypeError) as error:
             raise ParameterError(f"{path} is no recording of flockenv: {error}") from error
-
-    @classmethod
-    def _from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> Self:
-        if str(arrays.get("format")) == _FIRST_FORMAT:
-            last = arrays.get("time_s", np.zeros(1))[-1:].astype(np.float64).sum()
-            added = {"policy": np.array(""), "duration_s": np.array(last)}
-            arrays = {**added, **arrays, "format": np.array(_SECOND_FORMAT)}
-        texts = ("format", "version", "parameters", "policy")
-        order = [name for name in _ORDER if name in _FIRST_ORDER or f"order_{name}" in arrays]
-        expected = {*_ARRAYS, *(f"order_{name}" for name in order), *texts, "seed", "duration_s"}
-        expected |= {"rudder"} & arrays.keys()
-        with_contacts = {f"contacts_{name}" for name in _CONTACTS}
-        has_contacts = not with_contacts.isdisjoint(arrays)
-        expected |= with_contacts if has_contacts else set()
-        if arrays.keys() != expected:
-            different = ", ".join(sorted(arrays.keys() ^ expected))
-            raise ParameterError(f"these arrays are missing or unknown: {different}")
-        if any(arrays[name].ndim or arrays[name].dtype.kind != "U" for name in texts):
-            raise ParameterError(f"{', '.join(texts)} must each be one string")
-        _check("seed", arrays["seed"], (), (np.dtype(np.uint64),))
-        _check("duration_s", arrays["duration_s"], (), PRECISIONS[:1])
-        form, version, parameters, policy = (str(arrays[name]) for name in texts)
-        if form not in (_SECOND_FORMAT, _FORMAT):
-            raise ParameterError(
-                f"format = {form!r} is not accepted: {_FORMAT!r} or an earlier one"
-            )
-        held = {name: arrays[f"order_{name}"] for name in order}
-        scene = FlockParameters.from_toml(parameters)
-        return cls(
-            **{name: arrays[name] for name in _ARRAYS},
-            order=RecordedOrder(
-                arrays["time_s"], _whole_order(held, [arrays["pose"], arrays["velocity"]], scene)
-            ),
-            parameters=scene,
-            seed=int(arrays["seed"]),
-            version=version,
-            policy=policy or None,
-            duration_s=float(arrays["duration_s"]),
-            rudder=arrays.get("rudder"),
-            contacts=ContactSeries(*(arrays[f"contacts_{name}"] for name in _CONTACTS))
-            if has_contacts
-            else None,
-        )
-
-
-def _check(
-    name: str,
-    array: Any,
-    shape: tuple[int, ...],
-    dtypes: tuple[np.dtype[Any], ...],
-    *,
-    all_nan: bool = False,
-) -> None:
-    if not isinstance(array, np.ndarray) or array.dtype not in dtypes:
-        found = array.dtype if isinstance(array, np.ndarray) else type(array).__name__
-        raise ParameterError(f"{name} is of {found}, expected an array of {dtypes[0]}")
-    if array.shape != shape:
-        raise ParameterError(f"{name} has shape {array.shape}, expected {shape}")
-    if array.dtype.kind == "f" and not (np.isnan if all_nan else np.isfinite)(array).all():
-        raise ParameterError(f"{name} must be {'undefined (NaN)' if all_nan else 'finite'}")
-
-
-def _whole_order(
-    held: dict[str, NDArray[Any]],
-    states: Sequence[NDArray[Any]],
-    parameters: FlockParameters,
-) -> OrderSeries:
-    """Return the quantities that a file holds, and from its poses those that it lacks."""
-    n = parameters.n_boats
-    are_states = all(each.dtype in PRECISIONS and each.shape[1:] == (n, 3) for each in states)
-    is_whole = len(held) == len(_ORDER) or parameters.n_leaders == n
-    if is_whole or not are_states or len(states[0]) != len(states[1]):
-        return OrderSeries(**held)
-    normal = slice(parameters.n_leaders, None)
-    series = _core.order_series(*(each[:, normal].astype(np.float64) for each in states))
-    return OrderSeries(**{name: held.get(name, getattr(series, name)) for name in _ORDER})
 
 
 def _contacts_at(contacts: ContactSeries, samples: NDArray[np.bool_]) -> ContactSeries:
     """Return the contacts of some of the samples, shape (t,)."""
     kept = np.repeat(samples, contacts.count)
-    each = (getattr(contacts, name)[kept] for name in _CONTACTS[1:])
+    each = (getattr(contacts, name)[kept] for name in CONTACTS[1:])
     return ContactSeries(contacts.count[samples], *each)
-
-
-def _check_contacts(contacts: ContactSeries, samples: int, boats: int) -> None:
-    c = len(contacts.i) if np.ndim(contacts.i) else 0
-    shapes = {"count": (samples,), "normal": (c, 2), "point_cm": (c, 2)}
-    dtypes = {"count": np.int64, "i": np.int32, "j": np.int32}
-    for name in _CONTACTS:
-        array: Any = getattr(contacts, name)
-        shape, dtype = shapes.get(name, (c,)), dtypes.get(name, np.float32)
-        if not isinstance(array, np.ndarray) or array.dtype != dtype or array.shape != shape:
-            raise ParameterError(
-                f"contacts.{name} must be an array of {np.dtype(dtype)}, shape {shape}"
-            )
-        if not np.isfinite(array).all():
-            raise ParameterError(f"contacts.{name} must be finite")
-    count = contacts.count
-    if (count < 0).any() or (count > c).any() or count.sum() != c:
-        raise ParameterError(f"contacts.count must add up to the {c} contacts there are")
-    if not (_within(contacts.i, 0, boats) and _within(contacts.j, -2, boats)):
-        raise ParameterError(f"contacts.i and contacts.j must be among {boats} boats")
-    if not (contacts.force > 0).all():
-        raise ParameterError("contacts.force must be positive")
-
-
-def _within(numbers: NDArray[np.int32], low: int, end: int) -> bool:
-    return bool(((numbers >= low) & (numbers < end)).all())

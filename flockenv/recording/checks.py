@@ -1,0 +1,62 @@
+"""What a recording's arrays must be."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flockenv import _core
+from flockenv.errors import ParameterError
+from flockenv.flock import ContactSeries
+
+__all__ = ["CONTACTS", "PHASES", "PRECISIONS", "check_array", "check_contacts"]
+
+PHASES = np.array(_core.phase_names())
+PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
+CONTACTS = ("count", "i", "j", "normal", "force", "point_cm")
+"""The arrays of a `ContactSeries`, in its order."""
+
+
+def check_array(
+    name: str,
+    array: Any,
+    shape: tuple[int, ...],
+    dtypes: tuple[np.dtype[Any], ...],
+    *,
+    all_nan: bool = False,
+) -> None:
+    """Refuse anything else than an array of a shape and dtype, finite or all NaN."""
+    if not isinstance(array, np.ndarray) or array.dtype not in dtypes:
+        found = array.dtype if isinstance(array, np.ndarray) else type(array).__name__
+        raise ParameterError(f"{name} is of {found}, expected an array of {dtypes[0]}")
+    if array.shape != shape:
+        raise ParameterError(f"{name} has shape {array.shape}, expected {shape}")
+    if array.dtype.kind == "f" and not (np.isnan if all_nan else np.isfinite)(array).all():
+        raise ParameterError(f"{name} must be {'undefined (NaN)' if all_nan else 'finite'}")
+
+
+def check_contacts(contacts: ContactSeries, samples: int, boats: int) -> None:
+    """Refuse contacts that are not those of so many samples and boats."""
+    c = len(contacts.i) if np.ndim(contacts.i) else 0
+    shapes = {"count": (samples,), "normal": (c, 2), "point_cm": (c, 2)}
+    dtypes = {"count": np.int64, "i": np.int32, "j": np.int32}
+    for name in CONTACTS:
+        array: Any = getattr(contacts, name)
+        shape, dtype = shapes.get(name, (c,)), dtypes.get(name, np.float32)
+        if not isinstance(array, np.ndarray) or array.dtype != dtype or array.shape != shape:
+            raise ParameterError(
+                f"contacts.{name} must be an array of {np.dtype(dtype)}, shape {shape}"
+            )
+        if not np.isfinite(array).all():
+            raise ParameterError(f"contacts.{name} must be finite")
+    count = contacts.count
+    if (count < 0).any() or (count > c).any() or count.sum() != c:
+        raise ParameterError(f"contacts.count must add up to the {c} contacts there are")
+    if not (_within(contacts.i, 0, boats) and _within(contacts.j, -2, boats)):
+        raise ParameterError(f"contacts.i and contacts.j must be among {boats} boats")
+    if not (contacts.force > 0).all():
+        raise ParameterError("contacts.force must be positive")
+
+
+def _within(numbers: NDArray[np.int32], low: int, end: int) -> bool:
+    return bool(((numbers >= low) & (numbers < end)).all())
