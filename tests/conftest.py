@@ -53,9 +53,10 @@ def _no_chance(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def _quick_clones(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let trainings start from a clone that saw little: how near it is, test_cloning.py tests."""
-    from flockenv.training import ppo
+    from flockenv.training import cloning
 
-    monkeypatch.setattr(ppo, "clone_law", partial(ppo.clone_law, samples=600, epochs=2))
+    quick = partial(cloning.clone_law, samples=600, epochs=2)
+    monkeypatch.setattr(cloning, "clone_law", quick)
 
 
 class CommandLine:

@@ -10,13 +10,45 @@ from numpy.typing import NDArray
 from flockenv._io.provenance import made_by
 from flockenv.envs.observation import BLOCKS
 from flockenv.errors import ParameterError
-from flockenv.policies import ModelPolicy, NetworkPolicy
+from flockenv.policies import ModelPolicy, NetworkPolicy, load
 from flockenv.policies.base import RowPolicy
+from flockenv.policies.laws import LAWS
 from flockenv.training.actor import ACTIVATION_MODULES, one_thread
 from flockenv.training.pools import PooledVecEnv
 from flockenv.training.settings import TrainingError, TrainingSettings
 
-__all__ = ["clone_law"]
+__all__ = ["clone_law", "initial_policy"]
+
+
+def initial_policy(settings: TrainingSettings, command: str, trust: bool) -> NetworkPolicy | None:
+    """Return the network that a run starts from: the one given, a clone of a law, or None.
+
+    Raises
+    ------
+    ParameterError
+        For a start that is no law and no policy's file, and for other numbers of leaders.
+    """
+    if not settings.start:
+        return None
+    found: RowPolicy | ModelPolicy
+    if settings.start in LAWS:
+        found = LAWS[settings.start](
+            observation=settings.observation, mirror_to_target=settings.mirror_to_target
+        )
+    else:
+        try:
+            found = load(settings.start, trust=trust)
+        except OSError as error:
+            raise ParameterError(
+                f"start = {settings.start!r} is neither {' nor '.join(LAWS)}, and as a policy's "
+                f"file it cannot be read: {error.strerror}"
+            ) from error
+    if isinstance(found, NetworkPolicy):
+        return found
+    if isinstance(found, ModelPolicy):
+        for leaders in settings.n_leaders:
+            found.check_leaders(leaders)
+    return clone_law(found, settings, command=command)
 
 
 def clone_law(

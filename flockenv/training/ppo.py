@@ -2,39 +2,28 @@
 
 import math
 import time
-import warnings
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
 
 import torch
 from stable_baselines3 import PPO
-from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import KVWriter, Logger, TensorBoardOutputFormat
-from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.utils import FloatSchedule
 
 from flockenv._io.atomic_write import write_text
 from flockenv._io.locks import held
 from flockenv._io.provenance import made_by
 from flockenv.errors import ParameterError
-from flockenv.policies import ModelPolicy, NetworkPolicy, load
-from flockenv.policies.base import RowPolicy
-from flockenv.policies.laws import LAWS
+from flockenv.policies import NetworkPolicy, load
 from flockenv.training import checkpoint
-from flockenv.training.actor import (
-    ACTIVATION_MODULES,
-    copy_into_actor,
-    network_policy,
-    one_thread,
-)
+from flockenv.training.actor import copy_into_actor, network_policy, one_thread
 from flockenv.training.checkpoint import LEARNED, Progress
-from flockenv.training.cloning import clone_law
+from flockenv.training.cloning import initial_policy
 from flockenv.training.interrupts import held_interrupts
-from flockenv.training.pools import PooledVecEnv
+from flockenv.training.learner import Watch, actor_of, learner
 from flockenv.training.rollback_point import RollbackPoint
 from flockenv.training.settings import TrainingError, TrainingSettings
 from flockenv.training.validation import validation_scores
@@ -109,17 +98,17 @@ def train(
     folder = Path(folder)
     _refuse_another_run(folder)
     with one_thread():
-        model = _model(settings)
-        start = _start(settings, command, trust)
+        model = learner(settings)
+        start = initial_policy(settings, command, trust)
         if start is not None:
-            copy_into_actor(start, _actor(model), settings)
+            copy_into_actor(start, actor_of(model), settings)
         with _alone_in(folder):
             _refuse_another_run(folder)
             with _written(folder, Progress()):
                 write_text(folder / "settings.toml", settings.to_toml())
                 if start is not None:
                     start.save(folder / "start.npz")
-            return _Run(model, settings, folder, Progress(command), report).go_on()
+            return _Run(model, settings, folder, Progress(command), report).advance()
 
 
 def _refuse_another_run(folder: Path) -> None:
@@ -167,9 +156,9 @@ def resume(
     stored_settings(folder, samples)
     with _alone_in(folder), one_thread():
         settings = stored_settings(folder, samples)
-        model = _model(settings)
+        model = learner(settings)
         progress = checkpoint.restore(folder / "checkpoint.npz", model)
-        return _Run(model, settings, folder, progress, report).go_on()
+        return _Run(model, settings, folder, progress, report).advance()
 
 
 def stored_settings(folder: Path, samples: int | None = None) -> TrainingSettings:
@@ -198,7 +187,7 @@ class _Run:
         self.log = Logger(None, [])
         self.rollback_point: RollbackPoint | None = None
 
-    def go_on(self) -> TrainingResult:
+    def advance(self) -> TrainingResult:
         formats: list[KVWriter] = []
         if find_spec("tensorboard") is not None:
             with held_interrupts(), _written(self.folder, self.progress):
@@ -249,7 +238,7 @@ class _Run:
         wanted = settings.rollout_samples
         try:
             with held_interrupts() as release:
-                watch = _Watch(release)
+                watch = Watch(release)
                 model.learn(wanted, watch, log_interval=_NEVER, reset_num_timesteps=False)
         except ValueError as error:
             # Torch's distributions refuse the first NaN before the loss is seen.
@@ -298,7 +287,7 @@ class _Run:
                 raise
 
     def _policy(self, made: dict[str, str]) -> NetworkPolicy:
-        return network_policy(_actor(self.model), self.settings, made)
+        return network_policy(actor_of(self.model), self.settings, made)
 
     def _made(self, progress: Progress) -> dict[str, str]:
         return made_by(
@@ -314,91 +303,6 @@ class _Run:
             with _written(self.folder, self.rollback_point.progress):
                 self.rollback_point.write(self.folder)
             self.rollback_point = None
-
-
-class _Watch(BaseCallback):
-    """Means over a rollout of what the learner itself does not keep."""
-
-    def __init__(self, release: Callable[[], None]) -> None:
-        super().__init__()
-        self.release = release
-        self.rewards: list[float] = []
-        self.orders: list[float] = []
-
-    def _on_step(self) -> bool:
-        self.release()
-        self.rewards.append(float(self.locals["rewards"].mean()))
-        if self.locals["dones"].any():
-            summaries = [each.get("episode_summary") for each in self.locals["infos"]]
-            self.orders += [each["signed_order"] for each in summaries if each]
-        return True
-
-    def means(self) -> dict[str, float]:
-        orders = sum(self.orders) / len(self.orders) if self.orders else math.nan
-        return {"reward": sum(self.rewards) / len(self.rewards), "signed_order": orders}
-
-
-def _model(settings: TrainingSettings) -> PPO:
-    if settings.device == "cuda" and not torch.cuda.is_available():
-        raise ParameterError("device = 'cuda' is not accepted: torch finds no GPU")
-    layers = list(settings.net_arch)
-    policy: dict[str, Any] = {
-        "net_arch": {"pi": layers, "vf": layers},
-        "activation_fn": ACTIVATION_MODULES[settings.activation],
-        "log_std_init": settings.log_std_init,
-    }
-    with warnings.catch_warnings():
-        # Small networks are often faster on the CPU, which is the user's choice.
-        warnings.filterwarnings("ignore", "You are trying to run PPO on the GPU")
-        return PPO(
-            "MlpPolicy",
-            PooledVecEnv(settings),
-            learning_rate=settings.learning_rate,
-            n_steps=settings.n_steps,
-            batch_size=settings.batch_size,
-            n_epochs=settings.n_epochs,
-            gamma=settings.gamma,
-            gae_lambda=settings.gae_lambda,
-            clip_range=settings.clip_range,
-            ent_coef=settings.ent_coef,
-            vf_coef=settings.vf_coef,
-            max_grad_norm=settings.max_grad_norm,
-            target_kl=settings.target_kl or None,
-            use_sde=settings.use_sde,
-            sde_sample_freq=settings.sde_sample_freq,
-            policy_kwargs=policy,
-            seed=settings.seed,
-            device=settings.device,
-        )
-
-
-def _actor(model: PPO) -> ActorCriticPolicy:
-    assert isinstance(model.policy, ActorCriticPolicy)
-    return model.policy
-
-
-def _start(settings: TrainingSettings, command: str, trust: bool) -> NetworkPolicy | None:
-    if not settings.start:
-        return None
-    found: RowPolicy | ModelPolicy
-    if settings.start in LAWS:
-        found = LAWS[settings.start](
-            observation=settings.observation, mirror_to_target=settings.mirror_to_target
-        )
-    else:
-        try:
-            found = load(settings.start, trust=trust)
-        except OSError as error:
-            raise ParameterError(
-                f"start = {settings.start!r} is neither {' nor '.join(LAWS)}, and as a policy's "
-                f"file it cannot be read: {error.strerror}"
-            ) from error
-    if isinstance(found, NetworkPolicy):
-        return found
-    if isinstance(found, ModelPolicy):
-        for leaders in settings.n_leaders:
-            found.check_leaders(leaders)
-    return clone_law(found, settings, command=command)
 
 
 def _network(path: Path) -> NetworkPolicy:

@@ -8,6 +8,7 @@ import pytest
 from flockenv import training
 from flockenv.training import TrainingSettings, ppo
 from flockenv.training.interrupts import held_interrupts
+from flockenv.training.pools import PooledVecEnv
 
 
 def press() -> None:
@@ -101,14 +102,14 @@ def test_a_rollout_is_left_at_its_next_step(
     tiny: TrainingSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     steps = []
-    step = ppo.PooledVecEnv.step_wait
+    step = PooledVecEnv.step_wait
 
     def pressed(self):
         press()
         steps.append(1)
         return step(self)
 
-    monkeypatch.setattr(ppo.PooledVecEnv, "step_wait", pressed)
+    monkeypatch.setattr(PooledVecEnv, "step_wait", pressed)
     with pytest.raises(KeyboardInterrupt):
         training.train(tiny, tmp_path)
     assert len(steps) == 1
@@ -119,7 +120,7 @@ def test_an_interrupt_loses_no_whole_rollout(
 ) -> None:
     monkeypatch.setattr(ppo.time, "perf_counter", lambda: 0.0)
     seldom = tiny.replace(checkpoint_every=10**9, validate_every=10**9)
-    step, steps = ppo.PooledVecEnv.step_wait, []
+    step, steps = PooledVecEnv.step_wait, []
 
     def pressed(self):
         steps.append(1)
@@ -128,7 +129,7 @@ def test_an_interrupt_loses_no_whole_rollout(
         return step(self)
 
     training.train(seldom, tmp_path / "whole")
-    monkeypatch.setattr(ppo.PooledVecEnv, "step_wait", pressed)
+    monkeypatch.setattr(PooledVecEnv, "step_wait", pressed)
     with pytest.raises(KeyboardInterrupt):
         training.train(seldom, tmp_path / "pressed")
     found = sorted(path.name for path in (tmp_path / "pressed").glob("*.*"))

@@ -16,6 +16,7 @@ from flockenv.policies import NetworkPolicy, load
 from flockenv.runs.seeds import FIRST_TRAINING_SEED
 from flockenv.training import TrainingError, TrainingSettings, checkpoint, ppo, validation
 from flockenv.training.actor import copy_into_actor, network_policy
+from flockenv.training.learner import learner
 
 EVERY_FILE = ("best.npz", "last.npz", "checkpoint.npz", "curve.csv", "validations.csv")
 
@@ -96,7 +97,7 @@ def test_the_exported_mean_is_torchs(
     tiny: TrainingSettings, net_arch: list[int], activation: str
 ) -> None:
     settings = tiny.replace(net_arch=net_arch, activation=activation)
-    model = ppo._model(settings)
+    model = learner(settings)
     with torch.no_grad():
         # Larger than SB3 starts with, so that the ends of the range are met.
         model.policy.action_net.weight.mul_(300.0)
@@ -113,7 +114,7 @@ def test_the_exported_mean_is_torchs(
 def test_start_from_a_policy(tiny: TrainingSettings, tmp_path: Path) -> None:
     start = training.train(tiny.replace(samples=192, seed=3), tmp_path / "start").policy
     path = str(tmp_path / "start" / "best.npz")
-    model = ppo._model(tiny)
+    model = learner(tiny)
     copy_into_actor(start, model.policy, tiny)
     copied = network_policy(model.policy, tiny, {})
     for own, other in zip(
