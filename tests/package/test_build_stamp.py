@@ -47,7 +47,7 @@ def test_an_install_that_is_not_editable_is_replaced(clone: Path) -> None:
     assert builds(clone)
 
 
-def test_an_install_of_another_folder_is_replaced(clone: Path) -> None:
+def test_an_install_of_another_folder_is_replaced(clone: Path, tmp_path: Path) -> None:
     (path,) = clone.rglob("flockenv.pth")
-    path.write_text("/home/somebody/flockenv")
+    path.write_text(str(tmp_path / "another" / "flockenv"))
     assert builds(clone)

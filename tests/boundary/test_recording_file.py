@@ -1,0 +1,265 @@
+"""Law: a recording's file gives back the same one or a named error; nothing in it is executed."""
+
+import contextlib
+import dataclasses
+import math
+import re
+import tempfile
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import flockenv
+from flockenv import (
+    Flock,
+    FlockError,
+    FlockParameters,
+    ParameterError,
+    Recording,
+    simulate,
+)
+
+PARAMETERS = FlockParameters(n_boats=5, n_leaders=1, pool="table-1")
+RUN = simulate(PARAMETERS, seed=3, duration_s=1.0)
+
+
+def saved(recording=RUN, **options) -> bytes:
+    with tempfile.TemporaryDirectory() as folder:
+        recording.save(Path(folder, "run.npz"), **options)
+        return Path(folder, "run.npz").read_bytes()
+
+
+def load(blob: bytes) -> Recording:
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder, "run.npz").write_bytes(blob)
+        return Recording.load(Path(folder, "run.npz"))
+
+
+def test_undefined_order_parameters_are_nan():
+    pair = simulate(PARAMETERS.replace(n_boats=2), 1, 1.0).order
+    assert np.isnan(pair.c_o).all()
+    assert np.isfinite(pair.psi_o).all()
+    leaders = simulate(PARAMETERS.replace(n_leaders=5), 1, 1.0)
+    assert np.isnan(leaders.order.psi_o).all()
+    assert load(saved(leaders)) == leaders
+
+
+def test_contacts_are_the_flocks_that_carried_a_force():
+    crowd = PARAMETERS.replace(n_boats=20, bw_s=0.0)
+    run = simulate(crowd, seed=3, duration_s=10.0, sample_hz=2.0, contacts=True)
+    assert run.contacts.count.sum() == len(run.contacts.i) > 50
+    flock = Flock(crowd, seed=3)
+    seen = []
+    for k in range(21):
+        seen.append(flock.contacts())
+        assert run.contacts.count[k] == (seen[-1].force > 0).sum()
+        flock.advance(0.5)
+    assert run.contacts == flockenv.ContactSeries.of(seen)
+    assert load(saved(run)) == run
+    alone = simulate(crowd, seed=3, duration_s=10.0, sample_hz=2.0)
+    assert alone.contacts is None
+    assert np.array_equal(alone.pose, run.pose)
+
+
+def test_contacts_under_a_policy():
+    crowd = PARAMETERS.replace(n_boats=20, bw_s=0.0)
+    law = flockenv.policies.SteeringLaw()
+    run = simulate(crowd, seed=3, duration_s=10.0, policy=law, contacts=True)
+    assert len(run.contacts.i) > 200
+    assert load(saved(run)) == run
+
+
+@pytest.mark.parametrize("compressed", [False, True])
+@pytest.mark.parametrize("dtype", ["float64", "float32"])
+def test_a_file_gives_back_the_same(tmp_path, compressed, dtype):
+    run = simulate(PARAMETERS.replace(pool=(math.inf, 0)), 2**64 - 1, 1.0, dtype=dtype)
+    run.save(tmp_path / "run.npz", compressed=compressed)
+    assert Recording.load(tmp_path / "run.npz") == run
+    assert [path.name for path in tmp_path.iterdir()] == ["run.npz"]
+
+
+def test_a_file_is_readable_without_flockenv(tmp_path):
+    RUN.save(tmp_path / "run.npz")
+    with np.load(tmp_path / "run.npz", allow_pickle=False) as arrays:
+        assert np.array_equal(arrays["pose"], RUN.pose)
+        assert np.array_equal(arrays["order_psi_o"], RUN.order.psi_o)
+        assert FlockParameters.from_toml(str(arrays["parameters"])) == PARAMETERS
+
+
+def test_the_same_recording_makes_the_same_bytes():
+    assert saved() == saved()
+
+
+def test_a_failed_save_leaves_what_was_there(tmp_path, monkeypatch):
+    path = tmp_path / "run.npz"
+    RUN.save(path)
+    before = path.read_bytes()
+
+    def fail(file, **arrays):
+        file.write(b"half")
+        raise OSError("disk full")
+
+    monkeypatch.setattr(np, "savez", fail)
+    with pytest.raises(OSError, match="disk full"):
+        RUN.save(path)
+    assert path.read_bytes() == before
+    assert [each.name for each in tmp_path.iterdir()] == ["run.npz"]
+
+
+def test_a_missing_file_is_an_os_error(tmp_path):
+    with pytest.raises(FileNotFoundError):
+        Recording.load(tmp_path / "none.npz")
+    with pytest.raises(FileNotFoundError):
+        RUN.save(tmp_path / "none" / "run.npz")
+
+
+@pytest.mark.parametrize("blob", [b"", b"text", b"PK\x03\x04", bytes(1000), b"flockst1" * 20])
+def test_foreign_files_are_refused(blob):
+    with pytest.raises(ParameterError, match=r"run\.npz is no whole, unharmed \.npz file"):
+        load(blob)
+
+
+def with_arrays(**changes) -> bytes:
+    """The saved recording with some arrays replaced, or left out where None."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "run.npz")
+        RUN.save(path)
+        with np.load(path, allow_pickle=False) as arrays:
+            kept = dict(arrays) | changes
+        np.savez(path, **{name: array for name, array in kept.items() if array is not None})
+        return path.read_bytes()
+
+
+@pytest.mark.parametrize("change", [
+    {"pose": None},
+    {"extra": np.zeros(3)},
+    {"seed": np.array(-1)},
+    {"seed": np.array([1, 2], np.uint64)},
+    {"format": np.array("flockenv recording 4")},
+    {"version": np.zeros(3)},
+    {"policy": np.zeros(3)},
+    {"duration_s": np.array("long")},
+    {"duration_s": None},
+    {"parameters": np.array("n_boats = 'many'")},
+    {"parameters": np.array("n_boat = 5")},
+    {"parameters": np.array("{")},
+    {"pose": RUN.pose[:, :3]},
+    {"order_psi_o": np.array(["a"] * 11)},
+])  # fmt: skip
+def test_files_of_something_else_are_refused(change):
+    with pytest.raises(ParameterError, match=r"run\.npz is no recording of flockenv"):
+        load(with_arrays(**change))
+
+
+def test_analyzed_samples_are_those_of_the_window_after_a_share_of_the_run():
+    run = simulate(PARAMETERS, seed=3, duration_s=40.0, sample_hz=4.0, contacts=True)
+    for after, start_s in ((0.1, 4.0), (0.5, 20.0), (0.0, 0.0)):
+        frames = run.in_analysis_window & (run.time_s > start_s)
+        late = run.analyzed(after) if after != 0.1 else run.analyzed()
+        assert 0 < frames.sum() == len(late) == len(late.order)
+        assert np.array_equal(late.time_s, run.time_s[frames])
+        assert np.array_equal(late.phase, run.phase[frames])
+        assert np.array_equal(late.pose, run.pose[frames])
+        assert np.array_equal(late.order.phi_o, run.order.phi_o[frames])
+        assert late.duration_s == 40.0
+        assert load(saved(late)) == late
+        # What is left out stays out: the rule counts from the start of the run.
+        assert late.analyzed(after) == late
+
+
+def test_a_recording_may_have_no_samples_and_no_poses():
+    bare = RUN.without_poses()
+    assert (bare.has_poses, RUN.has_poses) == (False, True)
+    assert bare.pose.shape == (11, 0, 3)
+    assert bare.order == RUN.order
+    nothing = bare.analyzed(after=1.0)
+    assert (len(nothing), nothing.duration_s) == (0, 1.0)
+    assert load(saved(nothing)) == nothing
+
+
+class Waiting:
+    """A policy of a user's own, without a name."""
+
+    def predict(self, observation, state=None, episode_start=None):
+        return np.zeros(PARAMETERS.n_leaders), state
+
+
+def test_what_steered_is_recorded():
+    learned = flockenv.policies.load("learned", pool="table-1")
+    tuned = flockenv.policies.DampedLaw(gain=2.0)
+    named = {
+        "law": None,
+        repr(tuned): tuned,
+        "Waiting": Waiting(),
+        f"{learned!r} {learned.digest}": learned,
+    }
+    for name, policy in named.items():
+        run = simulate(PARAMETERS, 3, 1.0, policy=policy)
+        assert run.policy == name
+        assert load(saved(run)).policy == name
+    assert re.fullmatch(r"sha256:[0-9a-f]{12}", learned.digest)
+
+
+def test_the_digest_is_that_of_the_numbers(tmp_path):
+    policy = flockenv.policies.load("learned", pool="table-1")
+    policy.save(tmp_path / "copy.npz")
+    copied = flockenv.policies.load(tmp_path / "copy.npz")
+    assert copied.digest == policy.digest
+    assert flockenv.policies.load("learned", pool="500-boats").digest != policy.digest
+
+
+def test_pickled_objects_are_never_loaded(tmp_path):
+    class Trap:
+        def __reduce__(self):
+            return Path.touch, (tmp_path / "executed",)
+
+    blob = with_arrays(pose=np.array([Trap()], dtype=object))
+    with pytest.raises(ParameterError):
+        load(blob)
+    assert not (tmp_path / "executed").exists()
+
+
+@pytest.mark.parametrize("shape", [(10**15,), (-1,), (2**62, 4), (10**6, 10**6)])
+@pytest.mark.parametrize("compression", [zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED])
+def test_headers_that_claim_the_world_are_refused(tmp_path, shape, compression):
+    header = str({"descr": "<f8", "fortran_order": False, "shape": shape}).encode()
+    entry = b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header
+    with zipfile.ZipFile(tmp_path / "run.npz", "w", compression) as archive:
+        archive.writestr("pose.npy", entry)
+    with pytest.raises(ParameterError):
+        Recording.load(tmp_path / "run.npz")
+
+
+@given(st.sampled_from([False, True]), st.floats(0, 1, exclude_max=True))
+def test_cut_off_files_are_refused(compressed, fraction):
+    blob = saved(compressed=compressed)
+    with pytest.raises(ParameterError):
+        load(blob[: int(fraction * len(blob))])
+
+
+@settings(max_examples=300)
+@given(st.sampled_from([False, True]), st.floats(0, 1, exclude_max=True), st.integers(0, 7))
+def test_flipped_bits_give_the_same_recording_or_a_named_error(compressed, fraction, bit):
+    blob = bytearray(saved(compressed=compressed))
+    blob[int(fraction * len(blob))] ^= 1 << bit
+    with contextlib.suppress(FlockError):
+        assert load(bytes(blob)) == RUN
+
+
+def test_rudders_are_saved_checked_and_may_be_missing():
+    assert np.array_equal(load(saved()).rudder, RUN.rudder)
+    without = dataclasses.replace(RUN, rudder=None)
+    assert load(saved(without)).rudder is None
+    assert load(saved(without)) == without != RUN
+    for rudder in (
+        RUN.rudder[:-1],
+        RUN.rudder.astype(np.float32),
+        RUN.rudder + 2,
+        RUN.rudder * np.nan,
+    ):
+        with pytest.raises(ParameterError, match="rudder"):
+            dataclasses.replace(RUN, rudder=rudder)
