@@ -57,7 +57,6 @@ impl BlockPivoting {
     ) -> SolveReport {
         velocities.clear();
         velocities.extend_from_slice(problem.free);
-        impulses.fill(0.0);
         self.rights.clear();
         let contacts = problem.contacts.iter().zip(problem.biases);
         self.rights
@@ -83,10 +82,11 @@ impl BlockPivoting {
                 .all(|&k| !active[k as usize] && self.rights[k as usize] >= 0.0);
             if is_idle {
                 report.iterations += 1;
+                contacts.iter().for_each(|&k| impulses[k as usize] = 0.0);
                 continue;
             }
             let island = &mut self.islands[number];
-            island.build(problem, contacts, active, &mut self.places);
+            island.build(problem, contacts, active, impulses, &mut self.places);
             island.set_right(problem, &self.rights);
             island.solve(self.regularization, &mut report);
             for row in &island.rows.rows {
@@ -119,6 +119,7 @@ impl BlockPivoting {
     ) {
         let right = self.rights[k];
         active[k] = right < 0.0;
+        impulses[k] = 0.0;
         if right >= 0.0 {
             return;
         }

@@ -1,10 +1,15 @@
 //! The sparse factor A_FF = L·D·Lᵀ of an island's active rows F, row by row.
 //!
 //! A row of L has entries where its elimination tree says (Liu 1990): at the rows that it shares a boat with
-//! and their ancestors before it. A change of F changes the rows that enter or leave and their ancestors, and
-//! no others.
+//! and their ancestors before it. The rows on one boat all share it, so they are ancestors of each other, and
+//! a row's entries lie on the paths from the first row on either of its boats. A change of F changes the rows
+//! that enter or leave and their ancestors, and no others.
 
-use super::rows::{NONE, Row, Rows};
+use super::rows::{NONE, Row, Rows, WALLS};
+
+/// Entries come in groups of this many, filled up with zeros: rows hold two or three, and loops whose length
+/// the processor cannot foresee cost more than the arithmetic.
+const GROUP: usize = 2;
 
 /// An entry of L.
 #[derive(Debug, Clone, Copy)]
@@ -13,26 +18,53 @@ struct Entry {
     value: f64,
 }
 
+const NO_ENTRY: Entry = Entry {
+    column: 0,
+    value: 0.0,
+};
+
 /// A row of L.
 #[derive(Debug, Clone, Copy)]
 struct Node {
+    /// Its entries, whole groups of them.
     begin: u32,
     end: u32,
+    /// How many entries it holds, without the zeros that fill up its groups.
+    count: u32,
     /// The first row with an entry in this column.
     parent: u32,
+    is_factored: bool,
     is_dirty: bool,
+    /// The active row before on either body, times two, plus the side on which that row has it.
+    before: [u32; 2],
     inverse_pivot: f64,
-    /// A row that is being computed; zero between two rows.
-    work: f64,
 }
 
 const EMPTY: Node = Node {
     begin: 0,
     end: 0,
+    count: 0,
     parent: NONE,
+    is_factored: false,
     is_dirty: false,
+    before: [NONE; 2],
     inverse_pivot: 0.0,
-    work: 0.0,
+};
+
+/// The active rows on a body so far.
+#[derive(Debug, Clone, Copy)]
+struct Chain {
+    first: u32,
+    /// As in [`Node::before`].
+    last: u32,
+    /// Whether the last one has just entered.
+    has_entered: bool,
+}
+
+const NO_ROW: Chain = Chain {
+    first: NONE,
+    last: NONE,
+    has_entered: false,
 };
 
 /// The factor of one island.
@@ -40,180 +72,184 @@ const EMPTY: Node = Node {
 pub struct Factor {
     nodes: Vec<Node>,
     entries: Vec<Entry>,
-    /// How many numbers the rows hold.
-    len: usize,
-    first_dirty: usize,
-    /// The columns of a row that is being computed, a bit each; zero between two rows.
-    pattern: Vec<u64>,
+    /// How many entries are in use.
+    used: usize,
+    /// Whether rows have entered or left since it was brought up to date.
+    is_stale: bool,
+    active: Vec<u32>,
+    chains: Vec<Chain>,
+    /// A row that is being computed; zero between two rows, and always zero beyond the rows.
+    work: Vec<f64>,
 }
 
 impl Factor {
-    /// The factor of no row, of an island with these rows, of which the active ones are wanted.
-    pub fn reset(&mut self, rows: &[Row]) {
+    /// The factor of no row, of an island with so many rows.
+    pub fn reset(&mut self, rows: usize) {
         self.nodes.clear();
-        self.nodes.extend(rows.iter().map(|row| Node {
-            is_dirty: row.is_active,
-            ..EMPTY
-        }));
-        self.entries.clear();
-        self.len = 0;
-        self.first_dirty = 0;
-        self.pattern.resize(rows.len() / 64 + 1, 0);
+        self.nodes.resize(rows, EMPTY);
+        self.used = 0;
+        self.is_stale = true;
+        self.active.clear();
+        self.work.clear();
+        self.work.resize(rows + 1, 0.0);
     }
 
     /// How many numbers the factor of the active rows holds.
-    pub fn len(&self) -> usize {
-        self.len
+    pub fn len(&self) -> u64 {
+        let rows = self.active.iter().map(|&k| &self.nodes[k as usize]);
+        rows.map(|node| u64::from(node.count) + 1).sum()
     }
 
-    /// Takes note that a row has entered or left the active ones.
-    pub fn flip(&mut self, rows: &Rows, flipped: usize) {
-        mark_dirty(&mut self.nodes, flipped as u32);
-        self.first_dirty = self.first_dirty.min(flipped);
-        let row = &rows.rows[flipped];
-        if !row.is_active {
-            return;
-        }
-        // Rows after it that share a boat.
-        for body in row.bodies {
-            let mut link = rows.bodies[body as usize].last;
-            while link != NONE && link as usize / 2 > flipped {
-                let other = &rows.rows[link as usize / 2];
-                if other.is_active {
-                    mark_dirty(&mut self.nodes, link / 2);
-                }
-                link = other.before[link as usize % 2];
-            }
-        }
+    /// Takes note that rows have entered or left the active ones.
+    pub fn set_stale(&mut self) {
+        self.is_stale = true;
     }
 
     /// Computes the rows that have changed; returns how many. `regularization` is added to the diagonal, relative to
     /// it.
-    pub fn update(&mut self, rows: &[Row], regularization: f64) -> u64 {
+    pub fn update(&mut self, rows: &Rows, regularization: f64) -> u64 {
+        if !std::mem::take(&mut self.is_stale) {
+            return 0;
+        }
+        self.active.clear();
+        self.chains.clear();
+        self.chains.resize(rows.bodies.len(), NO_ROW);
         let mut computed = 0;
-        let begin = std::mem::replace(&mut self.first_dirty, rows.len());
-        for (k, row) in rows.iter().enumerate().skip(begin) {
-            if !self.nodes[k].is_dirty {
-                continue;
-            }
-            self.release(k as u32);
+        for (k, row) in rows.rows.iter().enumerate() {
             if row.is_active {
-                self.compute(rows, k, regularization);
-                computed += 1;
+                computed += u64::from(self.visit(&rows.rows, k, regularization));
+            } else if self.nodes[k].is_factored {
+                self.release(k);
+                self.nodes[k] = EMPTY;
             }
         }
         computed
     }
 
-    /// Empties a row.
-    fn release(&mut self, k: u32) {
-        let Node { begin, end, .. } = self.nodes[k as usize];
-        for entry in &self.entries[begin as usize..end as usize] {
-            let parent = &mut self.nodes[entry.column as usize].parent;
-            if *parent == k {
-                *parent = NONE;
-            }
-        }
-        let node = &mut self.nodes[k as usize];
-        self.len -= (end - begin) as usize + usize::from(node.inverse_pivot > 0.0);
-        (node.begin, node.end, node.inverse_pivot, node.is_dirty) = (0, 0, 0.0, false);
-    }
-
-    fn compute(&mut self, rows: &[Row], k: usize, regularization: f64) {
-        let lowest = self.find_pattern(rows, k);
-        let Self {
-            nodes,
-            entries,
-            pattern,
-            ..
-        } = self;
-        let nodes = nodes.as_mut_slice();
-        let begin = entries.len();
-        let mut pivot = rows[k].diagonal * (1.0 + regularization);
-        for (number, word) in pattern[..=k / 64].iter_mut().enumerate().skip(lowest / 64) {
-            let mut columns = std::mem::take(word);
-            while columns != 0 {
-                let column = 64 * number + columns.trailing_zeros() as usize;
-                columns &= columns - 1;
-                let node = &nodes[column];
-                let mut work = node.work;
-                for entry in &entries[node.begin as usize..node.end as usize] {
-                    work -= entry.value * nodes[entry.column as usize].work;
-                }
-                let node = &mut nodes[column];
-                node.work = work;
-                let value = work * node.inverse_pivot;
-                pivot -= work * value;
-                entries.push(Entry {
-                    column: column as u32,
-                    value,
-                });
-                if node.parent > k as u32 {
-                    // A row that had this column's first entry so far has one row more before it.
-                    let parent = std::mem::replace(&mut node.parent, k as u32);
-                    mark_dirty(nodes, parent);
-                }
-            }
-        }
-        for entry in &entries[begin..] {
-            nodes[entry.column as usize].work = 0.0;
-        }
-        self.len += entries.len() - begin + 1;
-        let node = &mut nodes[k];
-        (node.begin, node.end) = (begin as u32, entries.len() as u32);
-        // Rounding may eat a pivot that only regularization keeps positive.
-        node.inverse_pivot = 1.0 / pivot.max(0.5 * regularization * rows[k].diagonal);
-    }
-
-    /// Marks in `pattern` where row k has entries, and puts its couplings to `work`; returns the lowest
-    /// column.
-    fn find_pattern(&mut self, rows: &[Row], k: usize) -> usize {
-        let (nodes, pattern) = (self.nodes.as_mut_slice(), self.pattern.as_mut_slice());
+    /// Puts an active row into the chains of its bodies, and computes it if it has changed.
+    fn visit(&mut self, rows: &[Row], k: usize, regularization: f64) -> bool {
         let row = &rows[k];
-        let mut lowest = k;
-        for side in 0..2 {
-            let mut link = row.before[side];
-            while let Some(other) = rows.get(link as usize / 2) {
-                let (place, other_side) = (link as usize / 2, link as usize % 2);
-                link = other.before[other_side];
-                if !other.is_active {
-                    continue;
-                }
-                nodes[place].work += row.coupling(side, other, other_side);
-                lowest = lowest.min(place);
-                // The row and its ancestors before row k.
-                let mut column = place;
-                while column < k {
-                    let (word, bit) = (&mut pattern[column / 64], 1 << (column % 64));
-                    if *word & bit != 0 {
-                        break;
-                    }
-                    *word |= bit;
-                    column = nodes[column].parent as usize;
-                }
-            }
+        let [a, b] = row.bodies.map(|body| body as usize);
+        let chains = [self.chains[a], self.chains[b]];
+        let node = &mut self.nodes[k];
+        node.before = chains.map(|chain| chain.last);
+        let has_entered = !node.is_factored;
+        let is_dirty = has_entered | node.is_dirty | chains[0].has_entered | chains[1].has_entered;
+        for (side, body) in [a, b].into_iter().enumerate() {
+            self.chains[body] = Chain {
+                first: chains[side].first.min(k as u32),
+                last: (2 * k + side) as u32,
+                has_entered,
+            };
         }
-        lowest
+        self.chains[WALLS as usize] = NO_ROW;
+        self.active.push(k as u32);
+        if is_dirty {
+            if !has_entered {
+                self.release(k);
+            }
+            self.compute(rows, k, chains.map(|chain| chain.first), regularization);
+        }
+        is_dirty
     }
 
-    /// Solves A_FF·x = x in place, for active rows; others hold zeros.
-    pub fn solve(&self, x: &mut [f64]) {
-        for (k, node) in self.nodes.iter().enumerate() {
-            if node.end > node.begin {
-                let mut value = x[k];
-                for entry in &self.entries[node.begin as usize..node.end as usize] {
-                    value -= entry.value * x[entry.column as usize];
-                }
-                x[k] = value;
+    /// Empties a row; its parent changes with it.
+    fn release(&mut self, k: usize) {
+        let node = self.nodes[k];
+        for entry in row_of(&self.entries, &node).as_flattened() {
+            if let Some(child) = self.nodes.get_mut(entry.column as usize)
+                && child.parent == k as u32
+            {
+                child.parent = NONE;
             }
+        }
+        if let Some(parent) = self.nodes.get_mut(node.parent as usize) {
+            parent.is_dirty = true;
+        }
+    }
+
+    /// Computes row k, whose entries lie on the paths from `starts` up to it.
+    fn compute(&mut self, rows: &[Row], k: usize, starts: [u32; 2], regularization: f64) {
+        self.add_couplings(rows, k);
+        let begin = self.used;
+        let most = begin + k + GROUP;
+        if self.entries.len() < most {
+            self.entries.resize(2 * most, NO_ENTRY);
+        }
+        let (nodes, work) = (self.nodes.as_mut_slice(), self.work.as_mut_slice());
+        let (known, new) = self.entries.split_at_mut(begin);
+        let mut pivot = rows[k].diagonal * (1.0 + regularization);
+        let [mut a, mut b] = starts;
+        let mut count = 0;
+        let own = k as u32;
+        while a.min(b) < own {
+            let column = a.min(b);
+            let node = &mut nodes[column as usize];
+            let parent = node.parent;
+            let above = parent.min(own);
+            node.parent = above;
+            let rest = work[column as usize] - dot(row_of(known, node), work);
+            let value = rest * node.inverse_pivot;
+            work[column as usize] = rest;
+            pivot -= rest * value;
+            new[count] = Entry { column, value };
+            count += 1;
+            // A row that had this column's first entry so far has one row more before it. (NONE plus 1 is 0.)
+            if parent.wrapping_add(1) > own + 1 {
+                nodes[parent as usize].is_dirty = true;
+            }
+            a = if a == column { above } else { a };
+            b = if b == column { above } else { b };
+        }
+        // Rounding may eat a pivot that only regularization keeps positive.
+        nodes[k].inverse_pivot = 1.0 / pivot.max(0.5 * regularization * rows[k].diagonal);
+        self.finish(k, count);
+    }
+
+    /// Fills up the entries of a row that has been computed, and clears `work`.
+    fn finish(&mut self, k: usize, count: usize) {
+        let begin = self.used;
+        self.used = begin + count.max(1).div_ceil(GROUP) * GROUP;
+        self.entries[begin + count..begin + count + GROUP].fill(Entry {
+            column: self.nodes.len() as u32,
+            value: 0.0,
+        });
+        for entry in &self.entries[begin..self.used] {
+            self.work[entry.column as usize] = 0.0;
+        }
+        let node = &mut self.nodes[k];
+        (node.begin, node.end) = (begin as u32, self.used as u32);
+        node.count = count as u32;
+        (node.is_factored, node.is_dirty) = (true, false);
+    }
+
+    /// Puts row k's couplings with the active rows before it to `work`.
+    fn add_couplings(&mut self, rows: &[Row], k: usize) {
+        let row = &rows[k];
+        for side in 0..2 {
+            let mut link = self.nodes[k].before[side];
+            while link != NONE {
+                let (place, other_side) = (link as usize / 2, link as usize % 2);
+                self.work[place] += row.coupling(side, &rows[place], other_side);
+                link = self.nodes[place].before[other_side];
+            }
+        }
+    }
+
+    /// Solves A_FF·x = x in place, for active rows; others hold zeros, and there is one more place at the end.
+    pub fn solve(&self, x: &mut [f64]) {
+        x[self.nodes.len()] = 0.0;
+        for &k in &self.active {
+            let row = row_of(&self.entries, &self.nodes[k as usize]);
+            x[k as usize] -= dot(row, x);
         }
         for (value, node) in x.iter_mut().zip(&self.nodes) {
             *value *= node.inverse_pivot;
         }
-        for (k, node) in self.nodes.iter().enumerate().rev() {
-            if node.end > node.begin {
-                let value = x[k];
-                for entry in &self.entries[node.begin as usize..node.end as usize] {
+        for &k in self.active.iter().rev() {
+            let value = x[k as usize];
+            for group in row_of(&self.entries, &self.nodes[k as usize]) {
+                for entry in group {
                     x[entry.column as usize] -= entry.value * value;
                 }
             }
@@ -221,13 +257,19 @@ impl Factor {
     }
 }
 
-/// A row changes, and with it its ancestors.
-fn mark_dirty(nodes: &mut [Node], row: u32) {
-    let mut row = row;
-    while let Some(node) = nodes.get_mut(row as usize)
-        && !node.is_dirty
-    {
-        node.is_dirty = true;
-        row = node.parent;
+#[inline]
+fn row_of<'a>(entries: &'a [Entry], node: &Node) -> &'a [[Entry; GROUP]] {
+    entries[node.begin as usize..node.end as usize]
+        .as_chunks()
+        .0
+}
+
+#[inline]
+fn dot(row: &[[Entry; GROUP]], x: &[f64]) -> f64 {
+    let term = |entry: &Entry| entry.value * x[entry.column as usize];
+    let mut sum = 0.0;
+    for [a, b] in row {
+        sum += term(a) + term(b);
     }
+    sum
 }

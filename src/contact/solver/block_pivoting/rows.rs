@@ -1,6 +1,6 @@
 //! The contact problem of one island in numbers of its own: rows of J, and the boats they join.
 
-use crate::contact::{Contact, ContactProblem};
+use crate::contact::{ContactProblem, InverseInertia};
 
 /// Signs are judged with this tolerance in cm/s, well below [`EXACT`](crate::contact::solver::EXACT).
 pub const TOLERANCE: f64 = 1e-11;
@@ -21,8 +21,6 @@ pub struct Row {
     pub contact: u32,
     /// Its bodies, by their place in the island.
     pub bodies: [u32; 2],
-    /// The row before on either body, times two, plus the side on which that row has it.
-    pub before: [u32; 2],
     /// J, and J·M⁻¹.
     pub jacobian: [Motion; 2],
     pub response: [Motion; 2],
@@ -45,8 +43,6 @@ pub struct Row {
 pub struct Body {
     /// Its number in the flock; none for the walls.
     pub boat: u32,
-    /// The last row on it so far, as in [`Row::before`].
-    pub last: u32,
     /// Its velocity without contacts, and with.
     pub free: Motion,
     pub velocity: Motion,
@@ -67,31 +63,56 @@ fn add(velocity: &mut Motion, response: &Motion, impulse: f64) {
 impl Body {
     const WALLS: Self = Self {
         boat: NONE,
-        last: NONE,
         free: [0.0; 3],
         velocity: [0.0; 3],
     };
 }
 
 impl Row {
+    const EMPTY: Self = Self {
+        contact: NONE,
+        bodies: [WALLS; 2],
+        jacobian: [[0.0; 3]; 2],
+        response: [[0.0; 3]; 2],
+        diagonal: 0.0,
+        bias: 0.0,
+        right: 0.0,
+        impulse: 0.0,
+        slack: 0.0,
+        is_active: false,
+    };
+
+    /// Sets J and J·M⁻¹ on one side; returns that side's part of A_kk.
+    #[inline]
+    fn set_side(&mut self, side: usize, jacobian: Motion, inertia: &InverseInertia) -> f64 {
+        let [x, y, arm] = jacobian;
+        let response = [
+            x * inertia.linear,
+            y * inertia.linear,
+            arm * inertia.angular,
+        ];
+        (self.jacobian[side], self.response[side]) = (jacobian, response);
+        dot(&jacobian, &response)
+    }
+
     /// A_kl of two rows through a body that is on these sides of them.
     #[inline]
     pub fn coupling(&self, side: usize, other: &Self, other_side: usize) -> f64 {
         dot(&self.response[side], &other.jacobian[other_side])
     }
 
-    /// Changes velocities by the row's impulse.
+    /// Changes velocities by an impulse at the row.
     #[inline]
-    pub fn push(&self, bodies: &mut [Body]) {
+    fn push(&self, impulse: f64, bodies: &mut [Body]) {
         add(
             &mut bodies[self.bodies[0] as usize].velocity,
             &self.response[0],
-            self.impulse,
+            impulse,
         );
         add(
             &mut bodies[self.bodies[1] as usize].velocity,
             &self.response[1],
-            self.impulse,
+            impulse,
         );
     }
 
@@ -125,84 +146,69 @@ pub struct Rows {
 impl Rows {
     /// Lays out the rows of some contacts. `places` maps boats to bodies, [`NONE`] for boats not met yet.
     pub fn build(&mut self, problem: &ContactProblem, contacts: &[u32], places: &mut [u32]) {
-        self.rows.clear();
         self.bodies.clear();
         self.bodies.push(Body::WALLS);
-        for &k in contacts {
-            self.push(problem, k, places);
+        self.rows.resize(contacts.len(), Row::EMPTY);
+        for (number, &k) in contacts.iter().enumerate() {
+            let contact = &problem.contacts[k as usize];
+            let first = self.body(contact.boat, places);
+            // A contact with a wall has its boat twice, the second time with zeros.
+            let (sign, second) = match contact.second() {
+                Some(second) => (-1.0, second),
+                None => (0.0, contact.boat as usize),
+            };
+            let place = self.body(second as u32, places);
+            let row = &mut self.rows[number];
+            row.contact = k;
+            row.bodies = [first, if sign == 0.0 { WALLS } else { place }];
+            let (normal, inertia) = (contact.gap.normal, problem.inertia);
+            let own = [normal.x, normal.y, contact.gap.arm_i];
+            let other = [normal.x, normal.y, contact.gap.arm_j].map(|number| sign * number);
+            row.diagonal = row.set_side(0, own, &inertia[contact.boat as usize])
+                + row.set_side(1, other, &inertia[second]);
         }
     }
 
-    fn push(&mut self, problem: &ContactProblem, k: u32, places: &mut [u32]) {
-        let contact: &Contact = &problem.contacts[k as usize];
-        let gap = &contact.gap;
-        let number = 2 * self.rows.len() as u32;
-        let (first, before) = self.body(contact.boat, number, places);
-        let inertia = &problem.inertia[contact.boat as usize];
-        let jacobian = [gap.normal.x, gap.normal.y, gap.arm_i];
-        let response = [
-            jacobian[0] * inertia.linear,
-            jacobian[1] * inertia.linear,
-            jacobian[2] * inertia.angular,
-        ];
-        let mut row = Row {
-            contact: k,
-            bodies: [first, WALLS],
-            before: [before, NONE],
-            jacobian: [jacobian, [0.0; 3]],
-            response: [response, [0.0; 3]],
-            diagonal: dot(&jacobian, &response),
-            bias: 0.0,
-            right: 0.0,
-            impulse: 0.0,
-            slack: 0.0,
-            is_active: false,
-        };
-        if let Some(second) = contact.second() {
-            let (place, before) = self.body(second as u32, number + 1, places);
-            let inertia = &problem.inertia[second];
-            let jacobian = [-gap.normal.x, -gap.normal.y, -gap.arm_j];
-            let response = [
-                jacobian[0] * inertia.linear,
-                jacobian[1] * inertia.linear,
-                jacobian[2] * inertia.angular,
-            ];
-            row.bodies[1] = place;
-            row.before[1] = before;
-            row.jacobian[1] = jacobian;
-            row.response[1] = response;
-            row.diagonal += dot(&jacobian, &response);
-        }
-        self.rows.push(row);
-    }
-
-    /// The place of a boat, and the row that was the last one on it before `row`.
-    fn body(&mut self, boat: u32, row: u32, places: &mut [u32]) -> (u32, u32) {
+    /// The place of a boat.
+    fn body(&mut self, boat: u32, places: &mut [u32]) -> u32 {
         let place = &mut places[boat as usize];
         if *place == NONE {
             *place = self.bodies.len() as u32;
-            self.bodies.push(Body {
-                boat,
-                last: row,
-                ..Body::WALLS
-            });
-            return (*place, NONE);
+            self.bodies.push(Body::WALLS);
+            self.bodies[*place as usize].boat = boat;
         }
-        let last = &mut self.bodies[*place as usize].last;
-        (*place, std::mem::replace(last, row))
+        *place
+    }
+
+    /// Guesses which rows are active: those that push after sweeps of projected Gauss–Seidel, from the impulses at
+    /// hand. Most of what one substep changes is local, so that two sweeps find it.
+    pub fn sweep(&mut self, sweeps: u32) {
+        self.set_velocities();
+        let Self { rows, bodies } = self;
+        for _ in 0..sweeps {
+            for row in rows.iter_mut() {
+                let impulse = (row.impulse - row.slack(bodies) / row.diagonal).max(0.0);
+                row.push(impulse - row.impulse, bodies);
+                row.impulse = impulse;
+                row.is_active = impulse > 0.0;
+            }
+        }
+    }
+
+    /// Sets velocities to those that the impulses give.
+    fn set_velocities(&mut self) {
+        for body in &mut self.bodies {
+            body.velocity = body.free;
+        }
+        for row in &self.rows {
+            row.push(row.impulse, &mut self.bodies);
+        }
     }
 
     /// Brings velocities and slacks up to date with the impulses; returns how many signs are wrong, and the
     /// largest slack of an active row.
     pub fn update(&mut self) -> (usize, f64) {
-        for body in &mut self.bodies {
-            body.velocity = body.free;
-        }
-        for row in &self.rows {
-            if row.impulse != 0.0 {
-                row.push(&mut self.bodies);
-            }
-        }
+        self.set_velocities();
         let (mut violations, mut worst) = (0, 0.0_f64);
         for row in &mut self.rows {
             row.slack = row.slack(&self.bodies);
