@@ -3,7 +3,7 @@
 import hashlib
 import json
 import os
-from collections.abc import Mapping
+from abc import abstractmethod
 from typing import Any
 
 import numpy as np
@@ -13,8 +13,9 @@ from flockenv._io.array_file import write_arrays
 from flockenv._io.npz_header import read_headed
 from flockenv.envs.observation import OBSERVATION_VERSION
 from flockenv.errors import ParameterError
+from flockenv.policies.base import RowPolicy
 
-__all__ = ["digest", "read_policy", "write_policy"]
+__all__ = ["StoredPolicy", "read_policy"]
 
 FORMAT = "flockenv policy 1"
 """First entry of every policy file."""
@@ -22,28 +23,35 @@ FORMAT = "flockenv policy 1"
 _LARGEST_FILE = 5 << 20
 
 
-def write_policy(
-    path: str | os.PathLike[str], header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]
-) -> None:
-    """Write a policy's file, whole or not at all.
+class StoredPolicy(RowPolicy):
+    """A policy of rows that a file holds: a header and plain arrays."""
 
-    Raises
-    ------
-    OSError
-        If the file cannot be written; what was there before is still there.
-    """
-    whole = {"format": FORMAT, "observation_version": OBSERVATION_VERSION, **header}
-    write_arrays(path, {"header": np.array(json.dumps(whole, sort_keys=True)), **arrays})
+    @abstractmethod
+    def _contents(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+        """Return the header and the arrays."""
 
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the policy to an ``.npz`` file, whole or not at all.
 
-def digest(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> str:
-    """Return the first digits of a policy's SHA-256, whatever its file says of its making."""
-    plain = {name: value for name, value in header.items() if name != "made"}
-    whole = hashlib.sha256(json.dumps(plain, sort_keys=True).encode())
-    for name in sorted(arrays):
-        array = np.ascontiguousarray(arrays[name])
-        whole.update(f"{name} {array.shape} {array.dtype.str}".encode() + array.tobytes())
-    return f"sha256:{whole.hexdigest()[:12]}"
+        Raises
+        ------
+        OSError
+            If the file cannot be written; what was there before is still there.
+        """
+        header, arrays = self._contents()
+        whole = {"format": FORMAT, "observation_version": OBSERVATION_VERSION, **header}
+        write_arrays(path, {"header": np.array(json.dumps(whole, sort_keys=True)), **arrays})
+
+    @property
+    def digest(self) -> str:
+        """The first digits of the SHA-256 of layout and numbers, whatever made them."""
+        header, arrays = self._contents()
+        plain = {name: value for name, value in header.items() if name != "made"}
+        whole = hashlib.sha256(json.dumps(plain, sort_keys=True).encode())
+        for name in sorted(arrays):
+            array = np.ascontiguousarray(arrays[name])
+            whole.update(f"{name} {array.shape} {array.dtype.str}".encode() + array.tobytes())
+        return f"sha256:{whole.hexdigest()[:12]}"
 
 
 def read_policy(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:

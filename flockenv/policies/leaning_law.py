@@ -1,6 +1,5 @@
 """`LeaningLaw`: the damped law about a heading that leans outward by the observation."""
 
-import os
 from collections.abc import Mapping
 from typing import Any, Self
 
@@ -10,8 +9,7 @@ from numpy.typing import NDArray
 from flockenv._io.npz_header import array_of, entry_of
 from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError
-from flockenv.policies.base import RowPolicy
-from flockenv.policies.files import digest, write_policy
+from flockenv.policies.files import StoredPolicy
 from flockenv.policies.laws import DampedLaw
 
 __all__ = ["FEATURES", "GAINS", "LeaningLaw", "features", "leaned"]
@@ -141,7 +139,7 @@ def leaned(
     return turned
 
 
-class LeaningLaw(RowPolicy):
+class LeaningLaw(StoredPolicy):
     """The damped law about a heading that leans outward by a linear function of what is seen.
 
     The desired heading is the target's tangent, turned outward by 1.2·tanh(lean/1.2) rad with
@@ -199,21 +197,6 @@ class LeaningLaw(RowPolicy):
         turned = leaned(rows, np.asarray(self.bias), self._weights, self._names)
         rudders: NDArray[np.float32] = self._damped.predict(turned)[0][:, 0]
         return rudders
-
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the law to an ``.npz`` file, whole or not at all.
-
-        Raises
-        ------
-        OSError
-            If the file cannot be written; what was there before is still there.
-        """
-        write_policy(path, *self._contents())
-
-    @property
-    def digest(self) -> str:
-        """The first digits of the SHA-256 of gains and weights."""
-        return digest(*self._contents())
 
     def _contents(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         header = {

@@ -1,6 +1,5 @@
 """Learned policies: small networks in an ``.npz`` file, evaluated with NumPy alone."""
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Self
 
@@ -9,8 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from flockenv._io.npz_header import array_of, entry_of
 from flockenv.errors import ParameterError
-from flockenv.policies.base import RowPolicy
-from flockenv.policies.files import digest, write_policy
+from flockenv.policies.files import StoredPolicy
 
 __all__ = ["ACTIVATIONS", "NetworkPolicy"]
 
@@ -26,7 +24,7 @@ ACTIVATIONS: Mapping[str, Callable[[NDArray[np.float32]], NDArray[np.float32]]] 
 """What may stand between two layers."""
 
 
-class NetworkPolicy(RowPolicy):
+class NetworkPolicy(StoredPolicy):
     """A fully connected network from one leader's observation to its rudder, shared by all leaders.
 
     Parameters
@@ -87,21 +85,6 @@ class NetworkPolicy(RowPolicy):
         weight, bias = self._layers[-1]
         rudders: NDArray[np.float32] = np.clip(values @ weight + bias, -1.0, 1.0)[:, 0]
         return rudders
-
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the policy to an ``.npz`` file, whole or not at all.
-
-        Raises
-        ------
-        OSError
-            If the file cannot be written; what was there before is still there.
-        """
-        write_policy(path, *self._contents())
-
-    @property
-    def digest(self) -> str:
-        """The first digits of the SHA-256 of weights and layout."""
-        return digest(*self._contents())
 
     def _contents(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         header = {
