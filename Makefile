@@ -118,7 +118,7 @@ test-oldest: $(STAMPS)/venv ## the oldest supported versions, in .venv-oldest
 	  tests/boundary tests/envs tests/policies tests/rendering tests/runs tests/statistics \
 	  tests/comparison tests/calibration tests/cli $(PYTEST_ARGS)
 
-# Pages with code cells are executed, and what they trained is trained anew.
+# Pages with code cells are executed, and what they trained is trained again.
 docs: $(STAMPS)/docs $(STAMPS)/core ## build the pages, warnings are errors, into docs/_build/html
 	rm -rf docs/_build/leader
 	OMP_NUM_THREADS=1 $(BIN)/python -m sphinx --fail-on-warning --nitpicky --builder html docs docs/_build/html
@@ -183,7 +183,7 @@ throughput: $(STAMPS)/test $(STAMPS)/core ## measure speed beside VMAS and MPE2,
 soak: $(STAMPS)/test $(STAMPS)/core ## ten million control steps with random rudders, write docs/soak.md (minutes)
 	$(BIN)/python benches/soak.py $(SOAK_ARGS)
 
-# Counts hold on a busy machine, unlike times. INSTRUCTIONS=--write pins them anew.
+# Counts hold on a busy machine, unlike times. INSTRUCTIONS=--write writes new ones.
 instructions: ## count instructions of substeps and control steps, compare with benches/instructions.csv
 	@tests/need.sh valgrind valgrind || true
 	cargo bench --locked --bench instructions -- $(INSTRUCTIONS)

@@ -1,6 +1,6 @@
 """Measure what ``physics="training"`` does to order parameters, policies, and learning.
 
-    python baselines/training_physics.py                      # 64 episodes, policies trained anew
+    python baselines/training_physics.py                      # 64 episodes, policies trained again
     python baselines/training_physics.py --episodes 8 --samples 0
 
 Training physics step a flock by dt_s = 0.1 s with one relinearization instead of 0.02 s with none.

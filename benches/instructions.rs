@@ -1,7 +1,7 @@
 //! Instructions of a substep and of a control step, counted by valgrind's callgrind and held against
 //! `instructions.csv`: counts do not depend on what else the machine does.
 //!
-//! `cargo bench --bench instructions` compares, `-- --write` measures anew, `-- --strict` fails where valgrind
+//! `cargo bench --bench instructions` compares, `-- --write` measures again, `-- --strict` fails where valgrind
 //! is missing. Callgrind's own files stay in `target/instructions`, for `callgrind_annotate`.
 
 use flockenv::Flock;
@@ -120,7 +120,7 @@ impl Scene {
         }
     }
 
-    /// Goes on from a state: a little uncounted, then one cycle of phases (in a large flock half a second).
+    /// Continues from a state: a little uncounted, then one cycle of phases (in a large flock half a second).
     fn count(&self, state: &[u8]) -> Result<Done, Failure> {
         match self {
             Self::Flock(parameters) => {

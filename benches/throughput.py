@@ -1,7 +1,7 @@
 """Environment steps per second of flockenv and of others, in one run: `make throughput`.
 
 Every row is measured in a process of its own, in turn, in several rounds; the median counts. The
-numbers go to docs/throughput.toml and the page to docs/throughput.md, which `--page` writes anew
+numbers go to docs/throughput.toml and the page to docs/throughput.md, which `--page` writes again
 from the numbers.
 """
 
@@ -304,7 +304,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=5.0)
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--docs", type=Path, default=ROOT / "docs", help="folder of the page")
-    parser.add_argument("--page", action="store_true", help="write the page anew, measure nothing")
+    parser.add_argument("--page", action="store_true", help="write the page again, measure nothing")
     options = parser.parse_args()
     if options.row:
         print(json.dumps({"value": OWN[options.row][0](options.seconds)}))

@@ -30,7 +30,7 @@ def main() -> None:
 
 
 def filled(text: str) -> str:
-    """Return a page with each marked table made anew."""
+    """Return a page with each marked table made again."""
     return MARKED.sub(lambda found: f"{found[1]}\n{TABLES[found[2]]()}\n\n{found[4]}", text)
 
 

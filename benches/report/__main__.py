@@ -3,7 +3,7 @@
 DOCS is the folder of ``speed_vs_error.md``, with the tables in ``speed_vs_error`` beside it. FILES
 is the folder with the peers' versions; after a measurement it is given, figures are drawn, and
 ``made.toml`` beside the tables stores the date, the machine and the versions. Without FILES only
-the page is written anew, from the committed tables.
+the page is written again, from the committed tables.
 """
 
 from __future__ import annotations

@@ -68,7 +68,7 @@ def compare_leaders(
         Numbers of leaders; 0 is run once, whatever the policies.
     policies
         What makes each policy, by the name to list it under: such as those of `POLICIES`, or of
-        your own, such as models of stable-baselines3. Each is made anew for each number of leaders.
+        your own, such as models of stable-baselines3. Each is made for every number of leaders.
     seeds
         One episode each; of the range ``"evaluation"`` of `flockenv.runs.seeds.POLICY_SEEDS`.
     duration_s

@@ -150,7 +150,7 @@ class SteeringWindow(Window):
     """A window in which the arrow keys steer one boat, which has a ring around it.
 
     Left and right arrow hold the rudder at +1 (to port, counter-clockwise) and -1; space pauses and
-    goes on; + or the up arrow doubles the speed, - or the down arrow halves it.
+    continues; + or the up arrow doubles the speed, - or the down arrow halves it.
 
     Parameters
     ----------

@@ -240,7 +240,7 @@ def percentile_ends(
 
 
 def mean_replicates(values: NDArray[np.float64], seed: int = 0) -> NDArray[np.float64]:
-    """Return the mean of independent values as they are, then of values drawn anew.
+    """Return the mean of independent values as they are, then of resampled values.
 
     Returns
     -------
@@ -256,7 +256,7 @@ def grouped_replicates(
     statistic: Callable[[NDArray[np.int64]], float],
     seed: int = 0,
 ) -> NDArray[np.float64]:
-    """Return a statistic of rows as they are, then of rows drawn anew within each group.
+    """Return a statistic of rows as they are, then of rows resampled within each group.
 
     Parameters
     ----------

@@ -132,7 +132,7 @@ def resume(
     samples: int | None = None,
     report: Report = lambda progress: None,
 ) -> TrainingResult:
-    """Go on from a run's last checkpoint, exactly as if it had never stopped.
+    """Continue from a run's last checkpoint, exactly as if it had never stopped.
 
     Parameters
     ----------

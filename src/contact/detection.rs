@@ -22,7 +22,7 @@ impl ContactDetector {
     /// For checked parameters.
     pub fn new(parameters: &FlockParameters) -> Self {
         let hull = Hull::new(parameters);
-        // Boats drift by about a radius before the list is built anew.
+        // Boats drift by about a radius before the list is rebuilt.
         let skin = 0.8 * hull.radius;
         Self {
             hull,

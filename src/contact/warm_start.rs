@@ -41,7 +41,7 @@ impl WarmStartCache {
     }
 
     /// The impulse that each contact carried, 0 if it carried none, in a flock of so many boats. Where an end
-    /// slides off the other hull's end onto its side, a contact changes its name and goes on: it inherits the
+    /// slides off the other hull's end onto its side, a contact changes its name and continues: it inherits the
     /// impulse of a contact between the same boats that is there no more.
     ///
     /// Contacts mostly come in the order of the last substep, a few gone and a few new.
@@ -121,7 +121,7 @@ fn is_same(a: ContactKey, b: ContactKey) -> bool {
     (a.0 == b.0) & (a.2 == b.2) && a.1 == b.1
 }
 
-/// Whether contact k goes on with an entry's impulse under another name.
+/// Whether contact k continues with an entry's impulse under another name.
 fn is_heir(contacts: &[Contact], k: usize, &(known, impulse): &CachedImpulse) -> bool {
     let key = contacts[k].key();
     if !(impulse > 0.0 && (known.0, known.1) == (key.0, key.1) && contacts[k].second().is_some()) {

@@ -48,7 +48,7 @@ impl Flock {
         Self::new_while(&|| true, parameters, seed)
     }
 
-    /// As [`Self::new`], but large flocks take seconds to place: it asks now and then whether to go on.
+    /// As [`Self::new`], but large flocks take seconds to place: it asks now and then whether to continue.
     ///
     /// # Errors
     /// As for [`Self::new`]; [`FlockError::Interrupted`] where `keep_going` said no.
@@ -85,7 +85,7 @@ impl Flock {
         self.reset_while(&|| true, seed)
     }
 
-    /// As [`Self::reset`], asking now and then whether to go on.
+    /// As [`Self::reset`], asking now and then whether to continue.
     ///
     /// # Errors
     /// As for [`Self::new_while`]; the flock is unchanged then.

@@ -205,7 +205,7 @@ impl<T: Real> Recording<T> {
 /// Why a run pauses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pause {
-    /// The work it was given is done; it can go on at any time.
+    /// The work it was given is done; it can continue at any time.
     Work,
     /// A control step begins: [`Recorder::steer`] may give other rudder commands.
     Control,
@@ -217,13 +217,13 @@ pub enum Pause {
 #[derive(Debug, Clone)]
 struct Control {
     hz: f64,
-    begun: u64,
+    control_steps: u64,
     rudder: Vec<f64>,
 }
 
 impl Control {
     fn next(&self) -> Ticks {
-        ticks(self.begun as f64 / self.hz)
+        ticks(self.control_steps as f64 / self.hz)
     }
 }
 
@@ -283,7 +283,7 @@ impl<T: Real> Recorder<T> {
         }
         self.control = Some(Control {
             hz: control_hz,
-            begun: 0,
+            control_steps: 0,
             rudder: vec![0.0; self.flock.parameters().n_leaders],
         });
         Ok(self)
@@ -327,7 +327,7 @@ impl<T: Real> Recorder<T> {
                 && control.next() <= now
                 && !control.rudder.is_empty()
             {
-                control.begun += 1;
+                control.control_steps += 1;
                 return Ok(Pause::Control);
             }
             if self.taken == self.sampling.count() {

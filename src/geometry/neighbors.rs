@@ -36,7 +36,7 @@ impl NeighborList {
         self.builds
     }
 
-    /// Forgets the list, so that the next update builds it anew.
+    /// Forgets the list, so that the next update rebuilds it.
     pub fn clear(&mut self) {
         self.reference.clear();
         self.cutoff = 0.0;

@@ -14,7 +14,7 @@ pub struct PyFrameRenderer(Mutex<FrameRenderer>);
 
 impl PyFrameRenderer {
     fn lock(&self) -> MutexGuard<'_, FrameRenderer> {
-        // Every frame is drawn anew: nothing remains of one that was not finished.
+        // Every frame is drawn again: nothing remains of one that was not finished.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

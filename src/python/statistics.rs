@@ -9,7 +9,7 @@ use pyo3::types::{PyDict, PyTuple};
 
 macro_rules! statistics {
     ($($name:ident: $type:ty),+ $(,)?) => {
-        /// Running totals and worst cases since the flock was made or reset; snapshots carry them.
+        /// Running sums and worst cases since the flock was made or reset; snapshots carry them.
         ///
         /// Attributes
         /// ----------

@@ -1,5 +1,4 @@
-# SCRIPT still used
-"""Law: the search climbs, goes on exactly where it was, and leaves a policy of core parts alone."""
+"""Law: the search climbs, resumes exactly where it was, and its policy needs core parts alone."""
 
 import json
 import subprocess

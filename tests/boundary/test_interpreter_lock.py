@@ -1,6 +1,6 @@
 """Law: while a flock moves, other Python threads run; a flock in use elsewhere says so.
 
-Threads may not take the interpreter from each other for a minute: this one goes on only where the
+Threads may not take the interpreter from each other for a minute: this one continues only where the
 other one releases it. How long the other one takes does not matter.
 """
 

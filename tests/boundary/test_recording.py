@@ -194,16 +194,16 @@ def test_a_run_goes_on_from_a_snapshot_with_the_same_bits():
 
 
 def test_a_run_starts_where_it_is_given():
-    begun = flockenv.simulate(PARAMETERS, 3, 10.0)
-    state = {"pose": begun.pose[-1], "velocity": begun.velocity[-1], "time_s": 10.0}
+    first = flockenv.simulate(PARAMETERS, 3, 10.0)
+    state = {"pose": first.pose[-1], "velocity": first.velocity[-1], "time_s": 10.0}
     state["allow_overlap"] = True
     law = flockenv.policies.SteeringLaw()
     for policy in (None, law):
         run = flockenv.simulate(PARAMETERS, 4, 5.0, policy=policy, start=state)
-        assert np.array_equal(run.pose[0], begun.pose[-1])
+        assert np.array_equal(run.pose[0], first.pose[-1])
         assert run.time_s[[0, -1]].tolist() == [10.0, 15.0]
     flock = flockenv.Flock(PARAMETERS, 4)
-    flock.set_state(begun.pose[-1], begun.velocity[-1], 10.0, allow_overlap=True)
+    flock.set_state(first.pose[-1], first.velocity[-1], 10.0, allow_overlap=True)
     flock.advance(5.0)
     again = flockenv.simulate(PARAMETERS, 4, 5.0, 0.2, start=state)
     assert np.array_equal(again.pose[-1], flock.pose)

@@ -119,7 +119,7 @@ class ReplayPage:
             self.wait()
 
     def wait(self) -> None:
-        """Wait until the page has begun, or failed to."""
+        """Wait until the page has started, or failed to."""
         # Installed for these tests alone: nothing of it may be needed to collect them.
         from selenium.webdriver.support.ui import WebDriverWait
 
@@ -133,7 +133,7 @@ class ReplayPage:
             }
             player.controls.speed.value = 1;
             player.seek(player.begin)""")
-        self.settle()
+        self.wait_until_drawn()
 
     def is_playing(self) -> bool:
         return self.find("#play").get_attribute("aria-label") == "Pause"
@@ -173,20 +173,20 @@ class ReplayPage:
 
         keys = [getattr(Keys, name, name) for name in names]
         self.actions().send_keys(*keys).perform()
-        self.settle()
+        self.wait_until_drawn()
 
     def choose(self, selector: str, value: str) -> None:
         from selenium.webdriver.support.ui import Select
 
         Select(self.find(selector)).select_by_value(value)
-        self.settle()
+        self.wait_until_drawn()
 
     def click_at(self, selector: str, share: float) -> None:
         """Click at a share of an element's width, at half its height."""
         element = self.find(selector)
         x = (share - 0.5) * element.size["width"]
         self.actions().move_to_element_with_offset(element, round(x), 0).click().perform()
-        self.settle()
+        self.wait_until_drawn()
 
     def point_at(self, run: int, x: float, y: float) -> None:
         """Move the pointer to a place on a run's canvas."""
@@ -194,9 +194,9 @@ class ReplayPage:
         x, y = x - canvas.size["width"] / 2, y - canvas.size["height"] / 2
         move = self.actions().move_to_element_with_offset(canvas, round(x), round(y))
         move.perform()
-        self.settle()
+        self.wait_until_drawn()
 
-    def settle(self) -> None:
+    def wait_until_drawn(self) -> None:
         """Wait until the requested picture is drawn."""
         self.driver.execute_async_script(
             "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done))"

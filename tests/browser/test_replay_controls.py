@@ -52,7 +52,7 @@ def test_a_link_leads_to_a_time_and_a_speed(open_link, pages, law):
     assert page.text("#status") == ""
     page.click("#play")
     page.script("location.hash = 't=80.5&speed=4'")
-    page.settle()
+    page.wait_until_drawn()
     assert page.time() == 80.5
     assert page.find("#speed").get_attribute("value") == "4"
     page.check(law)
@@ -102,14 +102,14 @@ def test_it_stops_at_the_end_and_begins_again(page):
 
 def test_steps_and_keys(page, law):
     page.click("#forward")
-    page.settle()
+    page.wait_until_drawn()
     assert page.time() == 0.1
     page.press("ARROW_RIGHT", "ARROW_RIGHT")
     assert page.time() == 0.3
     page.press("ARROW_LEFT")
     assert page.time() == 0.2
     page.click("#back")
-    page.settle()
+    page.wait_until_drawn()
     assert page.time() == 0.1
     page.press("+")
     assert page.find("#speed").get_attribute("value") == "2"

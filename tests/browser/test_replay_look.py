@@ -35,13 +35,13 @@ def test_forces_are_drawn_where_hulls_touch(page, law):
     ]
     k, c = strong[len(strong) // 2]
     page.script("player.seek(arguments[0])", law.time_s[k])
-    page.settle()
+    page.wait_until_drawn()
     # A bar begins where hulls touch, and lies on the boat that is pushed.
     inside = law.contacts.point_cm[c] + 1.0 * law.contacts.normal[c]
     place = page.pixels(0, *map(float, inside))
     assert page.color(0, *place) == FORCE
     page.click("#forces")
-    page.settle()
+    page.wait_until_drawn()
     assert page.color(0, *place) != FORCE
 
 
@@ -95,7 +95,7 @@ def test_no_words_are_cut(open_page, law, pages, tmp_path, name, size):
         write_replay(path, {"a_name_without_a_space_" * 8: law, "many words in a name " * 9: law})
     page = open_page(path, size=size)
     page.script("player.pin(0); document.getElementById('about').open = true")
-    page.settle()
+    page.wait_until_drawn()
     cut = page.script("""
         const isCut = (each) => each.clientWidth > 0 && each.scrollWidth > each.clientWidth + 1
             || each.getBoundingClientRect().right > innerWidth + 1

@@ -222,7 +222,7 @@ def test_it_plays_inside_a_notebook(open_page, law, tmp_path):
     outside.click("#play")
     time.sleep(1.5)
     outside.click("#play")
-    outside.settle()
+    outside.wait_until_drawn()
     assert outside.time() > moment + 4.0
     outside.check(law)
     reaching = "try { return parent.document.title; } catch (error) { return error.name; }"

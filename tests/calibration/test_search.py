@@ -1,4 +1,4 @@
-"""Law: a fit is a function of its options; interrupted, it goes on as if it had not been."""
+"""Law: a fit is a function of its options; interrupted, it continues as if it had not been."""
 
 import itertools
 

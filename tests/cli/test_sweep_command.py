@@ -1,4 +1,4 @@
-"""`flockenv sweep` writes one table, goes on where it was, and refuses mistakes in one line."""
+"""`flockenv sweep` writes one table, continues where it was, and refuses mistakes in one line."""
 
 import json
 from pathlib import Path

@@ -17,7 +17,7 @@ spec.loader.exec_module(tables)
 @pytest.mark.parametrize("page", tables.PAGES, ids=lambda page: page.stem)
 def test_pages_show_the_committed_data(page):
     text = page.read_text(encoding="utf-8")
-    assert tables.filled(text) == text, "`make tables` writes them anew"
+    assert tables.filled(text) == text, "`make tables` writes them again"
 
 
 def test_every_table_is_on_one_page():

@@ -95,10 +95,10 @@ fn autoresets_begin_the_same_episode() {
             continue;
         }
         assert_eq!(now.envs()[0].final_observation(), second.observations);
-        let begun = step(&mut later, &actions).unwrap();
-        assert_eq!(first.observations, begun.observations);
-        assert_eq!(begun.rewards, [0.0; 2]);
-        assert_eq!(begun.truncated, [false]);
+        let fresh = step(&mut later, &actions).unwrap();
+        assert_eq!(first.observations, fresh.observations);
+        assert_eq!(fresh.rewards, [0.0; 2]);
+        assert_eq!(fresh.truncated, [false]);
     }
 }
 

@@ -11,14 +11,14 @@ import flockenv
 from flockenv import EpisodeError, FlockError, ParameterError
 
 OPTIONS = {"n_boats": 9, "n_leaders": 2, "episode_s": 1.0}
-FACES = {
+INTERFACES = {
     "single": lambda **options: flockenv.LeadersEnv(**options),
     "parallel": lambda **options: flockenv.parallel_env(**options),
     "vector": lambda **options: flockenv.LeadersVectorEnv(3, **options),
 }
 
 
-@pytest.fixture(params=FACES.values(), ids=FACES.keys())
+@pytest.fixture(params=INTERFACES.values(), ids=INTERFACES.keys())
 def interface(request):
     return lambda **options: request.param(**{**OPTIONS, **options})
 

@@ -81,8 +81,8 @@ def test_same_step_autoreset():
     np.testing.assert_array_equal(np.stack(list(infos["final_obs"])), expected[0])
     np.testing.assert_array_equal(rewards, expected[1])
     assert infos["final_info"]["_episode_summary"].all()
-    begun = plain.step(actions_of(venv, 0))[0]
-    np.testing.assert_array_equal(observations, begun)
+    fresh = plain.step(actions_of(venv, 0))[0]
+    np.testing.assert_array_equal(observations, fresh)
 
 
 def test_disabled_autoreset_waits_for_a_partial_reset():

@@ -1,4 +1,4 @@
-"""Law: a state put away in the middle of an episode goes on bit for bit."""
+"""Law: a state put away in the middle of an episode continues bit for bit."""
 
 import copy
 import pickle
@@ -23,7 +23,7 @@ VARIANTS = {
     "paper": {"preset": "paper"},
     "bias": {"speed_spread_cm_s": 3.0, "turning_bias": 0.1, "current_gain": 0.1},
 }
-FACES = {
+INTERFACES = {
     "single": lambda **options: flockenv.LeadersEnv(**options),
     "parallel": lambda **options: flockenv.parallel_env(**options),
     "vector": lambda **options: flockenv.LeadersVectorEnv(3, **options),
@@ -53,7 +53,7 @@ def equal(first, second):
 
 
 @pytest.mark.parametrize("variant", VARIANTS.values(), ids=VARIANTS.keys())
-@pytest.mark.parametrize("make", FACES.values(), ids=FACES.keys())
+@pytest.mark.parametrize("make", INTERFACES.values(), ids=INTERFACES.keys())
 @pytest.mark.parametrize("again", COPIES.values(), ids=COPIES.keys())
 def test_middle_of_an_episode(make, again, variant):
     options = {**OPTIONS, **variant}

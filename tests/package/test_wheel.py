@@ -72,7 +72,7 @@ class Installed:
     def __init__(self, folder: Path, interpreter: str, source: Path) -> None:
         self.bin, self.folder = folder / "venv" / "bin", folder
         subprocess.run([interpreter, "-m", "venv", str(folder / "venv")], check=True)
-        # Compiled crates are taken from where they are; the package itself is compiled anew.
+        # Compiled crates are taken from where they are; the package itself is compiled again.
         target = {"CARGO_TARGET_DIR": str(REPOSITORY / "target")}
         self.run("python", "-m", "pip", "install", "--quiet", str(source), **target)
 

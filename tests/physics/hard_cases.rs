@@ -103,7 +103,7 @@ fn ring_flock(p: &FlockParameters, spins: &[f64]) -> (Flock, f64) {
 #[test]
 fn a_closed_ring_of_touching_boats_turns_as_one() {
     // 36 contacts, 36 unknowns, and a state of stress that needs no load: the contact matrix is singular.
-    // One boat that slides along the wall at ω pushes the eleven others: all go on at ω/12.
+    // One boat that slides along the wall at ω pushes the eleven others: all continue at ω/12.
     for scheme in VELOCITY_SCHEMES {
         let mut spins = [0.0; 12];
         spins[0] = 0.6;

@@ -119,7 +119,7 @@ fn placement_ends_where_it_is_told_to() {
             let keep_going = || asked.fetch_add(1, Ordering::Relaxed) < patience;
             let placed = Flock::new_while(&keep_going, p, 1);
             assert_eq!(placed.err(), Some(FlockError::Interrupted), "{n_boats}");
-            assert!(asked.into_inner() < 50, "it goes on asking");
+            assert!(asked.into_inner() < 50, "it keeps asking");
         }
     }
 }

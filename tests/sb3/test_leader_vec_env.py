@@ -59,8 +59,8 @@ def test_end_of_an_episode():
         np.testing.assert_array_equal(info["terminal_observation"], row)
         assert info["episode_summary"]["steps"] == STEPS
         assert info["terminal_state"] in venv.state_space
-    begun = reference.step(actions.reshape(3, 2))[0].reshape(6, -1)
-    np.testing.assert_array_equal(observations, begun)
+    fresh = reference.step(actions.reshape(3, 2))[0].reshape(6, -1)
+    np.testing.assert_array_equal(observations, fresh)
     assert len(venv.reset_infos) == 6
 
 

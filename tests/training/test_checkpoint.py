@@ -175,6 +175,6 @@ def test_headers_with_any_entry(
     header = reported(whole)
     changed(name, value)(header)
     path = written(tmp_path_factory.mktemp("run"), whole, header)
-    # Where it goes on, it lacks the policy that a whole run has beside its checkpoint.
+    # Where it continues, it lacks the policy that a whole run has beside its checkpoint.
     with suppress(ParameterError, FileNotFoundError):
         training.resume(path.parent, samples=576)

@@ -56,7 +56,7 @@ def test_a_folder_takes_one_training_at_a_time(tiny: TrainingSettings, tmp_path:
 @pytest.mark.parametrize("use_sde", [False, True])
 def test_resumed_is_uninterrupted(tiny: TrainingSettings, tmp_path: Path, use_sde: bool) -> None:
     # Checkpoints every other rollout, a kill after the third: one rollout is done again. Lost
-    # frames make sure that the camera goes on where it was, too.
+    # frames make sure that the camera continues where it was, too.
     settings = tiny.replace(
         checkpoint_every=384,
         validate_every=768,

@@ -81,8 +81,8 @@ impl Task {
         }
     }
 
-    /// Lasting so long after a warm-up, recorded every so often.
-    fn lasting(mut self, warm_up_s: f64, duration_s: f64, record_s: f64) -> Self {
+    /// Timed for so long after a warm-up, recorded every so often.
+    fn timed(mut self, warm_up_s: f64, duration_s: f64, record_s: f64) -> Self {
         let steps = |seconds: f64| (seconds / self.dt_s).round() as usize;
         self.warm_up_steps = steps(warm_up_s);
         self.steps = steps(duration_s);
@@ -132,11 +132,11 @@ pub fn write_tasks(files: &Path, effort: Effort) {
             let [first, second] = horizon::HORIZONS_S;
             tasks.push(
                 Task::new("horizon", scene.name(), &parameters, 1, &starts)
-                    .lasting(0.0, second, first),
+                    .timed(0.0, second, first),
             );
         }
         let sliding = Task::new("slide", "", &at(slide::scene()), 1, &slide::starts());
-        tasks.push(sliding.lasting(0.0, slide::SLIDE_S, slide::SLIDE_S));
+        tasks.push(sliding.timed(0.0, slide::SLIDE_S, slide::SLIDE_S));
         let pushing = Task::new(
             "wall_push",
             "",
@@ -144,7 +144,7 @@ pub fn write_tasks(files: &Path, effort: Effort) {
             1,
             &[wall_push::start(1e-9)],
         );
-        tasks.push(pushing.lasting(
+        tasks.push(pushing.timed(
             wall_push::SETTLING_S,
             wall_push::AVERAGED_S,
             wall_push::AVERAGED_S,
@@ -156,7 +156,7 @@ pub fn write_tasks(files: &Path, effort: Effort) {
             1,
             &[momentum::start()],
         );
-        tasks.push(flying.lasting(0.0, momentum::FLIGHT_S, momentum::FLIGHT_S));
+        tasks.push(flying.timed(0.0, momentum::FLIGHT_S, momentum::FLIGHT_S));
     }
     let parameters = FlockParameters {
         dt_s: STEP_S,
@@ -165,7 +165,7 @@ pub fn write_tasks(files: &Path, effort: Effort) {
     for seed in 1..=effort.choose(2, ORDER_SEEDS) {
         let start = Start::placed(&parameters, seed);
         let task = Task::new("order", "", &parameters, seed, &[start]);
-        tasks.push(task.lasting(0.0, order::run_s(effort), order::FRAME_S));
+        tasks.push(task.timed(0.0, order::run_s(effort), order::FRAME_S));
     }
     fs::create_dir_all(files).expect("the folder can be made");
     let text = serde_json::to_string(&tasks).expect("tasks are plain data");
@@ -179,6 +179,6 @@ fn timed_run(scene: Scene, parameters: FlockParameters, seed: u64, effort: Effor
     let block_steps = (Scene::BLOCK_S / parameters.dt_s).round() as usize;
     Task {
         block_steps,
-        ..task.lasting(speed::WARM_UP_S, timed_s, parameters.dt_s)
+        ..task.timed(speed::WARM_UP_S, timed_s, parameters.dt_s)
     }
 }

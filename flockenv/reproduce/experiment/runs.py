@@ -56,7 +56,7 @@ def resampled(
     statistic: Callable[[pd.DataFrame], float],
     seed: int = 0,
 ) -> NDArray[np.float64]:
-    """Return a statistic of the runs as they are, then of runs drawn anew within each group.
+    """Return a statistic of the runs as they are, then of runs resampled within each group.
 
     Returns
     -------

@@ -71,9 +71,9 @@ def _cycle_states(run: Recording) -> NDArray[np.str_]:
     samples, states, _ = _frame_states(run)
     window = np.cumsum(np.diff(run.time_s[samples], prepend=-10.0) > 1.0) - 1
     counts = (states[:, None] == STATES).astype(np.int64)
-    totals = np.zeros((window[-1] + 1, len(STATES)), np.int64)
-    np.add.at(totals, window, counts)
-    return np.asarray(STATES[totals.argmax(axis=1)])
+    summed = np.zeros((window[-1] + 1, len(STATES)), np.int64)
+    np.add.at(summed, window, counts)
+    return np.asarray(STATES[summed.argmax(axis=1)])
 
 
 def _cycle_s(bw_s: float) -> float:
@@ -122,7 +122,7 @@ def _table2(settings: Settings, results: Results) -> Outcome:
 
 
 def _leaving(series: Sequence[NDArray[np.str_]], bw_s: float) -> NDArray[np.float64]:
-    """Time in each state in s, then changes out of each, over runs: as they are, and as drawn anew.
+    """Time in each state in s, then changes out of each, over runs: as they are, and resampled.
 
     Shape (resamples + 1, 2, states).
     """

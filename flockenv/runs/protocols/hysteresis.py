@@ -159,7 +159,7 @@ def simulate_prepared(
 def _changes(
     scenes: Sequence[FlockParameters], duration_s: float, sample_hz: float
 ) -> list[Change]:
-    """Return when each of the scenes begins, at samples; the first has begun already."""
+    """Return when each of the scenes begins, at samples; the first has started already."""
     count = math.floor(duration_s * sample_hz * (1 + 1e-12))
     turns = [place * len(scenes) // max(count, 1) for place in range(count)]
     return [

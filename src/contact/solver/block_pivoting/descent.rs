@@ -13,7 +13,7 @@ use crate::contact::solver::SolveReport;
 const CONTRADICTION: f64 = 1e9;
 
 impl IslandSolver {
-    /// Solves the island anew, from no impulses at all.
+    /// Solves the island again, from no impulses at all.
     pub(super) fn descend(&mut self, regularization: f64, report: &mut SolveReport) {
         let count = self.rows.rows.len();
         for k in 0..count {
