@@ -343,6 +343,27 @@ def parameters() -> str:
     return markdown(["field", "unit", *presets, "accepted", "meaning"], body)
 
 
+# --- tracks ---------------------------------------------------------------------------------------
+
+
+def track_errors() -> str:
+    """Return the mean absolute errors of what tracks of a camera say of a flock."""
+    file = "results/track_errors.csv"
+    names = {
+        "psi_o": "Ψ_o",
+        "nematic": "Ψ_n",
+        "milling": "M",
+        "psi_v": "Ψ_v [cm/s]",
+        "largest_cluster": "largest cluster",
+    }
+    body = []
+    for camera in dict.fromkeys(row["camera"] for row in rows(file)):
+        runs = rows(file, camera=camera)
+        means = (sum(float(row[name]) for row in runs) / len(runs) for name in names)
+        body.append([camera, *(f"{mean:.2g}" for mean in means)])
+    return markdown(["camera", *names.values()], body)
+
+
 TABLES: dict[str, Callable[[], str]] = {
     "parameters": parameters,
     "easy": easy,
@@ -362,6 +383,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "ppo-search": ppo_search,
     "fit-targets": fit_targets,
     "fit-variants": fit_variants,
+    "track-errors": track_errors,
 }
 """How each table is made."""
 

@@ -11,6 +11,7 @@ import typer
 import typer.core
 
 from flockenv._core import __version__
+from flockenv.cli.analyze import analyze, export
 from flockenv.cli.compare import compare
 from flockenv.cli.console import (
     INTERRUPTED,
@@ -68,6 +69,8 @@ COMMANDS = (
     demo,
     run,
     replay,
+    analyze,
+    export,
     play,
     compare,
     evaluate,

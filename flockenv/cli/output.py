@@ -33,14 +33,27 @@ def printable(name: str | os.PathLike[str]) -> str:
     return os.fspath(name).encode("utf-8", "surrogateescape").decode("utf-8", "replace")
 
 
-def load_recording(path: Path) -> Recording:
-    """Return a recording.
+def load_recording(path: Path, layout: Path | None = None) -> Recording:
+    """Return a recording, or one made of tracks; what of these was left out is printed.
+
+    Parameters
+    ----------
+    path
+        An ``.npz`` file of a recording; or tracks: a table, or with `layout` also arrays.
+    layout
+        How tracks lie in the file; by default as the TOML file beside it says.
 
     Raises
     ------
     ParameterError
-        If the file cannot be read, is damaged, or no recording; the message names it.
+        If the file cannot be read, is damaged, or neither; the message names it.
     """
+    from flockenv.tracks import SUFFIXES, read_layout, read_tracks
+
+    if layout is not None or path.suffix.lower() in SUFFIXES:
+        tracks = read_tracks(path, None if layout is None else read_layout(layout))
+        say(f"{printable(path)}: {tracks.report}", errors)
+        return tracks.to_recording()
     try:
         return Recording.load(path)
     except OSError as error:

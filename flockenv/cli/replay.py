@@ -13,7 +13,9 @@ __all__ = ["replay"]
 
 
 def replay(
-    first: Annotated[Path, typer.Argument(metavar="RUN", help="A recording: an .npz file.")],
+    first: Annotated[
+        Path, typer.Argument(metavar="RUN", help="A recording (.npz), or tracks (.csv, .parquet).")
+    ],
     second: Annotated[
         Path | None, typer.Argument(metavar="OTHER", help="Another one to play beside it.")
     ] = None,
@@ -32,6 +34,7 @@ def replay(
 ) -> None:
     """Write recordings as one page that plays them: in any browser, without a network.
 
+    Tracks of real flocks are described by a TOML file beside them, see `docs/tracks.md`.
     Play, scrub, change the speed; trails, contact forces, a boat's numbers under the pointer, and
     order parameters in step with the picture. Two recordings play side by side.
 

@@ -146,8 +146,9 @@ def _suffix(unit: str) -> str:
 
 
 def _mean(values: NDArray[np.float64]) -> float | None:
-    """Return the mean; None of nothing, and where there is no normal boat."""
-    return float(values.mean()) if len(values) and np.isfinite(values).all() else None
+    """Return the mean over the samples where there are enough boats; None where there are none."""
+    defined = values[np.isfinite(values)]
+    return float(defined.mean()) if len(defined) else None
 
 
 def in_words(summary: dict[str, float | int | None]) -> str:

@@ -9,7 +9,15 @@ from flockenv import _core
 from flockenv.errors import ParameterError
 from flockenv.flock import ContactSeries
 
-__all__ = ["CONTACTS", "PHASES", "PRECISIONS", "check_array", "check_contacts"]
+__all__ = [
+    "CONTACTS",
+    "PHASES",
+    "PRECISIONS",
+    "arrays_equal",
+    "check_array",
+    "check_contacts",
+    "check_ids",
+]
 
 PHASES = np.array(_core.phase_names())
 PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
@@ -24,15 +32,36 @@ def check_array(
     dtypes: tuple[np.dtype[Any], ...],
     *,
     all_nan: bool = False,
+    gaps: bool = False,
 ) -> None:
-    """Refuse anything else than an array of a shape and dtype, finite or all NaN."""
+    """Refuse anything else than an array of a shape and dtype, finite, all NaN or with gaps."""
     if not isinstance(array, np.ndarray) or array.dtype not in dtypes:
         found = array.dtype if isinstance(array, np.ndarray) else type(array).__name__
         raise ParameterError(f"{name} is of {found}, expected an array of {dtypes[0]}")
     if array.shape != shape:
         raise ParameterError(f"{name} has shape {array.shape}, expected {shape}")
-    if array.dtype.kind == "f" and not (np.isnan if all_nan else np.isfinite)(array).all():
+    if gaps:
+        absent = np.isnan(array)
+        rows = absent.any(axis=-1) != absent.all(axis=-1) if array.ndim == 3 else np.zeros(1, bool)
+        if np.isinf(array).any() or rows.any():
+            raise ParameterError(f"{name} must be finite, but for boats that are not there")
+    elif array.dtype.kind == "f" and not (np.isnan if all_nan else np.isfinite)(array).all():
         raise ParameterError(f"{name} must be {'undefined (NaN)' if all_nan else 'finite'}")
+
+
+def check_ids(ids: Any, boats: int) -> None:
+    """Refuse names that are not as many as boats, or not different."""
+    if not isinstance(ids, np.ndarray) or ids.dtype.kind != "U" or ids.shape != (boats,):
+        raise ParameterError(f"ids must be an array of str of shape ({boats},)")
+    if len(set(ids.tolist())) != boats:
+        raise ParameterError("ids must differ from each other")
+
+
+def arrays_equal(a: NDArray[Any] | None, b: NDArray[Any] | None) -> bool:
+    """Return whether two arrays are equal, gaps included, or both None."""
+    if a is None or b is None:
+        return a is b
+    return np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
 
 
 def check_contacts(contacts: ContactSeries, samples: int, boats: int) -> None:

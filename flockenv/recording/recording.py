@@ -4,21 +4,30 @@ import html
 import importlib
 import math
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from flockenv._io.array_file import read_arrays, write_arrays
-from flockenv._io.extras import require
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import ContactSeries, Flock, OrderSeries
 from flockenv.parameters import FlockParameters
-from flockenv.recording.checks import CONTACTS, PHASES, PRECISIONS, check_array, check_contacts
+from flockenv.recording.checks import (
+    CONTACTS,
+    PHASES,
+    PRECISIONS,
+    arrays_equal,
+    check_array,
+    check_contacts,
+    check_ids,
+)
 from flockenv.recording.order import ORDER, RECORDED, RecordedOrder
-from flockenv.recording.stored import ARRAYS, TIMES, arrays_of, fields_from
+from flockenv.recording.stored import ARRAYS, OPTIONAL, arrays_of, fields_from
+from flockenv.recording.tables import dataset_of, table_of
 
 if TYPE_CHECKING:
     import pandas
@@ -28,11 +37,6 @@ __all__ = ["DISCARDED_SHARE", "Recording"]
 
 DISCARDED_SHARE = 0.1
 """The share of a run, at its start, that no figure uses."""
-
-_COMPONENTS = {
-    "pose": ("x_cm", "y_cm", "heading_rad"),
-    "velocity": ("velocity_x_cm_s", "velocity_y_cm_s", "angular_velocity_rad_s"),
-}
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -74,6 +78,10 @@ class Recording:
     duration_s : float
         When the run ended, in s from time 0; the samples may be a part of it. The time of the last
         sample if not given.
+    ids : str array, shape (n,), or None
+        Names of the boats of `from_tracks`, leaders first; None for a simulated flock. Only where
+        they are given, rows of `pose` and `velocity` may be NaN, which stand for boats that are not
+        there, the quantities of too few boats are NaN, and `phase` may be empty: not known.
 
     Raises
     ------
@@ -94,6 +102,7 @@ class Recording:
     rudder: NDArray[np.float64] | None = None
     policy: str | None = None
     duration_s: float = math.nan
+    ids: NDArray[np.str_] | None = None
 
     def __post_init__(self) -> None:
         times = np.shape(self.time_s)[:1]
@@ -102,9 +111,12 @@ class Recording:
         check_array("time_s", self.time_s, times, PRECISIONS[:1])
         check_array("phase", self.phase, times, (PHASES.dtype,))
         check_array("in_analysis_window", self.in_analysis_window, times, (np.dtype(np.bool_),))
-        check_array("pose", self.pose, state, PRECISIONS)
-        check_array("velocity", self.velocity, state, (self.pose.dtype,))
-        if not np.isin(self.phase, PHASES).all():
+        tracked = self.ids is not None
+        check_array("pose", self.pose, state, PRECISIONS, gaps=tracked)
+        check_array("velocity", self.velocity, state, (self.pose.dtype,), gaps=tracked)
+        if self.ids is not None:
+            check_ids(self.ids, self.parameters.n_boats)
+        if not np.isin(self.phase, [*PHASES, ""] if tracked else PHASES).all():
             raise ParameterError(f"phase holds other names than {', '.join(PHASES)}")
         if math.isnan(self.duration_s) and len(self.time_s) > 0:
             object.__setattr__(self, "duration_s", float(self.time_s[-1]))
@@ -119,7 +131,8 @@ class Recording:
         for each in RECORDED:
             values = getattr(self.order, each.name)
             undefined = normal_boats < each.least_boats
-            check_array(f"order.{each.name}", values, times, PRECISIONS[:1], all_nan=undefined)
+            options = {"gaps": True} if tracked else {"all_nan": undefined}
+            check_array(f"order.{each.name}", values, times, PRECISIONS[:1], **options)
         object.__setattr__(self, "order", RecordedOrder(self.time_s, self.order))
         seed: Any = self.seed
         if not isinstance(seed, int) or not 0 <= seed < 2**64:
@@ -139,11 +152,15 @@ class Recording:
             return NotImplemented
         plain = ("order", "parameters", "seed", "version", "contacts", "policy", "duration_s")
         return all(getattr(self, name) == getattr(other, name) for name in plain) and all(
-            np.array_equal(getattr(self, name), getattr(other, name))
-            for name in (*ARRAYS, "rudder")
+            arrays_equal(getattr(self, name), getattr(other, name)) for name in (*ARRAYS, *OPTIONAL)
         )
 
     def __repr__(self) -> str:
+        if self.ids is not None:
+            return (
+                f"<flockenv.Recording of {self.parameters.n_boats} tracked boats, "
+                f"{len(self)} samples to {self.duration_s} s>"
+            )
         return (
             f"<flockenv.Recording of {self.parameters.n_boats} boats, seed {self.seed}, "
             f"{len(self)} samples to {self.duration_s} s>"
@@ -168,14 +185,19 @@ class Recording:
                 f"time_s = {time_s!r} is not accepted: a time from {begin} to {end} s"
             )
         sample = int(np.searchsorted(self.time_s, time_s, side="right")) - 1
+        there = np.isfinite(self.pose[sample, :, 0])
+        if not there.any():
+            raise ParameterError(f"no boat is there at {time_s!r} s")
         state = {
-            "pose": self.pose[sample].astype(np.float64),
-            "velocity": self.velocity[sample].astype(np.float64),
+            "pose": self.pose[sample, there].astype(np.float64),
+            "velocity": np.nan_to_num(self.velocity[sample, there].astype(np.float64)),
             "time_s": float(self.time_s[sample]),
-            # Single precision leaves overlaps of a rounding.
+            # Single precision leaves overlaps of a rounding, and so do cameras.
             "allow_overlap": True,
         }
-        return Flock.from_state(self.parameters, self.seed, state)
+        leaders = int(there[: self.parameters.n_leaders].sum())
+        parameters = self.parameters.replace(n_boats=int(there.sum()), n_leaders=leaders)
+        return Flock.from_state(parameters, self.seed, state)
 
     def to_dataframe(self, *, boats: bool = False) -> "pandas.DataFrame":
         """Return the recording as a table of pandas (extra ``plot``).
@@ -184,30 +206,21 @@ class Recording:
         ----------
         boats
             False: one row per sample, with its time, phase and order parameters. True: one row per
-            sample and boat, with the boat's pose and velocity.
+            sample and boat that is there, with the boat's pose and velocity.
 
         Returns
         -------
         pandas.DataFrame
             Columns ``time_s``, ``phase``, ``in_analysis_window``, then the order parameters; or
-            ``boat``, ``is_leader``, ``x_cm``, ``y_cm``, ``heading_rad``, ``velocity_x_cm_s``,
-            ``velocity_y_cm_s`` and ``angular_velocity_rad_s``.
+            ``boat``, ``is_leader``, ``id`` (of tracked boats), ``x_cm``, ``y_cm``, ``heading_rad``,
+            ``velocity_x_cm_s``, ``velocity_y_cm_s`` and ``angular_velocity_rad_s``.
 
         Raises
         ------
         MissingExtraError
             If pandas is not installed.
         """
-        dataframe: type[pandas.DataFrame] = require("pandas", "plot").DataFrame
-        columns: dict[str, NDArray[Any]] = {name: getattr(self, name) for name in TIMES}
-        if not boats:
-            return dataframe(columns | {name: getattr(self.order, name) for name in ORDER})
-        count = self.pose.shape[1]
-        columns = {name: np.repeat(values, count) for name, values in columns.items()}
-        columns["boat"] = np.tile(np.arange(count), len(self))
-        columns["is_leader"] = columns["boat"] < self.parameters.n_leaders
-        columns |= {name: values.ravel() for name, values in self._motion().items()}
-        return dataframe(columns)
+        return table_of(self, boats)
 
     def to_xarray(self) -> "xarray.Dataset":
         """Return the recording as a dataset of xarray (extra ``sweep``).
@@ -218,37 +231,15 @@ class Recording:
             Dimensions ``time_s`` and ``boat``. Variables: the phase, the analysis window and the
             order parameters by time; ``x_cm``, ``y_cm``, ``heading_rad``, ``velocity_x_cm_s``,
             ``velocity_y_cm_s`` and ``angular_velocity_rad_s`` by time and boat. Coordinate
-            ``is_leader`` by boat. Attributes: ``seed``, ``version``, and ``parameters`` as TOML.
+            ``is_leader`` by boat, and ``id`` of tracked boats. Numbers have an attribute ``units``.
+            Attributes: ``seed``, ``version``, and ``parameters`` as TOML.
 
         Raises
         ------
         MissingExtraError
             If xarray is not installed.
         """
-        dataset: type[xarray.Dataset] = require("xarray", "sweep").Dataset
-        boats = np.arange(self.pose.shape[1])
-        by_time = {name: getattr(self, name) for name in TIMES[1:]}
-        by_time |= {name: getattr(self.order, name) for name in ORDER}
-        variables: dict[str, Any] = {name: ("time_s", each) for name, each in by_time.items()}
-        variables |= {name: (("time_s", "boat"), each) for name, each in self._motion().items()}
-        is_leader = ("boat", boats < self.parameters.n_leaders)
-        return dataset(
-            variables,
-            {"time_s": self.time_s, "boat": boats, "is_leader": is_leader},
-            {
-                "seed": np.uint64(self.seed),
-                "version": self.version,
-                "parameters": self.parameters.to_toml(),
-            },
-        )
-
-    def _motion(self) -> dict[str, NDArray[np.floating[Any]]]:
-        """Return poses and velocities by component, each (t, n)."""
-        return {
-            name: getattr(self, array)[..., component]
-            for array, names in _COMPONENTS.items()
-            for component, name in enumerate(names)
-        }
+        return dataset_of(self)
 
     def _repr_html_(self) -> str:
         """Return the replay page in a frame, for notebooks; the text where it does not fit."""
@@ -258,6 +249,63 @@ class Recording:
             return str(replay.inline_replay(self, "recording"))
         except ParameterError:
             return f"<code>{html.escape(repr(self))}</code>"
+
+    @classmethod
+    def from_tracks(
+        cls,
+        time_s: ArrayLike,
+        pose: ArrayLike,
+        *,
+        pool: Any,
+        hull: tuple[float, float] = (5.0, 0.5),
+        velocity: ArrayLike | None = None,
+        phase: ArrayLike | None = None,
+        ids: Sequence[str] | None = None,
+        leaders: Sequence[str] = (),
+        target: str = "cw",
+    ) -> Self:
+        """Return tracks of real boats, or of anything else that heads somewhere, as a recording.
+
+        It is analyzed, replayed and exported like a simulated one. Quantities at a time are those
+        of the normal boats that have a pose and a velocity then.
+
+        Parameters
+        ----------
+        time_s
+            Times in s, increasing, shape (t,).
+        pose
+            Shape (t, n, 3): [x cm, y cm from the pool's center, heading rad counter-clockwise from
+            x]. Rows of NaN where a boat is not there.
+        pool
+            "table-1", "500-boats", or the outer and the inner radius in cm; (inf, 0) for none.
+        hull
+            Radius in cm, and half the length of the straight part in radii; (r, 0) is a disc.
+        velocity
+            Shape (t, n, 3) in cm/s, cm/s and rad/s. None: differences of the poses, central ones
+            where a boat is there before and after; a boat that is there for one sample has none.
+        phase
+            "fw", "nop1", "bw" or "nop2" at each time, shape (t,). None: not known, and all samples
+            count as analyzed.
+        ids
+            A name for each boat, shape (n,); "0", "1", … by default.
+        leaders
+            Those of the names that lead. They come first in the recording.
+        target
+            Where they lead, "cw" or "ccw"; the direction that signed order counts towards.
+
+        Raises
+        ------
+        ParameterError
+            For shapes that do not match, rows of which a part is NaN, no pose at all, speeds above
+            10 m/s (in the median of a boat), more than a tenth of the centers outside the pool, and
+            for names that are unknown or there twice.
+        """
+        # Tracks stand downstream of recordings, and nothing else here needs them.
+        tracks: Any = importlib.import_module("flockenv.tracks.assemble")
+        fields = tracks.recording_fields(
+            time_s, pose, pool, hull, velocity, phase, ids, leaders, target
+        )
+        return cls(**fields)
 
     @property
     def has_poses(self) -> bool:

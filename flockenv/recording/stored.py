@@ -13,10 +13,12 @@ from flockenv.parameters import FlockParameters
 from flockenv.recording.checks import CONTACTS, PRECISIONS, check_array
 from flockenv.recording.order import ORDER
 
-__all__ = ["ARRAYS", "TIMES", "arrays_of", "fields_from"]
+__all__ = ["ARRAYS", "OPTIONAL", "TIMES", "arrays_of", "fields_from"]
 
 TIMES = ("time_s", "phase", "in_analysis_window")
 ARRAYS = (*TIMES, "pose", "velocity")
+OPTIONAL = ("rudder", "ids")
+"""Arrays that a recording may lack."""
 
 _FORMAT = "flockenv recording 3"
 # Format 1 held Section 3.2's six order parameters, and neither the policy nor the duration; later
@@ -30,8 +32,7 @@ def arrays_of(fields: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
     """Return the arrays of the file of a recording with these fields, by name."""
     arrays = {name: fields[name] for name in ARRAYS}
     arrays |= {f"order_{name}": getattr(fields["order"], name) for name in ORDER}
-    if fields["rudder"] is not None:
-        arrays["rudder"] = fields["rudder"]
+    arrays |= {name: fields[name] for name in OPTIONAL if fields[name] is not None}
     if fields["contacts"] is not None:
         arrays |= {f"contacts_{name}": getattr(fields["contacts"], name) for name in CONTACTS}
     texts = {
@@ -61,7 +62,7 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
     texts = ("format", "version", "parameters", "policy")
     order = [name for name in ORDER if name in _FIRST_ORDER or f"order_{name}" in arrays]
     expected = {*ARRAYS, *(f"order_{name}" for name in order), *texts, "seed", "duration_s"}
-    expected |= {"rudder"} & arrays.keys()
+    expected |= {*OPTIONAL} & arrays.keys()
     with_contacts = {f"contacts_{name}" for name in CONTACTS}
     has_contacts = not with_contacts.isdisjoint(arrays)
     expected |= with_contacts if has_contacts else set()
@@ -87,7 +88,7 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
         "version": version,
         "policy": policy or None,
         "duration_s": float(arrays["duration_s"]),
-        "rudder": arrays.get("rudder"),
+        **{name: arrays.get(name) for name in OPTIONAL},
         "contacts": None if contacts is None else ContactSeries(*contacts),
     }
 

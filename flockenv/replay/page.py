@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv._io.atomic_write import atomic_write
@@ -231,7 +232,9 @@ def _run(
         "target": parameters.target if parameters.n_leaders else None,
         "bw_s": parameters.bw_s,
         "lengths": _lengths(parameters),
-        "phases": PHASES.tolist(),
+        # Of tracks the phases may be unknown.
+        "phases": PHASES.tolist() if _has_phases(recording) else [],
+        "ids": None if recording.ids is None else recording.ids.tolist(),
         "samples": len(recording),
         "every": every,
         "data": _series(recording, every, quantities),
@@ -255,8 +258,13 @@ def _series(recording: Recording, every: int, quantities: list[ShownQuantity]) -
     packer.add("time_s", recording.time_s[shown], 0.0005)
     phase = (recording.phase[shown, None] == PHASES).argmax(axis=1)
     packer.add_plain("phase", phase)
-    packer.add_plain("in_analysis_window", recording.in_analysis_window[shown])
+    packer.add_plain(
+        "in_analysis_window", recording.in_analysis_window[shown] & _has_phases(recording)
+    )
     pose, velocity = recording.pose[shown], recording.velocity[shown]
+    if recording.ids is not None:
+        packer.add_plain("present", np.isfinite(pose[..., 0]))
+        pose, velocity = _held(pose), np.nan_to_num(velocity)
     packer.add("position_cm", pose[..., :2], _POSITION)
     packer.add("heading", pose[..., 2], _ANGLE)
     packer.add("speed_cm_s", np.hypot(velocity[..., 0], velocity[..., 1]), _SPEED)
@@ -274,6 +282,22 @@ def _series(recording: Recording, every: int, quantities: list[ShownQuantity]) -
     if recording.contacts is not None:
         _add_contacts(packer, recording, recording.contacts, every)
     return packer.text()
+
+
+def _has_phases(recording: Recording) -> bool:
+    return bool((recording.phase != "").all())
+
+
+def _held(pose: NDArray[Any]) -> NDArray[Any]:
+    """Return poses in which a boat that is not there is where it was, or first where it will be."""
+    last = np.where(np.isfinite(pose[..., 0]), np.arange(len(pose))[:, None], -1)
+    last = np.maximum.accumulate(last, axis=0)
+    first = np.isfinite(pose[..., 0]).argmax(axis=0)
+    held: NDArray[Any] = np.take_along_axis(
+        pose, np.where(last < 0, first, last)[..., None], axis=0
+    )
+    held[np.isnan(held)] = 0.0
+    return held
 
 
 def _add_contacts(

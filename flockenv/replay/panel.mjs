@@ -20,7 +20,7 @@ export class Panel {
     const title = element("h2");
     const swatch = element("span", `swatch run-${place + 1}`);
     title.append(...(several ? [swatch] : []), element("span", "name", run.name),
-      element("span", "faint facts", `seed ${run.seed} · flockenv ${run.version}`));
+      element("span", "faint facts", run.ids ? "tracks" : `seed ${run.seed} · flockenv ${run.version}`));
     this.picture = element("div", "picture");
     this.canvas = element("canvas");
     this.canvas.setAttribute("role", "img");
@@ -46,7 +46,7 @@ export class Panel {
     const heading = element("span", "faint", "motors");
     heading.title = "The phase of the cycle that the motors of all boats go through together";
     phases.append(heading, ...this.phases);
-    corner.append(this.time, phases);
+    corner.append(this.time, ...(this.phases.length > 0 ? [phases] : []));
     return corner;
   }
 
@@ -56,9 +56,11 @@ export class Panel {
     if (run.target !== null) {
       corner.append(element("div", "target", run.target === "cw" ? "target ↻ cw" : "target ↺ ccw"));
     }
-    const backward = element("div", "", `backward ${fixed(run.bw_s, 2)} s`);
-    backward.title = "bw_s, how long the boats back up in each cycle: the longer, the noisier";
-    corner.append(backward);
+    if (!run.ids) {
+      const backward = element("div", "", `backward ${fixed(run.bw_s, 2)} s`);
+      backward.title = "bw_s, how long the boats back up in each cycle: the longer, the noisier";
+      corner.append(backward);
+    }
     if (run.leaders > 0) {
       const leaders = element("div");
       leaders.append(element("span", "swatch leader"), `${run.leaders} leader${run.leaders > 1 ? "s" : ""}`);
@@ -130,12 +132,12 @@ export class Panel {
   }
 
   #showCard(boat, sample) {
-    const isShown = boat !== null && boat < this.run.boats;
+    const isShown = boat !== null && boat < this.run.boats && this.run.isThere(boat, sample);
     this.card.hidden = !isShown;
     if (!isShown) {
       return;
     }
-    const head = element("div", "head", `boat ${boat}`);
+    const head = element("div", "head", this.run.nameOf(boat));
     head.append(element("span", "faint", boat < this.run.leaders ? " leader" : ""));
     const list = element("dl");
     for (const [name, value, unit, meaning] of boatNumbers(this.run, boat, sample)) {

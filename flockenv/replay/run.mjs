@@ -40,7 +40,7 @@ export class Run {
     return low;
   }
 
-  /** Poses at a time: [x, y, heading] a boat, on straight lines between samples. */
+  /** Poses at a time: [x, y, heading] a boat, on straight lines between samples; NaN for none. */
   posesAt(time) {
     const sample = this.sampleAt(time);
     const next = Math.min(sample + 1, this.length - 1);
@@ -52,11 +52,22 @@ export class Run {
       const now = column.at(sample, channel);
       return now + share * (column.at(next, channel) - now);
     };
-    return Array.from({ length: this.boats }, (_, boat) => [
+    const nowhere = [NaN, NaN, NaN];
+    return Array.from({ length: this.boats }, (_, boat) => this.isThere(boat, sample) ? [
       between(position, 2 * boat),
       between(position, 2 * boat + 1),
       between(heading, boat),
-    ]);
+    ] : nowhere);
+  }
+
+  /** Whether a boat is there at a sample; tracked ones come and go. */
+  isThere(boat, sample) {
+    return this.columns.get("present")?.at(sample, boat) !== 0;
+  }
+
+  /** What a boat is called. */
+  nameOf(boat) {
+    return this.ids?.[boat] ?? `boat ${boat}`;
   }
 
   /** Value of a series at a sample; undefined where there is none. */

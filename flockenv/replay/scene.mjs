@@ -101,8 +101,9 @@ export class Scene {
       this.scale = (side * (0.5 - MARGIN)) / outer;
       return;
     }
-    const xs = this.poses.map((pose) => pose[0]);
-    const ys = this.poses.map((pose) => pose[1]);
+    const there = this.poses.filter((pose) => !Number.isNaN(pose[0]));
+    const xs = there.map((pose) => pose[0]);
+    const ys = there.map((pose) => pose[1]);
     const [left, right] = [Math.min(...xs), Math.max(...xs)];
     const [low, high] = [Math.min(...ys), Math.max(...ys)];
     this.center = [(left + right) / 2, (low + high) / 2];

@@ -99,8 +99,11 @@ def _poses(pose: ArrayLike) -> NDArray[np.float64]:
     poses = np.asarray(pose, np.float64)
     if poses.ndim != 3:
         raise ParameterError(f"pose has shape {poses.shape}, expected (t, n, 3)")
-    if not np.isfinite(poses).all():
-        raise ParameterError("pose is not accepted: finite numbers")
+    absent = np.isnan(poses).all(axis=-1)
+    if not np.isfinite(poses[~absent]).all():
+        raise ParameterError(
+            "pose is not accepted: finite numbers, or rows of NaN for boats that are not there"
+        )
     return poses
 
 

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 /// Hulls with a smaller gap than this (cm) count as in touch.
 pub const IN_TOUCH_CM: f64 = 0.5;
 
-/// Part of the boats that the largest cluster holds: boats joined by gaps below [`IN_TOUCH_CM`].
+/// Part of the boats that the largest cluster holds: boats joined by gaps below [`IN_TOUCH_CM`]; NaN of none.
 pub fn largest_cluster(poses: &[Pose], parameters: &FlockParameters) -> f64 {
     let hull = Hull::new(parameters);
     let hulls: Vec<HullPose> = poses.iter().map(HullPose::new).collect();
@@ -20,7 +20,7 @@ pub fn largest_cluster(poses: &[Pose], parameters: &FlockParameters) -> f64 {
     clusters.largest() as f64 / hulls.len() as f64
 }
 
-/// Part of the boats within [`IN_TOUCH_CM`] of the outer wall.
+/// Part of the boats within [`IN_TOUCH_CM`] of the outer wall; NaN of none.
 pub fn on_outer_wall(poses: &[Pose], parameters: &FlockParameters) -> f64 {
     let hull = Hull::new(parameters);
     let radius = parameters.pool.outer_radius_cm;
@@ -89,7 +89,8 @@ fn chance_below(distance: f64, ra: f64, rb: f64) -> f64 {
 }
 
 /// Mean over boats and starting samples of the squared displacement after `lag` samples, in cm².
-/// Samples are of equally many boats; NaN for a lag that no two samples are apart.
+/// Samples are of equally many boats, of which those whose pose is NaN are left out; NaN for a lag that no
+/// two samples are apart.
 pub fn mean_square_displacement(samples: &[&[Pose]], lag: usize) -> f64 {
     lagged_mean(samples, lag, |then, now| {
         (now.position - then.position).norm_squared()
@@ -106,8 +107,12 @@ fn lagged_mean(samples: &[&[Pose]], lag: usize, value: impl Fn(&Pose, &Pose) -> 
     let (mut sum, mut count) = (0.0, 0.0);
     for (then, now) in pairs {
         for (then, now) in then.iter().zip(now.iter()) {
-            sum += value(then, now);
-            count += 1.0;
+            let value = value(then, now);
+            // Not a number where a boat is not there.
+            if value.is_finite() {
+                sum += value;
+                count += 1.0;
+            }
         }
     }
     sum / count

@@ -7,7 +7,7 @@ use super::structure::Samples;
 use crate::analysis::OrderParameters;
 use crate::analysis::collective_state::{CollectiveState, ordering_time};
 use crate::analysis::quantities::{Formula, QUANTITIES, RECORDED, Recorded, quantity, recorded};
-use crate::geometry::{HullPose, Velocity};
+use crate::geometry::HullPose;
 use crate::parameters::Target;
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray3};
 use pyo3::exceptions::{PyAttributeError, PyTypeError};
@@ -368,6 +368,8 @@ pub fn collective_state_names() -> Vec<&'static str> {
 }
 
 /// The recorded quantities of boats at each time, of poses and velocities of shape (t, n, 3).
+///
+/// Rows of NaN stand for boats that are not there; where too few are, quantities are NaN.
 #[pyfunction]
 pub fn order_series<'py>(
     py: Python<'py>,
@@ -379,13 +381,13 @@ pub fn order_series<'py>(
     samples.check_same_shape(&motions)?;
     let mut hulls = Vec::new();
     let mut series = Vec::new();
-    for (poses, motion) in samples.each().zip(motions.each()) {
-        HullPose::replace_all(&mut hulls, poses);
-        let velocities: Vec<_> = motion
-            .iter()
-            .map(|row| Velocity::new(row.position.x, row.position.y, row.heading))
-            .collect();
-        series.push(recorded(&hulls, &velocities)?);
+    for (poses, velocities) in samples.present_with(&motions) {
+        HullPose::replace_all(&mut hulls, &poses);
+        series.push(if hulls.is_empty() {
+            [f64::NAN; RECORDED]
+        } else {
+            recorded(&hulls, &velocities)?
+        });
     }
     Ok(PyOrderSeries::of(py, &series))
 }

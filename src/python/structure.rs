@@ -2,8 +2,8 @@
 
 use crate::analysis::structure::{self, PairCounts};
 use crate::error::FlockError;
-use crate::geometry::Pose;
 use crate::geometry::lap_frame::orientation;
+use crate::geometry::{Pose, Velocity};
 use crate::parameters::FlockParameters;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray3};
 use pyo3::prelude::*;
@@ -19,8 +19,8 @@ pub fn largest_cluster<'py>(
     pose: PyReadonlyArray3<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let samples = Samples::read(&pose, "pose")?;
-    let share = |poses| structure::largest_cluster(poses, &parameters);
-    let shares: Vec<f64> = py.detach(|| samples.each().map(share).collect());
+    let share = |poses: Vec<Pose>| structure::largest_cluster(&poses, &parameters);
+    let shares: Vec<f64> = py.detach(|| samples.present().map(share).collect());
     Ok(PyArray1::from_vec(py, shares))
 }
 
@@ -32,8 +32,8 @@ pub fn on_outer_wall<'py>(
     pose: PyReadonlyArray3<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let samples = Samples::read(&pose, "pose")?;
-    let shares = samples.each();
-    let shares = shares.map(|poses| structure::on_outer_wall(poses, &parameters));
+    let shares = samples.present();
+    let shares = shares.map(|poses| structure::on_outer_wall(&poses, &parameters));
     Ok(PyArray1::from_iter(py, shares))
 }
 
@@ -64,7 +64,7 @@ pub fn pair_counts<'py>(
     }
     let counts = py.detach(|| {
         let mut counts = PairCounts::new(edges);
-        samples.each().for_each(|poses| counts.add(poses));
+        samples.present().for_each(|poses| counts.add(&poses));
         counts
     });
     let (found, expected) = (counts.found, counts.expected);
@@ -136,8 +136,39 @@ impl Samples {
         .into())
     }
 
+    /// The boats that are there, one sample after another: rows of NaN stand for those that are not.
+    fn present(&self) -> impl Iterator<Item = Vec<Pose>> {
+        self.each().map(|poses| {
+            poses
+                .iter()
+                .filter(|pose| is_there(pose))
+                .copied()
+                .collect()
+        })
+    }
+
+    /// The poses and velocities of the boats that have both, one sample after another.
+    pub fn present_with<'a>(
+        &'a self,
+        motions: &'a Self,
+    ) -> impl Iterator<Item = (Vec<Pose>, Vec<Velocity>)> + 'a {
+        self.each().zip(motions.each()).map(|(poses, motions)| {
+            let both = poses.iter().zip(motions);
+            both.filter(|(pose, motion)| is_there(pose) && is_there(motion))
+                .map(|(pose, row)| {
+                    let motion = Velocity::new(row.position.x, row.position.y, row.heading);
+                    (*pose, motion)
+                })
+                .unzip()
+        })
+    }
+
     /// One sample after another.
-    pub fn each(&self) -> impl Iterator<Item = &[Pose]> {
+    fn each(&self) -> impl Iterator<Item = &[Pose]> {
         self.poses.chunks_exact(self.boats)
     }
+}
+
+fn is_there(row: &Pose) -> bool {
+    row.position.iter().all(|number| number.is_finite()) && row.heading.is_finite()
 }

@@ -19,6 +19,7 @@ EXECUTED = {
     "docs/api/flock.md": ["python"],
     "docs/extend/policy.md": ["python"],
     "docs/train_with_sb3.md": ["python", "sh"],
+    "docs/tracks.md": ["python", "sh"],
 }
 PAGES = sorted(
     str(path.relative_to(REPOSITORY))

@@ -26,6 +26,7 @@ from flockenv.replay import write_replay
 from flockenv.runs.spec import RunSpec, execute
 from flockenv.runs.store import RunStore, StoreWarning
 from flockenv.runs.sweep_spec import read_sweep
+from flockenv.tracks import TrackLayout, read_tracks
 
 FUZZ = settings.get_profile("fuzz")
 PARAMETERS = FlockParameters(n_boats=4, n_leaders=1, pool="table-1")
@@ -81,6 +82,11 @@ KINDS = {
         read_sweep,
         lambda found: len(found.runs) == 8,
     ),
+    "arrays of tracks": (
+        lambda path: np.savez(path, time_s=RUN.time_s, pose=RUN.pose),
+        lambda path: read_tracks(path, TrackLayout(pool="table-1", wrapped=False)).to_recording(),
+        lambda found: np.array_equal(found.pose, RUN.pose),
+    ),
     "parameters": (
         lambda path: save_scene(Path(path), PARAMETERS, "seed 1"),
         lambda path: read_scene(file=path),
@@ -88,7 +94,7 @@ KINDS = {
     ),
 }
 kinds = st.sampled_from(sorted(KINDS))
-archives = st.sampled_from(["recording", "policy", "kept run"])
+archives = st.sampled_from(["recording", "policy", "kept run", "arrays of tracks"])
 
 
 def kept(folder: Path) -> bytes:

@@ -1,0 +1,111 @@
+"""How well a camera's tracks give back the order parameters of a flock whose truth is known.
+
+    python baselines/track_errors.py
+
+Runs of the simulator are seen by a camera: positions in whole pixels, headings with an error,
+detections that fail, and names that are exchanged between boats that are close to each other. The
+tracks are read as anybody's would be (`flockenv.tracks`), and the quantities of the normal boats
+are compared with those of the run. Writes docs/results/track_errors.csv, which `make tables` shows
+in docs/tracks.md.
+"""
+
+import argparse
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+import flockenv
+from flockenv.statistics.structure import largest_cluster
+from flockenv.tracks import TrackLayout, from_table
+
+OUT = Path(__file__).parents[1] / "docs/results/track_errors.csv"
+QUANTITIES = ("psi_o", "nematic", "milling", "psi_v", "largest_cluster")
+LAYOUT = TrackLayout(pool="500-boats", leaders=("0", "1", "2"), fps=25.0, wrapped=False)
+
+
+@dataclass(frozen=True)
+class Camera:
+    """What a camera and its tracker do to the truth.
+
+    Attributes
+    ----------
+    pixel_cm : float
+        Positions are whole multiples of it.
+    heading_deg : float
+        Standard deviation of the error of a heading.
+    missing : float
+        Share of detections that fail.
+    swaps_per_min : float
+        How many pairs of neighbors exchange their names.
+    """
+
+    pixel_cm: float = 0.25
+    heading_deg: float = 0.0
+    missing: float = 0.0
+    swaps_per_min: float = 0.0
+
+
+CAMERAS = {
+    "pixels of 2.5 mm": Camera(),
+    "and headings ± 3°": Camera(heading_deg=3.0),
+    "and 0.3 % missing": Camera(heading_deg=3.0, missing=0.003),
+    "and 6 swaps per min": Camera(heading_deg=3.0, missing=0.003, swaps_per_min=6.0),
+    "10 % missing": Camera(missing=0.1),
+}
+
+
+def seen(run: flockenv.Recording, camera: Camera, random: np.random.Generator) -> pd.DataFrame:
+    """Return the table of a tracker: frame, id, x, y, heading; in cm and rad."""
+    pose = run.pose.copy()
+    pose[..., :2] = np.rint(pose[..., :2] / camera.pixel_cm) * camera.pixel_cm
+    pose[..., 2] += np.radians(camera.heading_deg) * random.standard_normal(pose.shape[:2])
+    swaps = random.poisson(camera.swaps_per_min * run.duration_s / 60)
+    for sample in np.sort(random.integers(0, len(pose), swaps)):
+        boat = random.integers(pose.shape[1])
+        distance = np.hypot(*(pose[sample, :, :2] - pose[sample, boat, :2]).T)
+        other = distance.argsort()[1]
+        pose[sample:, [boat, other]] = pose[sample:, [other, boat]]
+    frames, boats = np.divmod(np.arange(pose[..., 0].size), pose.shape[1])
+    columns = dict(zip(("x", "y", "heading"), pose.reshape(-1, 3).T, strict=True))
+    table = pd.DataFrame({"frame": frames, "id": boats, **columns})
+    return table[random.random(len(table)) >= camera.missing]
+
+
+def quantities(run: flockenv.Recording) -> dict[str, np.ndarray]:
+    """Return the compared quantities at each time."""
+    every = slice(None, None, 5)
+    found = {name: getattr(run.order, name)[every] for name in QUANTITIES[:-1]}
+    return found | {"largest_cluster": largest_cluster(run.parameters, run.pose[every])}
+
+
+def main() -> None:
+    """Measure, print and write the errors."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--runs", type=int, default=8)
+    parser.add_argument("--minutes", type=float, default=8.0)
+    parser.add_argument("--out", type=Path, default=OUT)
+    options = parser.parse_args()
+    bw_s = flockenv.FlockParameters.critical_bw_s("simulation", "500-boats")
+    scene = flockenv.FlockParameters(n_boats=27, n_leaders=3, pool="500-boats", bw_s=bw_s)
+    rows = []
+    for seed in range(options.runs):
+        truth = flockenv.simulate(scene, seed, options.minutes * 60, sample_hz=LAYOUT.fps)
+        expected = quantities(truth)
+        for name, camera in CAMERAS.items():
+            tracks = from_table(seen(truth, camera, np.random.default_rng(seed)), LAYOUT)
+            found = quantities(tracks.to_recording())
+            errors = {
+                each: float(np.abs(found[each] - expected[each]).mean()) for each in QUANTITIES
+            }
+            left_out = {"jumps": tracks.report.jumps, "broken": tracks.report.broken}
+            rows.append({"camera": name, "seed": seed, **errors, **left_out})
+    table = pd.DataFrame(rows)
+    table.to_csv(options.out, index=False, float_format="%.6g", lineterminator="\n")
+    print(table.groupby("camera", sort=False)[[*QUANTITIES]].mean().to_string())
+    print(f"written to {options.out}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,87 @@
+"""Recordings as tables of pandas and datasets of xarray."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flockenv._io.extras import require
+from flockenv.recording.order import ORDER, RECORDED
+from flockenv.recording.stored import TIMES
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+__all__ = ["dataset_of", "table_of"]
+
+_COMPONENTS = {
+    "pose": ("x_cm", "y_cm", "heading_rad"),
+    "velocity": ("velocity_x_cm_s", "velocity_y_cm_s", "angular_velocity_rad_s"),
+}
+_UNITS = {
+    "x_cm": "cm",
+    "y_cm": "cm",
+    "heading_rad": "rad",
+    "velocity_x_cm_s": "cm s-1",
+    "velocity_y_cm_s": "cm s-1",
+    "angular_velocity_rad_s": "rad s-1",
+}
+
+
+def table_of(recording: Any, boats: bool) -> "pandas.DataFrame":
+    """Return a recording's samples, or each boat's, as `Recording.to_dataframe` documents."""
+    dataframe: type[pandas.DataFrame] = require("pandas", "plot").DataFrame
+    columns: dict[str, NDArray[Any]] = {name: getattr(recording, name) for name in TIMES}
+    if not boats:
+        return dataframe(columns | {name: getattr(recording.order, name) for name in ORDER})
+    count = recording.pose.shape[1]
+    columns = {name: np.repeat(values, count) for name, values in columns.items()}
+    columns["boat"] = np.tile(np.arange(count), len(recording))
+    columns["is_leader"] = columns["boat"] < recording.parameters.n_leaders
+    if recording.ids is not None:
+        columns["id"] = np.tile(recording.ids, len(recording))
+    columns |= {name: values.ravel() for name, values in _motion(recording).items()}
+    there = ~np.isnan(columns["x_cm"])
+    return dataframe({name: values[there] for name, values in columns.items()})
+
+
+def dataset_of(recording: Any) -> "xarray.Dataset":
+    """Return a recording as `Recording.to_xarray` documents."""
+    dataset: type[xarray.Dataset] = require("xarray", "sweep").Dataset
+    boats = np.arange(recording.pose.shape[1])
+    by_time = {name: getattr(recording, name) for name in TIMES[1:]}
+    by_time |= {name: getattr(recording.order, name) for name in ORDER}
+    units = {each.name: each.unit or "1" for each in RECORDED} | _UNITS
+    attributes = {name: {"units": units[name]} for name in units}
+    variables: dict[str, Any] = {
+        name: ("time_s", each, attributes.get(name)) for name, each in by_time.items()
+    }
+    variables |= {
+        name: (("time_s", "boat"), each, attributes[name])
+        for name, each in _motion(recording).items()
+    }
+    is_leader = ("boat", boats < recording.parameters.n_leaders)
+    return dataset(
+        variables,
+        {
+            "time_s": ("time_s", recording.time_s, {"units": "s"}),
+            "boat": boats,
+            "is_leader": is_leader,
+            **({} if recording.ids is None else {"id": ("boat", recording.ids)}),
+        },
+        {
+            "seed": np.uint64(recording.seed),
+            "version": recording.version,
+            "parameters": recording.parameters.to_toml(),
+        },
+    )
+
+
+def _motion(recording: Any) -> dict[str, NDArray[np.floating[Any]]]:
+    """Return poses and velocities by component, each (t, n)."""
+    return {
+        name: getattr(recording, array)[..., component]
+        for array, names in _COMPONENTS.items()
+        for component, name in enumerate(names)
+    }

@@ -1,0 +1,26 @@
+"""Doors for data: tracks of real flocks in, recordings out to tables and GSD."""
+
+from flockenv.tracks.layout import TrackLayout, layout_beside, read_layout
+from flockenv.tracks.reader import (
+    SUFFIXES,
+    TrackReport,
+    Tracks,
+    from_movement,
+    from_table,
+    read_tracks,
+)
+from flockenv.tracks.writer import EXPORTS, export
+
+__all__ = [
+    "EXPORTS",
+    "SUFFIXES",
+    "TrackLayout",
+    "TrackReport",
+    "Tracks",
+    "export",
+    "from_movement",
+    "from_table",
+    "layout_beside",
+    "read_layout",
+    "read_tracks",
+]

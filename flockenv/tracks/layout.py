@@ -1,0 +1,164 @@
+"""How tracks lie in a file: columns, units, scale; written in TOML beside the file."""
+
+import math
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any, Self
+
+from flockenv._io.toml import read_toml_file
+from flockenv.errors import ParameterError, shown
+
+__all__ = ["TrackLayout", "layout_beside", "read_layout"]
+
+_UNITS = ("rad", "deg")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrackLayout:
+    """How tracks lie in a table with one row per frame and animal, robot or boat.
+
+    Attributes
+    ----------
+    pool : str or tuple of float
+        As for `Recording.from_tracks`.
+    hull : tuple of float
+        As for `Recording.from_tracks`.
+    leaders : tuple of str
+        Names of those that lead.
+    target : str
+        As for `Recording.from_tracks`.
+    frame : str
+        Column of frame numbers, or of times in s where `fps` is None.
+    fps : float or None
+        Frames per second.
+    id, x, y : str
+        Columns.
+    heading : str, or tuple of four str, or None
+        Column of headings; or the columns x, y of the tail and x, y of the head, two key points
+        that the heading joins; or None for the direction of motion, which is no heading where
+        something is pushed sideways.
+    heading_unit : str
+        "rad" or "deg".
+    wrapped : bool
+        Whether headings are within a full turn. Then larger ones in "rad" are refused, since they
+        are degrees most likely.
+    cm_per_unit : float
+        How many cm a unit of length in the file has, such as a pixel.
+    center : tuple of float
+        Center of the pool in units of the file.
+    y_down : bool
+        Whether y points down, as in pictures; headings then turn clockwise with rising angle.
+    max_speed_cm_s : float
+        Nothing moves faster: a sample that it takes more to reach from both sides is left out, and
+        no velocity is taken across a step that is faster.
+
+    Raises
+    ------
+    ParameterError
+        For a value out of range.
+    """
+
+    pool: Any
+    hull: tuple[float, float] = (5.0, 0.5)
+    leaders: tuple[str, ...] = ()
+    target: str = "cw"
+    frame: str = "frame"
+    fps: float | None = None
+    id: str = "id"
+    x: str = "x"
+    y: str = "y"
+    heading: str | tuple[str, str, str, str] | None = "heading"
+    heading_unit: str = "rad"
+    wrapped: bool = True
+    cm_per_unit: float = 1.0
+    center: tuple[float, float] = (0.0, 0.0)
+    y_down: bool = False
+    max_speed_cm_s: float = 200.0
+
+    def __post_init__(self) -> None:
+        for name in ("cm_per_unit", "max_speed_cm_s", "fps"):
+            value = getattr(self, name)
+            if name == "fps" and value is None:
+                continue
+            if not _is_number(value) or not 0.0 < value < math.inf:
+                raise ParameterError(f"{name} = {shown(value)} is not accepted: a positive number")
+        for name, length in (("hull", 2), ("center", 2)):
+            value = getattr(self, name)
+            if len(value) != length or not all(_is_number(each) for each in value):
+                raise ParameterError(f"{name} = {shown(value)} is not accepted: two numbers")
+        if self.heading_unit not in _UNITS:
+            raise ParameterError(
+                f"heading_unit = {shown(self.heading_unit)} is not accepted: {' or '.join(_UNITS)}"
+            )
+        is_name = isinstance(self.heading, str | None)
+        if not is_name and len(self.heading or ()) != 4:
+            raise ParameterError(
+                f"heading = {shown(self.heading)} is not accepted: a column, or the columns x, y "
+                "of the tail and x, y of the head"
+            )
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any]) -> Self:
+        """Return the layout of these fields; lists stand for tuples, "" for no heading.
+
+        Raises
+        ------
+        ParameterError
+            For unknown fields, a missing pool, and as for the class.
+        """
+        names = [each.name for each in fields(cls)]
+        for name in values:
+            if name not in names:
+                raise ParameterError(f"{shown(name)} is no field of a layout: {', '.join(names)}")
+        if "pool" not in values:
+            raise ParameterError(
+                'pool is missing: "table-1", "500-boats", or the outer and the inner radius in cm'
+            )
+        plain: dict[str, Any] = {
+            name: tuple(value) if isinstance(value, list) else value
+            for name, value in values.items()
+        }
+        if plain.get("heading") == "":
+            plain["heading"] = None
+        if "leaders" in plain:
+            plain["leaders"] = tuple(map(str, plain["leaders"]))
+        try:
+            return cls(**plain)
+        except TypeError as error:
+            raise ParameterError(f"a field of the layout is of another type: {error}") from error
+
+
+def layout_beside(path: str | os.PathLike[str]) -> TrackLayout:
+    """Return the layout in the TOML file beside a file of tracks: ``a.toml`` for ``a.csv``.
+
+    Raises
+    ------
+    ParameterError
+        If it is not there, or no layout.
+    """
+    beside = Path(path).with_suffix(".toml")
+    if not beside.exists():
+        raise ParameterError(
+            f"{beside} is missing: it names the columns and units of {Path(path).name}"
+        )
+    return read_layout(beside)
+
+
+def read_layout(path: str | os.PathLike[str]) -> TrackLayout:
+    """Return the layout in a TOML file.
+
+    Raises
+    ------
+    ParameterError
+        If it cannot be read, or is no layout; the message names the file.
+    """
+    try:
+        return TrackLayout.from_dict(read_toml_file(path, str(path)))
+    except ParameterError as error:
+        raise ParameterError(f"{path}: {error}") from error
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)

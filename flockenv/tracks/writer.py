@@ -1,0 +1,185 @@
+"""Recordings out: long tables that `read_tracks` reads again, and GSD for OVITO and freud."""
+
+import json
+import math
+import os
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from flockenv import _core
+from flockenv._io.atomic_write import atomic_write
+from flockenv._io.extras import require
+from flockenv.errors import ParameterError
+from flockenv.recording import Recording
+
+__all__ = ["EXPORTS", "export"]
+
+
+def _csv(recording: Recording, path: Path) -> None:
+    table = recording.to_dataframe(boats=True)
+    with atomic_write(path) as file:
+        file.write(table.to_csv(index=False, lineterminator="\n").encode())
+
+
+def _parquet(recording: Recording, path: Path) -> None:
+    require("pyarrow", "plot")
+    table = recording.to_dataframe(boats=True)
+    with atomic_write(path) as file:
+        table.to_parquet(file, index=False)
+
+
+def _gsd(recording: Recording, path: Path) -> None:
+    hoomd: Any = require("gsd.hoomd", "tracks")
+    # The library opens names, not files: it is made elsewhere first.
+    with TemporaryDirectory() as folder:
+        made = Path(folder, "made.gsd")
+        with hoomd.open(str(made), "w") as file:
+            file.extend(_gsd_frame(hoomd, recording, sample) for sample in range(len(recording)))
+        with atomic_write(path) as file:
+            file.write(made.read_bytes())
+
+
+def _gsd_frame(hoomd: Any, recording: Recording, sample: int) -> Any:
+    parameters = recording.parameters
+    pose = recording.pose[sample].astype(np.float64)
+    there = np.isfinite(pose[:, 0])
+    boats, pose = np.flatnonzero(there), pose[there]
+    velocity = np.nan_to_num(recording.velocity[sample].astype(np.float64)[there])
+    flat = np.zeros((len(pose), 1))
+    frame = hoomd.Frame()
+    frame.configuration.step = sample
+    frame.configuration.dimensions = 2
+    frame.configuration.box = [_box_cm(recording)] * 2 + [0, 0, 0, 0]
+    particles = frame.particles
+    particles.N = len(pose)
+    particles.types = ["boat", "leader"]
+    particles.typeid = (boats < parameters.n_leaders).astype(np.uint32)
+    particles.position = np.hstack([pose[:, :2], flat])
+    # A turn about z by the heading, from a hull along x.
+    half = pose[:, 2] / 2
+    particles.orientation = np.stack([np.cos(half), 0 * half, 0 * half, np.sin(half)], axis=1)
+    particles.velocity = np.hstack([velocity[:, :2], flat])
+    particles.diameter = np.full(len(pose), 2 * parameters.boat_radius_cm)
+    particles.type_shapes = [_shape(recording)] * 2
+    frame.log = {
+        "time_s": np.array([recording.time_s[sample]]),
+        "particles/boat": boats.astype(np.uint32),
+    }
+    return frame
+
+
+def _shape(recording: Recording) -> dict[str, Any]:
+    """Return the hull as GSD's schema has it: a line swept by a disc."""
+    radius = recording.parameters.boat_radius_cm
+    half = recording.parameters.boat_shape * radius
+    if half == 0.0:
+        return {"type": "Sphere", "diameter": 2 * radius}
+    return {
+        "type": "Polygon",
+        "rounding_radius": radius,
+        "vertices": [[-half, 0.0], [half, 0.0]],
+    }
+
+
+def _box_cm(recording: Recording) -> float:
+    """Return the side of a square about the pool, or about where boats are in open water."""
+    outer, _ = _core.pool_radii_cm(recording.parameters.pool)
+    margin = 4 * (1 + recording.parameters.boat_shape) * recording.parameters.boat_radius_cm
+    if math.isfinite(outer):
+        return 2 * outer + margin
+    return 2 * float(np.nanmax(np.abs(recording.pose[..., :2]))) + margin
+
+
+EXPORTS: Mapping[str, Callable[[Recording, Path], None]] = {
+    ".csv": _csv,
+    ".parquet": _parquet,
+    ".gsd": _gsd,
+}
+"""How a recording is written, by the ending of the file's name."""
+
+_LAYOUT = {
+    "frame": "time_s",
+    "id": "boat",
+    "x": "x_cm",
+    "y": "y_cm",
+    "heading": "heading_rad",
+}
+
+
+def export(recording: Recording, path: str | os.PathLike[str]) -> list[Path]:
+    """Write the poses of a recording for other programs.
+
+    A CSV or Parquet table (extra ``plot``) has one row per sample and boat, with the columns of
+    `Recording.to_dataframe`, and beside it a layout in TOML, with which `read_tracks` reads it. A
+    GSD file (extra ``tracks``) has one frame per sample in the schema of HOOMD-blue: positions and
+    the box in cm, orientations as quaternions about z, velocities in cm/s, the types "boat" and
+    "leader" with their hull, and ``time_s`` and the number of each boat in the log.
+
+    Parameters
+    ----------
+    recording
+        With poses.
+    path
+        The file; its ending decides.
+
+    Returns
+    -------
+    list of Path
+        What was written.
+
+    Raises
+    ------
+    ParameterError
+        For another ending, and a recording without poses.
+    MissingExtraError
+        Without the extra.
+    OSError
+        If a file cannot be written; what was there before is still there.
+    """
+    path = Path(path)
+    write = EXPORTS.get(path.suffix.lower())
+    if write is None:
+        raise ParameterError(
+            f"path = {os.fspath(path)!r} is not accepted: a name that ends in {', '.join(EXPORTS)}"
+        )
+    if len(recording) == 0 or not recording.has_poses:
+        raise ParameterError("this recording holds no poses to export")
+    write(recording, path)
+    if path.suffix.lower() == ".gsd":
+        return [path]
+    beside = path.with_suffix(".toml")
+    with atomic_write(beside) as file:
+        file.write(_layout_text(recording).encode())
+    return [path, beside]
+
+
+def _layout_text(recording: Recording) -> str:
+    """Return the layout of the exported table, as TOML."""
+    parameters = recording.parameters
+    names = range(parameters.n_boats) if recording.ids is None else recording.ids.tolist()
+    layout: dict[str, Any] = {
+        **_LAYOUT,
+        "id": "boat" if recording.ids is None else "id",
+        "pool": parameters.pool,
+        "hull": [parameters.boat_radius_cm, parameters.boat_shape],
+        "target": parameters.target,
+        "leaders": [str(each) for each in names][: parameters.n_leaders],
+        "wrapped": False,
+    }
+    lines = (f"{name} = {_toml(value)}" for name, value in layout.items())
+    return (
+        "# Columns and units of the table beside this file, for flockenv.\n"
+        + "\n".join(lines)
+        + "\n"
+    )
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, tuple | list):
+        return "[" + ", ".join(map(_toml, value)) + "]"
+    # JSON's strings, numbers and booleans are TOML's, but for infinity.
+    return "inf" if value == math.inf else json.dumps(value)

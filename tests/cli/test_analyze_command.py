@@ -1,0 +1,70 @@
+"""`flockenv analyze`, `export` and `replay` take tracks where they take recordings."""
+
+import json
+
+import pytest
+
+import flockenv
+
+
+@pytest.fixture
+def run(tmp_path):
+    scene = flockenv.FlockParameters(n_boats=6, n_leaders=1, pool="table-1")
+    flockenv.simulate(scene, 1, 20.0).save(tmp_path / "run.npz")
+    return tmp_path / "run.npz"
+
+
+def test_tracks_have_the_numbers_of_the_run_they_are_of(cli, run, tmp_path):
+    tracks = tmp_path / "tracks.csv"
+    done = cli("export", str(run), str(tracks))
+    assert done.returncode == 0, done.stderr
+    assert "tracks.csv" in done.stdout
+    assert "tracks.toml" in done.stdout
+    files = ["--plot", str(tmp_path / "order.png"), "--out", str(tmp_path / "again.npz")]
+    analyzed = cli("analyze", str(tracks), *files)
+    assert analyzed.returncode == 0, analyzed.stderr
+    assert "1206 poses of 6 boats in 201 frames" in analyzed.stderr
+    assert "mean Ψ_o 0." in analyzed.stdout
+    assert (tmp_path / "order.png").stat().st_size > 5000
+    recording = flockenv.Recording.load(tmp_path / "again.npz")
+    assert recording.ids.tolist() == ["0", "1", "2", "3", "4", "5"]
+    summaries = [
+        json.loads(cli("analyze", str(path), "--json").stdout)
+        for path in (tmp_path / "again.npz", tracks)
+    ]
+    assert summaries[0] == summaries[1]
+    assert summaries[0]["psi_o"] == pytest.approx(recording.analyzed().order.psi_o.mean())
+
+
+def test_tracks_play_beside_the_model(cli, run, tmp_path):
+    tracks = tmp_path / "tracks.csv"
+    cli("export", str(run), str(tracks))
+    done = cli("replay", str(tracks), str(run), "--html", str(tmp_path / "both.html"))
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "both.html").exists()
+
+
+def test_gsd(cli, run, tmp_path):
+    pytest.importorskip("gsd.hoomd")
+    done = cli("export", str(run), str(tmp_path / "run.gsd"))
+    assert done.returncode == 0, done.stderr
+    assert "run.toml" not in done.stdout
+
+
+def test_mistakes_are_one_line_with_exit_code_2(cli, run, tmp_path):
+    (tmp_path / "alone.csv").write_text("frame,id,x,y,heading\n0,0,0,0,0\n")
+    (tmp_path / "layout.toml").write_text('pool = "table-1"\nx = "x_cm"\n')
+    for arguments, words in (
+        (["analyze", "alone.csv"], "alone.toml is missing"),
+        (["analyze", "alone.csv", "--layout", "layout.toml"], "column 'x_cm' is missing"),
+        (["analyze", "absent.npz"], "absent.npz cannot be read"),
+        (["analyze", "run.npz", "--out", "run.npz", "--force"], "name another"),
+        (["analyze", "run.npz", "--out", "other.csv"], "ends in .npz"),
+        (["export", "run.npz", "run.xlsx"], ".csv, .parquet, .gsd"),
+        (["export", "run.npz", "alone.csv"], "--force overwrites it"),
+    ):
+        paths = [str(tmp_path / each) if "." in each else each for each in arguments]
+        done = cli(*paths)
+        assert done.returncode == 2, arguments
+        assert words in done.stderr, arguments
+        assert "Traceback" not in done.stderr

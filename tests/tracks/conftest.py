@@ -1,0 +1,54 @@
+"""Tracks whose truth is known: a simulated flock, seen by a camera."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import flockenv
+from flockenv.tracks import TrackLayout
+
+PIXEL_CM = 0.25
+CENTER = (812.0, 604.5)
+SCENE = flockenv.FlockParameters(n_boats=20, n_leaders=2, pool="table-1", bw_s=0.3)
+LAYOUT = TrackLayout(
+    pool="table-1",
+    leaders=("boat1", "boat2"),
+    fps=10.0,
+    id="track",
+    x="x_px",
+    y="y_px",
+    heading="angle",
+    heading_unit="deg",
+    cm_per_unit=PIXEL_CM,
+    center=CENTER,
+    y_down=True,
+)
+
+
+@dataclass
+class Seen:
+    """A run, and the table that a tracker of a camera makes of it."""
+
+    truth: flockenv.Recording
+    table: pd.DataFrame
+    missing: int
+
+
+@pytest.fixture(scope="session")
+def seen() -> Seen:
+    """Positions in whole pixels of 2.5 mm, y down, 0.3 % of the rows missing."""
+    truth = flockenv.simulate(SCENE, 5, 60.0)
+    table = truth.to_dataframe(boats=True)
+    rows = pd.DataFrame(
+        {
+            "frame": np.rint(table["time_s"] * 10).astype(int),
+            "track": "boat" + (table["boat"] + 1).astype(str),
+            "x_px": np.rint(table["x_cm"] / PIXEL_CM + CENTER[0]),
+            "y_px": np.rint(-table["y_cm"] / PIXEL_CM + CENTER[1]),
+            "angle": np.rint(-np.degrees(table["heading_rad"])) % 360,
+        }
+    )
+    dropped = np.random.default_rng(1).random(len(rows)) < 0.003
+    return Seen(truth, rows[~dropped].reset_index(drop=True), int(dropped.sum()))

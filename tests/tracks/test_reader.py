@@ -1,0 +1,249 @@
+"""Tracks of a camera give back the run they were made of; what is wrong with a file is named."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import flockenv
+from flockenv.tracks import TrackLayout, from_movement, from_table, layout_beside, read_tracks
+
+from .conftest import CENTER, LAYOUT, PIXEL_CM, SCENE
+
+
+def test_a_camera_gives_back_the_run(seen):
+    tracks = from_table(seen.table, LAYOUT)
+    assert tracks.report.samples == len(seen.table)
+    assert tracks.report.samples + seen.missing == seen.truth.pose[..., 0].size
+    assert (tracks.report.missing, tracks.report.jumps, tracks.report.broken) == (0, 0, 0)
+    found = tracks.to_recording()
+    assert found.ids.tolist() == [f"boat{number + 1}" for number in range(20)]
+    assert found.parameters.n_leaders == 2
+    assert np.allclose(found.time_s, seen.truth.time_s)
+    there = np.isfinite(found.pose[..., 0])
+    assert (~there).sum() == seen.missing
+    error = without_turns(found.pose - seen.truth.pose)[there]
+    # Half a pixel and half a degree.
+    assert np.abs(error[:, :2]).max() <= 0.5 * PIXEL_CM + 1e-9
+    assert np.abs(error[:, 2]).max() <= np.radians(0.5) + 1e-9
+    assert np.isnan(found.velocity[~there]).all()
+
+
+def without_turns(error):
+    """Take away each boat's full turns, the same at all times, which are in no file."""
+    turns = np.rint(np.nanmean(error[..., 2], axis=0) / (2 * np.pi))
+    error[..., 2] -= 2 * np.pi * turns
+    return error
+
+
+def test_order_parameters_of_a_camera_are_those_of_the_run(seen):
+    found = from_table(seen.table, LAYOUT).to_recording().order
+    truth = seen.truth.order
+    # Of 18 boats one is missing in a frame in twenty, which moves a mean by a few percent.
+    assert np.abs(found.psi_o - truth.psi_o).mean() < 0.005
+    assert np.abs(found.nematic - truth.nematic).mean() < 0.005
+    assert np.corrcoef(found.psi_v, truth.psi_v)[0, 1] > 0.95
+
+
+def test_boats_that_are_all_there_have_the_very_order_parameters(seen):
+    truth = seen.truth
+    found = flockenv.Recording.from_tracks(
+        truth.time_s, truth.pose, pool="table-1", velocity=truth.velocity, phase=truth.phase,
+        leaders=("0", "1"),
+    )  # fmt: skip
+    for name in ("psi_o", "phi_o", "c_o", "psi_v", "phi_v", "c_v", "nematic", "milling"):
+        assert (getattr(found.order, name) == getattr(truth.order, name)).all()
+    assert (found.phase == truth.phase).all()
+    # Sampled phases place the middle of a phase to within a sample.
+    assert np.mean(found.in_analysis_window != truth.in_analysis_window) < 0.05
+
+
+def test_heading_from_two_key_points(seen):
+    angle = np.radians(seen.table["angle"])
+    table = seen.table.assign(
+        xt=seen.table["x_px"] - 20 * np.cos(angle),
+        yt=seen.table["y_px"] - 20 * np.sin(angle),
+        xh=seen.table["x_px"] + 20 * np.cos(angle),
+        yh=seen.table["y_px"] + 20 * np.sin(angle),
+    )
+    layout = TrackLayout(**{**fields(LAYOUT), "heading": ("xt", "yt", "xh", "yh")})
+    by_points, by_angle = (from_table(table, each).pose for each in (layout, LAYOUT))
+    assert np.nanmax(np.abs(without_turns(by_points - by_angle))) < 1e-9
+
+
+def test_heading_from_motion():
+    time_s = np.arange(0.0, 10.0, 0.1)
+    angle = 0.1 * time_s
+    table = pd.DataFrame(
+        {"frame": time_s, "id": "a", "x": 100 * np.cos(angle), "y": 100 * np.sin(angle)}
+    )
+    found = from_table(table, TrackLayout(pool="500-boats", heading=None))
+    # Counter-clockwise on a circle: a quarter turn ahead of the place.
+    assert np.allclose(found.pose[1:-1, 0, 2], angle[1:-1] + np.pi / 2, atol=1e-6)
+    expected = np.stack([-10 * np.sin(angle), 10 * np.cos(angle), 0.1 + 0 * angle], axis=1)
+    assert np.allclose(found.velocity[2:-2, 0], expected[2:-2], atol=1e-3)
+
+
+def fields(layout: TrackLayout) -> dict:
+    return {name: getattr(layout, name) for name in layout.__slots__}
+
+
+def line(**columns) -> pd.DataFrame:
+    """Three robots that move at 10 cm/s along x, 10 frames."""
+    frame, robot = np.divmod(np.arange(30), 3)
+    table = {"frame": frame, "id": robot, "x": 1.0 * frame, "y": 20.0 * robot, "heading": 0.0}
+    return pd.DataFrame({**table, **columns})
+
+
+OPEN = TrackLayout(pool="500-boats", fps=10.0)
+
+
+def test_a_jump_is_left_out_and_counted():
+    table = line()
+    table.loc[(table["frame"] == 4) & (table["id"] == 1), "x"] = 90.0
+    tracks = from_table(table, OPEN)
+    assert (tracks.report.jumps, tracks.report.broken, tracks.report.samples) == (1, 0, 29)
+    assert np.isnan(tracks.pose[4, 1]).all()
+    assert np.nanmax(np.abs(tracks.velocity[..., 0] - 10.0)) < 1e-9
+
+
+def test_exchanged_names_are_counted_and_give_no_velocity():
+    table = line()
+    late = table["frame"] >= 5
+    table.loc[late, "y"] = np.where(table["id"] == 0, 40.0, np.where(table["id"] == 2, 0.0, 20.0))[
+        late
+    ]
+    tracks = from_table(table, OPEN)
+    assert (tracks.report.jumps, tracks.report.broken, tracks.report.samples) == (0, 2, 30)
+    assert np.nanmax(np.abs(tracks.velocity[..., 1])) < 1e-9
+    assert np.isfinite(tracks.velocity).all()
+
+
+def test_boats_that_come_and_go():
+    table = line()
+    table = table[~((table["id"] == 2) & (table["frame"] < 6))]
+    table = table[~((table["id"] == 0) & ~table["frame"].isin([3]))]
+    tracks = from_table(table, OPEN)
+    assert tracks.report.lone == 1
+    recording = tracks.to_recording()
+    assert np.isfinite(recording.pose[..., 0]).sum(axis=1).tolist() == [
+        1,
+        1,
+        1,
+        2,
+        1,
+        1,
+        2,
+        2,
+        2,
+        2,
+    ]
+    # A lone sample has no velocity and counts in no quantity; one boat has no pairs.
+    assert np.isfinite(recording.order.c_o).tolist() == [False] * 6 + [True] * 4
+    assert np.isfinite(recording.order.psi_o).all()
+
+
+def test_names_are_sorted_as_numbers():
+    tracks = from_table(line(id=np.tile([10, 2, 1], 10)), OPEN)
+    assert tracks.ids.tolist() == ["1", "2", "10"]
+
+
+@pytest.mark.parametrize(
+    ("table", "changes", "words"),
+    [
+        (pd.concat([line(), line().iloc[[7]]]), {}, "'1' is there 2 times in frame 2"),
+        (line(heading=np.linspace(0, 350, 30)), {}, "heading_unit = 'deg'"),
+        (line(x=np.nan), {}, "no row has both a position and a heading"),
+        (line(heading="left"), {}, "'heading' holds other things than numbers"),
+        (line(frame=np.nan), {}, "'frame' has rows without a number"),
+        (line().drop(columns="y"), {}, "'y' is missing; there are frame, id, x, heading"),
+        (line().iloc[:0], {}, "there must be one at least"),
+        (line(), {"cm_per_unit": 0.0}, "cm_per_unit = 0.0"),
+        (line(), {"fps": -1.0}, "fps = -1.0"),
+        (line(), {"heading_unit": "grad"}, "'grad' is not accepted: rad or deg"),
+        (line(), {"heading": ("x", "y")}, "the tail and x, y of the head"),
+        (line(), {"leaders": ("7",)}, "'7', which is none of the ids"),
+        (line(), {"cm_per_unit": 200.0, "max_speed_cm_s": 1e9}, "20 m/s in the median"),
+        (line(), {"center": (-500.0, 0.0)}, "100% of the centers lie outside the pool"),
+        (line(), {"pool": "bathtub"}, "bathtub"),
+    ],
+)
+def test_mistakes_are_named(table, changes, words):
+    with pytest.raises(flockenv.ParameterError) as raised:
+        from_table(table, TrackLayout(**{**fields(OPEN), **changes})).to_recording()
+    assert words in str(raised.value)
+
+
+def test_files_with_their_layout_beside_them(seen, tmp_path):
+    layout = (
+        'pool = "table-1"\nleaders = ["boat1", "boat2"]\nfps = 10\nid = "track"\nx = "x_px"\n'
+        'y = "y_px"\nheading = "angle"\nheading_unit = "deg"\ncm_per_unit = 0.25\n'
+        f"center = [{CENTER[0]}, {CENTER[1]}]\ny_down = true\n"
+    )
+    (tmp_path / "tracks.toml").write_text(layout)
+    assert layout_beside(tmp_path / "tracks.csv") == LAYOUT
+    seen.table.to_csv(tmp_path / "tracks.csv", index=False)
+    seen.table.to_parquet(tmp_path / "tracks.parquet", index=False)
+    expected = from_table(seen.table, LAYOUT).to_recording()
+    for name in ("tracks.csv", "tracks.parquet"):
+        assert read_tracks(tmp_path / name).to_recording() == expected
+
+
+def test_arrays(seen, tmp_path):
+    truth = seen.truth
+    np.savez(tmp_path / "tracks.npz", time_s=truth.time_s, pose=truth.pose)
+    layout = TrackLayout(pool="table-1", leaders=("0", "1"), wrapped=False)
+    found = read_tracks(tmp_path / "tracks.npz", layout).to_recording()
+    assert np.array_equal(found.pose, truth.pose)
+    assert (found.order.psi_o == truth.order.psi_o).all()
+    np.savez(tmp_path / "other.npz", position=truth.pose)
+    with pytest.raises(flockenv.ParameterError, match="holds position, not time_s, pose"):
+        read_tracks(tmp_path / "other.npz", layout)
+
+
+def test_files_that_are_none(tmp_path):
+    (tmp_path / "wrong.txt").write_text("1 2 3")
+    with pytest.raises(flockenv.ParameterError, match=r"tracks\.toml is missing"):
+        read_tracks(tmp_path / "tracks.csv")
+    for name, words in (
+        ("absent.csv", "cannot be read"),
+        ("wrong.txt", "ends in none of .npz, .csv"),
+    ):
+        with pytest.raises(flockenv.ParameterError, match=words):
+            read_tracks(tmp_path / name, OPEN)
+    (tmp_path / "noise.parquet").write_bytes(bytes(range(256)))
+    with pytest.raises(flockenv.ParameterError, match="it is no table"):
+        read_tracks(tmp_path / "noise.parquet", OPEN)
+    (tmp_path / "wrong.toml").write_text("pool = 'table-1'\nfbs = 25\n")
+    with pytest.raises(flockenv.ParameterError, match=r"'fbs' is no field of a layout: pool, hull"):
+        layout_beside(tmp_path / "wrong.csv")
+
+
+def test_a_dataset_of_movement(seen):
+    xarray = pytest.importorskip("xarray")
+    truth = seen.truth
+    ahead = np.stack([np.cos(truth.pose[..., 2]), np.sin(truth.pose[..., 2])], axis=1)
+    middle = np.moveaxis(truth.pose[..., :2], 2, 1)
+    position = np.stack([middle - 5 * ahead, middle, middle + 5 * ahead], axis=2)
+    dataset = xarray.Dataset(
+        {"position": (("time", "space", "keypoints", "individuals"), position)},
+        coords={
+            "time": truth.time_s,
+            "space": ["x", "y"],
+            "keypoints": ["stern", "mast", "bow"],
+            "individuals": [f"boat{number + 1}" for number in range(SCENE.n_boats)],
+        },
+        attrs={"time_unit": "seconds", "source_software": "none", "ds_type": "poses"},
+    )
+    layout = TrackLayout(pool="table-1", leaders=("boat1", "boat2"))
+    found = from_movement(dataset, layout, center="mast", tail="stern", head="bow").to_recording()
+    assert np.allclose(found.pose, truth.pose, atol=1e-9)
+    assert np.allclose(found.order.psi_o, truth.order.psi_o, atol=1e-9)
+    by_mean = from_movement(dataset, layout)
+    assert np.allclose(by_mean.pose[..., :2], truth.pose[..., :2], equal_nan=True)
+    with pytest.raises(flockenv.ParameterError, match="'nose' is not there: stern, mast, bow"):
+        from_movement(dataset, layout, tail="stern", head="nose")
+    with pytest.raises(flockenv.ParameterError, match="no position by time"):
+        from_movement(dataset.drop_vars("position"), layout)
+    frames = dataset.assign_coords(time=np.arange(len(truth))).assign_attrs(time_unit="frames")
+    with pytest.raises(flockenv.ParameterError, match="name fps"):
+        from_movement(frames, layout)

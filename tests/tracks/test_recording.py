@@ -1,0 +1,116 @@
+"""A recording of tracks is saved, sliced, drawn, tabled and replayed like a simulated one."""
+
+import re
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv.recording import Recording
+from flockenv.rendering import frame
+from flockenv.replay import write_replay
+from flockenv.statistics.structure import largest_cluster, on_outer_wall
+from flockenv.tracks import from_table
+
+from .conftest import LAYOUT
+
+
+@pytest.fixture(scope="module")
+def tracked(seen):
+    return from_table(seen.table, LAYOUT).to_recording()
+
+
+def test_it_is_saved_and_loaded(tracked, tmp_path):
+    tracked.save(tmp_path / "tracks.npz")
+    assert Recording.load(tmp_path / "tracks.npz") == tracked
+
+
+def test_all_samples_after_the_first_tenth_are_analyzed_where_phases_are_not_known(tracked):
+    assert (tracked.phase == "").all()
+    assert len(tracked.analyzed()) == (tracked.time_s > 6.0).sum()
+
+
+def test_tables_have_no_rows_of_boats_that_are_not_there(tracked):
+    table = tracked.to_dataframe(boats=True)
+    assert len(table) == np.isfinite(tracked.pose[..., 0]).sum() < tracked.pose[..., 0].size
+    assert table["id"].iloc[0] == "boat1"
+
+
+def test_datasets_have_units_and_names(tracked):
+    pytest.importorskip("xarray")
+    dataset = tracked.to_xarray()
+    assert dataset["id"].values.tolist()[:2] == ["boat1", "boat2"]
+    for name, unit in (
+        ("x_cm", "cm"),
+        ("velocity_x_cm_s", "cm s-1"),
+        ("psi_v", "cm/s"),
+        ("c_o", "1"),
+    ):
+        assert dataset[name].attrs["units"] == unit
+    assert dataset["time_s"].attrs["units"] == "s"
+
+
+def test_a_flock_at_a_time_has_the_boats_that_are_there(tracked):
+    missing = ~np.isfinite(tracked.pose[..., 0])
+    sample = int(missing.any(axis=1).argmax())
+    flock = tracked.flock_at(float(tracked.time_s[sample]))
+    assert flock.parameters.n_boats == 20 - missing[sample].sum()
+    assert frame(tracked, float(tracked.time_s[sample])).ndim == 3
+
+
+def test_structure_leaves_out_boats_that_are_not_there(tracked):
+    parameters = tracked.parameters
+    missing = ~np.isfinite(tracked.pose[..., 0])
+    sample = int((missing.sum(axis=1) == 1).argmax())
+    there = tracked.pose[sample : sample + 1, ~missing[sample]]
+    for function in (largest_cluster, on_outer_wall):
+        assert function(parameters, tracked.pose)[sample] == function(parameters, there)[0]
+    nobody = np.full((1, 20, 3), np.nan)
+    assert np.isnan(largest_cluster(parameters, nobody)).all()
+
+
+def test_it_is_played_beside_the_model(tracked, seen, tmp_path):
+    page = tmp_path / "page.html"
+    write_replay(page, {"robots": tracked, "model": seen.truth})
+    text = page.read_text("utf-8")
+    assert re.search(r'"ids":\["boat1","boat2"', text)
+    assert text.count('"phases":[]') == 1
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"pose": np.zeros((3, 2, 2))}, "pose has shape (3, 2, 2)"),
+        ({"pose": np.zeros((2, 2, 3))}, "for time_s of shape (3,)"),
+        ({"pose": np.full((3, 2, 3), np.nan)}, "NaN everywhere"),
+        ({"pose": [[[0, 0, np.nan]] * 2] * 3}, "all three numbers, or NaN for all three"),
+        ({"pose": np.full((3, 2, 3), np.inf)}, "finite numbers, or rows of NaN"),
+        ({"pose": "here"}, "numbers"),
+        ({"time_s": [0.0, 0.0, 1.0]}, "time_s must increase"),
+        ({"velocity": np.zeros((3, 1, 3))}, "expected (3, 2, 3), that of pose"),
+        ({"phase": ["forward"] * 3}, "fw, nop1, bw, nop2 for each time"),
+        ({"ids": ["a", "a"]}, "'a' more than once"),
+        ({"ids": ["a"]}, "1 names for 2 boats"),
+        ({"leaders": ["c"]}, "'c', which is none of the ids"),
+        ({"leaders": ["0", "0"]}, "more than once"),
+        ({"hull": (-1.0, 0.5)}, "boat_radius_cm"),
+        ({"target": "north"}, "north"),
+    ],
+)
+def test_mistakes_are_named(changes, words):
+    given = {
+        "time_s": [0.0, 1.0, 2.0],
+        "pose": np.full((3, 2, 3), 90.0) * [1, 0, 0],
+        "pool": "table-1",
+    }
+    with pytest.raises(flockenv.ParameterError, match=re.escape(words)):
+        Recording.from_tracks(**(given | changes))
+
+
+def test_simulated_recordings_still_hold_no_gaps(seen):
+    pose = seen.truth.pose.copy()
+    pose[3, 4] = np.nan
+    with pytest.raises(flockenv.ParameterError, match="pose must be finite"):
+        Recording(
+            **{name: getattr(seen.truth, name) for name in seen.truth.__slots__} | {"pose": pose}
+        )

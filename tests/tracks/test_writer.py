@@ -1,0 +1,81 @@
+"""What is exported is read back the same, here and by other programs."""
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv.tracks import export, from_table, read_tracks
+
+from .conftest import LAYOUT, SCENE
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".parquet"])
+def test_tables_are_read_back(seen, tmp_path, suffix):
+    written = export(seen.truth, tmp_path / f"run{suffix}")
+    assert [path.name for path in written] == [f"run{suffix}", "run.toml"]
+    found = read_tracks(written[0])
+    recording = found.to_recording()
+    assert found.report.samples == seen.truth.pose[..., 0].size
+    assert np.allclose(recording.time_s, seen.truth.time_s, atol=1e-12)
+    assert np.array_equal(recording.pose, seen.truth.pose)
+    assert recording.parameters.n_leaders == SCENE.n_leaders
+    assert (recording.order.psi_o == seen.truth.order.psi_o).all()
+
+
+def test_tracked_boats_keep_their_names(seen, tmp_path):
+    tracked = from_table(seen.table, LAYOUT).to_recording()
+    again = read_tracks(export(tracked, tmp_path / "run.csv")[0]).to_recording()
+    assert again.ids.tolist() == tracked.ids.tolist()
+    assert np.allclose(again.pose, tracked.pose, atol=1e-9, equal_nan=True)
+
+
+def test_gsd_agrees_with_freud(seen, tmp_path):
+    hoomd = pytest.importorskip("gsd.hoomd")
+    freud = pytest.importorskip("freud")
+    (path,) = export(seen.truth, tmp_path / "run.gsd")
+    with hoomd.open(str(path), "r") as file:
+        assert len(file) == len(seen.truth)
+        for sample in (0, 100, len(file) - 1):
+            frame = file[sample]
+            pose = seen.truth.pose[sample]
+            assert frame.log["time_s"] == seen.truth.time_s[sample]
+            assert np.allclose(frame.particles.position[:, :2], pose[:, :2], atol=1e-4)
+            assert frame.particles.typeid.tolist() == [1, 1] + [0] * 18
+            _check_nematic(freud, frame, seen.truth.order.nematic[sample])
+
+
+def _check_nematic(freud, frame, expected):
+    """Compare freud's nematic order of the normal boats' orientations with ours.
+
+    Ours is of angles in the local frame, so that each boat is turned about the pool's center onto
+    the x axis. Freud's is of three dimensions: of vectors in a plane whose nematic order there is
+    Ψ its greatest eigenvalue is (3 Ψ + 1) / 4.
+    """
+    particles = frame.particles
+    normal = particles.typeid == 0
+    w, z = particles.orientation[normal, 0], particles.orientation[normal, 3]
+    heading = 2 * np.arctan2(z, w)
+    place = np.arctan2(*particles.position[normal, :2].T[::-1])
+    local = heading - place
+    vectors = np.stack([np.cos(local), np.sin(local), 0 * local], axis=1).astype(np.float32)
+    nematic = freud.order.Nematic()
+    nematic.compute(vectors)
+    assert nematic.order == pytest.approx((3 * expected + 1) / 4, abs=1e-4)
+
+
+def test_a_boat_that_is_not_there_is_in_no_frame(seen, tmp_path):
+    hoomd = pytest.importorskip("gsd.hoomd")
+    tracked = from_table(seen.table, LAYOUT).to_recording()
+    (path,) = export(tracked, tmp_path / "run.gsd")
+    with hoomd.open(str(path), "r") as file:
+        counts = np.array([frame.particles.N for frame in file])
+    assert (counts == np.isfinite(tracked.pose[..., 0]).sum(axis=1)).all()
+    assert counts.min() < 20
+
+
+def test_other_endings_and_runs_without_poses_are_refused(seen, tmp_path):
+    with pytest.raises(flockenv.ParameterError, match=r"ends in \.csv, \.parquet, \.gsd"):
+        export(seen.truth, tmp_path / "run.xlsx")
+    with pytest.raises(flockenv.ParameterError, match="no poses to export"):
+        export(seen.truth.without_poses(), tmp_path / "run.csv")
+    assert not list(tmp_path.iterdir())
