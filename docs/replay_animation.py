@@ -20,10 +20,12 @@ from flockenv.replay import write_replay
 SCENE = flockenv.FlockParameters(n_boats=27, n_leaders=4, pool="500-boats", bw_s=0.3)
 SEED, DURATION_S = 7, 480.0
 POLICIES = {"steering law": None, "learned": named_policy("learned", SCENE.pool)()}
-SIZE = (900, 638)
+SIZE = (1160, 816)
+# The picture ends below the charts.
+KEPT = (0, 0, 1160, 798)
 BEGIN_S, STEP_S, FRAMES, FPS = 150.0, 0.4, 60, 10.0
 # A boat is pointed at for some of the frames.
-BOAT, POINTED = 9, range(24, 36)
+BOAT, POINTED = 3, range(24, 36)
 
 
 def main() -> None:
@@ -42,7 +44,7 @@ def main() -> None:
         append_images=others,
         duration=round(1000 / FPS),
         loop=0,
-        quality=70,
+        quality=55,
         method=6,
     )
 
@@ -65,7 +67,8 @@ def frames(page: Path) -> Iterator[Image.Image]:
                 "player.seek(arguments[0]); player.show()", BEGIN_S + STEP_S * frame
             )
             point(driver, frame in POINTED)
-            yield Image.open(io.BytesIO(driver.get_screenshot_as_png())).convert("RGB")
+            picture = Image.open(io.BytesIO(driver.get_screenshot_as_png()))
+            yield picture.crop(KEPT).convert("RGB")
     finally:
         driver.quit()
 

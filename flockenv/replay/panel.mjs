@@ -149,10 +149,13 @@ export class Panel {
     }
     this.card.replaceChildren(head, list);
     const [x, y] = this.scene.place(boat);
-    const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
-    const beside = x > width / 2 ? x - this.card.offsetWidth - 18 : x + 18;
+    const beside = x > this.canvas.clientWidth / 2 ? x - this.card.offsetWidth - 18 : x + 18;
     this.card.style.left = `${Math.max(beside, 2)}px`;
-    this.card.style.top = `${Math.min(Math.max(y - 30, 2), height - this.card.offsetHeight - 2)}px`;
+    // Between the words in the corners.
+    const [top, bottom] = ["top", "bottom"].map((side) =>
+      2 + Math.max(...[...this.picture.querySelectorAll(`.corner.${side}`)].map((each) => each.offsetHeight)));
+    const lowest = this.canvas.clientHeight - this.card.offsetHeight - bottom;
+    this.card.style.top = `${Math.max(2, Math.min(Math.max(y - 30, top), lowest))}px`;
   }
 }
 

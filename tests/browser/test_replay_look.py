@@ -86,7 +86,7 @@ def test_phases_are_words_with_a_title(page, law):
         assert title.startswith(f"{name}, {getattr(law.parameters, name + '_s')} s: the motors")
 
 
-@pytest.mark.parametrize("size", [(1440, 900), (768, 1024), (390, 844)])
+@pytest.mark.parametrize("size", [(1440, 900), (900, 638), (768, 1024), (390, 844), (320, 640)])
 @pytest.mark.parametrize("name", ["one", "two", "long"])
 def test_no_words_are_cut(open_page, law, pages, tmp_path, name, size):
     path = pages / f"{name}.html"
@@ -110,6 +110,23 @@ def test_no_words_are_cut(open_page, law, pages, tmp_path, name, size):
         return [...document.querySelectorAll("main *")].filter((each) => each.innerText?.trim())
             .map((each) => parseFloat(getComputedStyle(each).fontSize))""")
     assert min(sizes) >= 11
+
+
+@pytest.mark.parametrize("size", [(1440, 900), (768, 1024), (390, 844)])
+@pytest.mark.parametrize("name", ["one", "two"])
+def test_a_boats_card_covers_no_words(open_page, pages, name, size):
+    page = open_page(pages / f"{name}.html", size=size)
+    for time_s in (20, 50, 80):
+        for boat in range(12):
+            page.script("player.seek(arguments[0]); player.pin(arguments[1])", time_s, boat)
+            page.settle()
+            covered = page.script("""
+                const [card, ...corners] = [".card", ...["top", "bottom"].flatMap((side) =>
+                    ["left", "right"].map((end) => `.corner.${side}.${end}`))]
+                    .map((name) => document.querySelector(name).getBoundingClientRect());
+                return corners.filter((each) => each.right > card.left && each.left < card.right
+                    && each.bottom > card.top && each.top < card.bottom).length""")
+            assert covered == 0, f"boat {boat} at {time_s} s"
 
 
 def test_nothing_is_aimed_at_without_leaders(open_page, scene, tmp_path):
