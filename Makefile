@@ -46,7 +46,7 @@ TEST_EXTRAS := --extra train --extra plot --extra fit --extra render --extra swe
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help setup build compare test lint format test-rust test-python test-js test-browser test-wheel test-oldest \
+.PHONY: help setup build compare test lint format test-rust test-python coverage test-js test-browser test-wheel test-oldest \
         test-rllib test-ray test-slurm validate docs wheel audit licenses tables replay-animation \
         instructions learning-check training-physics throughput soak fuzz speed-vs-error lint-benches clean
 
@@ -87,6 +87,11 @@ test-rust: ## the physics alone, no Python
 # it prepares.
 test-python: $(STAMPS)/test $(STAMPS)/core ## the Python package
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist loadfile $(PYTEST_ARGS)
+
+# Where rustup cannot fetch LLVM's tools, or there is none, LLVM_COV and LLVM_PROFDATA name those of another install.
+coverage: $(STAMPS)/coverage $(STAMPS)/core ## which lines the tests run, of the package and of the physics
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist loadfile --cov=flockenv --cov-report=term:skip-covered $(PYTEST_ARGS)
+	cargo llvm-cov --locked
 
 fuzz: $(STAMPS)/test $(STAMPS)/core ## hostile parameters, options, states, files and command lines, for minutes
 	OMP_NUM_THREADS=1 FUZZ_EXAMPLES=$(FUZZ_EXAMPLES) $(BIN)/python -m pytest -n $(JOBS) --timeout 1800 tests/fuzz $(PYTEST_ARGS)
@@ -248,6 +253,11 @@ $(STAMPS)/docs: pyproject.toml $(STAMPS)/test
 $(STAMPS)/audit: pyproject.toml $(STAMPS)/test
 	cargo deny --version || cargo install --locked cargo-deny
 	$(UV) pip install --quiet pip-audit
+	@touch $@
+
+$(STAMPS)/coverage: pyproject.toml $(STAMPS)/test
+	cargo llvm-cov --version || cargo install --locked cargo-llvm-cov
+	$(UV) pip install --quiet pytest-cov
 	@touch $@
 
 $(STAMPS)/peers: benches/peers/requirements.txt | $(STAMPS)/venv

@@ -254,6 +254,19 @@ def ppo_comparison() -> str:
     return markdown(header, body)
 
 
+def first_training() -> str:
+    """Return what the first training run of docs/train.md adds to the law that it started from."""
+    body = []
+    for k in ("1", "2", "3"):
+        means = (
+            one(MEANS, comparison="first-training", policy=name, leaders=k)
+            for name in ("damped law", "best")
+        )
+        gain = one(DIFFERENCES, comparison="first-training", policy="best", leaders=k)
+        body.append([k, *(order(row) for row in means), difference(gain)])
+    return markdown(["leaders", "damped law", "trained", "trained minus damped law"], body)
+
+
 def ppo_search() -> str:
     """Return the runs of the search of PPO's settings, best first."""
     found = rows("leaders/ppo_search.csv")
@@ -379,6 +392,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "strong-rudders": strong_rudders,
     "other-scenes": other_scenes,
     "other-policies": other_policies,
+    "first-training": first_training,
     "ppo-comparison": ppo_comparison,
     "ppo-search": ppo_search,
     "fit-targets": fit_targets,

@@ -64,7 +64,7 @@ class LeaderBatch:
                 own[name] = each
         return per_flock
 
-    def begin_info(self, flock: int) -> dict[str, Any]:
+    def reset_info(self, flock: int) -> dict[str, Any]:
         """Return the infos of the start of an episode."""
         episode = self.core.episode(flock)
         seed = np.uint64(episode["flock_seed"])

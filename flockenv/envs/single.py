@@ -107,7 +107,7 @@ class LeadersEnv(OneFlock, gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
         self._batch.reset([seed], options, lambda: drawn_seed(self.np_random))
         super().reset(seed=None if seed is None else int(seed))
         self._show()
-        return self.observe(), self._batch.begin_info(0)
+        return self.observe(), self._batch.reset_info(0)
 
     def step(
         self, action: ArrayLike

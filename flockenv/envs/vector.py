@@ -153,7 +153,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
             super().reset(seed=int(seed))
         infos: dict[str, Any] = {}
         for flock in range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist():
-            infos = self._add_info(infos, self._batch.begin_info(flock), flock)
+            infos = self._add_info(infos, self._batch.reset_info(flock), flock)
         return self._shaped(self._batch.core.observe()), infos
 
     def step(
@@ -205,7 +205,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
             if self.autoreset_mode == AutoresetMode.SAME_STEP:
                 last = self._batch.core.final_observation(flock).reshape(-1)
                 infos = self._add_info(infos, {"final_obs": last, "final_info": info}, flock)
-                info = self._batch.begin_info(flock)
+                info = self._batch.reset_info(flock)
             infos = self._add_info(infos, info, flock)
         return infos
 

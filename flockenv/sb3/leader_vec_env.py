@@ -177,7 +177,7 @@ class LeaderVecEnv(VecEnv):
         self._batch.reset(seeds, listed, lambda: drawn_seed(self._random))
         self._reset_seeds()
         self._reset_options()
-        begin = [self._batch.begin_info(flock) for flock in range(self.num_flocks)]
+        begin = [self._batch.reset_info(flock) for flock in range(self.num_flocks)]
         self.reset_infos = [dict(begin[flock]) for flock in self.flock_of_slot]
         return self._batch.core.observe()
 
@@ -231,7 +231,7 @@ class LeaderVecEnv(VecEnv):
                 infos[slot]["terminal_state"] = self._batch.core.final_state(flock)
                 if leader == 0:
                     infos[slot]["episode"] = _monitored(infos[slot]["episode_summary"])
-                self.reset_infos[slot] = self._batch.begin_info(flock)
+                self.reset_infos[slot] = self._batch.reset_info(flock)
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
         """Return an attribute of each slot's `LeaderSlot`."""

@@ -202,7 +202,7 @@ class _Run:
                 self._validate()
         except KeyboardInterrupt:
             with held_interrupts():
-                self._write_kept()
+                self._write_rollback_point()
             raise
         finally:
             # A full disk that cut the logs has been reported already, or hides nothing else.
@@ -229,7 +229,7 @@ class _Run:
         # An interrupt in the middle of the next rollout goes back to here.
         self.rollback_point = RollbackPoint.of(self.model, settings, progress, self._policy({}))
         if due(settings.checkpoint_every) or due(settings.validate_every):
-            self._write_kept()
+            self._write_rollback_point()
         self.report(progress)
 
     def _rollout_and_update(self) -> dict[str, float]:
@@ -297,7 +297,7 @@ class _Run:
             wall_s=progress.wall_s,
         )
 
-    def _write_kept(self) -> None:
+    def _write_rollback_point(self) -> None:
         if self.rollback_point is not None:
             self.rollback_point.policy.made.update(self._made(self.rollback_point.progress))
             with _written(self.folder, self.rollback_point.progress):
