@@ -8,6 +8,7 @@ from typing_extensions import disjoint_base
 from flockenv.parameters import FlockParameters
 
 __all__ = [
+    "FIRST_PARAMETERS",
     "ORDERED_WITHIN",
     "TOWARDS_TARGET",
     "ContactSeries",
@@ -61,6 +62,7 @@ __all__ = [
 
 __version__: str
 TOWARDS_TARGET: float
+FIRST_PARAMETERS: int
 ORDERED_WITHIN: tuple[float, float]
 
 def preset_names() -> list[str]: ...

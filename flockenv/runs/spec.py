@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from flockenv import _core
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import OrderSeries
 from flockenv.parameters import FlockParameters
@@ -108,7 +109,14 @@ class RunSpec:
     def to_json(self) -> str:
         """Return the spec as JSON with sorted keys: equal specs, equal text."""
         plain = {each.name: getattr(self, each.name) for each in fields(self)}
-        plain["parameters"] = self.parameters.to_dict()
+        # Parameters that were added since the first version leave the keys of runs without them alone.
+        scene, defaults = self.parameters.to_dict(), FlockParameters().to_dict()
+        added = list(scene)[_core.FIRST_PARAMETERS :]
+        plain["parameters"] = {
+            name: value
+            for name, value in scene.items()
+            if name not in added or value != defaults[name]
+        }
         return json.dumps(plain, sort_keys=True)
 
     @property

@@ -3,11 +3,12 @@
 
 use super::averages::FirstAverages;
 use super::flock_env::StoredEnv;
+use super::options::NamedSettings;
 use super::{Averages, EnvSettings, FlockEnv, ResetRequest};
 use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
 use crate::parallel;
-use crate::parameters::FlockParameters;
+use crate::parameters::{FirstParameters, FlockParameters};
 use crate::sealed_bytes::{Magic, seal, unseal};
 use serde::de::DeserializeOwned;
 
@@ -193,7 +194,7 @@ impl EnvBatch {
     pub fn to_bytes(&self) -> Vec<u8> {
         let members: Vec<_> = self.envs.iter().map(FlockEnv::parameters).collect();
         let states: Vec<_> = self.envs.iter().map(FlockEnv::stored).collect();
-        seal(&MAGIC, &(self.settings, members, states))
+        seal(&MAGIC, &(NamedSettings(self.settings), members, states))
     }
 
     /// A batch from its bytes.
@@ -202,18 +203,23 @@ impl EnvBatch {
     /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed batch.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         if bytes.starts_with(&MAGIC.now) {
-            Self::read::<Averages>(bytes)
+            Self::read::<NamedSettings, FlockParameters, Averages>(bytes)
         } else {
-            Self::read::<FirstAverages>(bytes)
+            Self::read::<EnvSettings, FirstParameters, FirstAverages>(bytes)
         }
     }
 
-    fn read<A: DeserializeOwned>(bytes: &[u8]) -> Result<Self>
+    fn read<S, P, A>(bytes: &[u8]) -> Result<Self>
     where
+        S: DeserializeOwned + Into<EnvSettings>,
+        P: DeserializeOwned + Into<FlockParameters>,
+        A: DeserializeOwned,
         Averages: From<A>,
     {
-        type Stored<A> = (EnvSettings, Vec<FlockParameters>, Vec<StoredEnv<A>>);
-        let (settings, members, states) = unseal::<Stored<A>>(&MAGIC, bytes)?;
+        type Stored<S, P, A> = (S, Vec<P>, Vec<StoredEnv<A>>);
+        let (settings, members, states) = unseal::<Stored<S, P, A>>(&MAGIC, bytes)?;
+        let settings = settings.into();
+        let members = members.into_iter().map(Into::into).collect();
         let mut batch = Self::new(settings, members)?;
         if states.len() != batch.envs.len() {
             return Err(FlockError::Snapshot("the batch is not whole".to_owned()));

@@ -17,7 +17,8 @@ named_choice! {
     }
 }
 
-/// The settings of an environment.
+/// The settings of an environment. States of format 1 hold them in this order; what was added since is left out of
+/// it by `#[serde(skip)]`.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct EnvSettings {
     /// Episodes.

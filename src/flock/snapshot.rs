@@ -6,7 +6,7 @@ use crate::clock::Ticks;
 use crate::error::{FlockError, Result};
 use crate::geometry::{Pose, Velocity};
 use crate::integrator::Checkpoint;
-use crate::parameters::FlockParameters;
+use crate::parameters::{FirstParameters, FlockParameters};
 use crate::sealed_bytes::{Magic, decode, opened, seal, unseal};
 
 const MAGIC: Magic = Magic {
@@ -18,8 +18,8 @@ const FORMAT_1: [u8; 8] = *b"flockst1";
 
 /// What a snapshot holds.
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
-struct Snapshot {
-    parameters: FlockParameters,
+struct Snapshot<P = FlockParameters> {
+    parameters: P,
     seed: u64,
     time: Ticks,
     motion: Checkpoint,
@@ -27,11 +27,22 @@ struct Snapshot {
 
 impl Snapshot {
     fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        if bytes.starts_with(&FORMAT_1) {
-            let body = opened(&MAGIC, bytes)?;
-            return decode::<Self>(&[body, &0_f64.to_le_bytes()].concat())?.checked();
+        if bytes.starts_with(&MAGIC.now) {
+            return unseal::<Self>(&MAGIC, bytes)?.checked();
         }
-        unseal::<Self>(&MAGIC, bytes)?.checked()
+        let mut body = opened(&MAGIC, bytes)?.to_vec();
+        if bytes.starts_with(&FORMAT_1) {
+            body.extend(0_f64.to_le_bytes());
+        }
+        let first: Snapshot<FirstParameters> = decode(&body)?;
+        let parameters = first.parameters.into();
+        Self {
+            parameters,
+            seed: first.seed,
+            time: first.time,
+            motion: first.motion,
+        }
+        .checked()
     }
 
     /// A state that a flock can hold: right sizes, everything finite, indices in range.

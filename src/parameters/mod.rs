@@ -6,6 +6,7 @@ mod fields;
 mod named_choice;
 mod pools;
 mod presets;
+mod stored;
 
 pub use choices::{Noise, Scheme, Solver, Target};
 pub use field::{Field, Kind, Range, Value};
@@ -13,3 +14,4 @@ pub use fields::FlockParameters;
 pub(crate) use named_choice::named_choice;
 pub use pools::Pool;
 pub use presets::{Physics, Preset};
+pub(crate) use stored::FirstParameters;
