@@ -9,6 +9,7 @@ import pytest
 
 import flockenv
 from flockenv._io.extras import MissingExtraError
+from flockenv.recording import RECORDED
 
 SCENE = flockenv.FlockParameters(n_boats=5, n_leaders=2, pool="table-1")
 ORDER = ["psi_o", "phi_o", "c_o", "psi_v", "phi_v", "c_v"]
@@ -87,8 +88,7 @@ def test_a_quantity_that_is_none_is_not_drawn(run):
 
 
 def test_order_is_equal_to_the_same_series_without_times(run):
-    columns = {name: getattr(run.order, name) for name in ORDER}
-    plain = flockenv.OrderSeries(**columns, nematic=run.order.nematic, milling=run.order.milling)
+    plain = flockenv.OrderSeries(*(getattr(run.order, each.name) for each in RECORDED))
     assert run.order == plain == pickle.loads(pickle.dumps(run.order))
     assert np.array_equal(pickle.loads(pickle.dumps(run.order)).time_s, run.time_s)
 
