@@ -109,7 +109,7 @@ class RunSpec:
     def to_json(self) -> str:
         """Return the spec as JSON with sorted keys: equal specs, equal text."""
         plain = {each.name: getattr(self, each.name) for each in fields(self)}
-        # Parameters that were added since the first version leave the keys of runs without them alone.
+        # Parameters that were added since the first version change no key where they have defaults.
         scene, defaults = self.parameters.to_dict(), FlockParameters().to_dict()
         added = list(scene)[_core.FIRST_PARAMETERS :]
         plain["parameters"] = {
