@@ -107,7 +107,9 @@ def run(
         files = {"recording": str(out), "parameters": str(parameters)}
         print_json({**files, "seed": seed, "policy": policy, **summary})
         return
-    say(f"{recording.parameters.n_boats} boats, seed {seed}: {in_words(summary)}")
+    if scene.n_leaders == 0:  # Nobody heads for the target.
+        del summary["signed_order"]
+    say(f"{scene.n_boats} boats, seed {seed}: {in_words(summary)}")
     say(f"Written to {out} and {parameters}")
     say(f"See it: flockenv replay {out}")
 

@@ -178,3 +178,12 @@ def test_models_of_stable_baselines3_are_compared_with_trust(cli, name, model, t
     assert done.returncode == 0, done.stderr
     if name == "evaluate":
         assert "sha256" in (tmp_path / "out" / "card.md").read_text()
+
+
+def test_a_run_without_leaders_names_no_target(cli, tmp_path):
+    for leaders in (0, 1):
+        options = ["--set", f"n_leaders={leaders}", "--set", "n_boats=4", "--minutes", "0.2"]
+        done = cli("run", *options, "--out", tmp_path / f"{leaders}.npz")
+        assert done.returncode == 0, done.stderr
+        assert ("towards target" in done.stdout) == (leaders == 1)
+        assert "rotation" in done.stdout
