@@ -1,5 +1,146 @@
-//! Pictures of flocks.
+//! Pictures of a flock, drawn without a display: pool, hulls with a direction mark, leaders in their own
+//! color and a legend. A frame depends on the flock and the frame's size alone.
 
-mod frames;
+mod boats;
+mod legend;
+mod palette;
+mod text;
+mod view;
+mod water;
 
-pub use frames::FrameRenderer;
+use crate::error::{FlockError, Result};
+use crate::flock::Flock;
+use crate::geometry::Hull;
+use crate::parameters::{Pool, Target};
+use legend::Legend;
+use tiny_skia::Pixmap;
+use view::View;
+
+/// Draws frames of one size; what lies under the boats is drawn once and kept.
+#[derive(Debug, Clone)]
+pub struct FrameRenderer {
+    canvas: Pixmap,
+    legend: Legend,
+    kept: Vec<Background>,
+}
+
+/// Water and walls of a pool, as they look with a target.
+#[derive(Debug, Clone)]
+struct Background {
+    pool: Pool,
+    target: Option<Target>,
+    image: Pixmap,
+}
+
+/// Where leaders head; without leaders nobody does.
+fn target_of(flock: &Flock) -> Option<Target> {
+    let parameters = flock.parameters();
+    (parameters.n_leaders > 0).then_some(parameters.target)
+}
+
+impl FrameRenderer {
+    /// The shortest side of a frame, in pixels.
+    pub(crate) const SHORTEST: u32 = 64;
+    /// The longest side of a frame, in pixels.
+    pub const LONGEST: u32 = 4096;
+    /// Backgrounds that are kept: both targets of two pools.
+    const MOST_KEPT: usize = 4;
+
+    /// For frames of this size in pixels.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for a side outside [`Self::SHORTEST`] to [`Self::LONGEST`].
+    pub fn new(width: u32, height: u32) -> Result<Self> {
+        for (field, side) in [("width", width), ("height", height)] {
+            if !(Self::SHORTEST..=Self::LONGEST).contains(&side) {
+                let accepted = format!("{} to {} pixels", Self::SHORTEST, Self::LONGEST);
+                return Err(FlockError::parameter(field, side, accepted));
+            }
+        }
+        let canvas = Pixmap::new(width, height)
+            .ok_or_else(|| FlockError::parameter("width", width, "a size that fits memory"))?;
+        Ok(Self {
+            legend: Legend::new(width, height),
+            canvas,
+            kept: Vec::new(),
+        })
+    }
+
+    /// Width of a frame in pixels.
+    pub fn width(&self) -> u32 {
+        self.canvas.width()
+    }
+
+    /// Height of a frame in pixels.
+    pub fn height(&self) -> u32 {
+        self.canvas.height()
+    }
+
+    /// A flock as it is now: red, green and blue of each pixel, row by row from the top left.
+    pub fn draw(&mut self, flock: &Flock) -> Vec<u8> {
+        self.draw_canvas(flock);
+        let mut frame = Vec::with_capacity(self.canvas.pixels().len() * 3);
+        // The canvas is opaque throughout, so that premultiplied colors are plain ones.
+        for pixel in self.canvas.data().chunks_exact(4) {
+            frame.extend_from_slice(&pixel[..3]);
+        }
+        frame
+    }
+
+    /// A flock as it is now, as a PNG file.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] if the picture cannot be encoded.
+    pub fn png(&mut self, flock: &Flock) -> Result<Vec<u8>> {
+        self.draw_canvas(flock);
+        let refused = |error| FlockError::parameter("frame", error, "a picture that PNG can hold");
+        self.canvas.encode_png().map_err(refused)
+    }
+
+    fn draw_canvas(&mut self, flock: &Flock) {
+        let view = View::of(flock, self.width(), self.height());
+        self.draw_background(flock, &view);
+        boats::draw(&mut self.canvas, flock, &view);
+        let open = !flock.parameters().pool.has_outer_wall();
+        let grid_cm = open.then(|| water::grid_spacing(&view));
+        self.legend.draw(&mut self.canvas, flock, grid_cm);
+    }
+
+    /// Where a boat is in a flock's frame, in pixels from the top left, and how far its hull reaches.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for a boat that is not there.
+    pub fn place(&self, flock: &Flock, boat: u64) -> Result<(f32, f32, f32)> {
+        let hulls = flock.hulls();
+        let found = usize::try_from(boat).ok().and_then(|at| hulls.get(at));
+        let hull = found.ok_or_else(|| {
+            FlockError::parameter("boat", boat, format!("0 to {}", hulls.len() - 1))
+        })?;
+        let view = View::of(flock, self.width(), self.height());
+        let center = view.pixel(hull.center);
+        let reach = view.length(Hull::new(flock.parameters()).reach());
+        Ok((center.x, center.y, reach))
+    }
+
+    fn draw_background(&mut self, flock: &Flock, view: &View) {
+        let (pool, target) = (flock.parameters().pool, target_of(flock));
+        if !pool.has_outer_wall() {
+            water::draw(&mut self.canvas, &pool, target, view);
+            return;
+        }
+        let same = |kept: &Background| kept.pool == pool && kept.target == target;
+        if let Some(kept) = self.kept.iter().find(|kept| same(kept)) {
+            self.canvas.data_mut().copy_from_slice(kept.image.data());
+            return;
+        }
+        water::draw(&mut self.canvas, &pool, target, view);
+        if self.kept.len() == Self::MOST_KEPT {
+            self.kept.remove(0);
+        }
+        self.kept.push(Background {
+            pool,
+            target,
+            image: self.canvas.clone(),
+        });
+    }
+}
