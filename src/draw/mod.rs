@@ -40,7 +40,7 @@ fn target_of(flock: &Flock) -> Option<Target> {
 
 impl FrameRenderer {
     /// The shortest side of a frame, in pixels.
-    pub(crate) const SHORTEST: u32 = 64;
+    pub const SHORTEST: u32 = 64;
     /// The longest side of a frame, in pixels.
     pub const LONGEST: u32 = 4096;
     /// Backgrounds that are kept: both targets of two pools.
