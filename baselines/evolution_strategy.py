@@ -38,6 +38,7 @@ from flockenv.envs.observation import OBSERVATION_VERSION
 from flockenv.envs.reward import TERMS
 from flockenv.policies import DampedLaw, LeaningLaw, NetworkPolicy
 from flockenv.policies.pretrained import TUNED_GAINS
+from flockenv.runs.executors import cores, named
 from flockenv.runs.seeds import POLICY_SEEDS
 
 SEEDS = POLICY_SEEDS["evolution strategy"]
@@ -140,6 +141,39 @@ def scores(
     return rewards.reshape(count, len(seeds)).mean(axis=1)
 
 
+@dataclass(frozen=True)
+class Part:
+    """Some candidates of a generation: all that a worker needs to score them."""
+
+    options: argparse.Namespace
+    leaders: int
+    shape: Shape | LeaningShape
+    candidates: np.ndarray
+    seeds: list[int]
+
+
+def part_scores(part: Part) -> np.ndarray:
+    """Return the scores of some candidates, in any thread or process."""
+    flocks = len(part.candidates) * len(part.seeds)
+    env = environment(part.options, flocks, part.leaders)
+    return scores(env, part.shape, part.candidates, part.seeds)
+
+
+def scores_on_engine(
+    options: argparse.Namespace,
+    leaders: int,
+    shape: Shape | LeaningShape,
+    candidates: np.ndarray,
+    seeds: list[int],
+) -> np.ndarray:
+    """Return the scores of all candidates, computed in parts where `--engine` says."""
+    workers = options.workers or cores()
+    shares = np.array_split(candidates, min(len(candidates), workers))
+    parts = [Part(options, leaders, shape, share, seeds) for share in shares]
+    found = dict(named(options.engine)(part_scores, parts, workers))
+    return np.concatenate([found[place] for place in range(len(parts))])
+
+
 def centered_ranks(values: np.ndarray) -> np.ndarray:
     """From -0.5 for the worst to 0.5 for the best."""
     ranks = np.empty(len(values))
@@ -159,7 +193,10 @@ def next_generation(
     half = random.standard_normal((options.pairs, shape.size))
     candidates = state.weights + options.sigma * np.concatenate([half, -half])
     seeds = list(SEEDS.seeds(options.flocks, options.seed, number * options.flocks))
-    found = scores(env, shape, candidates, seeds)
+    if options.engine is None:
+        found = scores(env, shape, candidates, seeds)
+    else:
+        found = scores_on_engine(options, env.num_leaders, shape, candidates, seeds)
     ranks = centered_ranks(found)
     gradient = (ranks[: options.pairs] - ranks[options.pairs :]) @ half
     gradient /= 2 * options.pairs * options.sigma
@@ -176,7 +213,7 @@ def next_generation(
 
 def identity(reported: dict[str, Any]) -> dict[str, Any]:
     """Return the options that a stored search must share to be resumed."""
-    free = ("out", "generations", "quiet", "episodes")
+    free = ("out", "generations", "quiet", "episodes", "engine", "workers")
     whole = {
         "observation_version": OBSERVATION_VERSION,
         "first_seed": SEEDS.first,
@@ -285,11 +322,18 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--episodes", type=int, default=64, help="held-out episodes at the end")
     parser.add_argument("--seed", type=run_number, default=0)
     parser.add_argument("--out", type=Path, default=Path("results/evolution"))
+    parser.add_argument(
+        "--engine",
+        help="score candidates in parts: local, joblib or ray; in one batch if not given",
+    )
+    parser.add_argument("--workers", type=int, help="parts at a time; every core if not given")
     parser.add_argument("--quiet", action="store_true")
     options = parser.parse_args(arguments)
     counts = (options.pairs, options.generations, options.flocks)
     if min(*counts, *options.hidden, *options.leaders) < 1:
         parser.error("pairs, generations, flocks, hidden layers and leaders are at least 1")
+    if options.workers is not None and options.workers < 1:
+        parser.error("--workers is at least 1")
     if options.hidden and options.form != "network":
         parser.error("--hidden is for --form network")
     if options.tuned and options.form != "leaning":

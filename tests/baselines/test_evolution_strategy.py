@@ -84,7 +84,8 @@ def test_it_climbs(script, monkeypatch: pytest.MonkeyPatch) -> None:
     """On rewards that are known, -|w - 1|², instead of the flock's."""
     shape = script.Shape(3, [])
     monkeypatch.setattr(script, "scores", lambda env, shape, w, seeds: -((w - 1) ** 2).sum(axis=1))
-    parser = {"pairs": 8, "flocks": 1, "sigma": 0.1, "rate": 0.1, "average": 1.0, "seed": 0}
+    rates = {"sigma": 0.1, "rate": 0.1, "average": 1.0}
+    parser = {"pairs": 8, "flocks": 1, "seed": 0, "engine": None, **rates}
     options = script.argparse.Namespace(**parser)
     zeros = np.zeros(shape.size)
     state = script.State(0, zeros, zeros, zeros, zeros, 0.0, np.empty(0))
@@ -201,3 +202,20 @@ def test_neither_torch_nor_pandas_is_needed(script, tmp_path: Path) -> None:
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "policy.npz").is_file()
+
+
+@pytest.mark.parametrize("form", ["network", "leaning"])
+@pytest.mark.parametrize("engine", ["local", "joblib"])
+def test_candidates_scored_in_parts_have_the_same_scores(script, tmp_path, engine, form) -> None:
+    options = [*TINY, "--generations", "2", "--form", form, "--out"]
+    script.main([*options, str(tmp_path / "batch")])
+    script.main([*options, str(tmp_path / "parts"), "--engine", engine, "--workers", "2"])
+    states = (read_arrays(tmp_path / name / "state.npz") for name in ("batch", "parts"))
+    batch, parts = ({**each} for each in states)
+    for name in ("weights", "curve", "average"):
+        np.testing.assert_array_equal(batch[name], parts[name])
+
+
+def test_an_unknown_engine_is_named(script, tmp_path: Path) -> None:
+    with pytest.raises(SystemExit, match="'abacus' is not accepted"):
+        script.main([*TINY, "--engine", "abacus", "--out", str(tmp_path / "out")])
