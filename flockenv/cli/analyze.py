@@ -16,11 +16,16 @@ from flockenv.cli.output import (
 from flockenv.cli.run import in_words, summary_of
 from flockenv.errors import ParameterError
 
-__all__ = ["LayoutOption", "analyze", "export"]
+__all__ = ["LayoutOption", "QuietOption", "analyze", "export"]
 
 LayoutOption = Annotated[
     Path | None,
     typer.Option("--layout", help="Columns and units of tracks: TOML. [beside the file]"),
+]
+
+
+QuietOption = Annotated[
+    bool, typer.Option("--quiet", "-q", help="Do not print what of tracks was left out.")
 ]
 
 
@@ -35,6 +40,7 @@ def analyze(
         bool, typer.Option("--force", help="Overwrite files that are there already.")
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
+    quiet: QuietOption = False,
 ) -> None:
     """Print the order parameters of tracked robots or animals, or of a recording.
 
@@ -53,7 +59,7 @@ def analyze(
     for path in written:
         if path.exists() and not force:
             raise ParameterError(f"{path} is there already: --force overwrites it")
-    recording = load_recording(file, layout)
+    recording = load_recording(file, layout, quiet=quiet)
     if plot is not None:
         axes = recording.order.plot(target=recording.parameters.target)
         figure = axes.get_figure(root=True)
@@ -74,24 +80,33 @@ def analyze(
 
 def export(
     file: Annotated[Path, typer.Argument(help="A recording (.npz), or tracks.")],
-    to: Annotated[Path, typer.Argument(help="A file that ends in .csv, .parquet or .gsd.")],
+    out: Annotated[
+        Path, typer.Option(help="The file to write: it ends in .csv, .parquet or .gsd.")
+    ],
     layout: LayoutOption = None,
     force: Annotated[
         bool, typer.Option("--force", help="Overwrite files that are there already.")
     ] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print what was written as JSON.")
+    ] = False,
+    quiet: QuietOption = False,
 ) -> None:
     """Write the poses of a recording for other programs: tables, or GSD for OVITO and freud.
 
-    Example: `flockenv export results/run.npz run.gsd`
+    Example: `flockenv export results/run.npz --out run.gsd`
     """
     from flockenv.tracks import export as write
 
-    check_file(to, "TO")
-    refuse_overwriting(file, "FILE", [to, to.with_suffix(".toml")])
-    for path in (to, to.with_suffix(".toml")):
-        if path.exists() and not force and (path == to or to.suffix != ".gsd"):
+    check_file(out)
+    refuse_overwriting(file, "FILE", [out, out.with_suffix(".toml")])
+    for path in (out, out.with_suffix(".toml")):
+        if path.exists() and not force and (path == out or out.suffix != ".gsd"):
             raise ParameterError(f"{path} is there already: --force overwrites it")
-    recording = load_recording(file, layout)
-    with writable(to):
-        written = write(recording, to)
+    recording = load_recording(file, layout, quiet=quiet)
+    with writable(out):
+        written = write(recording, out)
+    if as_json:
+        print_json({"files": [printable(path) for path in written]})
+        return
     say(f"Written to {' and '.join(map(printable, written))}")

@@ -33,7 +33,7 @@ def printable(name: str | os.PathLike[str]) -> str:
     return os.fspath(name).encode("utf-8", "surrogateescape").decode("utf-8", "replace")
 
 
-def load_recording(path: Path, layout: Path | None = None) -> Recording:
+def load_recording(path: Path, layout: Path | None = None, *, quiet: bool = False) -> Recording:
     """Return a recording, or one made of tracks; what of these was left out is printed.
 
     Parameters
@@ -42,6 +42,8 @@ def load_recording(path: Path, layout: Path | None = None) -> Recording:
         An ``.npz`` file of a recording; or tracks: a table, or with `layout` also arrays.
     layout
         How tracks lie in the file; by default as the TOML file beside it says.
+    quiet
+        Whether to print nothing.
 
     Raises
     ------
@@ -52,7 +54,8 @@ def load_recording(path: Path, layout: Path | None = None) -> Recording:
 
     if layout is not None or path.suffix.lower() in SUFFIXES:
         tracks = read_tracks(path, None if layout is None else read_layout(layout))
-        say(f"{printable(path)}: {tracks.report}", errors)
+        if not quiet:
+            say(f"{printable(path)}: {tracks.report}", errors)
         return tracks.to_recording()
     try:
         return Recording.load(path)

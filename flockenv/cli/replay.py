@@ -53,7 +53,7 @@ def replay(
         task = progress.add_task("writing the page", total=len(paths) + 1)
         recordings = {}
         for title, path in zip(titles, paths, strict=True):
-            recordings[title] = load_recording(path)
+            recordings[title] = load_recording(path, quiet=quiet or as_json)
             progress.advance(task)
         with writable(page):
             written = write_replay(page, recordings)

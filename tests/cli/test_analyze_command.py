@@ -16,7 +16,7 @@ def run(tmp_path):
 
 def test_tracks_have_the_numbers_of_the_run_they_are_of(cli, run, tmp_path):
     tracks = tmp_path / "tracks.csv"
-    done = cli("export", str(run), str(tracks))
+    done = cli("export", str(run), "--out", str(tracks))
     assert done.returncode == 0, done.stderr
     assert "tracks.csv" in done.stdout
     assert "tracks.toml" in done.stdout
@@ -38,7 +38,7 @@ def test_tracks_have_the_numbers_of_the_run_they_are_of(cli, run, tmp_path):
 
 def test_tracks_play_beside_the_model(cli, run, tmp_path):
     tracks = tmp_path / "tracks.csv"
-    cli("export", str(run), str(tracks))
+    cli("export", str(run), "--out", str(tracks))
     done = cli("replay", str(tracks), str(run), "--html", str(tmp_path / "both.html"))
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "both.html").exists()
@@ -46,7 +46,7 @@ def test_tracks_play_beside_the_model(cli, run, tmp_path):
 
 def test_gsd(cli, run, tmp_path):
     pytest.importorskip("gsd.hoomd")
-    done = cli("export", str(run), str(tmp_path / "run.gsd"))
+    done = cli("export", str(run), "--out", str(tmp_path / "run.gsd"))
     assert done.returncode == 0, done.stderr
     assert "run.toml" not in done.stdout
 
@@ -60,8 +60,8 @@ def test_mistakes_are_one_line_with_exit_code_2(cli, run, tmp_path):
         (["analyze", "absent.npz"], "absent.npz cannot be read"),
         (["analyze", "run.npz", "--out", "run.npz", "--force"], "name another"),
         (["analyze", "run.npz", "--out", "other.csv"], "ends in .npz"),
-        (["export", "run.npz", "run.xlsx"], ".csv, .parquet, .gsd"),
-        (["export", "run.npz", "alone.csv"], "--force overwrites it"),
+        (["export", "run.npz", "--out", "run.xlsx"], ".csv, .parquet, .gsd"),
+        (["export", "run.npz", "--out", "alone.csv"], "--force overwrites it"),
     ):
         paths = [str(tmp_path / each) if "." in each else each for each in arguments]
         done = cli(*paths)

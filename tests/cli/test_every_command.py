@@ -41,7 +41,7 @@ def test_work_can_be_quiet_and_machine_readable(cli, name):
     options = cli(name, "--help").stdout
     for option in ("--json", "--quiet", "-q", "--html" if name == "replay" else "--out"):
         assert option in options
-    assert "--seed" in options or name in ("replay", "sweep")
+    assert "--seed" in options or name in ("replay", "sweep", "analyze", "export")
 
 
 @pytest.mark.parametrize("arguments", [[], ["run"]])
