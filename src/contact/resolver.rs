@@ -56,7 +56,8 @@ impl ContactResolver {
         let penetration_slop = PENETRATION_SLOP * parameters.boat_radius_cm;
         Self {
             detector: ContactDetector::new(parameters),
-            solver: ContactSolver::new(parameters.solver),
+            solver: ContactSolver::new(parameters.solver)
+                .keeping_factors(parameters.relinearizations > 0),
             contacts: Vec::new(),
             biases: Vec::new(),
             persistent: Vec::new(),

@@ -13,15 +13,18 @@ use crate::geometry::{Vec2, Velocity};
 use island_solver::IslandSolver;
 use rows::NONE;
 
-/// All islands' solvers.
+/// The solvers of islands.
 #[derive(Debug, Clone, Default)]
 pub struct BlockPivoting {
     /// Added to the diagonal, relative to it, so that redundant contacts share their impulse.
     regularization: f64,
+    /// Whether each island keeps its factor for another solve. Otherwise all share one solver, whose memory stays
+    /// in the processor's cache.
+    pub keeps_factors: bool,
     islands: Vec<IslandSolver>,
     /// b, contact by contact.
     rights: Vec<f64>,
-    /// Where each boat is among the bodies of its island.
+    /// Where each boat is among the bodies of an island that is being built; [`NONE`] between two.
     places: Vec<u32>,
 }
 
@@ -36,13 +39,13 @@ impl BlockPivoting {
 
     /// Forgets the factors; so many islands of so many boats come next.
     pub fn reset(&mut self, boats: usize, islands: usize) {
-        if self.islands.len() < islands {
-            self.islands.resize_with(islands, IslandSolver::default);
+        let solvers = if self.keeps_factors { islands } else { 1 };
+        if self.islands.len() < solvers {
+            self.islands.resize_with(solvers, IslandSolver::default);
         }
-        for island in &mut self.islands[..islands] {
+        for island in &mut self.islands[..solvers] {
             island.is_built = false;
         }
-        self.places.clear();
         self.places.resize(boats, NONE);
     }
 
@@ -85,7 +88,8 @@ impl BlockPivoting {
                 contacts.iter().for_each(|&k| impulses[k as usize] = 0.0);
                 continue;
             }
-            let island = &mut self.islands[number];
+            let island = &mut self.islands[if self.keeps_factors { number } else { 0 }];
+            island.is_built &= self.keeps_factors;
             island.build(problem, contacts, active, impulses, &mut self.places);
             island.set_right(problem, &self.rights);
             island.solve(self.regularization, &mut report);

@@ -68,6 +68,12 @@ impl ContactSolver {
         }
     }
 
+    /// The same solver, which may keep its factors: solving the same contacts again costs less then.
+    pub fn keeping_factors(mut self, keeps: bool) -> Self {
+        self.pivoting.keeps_factors = keeps;
+        self
+    }
+
     /// Takes on a new set of contacts; `active` and `impulses` must hold a guess for each.
     pub fn reset(&mut self, boats: usize, contacts: &[Contact]) {
         debug_assert_eq!(self.active.len(), contacts.len());
@@ -81,7 +87,7 @@ impl ContactSolver {
     }
 
     /// Solves for `impulses` and `velocities`. Solving again with other bounds or free velocities
-    /// reuses the factor as far as the active set is the same.
+    /// reuses factors that are kept as far as the active set is the same.
     pub fn solve(&mut self, problem: &ContactProblem) -> SolveReport {
         self.solve_as(self.kind, problem)
     }

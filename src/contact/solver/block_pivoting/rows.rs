@@ -144,7 +144,7 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// Lays out the rows of some contacts. `places` maps boats to bodies, [`NONE`] for boats not met yet.
+    /// Lays out the rows of some contacts. `places` is scratch space, [`NONE`] for every boat.
     pub fn build(&mut self, problem: &ContactProblem, contacts: &[u32], places: &mut [u32]) {
         self.bodies.clear();
         self.bodies.push(Body::WALLS);
@@ -166,6 +166,9 @@ impl Rows {
             let other = [normal.x, normal.y, contact.gap.arm_j].map(|number| sign * number);
             row.diagonal = row.set_side(0, own, &inertia[contact.boat as usize])
                 + row.set_side(1, other, &inertia[second]);
+        }
+        for body in &self.bodies[1..] {
+            places[body.boat as usize] = NONE;
         }
     }
 
