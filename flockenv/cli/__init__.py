@@ -1,10 +1,5 @@
 """The command line, one file per command; `flockenv COMMAND --help` describes each."""
 
-import functools
-import signal
-from collections.abc import Callable
-from threading import current_thread, main_thread
-from threading import enumerate as enumerate_threads
 from typing import Annotated, Any
 
 import typer
@@ -14,10 +9,9 @@ from flockenv._core import __version__
 from flockenv.cli.analyze import analyze, export
 from flockenv.cli.compare import compare
 from flockenv.cli.console import (
-    INTERRUPTED,
     console,
+    ends_on_interrupt,
     errors,
-    interruptible,
     print_anywhere,
     say,
 )
@@ -42,17 +36,6 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
     help="Flocks of radio-controlled boats with a few steerable leaders (Tarcai et al. 2011).",
 )
-
-
-def _interruptible(command: Callable[..., None]) -> Callable[..., None]:
-    """Return the command with exit code 130 also where Ctrl-C finds it between its long parts."""
-
-    @functools.wraps(command)
-    def wrapped(*arguments: Any, **options: Any) -> None:
-        with interruptible("Work that was finished before is stored."):
-            command(*arguments, **options)
-
-    return wrapped
 
 
 class _Command(typer.core.TyperCommand):
@@ -82,7 +65,7 @@ COMMANDS = (
 )
 
 for command in COMMANDS:
-    app.command(cls=_Command)(_interruptible(command))
+    app.command(cls=_Command)(ends_on_interrupt(command))
 
 
 def main() -> None:
@@ -94,17 +77,6 @@ def main() -> None:
         errors.print("[bold red]Error:[/]", end=" ")
         say(_in_words(error), errors)
         raise SystemExit(2) from error
-    except SystemExit as ended:
-        if ended.code == INTERRUPTED:
-            _end_in_peace()
-        raise
-
-
-def _end_in_peace() -> None:
-    """Ignore another Ctrl-C, which would only spill tracebacks of packages that are being left."""
-    waited_for = any(not each.daemon for each in enumerate_threads() if each is not main_thread())
-    if not waited_for and current_thread() is main_thread():
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _in_words(error: FlockError | OSError) -> str:

@@ -1,6 +1,7 @@
 """Where commands print: results to standard output, progress and errors to standard error."""
 
 import codecs
+import functools
 import io
 import signal
 import sys
@@ -8,6 +9,8 @@ import unicodedata
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from threading import current_thread, main_thread
+from threading import enumerate as enumerate_threads
 from types import FrameType
 from typing import Any
 
@@ -20,6 +23,7 @@ from flockenv._io.interrupts import on_interrupt
 __all__ = [
     "INTERRUPTED",
     "console",
+    "ends_on_interrupt",
     "errors",
     "finished_in",
     "interruptible",
@@ -96,26 +100,49 @@ def progress_bar(disable: bool) -> Progress:
     )
 
 
+def ends_on_interrupt(command: Callable[..., None]) -> Callable[..., None]:
+    """Return a command that Ctrl-C ends with exit code 130 and what `interruptible` noted on it.
+
+    Another Ctrl-C does not cut that off, nor does it spill tracebacks of packages that are being
+    left; where runs in other threads are waited for, it ends them.
+    """
+
+    @functools.wraps(command)
+    def wrapped(*arguments: Any, **options: Any) -> None:
+        try:
+            command(*arguments, **options)
+        except KeyboardInterrupt as interrupt:
+            notes = getattr(interrupt, "__notes__", ["Work that was finished before is stored."])
+            with on_interrupt(signal.SIG_IGN):
+                say(f"Interrupted. {notes[0]}", errors)
+            others = (each for each in enumerate_threads() if each is not main_thread())
+            if current_thread() is main_thread() and all(each.daemon for each in others):
+                signal.signal(signal.SIGINT, signal.SIG_IGN)
+            raise typer.Exit(INTERRUPTED) from None
+
+    return wrapped
+
+
 @contextmanager
 def interruptible(message: str | Callable[[], str]) -> Iterator[None]:
-    """On Ctrl-C within a `with` block, end with exit code 130 and a message on the work.
+    """Note on a Ctrl-C within a `with` block what became of the work: the command ends with it.
 
     Parameters
     ----------
     message
-        The message, or a function that returns it then. Another Ctrl-C does not cut it off.
+        The message, or a function that returns it then.
     """
     try:
         yield
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as interrupt:
         with on_interrupt(signal.SIG_IGN):
-            say(f"Interrupted. {message if isinstance(message, str) else message()}", errors)
-        raise typer.Exit(INTERRUPTED) from None
+            interrupt.add_note(message if isinstance(message, str) else message())
+        raise
 
 
 @contextmanager
 def finished_in(folder: Path, parts: Collection[str]) -> Iterator[None]:
-    """On Ctrl-C within a `with` block, end with exit code 130 and say which parts are finished.
+    """Note on a Ctrl-C within a `with` block which parts are finished.
 
     Parameters
     ----------
@@ -134,7 +161,7 @@ def finished_in(folder: Path, parts: Collection[str]) -> Iterator[None]:
 
 @contextmanager
 def resumable(folder: Path) -> Iterator[None]:
-    """On Ctrl-C within a `with` block, end with exit code 130 and say where work resumes from.
+    """Note on a Ctrl-C within a `with` block where work resumes from.
 
     Runs under way cannot be stopped in their middle, and long ones take a minute to end: that is
     said at once.

@@ -7,7 +7,9 @@ import pty
 import signal
 import subprocess
 import sys
+import threading
 import time
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -15,7 +17,7 @@ import typer
 
 import flockenv
 from flockenv.cli import app
-from flockenv.cli.console import finished_in, interruptible, resumable
+from flockenv.cli.console import ends_on_interrupt, finished_in, interruptible, resumable
 from flockenv.cli.presets import ABOUT
 
 COMMANDS = sorted(command.callback.__name__ for command in app.registered_commands)
@@ -232,16 +234,19 @@ def test_ctrl_c_says_where_finished_work_is(cli, name, tmp_path):
     assert not list(Path(tmp_path).rglob("*.tmp"))
 
 
-@pytest.mark.parametrize(
-    "reported",
-    [
-        lambda: interruptible("All is stored."),
-        lambda: interruptible(lambda: "All is stored."),
-        lambda: finished_in(Path("here"), ["a"]),
-        lambda: resumable(Path("here")),
-    ],
-)
-def test_another_ctrl_c_does_not_cut_off_the_message(reported, monkeypatch, capsys):
+NOTED = {
+    "All is stored.": lambda: interruptible("All is stored."),
+    "All was stored.": lambda: interruptible(lambda: "All was stored."),
+    "Finished and stored in here: a.": lambda: finished_in(Path("here"), ["a"]),
+    "Finished runs are stored in here": lambda: resumable(Path("here")),
+    "Work that was finished before is stored.": nullcontext,
+}
+
+
+@pytest.mark.parametrize("words", NOTED)
+def test_another_ctrl_c_neither_cuts_off_the_message_nor_disturbs_the_end(
+    words, monkeypatch, capsys
+):
     console = sys.modules[interruptible.__module__]  # The package has another thing of that name.
     whole = console.say
 
@@ -249,24 +254,48 @@ def test_another_ctrl_c_does_not_cut_off_the_message(reported, monkeypatch, caps
         signal.raise_signal(signal.SIGINT)
         whole(text, on)
 
-    monkeypatch.setattr(console, "say", pressed)
-    with pytest.raises((typer.Exit, KeyboardInterrupt)) as ended, reported():
+    @ends_on_interrupt
+    def command():
+        with interruptible("This stands further out."), NOTED[words]():
+            raise KeyboardInterrupt
+
+    @ends_on_interrupt
+    def without_notes():
         raise KeyboardInterrupt
-    assert isinstance(ended.value, typer.Exit)
-    assert ended.value.exit_code == 130
-    assert "stored" in capsys.readouterr().err
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
-
-@pytest.mark.parametrize(("code", "ignored"), [(130, True), (0, False)])
-def test_another_ctrl_c_does_not_disturb_the_end(code, ignored, monkeypatch):
-    monkeypatch.setattr(flockenv.cli, "app", lambda: sys.exit(code))
+    monkeypatch.setattr(console, "say", pressed)
     try:
-        with pytest.raises(SystemExit):
-            flockenv.cli.main()
-        assert (signal.getsignal(signal.SIGINT) is signal.SIG_IGN) == ignored
+        with pytest.raises((typer.Exit, KeyboardInterrupt)) as ended:
+            (without_notes if NOTED[words] is nullcontext else command)()
+        assert isinstance(ended.value, typer.Exit)
+        assert ended.value.exit_code == 130
+        assert f"Interrupted. {words}" in capsys.readouterr().err
+        assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
     finally:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def test_another_ctrl_c_ends_what_other_threads_are_at(capsys):
+    over = threading.Event()
+    waited_for = threading.Thread(target=over.wait)
+    waited_for.start()
+
+    @ends_on_interrupt
+    def command():
+        raise KeyboardInterrupt
+
+    try:
+        with pytest.raises(typer.Exit):
+            command()
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        over.set()
+        waited_for.join()
+
+
+def test_a_command_that_ends_leaves_ctrl_c_alone():
+    ends_on_interrupt(lambda: None)()
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 @pytest.mark.parametrize(
