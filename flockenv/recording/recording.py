@@ -68,7 +68,7 @@ class Recording:
     rudder : float64 array, shape (t, k), or None
         Rudder commands of the leaders in [-1, 1]: eq. (10) at each pose under the law, otherwise
         what was held up to each time, 0 at the start. None where they were not recorded, as in
-        files of version 0.1.0 and in runs of a `RunStore`.
+        files of version 0.1.0 and in stored runs of sweeps.
     contacts : ContactSeries or None
         Contacts that carried a force, if they were recorded.
     policy : str or None

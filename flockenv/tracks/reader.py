@@ -17,7 +17,7 @@ from flockenv.tracks.layout import TrackLayout, layout_beside
 
 if TYPE_CHECKING:
     import pandas as pd
-    import xarray as xr
+    import xarray
 
 __all__ = ["SUFFIXES", "TrackReport", "Tracks", "from_movement", "from_table", "read_tracks"]
 
@@ -229,7 +229,7 @@ def _direction(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.flo
 
 
 def from_movement(
-    dataset: "xr.Dataset",
+    dataset: "xarray.Dataset",
     layout: TrackLayout,
     *,
     center: str | None = None,
