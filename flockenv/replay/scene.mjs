@@ -46,13 +46,17 @@ export class Scene {
     if (trailSeconds > 0) {
       this.#trails(time, trailSeconds, boat);
     }
+    const isThere = (k) => !Number.isNaN(this.poses[k][0]);
     for (let k = this.run.boats - 1; k >= 0; k -= 1) {
-      this.#boat(k);
+      // A canvas ignores a place that is no number, and would draw the boat in its corner.
+      if (isThere(k)) {
+        this.#boat(k);
+      }
     }
     if (forceScale !== null && this.run.hasForces) {
       drawForces(this, this.run.sampleAt(time), forceScale);
     }
-    if (boat !== null) {
+    if (boat !== null && isThere(boat)) {
       this.#ring(boat);
     }
   }

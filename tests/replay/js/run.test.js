@@ -18,6 +18,19 @@ test("poses between samples lie on straight lines", () => {
   assert.deepEqual(run.posesAt(99), [[20, 8, 1], [30, 0, 1]]);
 });
 
+test("a tracked boat that is not there has no pose and no card, and has its own name", () => {
+  const run = runOf();
+  run.columns.set("present", column([1, 1, 1, 1, 0, 1], 1, 2));
+  run.ids = ["red", "blue"];
+  assert.deepEqual(run.posesAt(0)[1], [30, 0, 1]);
+  assert.deepEqual(run.posesAt(0.6)[1], [NaN, NaN, NaN]);
+  assert.equal(run.isThere(1, 1), false);
+  assert.equal(run.isThere(0, 1), true);
+  assert.equal(run.nameOf(1), "blue");
+  assert.equal(runOf().nameOf(1), "boat 1");
+  assert.equal(runOf().isThere(1, 1), true);
+});
+
 test("contacts belong to their sample", () => {
   const run = runOf();
   assert.deepEqual(run.contacts(0), []);
