@@ -37,14 +37,32 @@ def test_columns_differ_by_leaders_alone():
             assert {spec.parameters.n_leaders for spec in specs} == {setup.n_leaders}
 
 
-@pytest.mark.parametrize("name", ["fig7", "fig12", "table2"])
-def test_a_figure_of_short_runs_is_written(name, tmp_path):
-    claims = reproduce(plan([name], SHORT), tmp_path)
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Of all figures, which share runs."""
+    return tmp_path_factory.mktemp("figures")
+
+
+@pytest.mark.parametrize(
+    "name", ["fig4", "fig6", "fig7", "fig9", "fig10", "fig12", "table2", "fig14"]
+)
+def test_a_figure_of_short_runs_is_written(name, folder):
+    claims = reproduce(plan([name], SHORT), folder)
     for ending in ("csv", "parquet", "png", "svg"):
-        assert (tmp_path / name / f"{name}.{ending}").stat().st_size > 0
-    reported = pd.read_csv(tmp_path / name / "claims.csv")
+        assert list((folder / name).glob(f"{name}*.{ending}"))
+    reported = pd.read_csv(folder / name / "claims.csv")
     assert len(reported) == len(claims[name]) > 0
     assert set(reported["verdict"]) <= {"holds", "does not hold", "inconclusive"}
+    assert "short runs: 0.333 min" in next((folder / name).glob("*.svg")).read_text()
+
+
+def test_motion_is_written_without_claims(folder):
+    assert reproduce(plan(["motion"], SHORT), folder) == {"motion": []}
+    tables = [
+        pd.read_csv(path) for path in (folder / "motion").glob("*.csv") if path.name != "claims.csv"
+    ]
+    assert tables
+    assert all(len(table) and table.notna().any().all() for table in tables)
 
 
 def test_runs_are_drawn_within_their_groups():

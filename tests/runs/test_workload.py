@@ -14,12 +14,13 @@ SCENE = flockenv.FlockParameters.preset("paper").replace(n_boats=8)
 SPECS = [RunSpec(parameters=SCENE, seed=seed, duration_s=60.0) for seed in range(300)]
 
 
-@pytest.mark.parametrize("of", [1, 2, 7, 300])
+@pytest.mark.parametrize("of", [1, 2, 7, 60])
 def test_shards_hold_every_run_once_in_its_order(of):
-    shares = [Shard(number, of).runs_of(SPECS) for number in range(1, of + 1)]
-    assert sorted((spec for share in shares for spec in share), key=SPECS.index) == SPECS
+    specs = SPECS[:60]
+    shares = [Shard(number, of).runs_of(specs) for number in range(1, of + 1)]
+    assert sorted((spec for share in shares for spec in share), key=specs.index) == specs
     for share in shares:
-        assert share == sorted(share, key=SPECS.index)
+        assert share == sorted(share, key=specs.index)
 
 
 def test_shards_are_about_equally_large():
