@@ -1,6 +1,7 @@
 """Law: a table of a page that quotes data is what the committed data give."""
 
 import importlib.util
+import re
 import shutil
 import subprocess
 import sys
@@ -29,7 +30,7 @@ def test_every_table_is_on_one_page():
 
 def test_a_changed_number_is_put_back():
     text = (REPOSITORY / "README.md").read_text(encoding="utf-8")
-    changed = text.replace("0.222 [0.145, 0.295]", "0.999 [0.145, 0.295]")
+    changed = re.sub(r"(?m)^(\| 1 \| )\d\.\d+", r"\g<1>9.999", text, count=1)
     assert changed != text
     assert tables.filled(changed) == text
 
