@@ -69,6 +69,17 @@ impl Contact {
         boat.center + boat.axis * along - normal * hull.radius
     }
 
+    /// Its boats, with the normal and the lever arm that the contact has for each.
+    #[inline]
+    pub fn sides(&self) -> impl Iterator<Item = (u32, Vec2, f64)> {
+        let gap = &self.gap;
+        let first = (self.boat, gap.normal, gap.arm_i);
+        let second = self
+            .second()
+            .map(|boat| (boat as u32, -gap.normal, -gap.arm_j));
+        std::iter::once(first).chain(second)
+    }
+
     /// Rate of change of the gap at given velocities of all boats, in cm/s.
     #[inline]
     pub(crate) fn gap_rate(&self, velocities: &[Velocity]) -> f64 {

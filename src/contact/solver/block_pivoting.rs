@@ -2,6 +2,7 @@
 //! from the contacts that carried an impulse before, with a descent as the fallback that guarantees an
 //! end.
 
+mod closed_forms;
 mod descent;
 mod factor;
 mod island_solver;
@@ -88,6 +89,19 @@ impl BlockPivoting {
                 contacts.iter().for_each(|&k| impulses[k as usize] = 0.0);
                 continue;
             }
+            if let &[k, l] = contacts
+                && self.solve_two(
+                    problem,
+                    [k, l].map(|k| k as usize),
+                    active,
+                    impulses,
+                    velocities,
+                    &mut report,
+                )
+            {
+                report.iterations += 1;
+                continue;
+            }
             let island = &mut self.islands[if self.keeps_factors { number } else { 0 }];
             island.is_built &= self.keeps_factors;
             island.build(problem, contacts, active, impulses, &mut self.places);
@@ -109,39 +123,5 @@ impl BlockPivoting {
         }
         report.converged = report.residual <= EXACT.max(self.regularization);
         report
-    }
-
-    /// One contact alone needs no guess and no factor: it pushes as much as it would overlap.
-    fn solve_alone(
-        &self,
-        problem: &ContactProblem,
-        k: usize,
-        active: &mut [bool],
-        impulses: &mut [f64],
-        velocities: &mut [Velocity],
-        report: &mut SolveReport,
-    ) {
-        let right = self.rights[k];
-        active[k] = right < 0.0;
-        impulses[k] = 0.0;
-        if right >= 0.0 {
-            return;
-        }
-        let diagonal = problem.diagonal(k);
-        let impulse = (-right / (diagonal * (1.0 + self.regularization))).max(0.0);
-        impulses[k] = impulse;
-        problem.apply(k, impulse, velocities);
-        let compliance = if self.regularization < rows::TOLERANCE {
-            0.0
-        } else {
-            self.regularization
-        };
-        let speed = diagonal * impulse;
-        let residual = speed
-            .min(problem.slack(k, velocities) + compliance * speed)
-            .abs();
-        if residual > report.residual || residual.is_nan() {
-            report.residual = residual;
-        }
     }
 }

@@ -1,0 +1,132 @@
+//! Islands of one and two contacts, which need no guess and no factor.
+
+use super::rows::TOLERANCE;
+use super::{BlockPivoting, EXACT, SolveReport};
+use crate::contact::ContactProblem;
+use crate::geometry::Velocity;
+
+/// Two contacts whose coupling leaves less than this of the product of their diagonals depend on each other.
+const INDEPENDENT: f64 = 1e-6;
+
+impl BlockPivoting {
+    /// One contact pushes as much as it would overlap.
+    pub(super) fn solve_alone(
+        &self,
+        problem: &ContactProblem,
+        k: usize,
+        active: &mut [bool],
+        impulses: &mut [f64],
+        velocities: &mut [Velocity],
+        report: &mut SolveReport,
+    ) {
+        let right = self.rights[k];
+        active[k] = right < 0.0;
+        impulses[k] = 0.0;
+        if right >= 0.0 {
+            return;
+        }
+        let diagonal = problem.diagonal(k);
+        let impulse = (-right / (diagonal * (1.0 + self.regularization))).max(0.0);
+        impulses[k] = impulse;
+        problem.apply(k, impulse, velocities);
+        let compliance = if self.regularization < TOLERANCE {
+            0.0
+        } else {
+            self.regularization
+        };
+        let speed = diagonal * impulse;
+        let residual = speed
+            .min(problem.slack(k, velocities) + compliance * speed)
+            .abs();
+        if residual > report.residual || residual.is_nan() {
+            report.residual = residual;
+        }
+    }
+
+    /// Two contacts push both, or one of them does; returns whether that was solved. Where the two depend on each
+    /// other, or a regularized problem is to give way, it is left to pivoting.
+    pub(super) fn solve_two(
+        &self,
+        problem: &ContactProblem,
+        contacts: [usize; 2],
+        active: &mut [bool],
+        impulses: &mut [f64],
+        velocities: &mut [Velocity],
+        report: &mut SolveReport,
+    ) -> bool {
+        let diagonals = contacts.map(|k| problem.diagonal(k));
+        let coupling = problem.coupling(contacts[0], contacts[1]);
+        let rights = contacts.map(|k| self.rights[k]);
+        if self.regularization > TOLERANCE {
+            return false;
+        }
+        let Some(pushes) = two_impulses(diagonals, coupling, rights) else {
+            return false;
+        };
+        for (k, impulse) in contacts.into_iter().zip(pushes) {
+            problem.apply(k, impulse, velocities);
+        }
+        let residuals = [0, 1].map(|side| {
+            let speed = diagonals[side] * pushes[side];
+            speed.min(problem.slack(contacts[side], velocities)).abs()
+        });
+        // Pivoting, which refines what it solves, starts from free velocities again.
+        if !residuals.iter().all(|residual| *residual <= 0.5 * EXACT) {
+            return false;
+        }
+        for (k, impulse) in contacts.into_iter().zip(pushes) {
+            (active[k], impulses[k]) = (impulse > 0.0, impulse);
+        }
+        report.residual = residuals.into_iter().fold(report.residual, f64::max);
+        true
+    }
+}
+
+/// The impulses λ ≥ 0 of a complementarity problem of two rows, if these are independent.
+fn two_impulses([a, b]: [f64; 2], coupling: f64, [r, s]: [f64; 2]) -> Option<[f64; 2]> {
+    let determinant = a * b - coupling * coupling;
+    if determinant <= INDEPENDENT * a * b {
+        return None;
+    }
+    let both = [coupling * s - b * r, coupling * r - a * s].map(|x| x / determinant);
+    let (first, second) = ((-r / a).max(0.0), (-s / b).max(0.0));
+    if both[0] > 0.0 && both[1] > 0.0 {
+        Some(both)
+    } else if s + coupling * first >= 0.0 {
+        Some([first, 0.0])
+    } else if r + coupling * second >= 0.0 {
+        Some([0.0, second])
+    } else {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::two_impulses;
+
+    #[test]
+    fn two_rows_on_paper() {
+        // Without coupling each closes its own gap.
+        assert_eq!(
+            two_impulses([2.0, 4.0], 0.0, [-2.0, -8.0]),
+            Some([1.0, 2.0])
+        );
+        assert_eq!(two_impulses([2.0, 4.0], 0.0, [-2.0, 8.0]), Some([1.0, 0.0]));
+        // The first one's push opens the second gap: 2·1 − 2 = 0 and 1·1 − 0.5 ≥ 0.
+        assert_eq!(
+            two_impulses([2.0, 2.0], 1.0, [-2.0, -0.5]),
+            Some([1.0, 0.0])
+        );
+        assert_eq!(
+            two_impulses([2.0, 2.0], 1.0, [-0.5, -2.0]),
+            Some([0.0, 1.0])
+        );
+        // The first one's push closes the second: 2·λ − μ = 3 and 2·μ − λ = 0.
+        assert_eq!(
+            two_impulses([2.0, 2.0], -1.0, [-3.0, 0.0]),
+            Some([2.0, 1.0])
+        );
+        assert_eq!(two_impulses([1.0, 1.0], 1.0, [-1.0, -1.0]), None);
+    }
+}
