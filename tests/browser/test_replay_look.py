@@ -119,7 +119,7 @@ def test_a_boats_card_covers_no_words(open_page, pages, name, size):
     for time_s in (20, 50, 80):
         for boat in range(12):
             page.script("player.seek(arguments[0]); player.pin(arguments[1])", time_s, boat)
-            page.settle()
+            page.wait_until_drawn()
             covered = page.script("""
                 const [card, ...corners] = [".card", ...["top", "bottom"].flatMap((side) =>
                     ["left", "right"].map((end) => `.corner.${side}.${end}`))]
