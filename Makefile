@@ -142,7 +142,7 @@ licenses: ## collect the notices of the crates that are compiled in, into LICENS
 
 validate: $(STAMPS)/test $(STAMPS)/core ## the slow tests and the published curves
 	cargo test --locked --features clarabel,draw -- --ignored
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) -m "slow or validation" --timeout 3600 $(PYTEST_ARGS)
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) -m slow --timeout 3600 $(PYTEST_ARGS)
 
 tables: $(STAMPS)/compare $(STAMPS)/core ## fill the tables of README and docs from the committed data
 	$(BIN)/python docs/tables.py

@@ -15,7 +15,7 @@
 //! | length | cm |
 //! | time | s (kept as integer ticks of 1 ns) |
 //! | angle | rad, headings counter-clockwise from x |
-//! | mass | 1 a boat, so impulses are cm/s and forces cm/s² |
+//! | mass | 1 per boat, so impulses are cm/s and forces cm/s² |
 //! | c1, c2, c3 | s, 1/(cm·s), 1/cm |
 //!
 //! # Words

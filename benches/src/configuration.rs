@@ -37,7 +37,7 @@ pub struct Configuration {
 
 /// Steps in s that engines are compared at.
 pub const STEPS_S: [f64; 5] = [0.005, 0.01, 0.02, 0.05, 0.1];
-/// The step in s at which the bars stand.
+/// The step in s of the main comparison.
 pub const STEP_S: f64 = 0.01;
 
 impl Configuration {
@@ -95,14 +95,14 @@ impl Configuration {
         all
     }
 
-    /// The other solvers, at the step of the bars.
+    /// The other solvers, at the step of the main comparison.
     pub fn all_inexact() -> Vec<Self> {
         let solvers = [Solver::GaussSeidel, Solver::Clarabel];
         let each = |scheme| solvers.map(|solver| Self::ours(scheme, solver, 0, STEP_S));
         Scheme::ALL.iter().copied().flat_map(each).collect()
     }
 
-    /// The peers in this binary: steps at default settings, then settings at the step of the bars.
+    /// The peers in this binary: steps at default settings, then settings at the step of the main comparison.
     pub fn all_peers() -> Vec<Self> {
         let mut all: Vec<Self> = [0.005, 0.01, 0.02].map(Self::rapier).to_vec();
         let defaults = rapier_f64::Settings::default();

@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 from flockenv import _core
 from flockenv.envs.batch import LeaderBatch
 from flockenv.envs.options import EnvOptions
-from flockenv.envs.render_mode import Screen
+from flockenv.envs.render_mode import RenderMode
 
-__all__ = ["OneFlock"]
+__all__ = ["SingleEnvironmentBase"]
 
 
-class OneFlock:
+class SingleEnvironmentBase:
     """One flock with its episodes and its screen, to be mixed into an interface's class."""
 
     metadata: dict[str, Any]
@@ -27,7 +27,7 @@ class OneFlock:
         self.state_space = self._batch.state_space
         fps = self._batch.settings["control_hz"]
         self.render_mode = render_mode
-        self._screen = Screen(render_mode, render_size, fps)
+        self._render_mode = RenderMode(render_mode, render_size, fps)
         self.metadata = {**self.metadata, "render_fps": fps}
 
     def state(self) -> NDArray[np.float32]:
@@ -56,8 +56,8 @@ class OneFlock:
         return copy.deepcopy(self)
 
     def _show(self) -> None:
-        if self._screen.is_live:
-            self._screen.show(self.flock)
+        if self._render_mode.is_live:
+            self._render_mode.show(self.flock)
 
     def render(self) -> NDArray[np.uint8] | None:
         """Return a frame, (height, width, 3) uint8, where `render_mode` is "rgb_array".
@@ -65,8 +65,8 @@ class OneFlock:
         With "human" every reset and step shows itself in a window (see `rendering.Window` for its
         keys), and nothing is returned.
         """
-        return None if self.render_mode is None else self._screen.render(self.flock)
+        return None if self.render_mode is None else self._render_mode.render(self.flock)
 
     def close(self) -> None:
         """Close the window, if there is one; it stays closed."""
-        self._screen.close()
+        self._render_mode.close()

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pettingzoo import ParallelEnv
 
-from flockenv.envs.base import OneFlock
+from flockenv.envs.base import SingleEnvironmentBase
 from flockenv.envs.batch import drawn_seed
 from flockenv.envs.docs import specified
 from flockenv.envs.observation import ObservationSpace
@@ -25,7 +25,7 @@ Infos = dict[str, dict[str, Any]]
 
 @specified
 class LeadersParallelEnv(
-    OneFlock, ParallelEnv[str, NDArray[np.float32], NDArray[np.float32] | int]
+    SingleEnvironmentBase, ParallelEnv[str, NDArray[np.float32], NDArray[np.float32] | int]
 ):
     """Lead a flock of boats around a ring-shaped pool: each leader is an agent.
 

@@ -14,13 +14,13 @@ if TYPE_CHECKING:
 
     from flockenv._core import Flock
 
-__all__ = ["RENDER_MODES", "Screen"]
+__all__ = ["RENDER_MODES", "RenderMode"]
 
 #: Render modes of the environments with one flock; those with many have "rgb_array" alone.
 RENDER_MODES = ("human", "rgb_array")
 
 
-class Screen:
+class RenderMode:
     """The render mode of an environment, the size of its frames, and its window if it has one.
 
     Copies and pickles have the same mode and size, and no window until they render.

@@ -6,7 +6,7 @@ import gymnasium
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flockenv.envs.base import OneFlock
+from flockenv.envs.base import SingleEnvironmentBase
 from flockenv.envs.batch import drawn_seed
 from flockenv.envs.docs import specified
 from flockenv.envs.observation import ObservationSpace
@@ -18,7 +18,7 @@ __all__ = ["LeadersEnv"]
 
 
 @specified
-class LeadersEnv(OneFlock, gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
+class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
     """Lead a flock of boats around a ring-shaped pool: one policy steers all leaders.
 
     ``gymnasium.make("flockenv/Leaders-v0", **options)``

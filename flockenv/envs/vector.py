@@ -14,7 +14,7 @@ from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, seeds_fro
 from flockenv.envs.docs import specified
 from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.options import EnvOptions
-from flockenv.envs.render_mode import Screen
+from flockenv.envs.render_mode import RenderMode
 from flockenv.envs.spaces import flat_actions, joint_action_space
 from flockenv.errors import ParameterError
 from flockenv.rendering.frames import DEFAULT_SIZE
@@ -105,7 +105,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         levels = self._batch.settings["rudder_levels"]
         self.render_mode = render_mode
         fps = self._batch.settings["control_hz"]
-        self._screen = Screen(render_mode, render_size, fps, ("rgb_array",))
+        self._render_mode = RenderMode(render_mode, render_size, fps, ("rgb_array",))
         self.metadata = {
             **self.metadata,
             "autoreset_mode": self.autoreset_mode,
@@ -223,7 +223,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
     def order_parameters(self) -> NDArray[np.float64]:
         """Return order parameters of the normal boats now.
 
-        Shape (num_envs, 6): psi_o, phi_o, c_o, psi_v, phi_v, c_v as in `OrderParameters`.
+        Shape (num_envs, 6): the fields of `OrderParameters`, in its order.
         """
         return self._batch.core.order_parameters()
 
@@ -252,7 +252,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         if self.render_mode is None:
             return None
         flocks = map(self._batch.core.flock, range(self.num_envs))
-        return tuple(map(self._screen.frame, flocks))
+        return tuple(map(self._render_mode.frame, flocks))
 
 
 _CORE_NAMES = {

@@ -12,7 +12,7 @@ from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, seeds_fro
 from flockenv.envs.docs import specified
 from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.options import EnvOptions
-from flockenv.envs.render_mode import Screen
+from flockenv.envs.render_mode import RenderMode
 from flockenv.envs.spaces import flat_actions, leader_action_space
 from flockenv.errors import EpisodeError, ParameterError
 from flockenv.parameters import FlockParameters
@@ -133,7 +133,7 @@ class LeaderVecEnv(VecEnv):
         self.num_flocks = num_flocks
         self.render_mode = render_mode
         fps = settings["control_hz"]
-        self._screen = Screen(render_mode, render_size, fps, ("rgb_array",))
+        self._render_mode = RenderMode(render_mode, render_size, fps, ("rgb_array",))
         self.observation_space = ObservationSpace(settings)
         self.action_space = leader_action_space(settings["rudder_levels"])
         self.state_space = self._batch.state_space
@@ -286,7 +286,7 @@ class LeaderVecEnv(VecEnv):
         if self.render_mode is None:
             return [None for _ in self.slots]
         flocks = map(self._batch.core.flock, range(self.num_flocks))
-        return [self._screen.frame(flock) for flock in flocks]
+        return [self._render_mode.frame(flock) for flock in flocks]
 
     def close(self) -> None:
         """Nothing is held open."""

@@ -1,4 +1,4 @@
-//! The laws of the physics, one file a law: each opens with the law it checks and starts with a case
+//! The laws of the physics, one file per law: each opens with the law it checks and starts with a case
 //! whose answer is known on paper. Slow tests are ignored by default: `cargo test -- --ignored`.
 
 mod dense_reference;

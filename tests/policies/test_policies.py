@@ -190,7 +190,7 @@ def test_rudders_of_a_law_are_no_levels():
 
 
 def test_sign_correction_helps():
-    # The head-room of the issue, in the small: paired episodes at the critical noise of `table-1`.
+    # What leaders can gain, in the small: paired episodes at the critical noise of `table-1`.
     means = {}
     for law in (SteeringLaw(), SignCorrectedLaw()):
         venv = flockenv.LeadersVectorEnv(

@@ -21,7 +21,7 @@ from flockenv.reproduce.transition.measured import (
     M_EDGES,
     Loops,
     Measured,
-    Still,
+    Stationary,
     binder,
     hysteresis,
 )
@@ -82,7 +82,7 @@ def test_an_open_loop() -> None:
 
 def test_runs_at_one_density_count_in_their_second_half() -> None:
     late = np.arange(1000) > 500
-    jam = Still([made(np.where(late, 0.8, 0.0), np.where(late, 0.1, 1.0))] * 2, 7)
+    jam = Stationary([made(np.where(late, 0.8, 0.0), np.where(late, 0.1, 1.0))] * 2, 7)
     assert jam.outward == pytest.approx([0.8, 0.8])
     # |m| is the same in all that counts, as is C_v.
     assert jam.binder_m == pytest.approx(2 / 3, abs=1e-6)
@@ -194,7 +194,7 @@ def test_a_loop_that_never_jams_is_no_closed_loop(back: float, verdict: str, not
         sizes=(400,), densities={growth.way: (20,)}, runs=2, still_minutes=1.0, loop_minutes=1.0
     )
     steady = np.full(1000, 0.1)
-    still = Still([made(steady, steady)] * 2, 7)
+    still = Stationary([made(steady, steady)] * 2, 7)
     there = np.arange(1000) < 450
     loop = Loops([made(np.where(there, 0.1, back), steady)] * 2)
     measured = Measured(

@@ -85,7 +85,7 @@ class TransitionDesign:
     still_minutes: float
     loop_minutes: float
 
-    def still(
+    def stationary(
         self, settings: Settings, growth: Growth, density: int, start: str
     ) -> tuple[RunSpec, ...]:
         """Return the runs at one density without noise, from one of `STARTS`."""
@@ -118,7 +118,7 @@ class TransitionDesign:
         for growth in self.growths():
             for density in self.densities[growth.way]:
                 for start in STARTS:
-                    specs += self.still(settings, growth, density, start)
+                    specs += self.stationary(settings, growth, density, start)
             for kind in LOOPS:
                 specs += self.loop(settings, growth, kind)
         return specs

@@ -19,7 +19,7 @@ __all__ = [
     "M_EDGES",
     "Loops",
     "Measured",
-    "Still",
+    "Stationary",
     "binder",
     "hysteresis",
 ]
@@ -44,7 +44,7 @@ def binder(m2: NDArray[np.float64], m4: NDArray[np.float64]) -> NDArray[np.float
         return np.asarray(1.0 - m4 / (3.0 * m2**2))
 
 
-class Still:
+class Stationary:
     """Runs at one density from one start, over the second half of each.
 
     Attributes
@@ -140,17 +140,17 @@ class Measured:
     ----------
     design : TransitionDesign
         What was run.
-    still : dict of Still
+    stationary : dict of Stationary
         By size, density and start.
     loops : dict of Loops
         By size and kind.
     """
 
     design: TransitionDesign
-    still: dict[tuple[Growth, int, str], Still]
+    stationary: dict[tuple[Growth, int, str], Stationary]
     loops: dict[tuple[Growth, str], Loops]
 
     def gap(self, growth: Growth, density: int) -> Ends:
         """Return the difference of Ψ_o cos φ_o between the two starts, seed by seed."""
-        rotating, jammed = (self.still[growth, density, start].outward for start in STARTS)
+        rotating, jammed = (self.stationary[growth, density, start].outward for start in STARTS)
         return student_interval(jammed - rotating)

@@ -31,7 +31,7 @@ from flockenv.reproduce.transition.measured import (
     M_EDGES,
     Loops,
     Measured,
-    Still,
+    Stationary,
 )
 from flockenv.reproduce.transition.pictures import pictures
 from flockenv.runs.protocols.hysteresis import DENSITY_RATIO
@@ -124,18 +124,18 @@ def _measured(claim: CheckedClaim) -> str:
 
 
 def _analyse(design: TransitionDesign, settings: Settings, results: Results) -> Outcome:
-    still = {}
+    stationary = {}
     for growth in design.growths():
         for density, start in product(design.densities[growth.way], STARTS):
-            specs = design.still(settings, growth, density, start)
-            runs = results.derive(Still, specs, specs[0].draws_seed)
-            still[growth, density, start] = runs
+            specs = design.stationary(settings, growth, density, start)
+            runs = results.derive(Stationary, specs, specs[0].draws_seed)
+            stationary[growth, density, start] = runs
     loops = {
         (growth, kind): results.derive(Loops, design.loop(settings, growth, kind))
         for growth in design.growths()
         for kind in LOOPS
     }
-    measured = Measured(design, still, loops)
+    measured = Measured(design, stationary, loops)
     notes, claims = [], []
     for way in WAYS:
         judged = [judge(measured, Growth(way, n)) for n in design.sizes]
@@ -158,7 +158,7 @@ def _cumulants_note(measured: Measured) -> str:
         growth = Growth(way, measured.design.sizes[-1])
         for start in STARTS:
             ends = [
-                (*interval(measured.still[growth, density, start].binder_m), density)
+                (*interval(measured.stationary[growth, density, start].binder_m), density)
                 for density in measured.design.densities[way]
             ]
             value, low, high, density = min(ends)
@@ -173,7 +173,9 @@ def _cumulants_note(measured: Measured) -> str:
 
 
 def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
-    still, loop = (settings.duration_s(m) / 60 for m in (design.still_minutes, design.loop_minutes))
+    stationary, loop = (
+        settings.duration_s(m) / 60 for m in (design.still_minutes, design.loop_minutes)
+    )
     return [
         "The density is the number of boats for each free area of the pool 500-boats. Runs at one "
         "density have no noise but c4, and their second half counts. Loops in density go from the "
@@ -183,7 +185,7 @@ def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
         "bootstrap over runs and blocks within them, and are too narrow with so few runs. Shorter "
         "runs of seeds 0 to 2 and 1000 fixed the densities and the criteria.",
         f"The compute budget is {settings.budget_core_min:g} minutes of one core. The design has "
-        f"{design.runs} seeds, {still:g} minutes per run, {loop:g} minutes per loop and "
+        f"{design.runs} seeds, {stationary:g} minutes per run, {loop:g} minutes per loop and "
         f"{SLOWER * loop:g} per slow loop, and {len(design.sizes)} sizes up to {max(design.sizes)} "
         f"boats. It is estimated to take {design.core_minutes(settings):.0f} minutes, and the full "
         f"design {FULL.core_minutes(settings):.0f} (`--budget`).",
@@ -219,13 +221,13 @@ def judge(measured: Measured, growth: Growth) -> tuple[CheckedClaim, ...]:
 
 def _points_table(measured: Measured) -> pd.DataFrame:
     rows = []
-    for (growth, density, start), still in measured.still.items():
+    for (growth, density, start), stationary in measured.stationary.items():
         row: dict[str, object] = {"way": growth.way, "n_boats": growth.n_boats}
         row |= {"density": density, "start": start}
         for name, ends in (
-            ("outward", student_interval(still.outward)),
-            ("binder_m", interval(still.binder_m)),
-            ("binder_c_v", interval(still.binder_c_v)),
+            ("outward", student_interval(stationary.outward)),
+            ("binder_m", interval(stationary.binder_m)),
+            ("binder_c_v", interval(stationary.binder_c_v)),
         ):
             row |= dict(zip((name, f"{name}_low", f"{name}_high"), ends, strict=True))
         rows.append(row)
@@ -245,11 +247,11 @@ def _loops_table(measured: Measured) -> pd.DataFrame:
 
 def _histograms(measured: Measured) -> pd.DataFrame:
     tables = []
-    for (growth, density, start), still in measured.still.items():
+    for (growth, density, start), stationary in measured.stationary.items():
         keys = {"way": growth.way, "n_boats": growth.n_boats, "density": density, "start": start}
         for name, edges in (("m", M_EDGES), ("c_v", C_V_EDGES)):
             bins = {"bin_low": edges[:-1], "bin_high": edges[1:]}
-            heights = {"probability_density": getattr(still, f"{name}_density")}
+            heights = {"probability_density": getattr(stationary, f"{name}_density")}
             tables.append(pd.DataFrame({**keys, "quantity": name, **bins, **heights}))
     return pd.concat(tables)
 

@@ -17,7 +17,7 @@ from flockenv.reproduce.transition.measured import (
     M_EDGES,
     Loops,
     Measured,
-    Still,
+    Stationary,
 )
 from flockenv.runs.protocols.hysteresis import DENSITY_RATIO
 from flockenv.runs.protocols.initial_state import STARTS
@@ -95,7 +95,9 @@ def _loops(measured: Measured) -> Figure:
 
 def _draw_states(axes: Axes, measured: Measured, growth: Growth, start: str, color: str) -> None:
     densities = measured.design.densities[growth.way]
-    ends = np.array([student_interval(measured.still[growth, d, start].outward) for d in densities])
+    ends = np.array(
+        [student_interval(measured.stationary[growth, d, start].outward) for d in densities]
+    )
     bars = [ends[:, 0] - ends[:, 1], ends[:, 2] - ends[:, 0]]
     # Sizes side by side, or their bars hide each other.
     shift = 1.04 ** (measured.design.sizes.index(growth.n_boats) - len(measured.design.sizes) // 2)
@@ -128,9 +130,9 @@ def _cumulants(measured: Measured) -> Figure:
     design = measured.design
     picture = column_figure(10.5)
     panels = picture.subplots(2, len(WAYS), sharey="row", sharex=True)
-    chosen: tuple[tuple[str, Callable[[Still], NDArray[np.float64]]], ...] = (
-        ("$m$", lambda still: still.binder_m),
-        ("$C_v$", lambda still: still.binder_c_v),
+    chosen: tuple[tuple[str, Callable[[Stationary], NDArray[np.float64]]], ...] = (
+        ("$m$", lambda stationary: stationary.binder_m),
+        ("$C_v$", lambda stationary: stationary.binder_c_v),
     )
     for column, way in enumerate(WAYS):
         panels[0, column].set_title(f"{way} grows")
@@ -139,7 +141,7 @@ def _cumulants(measured: Measured) -> Figure:
             for place, density in enumerate(design.densities[way]):
                 for start in STARTS:
                     values = [
-                        cumulant(measured.still[Growth(way, n), density, start])
+                        cumulant(measured.stationary[Growth(way, n), density, start])
                         for n in design.sizes
                     ]
                     label = str(density) if start == STARTS[0] else None
@@ -184,7 +186,7 @@ def _histograms(measured: Measured, name: str) -> Figure:
             for place, density in enumerate(design.densities[way]):
                 for start in STARTS:
                     heights = getattr(
-                        measured.still[Growth(way, n), density, start], f"{name}_density"
+                        measured.stationary[Growth(way, n), density, start], f"{name}_density"
                     )
                     axes.stairs(
                         heights,
