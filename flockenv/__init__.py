@@ -17,7 +17,15 @@ from flockenv.errors import (
     ParameterError,
     SolverError,
 )
-from flockenv.flock import Contacts, ContactSeries, Flock, OrderParameters, OrderSeries, Statistics
+from flockenv.flock import (
+    Contacts,
+    ContactSeries,
+    Flock,
+    OrderParameters,
+    OrderSeries,
+    Statistics,
+    order_series,
+)
 from flockenv.parameters import FlockParameters
 from flockenv.recording import Recording
 from flockenv.simulation import simulate
@@ -40,6 +48,7 @@ __all__ = [
     "SolverError",
     "Statistics",
     "__version__",
+    "order_series",
     "parallel_env",
     "policies",
     "simulate",

@@ -89,3 +89,30 @@ def test_the_command_line_and_the_replay_page_show_the_table(cli, run, tmp_path)
     assert {"nematic", "milling", "psi_v_cm_s", "signed_order"} <= shown.keys()
     keys = [each.key for each in shown_quantities([run])]
     assert keys == ["signed_order", "rotation", *RECORDED]
+
+
+def test_plain_arrays_have_the_quantities_of_their_recording(run):
+    normal = slice(run.parameters.n_leaders, None)
+    found = flockenv.order_series(run.pose[:, normal].tolist(), run.velocity[:, normal])
+    for name in RECORDED:
+        assert (getattr(found, name) == getattr(run.order, name)).all()
+    gone = run.pose[:, normal].copy()
+    gone[2] = np.nan
+    assert np.flatnonzero(np.isnan(flockenv.order_series(gone, run.velocity[:, normal]).psi_o)) == [
+        2
+    ]
+
+
+@pytest.mark.parametrize(
+    ("pose", "velocity", "words"),
+    [
+        (np.zeros((2, 3)), np.zeros((2, 1, 3)), "pose has shape"),
+        (np.zeros((2, 1, 3)), np.zeros((2, 2, 3)), "velocity has shape"),
+        (np.zeros((2, 1, 2)), np.zeros((2, 1, 2)), "pose has shape"),
+        (np.zeros((2, 0, 3)), np.zeros((2, 0, 3)), "at least one boat"),
+        ("here", np.zeros((2, 1, 3)), "numbers"),
+    ],
+)
+def test_plain_arrays_of_other_shapes_are_refused(pose, velocity, words):
+    with pytest.raises(flockenv.ParameterError, match=words):
+        flockenv.order_series(pose, velocity)
