@@ -312,12 +312,26 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--hidden", type=int, nargs="*", default=[], help="hidden layers")
     parser.add_argument("--reward", choices=TERMS, default="leader_velocity")
     parser.add_argument("--generations", type=int, default=50)
-    parser.add_argument("--pairs", type=int, default=16, help="pairs of opposite perturbations")
+    parser.add_argument(
+        "--antithetic-pairs",
+        "--pairs",
+        dest="pairs",
+        type=int,
+        default=16,
+        help="pairs of opposite perturbations",
+    )
     parser.add_argument("--flocks", type=int, default=4, help="episodes for each candidate")
     parser.add_argument("--sigma", type=float, default=0.3, help="of the perturbations")
-    parser.add_argument("--rate", type=float, default=0.15, help="learning rate of Adam")
     parser.add_argument(
-        "--average", type=float, default=1.0, help="share of each generation in the result; 1: last"
+        "--learning-rate", "--rate", dest="rate", type=float, default=0.15, help="of Adam"
+    )
+    parser.add_argument(
+        "--moving-average",
+        "--average",
+        dest="average",
+        type=float,
+        default=1.0,
+        help="share of each generation in the result; 1: last",
     )
     parser.add_argument("--episodes", type=int, default=64, help="held-out episodes at the end")
     parser.add_argument("--seed", type=run_number, default=0)

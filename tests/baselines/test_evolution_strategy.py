@@ -14,7 +14,17 @@ from flockenv.envs.observation import observation_entries
 from flockenv.policies import load
 from flockenv.policies.pretrained import tuned_law
 
-TINY = ["--pairs", "3", "--flocks", "1", "--episode-s", "5", "--episodes", "4", "--quiet"]
+TINY = [
+    "--antithetic-pairs",
+    "3",
+    "--flocks",
+    "1",
+    "--episode-s",
+    "5",
+    "--episodes",
+    "4",
+    "--quiet",
+]
 
 
 @pytest.mark.parametrize(
@@ -219,3 +229,17 @@ def test_candidates_scored_in_parts_have_the_same_scores(script, tmp_path, engin
 def test_an_unknown_engine_is_named(script, tmp_path: Path) -> None:
     with pytest.raises(SystemExit, match="'abacus' is not accepted"):
         script.main([*TINY, "--engine", "abacus", "--out", str(tmp_path / "out")])
+
+
+def test_options_of_stored_commands_are_understood(script, tmp_path: Path) -> None:
+    """Model cards hold commands with the earlier names of three options."""
+    names = ("--pairs", "--rate", "--average")
+    present = ("--antithetic-pairs", "--learning-rate", "--moving-average")
+    states = []
+    for options in (names, present):
+        values = [word for pair in zip(options, ("3", "0.1", "0.5"), strict=True) for word in pair]
+        out = tmp_path / options[0]
+        script.main([*TINY[2:], *values, "--generations", "2", "--out", str(out)])
+        states.append({**read_arrays(out / "state.npz")})
+    for name in ("weights", "average"):
+        np.testing.assert_array_equal(states[0][name], states[1][name])

@@ -12,6 +12,7 @@ import pytest
 import flockenv
 from flockenv.cli import output
 from flockenv.comparison import report
+from flockenv.comparison.figure import policy_colors
 from flockenv.errors import ParameterError
 
 TINY = ["-q", "--minutes", "0.02", "--set", "n_boats=3"]
@@ -155,7 +156,7 @@ def test_names_that_are_no_utf_8_replay(cli, tmp_path):
         assert done.returncode == 0, done.stderr
 
 
-def test_policies_may_have_any_name(cli, tmp_path):
+def test_policies_may_have_any_name(cli, tmp_path, colors_in):
     size = len(flockenv.envs.observation.observation_entries())
     policy = flockenv.policies.NetworkPolicy([[[0.1]] * size], [[0.0]])
     names = ["x[/b] $a_{ $.npz", "_under.npz", os.fsdecode(b"\xff.npz")]
@@ -169,7 +170,8 @@ def test_policies_may_have_any_name(cli, tmp_path):
     done = cli("compare", *EPISODES, "--most-leaders", "1", *wanted)
     assert done.returncode == 0, done.stderr
     assert "x[/b] $a_{ $.npz" in done.stdout.replace("\n", "")
-    assert (tmp_path / "c" / "table-1" / "leader_curve.png").stat().st_size > 0
+    (first,) = policy_colors(names[:1]).values()
+    assert first in colors_in(tmp_path / "c" / "table-1" / "leader_curve.png")
     assert "\ufffd.npz" in (tmp_path / "c" / "table-1" / "run.toml").read_text("utf-8")
     evaluated = ["--against", names[0], "--leaders", "1"]
     done = cli("evaluate", names[2], *EPISODES, *evaluated)
