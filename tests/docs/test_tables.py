@@ -12,6 +12,7 @@ import pytest
 REPOSITORY = Path(__file__).parents[2]
 spec = importlib.util.spec_from_file_location("docs_tables", REPOSITORY / "docs/tables.py")
 tables = importlib.util.module_from_spec(spec)
+sys.path.append(str(REPOSITORY / "docs"))  # as for the script
 spec.loader.exec_module(tables)
 
 
