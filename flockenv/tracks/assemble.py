@@ -186,19 +186,8 @@ def _phases(
     phases = np.asarray(phase, np.str_)
     if phases.shape != times.shape or not np.isin(phases, PHASES).all():
         raise ParameterError(f"phase is not accepted: {', '.join(PHASES)} for each time")
-    return phases.astype(PHASES.dtype), _analysis_window(phases, times)
-
-
-def _analysis_window(phases: NDArray[np.str_], times: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return where the second half of fw, or the first half of nop1, holds (Section 4)."""
-    starts = np.flatnonzero(np.r_[True, phases[1:] != phases[:-1]])
-    analyzed = np.zeros(times.shape, bool)
-    for start, end in zip(starts, [*starts[1:], len(times)], strict=True):
-        until = times[end] if end < len(times) else times[end - 1]
-        middle = (times[start] + until) / 2
-        half = {"fw": times[start:end] >= middle, "nop1": times[start:end] < middle}
-        analyzed[start:end] = half.get(str(phases[start]), False)
-    return analyzed
+    analyzed = _core.sampled_analysis_window(times, phases.tolist())
+    return phases.astype(PHASES.dtype), analyzed
 
 
 def _order(pose: NDArray[np.float64], velocity: NDArray[np.float64]) -> OrderSeries:

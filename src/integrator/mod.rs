@@ -17,7 +17,7 @@ mod state;
 mod substep;
 
 pub(crate) use checkpoint::Checkpoint;
-pub use phase_schedule::{Phase, PhaseMoment, PhaseSchedule};
+pub use phase_schedule::{Phase, PhaseMoment, PhaseSchedule, sampled_analysis_window};
 pub(crate) use state::Integrator;
 pub use substep::Steering;
 pub(crate) use substep::{StepOutcome, Substep};

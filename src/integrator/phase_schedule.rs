@@ -22,6 +22,32 @@ impl Phase {
     pub fn index(self) -> usize {
         self as usize
     }
+
+    /// Whether a time is analyzed that lies so long after the phase began and before it ends: the second half of
+    /// fw and the first half of the drift after it (Section 4).
+    fn is_analyzed<T: PartialOrd>(self, elapsed: T, left: T) -> bool {
+        match self {
+            Self::Forward => elapsed >= left,
+            Self::DriftAfterForward => elapsed < left,
+            Self::Backward | Self::DriftAfterBackward => false,
+        }
+    }
+}
+
+/// Whether each of some increasing times (s) lies in the analysis window, of which only the phases then are known
+/// (slices of equal length). A phase lasts until the first time of the next one, the last until the last time.
+pub fn sampled_analysis_window(times_s: &[f64], phases: &[Phase]) -> Vec<bool> {
+    let mut analyzed = Vec::with_capacity(times_s.len());
+    for samples in phases.chunk_by(|a, b| a == b) {
+        let begin = analyzed.len();
+        let end = (begin + samples.len()).min(times_s.len() - 1);
+        analyzed.extend(
+            times_s[begin..begin + samples.len()]
+                .iter()
+                .map(|time| samples[0].is_analyzed(time - times_s[begin], times_s[end] - time)),
+        );
+    }
+    analyzed
 }
 
 /// Where in the cycle a time lies.
@@ -84,10 +110,6 @@ impl PhaseSchedule {
     /// drift after it (Section 4).
     pub fn in_analysis_window(&self, time: Ticks) -> bool {
         let moment = self.at(time);
-        match moment.phase {
-            Phase::Forward => moment.elapsed >= moment.left,
-            Phase::DriftAfterForward => moment.elapsed < moment.left,
-            Phase::Backward | Phase::DriftAfterBackward => false,
-        }
+        moment.phase.is_analyzed(moment.elapsed, moment.left)
     }
 }

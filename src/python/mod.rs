@@ -50,7 +50,7 @@ mod _core {
     #[pymodule_export]
     use super::quantities::{PyQuantity, quantities};
     #[pymodule_export]
-    use super::recording::{phase_names, record};
+    use super::recording::{phase_names, record, sampled_analysis_window};
     #[pymodule_export]
     use super::settings::{env_defaults, env_meanings, reward_terms};
     #[pymodule_export]

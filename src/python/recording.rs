@@ -1,15 +1,16 @@
 //! The loop of `flockenv.simulate`.
 
-use super::arguments::{DurationS, SampleHz, floats, real, text};
+use super::arguments::{DurationS, SampleHz, floats, real, same_length, text};
 use super::contacts::PyContactSeries;
 use super::flock::{BOAT_SUBSTEPS_A_PIECE, PyFlock};
 use super::observation::observed;
 use super::order::PyOrderSeries;
 use super::settings::layout_from;
 use crate::clock::{Ticks, ticks};
+use crate::error::Result;
 use crate::flock::{Change, Flock, Pause, Real, Recorder, Recording, Sampling};
 use crate::integrator::Phase;
-use numpy::{Element, PyArray1, PyArrayMethods};
+use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
@@ -17,6 +18,21 @@ use pyo3::types::{PyDict, PyString};
 #[pyfunction]
 pub fn phase_names() -> Vec<&'static str> {
     Phase::ALL.iter().map(|phase| phase.name()).collect()
+}
+
+/// Whether each of some times (s) lies in the analysis window, by the phases then: names, shape (t,).
+#[pyfunction]
+pub fn sampled_analysis_window<'py>(
+    py: Python<'py>,
+    time_s: PyReadonlyArray1<'py, f64>,
+    phase: Vec<String>,
+) -> PyResult<Bound<'py, PyArray1<bool>>> {
+    let times = time_s.to_vec()?;
+    same_length("phase", phase.len(), times.len())?;
+    let phases = phase.iter().map(|name| name.parse::<Phase>());
+    let phases = phases.collect::<Result<Vec<_>>>()?;
+    let analyzed = crate::integrator::sampled_analysis_window(&times, &phases);
+    Ok(PyArray1::from_vec(py, analyzed))
 }
 
 /// What of a run is kept besides its states, and how precisely.

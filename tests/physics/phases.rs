@@ -7,7 +7,7 @@
 use crate::support::{SCHEMES, driven, flock_of};
 use flockenv::FlockParameters;
 use flockenv::clock::ticks;
-use flockenv::integrator::{Phase, PhaseSchedule};
+use flockenv::integrator::{Phase, PhaseSchedule, sampled_analysis_window};
 use flockenv::parameters::{Preset, Scheme};
 
 fn cycle(durations: [f64; 4], scheme: Scheme) -> FlockParameters {
@@ -82,6 +82,42 @@ fn the_analysis_window() {
     let schedule = PhaseSchedule::new(&cycle([1.0, 0.0, 0.0, 0.0], Scheme::Leapfrog));
     let inside = (0..1000).filter(|&i| schedule.in_analysis_window(ticks(0.001 * f64::from(i))));
     assert_eq!(inside.count(), 500);
+}
+
+#[test]
+fn the_analysis_window_of_sampled_phases() {
+    use Phase::{Backward, DriftAfterForward, Forward};
+    // fw from 0 to 4 s, the drift from 4 to 6 s, bw to the last time.
+    let phases = [
+        Forward,
+        Forward,
+        Forward,
+        Forward,
+        DriftAfterForward,
+        DriftAfterForward,
+        Backward,
+        Backward,
+    ];
+    let times_s: Vec<f64> = (0..8).map(f64::from).collect();
+    let analyzed = sampled_analysis_window(&times_s, &phases);
+    let expected = [false, false, true, true, true, false, false, false];
+    assert_eq!(analyzed, expected);
+    assert!(sampled_analysis_window(&[], &[]).is_empty());
+
+    // Samples of a flock's own schedule, taken where every phase has a middle.
+    let schedule = PhaseSchedule::new(&FlockParameters::preset(Preset::Simulation));
+    let times_s: Vec<f64> = (0..430).map(|k| f64::from(k) * 0.05).collect();
+    let phase_at = |s: &f64| schedule.at(ticks(*s)).phase;
+    let phases: Vec<_> = times_s.iter().map(phase_at).collect();
+    let analyzed = sampled_analysis_window(&times_s, &phases);
+    for (time, found) in times_s.iter().zip(analyzed) {
+        // Times in s are rounded, which decides at the very middle of a phase.
+        let moment = schedule.at(ticks(*time));
+        if moment.elapsed != moment.left {
+            let expected = schedule.in_analysis_window(ticks(*time));
+            assert_eq!(found, expected, "{time} s");
+        }
+    }
 }
 
 #[test]

@@ -77,6 +77,13 @@ def test_it_is_played_beside_the_model(tracked, seen, tmp_path):
     assert text.count('"phases":[]') == 1
 
 
+def test_phases_that_are_known_have_their_analysis_window():
+    phase = ["fw"] * 4 + ["nop1"] * 2 + ["bw"] * 2
+    pose = np.full((8, 2, 3), 90.0) * [1, 0, 0]
+    recording = Recording.from_tracks(np.arange(8.0), pose, pool="table-1", phase=phase)
+    assert recording.in_analysis_window.tolist() == [False] * 2 + [True] * 3 + [False] * 3
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
