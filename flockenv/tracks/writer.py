@@ -1,6 +1,5 @@
 """Recordings out: long tables that `read_tracks` reads again, and GSD for OVITO and freud."""
 
-import json
 import math
 import os
 from collections.abc import Callable, Mapping
@@ -9,6 +8,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+import tomli_w
 
 from flockenv import _core
 from flockenv._io.atomic_write import atomic_write
@@ -161,7 +161,7 @@ def _layout_text(recording: Recording) -> str:
     """Return the layout of the exported table, as TOML."""
     parameters = recording.parameters
     names = range(parameters.n_boats) if recording.ids is None else recording.ids.tolist()
-    layout: dict[str, Any] = {
+    layout = {
         **_LAYOUT,
         "id": "boat" if recording.ids is None else "id",
         "pool": parameters.pool,
@@ -170,16 +170,5 @@ def _layout_text(recording: Recording) -> str:
         "leaders": [str(each) for each in names][: parameters.n_leaders],
         "wrapped": False,
     }
-    lines = (f"{name} = {_toml(value)}" for name, value in layout.items())
-    return (
-        "# Columns and units of the table beside this file, for flockenv.\n"
-        + "\n".join(lines)
-        + "\n"
-    )
-
-
-def _toml(value: Any) -> str:
-    if isinstance(value, tuple | list):
-        return "[" + ", ".join(map(_toml, value)) + "]"
-    # JSON's strings, numbers and booleans are TOML's, but for infinity.
-    return "inf" if value == math.inf else json.dumps(value)
+    note = "# Columns and units of the table beside this file, for flockenv.\n"
+    return note + tomli_w.dumps(layout)
