@@ -73,7 +73,7 @@ def analyze(
     if as_json:
         print_json(summary)
         return
-    say(f"{recording.parameters.n_boats} boats, {printable(file)}: {in_words(summary)}")
+    say(f"{recording.parameters.n_boats} boats, {printable(file)}: {in_words(summary, recording)}")
     if written:
         say(f"Written to {' and '.join(map(printable, written))}")
 

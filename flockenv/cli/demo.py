@@ -45,7 +45,7 @@ def demo(
         print_json({"html": str(out), "seed": seed, "runs": summaries})
     else:
         for name, summary in summaries.items():
-            say(f"{name}: {in_words(summary)}")
+            say(f"{name}: {in_words(summary, runs[name])}")
         say(f"Written to {out}")
     if show:
         open_page(out)

@@ -81,7 +81,7 @@ def play(
         print_json({"html": str(out), "seed": seed, "runs": summaries})
         return
     for name, summary in summaries.items():
-        say(f"{name}: {in_words(summary)}")
+        say(f"{name}: {in_words(summary, runs[name])}")
     if not quiet:
         say(f"Written to {out}")
 

@@ -73,7 +73,7 @@ def reproduce(
         return
     check_folder(out)
     if part is not None:
-        make_shard(work.specs, out / RUNS_FOLDER, part, where, workers, quiet)
+        make_shard(work.specs, out / RUNS_FOLDER, part, where, workers, quiet, as_json)
         return
     if summary is not None:
         _check_summary(summary)

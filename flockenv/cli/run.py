@@ -107,9 +107,7 @@ def run(
         files = {"recording": str(out), "parameters": str(parameters)}
         print_json({**files, "seed": seed, "policy": policy, **summary})
         return
-    if scene.n_leaders == 0:  # Nobody heads for the target.
-        del summary["signed_order"]
-    say(f"{scene.n_boats} boats, seed {seed}: {in_words(summary)}")
+    say(f"{scene.n_boats} boats, seed {seed}: {in_words(summary, recording)}")
     say(f"Written to {out} and {parameters}")
     say(f"See it: flockenv replay {out}")
 
@@ -153,9 +151,11 @@ def _mean(values: NDArray[np.float64]) -> float | None:
     return float(defined.mean()) if len(defined) else None
 
 
-def in_words(summary: dict[str, float | int | None]) -> str:
-    """Return what a summary says, in one line: its quantities without a unit."""
+def in_words(summary: dict[str, float | int | None], recording: Recording) -> str:
+    """Return what the summary of a recording says, in one line: its quantities without a unit."""
     table = {each.name: each for each in _core.quantities()}
+    if recording.parameters.n_leaders == 0:  # Nobody heads for the target.
+        del table["signed_order"]
     found = {_word(table[name]): n for name, n in summary.items() if name in table}
     return ", ".join(
         f"{word} {'undefined' if n is None else f'{n:.3f}'}" for word, n in found.items()

@@ -62,7 +62,7 @@ def sweep(
     with writable(folder / "sweep.toml") as path, atomic_write(path) as file:
         file.write(given)
     if part is not None:
-        make_shard(work.runs, folder / RUNS_FOLDER, part, where, workers, quiet)
+        make_shard(work.runs, folder / RUNS_FOLDER, part, where, workers, quiet, as_json)
         return
     with resumable(folder / RUNS_FOLDER), progress_bar(quiet or as_json) as progress:
         task = progress.add_task(f"{len(work.runs)} runs", total=sum(run.cost for run in work.runs))

@@ -60,9 +60,10 @@ def show_workload(
         return
     of_shard = "" if shard is None else f" of shard {shard} (of {len(specs)} in all)"
     say(f"{work.runs} runs{of_shard}, {work.stored} of them stored in {runs}")
+    hours = "an unknown number of" if work.core_hours is None else f"{work.core_hours:.2g}"
     say(
         f"{work.runs - work.stored} to be made: {work.flock_hours:.4g} flock-hours, about "
-        f"{work.core_hours:.2g} core-hours on this machine"
+        f"{hours} core-hours on this machine"
     )
 
 
@@ -73,10 +74,11 @@ def make_shard(
     engine: Engine,
     workers: int | None,
     quiet: bool,
+    as_json: bool,
 ) -> None:
     """Make a shard's runs, and say how the results of all shards are made."""
     mine = shard.runs_of(dict.fromkeys(specs))
-    with resumable(runs), progress_bar(quiet) as progress:
+    with resumable(runs), progress_bar(quiet or as_json) as progress:
         task = progress.add_task(f"{len(mine)} runs", total=sum(spec.cost for spec in mine))
         failures = run_missing(
             mine,
@@ -87,5 +89,8 @@ def make_shard(
         )
     for spec, error in failures.items():
         warn(f"the run of seed {spec.seed} failed: {error}")
+    if as_json:
+        print_json({"shard": str(shard), "runs": len(mine), "failed": len(failures)})
+        return
     say(f"Shard {shard}: {len(mine) - len(failures)} of {len(mine)} runs are stored in {runs}")
     say("When all shards have ended, the same command without --shard writes the results.")

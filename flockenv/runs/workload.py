@@ -82,14 +82,15 @@ class Workload:
         shows when it is read.
     flock_hours : float
         Simulated hours of the runs that have none.
-    core_hours : float
-        What these take on one core of this machine, extrapolated from trial runs of a minute.
+    core_hours : float or None
+        What these take on one core of this machine, extrapolated from trial runs of a minute; None
+        where no trial run could be made.
     """
 
     runs: int
     stored: int
     flock_hours: float
-    core_hours: float
+    core_hours: float | None
 
 
 def measure_workload(specs: Iterable[RunSpec], store: RunStore) -> Workload:
@@ -105,19 +106,20 @@ def measure_workload(specs: Iterable[RunSpec], store: RunStore) -> Workload:
     Returns
     -------
     Workload
-        Its `core_hours` are NaN if no trial run could be made.
+        How many runs there are, how many are stored, and what the others take.
     """
     specs = list(dict.fromkeys(specs))
     missing = [spec for spec in specs if not store.path(spec).exists()]
+    core_seconds = _core_seconds(missing)
     return Workload(
         runs=len(specs),
         stored=len(specs) - len(missing),
         flock_hours=sum(spec.duration_s for spec in missing) / 3600,
-        core_hours=_core_seconds(missing) / 3600,
+        core_hours=None if core_seconds is None else core_seconds / 3600,
     )
 
 
-def _core_seconds(specs: Sequence[RunSpec]) -> float:
+def _core_seconds(specs: Sequence[RunSpec]) -> float | None:
     """Return the processor time of runs, at the rate of the trial whose flock is nearest in size.
 
     Each rate is the processor time in s per unit of `RunSpec.cost`.
@@ -130,7 +132,7 @@ def _core_seconds(specs: Sequence[RunSpec]) -> float:
     rates = {size: _rate(spec) for size, spec in tried.items()}
     known = np.array([size for size, rate in rates.items() if rate is not None])
     if not len(known):
-        return float("nan")
+        return None
     nearest = (known[abs(known - _size(spec)).argmin()] for spec in specs)
     return sum(spec.cost * (rates[size] or 0.0) for spec, size in zip(specs, nearest, strict=True))
 

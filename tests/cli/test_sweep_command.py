@@ -58,6 +58,8 @@ def test_shards_make_the_table_of_one_command(cli, tmp_path: Path) -> None:
         assert not (tmp_path / "out" / "sweep.csv").exists()
         stored = len(list((tmp_path / "out").rglob("*.npz")))
         assert stored == (workload["runs"] if shard == "1/2" else 8)
+    again = cli(*sweep, str(tmp_path / "out"), "--shard", "1/2", "--json")
+    assert json.loads(again.stdout) == {"shard": "1/2", "runs": workload["runs"], "failed": 0}
     for out in ("out", "alone"):
         assert cli(*sweep, str(tmp_path / out)).returncode == 0
     for name in ("sweep.csv", "sweep.parquet"):
