@@ -42,10 +42,12 @@ SEEDS = POLICY_SEEDS["ablation"]
 FLOCKS = 32
 
 
-def usual(law: LeaningLaw, scene: flockenv.FlockParameters, run: int) -> dict[str, float]:
+def usual(law: LeaningLaw, parameters: flockenv.FlockParameters, run: int) -> dict[str, float]:
     """Mean of each feature in the states that a law visits."""
     names = [entry.name for entry in observation_entries()]
-    env = flockenv.LeadersVectorEnv(FLOCKS, params=scene, mirror_to_target=True, target="random")
+    env = flockenv.LeadersVectorEnv(
+        FLOCKS, params=parameters, mirror_to_target=True, target="random"
+    )
     rows, _ = env.reset(seed=list(SEEDS.seeds(FLOCKS, run)))
     seen = []
     for _ in range(2400):
@@ -77,7 +79,7 @@ def variants(law: LeaningLaw, means: dict[str, float]) -> dict[str, LeaningLaw]:
 
 def ablated(
     law: LeaningLaw,
-    scene: flockenv.FlockParameters,
+    parameters: flockenv.FlockParameters,
     episodes: int,
     duration_s: float,
     run: int,
@@ -85,13 +87,13 @@ def ablated(
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Return each variant's order beyond the whole law, and each weight's part of the lean."""
     task = progress.add_task("states that it visits", total=1)
-    means = usual(law, scene, run)
+    means = usual(law, parameters, run)
     seeds = SEEDS.seeds(episodes, run, start=FLOCKS)
     found, rows, whole = variants(law, means), [], None
     progress.update(task, total=1 + len(found), completed=1)
     for name, each in found.items():
         progress.update(task, description=name)
-        orders = run_episodes(scene, each, seeds, duration_s)["signed_order"]
+        orders = run_episodes(parameters, each, seeds, duration_s)["signed_order"]
         whole = orders if whole is None else whole
         beyond = paired_difference(orders, whole)
         rows.append(
@@ -113,7 +115,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--out", type=Path, default=Path("results/ablation.csv"))
     parser.add_argument("--quiet", action="store_true")
     options = parser.parse_args(arguments)
-    scene = flockenv.FlockParameters.preset("simulation").replace(
+    parameters = flockenv.FlockParameters.preset("simulation").replace(
         pool=options.pool,
         n_boats=27,
         n_leaders=3,
@@ -127,7 +129,7 @@ def main(arguments: list[str] | None = None) -> None:
             raise flockenv.ParameterError(f"{options.law} is a {law!r}, not a leaning law")
         with Progress(disable=options.quiet) as progress:
             table, lean = ablated(
-                law, scene, options.episodes, options.minutes * 60.0, options.seed, progress
+                law, parameters, options.episodes, options.minutes * 60.0, options.seed, progress
             )
         options.out.parent.mkdir(parents=True, exist_ok=True)
         tables = {

@@ -62,7 +62,7 @@ def average(laws: list[LeaningLaw], command: str) -> LeaningLaw:
 
 def validate(laws: dict[str, Any], options: argparse.Namespace) -> None:
     """Print the mean signed order of each law: three leaders among 27 boats, critical noise."""
-    scene = flockenv.FlockParameters.preset("simulation").replace(
+    parameters = flockenv.FlockParameters.preset("simulation").replace(
         pool=options.pool,
         n_boats=27,
         n_leaders=3,
@@ -70,7 +70,7 @@ def validate(laws: dict[str, Any], options: argparse.Namespace) -> None:
     )
     seeds = POLICY_SEEDS["averaging"].seeds(options.episodes)
     for name, law in laws.items():
-        orders = run_episodes(scene, law, seeds, 60.0 * options.minutes)["signed_order"]
+        orders = run_episodes(parameters, law, seeds, 60.0 * options.minutes)["signed_order"]
         value, low, high = mean_interval(orders)
         print(f"{name}: signed order {value:.3f} [{low:.3f}, {high:.3f}]", flush=True)
 

@@ -114,9 +114,9 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--seed", type=run_number, default=0)
     parser.add_argument("--out", type=Path, default=Path("results/centralized_critic"))
     options = parser.parse_args(arguments)
-    scene = {"target": "random", "episode_s": 120.0}
+    episode = {"target": "random", "episode_s": 120.0}
     try:
-        model = train(options.samples, options.flocks, options.seed, **scene)
+        model = train(options.samples, options.flocks, options.seed, **episode)
         options.out.parent.mkdir(parents=True, exist_ok=True)
         model.save(options.out)
     except KeyboardInterrupt:

@@ -31,9 +31,11 @@ NOISE_S = {
 POOLS = ("500-boats", "table-1")
 
 
-def order_of_run(scene: flockenv.FlockParameters, seed: int, minutes: float) -> dict[str, float]:
+def order_of_run(
+    parameters: flockenv.FlockParameters, seed: int, minutes: float
+) -> dict[str, float]:
     """Mean Ψ_o and mean |Ψ_o sin φ_o| in the analysis window after the first tenth of a run."""
-    order = flockenv.simulate(scene, seed, minutes * 60, dtype=np.float32).analyzed().order
+    order = flockenv.simulate(parameters, seed, minutes * 60, dtype=np.float32).analyzed().order
     return {"psi_o": order.psi_o.mean(), "rotation": abs(order.rotation()).mean()}
 
 
@@ -47,7 +49,7 @@ def critical_noise(means: pd.DataFrame) -> float:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run the scan, write one row per run, print the critical noise of each scene."""
+    """Run the scan, write one row per run, print the critical noise of each pool."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--boats", type=int, default=27)
     parser.add_argument("--seeds", type=int, default=8)
@@ -69,9 +71,9 @@ def main(arguments: list[str] | None = None) -> None:
 
     def run(cell: tuple[str, str, float, int]) -> dict[str, object]:
         preset, pool, bw_s, seed = cell
-        scene = flockenv.FlockParameters.preset(preset)
-        scene = scene.replace(n_boats=options.boats, pool=pool, bw_s=bw_s)
-        order = order_of_run(scene, seed, options.minutes)
+        parameters = flockenv.FlockParameters.preset(preset)
+        parameters = parameters.replace(n_boats=options.boats, pool=pool, bw_s=bw_s)
+        order = order_of_run(parameters, seed, options.minutes)
         return {"preset": preset, "pool": pool, "bw_s": bw_s, "seed": seed, **order}
 
     try:
@@ -84,12 +86,12 @@ def main(arguments: list[str] | None = None) -> None:
     runs = pd.DataFrame(rows)
     options.out.parent.mkdir(parents=True, exist_ok=True)
     runs.round(4).to_csv(options.out, index=False)
-    for (preset, pool), scene in runs.groupby(["preset", "pool"], sort=False):
-        means = scene.groupby("bw_s")[["psi_o", "rotation"]].mean().reset_index()
+    for (preset, pool), group in runs.groupby(["preset", "pool"], sort=False):
+        means = group.groupby("bw_s")[["psi_o", "rotation"]].mean().reset_index()
         rng = np.random.default_rng(0)
         resampled = [
             critical_noise(
-                scene[scene["seed"].isin(chosen)]
+                group[group["seed"].isin(chosen)]
                 .set_index("seed")
                 .loc[chosen]
                 .groupby("bw_s")[["psi_o", "rotation"]]

@@ -1,6 +1,6 @@
 """Train a leader policy with an evolution strategy, with NumPy and flockenv alone.
 
-    python baselines/evolution_strategy.py                          # an easy scene, two minutes
+    python baselines/evolution_strategy.py                          # an easy flock, two minutes
     python baselines/evolution_strategy.py --pool table-1 --boats 27 --leaders 3 --noise 1 \
         --control-hz 10 --episode-s 120 --reward signed_order --generations 300 \
         --out results/evolution/table-1
@@ -33,7 +33,7 @@ from run_number import run_number
 import flockenv
 from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv._io.provenance import made_by
-from flockenv.cli.scene import changed_fields
+from flockenv.cli.parameters import changed_fields
 from flockenv.envs.observation import OBSERVATION_VERSION
 from flockenv.envs.reward import TERMS
 from flockenv.policies import DampedLaw, LeaningLaw, NetworkPolicy
@@ -60,7 +60,7 @@ class State:
     curve: np.ndarray
 
 
-def scene(options: argparse.Namespace, leaders: int) -> flockenv.FlockParameters:
+def flock_parameters(options: argparse.Namespace, leaders: int) -> flockenv.FlockParameters:
     """Where a generation steers; --set takes what no other option rules."""
     critical = flockenv.FlockParameters.critical_bw_s("simulation", options.pool)
     ruled = {
@@ -86,7 +86,7 @@ def scene(options: argparse.Namespace, leaders: int) -> flockenv.FlockParameters
 
 
 def leaning_shape(options: argparse.Namespace) -> LeaningShape:
-    """The form of a leaning law, measured in the scene of the search."""
+    """The form of a leaning law, measured in the flock of the search."""
     gains = TUNED_GAINS["damped law"][options.pool] if options.tuned else ROUGH_GAINS
     seeds = list(SEEDS.seeds(16, options.seed))
     env = environment(options, len(seeds), options.leaders[0])
@@ -100,7 +100,7 @@ def environment(
     return flockenv.LeadersVectorEnv(
         flocks,
         autoreset_mode="disabled",
-        params=scene(options, leaders),
+        params=flock_parameters(options, leaders),
         target="random",
         mirror_to_target=True,
         control_hz=options.control_hz,

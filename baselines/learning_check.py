@@ -1,9 +1,9 @@
-"""Check that PPO learns through each interface of the environment, on an easy scene.
+"""Check that PPO learns through each interface of the environment, on an easy task.
 
     python baselines/learning_check.py                      # all interfaces, 500 000 samples each
     python baselines/learning_check.py --interfaces vector --samples 20000
 
-The scene is easy on purpose: it has four normal boats and little noise, each leader is rewarded for
+The task is easy on purpose: it has four normal boats and little noise, each leader is rewarded for
 its own tangential velocity towards the target, and leaders decide twice per second (at ten
 decisions per second, exploring rudders cancel out before a boat has turned, and learning takes
 several times as long). Random rudders have a mean reward near zero. The learned policy is compared
@@ -29,7 +29,7 @@ import flockenv
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import LeaderVecEnv
 
-#: The scene `easy`.
+#: The task `easy`.
 EASY: dict[str, Any] = {
     "n_boats": 6,
     "n_leaders": 2,
@@ -192,7 +192,7 @@ def report(results: list[dict[str, Any]], command: str, seed: int, episodes: int
     lines = [
         "# Learning check",
         "",
-        f"{_conclusion(results)} The easy scene of `baselines/learning_check.py` has "
+        f"{_conclusion(results)} The easy task of `baselines/learning_check.py` has "
         + ", ".join(f"`{k}={v!r}`" for k, v in EASY.items())
         + ".",
         "",

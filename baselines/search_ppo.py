@@ -114,7 +114,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--runs", type=int, default=10)
     parser.add_argument("--samples", type=int, default=600_000, help="of each run")
-    parser.add_argument("--episodes", type=int, default=64, help="of each scene's validation")
+    parser.add_argument("--episodes", type=int, default=64, help="of each flock's validation")
     parser.add_argument("--seed", type=run_number, default=0)
     parser.add_argument("--out", type=Path, default=Path("results/search_ppo"))
     parser.add_argument("--quiet", action="store_true")

@@ -88,10 +88,10 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=OUT)
     options = parser.parse_args()
     bw_s = flockenv.FlockParameters.critical_bw_s("simulation", "500-boats")
-    scene = flockenv.FlockParameters(n_boats=27, n_leaders=3, pool="500-boats", bw_s=bw_s)
+    parameters = flockenv.FlockParameters(n_boats=27, n_leaders=3, pool="500-boats", bw_s=bw_s)
     rows = []
     for seed in range(options.runs):
-        truth = flockenv.simulate(scene, seed, options.minutes * 60, sample_hz=LAYOUT.fps)
+        truth = flockenv.simulate(parameters, seed, options.minutes * 60, sample_hz=LAYOUT.fps)
         expected = quantities(truth)
         for name, camera in CAMERAS.items():
             tracks = from_table(seen(truth, camera, np.random.default_rng(seed)), LAYOUT)

@@ -36,7 +36,7 @@ DURATION_S = 480.0
 Policies = dict[str, Callable[[], LeaderPolicy | str]]
 
 
-def scene(pool: str, physics: str) -> FlockParameters:
+def flock_parameters(pool: str, physics: str) -> FlockParameters:
     """Return 27 boats at the critical noise of their pool."""
     critical = FlockParameters.critical_bw_s("simulation", pool)
     parameters = FlockParameters.preset("simulation").replace(n_boats=27, pool=pool, bw_s=critical)
@@ -48,7 +48,7 @@ def measured(
 ) -> dict[str, Any]:
     """Return each policy's values, an episode each."""
     runs = compare_leaders(
-        scene(pool, physics), leaders, policies, list(range(episodes)), DURATION_S
+        flock_parameters(pool, physics), leaders, policies, list(range(episodes)), DURATION_S
     )
     return {str(name): group for name, group in runs.groupby("policy")}
 

@@ -47,7 +47,7 @@ LAWS: dict[str, tuple[Any, dict[str, tuple[float, float]]]] = {
 POOLS = ("500-boats", "table-1")
 
 
-def scene(pool: str, options: argparse.Namespace) -> flockenv.FlockParameters:
+def flock_parameters(pool: str, options: argparse.Namespace) -> flockenv.FlockParameters:
     """27 boats at the pool's critical noise, as policies are compared."""
     preset = flockenv.FlockParameters.preset("simulation")
     return preset.replace(
@@ -64,7 +64,7 @@ def tune(law: str, pool: str, options: argparse.Namespace, progress: Progress) -
     middle, widths = np.array(list(ranges.values())).T
     # The search needs two coordinates at least; for a law with one gain the second has no effect.
     search = cmaes.CMA(mean=np.zeros(max(2, len(ranges))), sigma=0.5, seed=options.seed)
-    parameters, rows = scene(pool, options), []
+    parameters, rows = flock_parameters(pool, options), []
 
     def gains(place: np.ndarray) -> dict[str, float]:
         values = middle * np.exp(widths * place[: len(ranges)])

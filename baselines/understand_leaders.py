@@ -42,16 +42,16 @@ NEAR_WALL_CM, FAR_FROM_WALL_CM, BESIDE_CM = 8.0, 22.0, 20.0
 
 
 def watch(
-    name: str, scene: flockenv.FlockParameters, options: argparse.Namespace, progress: Progress
+    name: str, parameters: flockenv.FlockParameters, options: argparse.Namespace, progress: Progress
 ) -> tuple[pd.DataFrame, float]:
     """Run episodes, and return samples, one row per leader and time, and the mean signed order."""
-    policy = named_policy(name, scene.pool)()
+    policy = named_policy(name, parameters.pool)()
     if isinstance(policy, str):
         raise flockenv.ParameterError(f"{name!r} sees no observations: name another policy")
     env = flockenv.LeadersVectorEnv(
         options.episodes,
         autoreset_mode="disabled",
-        params=scene,
+        params=parameters,
         target="cw",
         mirror_to_target=getattr(policy, "mirror_to_target", False),
         control_hz=CONTROL_HZ,
@@ -63,7 +63,7 @@ def watch(
     for step in range(steps):
         actions, _ = policy.predict(observations)
         if step >= steps // 10 and step % SAMPLED_EVERY == 0:
-            parts.append(samples(observations, actions, env.state(), scene))
+            parts.append(samples(observations, actions, env.state(), parameters))
         observations, _, _, _, infos = env.step(actions)
         progress.advance(task)
     return pd.concat(parts, ignore_index=True), float(
@@ -75,20 +75,20 @@ def samples(
     observations: np.ndarray,
     actions: np.ndarray,
     state: np.ndarray,
-    scene: flockenv.FlockParameters,
+    parameters: flockenv.FlockParameters,
 ) -> pd.DataFrame:
     """Take observations (episodes, leaders * size) and global states (episodes, size) apart."""
     own = {}
     rows = observations.reshape(actions.size, -1).astype(np.float64)
     for entry, column in zip(observation_entries(), rows.T, strict=True):
         own.setdefault(entry.name, column)
-    ends = np.cumsum([getattr(scene, f"{phase}_s") for phase in PHASES])
+    ends = np.cumsum([getattr(parameters, f"{phase}_s") for phase in PHASES])
     phase = np.argmax([own[each] for each in PHASES], axis=0)
     orientation = np.arctan2(own["sin_orientation"], own["cos_orientation"])
     misalignment = np.angle(np.exp(1j * (orientation - np.pi / 2)))
-    speed_cm_s = max(scene.speed_cm_s, scene.reverse_speed_cm_s)
-    radius, apart = radius_cm(own["radial_position"], scene), apart_cm(state, scene)
-    outer, _ = pool_radii_cm(scene.pool)
+    speed_cm_s = max(parameters.speed_cm_s, parameters.reverse_speed_cm_s)
+    radius, apart = radius_cm(own["radial_position"], parameters), apart_cm(state, parameters)
+    outer, _ = pool_radii_cm(parameters.pool)
     return pd.DataFrame(
         {
             "cycle_s": ends[phase] - 2.0 * own["time_left"],
@@ -106,35 +106,37 @@ def samples(
     )
 
 
-def radius_cm(radial_position: np.ndarray, scene: flockenv.FlockParameters) -> np.ndarray:
+def radius_cm(radial_position: np.ndarray, parameters: flockenv.FlockParameters) -> np.ndarray:
     """-1 and 1 stand for discs that touch the inner and the outer wall."""
-    outer, inner = pool_radii_cm(scene.pool)
-    most, least = outer - scene.boat_radius_cm, inner + scene.boat_radius_cm
+    outer, inner = pool_radii_cm(parameters.pool)
+    most, least = outer - parameters.boat_radius_cm, inner + parameters.boat_radius_cm
     return (most + least) / 2 + radial_position * (most - least) / 2
 
 
-def apart_cm(state: np.ndarray, scene: flockenv.FlockParameters) -> np.ndarray:
+def apart_cm(state: np.ndarray, parameters: flockenv.FlockParameters) -> np.ndarray:
     """Distance of each leader to the next other one, from global states (episodes, size)."""
     width = len(state_entries(1)) - len(state_entries(0))
-    boats = state[:, : width * scene.n_leaders].reshape(len(state), scene.n_leaders, width)
+    boats = state[:, : width * parameters.n_leaders].reshape(
+        len(state), parameters.n_leaders, width
+    )
     names = [entry.name for entry in state_entries(1)]
     radial, cos, sin = (
         boats[..., names.index(name)].astype(np.float64)
         for name in ("radial_position", "cos_polar_angle", "sin_polar_angle")
     )
-    place = radius_cm(radial, scene) * (cos + 1j * sin)
+    place = radius_cm(radial, parameters) * (cos + 1j * sin)
     apart = np.abs(place[:, :, None] - place[:, None, :])
-    apart[:, range(scene.n_leaders), range(scene.n_leaders)] = np.inf
+    apart[:, range(parameters.n_leaders), range(parameters.n_leaders)] = np.inf
     return apart.min(axis=2).ravel()
 
 
-def draw_rudders(found: dict[str, pd.DataFrame], scene: flockenv.FlockParameters) -> Figure:
+def draw_rudders(found: dict[str, pd.DataFrame], parameters: flockenv.FlockParameters) -> Figure:
     figure = column_figure(4.2 * len(found), 17.0)
     panels = figure.subplots(len(found), 2, squeeze=False, sharex=True)
     for (left, right), (name, rows) in zip(panels, found.items(), strict=True):
         nearly = rows[rows["misalignment_rad"].abs() < NEARLY_RIGHT_RAD]
-        mean_rudder(left, nearly, "spin_rad_s", 0.8, scene)
-        image = mean_rudder(right, rows, "misalignment_rad", np.pi, scene)
+        mean_rudder(left, nearly, "spin_rad_s", 0.8, parameters)
+        image = mean_rudder(right, rows, "misalignment_rad", np.pi, parameters)
         left.set_title(f"{name}, heading within {NEARLY_RIGHT_RAD:g} rad of right", pad=12)
         right.set_title(f"{name}, all", pad=12)
         left.set_ylabel("angular velocity [rad/s]")
@@ -146,9 +148,9 @@ def draw_rudders(found: dict[str, pd.DataFrame], scene: flockenv.FlockParameters
 
 
 def mean_rudder(
-    axes: Axes, rows: pd.DataFrame, against: str, most: float, scene: flockenv.FlockParameters
+    axes: Axes, rows: pd.DataFrame, against: str, most: float, parameters: flockenv.FlockParameters
 ) -> object:
-    ends = np.cumsum([getattr(scene, f"{phase}_s") for phase in PHASES])
+    ends = np.cumsum([getattr(parameters, f"{phase}_s") for phase in PHASES])
     edges = [np.linspace(0.0, ends[-1], 31), np.linspace(-most, most, 26)]
     weighted, _, _ = np.histogram2d(rows["cycle_s"], rows[against], edges, weights=rows["rudder"])
     count, _, _ = np.histogram2d(rows["cycle_s"], rows[against], edges)
@@ -156,15 +158,15 @@ def mean_rudder(
     for end in ends[:-1]:
         axes.axvline(end, color="0.3", linewidth=0.5)
     for phase, end in zip(PHASES, ends, strict=True):
-        middle = end - getattr(scene, f"{phase}_s") / 2
+        middle = end - getattr(parameters, f"{phase}_s") / 2
         # Above the panel, where no color lies under the letters.
         above = axes.get_xaxis_transform()
         axes.text(middle, 1.02, phase, ha="center", va="bottom", fontsize=6, transform=above)
     return axes.pcolormesh(*edges, mean.T, cmap="PuOr", vmin=-1.0, vmax=1.0, rasterized=True)
 
 
-def draw_places(found: dict[str, pd.DataFrame], scene: flockenv.FlockParameters) -> Figure:
-    outer, inner = pool_radii_cm(scene.pool)
+def draw_places(found: dict[str, pd.DataFrame], parameters: flockenv.FlockParameters) -> Figure:
+    outer, inner = pool_radii_cm(parameters.pool)
     shown = {
         "alignment": ("cos of misalignment", np.linspace(-1.0, 1.0, 41)),
         "radius_cm": ("distance from the center [cm]", np.linspace(inner, outer, 31)),
@@ -191,25 +193,25 @@ def draw_places(found: dict[str, pd.DataFrame], scene: flockenv.FlockParameters)
 
 
 def draw_tracks(
-    names: list[str], scene: flockenv.FlockParameters, options: argparse.Namespace
+    names: list[str], parameters: flockenv.FlockParameters, options: argparse.Namespace
 ) -> Figure:
     """Draw two minutes in the middle of one episode; every track begins at its dot."""
     figure = column_figure(6.5, 6.0 * len(names))
-    outer, inner = pool_radii_cm(scene.pool)
+    outer, inner = pool_radii_cm(parameters.pool)
     middle = options.minutes * 30.0
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False)[0], names, strict=True):
         run = flockenv.simulate(
-            scene,
+            parameters,
             options.seed,
             middle + TRACKED_S,
             CONTROL_HZ,
-            policy=named_policy(name, scene.pool)(),
+            policy=named_policy(name, parameters.pool)(),
         )
         pose = run.pose[run.time_s >= middle]
         for radius in (outer, inner):
             axes.add_patch(Circle((0, 0), radius, fill=False, color="0.3", linewidth=0.6))
-        for boat in range(scene.n_boats - 1, -1, -1):
-            leads = boat < scene.n_leaders
+        for boat in range(parameters.n_boats - 1, -1, -1):
+            leads = boat < parameters.n_leaders
             style = {
                 "color": COLORS[boat % 6] if leads else "0.85",
                 "linewidth": 0.8 if leads else 0.4,
@@ -235,7 +237,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--out", type=Path, default=Path("results/understand"))
     parser.add_argument("--quiet", action="store_true")
     options = parser.parse_args(arguments)
-    scene = flockenv.FlockParameters.preset("simulation").replace(
+    parameters = flockenv.FlockParameters.preset("simulation").replace(
         pool=options.pool,
         n_boats=27,
         n_leaders=options.leaders,
@@ -250,13 +252,13 @@ def main(arguments: list[str] | None = None) -> None:
             stems = [Path(name).stem for name in names]
             labels = stems if len(set(stems)) == len(names) else names
             for label, name in zip(labels, names, strict=True):
-                found[label], order = watch(name, scene, options, progress)
+                found[label], order = watch(name, parameters, options, progress)
                 means.append({"policy": label, "signed_order": order, **found[label].mean()})
         with paper_style():
             figures = {
-                "rudders": draw_rudders(found, scene),
-                "places": draw_places(found, scene),
-                "tracks": draw_tracks(names, scene, options),
+                "rudders": draw_rudders(found, parameters),
+                "places": draw_places(found, parameters),
+                "tracks": draw_tracks(names, parameters, options),
             }
             for name, figure in figures.items():
                 with atomic_write(options.out / f"{name}.png") as file:

@@ -17,9 +17,9 @@ import flockenv
 from flockenv.policies.registry import named_policy
 from flockenv.replay import write_replay
 
-SCENE = flockenv.FlockParameters(n_boats=27, n_leaders=4, pool="500-boats", bw_s=0.3)
+PARAMETERS = flockenv.FlockParameters(n_boats=27, n_leaders=4, pool="500-boats", bw_s=0.3)
 SEED, DURATION_S = 7, 480.0
-POLICIES = {"steering law": None, "learned": named_policy("learned", SCENE.pool)()}
+POLICIES = {"steering law": None, "learned": named_policy("learned", PARAMETERS.pool)()}
 SIZE = (1160, 816)
 # The picture ends below the charts.
 KEPT = (0, 0, 1160, 798)
@@ -31,7 +31,7 @@ BOAT, POINTED = 3, range(24, 36)
 def main() -> None:
     """Record, write the page, and photograph it."""
     runs = {
-        name: flockenv.simulate(SCENE, SEED, DURATION_S, policy=policy, contacts=True)
+        name: flockenv.simulate(PARAMETERS, SEED, DURATION_S, policy=policy, contacts=True)
         for name, policy in POLICIES.items()
     }
     with tempfile.TemporaryDirectory() as folder:

@@ -1,4 +1,4 @@
-"""Every constant that defines a scene. Values and range checks live in the Rust core."""
+"""Every constant that defines a flock. Values and range checks live in the Rust core."""
 
 import difflib
 import textwrap

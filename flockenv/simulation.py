@@ -40,7 +40,7 @@ def simulate(
     Parameters
     ----------
     parameters
-        The scene.
+        Of the flock.
     seed
         Seed of all random streams, 0 to 2^64 - 1.
     duration_s

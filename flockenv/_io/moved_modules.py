@@ -1,11 +1,16 @@
-"""Modules under the names they had until 0.1: they warn and answer for one version."""
+"""Modules and arguments by the names they had until 0.1: they warn and answer for one version."""
 
+import functools
 import importlib
 import sys
 import warnings
-from typing import Any
+from collections.abc import Callable
+from typing import Any, ParamSpec, TypeVar
 
-__all__ = ["MOVED", "keep_old_names"]
+__all__ = ["MOVED", "keep_old_names", "renamed_argument"]
+
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
 
 MOVED = {
     "alternation": "runs.protocols.target_switching",
@@ -61,3 +66,20 @@ def keep_old_names(package: str) -> dict[str, Any]:
         name = f"{package}.{old}"
         sys.modules[name] = _MovedModule(name, f"{package}.{new}")  # type: ignore[assignment]
     return {old: sys.modules[f"{package}.{old}"] for old in MOVED if "." not in old}
+
+
+def renamed_argument(old: str, new: str) -> Callable[[Callable[_P, _R]], Callable[_P, _R]]:
+    """Let a function's argument be given by its old name."""
+
+    def renamed(function: Callable[_P, _R]) -> Callable[_P, _R]:
+        @functools.wraps(function)
+        def call(*arguments: _P.args, **named: _P.kwargs) -> _R:
+            if old in named:
+                words = f"the argument {old} is called {new}"
+                warnings.warn(words, DeprecationWarning, stacklevel=2)
+                named[new] = named.pop(old)
+            return function(*arguments, **named)
+
+        return call
+
+    return renamed

@@ -34,7 +34,7 @@ class FitReport:
 
     Attributes
     ----------
-    scene : FlockParameters
+    parameters : FlockParameters
         The fitted parameters.
     residuals : pandas.DataFrame
         One row per target, of held-out seeds; see `calibration.search.residuals`. ``best_seen``
@@ -42,7 +42,7 @@ class FitReport:
         trial is that near to all targets together.
     """
 
-    scene: FlockParameters
+    parameters: FlockParameters
     residuals: "pd.DataFrame"
 
     def table(self) -> Table:
@@ -74,7 +74,7 @@ def report(
     """Fit, measure the chosen constants on held-out seeds, and write the files.
 
     Writes ``fit.toml`` (the options), ``trials.csv`` (during the search; an interrupted fit resumes
-    from it), ``parameters.toml`` (the fitted scene) and ``residuals.csv``.
+    from it), ``parameters.toml`` (the fitted ones) and ``residuals.csv``.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def report(
 def _reported(
     fit: Fit, held_out: int, folder: Path, progress: Callable[[str, float], None]
 ) -> FitReport:
-    options = asdict(fit) | {"scene": fit.scene.to_dict(), "held_out": held_out}
+    options = asdict(fit) | {"parameters": fit.parameters.to_dict(), "held_out": held_out}
     header = f"# flockenv {_core.__version__}\n"
     _write(folder / "fit.toml", header + tomli_w.dumps(options))
     trials = []
@@ -117,19 +117,19 @@ def _reported(
         best = min(best, trial.loss)
         progress(f"trial {len(trials)}, least loss {best:.2f}", 1)
     finals = fit.finals(trials, lambda: progress("finalists", 1))
-    scene = fit.scene.replace(**_rounded(finals[0])).replace(dt_s=VERIFIED_DT_S)
+    parameters = fit.parameters.replace(**_rounded(finals[0])).replace(dt_s=VERIFIED_DT_S)
     seeds = MODEL_SEEDS["calibration check"].seeds(held_out)
-    table = _residuals(scene, seeds, fit.jobs, progress)
+    table = _residuals(parameters, seeds, fit.jobs, progress)
     table["best_seen"] = _best_seen(fit, trials)
-    _write(folder / "parameters.toml", header + scene.to_toml())
+    _write(folder / "parameters.toml", header + parameters.to_toml())
     _write(folder / "residuals.csv", table.round(4).to_csv(index=False))
-    return FitReport(scene, table)
+    return FitReport(parameters, table)
 
 
 def check(
-    scene: FlockParameters, held_out: int, jobs: int, progress: Callable[[str, float], None]
+    parameters: FlockParameters, held_out: int, jobs: int, progress: Callable[[str, float], None]
 ) -> FitReport:
-    """Measure every target of a scene on held-out seeds, without a fit: `held_out` steps of work.
+    """Measure every target of a flock on held-out seeds, without a fit: `held_out` steps of work.
 
     Raises
     ------
@@ -138,18 +138,18 @@ def check(
     """
     require("pandas", "fit")
     seeds = MODEL_SEEDS["calibration check"].seeds(held_out)
-    return FitReport(scene, _residuals(scene, seeds, jobs, progress))
+    return FitReport(parameters, _residuals(parameters, seeds, jobs, progress))
 
 
 def _residuals(
-    scene: FlockParameters,
+    parameters: FlockParameters,
     seeds: Sequence[int],
     jobs: int,
     progress: Callable[[str, float], None],
 ) -> "pd.DataFrame":
     a_run = 1 / sum(map(len, NOISE_S.values()))
-    runs = run_flocks(scene, seeds, NOISE_S, jobs, lambda: progress("held-out seeds", a_run))
-    return residuals(scene, runs)
+    runs = run_flocks(parameters, seeds, NOISE_S, jobs, lambda: progress("held-out seeds", a_run))
+    return residuals(parameters, runs)
 
 
 def _best_seen(fit: Fit, trials: Sequence[Trial]) -> list[float]:

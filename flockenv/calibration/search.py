@@ -34,7 +34,7 @@ __all__ = [
     "BOUNDS",
     "Fit",
     "Trial",
-    "experiment_scene",
+    "experiment_parameters",
     "residuals",
     "run_flocks",
     "surface_minimum",
@@ -58,7 +58,7 @@ MODEL_CONSTANTS = ("c1", "c2", "c3", "c4", "reverse_speed_cm_s")
 _BOAT_TARGETS = ("backing_turn", "backing_speed")
 
 
-def experiment_scene() -> FlockParameters:
+def experiment_parameters() -> FlockParameters:
     """Return Table 1: 27 boats in the printed pool, leaders whose motor runs forward only."""
     base = FlockParameters.preset("simulation")
     return base.replace(n_boats=27, pool="table-1", leaders_reverse=False)
@@ -83,7 +83,7 @@ class Fit:
         Constants to fit, of `BOUNDS`.
     only : tuple of str
         Keys of the targets to fit to; all that have a weight, if empty.
-    scene : FlockParameters
+    parameters : FlockParameters
         Everything else.
     trials, seeds, finalists, seed : int
         Trials of the search, flock seeds in each; how many of the best are run again on four times
@@ -102,7 +102,7 @@ class Fit:
 
     free: tuple[str, ...] = MODEL_CONSTANTS
     only: tuple[str, ...] = ()
-    scene: FlockParameters = field(default_factory=experiment_scene)
+    parameters: FlockParameters = field(default_factory=experiment_parameters)
     trials: int = 110
     seeds: int = 4
     finalists: int = 3
@@ -171,8 +171,8 @@ class Fit:
 
     def trial(self, constants: Mapping[str, float], seeds: Sequence[int]) -> Trial:
         """Measure every target with these constants."""
-        scene = self.scene.replace(**constants)
-        boat = measure_boat(scene)
+        parameters = self.parameters.replace(**constants)
+        boat = measure_boat(parameters)
         lone = measure(boat, _no_runs())
         distance = sum(
             target.residual(lone[target.key]) for target in TARGETS if target.key in _BOAT_TARGETS
@@ -180,7 +180,7 @@ class Fit:
         # Flocks of boats that are two tolerances off carry no information.
         if distance > 2.0:
             return Trial(dict(constants), lone, self.HOPELESS + distance)
-        values = measure(boat, run_flocks(scene, seeds, NOISE_S, self.jobs))
+        values = measure(boat, run_flocks(parameters, seeds, NOISE_S, self.jobs))
         return Trial(dict(constants), values, loss(values, self.only))
 
     def _with_flocks(self, trials: Sequence[Trial]) -> list[Trial]:
@@ -195,7 +195,7 @@ class Fit:
 
 
 def run_flocks(
-    scene: FlockParameters,
+    parameters: FlockParameters,
     seeds: Sequence[int],
     noise_s: Mapping[int, tuple[float, ...]],
     jobs: int = 1,
@@ -206,7 +206,7 @@ def run_flocks(
 
     def run(cell: tuple[int, float, int]) -> list[float]:
         k, bw_s, seed = cell
-        measured = run_flock(scene.replace(n_leaders=k, bw_s=bw_s), seed)
+        measured = run_flock(parameters.replace(n_leaders=k, bw_s=bw_s), seed)
         progress()
         return measured
 
@@ -257,14 +257,16 @@ def _with_one(rows: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.hstack([np.ones((len(rows), 1)), rows])
 
 
-def residuals(scene: FlockParameters, runs: FlockRuns, resamples: int = 1000) -> "pd.DataFrame":
+def residuals(
+    parameters: FlockParameters, runs: FlockRuns, resamples: int = 1000
+) -> "pd.DataFrame":
     """Return each target with its range, its value and interval, and whether it is in range.
 
     Intervals are percentiles of a bootstrap over seeds, at 95 %. A target is in range if its value
     lies in its range, whatever its interval.
     """
     pandas = require("pandas", "fit")
-    boat = measure_boat(scene)
+    boat = measure_boat(parameters)
     values = measure(boat, runs)
     seeds = int(next(iter(runs.values.values())).shape[1])
     rng = np.random.default_rng(0)

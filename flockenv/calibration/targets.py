@@ -97,14 +97,14 @@ class FlockRuns:
         return float(self.mean(leaders, quantity, at_s).sum() / ordered)
 
 
-def run_flock(scene: FlockParameters, seed: int) -> list[float]:
+def run_flock(parameters: FlockParameters, seed: int) -> list[float]:
     """Run one flock for 8 minutes and measure it, in the order of `FlockRuns.values`.
 
     Frames are those in the analysis window after the first tenth of the run.
     """
-    run = simulate(scene, seed, DURATION_S, _SAMPLE_HZ, dtype=np.float32)
+    run = simulate(parameters, seed, DURATION_S, _SAMPLE_HZ, dtype=np.float32)
     order = run.analyzed().order
-    states = order.states(scene.speed_cm_s)
+    states = order.states(parameters.speed_cm_s)
     ordered = np.char.startswith(states, "ordered")
     values = (
         order.psi_o,
@@ -112,7 +112,7 @@ def run_flock(scene: FlockParameters, seed: int) -> list[float]:
         ordered,
         states == "jamming",
         np.where(ordered, order.off_tangent(), 0.0),
-        states == f"ordered {scene.target}",
+        states == f"ordered {parameters.target}",
     )
     return [float(np.mean(value)) for value in values]
 

@@ -18,12 +18,12 @@ from flockenv.cli.console import (
 from flockenv.cli.demo import demo
 from flockenv.cli.evaluate import evaluate
 from flockenv.cli.fit import fit
+from flockenv.cli.parameters import refuse_fields_as_options
 from flockenv.cli.play import play
 from flockenv.cli.presets import presets
 from flockenv.cli.replay import replay
 from flockenv.cli.reproduce import reproduce
 from flockenv.cli.run import run
-from flockenv.cli.scene import refuse_fields_as_options
 from flockenv.cli.sweep import sweep
 from flockenv.cli.train import train
 from flockenv.errors import FlockError
@@ -39,7 +39,7 @@ app = typer.Typer(
 
 
 class _Command(typer.core.TyperCommand):
-    """A command that shows how a field of the scene is changed, which is no option of its own."""
+    """A command that shows how a parameter is changed, which is no option of its own."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         if any(parameter.name == "changes" for parameter in self.params):

@@ -9,8 +9,8 @@ import typer
 
 from flockenv.cli.console import console, errors, finished_in, print_json, progress_bar, say
 from flockenv.cli.output import check_folder, keep, printable, refuse_overwriting
-from flockenv.cli.pools import PoolOption, pool_name, scenes
-from flockenv.cli.scene import ChangesOption, FileOption, PresetOption, TrustOption
+from flockenv.cli.parameters import ChangesOption, FileOption, PresetOption, TrustOption
+from flockenv.cli.pools import PoolOption, compared_flocks, pool_name
 from flockenv.errors import ParameterError
 from flockenv.policies.base import LeaderPolicy
 
@@ -46,23 +46,23 @@ def compare(
     """Print and plot order against the number of leaders (figure 12).
 
     Runs without leaders, and with leaders that follow each policy, on the same seeds: 27 boats in
-    both pools, at the critical noise of each, unless the scene says otherwise. Writes `runs.csv`,
-    `means.csv`, `lines.csv`, `differences.csv`, `leader_curve.png`, `run.toml` (seeds, policies,
-    environment) and the exact parameters, which `--params` reads, for each pool.
+    both pools, at the critical noise of each, unless the parameters say otherwise. Writes
+    `runs.csv`, `means.csv`, `lines.csv`, `differences.csv`, `leader_curve.png`, `run.toml` (seeds,
+    policies, environment) and the exact parameters, which `--params` reads, for each pool.
 
     Example: `flockenv compare --pool table-1 --policy "damped law" --set bw_s=0.4`
     """
     from flockenv.comparison.report import ComparisonReport, report
     from flockenv.policies.registry import named_policy
 
-    found = scenes(preset, params, changes, pool)
+    found = compared_flocks(preset, params, changes, pool)
     policies = {
-        pool_name(scene): {
-            printable(name): named_policy(name, scene.pool, trust=trust) for name in policy
+        pool_name(parameters): {
+            printable(name): named_policy(name, parameters.pool, trust=trust) for name in policy
         }
         if policy
-        else _default_policies(scene.pool)
-        for scene in found
+        else _default_policies(parameters.pool)
+        for parameters in found
     }
     check_folder(out)
     refuse_overwriting(params, "--params", [out / name / "parameters.toml" for name in policies])
@@ -71,10 +71,10 @@ def compare(
     results: dict[str, ComparisonReport] = {}
     with finished_in(out, results), progress_bar(quiet or as_json) as progress:
         task = progress.add_task("simulating", total=work)
-        for scene in found:
-            name = pool_name(scene)
+        for parameters in found:
+            name = pool_name(parameters)
             result = report(
-                scene,
+                parameters,
                 range(most_leaders + 1),
                 policies[name],
                 range(seed, seed + episodes),

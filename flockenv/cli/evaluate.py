@@ -11,8 +11,8 @@ import typer
 from flockenv._io.atomic_write import write_text
 from flockenv.cli.console import console, finished_in, print_json, progress_bar, say
 from flockenv.cli.output import check_folder, keep, printable, refuse_overwriting
-from flockenv.cli.pools import PoolOption, pool_name, scenes
-from flockenv.cli.scene import ChangesOption, FileOption, PresetOption, TrustOption
+from flockenv.cli.parameters import ChangesOption, FileOption, PresetOption, TrustOption
+from flockenv.cli.pools import PoolOption, compared_flocks, pool_name
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 
@@ -64,7 +64,7 @@ def evaluate(
 ) -> None:
     """Compare one policy with others on the same seeds and write its model card.
 
-    Runs 27 boats in both pools, at the critical noise of each, unless the scene says otherwise.
+    Runs 27 boats in both pools, at the critical noise of each, unless the parameters say otherwise.
     Writes `card.md` and, for each pool and backward duration, a folder with tables, picture,
     `run.toml` and the exact parameters, as `flockenv compare` does.
 
@@ -87,7 +87,7 @@ def evaluate(
     duration_s = 60.0 * (minutes if minutes is not None else 16.0 if alternate else 8.0)
     numbers = sorted(set(leaders or (1, 2, 3, 4)))
     seeds = range(seed, seed + episodes)
-    found = _by_folder(scenes(preset, params, changes, pool, bw_s))
+    found = _by_folder(compared_flocks(preset, params, changes, pool, bw_s))
     pools = {each.pool for each in found.values()}
     if policy in POOL_POLICIES and len(pools) > 1:
         raise ParameterError(
@@ -103,18 +103,18 @@ def evaluate(
     with finished_in(out, results), progress_bar(quiet or as_json) as progress:
         work = len(found) * len(numbers) * len(named) * episodes * duration_s
         task = progress.add_task("simulating", total=work)
-        for scene_name, scene in found.items():
+        for folder, parameters in found.items():
             result = report(
-                scene,
+                parameters,
                 numbers,
-                policies[scene.pool],
+                policies[parameters.pool],
                 seeds,
                 duration_s,
                 lambda seconds: progress.advance(task, seconds),
                 options,
             )
-            keep(out / scene_name, result.write)
-            results[scene_name] = result
+            keep(out / folder, result.write)
+            results[folder] = result
     card = model_card(
         name,
         policies[next(iter(pools))][name](),
@@ -126,8 +126,8 @@ def evaluate(
     keep(out / "card.md", lambda path: write_text(path, card))
     if as_json:
         data = {
-            scene: json.loads(each.differences.to_json(orient="records"))
-            for scene, each in results.items()
+            folder: json.loads(each.differences.to_json(orient="records"))
+            for folder, each in results.items()
         }
         print_json(data)
         return
@@ -137,15 +137,15 @@ def evaluate(
     say(f"Written to {out}")
 
 
-def _by_folder(scenes: list[FlockParameters]) -> dict[str, FlockParameters]:
-    """Return the scenes by the name of the folder that each has its results in."""
+def _by_folder(flocks: list[FlockParameters]) -> dict[str, FlockParameters]:
+    """Return parameters by the name of the folder that each flock has its results in."""
     found: dict[str, FlockParameters] = {}
-    for scene in scenes:
-        name = f"{pool_name(scene)}-bw-{scene.bw_s:g}"
+    for parameters in flocks:
+        name = f"{pool_name(parameters)}-bw-{parameters.bw_s:g}"
         if name in found:
             raise ParameterError(
-                f"--bw-s {scene.bw_s!r} is not accepted beside {found[name].bw_s!r}: "
+                f"--bw-s {parameters.bw_s!r} is not accepted beside {found[name].bw_s!r}: "
                 "backward durations that differ in six digits"
             )
-        found[name] = scene
+        found[name] = parameters
     return found

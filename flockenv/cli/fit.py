@@ -48,23 +48,23 @@ def fit(
     Example: `flockenv fit --trials 60 --jobs 2`
     """
     from flockenv.calibration import report as fit_report
-    from flockenv.calibration.search import Fit, experiment_scene
+    from flockenv.calibration.search import Fit, experiment_parameters
 
     given = {"scheme": scheme, "noise": noise, "dt_s": dt_s}
     changes = {name: value for name, value in given.items() if value is not None}
     if check is not None:
-        scene = FlockParameters.preset(check).replace(**changes)
+        parameters = FlockParameters.preset(check).replace(**changes)
         with interruptible("Nothing was written."), progress_bar(quiet or as_json) as progress:
             task = progress.add_task("held-out seeds", total=held_out)
             result = fit_report.check(
-                scene, held_out, jobs, lambda words, steps: progress.advance(task, steps)
+                parameters, held_out, jobs, lambda words, steps: progress.advance(task, steps)
             )
     else:
-        scene = experiment_scene().replace(**{"dt_s": 0.05, **changes})
+        parameters = experiment_parameters().replace(**{"dt_s": 0.05, **changes})
         search = Fit(
             free=_words(free),
             only=_words(only),
-            scene=scene,
+            parameters=parameters,
             trials=trials,
             seeds=seeds,
             finalists=finalists,
@@ -83,11 +83,11 @@ def fit(
             )
     if as_json:
         rows = json.loads(result.residuals.to_json(orient="records"))
-        print_json({"parameters": result.scene.to_dict(), "residuals": rows})
+        print_json({"parameters": result.parameters.to_dict(), "residuals": rows})
         return
     console.print(result.table())
     if check is None:
-        constants = {name: getattr(result.scene, name) for name in _words(free)}
+        constants = {name: getattr(result.parameters, name) for name in _words(free)}
         fitted = ", ".join(f"{name} = {value:g}" for name, value in constants.items())
         say(fitted)
         say(f"Written to {out}")

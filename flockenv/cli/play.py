@@ -9,8 +9,14 @@ from numpy.typing import NDArray
 
 from flockenv.cli.console import interruptible, print_json, say
 from flockenv.cli.output import check_file, writable
+from flockenv.cli.parameters import (
+    ChangesOption,
+    FileOption,
+    PresetOption,
+    given_fields,
+    parameters_of,
+)
 from flockenv.cli.run import in_words, summary_of
-from flockenv.cli.scene import ChangesOption, FileOption, PresetOption, given_fields, scene_of
 from flockenv.envs.observation import observe
 from flockenv.errors import ParameterError
 from flockenv.flock import Flock
@@ -20,7 +26,7 @@ from flockenv.simulation import simulate
 
 __all__ = ["Repeated", "play", "steered"]
 
-_SCENE = {"n_boats": 27, "n_leaders": 4}
+_PARAMETERS = {"n_boats": 27, "n_leaders": 4}
 _CONTROL_HZ = 10.0
 _SIZE = (800, 800)
 
@@ -52,8 +58,8 @@ def play(
     from flockenv.rendering import SteeringWindow
     from flockenv.replay import write_replay
 
-    scene = scene_of({**_SCENE, **given_fields(preset, params, changes)})
-    if scene.n_leaders == 0:
+    parameters = parameters_of({**_PARAMETERS, **given_fields(preset, params, changes)})
+    if parameters.n_leaders == 0:
         raise ParameterError("n_leaders = 0 is not accepted: you steer leader 0")
     check_file(out)
     with interruptible("Nothing was written."):
@@ -62,7 +68,7 @@ def play(
         if not (as_json or quiet):
             say("Left and right steer the boat with the ring. Up, down: speed; space: pause.")
         try:
-            rudders = steered(scene, seed, minutes * 60, window)
+            rudders = steered(parameters, seed, minutes * 60, window)
         finally:
             window.close()
         if len(rudders) == 0:
@@ -70,7 +76,7 @@ def play(
             return
         runs = {
             name: simulate(
-                scene, seed, len(rudders) / _CONTROL_HZ, _CONTROL_HZ, policy, contacts=True
+                parameters, seed, len(rudders) / _CONTROL_HZ, _CONTROL_HZ, policy, contacts=True
             )
             for name, policy in (("you", Repeated(rudders)), ("paper's law", SteeringLaw()))
         }
@@ -87,13 +93,13 @@ def play(
 
 
 def steered(
-    scene: FlockParameters, seed: int, duration_s: float, window: Any
+    parameters: FlockParameters, seed: int, duration_s: float, window: Any
 ) -> NDArray[np.float64]:
     """Move a flock with leader 0 steered by a window's keys and the others by the law, eq. (10).
 
     Parameters
     ----------
-    scene, seed, duration_s
+    parameters, seed, duration_s
         As for `simulate`.
     window
         A `SteeringWindow`; once it is closed, the run is over.
@@ -101,11 +107,11 @@ def steered(
     Returns
     -------
     numpy.ndarray
-        Shape (control steps, leaders): the rudders, which together with the scene and the seed
+        Shape (control steps, leaders): the rudders, which together with the parameters and the seed
         determine the run.
     """
-    flock, law = Flock(scene, seed), SteeringLaw()
-    rudder = np.zeros(scene.n_leaders)
+    flock, law = Flock(parameters, seed), SteeringLaw()
+    rudder = np.zeros(parameters.n_leaders)
     taken: list[NDArray[np.float64]] = []
     window.show(flock)
     while window.is_open and len(taken) < round(duration_s * _CONTROL_HZ):
@@ -115,7 +121,7 @@ def steered(
         flock.advance(1.0 / _CONTROL_HZ, rudder)
         taken.append(rudder)
         window.show(flock)
-    return np.array(taken).reshape(-1, scene.n_leaders)
+    return np.array(taken).reshape(-1, parameters.n_leaders)
 
 
 class Repeated:

@@ -1,4 +1,4 @@
-"""The scenes of a comparison: one or both pools, one or several backward durations."""
+"""The flocks of a comparison: one or both pools, one or several backward durations."""
 
 from collections.abc import Sequence
 from enum import StrEnum
@@ -7,11 +7,11 @@ from typing import Annotated, Any
 
 import typer
 
-from flockenv.cli.scene import given_fields, scene_of
+from flockenv.cli.parameters import given_fields, parameters_of
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 
-__all__ = ["PoolChoice", "PoolOption", "pool_name", "scenes"]
+__all__ = ["PoolChoice", "PoolOption", "compared_flocks", "pool_name"]
 
 #: The flock of the experiment, unless another number is given.
 _BOATS = 27
@@ -26,18 +26,18 @@ class PoolChoice(StrEnum):
 
 
 PoolOption = Annotated[
-    PoolChoice | None, typer.Option("--pool", help="Which pool. [both, or that of the scene]")
+    PoolChoice | None, typer.Option("--pool", help="Which pool. [both, or that of the parameters]")
 ]
 
 
-def scenes(
+def compared_flocks(
     preset: str | None,
     file: Path | None,
     changes: Sequence[str] | None,
     pool: PoolChoice | None,
     noise_levels: Sequence[float] | None = None,
 ) -> list[FlockParameters]:
-    """Return the scenes that a command's options select, one per pool and backward duration.
+    """Return the parameters that a command's options select, for each pool and backward duration.
 
     Fields that neither the file nor a change names are the preset's, except for 27 boats, both
     pools, and the critical noise of each pool. The command sets numbers of leaders itself.
@@ -45,7 +45,7 @@ def scenes(
     Raises
     ------
     ParameterError
-        As for `read_scene`; for a pool or a backward duration given twice; for changes of the
+        As for `read_parameters`; for a pool or a backward duration given twice; for changes of the
         number of leaders; for pools whose critical noise is not known.
     """
     for change in changes or ():
@@ -58,24 +58,24 @@ def scenes(
         raise ParameterError(f"--pool {pool.value} contradicts pool = {fields['pool']!r}")
     if noise_levels and "bw_s" in fields:
         raise ParameterError(f"--bw-s contradicts bw_s = {fields['bw_s']!r}")
-    base = scene_of({"n_boats": _BOATS, **fields})
+    base = parameters_of({"n_boats": _BOATS, **fields})
     pools: list[Any] = [fields["pool"]] if "pool" in fields else _pools(pool or PoolChoice.BOTH)
     found = []
     for each in pools:
-        scene = base.replace(pool=each)
-        levels: Sequence[float] = [scene.bw_s] if "bw_s" in fields else noise_levels or []
+        parameters = base.replace(pool=each)
+        levels: Sequence[float] = [parameters.bw_s] if "bw_s" in fields else noise_levels or []
         if not levels:
             name = fields.get("preset", "simulation")
-            levels = [FlockParameters.critical_bw_s(name, scene.pool)]
-        found += [scene.replace(bw_s=level) for level in levels]
+            levels = [FlockParameters.critical_bw_s(name, parameters.pool)]
+        found += [parameters.replace(bw_s=level) for level in levels]
     return found
 
 
-def pool_name(scene: FlockParameters) -> str:
-    """Return the name of a scene's pool in the names of folders."""
-    if isinstance(scene.pool, str):
-        return scene.pool
-    outer, inner = scene.pool
+def pool_name(parameters: FlockParameters) -> str:
+    """Return the name of a flock's pool in the names of folders."""
+    if isinstance(parameters.pool, str):
+        return parameters.pool
+    outer, inner = parameters.pool
     return f"{outer:g}x{inner:g}"
 
 

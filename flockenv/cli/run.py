@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from flockenv import _core
 from flockenv.cli.console import interruptible, print_json, progress_bar, say
 from flockenv.cli.output import check_file, keep, printable, refuse_overwriting
-from flockenv.cli.scene import (
+from flockenv.cli.parameters import (
     ChangesOption,
     FileOption,
     PresetOption,
     TrustOption,
-    read_scene,
-    save_scene,
+    read_parameters,
+    save_parameters,
 )
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
@@ -67,24 +67,24 @@ def run(
 
     Example: `flockenv run --set n_boats=27 --set n_leaders=3 --set bw_s=0.3 --seed 7`
     """
-    scene = read_scene(preset, params, changes)
+    parameters = read_parameters(preset, params, changes)
     if out is None:
         out = DEFAULT_OUT if force else _free(DEFAULT_OUT)
     if out.suffix != ".npz":
         raise ParameterError(f"--out {out} is not accepted: a name that ends in .npz")
-    leaders = _policy(policy, scene, trust)
-    parameters = out.with_suffix(".toml")
-    for path in (out, parameters):
+    leaders = _policy(policy, parameters, trust)
+    beside = out.with_suffix(".toml")
+    for path in (out, beside):
         check_file(path)
-    refuse_overwriting(params, "--params", (out, parameters))
+    refuse_overwriting(params, "--params", (out, beside))
     refuse_overwriting(policy, "--policy", (out,))
-    for path in (out, parameters):
+    for path in (out, beside):
         if path.exists() and not force:
             raise ParameterError(f"{path} is there already: --force overwrites it")
     with interruptible("Nothing was written."), progress_bar(quiet or as_json) as progress:
         task = progress.add_task("simulating", total=minutes * 60)
         recording = simulate(
-            scene,
+            parameters,
             seed,
             minutes * 60,
             hz,
@@ -98,17 +98,17 @@ def run(
 
     def write(path: Path) -> None:
         recording.save(path)
-        save_scene(path.with_suffix(".toml"), scene, remark)
+        save_parameters(path.with_suffix(".toml"), parameters, remark)
 
     with interruptible(f"{out} may not have been written."):
         keep(out, write)
     summary = summary_of(recording)
     if as_json:
-        files = {"recording": str(out), "parameters": str(parameters)}
+        files = {"recording": str(out), "parameters": str(beside)}
         print_json({**files, "seed": seed, "policy": policy, **summary})
         return
-    say(f"{scene.n_boats} boats, seed {seed}: {in_words(summary, recording)}")
-    say(f"Written to {out} and {parameters}")
+    say(f"{parameters.n_boats} boats, seed {seed}: {in_words(summary, recording)}")
+    say(f"Written to {out} and {beside}")
     say(f"See it: flockenv replay {out}")
 
 
@@ -122,9 +122,9 @@ def _free(path: Path) -> Path:
     )
 
 
-def _policy(name: str, scene: FlockParameters, trust: bool) -> LeaderPolicy | str:
+def _policy(name: str, parameters: FlockParameters, trust: bool) -> LeaderPolicy | str:
     try:
-        return named_policy(name, scene.pool, trust=trust)()
+        return named_policy(name, parameters.pool, trust=trust)()
     except OSError as error:
         raise ParameterError(f"--policy {name} cannot be read: {error.strerror}") from error
 

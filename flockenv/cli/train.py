@@ -10,7 +10,7 @@ import typer
 from flockenv._io.toml import read_toml_file
 from flockenv.cli.console import interruptible, print_json, progress_bar, say
 from flockenv.cli.output import check_folder, printable, refuse_overwriting
-from flockenv.cli.scene import TrustOption, changed_fields
+from flockenv.cli.parameters import TrustOption, changed_fields
 from flockenv.errors import ParameterError
 
 __all__ = ["train"]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv._io.extras import require
+from flockenv._io.moved_modules import renamed_argument
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import CONTROL_HZ, LeaderPolicy, control_rate
@@ -63,7 +64,7 @@ def compare_leaders(
     Parameters
     ----------
     parameters
-        The scene; its number of leaders is replaced.
+        Of the flock; its number of leaders is replaced.
     leaders
         Numbers of leaders; 0 is run once, whatever the policies.
     policies
@@ -104,16 +105,15 @@ def compare_leaders(
     options = {"target": parameters.target, **(environment or {})}
     parts = []
     if 0 in leaders:
-        scene = parameters.replace(n_leaders=0)
-        found = _simulated(scene, seeds, duration_s, progress)
+        found = _simulated(parameters.replace(n_leaders=0), seeds, duration_s, progress)
         parts.append({"policy": NO_LEADERS, "leaders": 0, "seed": seeds, **found})
     for name, make in policies.items():
         for k in (k for k in leaders if k > 0):
-            scene, policy = parameters.replace(n_leaders=k), make()
+            led, policy = parameters.replace(n_leaders=k), make()
             if isinstance(policy, str):
-                found = _simulated(scene, seeds, duration_s, progress)
+                found = _simulated(led, seeds, duration_s, progress)
             else:
-                found = run_episodes(scene, policy, seeds, duration_s, progress, options)
+                found = run_episodes(led, policy, seeds, duration_s, progress, options)
             parts.append({"policy": name, "leaders": k, "seed": seeds, **found})
     tables = [pandas.DataFrame(part) for part in parts]
     runs: pd.DataFrame = pandas.concat(tables, ignore_index=True)
@@ -145,8 +145,9 @@ def _check_environment(
         )
 
 
+@renamed_argument("scene", "parameters")
 def run_episodes(
-    scene: FlockParameters,
+    parameters: FlockParameters,
     policy: LeaderPolicy,
     seeds: Sequence[int],
     duration_s: float,
@@ -157,7 +158,7 @@ def run_episodes(
 
     Parameters
     ----------
-    scene, policy, seeds, duration_s, progress
+    parameters, policy, seeds, duration_s, progress
         As for `compare_leaders`, for one policy and number of leaders.
     options
         Further options of the environment. Without ``control_hz`` a policy steers as often as it is
@@ -175,7 +176,7 @@ def run_episodes(
         "mirror_to_target": getattr(policy, "mirror_to_target", False),
         "control_hz": control_hz,
     }
-    env = _environment(scene, len(seeds), duration_s, {**options, **layout})
+    env = _environment(parameters, len(seeds), duration_s, {**options, **layout})
     observations, _ = env.reset(seed=list(seeds))
     state, ended = None, np.zeros(len(seeds), np.bool_)
     infos: dict[str, Any] = {}
@@ -196,13 +197,13 @@ def _told(summary: Mapping[str, Any], name: str, episodes: int) -> NDArray[np.fl
 
 
 def _environment(
-    scene: FlockParameters, num_envs: int, duration_s: float, options: Mapping[str, Any]
+    parameters: FlockParameters, num_envs: int, duration_s: float, options: Mapping[str, Any]
 ) -> Any:
     return gymnasium.make_vec(
         "flockenv/Leaders-v0",
         num_envs=num_envs,
         vectorization_mode="vector_entry_point",
-        params=scene,
+        params=parameters,
         episode_s=duration_s,
         autoreset_mode="disabled",
         **options,
@@ -210,21 +211,21 @@ def _environment(
 
 
 def _simulated(
-    scene: FlockParameters,
+    parameters: FlockParameters,
     seeds: Sequence[int],
     duration_s: float,
     progress: Callable[[float], None],
 ) -> dict[str, NDArray[np.float64]]:
     # The environment derives a flock's seed from its own: ask it, to pair the runs.
-    some = scene.replace(n_leaders=max(1, scene.n_leaders))
+    some = parameters.replace(n_leaders=max(1, parameters.n_leaders))
     env = _environment(some, len(seeds), duration_s, {})
     _, infos = env.reset(seed=list(seeds))
     flock_seeds = [int(seed) for seed in infos["flock_seed"]]
 
     def run(seed: int) -> list[float]:
-        recording = simulate(scene, seed, duration_s, CONTROL_HZ, dtype=np.float32)
+        recording = simulate(parameters, seed, duration_s, CONTROL_HZ, dtype=np.float32)
         order = recording.analyzed().order
-        signed = order.signed_order(scene.target)
+        signed = order.signed_order(parameters.target)
         progress(duration_s)
         ordering = [
             recording.order.ordering_time(recording.time_s, within)

@@ -33,7 +33,7 @@ def model_card(
     policy
         The policy; the card of a learned policy lists its provenance.
     results
-        Its comparisons, by scene.
+        Its comparisons, by flock.
     command
         The command that made the results.
     seeds, duration_s
@@ -61,8 +61,8 @@ def model_card(
         "Differences and the ratios of means are paired by seed, and d is a difference's mean over "
         "its standard deviation.",
     ]
-    for scene, result in results.items():
-        lines += ["", f"### {scene}", "", f"{result.title()}.", "", *_means(result)]
+    for flock, result in results.items():
+        lines += ["", f"### {flock}", "", f"{result.title()}.", "", *_means(result)]
         lines += ["", *_differences(name, result), "", *_lines(result)]
     return "\n".join(lines).rstrip() + "\n"
 

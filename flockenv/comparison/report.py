@@ -14,6 +14,7 @@ from rich.text import Text
 from flockenv._core import __version__
 from flockenv._io.atomic_write import atomic_write, write_text
 from flockenv._io.extras import require
+from flockenv._io.moved_modules import renamed_argument
 from flockenv.comparison.episodes import (
     CONTROL_HZ,
     NO_LEADERS,
@@ -58,8 +59,8 @@ class ComparisonReport:
 
     Attributes
     ----------
-    scene : FlockParameters
-        The scene, except for the number of leaders.
+    parameters : FlockParameters
+        Of the flock, except for the number of leaders.
     means : pandas.DataFrame
         One row for each policy and number of leaders.
     lines : dict
@@ -71,12 +72,12 @@ class ComparisonReport:
     runs : pandas.DataFrame
         One row per episode, of `compare_leaders`.
     asked : dict
-        What the numbers depend on, the scene aside: seeds, policies, options.
+        What the numbers depend on, the parameters aside: seeds, policies, options.
     environment : dict
         Options of the environment that differ from its defaults.
     """
 
-    scene: FlockParameters
+    parameters: FlockParameters
     means: "pd.DataFrame"
     lines: dict[tuple[str, str], Line]
     differences: "pd.DataFrame"
@@ -88,7 +89,8 @@ class ComparisonReport:
         """Write the comparison into a folder, which is made.
 
         ``runs.csv``, ``means.csv``, ``lines.csv``, ``differences.csv``, ``leader_curve.png``,
-        ``parameters.toml`` (the scene) and ``run.toml`` (all else that the numbers depend on).
+        ``parameters.toml`` (those of the flock) and ``run.toml`` (all else that the numbers depend
+        on).
 
         Raises
         ------
@@ -107,24 +109,24 @@ class ComparisonReport:
             with atomic_write(folder / f"{name}.csv") as file:
                 table.to_csv(file, index=False)
         write_text(folder / "run.toml", tomli_w.dumps(dict(self.asked)))
-        header = f"# flockenv {__version__}: the scene; seeds, policies and options in run.toml\n"
-        write_text(folder / "parameters.toml", header + self.scene.to_toml())
+        header = f"# flockenv {__version__}: the flock; seeds, policies and options in run.toml\n"
+        write_text(folder / "parameters.toml", header + self.parameters.to_toml())
         picture = folder / "leader_curve.png"
         leader_curve(self.runs, self.means, self.lines, self.title(), picture)
 
     def title(self) -> str:
-        """Return the scene and the options in one line."""
-        scene, options = self.scene, dict(self.environment)
-        target = options.pop("target", scene.target)
+        """Return the parameters and the options in one line."""
+        parameters, options = self.parameters, dict(self.environment)
+        target = options.pop("target", parameters.target)
         dropped = options.pop("dropout_rate", 0.0)
         parts = [
-            f"{scene.n_boats} boats",
-            f"pool {scene.pool}",
-            f"bw = {scene.bw_s:g} s",
+            f"{parameters.n_boats} boats",
+            f"pool {parameters.pool}",
+            f"bw = {parameters.bw_s:g} s",
             "alternating targets" if target == "alternate" else f"target {target}",
             *([f"{100 * dropped:.3g} % of positions dropped"] if dropped else []),
             *(f"{name} = {value}" for name, value in options.items()),
-            f"{scene.scheme} + {scene.noise}",
+            f"{parameters.scheme} + {parameters.noise}",
         ]
         return ", ".join(parts)
 
@@ -171,8 +173,9 @@ class ComparisonReport:
         )
 
 
+@renamed_argument("scene", "parameters")
 def report(
-    scene: FlockParameters,
+    parameters: FlockParameters,
     leaders: Sequence[int],
     policies: Mapping[str, Callable[[], LeaderPolicy | str]],
     seeds: Sequence[int],
@@ -192,7 +195,7 @@ def report(
     # All of them before hours of runs.
     for package in ("matplotlib", "pandas", "scipy"):
         require(package, "plot")
-    runs = compare_leaders(scene, leaders, policies, seeds, duration_s, progress, environment)
+    runs = compare_leaders(parameters, leaders, policies, seeds, duration_s, progress, environment)
     means = _means(runs)
     lines = {}
     for policy in policies:
@@ -206,9 +209,13 @@ def report(
         "leaders": [int(k) for k in leaders],
         "seeds": {"first": int(seeds[0]), "last": int(seeds[-1]), "number": len(seeds)},
         "policies": {name: str(as_policy(make())) for name, make in policies.items()},
-        "environment": {"target": scene.target, "control_hz": CONTROL_HZ, **(environment or {})},
+        "environment": {
+            "target": parameters.target,
+            "control_hz": CONTROL_HZ,
+            **(environment or {}),
+        },
     }
-    return ComparisonReport(scene, means, lines, differences, runs, asked, environment or {})
+    return ComparisonReport(parameters, means, lines, differences, runs, asked, environment or {})
 
 
 def _means(runs: "pd.DataFrame") -> "pd.DataFrame":

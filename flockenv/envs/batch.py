@@ -24,8 +24,8 @@ class LeaderBatch:
     """A batch of flocks with their episodes. Rows are leaders, flock after flock."""
 
     def __init__(self, options: EnvOptions, leaders: Sequence[int], autoreset_mode: str) -> None:
-        scenes = {k: options.parameters.replace(n_leaders=k) for k in set(leaders)}
-        members = [scenes[k] for k in leaders]
+        by_count = {k: options.parameters.replace(n_leaders=k) for k in set(leaders)}
+        members = [by_count[k] for k in leaders]
         self.core = _core.EnvBatch(members, {**options.settings, "autoreset_mode": autoreset_mode})
         self.settings: dict[str, Any] = self.core.options
         self.num_flocks = len(members)
@@ -40,7 +40,7 @@ class LeaderBatch:
         new_seed: Callable[[], int],
         mask: NDArray[np.bool_] | None = None,
     ) -> None:
-        """Begin episodes; `new_seed` gives flocks a seed that have never had one."""
+        """Start episodes; `new_seed` gives flocks a seed that have never had one."""
         per_flock = self._per_flock(known_reset_options(options))
         chosen = np.ones(self.num_flocks, np.bool_) if mask is None else mask
         requests: list[dict[str, Any] | None] = [None] * self.num_flocks

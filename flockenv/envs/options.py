@@ -29,12 +29,12 @@ _NAMES = (
     *(name for name in _SETTINGS if name not in _FIELDS),
 )
 #: Where neither ``params`` nor these fields are given: the paper's 27 boats, three of them leaders.
-_SCENE = {"n_boats": 27, "n_leaders": 3}
+_DEFAULTS = {"n_boats": 27, "n_leaders": 3}
 
 
 @dataclass(frozen=True)
 class EnvOptions:
-    """Checked options: the scene and the settings of the environment."""
+    """Checked options: the flock's parameters and the settings of the environment."""
 
     parameters: FlockParameters
     settings: dict[str, Any]
@@ -88,9 +88,9 @@ def _parameters(given: dict[str, Any]) -> FlockParameters:
     params, preset = given.pop("params", None), given.pop("preset", None)
     if params is None:
         name = "simulation" if preset is None else preset
-        return FlockParameters.from_dict({"preset": name, **_SCENE, **given})
+        return FlockParameters.from_dict({"preset": name, **_DEFAULTS, **given})
     if preset is not None:
-        raise ParameterError("params and preset are both given: one of them names the scene")
+        raise ParameterError("params and preset are both given: one of them names the parameters")
     if isinstance(params, Mapping):
         return FlockParameters.from_dict({**params, **given})
     if not isinstance(params, FlockParameters):
@@ -130,11 +130,11 @@ def known_reset_options(options: Mapping[str, Any] | None) -> dict[str, Any]:
 
 def arguments_table() -> str:
     """Return the options as a Markdown table: what the core declares, and how Python adds to it."""
-    scene = FlockParameters().replace(**_SCENE).to_dict()
+    parameters = FlockParameters().replace(**_DEFAULTS).to_dict()
     declared = {each.name: str(each.metadata["doc"]) for each in fields(FlockParameters)}
     meanings = {
-        "preset": "named parameters of the scene, see `FlockParameters.presets`",
-        "params": "parameters of the scene, `FlockParameters` or a dictionary, instead of a preset",
+        "preset": "named parameters of the flock, see `FlockParameters.presets`",
+        "params": "parameters of the flock, `FlockParameters` or a dictionary, instead of a preset",
         "physics": '"training" steps the flock by dt_s = 0.1 s with one relinearization, coarser '
         'and cheaper; "default" as the parameters have it',
         "n_boats": declared["n_boats"],
@@ -146,11 +146,11 @@ def arguments_table() -> str:
         "render_size": "width and height of a frame in pixels, 64 to 4096",
     }
     defaults = {
-        **scene,
+        **parameters,
         **_core.env_defaults(),
         "preset": "simulation",
         "physics": "default",
-        "target": scene["target"],
+        "target": parameters["target"],
         "render_size": DEFAULT_SIZE,
     }
     lines = ["| option | default | meaning |", "| --- | --- | --- |"]

@@ -31,8 +31,8 @@ class LeadersParallelEnv(
 
     ``flockenv.parallel_env(**options)``
 
-    ## Begin here
-    {begin}
+    ## Start here
+    {start}
 
     ## Description
     {task}
@@ -111,7 +111,7 @@ class LeadersParallelEnv(
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observations, Infos]:
-        """Begin an episode.
+        """Start an episode.
 
         Parameters
         ----------

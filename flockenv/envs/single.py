@@ -23,8 +23,8 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
 
     ``gymnasium.make("flockenv/Leaders-v0", **options)``
 
-    ## Begin here
-    {begin}
+    ## Start here
+    {start}
 
     ## Description
     {task}
@@ -84,7 +84,7 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Begin an episode.
+        """Start an episode.
 
         Parameters
         ----------

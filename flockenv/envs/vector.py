@@ -28,8 +28,8 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
 
     ``gymnasium.make_vec("flockenv/Leaders-v0", num_envs=64, **options)``
 
-    ## Begin here
-    {begin}
+    ## Start here
+    {start}
 
     ## Description
     {task}
@@ -65,7 +65,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
 
     ## Episode end
     {episode_end} At the end `infos["episode_summary"]` has means over the episode. With
-    `autoreset_mode="next_step"` the next step begins the next episode and ignores its action, with
+    `autoreset_mode="next_step"` the next step starts the next episode and ignores its action, with
     `"same_step"` the step itself does (`infos["final_obs"]` and `infos["final_info"]` have what was
     last), with `"disabled"` flocks wait for a reset with a mask, which is what TorchRL's
     `GymWrapper` needs.
@@ -124,7 +124,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         seed: int | Sequence[int | None] | None = None,
         options: dict[str, Any] | None = None,
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Begin episodes in all flocks, or in those of ``options["reset_mask"]``.
+        """Start episodes in all flocks, or in those of ``options["reset_mask"]``.
 
         Parameters
         ----------
@@ -134,7 +134,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         options
             ``target`` ("cw", "ccw", "random", "alternate"), ``bw_s`` (s), ``state`` (a dictionary
             with pose, velocity, time_s and allow_overlap as in `Flock.set_state`) or ``snapshot``
-            (bytes of `Flock.snapshot`), for the episodes that begin; ``reset_mask`` (num_envs,)
+            (bytes of `Flock.snapshot`), for the episodes that start; ``reset_mask`` (num_envs,)
             bool.
 
         Returns

@@ -57,7 +57,7 @@ def named_policy(name: str, pool: Any, *, trust: bool = False) -> Callable[[], L
     name
         A name in `POLICIES` or `POOL_POLICIES`, `EVERY_SUBSTEP`, or a path.
     pool
-        The scene's pool.
+        The flock's pool.
     trust
         Whether a model's ``.zip`` file may execute the code in it; see `load`.
 

@@ -73,17 +73,17 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
         raise ParameterError(f"{', '.join(texts)} must each be one string")
     check_array("seed", arrays["seed"], (), (np.dtype(np.uint64),))
     check_array("duration_s", arrays["duration_s"], (), PRECISIONS[:1])
-    form, version, parameters, policy = (str(arrays[name]) for name in texts)
+    form, version, stored, policy = (str(arrays[name]) for name in texts)
     if form not in (_SECOND_FORMAT, _FORMAT):
         raise ParameterError(f"format = {form!r} is not accepted: {_FORMAT!r} or an earlier one")
     held = {name: arrays[f"order_{name}"] for name in order}
-    scene = FlockParameters.from_toml(parameters)
-    whole_order = _whole_order(held, [arrays["pose"], arrays["velocity"]], scene)
+    parameters = FlockParameters.from_toml(stored)
+    whole_order = _whole_order(held, [arrays["pose"], arrays["velocity"]], parameters)
     contacts = (arrays[f"contacts_{name}"] for name in CONTACTS) if has_contacts else None
     return {
         **{name: arrays[name] for name in ARRAYS},
         "order": whole_order,
-        "parameters": scene,
+        "parameters": parameters,
         "seed": int(arrays["seed"]),
         "version": version,
         "policy": policy or None,

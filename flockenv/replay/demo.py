@@ -9,9 +9,9 @@ from flockenv.policies.registry import EVERY_SUBSTEP
 from flockenv.recording import Recording
 from flockenv.simulation import simulate
 
-__all__ = ["DEMO_MINUTES", "DEMO_POLICIES", "DEMO_SCENE", "DEMO_SEED", "demo_runs"]
+__all__ = ["DEMO_MINUTES", "DEMO_PARAMETERS", "DEMO_POLICIES", "DEMO_SEED", "demo_runs"]
 
-DEMO_SCENE: Final = FlockParameters(n_boats=27, n_leaders=4, pool="500-boats", bw_s=0.3)
+DEMO_PARAMETERS: Final = FlockParameters(n_boats=27, n_leaders=4, pool="500-boats", bw_s=0.3)
 """Four leaders among 27 boats, near the critical noise."""
 
 DEMO_SEED = 7
@@ -26,7 +26,7 @@ def demo_runs(
     minutes: float = DEMO_MINUTES,
     progress: Callable[[float], object] | None = None,
 ) -> dict[str, Recording]:
-    """Return the runs of `DEMO_SCENE` by name, both from the same initial state.
+    """Return the runs of `DEMO_PARAMETERS` by name, both from the same initial state.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def demo_runs(
     """
     return {
         name: simulate(
-            DEMO_SCENE, seed, 60.0 * minutes, policy=policy, contacts=True, progress=progress
+            DEMO_PARAMETERS, seed, 60.0 * minutes, policy=policy, contacts=True, progress=progress
         )
         for name, policy in DEMO_POLICIES.items()
     }

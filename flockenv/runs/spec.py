@@ -62,7 +62,7 @@ class RunSpec:
     Attributes
     ----------
     parameters : FlockParameters
-        The scene.
+        Of the flock.
     seed : int
         Seed of all random streams, 0 to 2^64 - 1.
     duration_s : float
@@ -110,11 +110,11 @@ class RunSpec:
         """Return the spec as JSON with sorted keys: equal specs, equal text."""
         plain = {each.name: getattr(self, each.name) for each in fields(self)}
         # Parameters that were added since the first version change no key where they have defaults.
-        scene, defaults = self.parameters.to_dict(), FlockParameters().to_dict()
-        added = list(scene)[_core.FIRST_PARAMETERS :]
+        parameters, defaults = self.parameters.to_dict(), FlockParameters().to_dict()
+        added = list(parameters)[_core.FIRST_PARAMETERS :]
         plain["parameters"] = {
             name: value
-            for name, value in scene.items()
+            for name, value in parameters.items()
             if name not in added or value != defaults[name]
         }
         return json.dumps(plain, sort_keys=True)

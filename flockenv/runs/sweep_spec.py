@@ -106,8 +106,8 @@ def _parse(values: Mapping[str, Any]) -> SweepSpec:
         "sample_hz": _number("sample_hz", values.get("sample_hz", 10)),
         **{name: values[name] for name in ("protocol", "keep") if name in values},
     }
-    scenes = [base.replace(**dict(zip(axes, point, strict=True))) for point in points]
-    runs = tuple(RunSpec(parameters=each, seed=seed, **run) for each in scenes for seed in seeds)
+    flocks = [base.replace(**dict(zip(axes, point, strict=True))) for point in points]
+    runs = tuple(RunSpec(parameters=each, seed=seed, **run) for each in flocks for seed in seeds)
     return SweepSpec(axes, points, runs, seeds)
 
 
@@ -117,7 +117,7 @@ def _refuse_unknown(values: Mapping[str, Any]) -> None:
             continue
         near = difflib.get_close_matches(key, _KEYS, n=1, cutoff=0.5)
         if key in FlockParameters.__dataclass_fields__:
-            hint = "it is a field of the scene, which belongs under [fixed] or [[grid]]"
+            hint = "it is a field of the parameters, which belongs under [fixed] or [[grid]]"
         else:
             hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(_KEYS)}"
         raise ParameterError(f"{key!r} is no key of a sweep: {hint}")

@@ -94,7 +94,7 @@ class Workload:
 
 
 def measure_workload(specs: Iterable[RunSpec], store: RunStore) -> Workload:
-    """Return how much there is to be done, measured by trial runs of a few of the scenes.
+    """Return how much there is to be done, measured by trial runs of a few of the flocks.
 
     Parameters
     ----------

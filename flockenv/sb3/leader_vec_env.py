@@ -57,8 +57,8 @@ class LeaderVecEnv(VecEnv):
 
     ``flockenv.sb3.LeaderVecEnv(num_flocks=64, n_leaders=[1, 2, 3, 4], **options)``
 
-    ## Begin here
-    {begin}
+    ## Start here
+    {start}
 
     ## Description
     {task}
@@ -100,7 +100,7 @@ class LeaderVecEnv(VecEnv):
     `set_options` sets the options of the next reset.
 
     ## Episode end
-    {episode_end} A flock's slots end together and begin the next episode in the same step. Their
+    {episode_end} A flock's slots end together and start the next episode in the same step. Their
     infos then have `"TimeLimit.truncated"` (always True), `"terminal_observation"`,
     `"terminal_state"` and the `"episode_summary"`.
 
@@ -158,7 +158,7 @@ class LeaderVecEnv(VecEnv):
         return self._seeds
 
     def reset(self) -> NDArray[np.float32]:
-        """Begin episodes in all flocks, with the seeds and options set for this reset.
+        """Start episodes in all flocks, with the seeds and options set for this reset.
 
         Returns
         -------
@@ -177,8 +177,8 @@ class LeaderVecEnv(VecEnv):
         self._batch.reset(seeds, listed, lambda: drawn_seed(self._random))
         self._reset_seeds()
         self._reset_options()
-        begin = [self._batch.reset_info(flock) for flock in range(self.num_flocks)]
-        self.reset_infos = [dict(begin[flock]) for flock in self.flock_of_slot]
+        start = [self._batch.reset_info(flock) for flock in range(self.num_flocks)]
+        self.reset_infos = [dict(start[flock]) for flock in self.flock_of_slot]
         return self._batch.core.observe()
 
     def step_async(self, actions: NDArray[Any]) -> None:

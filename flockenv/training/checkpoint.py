@@ -23,7 +23,7 @@ from flockenv.envs.observation import OBSERVATION_VERSION
 from flockenv.errors import ParameterError
 from flockenv.training.pools import PooledVecEnv
 from flockenv.training.settings import TrainingSettings
-from flockenv.training.validation import scene_names
+from flockenv.training.validation import validation_names
 
 __all__ = ["Progress", "State", "read_settings", "restore", "save", "state_of"]
 
@@ -149,7 +149,7 @@ def _checked_progress(header: dict[str, Any], settings: TrainingSettings) -> Pro
     _count("samples", stored["samples"])
     if not _is_number(stored["wall_s"]) or not 0 <= stored["wall_s"] < math.inf:
         raise ParameterError(f"wall_s = {stored['wall_s']!r} is not accepted: a number of seconds")
-    columns = {"curve": CURVE, "validations": ("samples", "mean", *scene_names(settings))}
+    columns = {"curve": CURVE, "validations": ("samples", "mean", *validation_names(settings))}
     for name, wanted in columns.items():
         rows = stored[name]
         if not isinstance(rows, list) or not all(_is_row(row, wanted) for row in rows):

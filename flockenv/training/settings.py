@@ -29,7 +29,7 @@ class TrainingSettings:
     Attributes
     ----------
     preset, n_boats
-        The scene; leaders are counted in `n_boats`.
+        Of the flock; leaders are counted in `n_boats`.
     pools
         Named pools, each with `num_flocks` flocks.
     n_leaders

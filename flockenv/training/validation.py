@@ -10,7 +10,7 @@ from flockenv.policies.base import LeaderPolicy
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.training.settings import TrainingSettings
 
-__all__ = ["scene_names", "validation_scores"]
+__all__ = ["validation_names", "validation_scores"]
 
 
 def validation_scores(policy: LeaderPolicy, settings: TrainingSettings) -> dict[str, float]:
@@ -24,24 +24,26 @@ def validation_scores(policy: LeaderPolicy, settings: TrainingSettings) -> dict[
     seeds = POLICY_SEEDS["validation"].seeds(settings.validation_episodes)
     options = {**settings.options, "control_hz": settings.validation_hz}
     scores = {}
-    for name, scene in _scenes(settings):
-        found = run_episodes(scene, policy, seeds, settings.validation_s, options=options)
+    for name, parameters in _flocks(settings):
+        found = run_episodes(parameters, policy, seeds, settings.validation_s, options=options)
         scores[name] = float(np.mean(found["signed_order"]))
     return scores
 
 
-def scene_names(settings: TrainingSettings) -> list[str]:
+def validation_names(settings: TrainingSettings) -> list[str]:
     """Return the names of the scores, in order."""
-    return [name for name, _ in _scenes(settings)]
+    return [name for name, _ in _flocks(settings)]
 
 
-def _scenes(settings: TrainingSettings) -> Iterator[tuple[str, FlockParameters]]:
+def _flocks(settings: TrainingSettings) -> Iterator[tuple[str, FlockParameters]]:
     preset = FlockParameters.preset(settings.preset).replace(n_boats=settings.n_boats)
     # Mirrored, both directions are one task.
     targets = ("cw",) if settings.mirror_to_target else ("cw", "ccw")
     for pool in settings.pools:
-        scene = preset.replace(pool=pool, bw_s=FlockParameters.critical_bw_s(settings.preset, pool))
+        parameters = preset.replace(
+            pool=pool, bw_s=FlockParameters.critical_bw_s(settings.preset, pool)
+        )
         for k in sorted(set(settings.n_leaders)):
             for target in targets:
                 name = f"{pool} k={k}" + ("" if settings.mirror_to_target else f" {target}")
-                yield name, scene.replace(n_leaders=k, target=target)
+                yield name, parameters.replace(n_leaders=k, target=target)

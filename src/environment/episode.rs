@@ -65,7 +65,7 @@ pub struct Episode {
 }
 
 impl Episode {
-    /// An episode that begins with this flock.
+    /// An episode that starts with this flock.
     pub fn new(settings: &EnvSettings, schedule: EpisodeSchedule, flock: Flock) -> Self {
         let leaders = flock.parameters().n_leaders;
         let camera = settings.camera.is_active().then(|| {

@@ -6,7 +6,7 @@ use crate::error::{FlockError, Result};
 use crate::flock::{Flock, LATEST, State};
 use crate::parameters::FlockParameters;
 
-/// Where an episode begins.
+/// Where an episode starts.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Start {
     /// Placed at random from the episode's seed, at rest.
@@ -27,7 +27,7 @@ pub struct ResetRequest {
     pub target: Option<TargetChoice>,
     /// Length of the backward phase in this episode in s; `None`: as the settings say.
     pub bw_s: Option<f64>,
-    /// Where it begins.
+    /// Where it starts.
     pub start: Start,
 }
 

@@ -71,7 +71,7 @@ impl Default for RewardWeights {
 }
 
 impl RewardWeights {
-    /// Checks the weights for scenes with these parameters.
+    /// Checks the weights for flocks with these parameters.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for weights that are not finite, or that need normal boats where

@@ -49,7 +49,7 @@ impl Default for EnvSettings {
 }
 
 impl EnvSettings {
-    /// Checks the settings for scenes with these checked parameters.
+    /// Checks the settings for flocks with these checked parameters.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] names the first setting that is not accepted.

@@ -59,7 +59,7 @@ impl EpisodeStatistics {
         self.steps_towards_target += u32::from(boats.order.signed_order(target) > TOWARDS_TARGET);
     }
 
-    /// Takes note of the order at a time since the episode began; `is_late` in its second half.
+    /// Takes note of the order at a time since the episode started; `is_late` in its second half.
     pub fn watch_order(&mut self, order: &OrderParameters, time_s: f64, is_late: bool) {
         for (watch, within) in self.ordering.iter_mut().zip(ORDERED_WITHIN) {
             watch.note(time_s, order, within, is_late);
@@ -112,7 +112,7 @@ pub struct EpisodeSummary<A = Averages> {
     pub averages: A,
     /// Part of the same steps in which the signed order exceeds [`TOWARDS_TARGET`].
     pub share_towards_target: f64,
-    /// Ordering time (eq. 7) in s since the episode began, with the angle as printed, π/20, and with
+    /// Ordering time (eq. 7) in s since the episode started, with the angle as printed, π/20, and with
     /// π/4; infinite if the flock did not order.
     pub ordering_times_s: [f64; 2],
     /// Part of the observed numbers that were clipped at their bounds.

@@ -1,4 +1,4 @@
-//! What changes while a flock moves: its target, or its whole scene.
+//! What changes while a flock moves: its target, or all its parameters.
 
 use super::flock::Flock;
 use crate::error::Result;

@@ -27,7 +27,7 @@ use std::sync::RwLockReadGuard;
 /// Parameters
 /// ----------
 /// parameters : FlockParameters
-///     The scene.
+///     Of the flock.
 /// seed : int
 ///     Seed of all random streams, 0 to 2^64 - 1.
 ///
@@ -79,7 +79,7 @@ impl PyFlock {
     /// Parameters
     /// ----------
     /// parameters : FlockParameters
-    ///     The scene.
+    ///     Of the flock.
     /// seed : int
     ///     Seed of all random streams, 0 to 2^64 - 1.
     /// state : dict

@@ -55,7 +55,7 @@ pub struct Control<'py> {
 
 /// Records a run from where a flock is, which stays there: the fields of a `flockenv.Recording` that a run fills.
 ///
-/// `changes` are times in s from the beginning of the run and what changes then: a target or parameters. Without
+/// `changes` are times in s from the start of the run and what changes then: a target or parameters. Without
 /// `control` leaders follow the steering law.
 #[pyfunction]
 #[pyo3(signature = (flock, duration_s, sample_hz, kept, changes, control=None, progress=None))]

@@ -36,7 +36,7 @@ macro_rules! statistics {
         /// worst_residual_cm_s : float
         ///     Largest natural residual of a solve in cm/s.
         /// worst_overlap_cm : float
-        ///     Deepest overlap at the beginning of a substep in cm, positive.
+        ///     Deepest overlap at the start of a substep in cm, positive.
         /// displaced_angular_momentum_cm2_s : float
         ///     Angular momentum about the pool's center that came or went where hulls that overlapped
         ///     deeply were moved apart, in cm²/s for boats of mass 1: its changes, each positive, summed.

@@ -35,7 +35,7 @@ def test_parts_and_mean_lead_in_episodes_for_training(
 ) -> None:
     seen = []
 
-    def noted(scene, policy, seeds, duration_s):
+    def noted(parameters, policy, seeds, duration_s):
         seen.append((policy.gains["gain"], seeds))
         return {"signed_order": np.full(len(seeds), policy.gains["gain"])}
 

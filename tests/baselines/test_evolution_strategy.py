@@ -104,7 +104,7 @@ def test_it_climbs(script, monkeypatch: pytest.MonkeyPatch) -> None:
     np.testing.assert_allclose(state.weights, 1.0, atol=0.25)
 
 
-def test_the_scene_can_be_changed(script, tmp_path: Path, capsys) -> None:
+def test_the_flock_can_be_changed(script, tmp_path: Path, capsys) -> None:
     arguments = [*TINY, "--generations", "1", "--out"]
     for name, change in (("as-is", []), ("strong", ["--set", "c2=1.0"])):
         script.main([*arguments, str(tmp_path / name), *change])

@@ -39,10 +39,10 @@ def test_it_stores_every_run_and_resumes(short, script, tmp_path: Path, capsys) 
     path = tmp_path / "search.csv"
     table = pd.read_csv(path)
     assert list(table["run"]) == ["damped law", "0", "1"]
-    scenes = [name for name in table if " k=" in name]
-    assert len(scenes) == 8
+    flocks = [name for name in table if " k=" in name]
+    assert len(flocks) == 8
     for _, row in table.iterrows():
-        assert row["mean"] == pytest.approx(row[scenes].mean(), abs=1e-4)
+        assert row["mean"] == pytest.approx(row[flocks].mean(), abs=1e-4)
     best = TrainingSettings.from_toml((tmp_path / "best.toml").read_text())
     winner = table.loc[table["mean"][1:].idxmax()]
     for name in script.RANGES:

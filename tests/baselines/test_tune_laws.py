@@ -29,7 +29,7 @@ def test_it_keeps_every_candidate(script, tmp_path: Path, capsys) -> None:
 def test_it_climbs(script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """On scores that are known instead of the flock's."""
 
-    def known(scene, policy, seeds, duration_s):
+    def known(parameters, policy, seeds, duration_s):
         score = -(np.log(policy.gains["gain"] / 7.0) ** 2)
         return {"signed_order": np.full(len(seeds), score)}
 
@@ -43,7 +43,7 @@ def test_it_climbs(script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
 def test_seeds_are_for_training(script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     seen: list[int] = []
 
-    def noted(scene, policy, seeds, duration_s):
+    def noted(parameters, policy, seeds, duration_s):
         seen.extend(seeds)
         return {"signed_order": np.zeros(len(seeds))}
 

@@ -40,14 +40,14 @@ def test_files_of_one_name_are_distinguished(script, tmp_path: Path) -> None:
 
 
 def test_samples_are_the_flocks_own(script) -> None:
-    scene = flockenv.FlockParameters(n_boats=8, n_leaders=3, pool="table-1", bw_s=0.4)
-    env = flockenv.LeadersVectorEnv(1, params=scene)
+    parameters = flockenv.FlockParameters(n_boats=8, n_leaders=3, pool="table-1", bw_s=0.4)
+    env = flockenv.LeadersVectorEnv(1, params=parameters)
     observations, _ = env.reset(seed=3)
     actions = np.array([[0.5, -1.0, 0.0]], np.float32)
     for _ in range(37):
         observations, *_ = env.step(actions)
     flock = env._batch.core.flock(0)
-    rows = script.samples(observations, actions, env.state(), scene)
+    rows = script.samples(observations, actions, env.state(), parameters)
     place = flock.pose[:3, :2] @ [1, 1j]
     np.testing.assert_allclose(rows["radius_cm"], abs(place), atol=1e-3)
     apart = [min(abs(place[i] - place[j]) for j in range(3) if j != i) for i in range(3)]

@@ -1,4 +1,4 @@
-"""A small scene that every file here starts from."""
+"""A small flock that every file here starts from."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Law: an old name of a module answers with the same objects, and warns of where they are."""
+"""Law: an old name of a module or argument answers with the same, and warns of the new one."""
 
 import importlib
 import subprocess
@@ -6,7 +6,10 @@ import sys
 
 import pytest
 
+from flockenv import FlockParameters
 from flockenv._io.moved_modules import MOVED
+from flockenv.comparison import run_episodes
+from flockenv.policies import SteeringLaw
 
 
 @pytest.mark.parametrize("old", MOVED)
@@ -34,3 +37,12 @@ def test_old_names_are_imported_as_before():
 
 def test_importing_flockenv_warns_of_nothing():
     subprocess.run([sys.executable, "-W", "error", "-c", "import flockenv"], check=True)
+
+
+def test_an_old_argument_is_the_new_one_and_warns():
+    parameters = FlockParameters(n_boats=4, n_leaders=1, pool="table-1")
+    rest = {"policy": SteeringLaw(), "seeds": [2], "duration_s": 1.0}
+    expected = run_episodes(parameters, **rest)
+    with pytest.warns(DeprecationWarning, match="the argument scene is called parameters"):
+        found = run_episodes(scene=parameters, **rest)
+    assert found == expected

@@ -155,7 +155,7 @@ def test_unknown_choices_are_refused_with_what_there_is(parameters, name):
         {"speed_spread_cm_s": 16.0},
     ],
 )
-def test_scenes_that_cannot_be_are_refused(parameters, change):
+def test_parameters_that_cannot_be_are_refused(parameters, change):
     with pytest.raises(ParameterError, match="is not accepted: "):
         parameters.replace(**change)
 
@@ -180,7 +180,7 @@ def test_pools_of_a_wrong_form_are_type_errors(parameters, pool):
         {"c4": 0.0},
     ],
 )
-def test_scenes_at_the_edge_are_accepted_and_run(parameters, change):
+def test_parameters_at_the_edge_are_accepted_and_run(parameters, change):
     p = parameters.replace(**change)
     flock = flockenv.Flock(p, seed=1)
     flock.advance(2.0)

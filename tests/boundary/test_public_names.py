@@ -10,7 +10,7 @@ import pytest
 import flockenv
 from flockenv.cli import COMMANDS
 
-SCENE = flockenv.FlockParameters(n_boats=4, n_leaders=1, pool="table-1")
+PARAMETERS = flockenv.FlockParameters(n_boats=4, n_leaders=1, pool="table-1")
 #: Names by the object that has them.
 NAMES = {
     "": "Flock FlockError FlockParameters LeadersEnv LeadersParallelEnv LeadersVectorEnv "
@@ -37,8 +37,8 @@ SIGNATURES = {
 
 @pytest.mark.parametrize("owner", NAMES)
 def test_names_are_where_they_were(owner):
-    flock = flockenv.Flock(SCENE, seed=1)
-    run = flockenv.simulate(SCENE, 1, 0.1)
+    flock = flockenv.Flock(PARAMETERS, seed=1)
+    run = flockenv.simulate(PARAMETERS, 1, 0.1)
     made = {
         "Flock": flock,
         "Recording": run,
@@ -54,7 +54,7 @@ def test_names_are_where_they_were(owner):
 
 
 def test_parameters_have_their_fields():
-    assert set(FIELDS.split()) <= {*SCENE.to_dict()}
+    assert set(FIELDS.split()) <= {*PARAMETERS.to_dict()}
     assert flockenv.FlockParameters.preset("experiment").leaders_reverse is False
     for name, bw_s in (("simulation", 0.3), ("paper", 0.6)):
         preset = flockenv.FlockParameters.preset(name)

@@ -16,12 +16,12 @@ FIXTURES = Path(__file__).parents[1] / "fixtures" / "v0.1.0"
 TABLE = _core.quantities()
 RECORDED = [each.name for each in TABLE if each.kind == "recorded"]
 AVERAGED = [each.name for each in TABLE if each.is_averaged]
-SCENE = FlockParameters(n_boats=5, n_leaders=1, pool="table-1")
+PARAMETERS = FlockParameters(n_boats=5, n_leaders=1, pool="table-1")
 
 
 @pytest.fixture(scope="module")
 def run():
-    return flockenv.simulate(SCENE, seed=3, duration_s=20.0)
+    return flockenv.simulate(PARAMETERS, seed=3, duration_s=20.0)
 
 
 def test_the_table_begins_with_the_order_parameters_of_the_paper():
@@ -30,7 +30,7 @@ def test_the_table_begins_with_the_order_parameters_of_the_paper():
 
 
 def test_a_flock_and_its_recording_have_the_same_values(run):
-    flock = flockenv.Flock(SCENE, seed=3)
+    flock = flockenv.Flock(PARAMETERS, seed=3)
     flock.advance(20.0)
     assert flock.order_parameters() == run.order[-1]
     assert set(RECORDED) <= set(dir(run.order)) & set(dir(flock.order_parameters()))
@@ -75,7 +75,7 @@ def test_recordings_of_earlier_versions_get_what_came_later_from_their_poses():
 
 
 def test_tables_of_sweeps_have_every_averaged_quantity():
-    result = execute(RunSpec(parameters=SCENE, seed=3, duration_s=20.0))
+    result = execute(RunSpec(parameters=PARAMETERS, seed=3, duration_s=20.0))
     row = summary(result)
     assert {f"{name}_mean" for name in AVERAGED} <= row.keys()
     assert row["nematic_mean"] == pytest.approx(result.analyzed().order.nematic.mean(), abs=1e-6)

@@ -7,7 +7,7 @@ import flockenv
 from flockenv import Flock, ParameterError
 from flockenv.simulation import recorded
 
-SCENE = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="table-1", bw_s=0.5)
+PARAMETERS = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="table-1", bw_s=0.5)
 
 
 def same(run: flockenv.Recording, place: int, flock: Flock) -> bool:
@@ -25,23 +25,25 @@ def advance_to(flock: Flock, time_s: float, rudder=None) -> None:
 
 
 def test_targets_change_after_the_sample_at_their_time():
-    start = Flock(SCENE, 3)
+    start = Flock(PARAMETERS, 3)
     changes = [(4.0, "cw"), (2.0, "ccw"), (50.0, "ccw")]
-    run = recorded(start, SCENE, 8.0, 5.0, changes=changes, dtype=np.float64)
-    flock = Flock(SCENE, 3)
+    run = recorded(start, PARAMETERS, 8.0, 5.0, changes=changes, dtype=np.float64)
+    flock = Flock(PARAMETERS, 3)
     for place in range(41):
         advance_to(flock, place / 5)
         assert same(run, place, flock)
         if place in (10, 20):
             flock.set_target({10: "ccw", 20: "cw"}[place])
-    assert flock.order_parameters() != recorded(start, SCENE, 8.0, 5.0).order[-1]
+    assert flock.order_parameters() != recorded(start, PARAMETERS, 8.0, 5.0).order[-1]
     assert start.time_s == 0.0
 
 
 def test_boats_keep_their_share_of_the_way_between_the_walls():
-    other = SCENE.replace(pool=(120.0, 40.0), bw_s=0.2)
-    run = recorded(Flock(SCENE, 3), SCENE, 8.0, 5.0, changes=[(3.2, other)], dtype=np.float64)
-    flock = Flock(SCENE, 3)
+    other = PARAMETERS.replace(pool=(120.0, 40.0), bw_s=0.2)
+    run = recorded(
+        Flock(PARAMETERS, 3), PARAMETERS, 8.0, 5.0, changes=[(3.2, other)], dtype=np.float64
+    )
+    flock = Flock(PARAMETERS, 3)
     for place in range(41):
         advance_to(flock, place / 5)
         assert same(run, place, flock)
@@ -70,10 +72,10 @@ class Watching:
 @pytest.mark.parametrize("control_hz", [10.0, 3.0])
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_rudders_are_held_between_control_steps(control_hz, mirrored):
-    scene = SCENE.replace(target="ccw")
+    parameters = PARAMETERS.replace(target="ccw")
     policy = Watching(mirrored)
-    run = flockenv.simulate(scene, 3, 6.0, 5.0, policy, control_hz=control_hz)
-    by_hand, flock, rudder = Watching(mirrored), Flock(scene, 3), np.zeros(2)
+    run = flockenv.simulate(parameters, 3, 6.0, 5.0, policy, control_hz=control_hz)
+    by_hand, flock, rudder = Watching(mirrored), Flock(parameters, 3), np.zeros(2)
     samples, steps = np.arange(31) / 5, np.arange(int(6 * control_hz) + 1) / control_hz
     state, place = None, 0
     for time_s in np.unique(np.round(np.concatenate([samples, steps]), 9)):
@@ -92,14 +94,16 @@ def test_rudders_are_held_between_control_steps(control_hz, mirrored):
 
 def test_a_policy_without_leaders_is_not_asked():
     policy = Watching()
-    flockenv.simulate(SCENE.replace(n_leaders=0), 3, 2.0, policy=policy)
+    flockenv.simulate(PARAMETERS.replace(n_leaders=0), 3, 2.0, policy=policy)
     assert policy.asked == 0
 
 
 def test_progress_is_reported_with_and_without_a_policy():
     for policy in (None, Watching()):
         reported = []
-        flockenv.simulate(SCENE, 3, 1800.0, 1.0, policy, control_hz=1.0, progress=reported.append)
+        flockenv.simulate(
+            PARAMETERS, 3, 1800.0, 1.0, policy, control_hz=1.0, progress=reported.append
+        )
         assert len(reported) > 2
         assert 1200.0 < sum(reported) <= 1800.0
         assert min(reported) > 0.0
@@ -109,12 +113,12 @@ def test_progress_is_reported_with_and_without_a_policy():
     ("change", "words"),
     [
         ("left", "target"),
-        (SCENE.replace(n_boats=9), "pose"),
-        (SCENE.replace(pool=(20.0, 15.0)), "n_boats"),
+        (PARAMETERS.replace(n_boats=9), "pose"),
+        (PARAMETERS.replace(pool=(20.0, 15.0)), "n_boats"),
     ],
 )
 def test_changes_that_cannot_be_are_refused(change, words):
     with pytest.raises(ParameterError, match=words):
-        recorded(Flock(SCENE, 3), SCENE, 8.0, 5.0, changes=[(1.0, change)])
+        recorded(Flock(PARAMETERS, 3), PARAMETERS, 8.0, 5.0, changes=[(1.0, change)])
     with pytest.raises(TypeError, match="parameters"):
-        recorded(Flock(SCENE, 3), SCENE, 8.0, 5.0, changes=[(1.0, 7)])
+        recorded(Flock(PARAMETERS, 3), PARAMETERS, 8.0, 5.0, changes=[(1.0, 7)])

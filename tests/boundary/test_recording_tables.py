@@ -11,13 +11,13 @@ import flockenv
 from flockenv._io.extras import MissingExtraError
 from flockenv.recording import RECORDED
 
-SCENE = flockenv.FlockParameters(n_boats=5, n_leaders=2, pool="table-1")
+PARAMETERS = flockenv.FlockParameters(n_boats=5, n_leaders=2, pool="table-1")
 ORDER = ["psi_o", "phi_o", "c_o", "psi_v", "phi_v", "c_v"]
 
 
 @pytest.fixture(scope="module")
 def run() -> flockenv.Recording:
-    return flockenv.simulate(SCENE, 3, 2.0)
+    return flockenv.simulate(PARAMETERS, 3, 2.0)
 
 
 def test_a_row_per_sample(run):
@@ -48,7 +48,7 @@ def test_a_dataset_by_time_and_boat(run):
     assert np.array_equal(data["heading_rad"].sel(boat=4), run.pose[:, 4, 2])
     assert np.array_equal(data["phi_o"], run.order.phi_o)
     assert data["is_leader"].to_numpy().tolist() == [True, True, False, False, False]
-    assert flockenv.FlockParameters.from_toml(data.attrs["parameters"]) == SCENE
+    assert flockenv.FlockParameters.from_toml(data.attrs["parameters"]) == PARAMETERS
     assert (data.attrs["seed"], data.attrs["version"]) == (3, run.version)
 
 

@@ -23,14 +23,14 @@ class Constant:
 
 
 @pytest.fixture
-def scene() -> flockenv.FlockParameters:
+def parameters() -> flockenv.FlockParameters:
     return flockenv.FlockParameters.preset("simulation").replace(n_boats=8, n_leaders=2)
 
 
-def test_held_rudders(scene: flockenv.FlockParameters) -> None:
+def test_held_rudders(parameters: flockenv.FlockParameters) -> None:
     policy = Constant(0.5)
-    recording = flockenv.simulate(scene, 3, 6.0, 5.0, policy)
-    flock = flockenv.Flock(scene, 3)
+    recording = flockenv.simulate(parameters, 3, 6.0, 5.0, policy)
+    flock = flockenv.Flock(parameters, 3)
     for place in range(31):
         assert recording.time_s[place] == pytest.approx(place / 5)
         assert (recording.pose[place] == flock.pose).all()
@@ -41,8 +41,10 @@ def test_held_rudders(scene: flockenv.FlockParameters) -> None:
     assert policy.asked == 61
 
 
-def test_the_law_in_an_environment_is_the_law_in_a_run(scene: flockenv.FlockParameters) -> None:
-    env = flockenv.LeadersEnv(params=scene, target=scene.target, episode_s=20.0)
+def test_the_law_in_an_environment_is_the_law_in_a_run(
+    parameters: flockenv.FlockParameters,
+) -> None:
+    env = flockenv.LeadersEnv(params=parameters, target=parameters.target, episode_s=20.0)
     law = SteeringLaw()
     observation, info = env.reset(seed=4)
     rewards = []
@@ -50,8 +52,8 @@ def test_the_law_in_an_environment_is_the_law_in_a_run(scene: flockenv.FlockPara
     while not truncated:
         observation, reward, _, truncated, _ = env.step(law.predict(observation)[0])
         rewards.append(reward)
-    recording = flockenv.simulate(scene, int(info["flock_seed"]), 20.0, policy=law)
-    signed = recording.order.signed_order(scene.target)[1:]
+    recording = flockenv.simulate(parameters, int(info["flock_seed"]), 20.0, policy=law)
+    signed = recording.order.signed_order(parameters.target)[1:]
     assert rewards == pytest.approx(signed, abs=1e-9)
 
 
@@ -59,9 +61,9 @@ def test_a_policy_that_sees_its_mirror_image_steers_the_mirror_image() -> None:
     base = flockenv.FlockParameters.preset("simulation").replace(n_boats=2, n_leaders=1, c4=0.0)
     seen = SteeringLaw(mirror_to_target=True)
     for target in ("cw", "ccw"):
-        scene = base.replace(target=target)
-        mirrored = flockenv.simulate(scene, 1, 10.0, policy=seen)
-        plain = flockenv.simulate(scene, 1, 10.0, policy=SteeringLaw())
+        parameters = base.replace(target=target)
+        mirrored = flockenv.simulate(parameters, 1, 10.0, policy=seen)
+        plain = flockenv.simulate(parameters, 1, 10.0, policy=SteeringLaw())
         np.testing.assert_allclose(mirrored.pose, plain.pose, atol=1e-4)
 
 
@@ -74,7 +76,7 @@ def test_a_policy_that_sees_its_mirror_image_steers_the_mirror_image() -> None:
         ({"duration_s": np.inf}, "duration_s"),
     ],
 )
-def test_refusals(scene: flockenv.FlockParameters, changes: dict, words: str) -> None:  # type: ignore[type-arg]
+def test_refusals(parameters: flockenv.FlockParameters, changes: dict, words: str) -> None:  # type: ignore[type-arg]
     arguments = {"duration_s": 1.0, "policy": Constant(0.0), **changes}
     with pytest.raises(flockenv.ParameterError, match=words):
-        flockenv.simulate(scene, 1, **arguments)
+        flockenv.simulate(parameters, 1, **arguments)

@@ -14,13 +14,13 @@ from flockenv.replay import write_replay
 
 SIZE = (1366, 768)
 OUTER_CM = 90.0
-"""Of the pool of `scene`."""
+"""Of the pool of `parameters`."""
 LAST_DIGIT = 0.0056
 """Numbers with two decimals, and what they were rounded to in the page."""
 
 
 @pytest.fixture(scope="session")
-def scene() -> flockenv.FlockParameters:
+def parameters() -> flockenv.FlockParameters:
     return flockenv.FlockParameters(n_boats=12, n_leaders=2, pool="table-1", bw_s=0.0)
 
 
@@ -56,14 +56,14 @@ def resize(driver, width: int, height: int) -> None:
 
 
 @pytest.fixture(scope="session")
-def law(scene) -> flockenv.Recording:
-    return flockenv.simulate(scene, 7, 120.0, contacts=True)
+def law(parameters) -> flockenv.Recording:
+    return flockenv.simulate(parameters, 7, 120.0, contacts=True)
 
 
 @pytest.fixture(scope="session")
-def damped(scene) -> flockenv.Recording:
+def damped(parameters) -> flockenv.Recording:
     policy = flockenv.policies.DampedLaw()
-    return flockenv.simulate(scene, 7, 90.0, policy=policy, contacts=True)
+    return flockenv.simulate(parameters, 7, 90.0, policy=policy, contacts=True)
 
 
 @pytest.fixture(scope="session")

@@ -129,8 +129,8 @@ def test_a_boats_card_covers_no_words(open_page, pages, name, size):
             assert covered == 0, f"boat {boat} at {time_s} s"
 
 
-def test_nothing_is_aimed_at_without_leaders(open_page, scene, tmp_path):
-    run = flockenv.simulate(scene.replace(n_leaders=0, pool="500-boats"), 7, 30.0)
+def test_nothing_is_aimed_at_without_leaders(open_page, parameters, tmp_path):
+    run = flockenv.simulate(parameters.replace(n_leaders=0, pool="500-boats"), 7, 30.0)
     write_replay(tmp_path / "free.html", run)
     page = open_page(tmp_path / "free.html")
     assert "target" not in page.text("main")
@@ -141,7 +141,7 @@ def test_nothing_is_aimed_at_without_leaders(open_page, scene, tmp_path):
     arrow = page.script("return player.palette.target")
     target = tuple(int(arrow[k : k + 2], 16) for k in (1, 3, 5))
     assert target not in ring(page)
-    led = flockenv.simulate(scene.replace(pool="500-boats"), 7, 1.0)
+    led = flockenv.simulate(parameters.replace(pool="500-boats"), 7, 1.0)
     write_replay(tmp_path / "led.html", {"led": led, "free": run})
     pair = open_page(tmp_path / "led.html")
     assert target in ring(pair)

@@ -177,8 +177,8 @@ def test_a_damaged_page_says_so(open_page, pages, tmp_path):
     assert "damaged" in page.text("#note")
 
 
-def test_without_contacts_or_normal_boats(open_page, scene, tmp_path):
-    run = flockenv.simulate(scene.replace(n_boats=2), 1, 5.0)
+def test_without_contacts_or_normal_boats(open_page, parameters, tmp_path):
+    run = flockenv.simulate(parameters.replace(n_boats=2), 1, 5.0)
     write_replay(tmp_path / "leaders.html", {"leaders": run})
     page = open_page(tmp_path / "leaders.html")
     assert page.state() == "true"
@@ -187,9 +187,9 @@ def test_without_contacts_or_normal_boats(open_page, scene, tmp_path):
     assert page.driver.get_log("browser") == []
 
 
-def test_an_hour_opens_at_once_and_scrubs_smoothly(open_page, scene, tmp_path):
-    scene = scene.replace(n_boats=27, n_leaders=3, pool="500-boats", bw_s=0.3)
-    run = flockenv.simulate(scene, 7, 3600.0, contacts=True)
+def test_an_hour_opens_at_once_and_scrubs_smoothly(open_page, parameters, tmp_path):
+    parameters = parameters.replace(n_boats=27, n_leaders=3, pool="500-boats", bw_s=0.3)
+    run = flockenv.simulate(parameters, 7, 3600.0, contacts=True)
     assert write_replay(tmp_path / "hour.html", {"hour": run}).every == 1
     assert (tmp_path / "hour.html").stat().st_size < MOST_BYTES
     begin = time.perf_counter()

@@ -17,11 +17,11 @@ def quick(monkeypatch):
     """Replace 8-minute runs by a formula; count them."""
     calls = itertools.count()
 
-    def run_flock(scene, seed):
+    def run_flock(parameters, seed):
         next(calls)
         noise = np.random.default_rng(seed).normal(0, 0.01)
-        middle = 1.4 + 0.2 * scene.n_leaders + np.log(scene.c3 / 0.13)
-        psi_o = 0.95 if scene.bw_s < middle else 0.2
+        middle = 1.4 + 0.2 * parameters.n_leaders + np.log(parameters.c3 / 0.13)
+        psi_o = 0.95 if parameters.bw_s < middle else 0.2
         return [psi_o + noise, psi_o, 0.7, 0.0, 0.05, 0.7]
 
     monkeypatch.setattr(experiment_fit, "run_flock", run_flock)
@@ -109,7 +109,7 @@ def test_a_fit_is_written_and_reported(quick, tmp_path):
     names = {"fit.toml", "trials.csv", "parameters.toml", "residuals.csv"}
     assert {path.name for path in tmp_path.iterdir()} == names
     text = (tmp_path / "parameters.toml").read_text(encoding="utf-8")
-    assert flockenv.FlockParameters.from_toml(text) == result.scene
+    assert flockenv.FlockParameters.from_toml(text) == result.parameters
     assert result.residuals["best_seen"].notna().all()
     assert result.table().row_count == len(result.residuals)
 

@@ -11,8 +11,8 @@ import flockenv
 
 @pytest.fixture
 def run(tmp_path):
-    scene = flockenv.FlockParameters(n_boats=6, n_leaders=1, pool="table-1")
-    flockenv.simulate(scene, 1, 20.0).save(tmp_path / "run.npz")
+    parameters = flockenv.FlockParameters(n_boats=6, n_leaders=1, pool="table-1")
+    flockenv.simulate(parameters, 1, 20.0).save(tmp_path / "run.npz")
     return tmp_path / "run.npz"
 
 
@@ -41,8 +41,8 @@ def test_tracks_have_the_numbers_of_the_run_they_are_of(cli, run, tmp_path):
 
 
 def test_nobody_heads_for_a_target_without_leaders(cli, tmp_path):
-    scene = flockenv.FlockParameters(n_boats=6, pool="table-1")
-    flockenv.simulate(scene, 1, 10.0).save(tmp_path / "run.npz")
+    parameters = flockenv.FlockParameters(n_boats=6, pool="table-1")
+    flockenv.simulate(parameters, 1, 10.0).save(tmp_path / "run.npz")
     printed = cli("analyze", str(tmp_path / "run.npz")).stdout
     assert "rotation" in printed
     assert "towards target" not in printed

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import flockenv
-from flockenv.replay.demo import DEMO_SCENE
+from flockenv.replay.demo import DEMO_PARAMETERS
 
 NO_SCREEN = {"DISPLAY": None, "WAYLAND_DISPLAY": None}
 
@@ -23,7 +23,7 @@ def test_both_runs_are_those_of_simulate(cli, tmp_path: Path) -> None:
     assert (tmp_path / reported["html"]).stat().st_size > 100_000
     assert list(reported["runs"]) == ["paper's law", "learned"]
     for name, policy in (("paper's law", "law"), ("learned", "learned")):
-        run = flockenv.simulate(DEMO_SCENE, 7, 60.0, policy=policy)
+        run = flockenv.simulate(DEMO_PARAMETERS, 7, 60.0, policy=policy)
         late = run.in_analysis_window & (run.time_s > 6.0)
         assert reported["runs"][name]["signed_order"] == run.order.signed_order("cw")[late].mean()
 

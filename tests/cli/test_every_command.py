@@ -167,17 +167,17 @@ def test_saved_parameters_compare_the_same_again(cli, tmp_path):
     first = cli("compare", "--pool", "table-1", *TINY, "--json", "--out", tmp_path / "a")
     assert first.returncode == 0, first.stderr
     params = tmp_path / "a" / "table-1" / "parameters.toml"
-    scene = flockenv.FlockParameters.from_toml(params.read_text())
-    assert (scene.n_boats, scene.pool) == (5, "table-1")
-    assert scene.bw_s == flockenv.FlockParameters.critical_bw_s("simulation", "table-1")
+    parameters = flockenv.FlockParameters.from_toml(params.read_text())
+    assert (parameters.n_boats, parameters.pool) == (5, "table-1")
+    assert parameters.bw_s == flockenv.FlockParameters.critical_bw_s("simulation", "table-1")
     again = cli("compare", "--params", params, *TINY[:4], "--json", "--out", tmp_path / "b")
     assert json.loads(again.stdout) == json.loads(first.stdout)
 
 
 def test_a_pool_of_ones_own(cli, tmp_path):
-    scene = ["--set", "pool=[150, 30]", "--set", "bw_s=0.2", "--set", "target=ccw"]
+    parameters = ["--set", "pool=[150, 30]", "--set", "bw_s=0.2", "--set", "target=ccw"]
     arguments = ["--against", "straight ahead", "--leaders", "1", "--json", "--out", tmp_path]
-    done = cli("evaluate", "damped law", *scene, *TINY, *arguments)
+    done = cli("evaluate", "damped law", *parameters, *TINY, *arguments)
     assert done.returncode == 0, done.stderr
     assert list(json.loads(done.stdout)) == ["150x30-bw-0.2"]
     text = (tmp_path / "150x30-bw-0.2" / "parameters.toml").read_text()

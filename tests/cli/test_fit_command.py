@@ -10,8 +10,15 @@ from flockenv.calibration import search as experiment_fit
 
 @pytest.fixture
 def quick(monkeypatch):
-    def run_flock(scene, seed):
-        return [0.9 if scene.bw_s < 1.4 + 0.2 * scene.n_leaders else 0.2, 0.8, 0.7, 0, 0.05, 0.7]
+    def run_flock(parameters, seed):
+        return [
+            0.9 if parameters.bw_s < 1.4 + 0.2 * parameters.n_leaders else 0.2,
+            0.8,
+            0.7,
+            0,
+            0.05,
+            0.7,
+        ]
 
     monkeypatch.setattr(experiment_fit, "run_flock", run_flock)
 

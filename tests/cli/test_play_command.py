@@ -16,7 +16,7 @@ pygame = pytest.importorskip("pygame")
 
 from flockenv import rendering  # noqa: E402 - after the extra is known to be there
 
-SCENE = flockenv.FlockParameters(n_boats=9, n_leaders=3, pool="table-1")
+PARAMETERS = flockenv.FlockParameters(n_boats=9, n_leaders=3, pool="table-1")
 
 
 @pytest.fixture(autouse=True)
@@ -52,7 +52,7 @@ LEFT_THEN_RIGHT = {
 
 
 def test_keys_hold_the_rudder_of_one_leader_and_the_law_the_others():
-    rudders = steered(SCENE, 3, 2.0, Scripted(LEFT_THEN_RIGHT))
+    rudders = steered(PARAMETERS, 3, 2.0, Scripted(LEFT_THEN_RIGHT))
     assert rudders.shape == (20, 3)
     expected = [0, 0, 1, 1, 1, -1, -1, -1, -1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]
     assert rudders[:, 0].tolist() == expected
@@ -64,31 +64,31 @@ def test_keys_hold_the_rudder_of_one_leader_and_the_law_the_others():
             return rudder, (state or 0) + 1
 
     by_law, repeated = (
-        flockenv.simulate(SCENE, 3, 2.0, policy=policy)
+        flockenv.simulate(PARAMETERS, 3, 2.0, policy=policy)
         for policy in (KeysAndLaw(), Repeated(rudders))
     )
     assert replace(repeated, policy=by_law.policy) == by_law
 
 
 def test_the_same_keys_make_the_same_run_bit_for_bit():
-    first, second = (steered(SCENE, 3, 3.0, Scripted(LEFT_THEN_RIGHT)) for _ in range(2))
+    first, second = (steered(PARAMETERS, 3, 3.0, Scripted(LEFT_THEN_RIGHT)) for _ in range(2))
     assert np.array_equal(first, second)
-    flock = flockenv.Flock(SCENE, 3)
+    flock = flockenv.Flock(PARAMETERS, 3)
     for rudder in first:
         flock.advance(0.1, rudder)
-    run = flockenv.simulate(SCENE, 3, 3.0, policy=Repeated(first))
+    run = flockenv.simulate(PARAMETERS, 3, 3.0, policy=Repeated(first))
     assert np.array_equal(run.pose[-1], flock.pose)
-    assert not np.array_equal(steered(SCENE, 3, 3.0, Scripted({})), first)
+    assert not np.array_equal(steered(PARAMETERS, 3, 3.0, Scripted({})), first)
 
 
 def test_closing_the_window_ends_the_run():
     quit_at_7 = {7: [(pygame.QUIT, 0)]}
-    assert steered(SCENE, 3, 60.0, Scripted(quit_at_7)).shape == (7, 3)
+    assert steered(PARAMETERS, 3, 60.0, Scripted(quit_at_7)).shape == (7, 3)
 
 
 def test_the_steered_boat_has_a_ring_around_it():
     window = rendering.SteeringWindow(300, 300, fps=1e6, boat=1)
-    flock = flockenv.Flock(SCENE, 3)
+    flock = flockenv.Flock(PARAMETERS, 3)
     window.show(flock)
     shown = pygame.surfarray.array3d(pygame.display.get_surface()).swapaxes(0, 1)
     plain = rendering.frame(flock, 300, 300)
@@ -104,7 +104,7 @@ def test_the_steered_boat_has_a_ring_around_it():
 
 def test_other_keys_change_the_speed_and_pause():
     window = rendering.SteeringWindow(160, 120, fps=1e6, boat=0)
-    flock = flockenv.Flock(SCENE, 3)
+    flock = flockenv.Flock(PARAMETERS, 3)
     for key, speed in ((pygame.K_UP, 2.0), (pygame.K_PLUS, 4.0), (pygame.K_DOWN, 2.0)):
         post(pygame.KEYDOWN, key)
         window.show(flock)
@@ -121,8 +121,8 @@ def test_the_score_is_printed_beside_that_of_the_law(cli, tmp_path):
     assert done.returncode == 0, done.stderr
     scores = json.loads(done.stdout)["runs"]
     assert list(scores) == ["you", "paper's law"]
-    scene = flockenv.FlockParameters(n_boats=9, n_leaders=2, pool="table-1")
-    law = flockenv.simulate(scene, 7, 120.0, policy=SteeringLaw())
+    parameters = flockenv.FlockParameters(n_boats=9, n_leaders=2, pool="table-1")
+    law = flockenv.simulate(parameters, 7, 120.0, policy=SteeringLaw())
     late = law.in_analysis_window & (law.time_s > 12.0)
     assert scores["paper's law"]["signed_order"] == law.order.signed_order("cw")[late].mean()
     assert scores["you"]["signed_order"] != scores["paper's law"]["signed_order"]

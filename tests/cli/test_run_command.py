@@ -22,8 +22,8 @@ def run(cli, tmp_path_factory) -> Path:
 
 
 def test_the_recording_is_what_simulate_returns(run):
-    scene = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="table-1")
-    assert flockenv.Recording.load(run) == flockenv.simulate(scene, 7, 12.0, contacts=True)
+    parameters = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="table-1")
+    assert flockenv.Recording.load(run) == flockenv.simulate(parameters, 7, 12.0, contacts=True)
 
 
 def test_the_parameters_beside_it_run_it_again(cli, run, tmp_path):
@@ -144,8 +144,10 @@ def model(tmp_path_factory) -> Path:
     stable_baselines3 = pytest.importorskip("stable_baselines3")
     from flockenv.sb3 import LeaderVecEnv
 
-    scene = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="table-1")
-    ppo = stable_baselines3.PPO("MlpPolicy", LeaderVecEnv(1, params=scene), device="cpu", seed=1)
+    parameters = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="table-1")
+    ppo = stable_baselines3.PPO(
+        "MlpPolicy", LeaderVecEnv(1, params=parameters), device="cpu", seed=1
+    )
     path = tmp_path_factory.mktemp("models") / "model.zip"
     ppo.save(path)
     return path
@@ -161,8 +163,8 @@ def test_models_of_stable_baselines3_steer_with_trust(cli, model, tmp_path):
     done = cli("run", *SMALL, "--seed", "3", *trusted, "--out", out)
     assert done.returncode == 0, done.stderr
     policy = flockenv.policies.load(model, trust=True)
-    scene = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="table-1")
-    assert flockenv.Recording.load(out) == flockenv.simulate(scene, 3, 12.0, policy=policy)
+    parameters = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="table-1")
+    assert flockenv.Recording.load(out) == flockenv.simulate(parameters, 3, 12.0, policy=policy)
 
 
 @pytest.mark.parametrize("name", ["compare", "evaluate"])

@@ -19,13 +19,13 @@ LAW = {"steering law": POLICIES["steering law"]}
 
 
 @pytest.fixture(scope="module")
-def scene() -> flockenv.FlockParameters:
+def parameters() -> flockenv.FlockParameters:
     return flockenv.FlockParameters.preset("simulation").replace(n_boats=9, pool="table-1")
 
 
-def test_one_row_for_each_policy_number_and_seed(scene: flockenv.FlockParameters) -> None:
+def test_one_row_for_each_policy_number_and_seed(parameters: flockenv.FlockParameters) -> None:
     seconds = []
-    runs = compare_leaders(scene, [0, 1, 2], LAW, [5, 6], 40.0, seconds.append)
+    runs = compare_leaders(parameters, [0, 1, 2], LAW, [5, 6], 40.0, seconds.append)
     assert runs["leaders"].tolist() == [0, 0, 1, 1, 2, 2]
     assert runs["seed"].tolist() == [5, 6] * 3
     assert runs["policy"].unique().tolist() == [NO_LEADERS, "steering law"]
@@ -34,28 +34,32 @@ def test_one_row_for_each_policy_number_and_seed(scene: flockenv.FlockParameters
     assert sum(seconds) == pytest.approx(6 * 40.0)
 
 
-def test_results_belong_to_the_seed(scene: flockenv.FlockParameters) -> None:
-    alone = compare_leaders(scene, [0, 1], LAW, [6], 40.0)
-    among = compare_leaders(scene, [0, 1], LAW, [5, 6, 7], 40.0)
+def test_results_belong_to_the_seed(parameters: flockenv.FlockParameters) -> None:
+    alone = compare_leaders(parameters, [0, 1], LAW, [6], 40.0)
+    among = compare_leaders(parameters, [0, 1], LAW, [5, 6, 7], 40.0)
     among = among[among["seed"] == 6].reset_index(drop=True)
     assert alone.equals(among)
 
 
-def test_runs_without_leaders_are_frames_of_the_recording(scene: flockenv.FlockParameters) -> None:
-    runs = compare_leaders(scene, [0], {}, [3], 60.0)
-    env = flockenv.LeadersVectorEnv(1, params=scene.replace(n_leaders=1))
+def test_runs_without_leaders_are_frames_of_the_recording(
+    parameters: flockenv.FlockParameters,
+) -> None:
+    runs = compare_leaders(parameters, [0], {}, [3], 60.0)
+    env = flockenv.LeadersVectorEnv(1, params=parameters.replace(n_leaders=1))
     _, infos = env.reset(seed=[3])
-    recording = flockenv.simulate(scene, int(infos["flock_seed"][0]), 60.0)
+    recording = flockenv.simulate(parameters, int(infos["flock_seed"][0]), 60.0)
     late = recording.in_analysis_window & (recording.time_s > 6.0)
     assert runs["psi_o"].item() == pytest.approx(recording.order.psi_o[late].mean(), abs=1e-6)
     towards = np.cos(recording.order.phi_o - np.pi / 2) * recording.order.psi_o
     assert runs["signed_order"].item() == pytest.approx(towards[late].mean(), abs=1e-6)
 
 
-def test_the_report_writes_its_files(scene: flockenv.FlockParameters, tmp_path: object) -> None:
+def test_the_report_writes_its_files(
+    parameters: flockenv.FlockParameters, tmp_path: object
+) -> None:
     folder = tmp_path / "new" / "folder"  # type: ignore[operator]
     result = report(
-        scene,
+        parameters,
         range(3),
         dict(list(POLICIES.items())[:3]),
         range(2),
@@ -73,7 +77,7 @@ def test_the_report_writes_its_files(scene: flockenv.FlockParameters, tmp_path: 
         "runs.csv",
     }
     stored = (folder / "parameters.toml").read_text("utf-8")
-    assert flockenv.FlockParameters.from_toml(stored) == scene
+    assert flockenv.FlockParameters.from_toml(stored) == parameters
     asked = tomllib.loads((folder / "run.toml").read_text("utf-8"))
     assert asked["leaders"] == [0, 1, 2]
     assert asked["duration_s"] == 40.0
@@ -86,10 +90,10 @@ def test_the_report_writes_its_files(scene: flockenv.FlockParameters, tmp_path: 
 
 
 def test_the_report_reports_the_environment(
-    scene: flockenv.FlockParameters, tmp_path: Path
+    parameters: flockenv.FlockParameters, tmp_path: Path
 ) -> None:
     options = {"target": "alternate", "dropout_rate": 0.003, "control_hz": 5.0}
-    result = report(scene, [1], LAW, range(2), 20.0, lambda seconds: None, options)
+    result = report(parameters, [1], LAW, range(2), 20.0, lambda seconds: None, options)
     result.write(tmp_path)
     for words in ("alternating targets", "0.3 % of positions dropped", "control_hz = 5.0"):
         assert words in result.title()
@@ -97,7 +101,7 @@ def test_the_report_reports_the_environment(
     asked = tomllib.loads((tmp_path / "run.toml").read_text("utf-8"))
     assert asked["environment"] == options
     stored = (tmp_path / "parameters.toml").read_text("utf-8")
-    assert flockenv.FlockParameters.from_toml(stored) == scene
+    assert flockenv.FlockParameters.from_toml(stored) == parameters
 
 
 @pytest.mark.parametrize(
@@ -108,7 +112,7 @@ def test_the_report_reports_the_environment(
     ],
 )
 def test_what_cannot_be_compared_is_refused_first(
-    scene: flockenv.FlockParameters,
+    parameters: flockenv.FlockParameters,
     leaders: list[int],
     name: str,
     environment: dict[str, Any],
@@ -117,7 +121,7 @@ def test_what_cannot_be_compared_is_refused_first(
     seconds: list[float] = []
     policies = {"damped law": POLICIES["damped law"], name: POLICIES[name]}
     with pytest.raises(flockenv.ParameterError, match=words):
-        compare_leaders(scene, leaders, policies, [1], 5.0, seconds.append, environment)
+        compare_leaders(parameters, leaders, policies, [1], 5.0, seconds.append, environment)
     assert seconds == []
 
 
@@ -131,34 +135,36 @@ def test_policies_by_name_and_by_file(tmp_path: Path) -> None:
         named_policy("stering law", "table-1")
 
 
-def test_leaders_that_never_steer_are_rudders_of_zero(scene: flockenv.FlockParameters) -> None:
+def test_leaders_that_never_steer_are_rudders_of_zero(parameters: flockenv.FlockParameters) -> None:
     size = len(observation_entries())
     zero = NetworkPolicy([np.zeros((size, 1))], [[0.0]])
     both = {"straight ahead": POLICIES["straight ahead"], "zero": lambda: zero}
-    runs = compare_leaders(scene, [2], both, [1, 2], 30.0).set_index(["policy", "seed"])
+    runs = compare_leaders(parameters, [2], both, [1, 2], 30.0).set_index(["policy", "seed"])
     pd.testing.assert_frame_equal(runs.loc["straight ahead"], runs.loc["zero"])
 
 
-def test_the_law_at_every_substep_is_what_simulate_does(scene: flockenv.FlockParameters) -> None:
+def test_the_law_at_every_substep_is_what_simulate_does(
+    parameters: flockenv.FlockParameters,
+) -> None:
     name = "steering law at every substep"
-    runs = compare_leaders(scene, [2], {name: POLICIES[name]}, [3], 60.0)
-    env = flockenv.LeadersVectorEnv(1, params=scene.replace(n_leaders=2))
+    runs = compare_leaders(parameters, [2], {name: POLICIES[name]}, [3], 60.0)
+    env = flockenv.LeadersVectorEnv(1, params=parameters.replace(n_leaders=2))
     _, infos = env.reset(seed=[3])
     seed = int(infos["flock_seed"][0])
-    recording = flockenv.simulate(scene.replace(n_leaders=2), seed, 60.0)
+    recording = flockenv.simulate(parameters.replace(n_leaders=2), seed, 60.0)
     late = recording.in_analysis_window & (recording.time_s > 6.0)
     assert runs["psi_o"].item() == pytest.approx(recording.order.psi_o[late].mean(), abs=1e-6)
 
 
 def test_what_is_measured_in_steps_is_what_the_recording_says() -> None:
     # A flock that orders: low noise, four leaders.
-    scene = flockenv.FlockParameters(n_boats=12, n_leaders=4, pool="500-boats", bw_s=0.0)
+    parameters = flockenv.FlockParameters(n_boats=12, n_leaders=4, pool="500-boats", bw_s=0.0)
     law = flockenv.policies.SteeringLaw()
-    runs = compare_leaders(scene, [4], {"law": lambda: law}, range(4), 240.0)
-    env = flockenv.LeadersVectorEnv(4, params=scene)
+    runs = compare_leaders(parameters, [4], {"law": lambda: law}, range(4), 240.0)
+    env = flockenv.LeadersVectorEnv(4, params=parameters)
     _, infos = env.reset(seed=[0, 1, 2, 3])
     for row, seed in zip(runs.itertuples(), infos["flock_seed"], strict=True):
-        recording = flockenv.simulate(scene, int(seed), 240.0, policy=law)
+        recording = flockenv.simulate(parameters, int(seed), 240.0, policy=law)
         late = recording.in_analysis_window & (recording.time_s > 24.0)
         towards = recording.order.signed_order("cw")[late]
         assert row.signed_order == pytest.approx(towards.mean(), abs=1e-9)
@@ -170,7 +176,7 @@ def test_what_is_measured_in_steps_is_what_the_recording_says() -> None:
     assert not runs["ordering_time_wide_s"].isna().any()
 
 
-def test_training_seeds_are_refused(scene: flockenv.FlockParameters) -> None:
+def test_training_seeds_are_refused(parameters: flockenv.FlockParameters) -> None:
     for seed in (*POLICY_SEEDS["training"].seeds(2), *POLICY_SEEDS["validation"].seeds(1), -1):
         with pytest.raises(flockenv.ParameterError, match="for training"):
-            compare_leaders(scene, [0], {}, [0, seed], 10.0)
+            compare_leaders(parameters, [0], {}, [0, seed], 10.0)

@@ -154,15 +154,15 @@ def test_states_of_a_vector_environment(folder, facts):
 
 
 def test_keys_of_runs(facts):
-    scene = FlockParameters.from_dict(facts["parameters"])
+    parameters = FlockParameters.from_dict(facts["parameters"])
     for protocol, key in facts["run_keys"].items():
-        assert RunSpec(parameters=scene, seed=3, duration_s=30.0, protocol=protocol).key == key
+        assert RunSpec(parameters=parameters, seed=3, duration_s=30.0, protocol=protocol).key == key
 
 
 @pytest.mark.parametrize("keep", ["window", "order", "poses"])
 def test_kept_runs_of_other_results_say_so_and_stay(folder, facts, keep, tmp_path):
-    scene, known = FlockParameters.from_dict(facts["parameters"]), facts["runs"][keep]
-    spec = RunSpec(parameters=scene, seed=3, duration_s=10.0, keep=keep)
+    parameters, known = FlockParameters.from_dict(facts["parameters"]), facts["runs"][keep]
+    spec = RunSpec(parameters=parameters, seed=3, duration_s=10.0, keep=keep)
     assert spec.key == known["key"]
     shutil.copytree(folder / "runs", tmp_path / "runs")
     lines = []

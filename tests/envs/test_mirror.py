@@ -86,9 +86,15 @@ TERMS = {"signed_order": 1.0, "leader_velocity": 0.25, "rudder_effort": 0.125, "
     ],
 )
 def test_mirroring_reflects_what_its_table_says_bit_for_bit(target, options):
-    scene = {"n_boats": 12, "n_leaders": 3, "episode_s": 8.0, "reward": TERMS, "target": target}
-    plain = flockenv.LeadersEnv(**scene, **options)
-    mirrored = flockenv.LeadersEnv(**scene, **options, mirror_to_target=True)
+    parameters = {
+        "n_boats": 12,
+        "n_leaders": 3,
+        "episode_s": 8.0,
+        "reward": TERMS,
+        "target": target,
+    }
+    plain = flockenv.LeadersEnv(**parameters, **options)
+    mirrored = flockenv.LeadersEnv(**parameters, **options, mirror_to_target=True)
     seen, _ = plain.reset(seed=3)
     reflected, _ = mirrored.reset(seed=3)
     mirrored.action_space.seed(0)

@@ -7,7 +7,7 @@ import flockenv
 from flockenv import FlockParameters
 from flockenv.training.settings import TrainingSettings
 
-SCENE = {"n_boats": 9, "n_leaders": 2, "bw_s": 0.3, "episode_s": 2.0}
+PARAMETERS = {"n_boats": 9, "n_leaders": 2, "bw_s": 0.3, "episode_s": 2.0}
 SAME = {
     "training": {"dt_s": 0.1, "relinearizations": 1},
     "default": {},
@@ -15,7 +15,7 @@ SAME = {
 
 
 def _episode(**options):
-    env = flockenv.LeadersEnv(**SCENE, **options)
+    env = flockenv.LeadersEnv(**PARAMETERS, **options)
     observation, _ = env.reset(seed=5)
     steps = [observation]
     for _ in range(20):
@@ -35,7 +35,7 @@ def test_training_is_not_the_default():
 
 
 def test_parameters_that_are_given_are_stepped_as_chosen():
-    params = FlockParameters(**{k: SCENE[k] for k in ("n_boats", "n_leaders", "bw_s")})
+    params = FlockParameters(**{k: PARAMETERS[k] for k in ("n_boats", "n_leaders", "bw_s")})
     env = flockenv.LeadersEnv(params=params, episode_s=2.0, physics="training")
     assert env.parameters.dt_s == 0.1
     assert env.parameters.relinearizations == 1

@@ -9,7 +9,7 @@ import flockenv
 from flockenv import ParameterError
 
 OPTIONS = {"n_boats": 6, "n_leaders": 1, "episode_s": 2.0}
-SCENE = flockenv.FlockParameters(n_boats=6, n_leaders=1)
+PARAMETERS = flockenv.FlockParameters(n_boats=6, n_leaders=1)
 
 
 def single(seed):
@@ -66,10 +66,10 @@ INTERFACES = [single, made, parallel, aec, vector, vector_of_a_list, slots]
     "seed", [0, 7, 2**63, 2**64 - 1, np.int64(7), np.uint64(2**64 - 1), np.array(7)], ids=repr
 )
 def test_seeds_that_are_taken(place, seed):
-    np.testing.assert_array_equal(place(seed), flockenv.Flock(SCENE, int(seed)).pose)
+    np.testing.assert_array_equal(place(seed), flockenv.Flock(PARAMETERS, int(seed)).pose)
 
 
-@pytest.mark.parametrize("place", [lambda seed: flockenv.Flock(SCENE, seed), *INTERFACES])
+@pytest.mark.parametrize("place", [lambda seed: flockenv.Flock(PARAMETERS, seed), *INTERFACES])
 @pytest.mark.parametrize(
     ("seed", "error"),
     [

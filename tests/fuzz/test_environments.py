@@ -32,7 +32,7 @@ anything = st.one_of(
     ),
     st.just(np.array(["cw", "ccw"])),
 )
-# A scene of a hundred thousand boats is accepted, and takes its time.
+# A flock of a hundred thousand boats is accepted, and takes its time.
 names = [name for name in _NAMES if name not in ("n_boats", "n_leaders")]
 
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import flockenv
 from flockenv import Flock, FlockError, FlockParameters
-from flockenv.cli.scene import read_scene
+from flockenv.cli.parameters import read_parameters
 
 FUZZ = settings.get_profile("fuzz")
 NAMED = (FlockError, ValueError, TypeError)
@@ -115,7 +115,7 @@ def test_toml_that_is_none(text):
 )
 def test_changes_on_the_command_line(changes):
     try:
-        same_after_a_round_trip(read_scene(changes=changes))
+        same_after_a_round_trip(read_parameters(changes=changes))
     except FlockError:
         return
 

@@ -39,8 +39,8 @@ print([name for name in found if name in sys.modules])
 SIMULATION = """
 import numpy as np
 import flockenv
-scene = flockenv.FlockParameters(n_boats=27, n_leaders=3)
-run = flockenv.simulate(scene, seed=0, duration_s=10.0)
+parameters = flockenv.FlockParameters(n_boats=27, n_leaders=3)
+run = flockenv.simulate(parameters, seed=0, duration_s=10.0)
 assert run.pose.shape == (101, 27, 3) and np.isfinite(run.velocity).all()
 env = flockenv.LeadersEnv(n_leaders=3, episode_s=2.0, render_mode="rgb_array")
 observation, _ = env.reset(seed=0)
@@ -48,7 +48,7 @@ law = flockenv.policies.SteeringLaw()
 for _ in range(20):
     observation, reward, _, over, _ = env.step(law.predict(observation)[0])
 assert over and np.isfinite(reward) and env.render().shape == (600, 600, 3)
-flock = flockenv.Flock(scene, 0)
+flock = flockenv.Flock(parameters, 0)
 flock.advance(10.0)
 print(flock.pose.sum().hex())
 """

@@ -23,8 +23,8 @@ from stable_baselines3.common.vec_env import VecFrameStack, VecNormalize  # noqa
 
 from flockenv.sb3 import LeaderVecEnv  # noqa: E402
 
-SCENE = flockenv.FlockParameters(n_boats=6, n_leaders=2, pool="table-1")
-OPTIONS = {"params": SCENE, "episode_s": 2.0}
+PARAMETERS = flockenv.FlockParameters(n_boats=6, n_leaders=2, pool="table-1")
+OPTIONS = {"params": PARAMETERS, "episode_s": 2.0}
 FEW = {"observation": {"neighbors": 2, "order": False}, "mirror_to_target": True, "control_hz": 5.0}
 
 
@@ -109,10 +109,10 @@ def test_every_interface_gets_the_same_rudders(model):
 
 def test_simulations_and_episodes_take_the_model_itself(model):
     # As by the policy, and in an episode the same as in the environment, step by step.
-    run = flockenv.simulate(SCENE, 7, 2.0, policy=model)
-    assert run == flockenv.simulate(SCENE, 7, 2.0, policy=ModelPolicy(model))
-    assert run != flockenv.simulate(SCENE, 7, 2.0, policy=SteeringLaw())
-    found = run_episodes(SCENE, model, [4, 5], 2.0)
+    run = flockenv.simulate(PARAMETERS, 7, 2.0, policy=model)
+    assert run == flockenv.simulate(PARAMETERS, 7, 2.0, policy=ModelPolicy(model))
+    assert run != flockenv.simulate(PARAMETERS, 7, 2.0, policy=SteeringLaw())
+    found = run_episodes(PARAMETERS, model, [4, 5], 2.0)
     venv = flockenv.LeadersVectorEnv(2, **{**OPTIONS, **model.given, "rudder_levels": None})
     observations, _ = venv.reset(seed=4)
     over = np.zeros(2, bool)
@@ -124,8 +124,8 @@ def test_simulations_and_episodes_take_the_model_itself(model):
 
 
 def test_comparisons_take_the_model_itself(model):
-    runs = compare_leaders(SCENE, [2], {"mine": lambda: model}, [0, 1], 2.0)
-    expected = run_episodes(SCENE, ModelPolicy(model), [0, 1], 2.0)
+    runs = compare_leaders(PARAMETERS, [2], {"mine": lambda: model}, [0, 1], 2.0)
+    expected = run_episodes(PARAMETERS, ModelPolicy(model), [0, 1], 2.0)
     np.testing.assert_array_equal(runs["signed_order"], expected["signed_order"])
 
 
@@ -144,7 +144,7 @@ def test_files_are_not_read_without_trust(file, tmp_path):
             archive.writestr(name, content)
     for read in (
         lambda: flockenv.policies.load(file),
-        lambda: flockenv.simulate(SCENE, 0, 1.0, policy=str(file)),
+        lambda: flockenv.simulate(PARAMETERS, 0, 1.0, policy=str(file)),
     ):
         with pytest.raises(ParameterError, match=r"reading it executes the code in it.*trust=True"):
             read()
@@ -179,7 +179,7 @@ def test_models_of_other_things_are_refused():
     with pytest.raises(ParameterError, match="other bounds"):
         ModelPolicy(ppo(halved))
     with pytest.raises(ParameterError, match="observation space"):
-        flockenv.simulate(SCENE, 0, 1.0, policy=ppo("CartPole-v1"))
+        flockenv.simulate(PARAMETERS, 0, 1.0, policy=ppo("CartPole-v1"))
     first_action = gymnasium.wrappers.TransformAction(
         joined_env(),
         lambda action: np.repeat(action, 2),
@@ -191,10 +191,10 @@ def test_models_of_other_things_are_refused():
 
 def test_a_model_of_two_leaders_steers_no_other_number():
     model = PPO("MlpPolicy", joined_env(), device="cpu")
-    three = SCENE.replace(n_leaders=3)
+    three = PARAMETERS.replace(n_leaders=3)
     for call in (
         lambda: flockenv.simulate(three, 0, 1.0, policy=model),
-        lambda: compare_leaders(SCENE, [2, 3], {"mine": lambda: model}, [0], 1.0),
+        lambda: compare_leaders(PARAMETERS, [2, 3], {"mine": lambda: model}, [0], 1.0),
         lambda: ModelPolicy(model).predict(flockenv.LeadersEnv(params=three).reset(seed=0)[0]),
     ):
         with pytest.raises(ParameterError, match="leaders at once"):
@@ -213,7 +213,7 @@ def test_layouts_are_asked_for_where_the_space_does_not_say():
     assert (policy.leaders, policy.mirror_to_target, policy.control_hz) == (1, True, None)
     reported = PPO("MlpPolicy", rows_env(**FEW), device="cpu")
     reported.policy.load_state_dict(model.policy.state_dict())
-    ccw = SCENE.replace(target="ccw")
+    ccw = PARAMETERS.replace(target="ccw")
     run = flockenv.simulate(ccw, 0, 1.0, policy=policy, control_hz=5.0)
     other = flockenv.simulate(ccw, 0, 1.0, policy=reported)
     # The model that says its rate itself has it in its name.

@@ -32,7 +32,7 @@ def test_other_pools_have_none(pool) -> None:
 @pytest.mark.parametrize("pool", POOLS)
 def test_learned_leaders_lead_better_than_the_papers(pool: str) -> None:
     """By more than twice in `table-1` and half as much again in `500-boats`, where measured."""
-    scene = flockenv.FlockParameters(
+    parameters = flockenv.FlockParameters(
         n_boats=27,
         n_leaders=3,
         pool=pool,
@@ -40,7 +40,7 @@ def test_learned_leaders_lead_better_than_the_papers(pool: str) -> None:
     )
     seeds = range(32)
     ours, papers = (
-        run_episodes(scene, policy, seeds, 240.0)["signed_order"]
+        run_episodes(parameters, policy, seeds, 240.0)["signed_order"]
         for policy in (learned(pool), SteeringLaw())
     )
     difference = ours - papers

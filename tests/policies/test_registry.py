@@ -10,15 +10,15 @@ import flockenv
 from flockenv.policies.registry import EVERY_SUBSTEP, POLICIES, POOL_POLICIES, named_policy, quoted
 
 REPOSITORY = Path(__file__).parents[2]
-SCENE = flockenv.FlockParameters(n_boats=6, n_leaders=2, pool="table-1")
+PARAMETERS = flockenv.FlockParameters(n_boats=6, n_leaders=2, pool="table-1")
 RUN = {"seed": 3, "duration_s": 5.0}
 
 
 @pytest.mark.parametrize("name", [*POLICIES, *POOL_POLICIES])
 def test_names_steer_as_the_policies_they_stand_for(name: str) -> None:
-    policy = named_policy(name, SCENE.pool)()
-    assert flockenv.simulate(SCENE, policy=name, **RUN) == flockenv.simulate(
-        SCENE, policy=policy, **RUN
+    policy = named_policy(name, PARAMETERS.pool)()
+    assert flockenv.simulate(PARAMETERS, policy=name, **RUN) == flockenv.simulate(
+        PARAMETERS, policy=policy, **RUN
     )
 
 
@@ -41,7 +41,7 @@ def test_learned_leaders_have_one_home() -> None:
 
 
 def test_a_pool_without_learned_leaders_says_which_have_some() -> None:
-    elsewhere = SCENE.replace(pool=(150.0, 30.0))
+    elsewhere = PARAMETERS.replace(pool=(150.0, 30.0))
     for call in (
         lambda: flockenv.policies.load("learned", pool="bath"),
         lambda: flockenv.policies.load("learned"),
@@ -83,5 +83,5 @@ def test_the_command_line_knows_names_in_any_folder(
     done = cli("run", *fields, *words)
     assert json.loads(done.stdout)["policy"] == "learned"
     (path,) = tmp_path.rglob("*.npz")
-    expected = flockenv.simulate(SCENE, 3, 12.0, policy="learned")
+    expected = flockenv.simulate(PARAMETERS, 3, 12.0, policy="learned")
     assert np.array_equal(flockenv.Recording.load(path).pose, expected.pose)

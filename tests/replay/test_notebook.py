@@ -15,7 +15,7 @@ import flockenv
 from flockenv.rendering import frame
 from flockenv.replay import MOST_INLINE_BYTES, inline_replay, page
 
-SCENE = flockenv.FlockParameters(n_boats=27, n_leaders=3, bw_s=0.3)
+PARAMETERS = flockenv.FlockParameters(n_boats=27, n_leaders=3, bw_s=0.3)
 
 
 def page_in(element: str) -> str:
@@ -23,7 +23,7 @@ def page_in(element: str) -> str:
 
 
 def test_a_flock_is_its_frame():
-    flock = flockenv.Flock(SCENE, 7)
+    flock = flockenv.Flock(PARAMETERS, 7)
     element = flock._repr_html_()
     alt, data = re.fullmatch(r'<img alt="(.*)" src="data:image/png;base64,(.*)">', element).groups()
     assert alt == "flockenv.Flock of 27 boats, 3 of them leaders, seed 7, time 0 s"
@@ -34,7 +34,7 @@ def test_a_flock_is_its_frame():
 
 
 def test_a_recording_is_a_sandboxed_page():
-    run = flockenv.simulate(SCENE, 7, 10.0, contacts=True)
+    run = flockenv.simulate(PARAMETERS, 7, 10.0, contacts=True)
     element = inline_replay(run, 'a "name" <b>')
     assert re.findall(r'sandbox="([^"]*)"', element.partition(" srcdoc=")[0]) == ["allow-scripts"]
     inside = page_in(element)
@@ -45,21 +45,21 @@ def test_a_recording_is_a_sandboxed_page():
 
 
 def test_a_long_run_is_thinned_to_the_bound():
-    run = flockenv.simulate(SCENE, 7, 3600.0, contacts=True)
+    run = flockenv.simulate(PARAMETERS, 7, 3600.0, contacts=True)
     element = inline_replay(run, "hour")
     assert len(element.encode()) < MOST_INLINE_BYTES
     assert int(re.search(r'"every":(\d+)', page_in(element))[1]) > 1
 
 
 def test_what_fits_no_page_is_refused(monkeypatch):
-    run = flockenv.simulate(SCENE, 7, 1.0)
+    run = flockenv.simulate(PARAMETERS, 7, 1.0)
     monkeypatch.setattr(page, "MOST_INLINE_BYTES", 110_000)
     with pytest.raises(flockenv.ParameterError, match="do not fit a page of 10000 bytes"):
         inline_replay(run, "run")
 
 
 def test_a_recording_in_a_notebook_is_its_page(monkeypatch):
-    run = flockenv.simulate(SCENE, 7, 1.0)
+    run = flockenv.simulate(PARAMETERS, 7, 1.0)
     assert run._repr_html_() == inline_replay(run, "recording")
     monkeypatch.setattr(page, "MOST_INLINE_BYTES", 110_000)
     assert run._repr_html_() == f"<code>{html.escape(repr(run))}</code>"

@@ -10,12 +10,12 @@ from flockenv import _core
 from flockenv.flock import OrderSeries
 from flockenv.replay.quantities import shown_quantities, telling_minute
 
-SCENE = flockenv.FlockParameters(n_boats=4, n_leaders=1, target="cw")
+PARAMETERS = flockenv.FlockParameters(n_boats=4, n_leaders=1, target="cw")
 
 
 @pytest.fixture(scope="module")
 def still() -> flockenv.Recording:
-    return flockenv.simulate(SCENE, 1, 400.0, 2.0)
+    return flockenv.simulate(PARAMETERS, 1, 400.0, 2.0)
 
 
 def with_signed_order(recording: flockenv.Recording, values) -> flockenv.Recording:
@@ -48,7 +48,7 @@ def test_two_runs_open_where_they_differ_most(still):
 
 
 def test_of_runs_of_different_lengths_and_rates_what_they_share_counts(still):
-    short = flockenv.simulate(SCENE, 1, 100.0, 10.0)
+    short = flockenv.simulate(PARAMETERS, 1, 100.0, 10.0)
     time_s = still.time_s
     run = with_signed_order(still, np.where(time_s < 300, 0.0, -1.0))
     begin, _ = telling_minute([run, with_signed_order(short, np.linspace(0, 1, len(short)))])
@@ -56,15 +56,15 @@ def test_of_runs_of_different_lengths_and_rates_what_they_share_counts(still):
 
 
 def test_without_a_minute_or_normal_boats_it_is_the_start(still):
-    brief = flockenv.simulate(SCENE, 1, 59.0)
+    brief = flockenv.simulate(PARAMETERS, 1, 59.0)
     assert telling_minute([brief]) == (0.0, "")
     assert telling_minute([still, brief]) == (0.0, "")
-    alone = flockenv.simulate(SCENE.replace(n_boats=1), 1, 100.0)
+    alone = flockenv.simulate(PARAMETERS.replace(n_boats=1), 1, 100.0)
     assert telling_minute([alone]) == (0.0, "")
 
 
 def test_order_towards_the_target_comes_first_where_there_are_leaders(still):
-    free = flockenv.simulate(SCENE.replace(n_leaders=0), 1, 1.0)
+    free = flockenv.simulate(PARAMETERS.replace(n_leaders=0), 1, 1.0)
     fields = [each.name for each in _core.quantities() if each.kind == "recorded"]
     keys = [each.key for each in shown_quantities([still])]
     assert keys == ["signed_order", "rotation", *fields]

@@ -10,16 +10,16 @@ import pytest
 import flockenv
 from flockenv.replay import MOST_BYTES, page, write_replay
 
-SCENE = flockenv.FlockParameters(n_boats=27, n_leaders=3, bw_s=0.3)
+PARAMETERS = flockenv.FlockParameters(n_boats=27, n_leaders=3, bw_s=0.3)
 
 
 @pytest.fixture(scope="module")
 def hour():
-    return flockenv.simulate(SCENE, 7, 3600.0, contacts=True)
+    return flockenv.simulate(PARAMETERS, 7, 3600.0, contacts=True)
 
 
 def test_an_hour_is_under_the_limit_with_every_sample(hour, tmp_path):
-    jam = SCENE.replace(pool="table-1", bw_s=0.0)
+    jam = PARAMETERS.replace(pool="table-1", bw_s=0.0)
     crowded = flockenv.simulate(jam, 7, 3600.0, contacts=True)
     for name, run in (("moving", hour), ("jam", crowded)):
         written = write_replay(tmp_path / f"{name}.html", {name: run})
@@ -46,7 +46,7 @@ def test_what_does_not_fit_is_thinned(hour, tmp_path, monkeypatch):
 
 
 def test_nothing_is_loaded_and_only_its_own_script_runs(tmp_path):
-    write_replay(tmp_path / "run.html", {"run": flockenv.simulate(SCENE, 7, 1.0)})
+    write_replay(tmp_path / "run.html", {"run": flockenv.simulate(PARAMETERS, 7, 1.0)})
     text = (tmp_path / "run.html").read_text("utf-8")
     assert re.findall(r"https?:|//[a-z]+\.|@import|url\(", text) == []
     policy = re.search(r'Content-Security-Policy" content="([^"]*)"', text)[1]
@@ -58,7 +58,7 @@ def test_nothing_is_loaded_and_only_its_own_script_runs(tmp_path):
 
 
 def test_words_cannot_leave_their_place(tmp_path):
-    run = flockenv.simulate(SCENE, 7, 1.0)
+    run = flockenv.simulate(PARAMETERS, 7, 1.0)
     write_replay(tmp_path / "run.html", {"</script><b>&{{script}}": run})
     text = (tmp_path / "run.html").read_text("utf-8")
     assert text.count("</script>") == 2
@@ -67,7 +67,7 @@ def test_words_cannot_leave_their_place(tmp_path):
 
 
 def test_a_recording_is_named_after_its_file(tmp_path):
-    run = flockenv.simulate(SCENE, 7, 1.0)
+    run = flockenv.simulate(PARAMETERS, 7, 1.0)
     write_replay(tmp_path / "evening.html", run)
     write_replay(tmp_path / "named.html", {"evening": run})
     pages = [(tmp_path / f"{name}.html").read_bytes() for name in ("evening", "named")]
@@ -77,7 +77,7 @@ def test_a_recording_is_named_after_its_file(tmp_path):
 
 @pytest.mark.parametrize("count", [0, 3])
 def test_one_or_two_recordings(count, tmp_path):
-    run = flockenv.simulate(SCENE, 7, 1.0)
+    run = flockenv.simulate(PARAMETERS, 7, 1.0)
     with pytest.raises(flockenv.ParameterError, match=f"{count} recordings"):
         write_replay(tmp_path / "x.html", {str(k): run for k in range(count)})
 
@@ -91,5 +91,7 @@ def test_what_cannot_be_played_is_named(tmp_path):
 
 
 def test_open_water_far_out_and_one_sample(tmp_path):
-    scene = SCENE.replace(pool=(np.inf, 0.0), n_leaders=0)
-    assert write_replay(tmp_path / "x.html", {"x": flockenv.simulate(scene, 7, 0.0)}).every == 1
+    parameters = PARAMETERS.replace(pool=(np.inf, 0.0), n_leaders=0)
+    assert (
+        write_replay(tmp_path / "x.html", {"x": flockenv.simulate(parameters, 7, 0.0)}).every == 1
+    )

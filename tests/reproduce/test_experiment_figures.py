@@ -21,10 +21,14 @@ def test_runs_are_those_of_the_experiment(name):
     specs = load(name).runs(Settings())
     assert len(set(specs)) == len(specs) > 0
     for spec in specs:
-        scene = spec.parameters
-        assert (scene.n_boats, scene.pool, scene.leaders_reverse) == (27, "table-1", False)
-        assert scene.n_leaders <= 4
-        assert 0.4 <= scene.bw_s <= 2.8
+        parameters = spec.parameters
+        assert (parameters.n_boats, parameters.pool, parameters.leaders_reverse) == (
+            27,
+            "table-1",
+            False,
+        )
+        assert parameters.n_leaders <= 4
+        assert 0.4 <= parameters.bw_s <= 2.8
         assert spec.duration_s in (480.0, 960.0)
 
 

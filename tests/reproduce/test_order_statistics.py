@@ -12,7 +12,7 @@ from flockenv.reproduce.simulation.claims import critical_noise
 from flockenv.runs.spec import ORDER_NAMES, RunSpec
 from flockenv.runs.store import RunStore
 
-SCENE = flockenv.FlockParameters.preset("simulation")
+PARAMETERS = flockenv.FlockParameters.preset("simulation")
 
 
 def made(seed: int, order: Mapping[str, object], samples: int = 1000) -> flockenv.Recording:
@@ -31,7 +31,7 @@ def made(seed: int, order: Mapping[str, object], samples: int = 1000) -> flocken
         pose=np.zeros((samples, 0, 3)),
         velocity=np.zeros((samples, 0, 3)),
         order=flockenv.OrderSeries(**orders),
-        parameters=SCENE,
+        parameters=PARAMETERS,
         seed=seed,
         version=flockenv.__version__,
         duration_s=samples / 10,
@@ -39,7 +39,7 @@ def made(seed: int, order: Mapping[str, object], samples: int = 1000) -> flocken
 
 
 def spec_of(run: flockenv.Recording) -> RunSpec:
-    return RunSpec(parameters=SCENE, seed=run.seed, duration_s=run.duration_s)
+    return RunSpec(parameters=PARAMETERS, seed=run.seed, duration_s=run.duration_s)
 
 
 class Made(Results):

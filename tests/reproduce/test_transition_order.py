@@ -51,7 +51,7 @@ def test_binder() -> None:
 
 def made(outward: NDArray[np.float64], m: NDArray[np.float64]) -> flockenv.Recording:
     """A run of 1000 samples whose Ψ_o cos φ_o and m are these."""
-    scene = flockenv.FlockParameters.preset("simulation")
+    parameters = flockenv.FlockParameters.preset("simulation")
     samples = 1000
     orders = {name: np.zeros(samples) for name in ORDER_NAMES}
     orders["psi_o"] = np.hypot(outward, m)
@@ -64,7 +64,7 @@ def made(outward: NDArray[np.float64], m: NDArray[np.float64]) -> flockenv.Recor
         pose=np.zeros((samples, 0, 3)),
         velocity=np.zeros((samples, 0, 3)),
         order=flockenv.OrderSeries(**orders),
-        parameters=scene,
+        parameters=parameters,
         seed=0,
         version=flockenv.__version__,
         duration_s=100.0,
@@ -99,7 +99,7 @@ def test_student() -> None:
 def test_growing_keeps_the_density() -> None:
     areas = {}
     for way in ("whole pool", "circumference"):
-        pools = [Growth(way, n).scene(32).pool for n in (50, 800)]
+        pools = [Growth(way, n).parameters(32).pool for n in (50, 800)]
         areas[way] = [np.subtract(*np.square(pool)) for pool in pools]
         assert areas[way][1] / areas[way][0] == pytest.approx(16)
         widths = [np.subtract(*pool) for pool in pools]

@@ -11,8 +11,8 @@ from flockenv.runs.executors import ENGINES, Engine, cores, in_order, joblib, lo
 from flockenv.runs.spec import RunSpec
 from flockenv.runs.store import RunStore, run_missing
 
-SCENE = flockenv.FlockParameters.preset("paper").replace(n_boats=8)
-SPECS = [RunSpec(parameters=SCENE, seed=seed, duration_s=20.0) for seed in range(4)]
+PARAMETERS = flockenv.FlockParameters.preset("paper").replace(n_boats=8)
+SPECS = [RunSpec(parameters=PARAMETERS, seed=seed, duration_s=20.0) for seed in range(4)]
 
 
 def files(folder: Path, engine: Engine) -> dict[str, bytes]:

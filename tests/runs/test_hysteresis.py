@@ -1,4 +1,4 @@
-"""Loops go there and back: the same scene at both ends, boats carried over, nothing overlapping.
+"""Loops go there and back: the same parameters at both ends, boats carried over, no overlap.
 
 On paper: a pool of twice the area has radii √2 times as long, or, at the same width, a mean
 circumference twice as long.
@@ -11,16 +11,16 @@ import flockenv
 from flockenv.runs.protocols.hysteresis import (
     DENSITY_RATIO,
     LOOPS,
-    density_scenes,
+    density_steps,
     loop_position,
-    noise_scenes,
+    noise_steps,
     radii_cm,
     resized,
     simulate_loop,
 )
 
-SCENE = flockenv.FlockParameters.preset("simulation").replace(n_boats=10, bw_s=0.5)
-LONG = SCENE.replace(pool=(300.0, 217.0))
+PARAMETERS = flockenv.FlockParameters.preset("simulation").replace(n_boats=10, bw_s=0.5)
+LONG = PARAMETERS.replace(pool=(300.0, 217.0))
 """Long enough for its circumference to shrink to a quarter."""
 
 
@@ -40,13 +40,13 @@ def test_pools() -> None:
         radii_cm("table-2")
 
 
-def test_scenes() -> None:
-    levels = [scene.bw_s for scene in noise_scenes(SCENE)]
+def test_steps() -> None:
+    levels = [parameters.bw_s for parameters in noise_steps(PARAMETERS)]
     assert (levels[0], levels[-1]) == (0.0, 0.5)
     assert np.diff(levels) == pytest.approx(0.025)
     for fixed_width in (False, True):
-        scenes = density_scenes(LONG, fixed_width)
-        areas = [np.subtract(*np.square(radii_cm(scene.pool))) for scene in scenes]
+        steps = density_steps(LONG, fixed_width)
+        areas = [np.subtract(*np.square(radii_cm(parameters.pool))) for parameters in steps]
         assert areas[0] / areas[-1] == pytest.approx(DENSITY_RATIO)
         assert (np.diff(areas) < 0).all()
     assert loop_position(np.array([0.0, 25.0, 50.0, 100.0]), 100.0).tolist() == [0, 0.5, 1, 0]
@@ -65,10 +65,10 @@ def test_a_loop_is_continuous_and_seeded(kind: str) -> None:
 
 
 def test_a_dense_loop_keeps_boats_inside_and_apart() -> None:
-    scene = SCENE.replace(n_boats=45, bw_s=0.0)
-    loop = simulate_loop(scene, 1, 60.0, 10.0, "rotating-density-loop")
+    parameters = PARAMETERS.replace(n_boats=45, bw_s=0.0)
+    loop = simulate_loop(parameters, 1, 60.0, 10.0, "rotating-density-loop")
     middle = int(np.argmax(loop_position(loop.time_s, 60.0)))
-    smallest = density_scenes(scene, fixed_width=False)[-1]
+    smallest = density_steps(parameters, fixed_width=False)[-1]
     flock = flockenv.Flock(smallest, 0)
     # Refuses whatever overlaps by more than the solver leaves; a step's own overlap is 0.05 cm.
     flock.set_state(loop.pose[middle], loop.velocity[middle], allow_overlap=True)
@@ -76,7 +76,7 @@ def test_a_dense_loop_keeps_boats_inside_and_apart() -> None:
 
 
 def test_the_noise_loop_ends_as_it_began(monkeypatch: pytest.MonkeyPatch) -> None:
-    loop = simulate_loop(SCENE, 5, 400.0, 10.0, "rotating-noise-loop")
+    loop = simulate_loop(PARAMETERS, 5, 400.0, 10.0, "rotating-noise-loop")
     backing = loop.phase == "bw"
     thirds = np.array_split(backing, 5)
     shares = [float(third.mean()) for third in thirds]

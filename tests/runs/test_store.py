@@ -18,18 +18,20 @@ from flockenv.runs.store import RunStore, StorageError, StoreWarning, run_missin
 
 
 @pytest.fixture
-def scene() -> flockenv.FlockParameters:
+def parameters() -> flockenv.FlockParameters:
     return flockenv.FlockParameters.preset("simulation").replace(n_boats=6, pool="table-1")
 
 
 @pytest.fixture
-def spec(scene: flockenv.FlockParameters) -> RunSpec:
-    return RunSpec(parameters=scene, seed=3, duration_s=30.0)
+def spec(parameters: flockenv.FlockParameters) -> RunSpec:
+    return RunSpec(parameters=parameters, seed=3, duration_s=30.0)
 
 
 @pytest.mark.parametrize("keep", KEEP)
-def test_a_kept_run_comes_back(scene: flockenv.FlockParameters, tmp_path: Path, keep: str) -> None:
-    spec = RunSpec(parameters=scene, seed=3, duration_s=30.0, keep=keep)
+def test_a_kept_run_comes_back(
+    parameters: flockenv.FlockParameters, tmp_path: Path, keep: str
+) -> None:
+    spec = RunSpec(parameters=parameters, seed=3, duration_s=30.0, keep=keep)
     store = RunStore(tmp_path)
     assert store.load(spec) is None
     result = execute(spec)
@@ -37,7 +39,7 @@ def test_a_kept_run_comes_back(scene: flockenv.FlockParameters, tmp_path: Path, 
     loaded = store.load(spec)
     assert loaded is not None
     assert loaded == result
-    recording = flockenv.simulate(scene, 3, 30.0)
+    recording = flockenv.simulate(parameters, 3, 30.0)
     frames = np.ones(301, bool)
     if keep == "window":
         frames = recording.in_analysis_window & (recording.time_s > 3.0)
@@ -181,8 +183,8 @@ from flockenv import FlockParameters
 from flockenv._io import atomic_write
 from flockenv.runs.store import RunStore
 from flockenv.runs.spec import RunSpec, execute
-scene = FlockParameters.preset("simulation").replace(n_boats=6, pool="table-1")
-spec = RunSpec(parameters=scene, seed=3, duration_s=30.0)
+parameters = FlockParameters.preset("simulation").replace(n_boats=6, pool="table-1")
+spec = RunSpec(parameters=parameters, seed=3, duration_s=30.0)
 result = execute(spec)
 atomic_write.os.fsync = lambda number: os.kill(os.getpid(), signal.SIGKILL)
 RunStore(sys.argv[1]).save(spec, result)
@@ -211,9 +213,9 @@ def test_a_kill_in_the_middle_of_writing_leaves_nothing_to_be_taken(
     ],
 )
 def test_a_spec_is_checked(
-    scene: flockenv.FlockParameters, change: dict[str, object], words: str
+    parameters: flockenv.FlockParameters, change: dict[str, object], words: str
 ) -> None:
-    values = {"parameters": scene, "seed": 1, "duration_s": 30.0} | change
+    values = {"parameters": parameters, "seed": 1, "duration_s": 30.0} | change
     with pytest.raises(flockenv.ParameterError, match=words):
         RunSpec(**values)  # type: ignore[arg-type]
 
@@ -228,8 +230,8 @@ PINNED = {
 
 def test_the_numbers_belong_to_this_results_version() -> None:
     """If the physics changed on purpose: raise RESULTS_VERSION, then pin the new numbers."""
-    scene = flockenv.FlockParameters.preset("simulation").replace(n_boats=20, pool="table-1")
+    parameters = flockenv.FlockParameters.preset("simulation").replace(n_boats=20, pool="table-1")
     for scheme, numbers in PINNED.items():
-        order = flockenv.simulate(scene.replace(scheme=scheme), seed=5, duration_s=6.0).order
+        order = flockenv.simulate(parameters.replace(scheme=scheme), seed=5, duration_s=6.0).order
         assert (order.psi_o[-1], order.phi_o[-1]) == pytest.approx(numbers, abs=1e-6)
     assert run_store.RESULTS_VERSION == 2

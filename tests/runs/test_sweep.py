@@ -49,8 +49,8 @@ def test_every_combination_once(tmp_path: Path) -> None:
     )
     assert [spec.seed for spec in sweep.runs] == [0, 1] * 5
     base = flockenv.FlockParameters.preset("paper").replace(c4=0.05)
-    scene = base.replace(n_boats=8, pool="table-1", bw_s=0.5)
-    assert sweep.runs[-1].parameters == scene
+    parameters = base.replace(n_boats=8, pool="table-1", bw_s=0.5)
+    assert sweep.runs[-1].parameters == parameters
     assert sweep.runs[-1].duration_s == 30.0
 
 

@@ -6,7 +6,7 @@ import pytest
 import flockenv
 from flockenv.runs.protocols.target_switching import simulate_alternating, target_at
 
-SCENE = flockenv.FlockParameters.preset("experiment").replace(n_boats=9, n_leaders=9, bw_s=0.4)
+PARAMETERS = flockenv.FlockParameters.preset("experiment").replace(n_boats=9, n_leaders=9, bw_s=0.4)
 
 
 def test_directions_alternate_from_ccw_on():
@@ -16,16 +16,16 @@ def test_directions_alternate_from_ccw_on():
 
 
 def test_before_the_first_change_it_is_an_ordinary_run():
-    alternating = simulate_alternating(SCENE, 4, 20.0, period_s=30.0)
-    plain = flockenv.simulate(SCENE.replace(target="ccw"), 4, 20.0, dtype=np.float32)
+    alternating = simulate_alternating(PARAMETERS, 4, 20.0, period_s=30.0)
+    plain = flockenv.simulate(PARAMETERS.replace(target="ccw"), 4, 20.0, dtype=np.float32)
     assert np.array_equal(alternating.pose, plain.pose)
     assert np.array_equal(alternating.time_s, plain.time_s)
     assert np.array_equal(alternating.in_analysis_window, plain.in_analysis_window)
 
 
 def test_leaders_go_the_way_that_holds():
-    scene = SCENE.replace(n_boats=3, n_leaders=2)
-    run = simulate_alternating(scene, 2, 240.0, period_s=120.0)
+    parameters = PARAMETERS.replace(n_boats=3, n_leaders=2)
+    run = simulate_alternating(parameters, 2, 240.0, period_s=120.0)
     x, y = run.pose[:, :2, 0], run.pose[:, :2, 1]
     u, v = run.velocity[:, :2, 0], run.velocity[:, :2, 1]
     counter_clockwise = ((x * v - y * u) / np.hypot(x, y)).mean(axis=1)
@@ -34,7 +34,7 @@ def test_leaders_go_the_way_that_holds():
 
 
 def test_the_same_arguments_give_the_same_run():
-    first, second = (simulate_alternating(SCENE, 5, 12.0, period_s=5.0) for _ in range(2))
+    first, second = (simulate_alternating(PARAMETERS, 5, 12.0, period_s=5.0) for _ in range(2))
     assert np.array_equal(first.pose, second.pose)
     assert len(first) == 121
 
@@ -42,4 +42,4 @@ def test_the_same_arguments_give_the_same_run():
 @pytest.mark.parametrize("period_s", [0.0, 0.05, 1.234])
 def test_periods_between_samples_are_refused(period_s):
     with pytest.raises(flockenv.ParameterError, match="period_s"):
-        simulate_alternating(SCENE, 1, 5.0, period_s=period_s)
+        simulate_alternating(PARAMETERS, 1, 5.0, period_s=period_s)

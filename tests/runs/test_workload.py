@@ -9,8 +9,8 @@ from flockenv.runs.spec import RunSpec, execute
 from flockenv.runs.store import RunStore
 from flockenv.runs.workload import Shard, measure_workload
 
-SCENE = flockenv.FlockParameters.preset("paper").replace(n_boats=8)
-SPECS = [RunSpec(parameters=SCENE, seed=seed, duration_s=60.0) for seed in range(300)]
+PARAMETERS = flockenv.FlockParameters.preset("paper").replace(n_boats=8)
+SPECS = [RunSpec(parameters=PARAMETERS, seed=seed, duration_s=60.0) for seed in range(300)]
 
 
 @pytest.mark.parametrize("of", [1, 2, 7, 60])
@@ -79,14 +79,17 @@ def test_each_run_takes_the_rate_of_the_trial_nearest_in_size(tmp_path, monkeypa
     # Trials are of at most a minute; here the clock of the processor is a made-up one.
     clock = iter([0.0, 1.0, 10.0, 14.0])
     monkeypatch.setattr("time.process_time", lambda: next(clock))
-    large = SCENE.replace(n_boats=20)
-    specs = [RunSpec(parameters=scene, seed=0, duration_s=600.0) for scene in (SCENE, large)]
+    large = PARAMETERS.replace(n_boats=20)
+    specs = [
+        RunSpec(parameters=parameters, seed=0, duration_s=600.0)
+        for parameters in (PARAMETERS, large)
+    ]
     work = measure_workload(specs, RunStore(tmp_path))
     assert work.core_hours * 3600 == pytest.approx(10 * 1.0 + 10 * 4.0)
 
 
-def test_scenes_that_cannot_be_made_have_no_time(tmp_path):
-    crowded = SCENE.replace(n_boats=300, pool="table-1")
+def test_flocks_that_cannot_be_made_have_no_time(tmp_path):
+    crowded = PARAMETERS.replace(n_boats=300, pool="table-1")
     work = measure_workload(
         [RunSpec(parameters=crowded, seed=0, duration_s=60.0)], RunStore(tmp_path)
     )

@@ -8,14 +8,14 @@ import pytest
 import flockenv
 from flockenv.statistics import structure
 
-SCENE = flockenv.FlockParameters.preset("experiment").replace(n_boats=3)
+PARAMETERS = flockenv.FlockParameters.preset("experiment").replace(n_boats=3)
 # Two boats in touch side by side, one apart at the wall (outer radius 90 cm).
 POSE = np.array([[[60.0, 0.0, 0.0], [60.0, 10.2, 0.0], [-82.4, 0.0, np.pi]]] * 4)
 
 
 def test_clusters_and_the_wall_are_shares_of_the_boats():
-    assert structure.largest_cluster(SCENE, POSE) == pytest.approx([2 / 3] * 4)
-    assert structure.on_outer_wall(SCENE, POSE) == pytest.approx([1 / 3] * 4)
+    assert structure.largest_cluster(PARAMETERS, POSE) == pytest.approx([2 / 3] * 4)
+    assert structure.on_outer_wall(PARAMETERS, POSE) == pytest.approx([1 / 3] * 4)
 
 
 def test_displacement_and_turns_by_lag():
@@ -48,7 +48,7 @@ def test_pairs_that_cannot_be_are_nan():
 @pytest.mark.parametrize("pose", [np.zeros((3, 3)), np.zeros((2, 3, 2)), np.zeros((2, 0, 3))])
 def test_other_shapes_are_refused(pose):
     with pytest.raises(flockenv.ParameterError, match="pose"):
-        structure.on_outer_wall(SCENE, pose)
+        structure.on_outer_wall(PARAMETERS, pose)
     with pytest.raises(flockenv.ParameterError, match="pose"):
         structure.mean_square_displacement(pose, [1])
 
@@ -62,7 +62,7 @@ def test_other_arguments_are_refused():
 
 
 def test_states_and_ordering_times_of_a_recording():
-    run = flockenv.simulate(SCENE.replace(n_boats=12, n_leaders=2, bw_s=1.0), 3, 240.0)
+    run = flockenv.simulate(PARAMETERS.replace(n_boats=12, n_leaders=2, bw_s=1.0), 3, 240.0)
     states = run.order.states(15.0)
     assert states.shape == run.time_s.shape
     ordered = np.char.startswith(states, "ordered")

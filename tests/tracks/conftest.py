@@ -11,7 +11,7 @@ from flockenv.tracks import TrackLayout
 
 PIXEL_CM = 0.25
 CENTER = (812.0, 604.5)
-SCENE = flockenv.FlockParameters(n_boats=20, n_leaders=2, pool="table-1", bw_s=0.3)
+PARAMETERS = flockenv.FlockParameters(n_boats=20, n_leaders=2, pool="table-1", bw_s=0.3)
 LAYOUT = TrackLayout(
     pool="table-1",
     leaders=("boat1", "boat2"),
@@ -39,7 +39,7 @@ class Seen:
 @pytest.fixture(scope="session")
 def seen() -> Seen:
     """Positions in whole pixels of 2.5 mm, y down, 0.3 % of the rows missing."""
-    truth = flockenv.simulate(SCENE, 5, 60.0)
+    truth = flockenv.simulate(PARAMETERS, 5, 60.0)
     table = truth.to_dataframe(boats=True)
     rows = pd.DataFrame(
         {

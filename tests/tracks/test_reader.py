@@ -7,7 +7,7 @@ import pytest
 import flockenv
 from flockenv.tracks import TrackLayout, from_movement, from_table, layout_beside, read_tracks
 
-from .conftest import CENTER, LAYOUT, PIXEL_CM, SCENE
+from .conftest import CENTER, LAYOUT, PARAMETERS, PIXEL_CM
 
 
 def test_a_camera_gives_back_the_run(seen):
@@ -230,7 +230,7 @@ def test_a_dataset_of_movement(seen):
             "time": truth.time_s,
             "space": ["x", "y"],
             "keypoints": ["stern", "mast", "bow"],
-            "individuals": [f"boat{number + 1}" for number in range(SCENE.n_boats)],
+            "individuals": [f"boat{number + 1}" for number in range(PARAMETERS.n_boats)],
         },
         attrs={"time_unit": "seconds", "source_software": "none", "ds_type": "poses"},
     )

@@ -6,7 +6,7 @@ import pytest
 import flockenv
 from flockenv.tracks import export, from_table, read_tracks
 
-from .conftest import LAYOUT, SCENE
+from .conftest import LAYOUT, PARAMETERS
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".parquet"])
@@ -18,7 +18,7 @@ def test_tables_are_read_back(seen, tmp_path, suffix):
     assert found.report.samples == seen.truth.pose[..., 0].size
     assert np.allclose(recording.time_s, seen.truth.time_s, atol=1e-12)
     assert np.array_equal(recording.pose, seen.truth.pose)
-    assert recording.parameters.n_leaders == SCENE.n_leaders
+    assert recording.parameters.n_leaders == PARAMETERS.n_leaders
     assert (recording.order.psi_o == seen.truth.order.psi_o).all()
 
 

@@ -210,9 +210,9 @@ def test_validations_use_the_same_seeds_and_none_that_claims_are_made_with(
     seen = []
     run_episodes = validation.run_episodes
 
-    def watched(scene, policy, seeds, *arguments, **options):
-        seen.append((scene.pool, scene.n_leaders, tuple(seeds)))
-        return run_episodes(scene, policy, seeds, *arguments, **options)
+    def watched(parameters, policy, seeds, *arguments, **options):
+        seen.append((parameters.pool, parameters.n_leaders, tuple(seeds)))
+        return run_episodes(parameters, policy, seeds, *arguments, **options)
 
     monkeypatch.setattr(validation, "run_episodes", watched)
     training.train(tiny, tmp_path)

@@ -18,7 +18,6 @@ __all__ = [
     "Setup",
     "leader_series",
     "noise_series",
-    "scene",
     "statistics",
 ]
 
@@ -59,7 +58,7 @@ SETUPS = (NONE, CCW, CW)
 """The columns of figures 9 to 11, in the paper's order."""
 
 
-def scene(n_leaders: int, bw_s: float, target: str = "cw") -> FlockParameters:
+def flock_parameters(n_leaders: int, bw_s: float, target: str = "cw") -> FlockParameters:
     """Return the experiment with so many leaders at a backward duration."""
     base = FlockParameters.preset("experiment")
     return base.replace(n_leaders=n_leaders, bw_s=bw_s, target=target)
@@ -79,14 +78,14 @@ def _runs(settings: Settings, parameters: FlockParameters, count: int) -> list[R
 
 def noise_series(settings: Settings, setup: Setup) -> list[list[RunSpec]]:
     """Return the 8-minute runs of a column, by backward duration."""
-    scenes = (scene(setup.n_leaders, bw_s, setup.target) for bw_s in LEVELS_S)
-    return [_runs(settings, each, _RUNS) for each in scenes]
+    points = (flock_parameters(setup.n_leaders, bw_s, setup.target) for bw_s in LEVELS_S)
+    return [_runs(settings, each, _RUNS) for each in points]
 
 
 def leader_series(settings: Settings) -> list[list[RunSpec]]:
     """Return the 8-minute runs with 0 to 4 leaders at bw = 1.8 s, by number of leaders."""
-    scenes = (scene(k, GUIDED_S, "ccw") for k in range(5))
-    return [_runs(settings, each, _LEADER_RUNS) for each in scenes]
+    points = (flock_parameters(k, GUIDED_S, "ccw") for k in range(5))
+    return [_runs(settings, each, _LEADER_RUNS) for each in points]
 
 
 def statistics(

@@ -11,7 +11,7 @@ from flockenv.flock import STATES
 from flockenv.recording import Recording
 from flockenv.rendering.frames import frame
 from flockenv.reproduce.claim import CheckedClaim, Claim
-from flockenv.reproduce.experiment.design import scene
+from flockenv.reproduce.experiment.design import flock_parameters
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
 from flockenv.reproduce.style import COLORS, column_figure, paper_style
 from flockenv.runs.spec import RunSpec
@@ -40,7 +40,7 @@ def pose_points(settings: Settings) -> dict[float, list[RunSpec]]:
     return {
         bw_s: [
             RunSpec(
-                parameters=scene(0, bw_s),
+                parameters=flock_parameters(0, bw_s),
                 seed=seed,
                 duration_s=settings.duration_s(_MINUTES),
                 sample_hz=_SAMPLE_HZ,
@@ -77,7 +77,7 @@ def _cycle_states(run: Recording) -> NDArray[np.str_]:
 
 
 def _cycle_s(bw_s: float) -> float:
-    p = scene(0, bw_s)
+    p = flock_parameters(0, bw_s)
     return p.fw_s + p.nop1_s + p.bw_s + p.nop2_s
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from flockenv.recording import Recording
 from flockenv.reproduce.claim import CheckedClaim, Claim
-from flockenv.reproduce.experiment.design import GUIDED_S, scene
+from flockenv.reproduce.experiment.design import GUIDED_S, flock_parameters
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
 from flockenv.reproduce.style import COLORS, column_figure, paper_style
 from flockenv.runs.protocols.target_switching import PERIOD_S, TARGETS, target_at
@@ -28,7 +28,7 @@ _SETTLED = 0.5
 def _specs(settings: Settings, bw_s: float, leaders: int = 0) -> list[RunSpec]:
     return [
         RunSpec(
-            parameters=scene(leaders, bw_s),
+            parameters=flock_parameters(leaders, bw_s),
             seed=seed,
             duration_s=settings.duration_s(_MINUTES),
             protocol="alternating" if leaders else "law",

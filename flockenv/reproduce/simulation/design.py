@@ -1,4 +1,4 @@
-"""What Section 5 ran: scenes, backward durations, densities and seeds of figures 14 to 17."""
+"""What Section 5 ran: flocks, backward durations, densities and seeds of figures 14 to 17."""
 
 from dataclasses import dataclass
 
@@ -36,7 +36,7 @@ class Model:
     noise: str
     pool: str = POOL
 
-    def scene(self, n_boats: int, n_leaders: int, bw_s: float) -> FlockParameters:
+    def parameters(self, n_boats: int, n_leaders: int, bw_s: float) -> FlockParameters:
         """Return the parameters of one point of a figure."""
         return FlockParameters.preset(self.preset).replace(
             noise=self.noise, pool=self.pool, n_boats=n_boats, n_leaders=n_leaders, bw_s=bw_s
@@ -67,23 +67,23 @@ class Design:
     densities: tuple[int, ...]
     runs: int
 
-    def at(self, settings: Settings, scene: FlockParameters) -> list[RunSpec]:
+    def at(self, settings: Settings, parameters: FlockParameters) -> list[RunSpec]:
         """Return the runs of one point."""
         seeds = range(settings.seed, settings.seed + self.runs)
         length = settings.duration_s(_MINUTES)
-        return [RunSpec(parameters=scene, seed=seed, duration_s=length) for seed in seeds]
+        return [RunSpec(parameters=parameters, seed=seed, duration_s=length) for seed in seeds]
 
     def noise_series(
         self, settings: Settings, model: Model, n_boats: int, with_leaders: bool
     ) -> list[list[RunSpec]]:
         """Return the runs of each backward duration."""
         leaders = round(_LEADER_SHARE * n_boats) if with_leaders else 0
-        scenes = (model.scene(n_boats, leaders, bw_s) for bw_s in self.levels_s)
-        return [self.at(settings, scene) for scene in scenes]
+        points = (model.parameters(n_boats, leaders, bw_s) for bw_s in self.levels_s)
+        return [self.at(settings, point) for point in points]
 
     def density_series(self, settings: Settings, model: Model) -> list[list[RunSpec]]:
         """Return the runs of each number of boats."""
-        return [self.at(settings, model.scene(n, 0, 0.0)) for n in self.densities]
+        return [self.at(settings, model.parameters(n, 0, 0.0)) for n in self.densities]
 
 
 FIGURES = Design(

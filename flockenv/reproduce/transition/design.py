@@ -55,8 +55,8 @@ class Growth:
     way: str
     n_boats: int
 
-    def scene(self, density: float, bw_s: float = 0.0) -> FlockParameters:
-        """Return the scene; `density` counts boats for each free area of the pool `500-boats`."""
+    def parameters(self, density: float, bw_s: float = 0.0) -> FlockParameters:
+        """Return them; `density` counts boats for each free area of the pool `500-boats`."""
         pool = resized(_POOL, self.n_boats / density, WAYS[self.way])
         base = FlockParameters.preset("simulation").replace(dt_s=_DT_S)
         return base.replace(n_boats=self.n_boats, n_leaders=0, bw_s=bw_s, pool=pool)
@@ -90,7 +90,7 @@ class TransitionDesign:
     ) -> tuple[RunSpec, ...]:
         """Return the runs at one density without noise, from one of `STARTS`."""
         length = settings.duration_s(self.still_minutes)
-        return self._seeded(length, settings.seed, growth.scene(density), start, "window")
+        return self._seeded(length, settings.seed, growth.parameters(density), start, "window")
 
     def loop(self, settings: Settings, growth: Growth, kind: str) -> tuple[RunSpec, ...]:
         """Return the loops of a kind in `LOOPS`.
@@ -101,12 +101,12 @@ class TransitionDesign:
         length = settings.duration_s(self.loop_minutes)
         lowest = self.densities[growth.way][0]
         if kind == "noise":
-            scene, protocol = growth.scene(lowest, LOOP_BW_S), "rotating-noise-loop"
+            parameters, protocol = growth.parameters(lowest, LOOP_BW_S), "rotating-noise-loop"
         else:
-            scene = growth.scene(lowest)
+            parameters = growth.parameters(lowest)
             protocol = f"rotating-{'length' if WAYS[growth.way] else 'density'}-loop"
             length *= SLOWER if kind == "slow density" else 1.0
-        return self._seeded(length, settings.seed, scene, protocol, "order")
+        return self._seeded(length, settings.seed, parameters, protocol, "order")
 
     def growths(self) -> list[Growth]:
         """Return all sizes in all ways."""
@@ -129,11 +129,11 @@ class TransitionDesign:
         return _CORE_S * hours / 60
 
     def _seeded(
-        self, length_s: float, first: int, scene: FlockParameters, protocol: str, keep: str
+        self, length_s: float, first: int, parameters: FlockParameters, protocol: str, keep: str
     ) -> tuple[RunSpec, ...]:
         return tuple(
             RunSpec(
-                parameters=scene,
+                parameters=parameters,
                 seed=seed,
                 duration_s=length_s,
                 sample_hz=_SAMPLE_HZ,

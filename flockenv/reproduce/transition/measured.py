@@ -86,7 +86,7 @@ def hysteresis(run: Recording) -> NDArray[np.float64]:
     Returns
     -------
     float64 array, shape (2, 12)
-        Of analyzed frames, from the loop's first scene to its last; NaN in bins without any.
+        Of analyzed frames, from the loop's first parameters to its last; NaN in bins without any.
     """
     used = run.analyzed(after=0.0)
     position = loop_position(used.time_s, used.duration_s)
@@ -114,7 +114,7 @@ class Loops:
     openings : float64 array, shape (runs,)
         By how much Ψ_o cos φ_o on the way back exceeds that on the way there, over the loop.
     at_turn : float64 array, shape (runs,)
-        Mean Ψ_o cos φ_o around the loop's last scene, on both ways.
+        Mean Ψ_o cos φ_o around the loop's last parameters, on both ways.
     """
 
     def __init__(self, runs: Sequence[Recording]) -> None:

@@ -1,7 +1,7 @@
 """Loops for hysteresis: a run in which the noise or the density goes slowly up and down again.
 
 The loop starts with all boats circulating (a big flock that starts at random would not get there),
-and goes from its first scene to its last and back, in equal steps and equal times; boats keep
+and goes from its first parameters to its last and back, in equal steps and equal times; boats keep
 their poses and velocities. In a loop of the density it is the pool that changes, and boats move
 with it: each keeps its share of the way between the walls and its angle about the center. What
 little overlap that makes as the pool shrinks, the contact solver takes out again.
@@ -24,9 +24,9 @@ from flockenv.simulation import Change, recorded
 __all__ = [
     "DENSITY_RATIO",
     "LOOPS",
-    "density_scenes",
+    "density_steps",
     "loop_position",
-    "noise_scenes",
+    "noise_steps",
     "radii_cm",
     "resized",
     "simulate_loop",
@@ -34,7 +34,7 @@ __all__ = [
 ]
 
 LOOPS = ("rotating-noise-loop", "rotating-density-loop", "rotating-length-loop")
-"""A loop of bw from 0 to the scene's and back; of the density from the scene's to `DENSITY_RATIO`
+"""A loop of bw from 0 to that given and back; of the density from that given to `DENSITY_RATIO`
 times that and back, the whole pool scaled; the same, its circumference alone at fixed width."""
 
 DENSITY_RATIO = 4.0
@@ -86,14 +86,14 @@ def resized(
     return (total + width) / 2, (total - width) / 2
 
 
-def noise_scenes(parameters: FlockParameters) -> list[FlockParameters]:
-    """Return the scenes of half a loop of the noise, from bw = 0 to the scene's."""
+def noise_steps(parameters: FlockParameters) -> list[FlockParameters]:
+    """Return the parameters of half a loop of the noise, from bw = 0 to those given."""
     steps = np.linspace(0.0, parameters.bw_s, _NOISE_STEPS + 1)
     return [parameters.replace(bw_s=float(bw_s)) for bw_s in steps]
 
 
-def density_scenes(parameters: FlockParameters, fixed_width: bool) -> list[FlockParameters]:
-    """Return the scenes of half a loop of the density, from the scene's up."""
+def density_steps(parameters: FlockParameters, fixed_width: bool) -> list[FlockParameters]:
+    """Return the parameters of half a loop of the density, from those given up."""
     ratios = np.geomspace(1.0, 1 / DENSITY_RATIO, _DENSITY_STEPS + 1)
     return [
         parameters.replace(pool=resized(parameters.pool, float(ratio), fixed_width))
@@ -114,7 +114,7 @@ def simulate_loop(
     Parameters
     ----------
     parameters
-        The scene; see `LOOPS` for what of it changes.
+        Of the flock; see `LOOPS` for what of it changes.
     seed
         Seed of all random streams.
     duration_s
@@ -127,7 +127,7 @@ def simulate_loop(
     Returns
     -------
     Recording
-        With the first scene's parameters; `loop_position` returns where a sample lies.
+        With the first parameters; `loop_position` returns where a sample lies.
 
     Raises
     ------
@@ -135,19 +135,19 @@ def simulate_loop(
         For arguments out of range and boats that do not fit the smallest pool.
     """
     if kind == "rotating-noise-loop":
-        half = noise_scenes(parameters)
+        half = noise_steps(parameters)
     else:
-        half = density_scenes(parameters, fixed_width=kind == "rotating-length-loop")
-    scenes = [*half, *half[-2::-1]]
-    flock = prepared_flock(scenes[0], seed, "rotating")
-    changes = _changes(scenes, duration_s, sample_hz)
+        half = density_steps(parameters, fixed_width=kind == "rotating-length-loop")
+    steps = [*half, *half[-2::-1]]
+    flock = prepared_flock(steps[0], seed, "rotating")
+    changes = _changes(steps, duration_s, sample_hz)
     return recorded(flock, parameters, duration_s, sample_hz, changes=changes)
 
 
 def simulate_prepared(
     parameters: FlockParameters, seed: int, duration_s: float, sample_hz: float, start: str
 ) -> Recording:
-    """Run one scene from an initial state: a pure function of its arguments.
+    """Run one flock from an initial state: a pure function of its arguments.
 
     Parameters and errors are those of `simulate_loop`, except for `start`, one of
     `flockenv.runs.protocols.initial_state.STARTS`.
@@ -156,14 +156,12 @@ def simulate_prepared(
     return recorded(flock, parameters, duration_s, sample_hz)
 
 
-def _changes(
-    scenes: Sequence[FlockParameters], duration_s: float, sample_hz: float
-) -> list[Change]:
-    """Return when each of the scenes begins, at samples; the first has started already."""
+def _changes(steps: Sequence[FlockParameters], duration_s: float, sample_hz: float) -> list[Change]:
+    """Return when each of the steps starts, at samples; the first has started already."""
     count = math.floor(duration_s * sample_hz * (1 + 1e-12))
-    turns = [place * len(scenes) // max(count, 1) for place in range(count)]
+    turns = [place * len(steps) // max(count, 1) for place in range(count)]
     return [
-        (place / sample_hz, scenes[turn])
+        (place / sample_hz, steps[turn])
         for place, (before, turn) in enumerate(pairwise([0, *turns]))
         if turn != before
     ]

@@ -24,7 +24,7 @@ def prepared_flock(parameters: FlockParameters, seed: int, start: str) -> _core.
     Parameters
     ----------
     parameters
-        The scene.
+        Of the flock.
     seed
         Seed of all random streams.
     start

@@ -132,7 +132,7 @@ impl ObservationLayout {
         }
     }
 
-    /// Where a block begins, if it is on.
+    /// Where a block starts, if it is on.
     pub fn offset(&self, wanted: Block) -> Option<usize> {
         let mut offset = 0;
         for &block in Block::ALL {

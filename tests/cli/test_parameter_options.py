@@ -1,16 +1,16 @@
-"""Law: a scene is a preset, then a file, then single fields; what is wrong has a name."""
+"""Law: parameters are a preset, then a file, then single fields; what is wrong has a name."""
 
 import pytest
 
 import flockenv
-from flockenv.cli.scene import read_scene, save_scene
+from flockenv.cli.parameters import read_parameters, save_parameters
 
 SIMULATION = flockenv.FlockParameters()
 
 
 def test_nothing_asked_for_is_the_preset_simulation():
-    assert read_scene() == SIMULATION
-    assert read_scene("paper") == flockenv.FlockParameters.preset("paper")
+    assert read_parameters() == SIMULATION
+    assert read_parameters("paper") == flockenv.FlockParameters.preset("paper")
 
 
 @pytest.mark.parametrize(
@@ -29,23 +29,23 @@ def test_nothing_asked_for_is_the_preset_simulation():
     ],
 )
 def test_values_are_those_of_toml_and_words(change, field, value):
-    assert read_scene(changes=[change]) == SIMULATION.replace(**{field: value})
+    assert read_parameters(changes=[change]) == SIMULATION.replace(**{field: value})
 
 
 def test_a_file_then_fields(tmp_path):
-    file = tmp_path / "scene.toml"
+    file = tmp_path / "flock.toml"
     file.write_text('preset = "paper"\nn_boats = 12\nbw_s = 0.1\n')
     paper = flockenv.FlockParameters.preset("paper")
-    assert read_scene(file=file) == paper.replace(n_boats=12, bw_s=0.1)
-    assert read_scene("paper", file, ["bw_s=0.2"]) == paper.replace(n_boats=12, bw_s=0.2)
+    assert read_parameters(file=file) == paper.replace(n_boats=12, bw_s=0.1)
+    assert read_parameters("paper", file, ["bw_s=0.2"]) == paper.replace(n_boats=12, bw_s=0.2)
     with pytest.raises(flockenv.ParameterError, match="contradicts preset = 'paper'"):
-        read_scene("simulation", file)
+        read_parameters("simulation", file)
 
 
 def test_what_is_saved_is_read(tmp_path):
-    scene = SIMULATION.replace(pool=(123.0, 4.5), n_boats=3, bw_s=0.7)
-    save_scene(tmp_path / "scene.toml", scene, "seed 7\nn_boats = 99")
-    assert read_scene(file=tmp_path / "scene.toml") == scene
+    parameters = SIMULATION.replace(pool=(123.0, 4.5), n_boats=3, bw_s=0.7)
+    save_parameters(tmp_path / "flock.toml", parameters, "seed 7\nn_boats = 99")
+    assert read_parameters(file=tmp_path / "flock.toml") == parameters
 
 
 @pytest.mark.parametrize(
@@ -65,7 +65,7 @@ def test_what_is_saved_is_read(tmp_path):
 )
 def test_bad_changes_are_named(changes, words):
     with pytest.raises(flockenv.ParameterError, match=words):
-        read_scene(changes=changes)
+        read_parameters(changes=changes)
 
 
 @pytest.mark.parametrize(
@@ -80,8 +80,8 @@ def test_bad_changes_are_named(changes, words):
     ],
 )
 def test_bad_files_are_named(content, words, tmp_path):
-    file = tmp_path / "scene.toml"
+    file = tmp_path / "flock.toml"
     if content is not None:
         file.write_bytes(content)
     with pytest.raises(flockenv.ParameterError, match=words):
-        read_scene(file=file)
+        read_parameters(file=file)

@@ -1,4 +1,4 @@
-"""The scene of a command: a preset, a TOML file, single fields; saved beside its results."""
+"""The parameters of a command: a preset, a TOML file, single fields; saved beside its results."""
 
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
@@ -18,10 +18,10 @@ __all__ = [
     "TrustOption",
     "changed_fields",
     "given_fields",
-    "read_scene",
+    "parameters_of",
+    "read_parameters",
     "refuse_fields_as_options",
-    "save_scene",
-    "scene_of",
+    "save_parameters",
 ]
 
 FIELDS = frozenset(FlockParameters.__dataclass_fields__)
@@ -47,7 +47,7 @@ TrustOption = Annotated[
 ]
 
 
-def read_scene(
+def read_parameters(
     preset: str | None = None, file: Path | None = None, changes: Sequence[str] | None = None
 ) -> FlockParameters:
     """Return the parameters that a command's options select.
@@ -67,7 +67,7 @@ def read_scene(
         For an unknown preset or field, a value that is not accepted, a file that cannot be read
         or is no TOML, a change without ``=``, a field that is changed twice; the message names it.
     """
-    return scene_of(given_fields(preset, file, changes))
+    return parameters_of(given_fields(preset, file, changes))
 
 
 def given_fields(
@@ -75,7 +75,7 @@ def given_fields(
 ) -> dict[str, Any]:
     """Return the fields that a command's options name, and ``preset`` if they name one.
 
-    Parameters and errors are those of `read_scene`; names and values are checked by `scene_of`.
+    Parameters and errors are those of `read_parameters`; `parameters_of` checks names and values.
     """
     fields = _file_fields(file) if file is not None else {}
     if preset is not None:
@@ -87,7 +87,7 @@ def given_fields(
     return fields | changed_fields(changes or ())
 
 
-def scene_of(fields: Mapping[str, Any]) -> FlockParameters:
+def parameters_of(fields: Mapping[str, Any]) -> FlockParameters:
     """Return the parameters that have these fields.
 
     Raises
@@ -101,7 +101,7 @@ def scene_of(fields: Mapping[str, Any]) -> FlockParameters:
         raise ParameterError(str(error)) from error
 
 
-def save_scene(path: Path, parameters: FlockParameters, remark: str) -> None:
+def save_parameters(path: Path, parameters: FlockParameters, remark: str) -> None:
     """Write parameters as TOML that `--params` reads, with a remark on how they were used.
 
     Raises
@@ -162,7 +162,7 @@ def refuse_fields_as_options(arguments: Sequence[str], known: Collection[str]) -
                 (each for each in following if not each.startswith("--")), "VALUE"
             )
             raise ParameterError(
-                f"{option} is no option: fields of the scene are changed with --set, "
+                f"{option} is no option: fields of the parameters are changed with --set, "
                 f"as in --set {field}={words}"
             )
 
