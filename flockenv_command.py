@@ -1,4 +1,4 @@
-"""The console script: the command line, which Ctrl-C ends in a line even while it is imported.
+"""The console script: the command line, which Ctrl-C ends in a line until a command begins.
 
 It stands beside the package, because importing anything in the package imports the package.
 """
@@ -18,8 +18,6 @@ def main() -> None:
         signal.signal(signal.SIGINT, _end)
     from flockenv.cli import main as command_line
 
-    if is_ours:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
     command_line()
 
 

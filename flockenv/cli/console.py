@@ -110,6 +110,7 @@ def ends_on_interrupt(command: Callable[..., None]) -> Callable[..., None]:
     @functools.wraps(command)
     def wrapped(*arguments: Any, **options: Any) -> None:
         try:
+            _raise_on_interrupt()
             command(*arguments, **options)
         except KeyboardInterrupt as interrupt:
             notes = getattr(interrupt, "__notes__", ["Work that was finished before is stored."])
@@ -121,6 +122,12 @@ def ends_on_interrupt(command: Callable[..., None]) -> Callable[..., None]:
             raise typer.Exit(INTERRUPTED) from None
 
     return wrapped
+
+
+def _raise_on_interrupt() -> None:
+    """Let Ctrl-C raise in a command; the console script ends on it at once before."""
+    if getattr(signal.getsignal(signal.SIGINT), "__module__", None) == "flockenv_command":
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @contextmanager

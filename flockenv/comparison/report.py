@@ -160,7 +160,7 @@ class ComparisonReport:
         if len(shown) > 0:
             shown = shown[shown["reference"] == shown["reference"].iloc[0]]
         return "\n".join(
-            f"{row['policy']} - {row['reference']}, {row['leaders']} leaders: signed order "
+            f"{row['policy']} - {row['reference']}, k = {row['leaders']}: signed order "
             f"{row['mean']:+.3f} [{row['low']:+.3f}, {row['high']:+.3f}], d = {row['effect']:.2f}"
             for row in shown.to_dict("records")
         )

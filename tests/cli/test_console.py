@@ -71,6 +71,19 @@ def test_an_interrupt_while_packages_are_imported_ends_in_a_line(name):
     assert done.stderr == "Interrupted. Nothing was written.\n"
 
 
+def test_an_interrupt_while_arguments_are_read_ends_in_a_line():
+    source = (
+        "import signal, typer\n"
+        "typer.core.TyperCommand.make_parser = lambda *_: signal.raise_signal(signal.SIGINT)\n"
+        "from flockenv_command import main\nmain()"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", source, "run"], capture_output=True, text=True, timeout=60
+    )
+    assert (done.returncode, done.stdout) == (130, "")
+    assert done.stderr == "Interrupted. Nothing was written.\n"
+
+
 def test_an_interrupt_that_is_ignored_stays_so_while_packages_are_imported():
     ignored = "import signal\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\n"
     source = f"{ignored}{PRESSED.format(name='numpy')}\nfrom flockenv_command import main\nmain()"
