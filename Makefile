@@ -144,8 +144,9 @@ validate: $(STAMPS)/test $(STAMPS)/core ## the slow tests and the published curv
 	cargo test --locked --features clarabel,draw -- --ignored
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) -m slow --timeout 3600 $(PYTEST_ARGS)
 
-tables: $(STAMPS)/compare $(STAMPS)/core ## fill the tables of README and docs from the committed data
+tables: $(STAMPS)/compare $(STAMPS)/core ## fill the tables and draw the curves of README and docs from the committed data
 	$(BIN)/python docs/tables.py
+	$(BIN)/python docs/leader_curves.py
 	$(BIN)/python benches/report docs
 	$(BIN)/python benches/throughput.py --page
 

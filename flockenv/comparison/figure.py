@@ -52,7 +52,7 @@ def policy_colors(names: Iterable[str]) -> dict[str, str]:
 
 
 def leader_curve(
-    runs: pd.DataFrame,
+    runs: pd.DataFrame | None,
     means: pd.DataFrame,
     lines: Mapping[tuple[str, str], Line],
     title: str,
@@ -63,7 +63,7 @@ def leader_curve(
     Parameters
     ----------
     runs
-        One row per episode, of `compare_leaders`.
+        One row per episode, of `compare_leaders`; None draws no dots for episodes.
     means
         Its means and intervals by policy and number of leaders, of `summarize`.
     lines
@@ -73,7 +73,7 @@ def leader_curve(
     path
         Where to write the picture; the suffix decides its format.
     """
-    policies = [name for name in runs["policy"].unique() if name != NO_LEADERS]
+    policies = [name for name in means["policy"].unique() if name != NO_LEADERS]
     colors = policy_colors(policies)
     with mpl.rc_context({"font.size": 9, "axes.spines.top": False, "axes.spines.right": False}):
         figure = Figure(figsize=(7.5, 4.0), layout="constrained")
@@ -85,7 +85,7 @@ def leader_curve(
                 _draw_policy(axes, shown, line, shift, colors[policy])
             axes.set_xlabel("number of leaders k")
             axes.set_ylabel(_LABELS[quantity])
-            axes.set_xticks(sorted(runs["leaders"].unique()))
+            axes.set_xticks(sorted(means["leaders"].unique()))
             # Below: the episodes fill the panel.
             legend = axes.legend(
                 frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.16), fontsize=8
@@ -110,10 +110,10 @@ class _Shown:
     """One quantity of one policy: episodes, means by number of leaders, and their intervals."""
 
     def __init__(
-        self, runs: pd.DataFrame, means: pd.DataFrame, policies: list[str], quantity: str
+        self, runs: pd.DataFrame | None, means: pd.DataFrame, policies: list[str], quantity: str
     ) -> None:
         self.label = _legend_label(policies[0])
-        runs = runs[runs["policy"].isin(policies)]
+        runs = means.iloc[:0] if runs is None else runs[runs["policy"].isin(policies)]
         means = means[means["policy"].isin(policies)].sort_values("leaders")
         self.leaders, self.values = runs["leaders"].to_numpy(), runs[quantity].to_numpy()
         self.k, self.mean = means["leaders"].to_numpy(), means[quantity].to_numpy()
