@@ -120,7 +120,8 @@ def _started(
 ) -> _core.Flock:
     if not isinstance(start, bytes):
         if not isinstance(start, Mapping):
-            raise TypeError(f"start must be a snapshot or a dictionary, not {shown(start)}")
+            wanted = "a snapshot (bytes) or a dictionary with pose, velocity and perhaps time_s"
+            raise TypeError(f"start must be {wanted}, not {shown(start)}")
         return _core.Flock.from_state(parameters, seed, dict(start))
     flock = _core.Flock.from_snapshot(start)
     if flock.parameters.replace(target=parameters.target) != parameters:

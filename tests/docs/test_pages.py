@@ -76,6 +76,12 @@ def test_files_that_are_named_exist(page):
     assert [name for name in sorted(named) if not (REPOSITORY / name).exists()] == []
 
 
+def test_the_home_page_opens_with_the_replay():
+    home = (DOCS / "index.md").read_text()
+    assert home.index('<iframe src="demo.html"') < home.index("```{toctree}")
+    assert 'html_extra_path[0] / "demo.html"' in (DOCS / "conf.py").read_text()
+
+
 def test_every_public_name_has_a_reference():
     reference = "\n".join(path.read_text() for path in (DOCS / "api").glob("*.md"))
     documented = re.findall(r"\.\. auto(?:class|exception|function):: ([\w.]+)", reference)

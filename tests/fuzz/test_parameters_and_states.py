@@ -1,6 +1,7 @@
 """Law: whatever parameters, states and rudders are given, a named error or finite motion."""
 
 import math
+import os
 import pickle
 from datetime import date
 
@@ -244,3 +245,9 @@ def test_states_and_rudders_of_any_kind(first, second, third):
             continue
         assert np.isfinite(flock.pose).all()
         flock.restore(before)
+
+
+def test_only_make_fuzz_draws_by_chance():
+    assert settings.get_profile("fixed").derandomize
+    assert FUZZ.derandomize == ("FUZZ_EXAMPLES" not in os.environ)
+    assert np.random.default_rng().random() == np.random.default_rng(2011).random()
