@@ -120,8 +120,10 @@ def _started(
 ) -> _core.Flock:
     if not isinstance(start, bytes):
         if not isinstance(start, Mapping):
-            wanted = "a snapshot (bytes) or a dictionary with pose, velocity and perhaps time_s"
-            raise TypeError(f"start must be {wanted}, not {shown(start)}")
+            raise TypeError(
+                "start must be a snapshot (bytes) or a dictionary with pose, velocity and perhaps "
+                f"time_s, not {shown(start)}"
+            )
         return _core.Flock.from_state(parameters, seed, dict(start))
     flock = _core.Flock.from_snapshot(start)
     if flock.parameters.replace(target=parameters.target) != parameters:
