@@ -37,7 +37,7 @@ def reproduce(
         float | None, typer.Option(help="Length of each run. [the paper's own]")
     ] = None,
     budget: Annotated[
-        float, typer.Option(help="Core-minutes that transition-order may take.")
+        float, typer.Option(help="Core-minutes for each of transition-order, leader-fraction.")
     ] = 40.0,
     engine: EngineName = "local",
     workers: Workers = None,

@@ -26,10 +26,12 @@ _PAPER: Mapping[str, str] = {
     **dict.fromkeys(("fig14", "fig15", "fig16", "fig17"), "flockenv.reproduce.simulation.figures"),
     "scheme-and-noise": "flockenv.reproduce.simulation.table",
 }
-BUDGETED = "transition-order"
-"""The name whose runs follow from a budget of computing time."""
-
-_BEYOND: Mapping[str, str] = {BUDGETED: "flockenv.reproduce.transition.order"}
+_BEYOND: Mapping[str, str] = {
+    "transition-order": "flockenv.reproduce.transition.order",
+    "leader-fraction": "flockenv.reproduce.leader_fraction.fraction",
+}
+BUDGETED = tuple(_BEYOND)
+"""Names beyond the paper, whose runs follow from a budget of computing time."""
 
 
 def names() -> list[str]:

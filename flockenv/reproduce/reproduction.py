@@ -29,7 +29,8 @@ class Settings:
     minutes : float or None
         Length of a run, None for the paper's own.
     budget_core_min : float
-        How many minutes of one core ``transition-order`` may take; its design follows from it.
+        How many minutes of one core each name beyond the paper, such as ``transition-order``, may
+        take; its design follows from it.
 
     Raises
     ------

@@ -80,7 +80,7 @@ def command(settings: Settings, finished: Finished) -> str:
     words = ["flockenv reproduce", *names, f"--seed {settings.seed}"]
     if settings.minutes is not None:
         words.append(f"--minutes {settings.minutes:g}")
-    if BUDGETED in names:
+    if not set(names).isdisjoint(BUDGETED):
         words.append(f"--budget {settings.budget_core_min:g}")
     return " ".join(words)
 
@@ -90,7 +90,7 @@ def _is_all(finished: Finished) -> bool:
 
 
 def _is_beyond(finished: Finished) -> bool:
-    return [figure.name for figure, _, _ in finished] == [BUDGETED]
+    return all(figure.name in BUDGETED for figure, _, _ in finished)
 
 
 def _title(finished: Finished) -> str:

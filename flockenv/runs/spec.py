@@ -5,6 +5,8 @@ import json
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
+from functools import partial
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -13,6 +15,8 @@ from flockenv import _core
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import OrderSeries
 from flockenv.parameters import FlockParameters
+from flockenv.policies.pretrained import TUNED_GAINS
+from flockenv.policies.registry import POOL_POLICIES
 from flockenv.recording import RECORDED, RecordedOrder, Recording
 from flockenv.runs.protocols.hysteresis import LOOPS, simulate_loop, simulate_prepared
 from flockenv.runs.protocols.initial_state import STARTS
@@ -46,11 +50,24 @@ def _prepared(spec: "RunSpec") -> Recording:
     )
 
 
+def _steered(policy: str, pool: str, spec: "RunSpec") -> Recording:
+    steering: Any = POOL_POLICIES[policy](pool)
+    return simulate(
+        spec.parameters, spec.seed, spec.duration_s, spec.sample_hz, steering, dtype=np.float32
+    )
+
+
+_STEERED = {
+    f"{policy} ({pool})": partial(_steered, policy, pool)
+    for policy, pool in product(POOL_POLICIES, TUNED_GAINS["damped law"])
+}
+
 PROTOCOLS: Mapping[str, Callable[["RunSpec"], Recording]] = {
     "law": _law,
     "alternating": _alternating,
     **dict.fromkeys(STARTS, _prepared),
     **dict.fromkeys(LOOPS, _loop),
+    **_STEERED,
 }
 """Ways to make a run, by name. They live in this package, so that any worker process finds them."""
 
@@ -72,8 +89,9 @@ class RunSpec:
     protocol : str
         How leaders are led, a name in `PROTOCOLS`; "law": by eq. (10), towards the fixed target;
         "alternating": by eq. (10), towards directions that alternate every 4 minutes; the same as
-        "law" from the starts of `runs.protocols.initial_state`; and the loops of
-        `runs.protocols.hysteresis`.
+        "law" from the starts of `runs.protocols.initial_state`; the loops of
+        `runs.protocols.hysteresis`; and policies tuned or trained for a named pool, whatever the
+        pool of the run, such as "learned (500-boats)".
     keep : str
         What is kept of the run, one of `KEEP`.
 

@@ -1,0 +1,161 @@
+"""Beyond the paper: whether a larger flock needs a smaller proportion of leaders.
+
+The paper's introduction cites Couzin, Krause, Franks and Levin (Nature 433, 2005): the larger the
+group, the smaller the proportion of informed individuals that guides it. There, individuals turn
+towards each other; here, boats do nothing but collide.
+"""
+
+from collections.abc import Mapping
+
+import pandas as pd
+
+from flockenv.reproduce.claim import CheckedClaim, Claim
+from flockenv.reproduce.leader_fraction.design import (
+    DENSITY,
+    FULL,
+    FractionDesign,
+    within,
+)
+from flockenv.reproduce.leader_fraction.measured import GUIDED, Curve, exponent
+from flockenv.reproduce.leader_fraction.pictures import picture
+from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
+from flockenv.reproduce.transition.design import WAYS, Growth
+from flockenv.statistics.intervals import interval, student_interval
+
+__all__ = ["BETTER", "CONSTANT_NUMBER", "REPRODUCTIONS", "SMALLER", "judge", "leader_fraction"]
+
+_EXPONENT = (
+    f"exponent a of the proportion of leaders at which the mean signed order reaches {GUIDED:g}, "
+    "proportional to n^a"
+)
+SMALLER = Claim(
+    text="The larger the flock, the smaller the proportion of leaders that guides it",
+    section="1, citing Couzin et al. (2005)",
+    quantity=_EXPONENT,
+    high=0.0,
+)
+CONSTANT_NUMBER = Claim(
+    text="A constant number of leaders guides flocks of any size",
+    section="beyond the paper",
+    quantity=_EXPONENT,
+    high=-1.0,
+)
+BETTER = Claim(
+    text="Fewer leaders are needed than under the paper's law",
+    section="beyond the paper",
+    quantity=f"proportion of leaders for a signed order of {GUIDED:g}, over that under the law",
+    high=1.0,
+)
+
+Curves = Mapping[tuple[str, Growth], Curve]
+
+
+def judge(design: FractionDesign, curves: Curves) -> list[CheckedClaim]:
+    """Judge the exponent of every policy in every way of growing, then policies by size."""
+    claims = []
+    for policy in design.policies:
+        for way in WAYS:
+            ends = interval(exponent([curves[policy, Growth(way, n)] for n in design.leaders]))
+            scope = f"{policy}, {way}"
+            claims += [claim.check(*ends, scope) for claim in (SMALLER, CONSTANT_NUMBER)]
+    law, *others = design.policies
+    for policy, growth in design.curves():
+        if policy in others:
+            ratio = curves[policy, growth].replicates / curves[law, growth].replicates
+            scope = f"{policy}, {growth.n_boats} boats, {growth.way}"
+            claims.append(BETTER.check(*interval(ratio), scope))
+    return claims
+
+
+def _analyze(design: FractionDesign, settings: Settings, results: Results) -> Outcome:
+    curves = {}
+    for policy, growth in design.curves():
+        specs = design.curve(settings, policy, growth)
+        runs = {k: [results[spec] for spec in each] for k, each in specs.items()}
+        draws_seed = next(iter(specs.values()))[0].draws_seed
+        curves[policy, growth] = Curve.of_runs(growth.n_boats, runs, draws_seed)
+    return Outcome(
+        {"curves": _curves_table(curves), "fractions": _fractions_table(curves)},
+        {"leader-fraction": picture(design, curves)},
+        judge(design, curves),
+        _notes(design, settings),
+        shown=["fractions"],
+        captions={
+            "leader-fraction": "Above: mean signed order under the paper's law against the "
+            "proportion of leaders. Below: proportion of leaders at which it reaches "
+            f"{GUIDED:g}, by policy, against the number of boats; bars: 95 % intervals"
+        },
+    )
+
+
+def _notes(design: FractionDesign, settings: Settings) -> list[str]:
+    minutes = settings.duration_s(design.minutes) / 60
+    return [
+        "Each run starts at random and at rest, and its second half counts. A large flock orders "
+        "without leaders too, in a direction of its own, and keeps this direction: its signed "
+        "order is near 0.8 or -0.8, and the mean over runs says how often leaders decided the "
+        "direction.",
+        f"The density is {DENSITY:g} boats for each free area of the pool 500-boats, where these "
+        "flocks are as dense as the paper's with 27 boats. The preset is simulation, bw 0.3 s "
+        "included, with dt = 0.05 s. The tuned and the learned policy are those of 500-boats with "
+        "three leaders among 27 boats, and were not searched for in larger flocks.",
+        "The mean signed order over runs is made to grow with the number of leaders by isotonic "
+        f"regression, and interpolated in the logarithm of the proportion to {GUIDED:g}. The "
+        " exponent is the slope of a straight line through the logarithms. Intervals are a "
+        "bootstrap over runs. A proportion is undefined where the order is on one side of "
+        f"{GUIDED:g} at all numbers of leaders that were run. The first claim is wrong if the "
+        "exponent is above 0: the proportion then grows with the flock.",
+        f"The compute budget is {settings.budget_core_min:g} minutes of one core. The design has "
+        f"{design.runs} seeds for each number of leaders, {minutes:g} minutes per run, and flocks "
+        f"of up to {max(design.leaders)} boats. It is estimated to take "
+        f"{design.core_minutes(settings):.0f} minutes, and the full design "
+        f"{FULL.core_minutes(settings):.0f} (`--budget`).",
+    ]
+
+
+def _curves_table(curves: Curves) -> pd.DataFrame:
+    rows = []
+    for (policy, growth), curve in curves.items():
+        for k, values in curve.signed_order.items():
+            row: dict[str, object] = {"policy": policy, "way": growth.way}
+            row |= {"n_boats": growth.n_boats, "n_leaders": k, "runs": len(values)}
+            ends = student_interval(values)
+            names = ("signed_order", "signed_order_low", "signed_order_high")
+            right = {"right_way": float((values > 0.0).mean())}
+            rows.append(row | dict(zip(names, ends, strict=True)) | right)
+    return pd.DataFrame(rows)
+
+
+def _fractions_table(curves: Curves) -> pd.DataFrame:
+    rows = []
+    for (policy, growth), curve in curves.items():
+        value, low, high = interval(curve.replicates)
+        rows.append(
+            {
+                "policy": policy,
+                "way": growth.way,
+                "boats": growth.n_boats,
+                "fraction": f"{value:.3f}",
+                "interval": f"{low:.3f} to {high:.3f}",
+                "leaders": f"{value * growth.n_boats:.1f}",
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def leader_fraction(design: FractionDesign | None = None) -> Reproduction:
+    """Return the reproduction, by default in the largest design that the budget allows."""
+
+    def chosen(settings: Settings) -> FractionDesign:
+        return within(settings) if design is None else design
+
+    return Reproduction(
+        name="leader-fraction",
+        title="Do larger flocks need a smaller proportion of leaders?",
+        section="1, citing Couzin et al. (2005)",
+        runs=lambda settings: chosen(settings).all_runs(settings),
+        analyze=lambda settings, results: _analyze(chosen(settings), settings, results),
+    )
+
+
+REPRODUCTIONS = (leader_fraction(),)

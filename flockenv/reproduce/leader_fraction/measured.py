@@ -1,0 +1,112 @@
+"""What `leader-fraction` measures: the proportion of leaders at which a flock is guided."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import isotonic_regression
+
+from flockenv.recording import Recording
+from flockenv.statistics.intervals import RESAMPLES
+
+__all__ = ["GUIDED", "Curve", "exponent", "guiding_fraction"]
+
+GUIDED = 0.5
+"""Mean signed order from which a flock counts as guided."""
+
+
+def guiding_fraction(fractions: NDArray[np.float64], signed_order: NDArray[np.float64]) -> float:
+    """Return the proportion of leaders at which the signed order reaches `GUIDED`.
+
+    The signed order is made to grow with the proportion by isotonic regression, and then
+    interpolated in the logarithm of the proportion.
+
+    Parameters
+    ----------
+    fractions
+        Shape (k,): proportions of leaders, increasing.
+    signed_order
+        Shape (k,): mean signed order at each.
+
+    Returns
+    -------
+    float
+        NaN where the signed order is below or above `GUIDED` at all of the proportions.
+    """
+    rising = np.asarray(isotonic_regression(signed_order).x)
+    if not rising[0] < GUIDED <= rising[-1]:
+        return math.nan
+    above = int(np.argmax(rising >= GUIDED))
+    low, high = rising[above - 1], rising[above]
+    share = (GUIDED - low) / (high - low)
+    logs = np.log(fractions)
+    return float(np.exp(logs[above - 1] + share * (logs[above] - logs[above - 1])))
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """Signed order against the number of leaders, in flocks of one size under one policy.
+
+    Attributes
+    ----------
+    n_boats : int
+        Size of the flocks.
+    signed_order : mapping of float64 arrays, shape (runs,)
+        By number of leaders: mean signed order over the second half of each run.
+    replicates : float64 array, shape (RESAMPLES + 1,)
+        `guiding_fraction` as measured, and of runs resampled for each number of leaders.
+    """
+
+    n_boats: int
+    signed_order: Mapping[int, NDArray[np.float64]]
+    replicates: NDArray[np.float64]
+
+    @classmethod
+    def of_runs(
+        cls, n_boats: int, runs: Mapping[int, Sequence[Recording]], draws_seed: int
+    ) -> "Curve":
+        """Return the curve of recorded runs, by number of leaders."""
+        means = {k: np.array([_second_half(run) for run in each]) for k, each in runs.items()}
+        return cls(n_boats, means, _replicates(n_boats, means, draws_seed))
+
+
+def _second_half(run: Recording) -> float:
+    order = run.analyzed(after=0.5).order
+    return float(order.signed_order(run.parameters.target).mean())
+
+
+def _replicates(
+    n_boats: int, means: Mapping[int, NDArray[np.float64]], draws_seed: int
+) -> NDArray[np.float64]:
+    fractions = np.array(list(means)) / n_boats
+    values = np.stack(list(means.values()))
+    rng = np.random.default_rng(draws_seed)
+    found = [guiding_fraction(fractions, values.mean(axis=1))]
+    for _ in range(RESAMPLES):
+        places = rng.integers(0, values.shape[1], values.shape)
+        drawn = np.take_along_axis(values, places, axis=1)
+        found.append(guiding_fraction(fractions, drawn.mean(axis=1)))
+    return np.array(found)
+
+
+def exponent(curves: Sequence[Curve]) -> NDArray[np.float64]:
+    """Return the exponent a of the guiding fraction, proportional to n^a, with its replicates.
+
+    Parameters
+    ----------
+    curves
+        Of one policy in one way of growing; a straight line is fitted to the logarithms.
+
+    Returns
+    -------
+    float64 array, shape (RESAMPLES + 1,)
+        NaN where the guiding fraction of any of the sizes is undefined, and for a single size.
+    """
+    if len(curves) < 2:
+        return np.full(RESAMPLES + 1, math.nan)
+    x = np.log([curve.n_boats for curve in curves])
+    x -= x.mean()
+    y = np.log(np.stack([curve.replicates for curve in curves], axis=1))
+    return np.asarray(y @ x / (x @ x))

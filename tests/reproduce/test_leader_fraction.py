@@ -1,0 +1,169 @@
+"""The proportion of leaders that guides a flock, on curves whose answer is known.
+
+On paper: where the signed order rises from 0.25 at a proportion of 0.01 to 0.75 at 0.04, it is 0.5
+in the middle of the logarithms, at 0.02; and proportions of 0.2, 0.1 and 0.05 in flocks of 10, 40
+and 160 boats have the exponent -1/2.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import flockenv
+from flockenv.recording import RecordedOrder
+from flockenv.reproduce.leader_fraction.design import (
+    DESIGNS,
+    FULL,
+    POLICIES,
+    FractionDesign,
+    within,
+)
+from flockenv.reproduce.leader_fraction.fraction import (
+    BETTER,
+    CONSTANT_NUMBER,
+    SMALLER,
+    judge,
+    leader_fraction,
+)
+from flockenv.reproduce.leader_fraction.measured import Curve, exponent, guiding_fraction
+from flockenv.reproduce.reproduction import Results, Settings
+from flockenv.reproduce.transition.design import WAYS, Growth
+from flockenv.runs.spec import ORDER_NAMES
+from flockenv.runs.store import RunStore, run_missing
+from flockenv.statistics.intervals import RESAMPLES
+
+
+def fraction_of(*signed_order: float) -> float:
+    fractions = np.array([0.01 * 4.0**place for place in range(len(signed_order))])
+    return guiding_fraction(fractions, np.array(signed_order))
+
+
+def test_the_fraction_is_interpolated_in_its_logarithm() -> None:
+    assert fraction_of(0.25, 0.75) == pytest.approx(0.02)
+    assert fraction_of(0.25, 0.75, 0.9) == pytest.approx(0.02)
+    assert fraction_of(-0.5, 0.0, 0.5) == pytest.approx(0.16)
+
+
+def test_a_dip_is_evened_out() -> None:
+    # 0.7 and 0.1 become 0.4 twice; from there to 0.8, a quarter of the way is 0.5.
+    assert fraction_of(0.0, 0.7, 0.1, 0.8) == pytest.approx(0.16 * 4**0.25)
+
+
+@pytest.mark.parametrize("curve", [(0.1, 0.2, 0.4), (0.6, 0.7, 0.8)])
+def test_a_curve_on_one_side_has_no_fraction(curve: tuple[float, ...]) -> None:
+    assert np.isnan(fraction_of(*curve))
+
+
+def curve(n_boats: int, fraction: float, spread: float = 0.0) -> Curve:
+    noise = np.random.default_rng(n_boats).normal(0.0, spread, RESAMPLES) if spread else 0.0
+    replicates = np.append(fraction, fraction * np.exp(np.zeros(RESAMPLES) + noise))
+    return Curve(n_boats, {1: np.zeros(2)}, replicates)
+
+
+def test_the_exponent() -> None:
+    falling = [curve(10, 0.2), curve(40, 0.1), curve(160, 0.05)]
+    assert exponent(falling) == pytest.approx(-0.5)
+    assert np.isnan(exponent([*falling, curve(640, np.nan)])).all()
+    assert np.isnan(exponent(falling[:1])).all()
+
+
+def judged(exponents: tuple[float, float], spread: float = 0.01) -> list[tuple[str, str, str]]:
+    design = FractionDesign(
+        policies=("steering law", "learned"), leaders={10: (1,), 100: (1,)}, runs=2, minutes=1.0
+    )
+    curves = {
+        (policy, Growth(way, n)): curve(n, level * n**power, spread)
+        for policy, level, power in zip(design.policies, (0.5, 0.3), exponents, strict=True)
+        for way in WAYS
+        for n in design.leaders
+    }
+    return [(c.claim.text, c.scope, c.verdict) for c in judge(design, curves)]
+
+
+def test_claims_follow_their_rule() -> None:
+    found = judged((-0.5, 0.3))
+    assert (SMALLER.text, "steering law, whole pool", "holds") in found
+    assert (CONSTANT_NUMBER.text, "steering law, whole pool", "does not hold") in found
+    assert (SMALLER.text, "learned, circumference", "does not hold") in found
+    # 0.3 n^0.3 over 0.5 n^-0.5 is 0.6 n^0.8, above 1 in both sizes.
+    assert (BETTER.text, "learned, 10 boats, whole pool", "does not hold") in found
+    assert (BETTER.text, "learned, 100 boats, whole pool", "holds") in judged((-0.5, -0.5))
+    wide = judged((-0.1, -0.1), spread=2.0)
+    assert {verdict for text, _, verdict in wide if text != BETTER.text} == {"inconclusive"}
+
+
+def test_replicates_come_from_the_runs() -> None:
+    runs = {1: recorded(-0.5, 0.5), 4: recorded(1.0, 1.0)}
+    found = Curve.of_runs(10, runs, 3)
+    assert found.signed_order[1] == pytest.approx([-0.5, 0.5])
+    # Means of 0 and 1: half of the way from 0.1 to 0.4.
+    assert found.replicates[0] == pytest.approx(0.2)
+    # Two runs of one leader, resampled, have the means -0.5, 0 or 0.5.
+    drawn = found.replicates[1:]
+    known = [0.1 * 4 ** (2 / 3), 0.2]
+    whole = drawn[np.isfinite(drawn)]
+    assert {round(float(each), 9) for each in whole} == {round(each, 9) for each in known}
+    assert np.isnan(drawn).any()
+
+
+def recorded(*signed_order: float) -> list[flockenv.Recording]:
+    """Runs of 100 samples: the signed order in their second halves, and before it the opposite."""
+    late = np.arange(100) >= 50
+    return [series(np.where(late, value, -value)) for value in signed_order]
+
+
+def series(signed_order: NDArray[np.float64]) -> flockenv.Recording:
+    parameters = flockenv.FlockParameters.preset("simulation").replace(target="cw")
+    zeros = np.zeros(len(signed_order))
+    # Clockwise order is φ_o = π/2.
+    orders = {"psi_o": abs(signed_order), "phi_o": np.where(signed_order > 0, 1, -1) * np.pi / 2}
+    values = {name: orders.get(name, zeros) for name in ORDER_NAMES}
+    return flockenv.Recording(
+        time_s=np.arange(len(zeros)) / 10,
+        phase=np.full(len(zeros), "fw", "<U4"),
+        in_analysis_window=np.ones(len(zeros), np.bool_),
+        pose=np.zeros((len(zeros), 0, 3)),
+        velocity=np.zeros((len(zeros), 0, 3)),
+        order=RecordedOrder(np.arange(len(zeros)) / 10, flockenv.OrderSeries(**values)),
+        parameters=parameters,
+        seed=0,
+        version=flockenv.__version__,
+        duration_s=len(zeros) / 10,
+    )
+
+
+def test_a_small_design_from_runs_to_tables(tmp_path: Path) -> None:
+    design = FractionDesign(
+        policies=tuple(POLICIES), leaders={10: (1, 5), 20: (1, 9)}, runs=2, minutes=1.0
+    )
+    settings = Settings()
+    reproduction = leader_fraction(design)
+    specs = reproduction.runs(settings)
+    assert len(specs) == len(set(specs)) == 3 * 2 * 2 * 2 * 2
+    store = RunStore(tmp_path)
+    assert run_missing(specs, store) == {}
+    outcome = reproduction.analyze(settings, Results(store, specs))
+    table = outcome.tables["curves"]
+    assert len(table) == 3 * 2 * 2 * 2
+    # Three policies steer three ways, from the same random starts.
+    means = table.groupby("policy")["signed_order"].mean()
+    assert means.nunique() == 3
+    assert set(outcome.pictures) == {"leader-fraction"}
+    assert len(outcome.claims) == 3 * 2 * 2 + 2 * 2 * 2
+
+
+def test_the_budget_chooses_the_design() -> None:
+    costs = [design.core_minutes(Settings()) for design in DESIGNS]
+    assert costs == sorted(costs)
+    for design, cost in zip(DESIGNS, costs, strict=True):
+        assert within(Settings(budget_core_min=cost + 0.1)) is design
+    assert within(Settings(budget_core_min=1e6)) is FULL
+    with pytest.raises(flockenv.ParameterError, match="budget = 1 core-minutes is not enough"):
+        within(Settings(budget_core_min=1.0))
+
+
+def test_larger_designs_contain_the_runs_of_smaller_ones() -> None:
+    runs = [set(leader_fraction(design).runs(Settings())) for design in DESIGNS]
+    assert runs[0] < runs[1] < runs[2]
