@@ -1,6 +1,8 @@
 """`flockenv run`."""
 
 import itertools
+from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
 
@@ -9,7 +11,7 @@ import typer
 from numpy.typing import NDArray
 
 from flockenv import _core
-from flockenv.cli.console import interruptible, print_json, progress_bar, say
+from flockenv.cli.console import errors, interruptible, print_json, progress_bar, say
 from flockenv.cli.output import check_file, keep, printable, refuse_overwriting
 from flockenv.cli.parameters import (
     ChangesOption,
@@ -68,8 +70,9 @@ def run(
     Example: `flockenv run --set n_boats=27 --set n_leaders=3 --set bw_s=0.3 --seed 7`
     """
     parameters = read_parameters(preset, params, changes)
+    wanted = out or DEFAULT_OUT
     if out is None:
-        out = DEFAULT_OUT if force else _free(DEFAULT_OUT)
+        out = DEFAULT_OUT if force else next(filter(_is_free, _numbered(DEFAULT_OUT)))
     if out.suffix != ".npz":
         raise ParameterError(f"--out {out} is not accepted: a name that ends in .npz")
     leaders = _policy(policy, parameters, trust)
@@ -96,12 +99,26 @@ def run(
     shown = printable(policy)
     remark = f"flockenv {recording.version}: seed {seed}, policy {shown}, {minutes:g} min"
 
+    written: list[Path] = []
+
     def write(path: Path) -> None:
-        recording.save(path)
-        save_parameters(path.with_suffix(".toml"), parameters, remark)
+        # Another command may have taken the name meanwhile.
+        path = path if force else _taken(path.with_name(wanted.name))
+        try:
+            recording.save(path)
+            save_parameters(path.with_suffix(".toml"), parameters, remark)
+        except BaseException:
+            if not force:
+                path.unlink(missing_ok=True)
+            raise
+        written.append(path)
 
     with interruptible(f"{out} may not have been written."):
         keep(out, write)
+    if written != [out]:
+        say(f"{out} was written by another command meanwhile.", errors)
+        (out,) = written
+    beside = out.with_suffix(".toml")
     summary = summary_of(recording)
     if as_json:
         files = {"recording": str(out), "parameters": str(beside)}
@@ -112,14 +129,24 @@ def run(
     say(f"See it: flockenv replay {out}")
 
 
-def _free(path: Path) -> Path:
-    """Return a path, or the first with a number that no recording or its parameters have taken."""
-    numbered = (path.with_stem(f"{path.stem}-{number}") for number in itertools.count(2))
-    return next(
-        each
-        for each in itertools.chain([path], numbered)
-        if not (each.exists() or each.with_suffix(".toml").exists())
-    )
+def _numbered(path: Path) -> Iterator[Path]:
+    """Yield a path, then the same with numbers from 2 on."""
+    yield path
+    for number in itertools.count(2):
+        yield path.with_stem(f"{path.stem}-{number}")
+
+
+def _is_free(path: Path) -> bool:
+    return not (path.exists() or path.with_suffix(".toml").exists())
+
+
+def _taken(path: Path) -> Path:
+    """Make an empty file at the first free one of the numbered paths, and return that path."""
+    while True:
+        free = next(filter(_is_free, _numbered(path)))
+        with suppress(FileExistsError):
+            free.open("xb").close()
+            return free
 
 
 def _policy(name: str, parameters: FlockParameters, trust: bool) -> LeaderPolicy | str:

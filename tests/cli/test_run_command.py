@@ -2,6 +2,7 @@
 
 import json
 import signal
+import sys
 import time
 from pathlib import Path
 
@@ -66,6 +67,25 @@ def test_what_is_there_is_overwritten_only_if_that_is_asked_for(cli, tmp_path, m
     refused = cli("run", "--params", "mine.toml", "--out", "mine.npz", "-q")
     assert "--params mine.toml is where results would be written" in refused.stderr
     assert not Path("mine.npz").exists()
+
+
+@pytest.mark.parametrize("out", [[], ["--out", "results/run.npz"]])
+def test_commands_at_once_lose_no_recording(cli, tmp_path, monkeypatch, out):
+    monkeypatch.chdir(tmp_path)
+    simulate, seeds = sys.modules["flockenv.cli.run"].simulate, iter((1, 2))
+
+    def meanwhile(*arguments, **options):
+        for seed in seeds:
+            assert cli("run", *SMALL, *out, "--seed", str(seed), "-q").returncode == 0
+        return simulate(*arguments, **options)
+
+    monkeypatch.setattr(sys.modules["flockenv.cli.run"], "simulate", meanwhile)
+    done = cli("run", *SMALL, *out, "--seed", "3", "-q")
+    assert done.returncode == 0, done.stderr
+    assert "Written to results/run-3.npz and results/run-3.toml" in done.stdout
+    assert done.stderr == "results/run.npz was written by another command meanwhile.\n"
+    kept = {each.name: flockenv.Recording.load(each).seed for each in Path("results").glob("*.npz")}
+    assert kept == {"run.npz": 2, "run-2.npz": 1, "run-3.npz": 3}
 
 
 def test_replay_writes_a_page_beside_the_recording(cli, run, tmp_path):
