@@ -32,6 +32,17 @@ class DwellTimes:
     stays: NDArray[np.int64]
     changes: NDArray[np.int64]
 
+    def __add__(self, other: "DwellTimes") -> "DwellTimes":
+        """Return the stays of both; their states must be the same."""
+        if self.states != other.states:
+            raise ParameterError(f"{self.states} and {other.states} are not the same states")
+        return DwellTimes(
+            self.states,
+            self.time_s + other.time_s,
+            self.stays + other.stays,
+            self.changes + other.changes,
+        )
+
     @property
     def share(self) -> NDArray[np.float64]:
         """Part of the time spent in each state."""

@@ -24,6 +24,8 @@ from flockenv.reproduce.transition.measured import (
     Stationary,
     binder,
     hysteresis,
+    lifetime,
+    states,
 )
 from flockenv.reproduce.transition.order import (
     BISTABILITY,
@@ -37,6 +39,7 @@ from flockenv.runs.protocols.hysteresis import LOOPS
 from flockenv.runs.protocols.initial_state import STARTS
 from flockenv.runs.spec import ORDER_NAMES
 from flockenv.runs.store import RunStore, run_missing
+from flockenv.statistics.dwell_times import DwellTimes
 from flockenv.statistics.intervals import student_interval
 
 
@@ -96,6 +99,46 @@ def test_student() -> None:
     assert np.isnan(student_interval(np.array([1.0]))[1:]).all()
 
 
+def test_states_change_at_two_thresholds() -> None:
+    time_s = np.arange(300.0)
+    steps = np.repeat([0.5, -0.02, 0.5, 0.82, 0.5, 0.08], 50)
+    found = states(time_s, steps)
+    # 0.5 is nearer to the jam, between the thresholds the state stays, and the mean takes 30 s.
+    assert found[0] == "jammed"
+    changes = np.flatnonzero(found[1:] != found[:-1]) + 1
+    # On paper: 0.5 - 0.52 j/30 < 0.3 from the 12th sample on, 0.5 + 0.32 j/30 > 0.6 from the 10th
+    # and 0.5 - 0.42 j/30 < 0.3 from the 15th.
+    assert changes.tolist() == [50 + 11, 150 + 9, 250 + 14]
+    assert found[changes].tolist() == ["rotating", "jammed", "rotating"]
+    # A gap in time is no longer than the samples in the last 30 s.
+    apart = states(time_s * 31.0, steps)
+    assert (np.flatnonzero(apart[1:] != apart[:-1]) + 1).tolist() == [50, 150, 250]
+
+
+def dwell(times: tuple[float, float], changes: tuple[int, int]) -> DwellTimes:
+    out, back = changes
+    return DwellTimes(STARTS, np.array(times), np.ones(2, int), np.array([[0, out], [back, 0]]))
+
+
+def test_the_lifetime_at_coexistence() -> None:
+    dwells = {10: dwell((1000.0, 10.0), (1, 9)), 20: dwell((3000.0, 800.0), (29, 7))}
+    found = lifetime(dwells, 1)
+    assert found.density == 20
+    # On paper: 3000 s over 29.5 changes and 800 s over 7.5.
+    assert np.exp(found.log_s[0]) == pytest.approx((3000 / 29.5 * 800 / 7.5) ** 0.5)
+    # The logarithm of a Gamma variate with shape a varies by about 1/sqrt(a).
+    assert found.log_s[1:].std() == pytest.approx((1 / 29.5 + 1 / 7.5) ** 0.5 / 2, rel=0.15)
+
+
+def test_stays_add_up() -> None:
+    both = dwell((1.0, 2.0), (3, 4)) + dwell((10.0, 20.0), (30, 40))
+    assert both.time_s.tolist() == [11.0, 22.0]
+    assert both.changes.tolist() == [[0, 33], [44, 0]]
+    other = DwellTimes(("a",), np.zeros(1), np.zeros(1, int), np.zeros((1, 1), int))
+    with pytest.raises(flockenv.ParameterError, match="not the same states"):
+        both + other
+
+
 def test_growing_keeps_the_density() -> None:
     areas = {}
     for way in ("whole pool", "circumference"):
@@ -145,7 +188,12 @@ def test_a_small_design_from_runs_to_tables(tmp_path: object) -> None:
     assert run_missing(specs, store) == {}
     outcome = reproduction.analyze(settings, Results(store, specs))
     assert len(outcome.tables["transition"]) == 2 * 2 * 2 * 2
-    assert len(outcome.claims) == 2 * 2 * 3
+    assert len(outcome.claims) == 2 * (2 * 3 + 1)
+    lifetimes = outcome.tables["lifetimes"]
+    minutes = lifetimes["rotating, min"].astype(float) + lifetimes["jammed, min"].astype(float)
+    # Two runs of a minute from each of two starts; the last analysis window ends within the last
+    # motor cycle of some 6 s, and the first one begins within the second.
+    assert minutes.between(4 * 0.7, 4 * 1.0).all()
     assert outcome.tables["loops"]["there"].between(-1, 1).any()
     histograms = outcome.tables["histograms"]
     m = histograms[histograms["quantity"] == "m"]

@@ -1,6 +1,6 @@
 """What `transition-order` measures: runs at one density from two starts, and loops."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,17 +11,28 @@ from flockenv.reproduce.order_statistics import block_length_s
 from flockenv.reproduce.transition.design import Growth, TransitionDesign
 from flockenv.runs.protocols.hysteresis import loop_position
 from flockenv.runs.protocols.initial_state import STARTS
-from flockenv.statistics.intervals import block_sums, block_sums_resampled, student_interval
+from flockenv.statistics.dwell_times import DwellTimes, dwell_times
+from flockenv.statistics.intervals import (
+    RESAMPLES,
+    block_sums,
+    block_sums_resampled,
+    student_interval,
+)
 
 __all__ = [
     "CENTERS",
     "C_V_EDGES",
+    "JAMMED_ABOVE",
     "M_EDGES",
+    "ROTATING_BELOW",
+    "Lifetime",
     "Loops",
     "Measured",
     "Stationary",
     "binder",
     "hysteresis",
+    "lifetime",
+    "states",
 ]
 
 Ends = tuple[float, float, float]
@@ -36,6 +47,29 @@ C_V_EDGES = np.linspace(-50.0, 225.0, 45)
 _LOOP_BINS = 12
 CENTERS = (np.arange(_LOOP_BINS) + 0.5) / _LOOP_BINS
 """Positions in a loop at which its branches are averaged."""
+
+
+JAMMED_ABOVE, ROTATING_BELOW = 0.6, 0.3
+"""Ψ_o cos φ_o of a flock that has jammed and of one that has left the jam, averaged over 30 s."""
+
+_SMOOTHED_S = 30.0
+
+
+def states(time_s: NDArray[np.float64], outward: NDArray[np.float64]) -> NDArray[np.str_]:
+    """Return the state of each sample, one of `STARTS`.
+
+    A flock jams when Ψ_o cos φ_o, averaged over the last 30 s, exceeds `JAMMED_ABOVE`, and rotates
+    again when it is below `ROTATING_BELOW`. The first state is the one that is nearer.
+    """
+    sums = np.append(0.0, np.cumsum(outward))
+    last = np.arange(1, len(outward) + 1)
+    first = np.searchsorted(time_s, time_s - _SMOOTHED_S, "right")
+    smooth = (sums[last] - sums[first]) / (last - first)
+    jams = np.where(smooth > JAMMED_ABOVE, 1, np.where(smooth < ROTATING_BELOW, 0, -1))
+    if jams[0] < 0:
+        jams[0] = smooth[0] > (JAMMED_ABOVE + ROTATING_BELOW) / 2
+    known = np.maximum.accumulate(np.where(jams >= 0, np.arange(len(jams)), 0))
+    return np.array(STARTS)[jams[known]]
 
 
 def binder(m2: NDArray[np.float64], m4: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -55,10 +89,16 @@ class Stationary:
         Binder's cumulants of m and C_v over all runs, as measured and as resampled.
     m_density, c_v_density : float64 array
         Histograms over `M_EDGES` and `C_V_EDGES`.
+    dwell : DwellTimes
+        Stays in `states`, over all samples and not the second halves alone.
     """
 
     def __init__(self, runs: Sequence[Recording], draws_seed: int) -> None:
         outward, blocks, ms, c_vs = [], [], [], []
+        series = [states(run.time_s, run.order.outward()) for run in runs]
+        # Samples outside the analysis window of each motor cycle are left out.
+        times = runs[0].time_s
+        self.dwell = dwell_times(series, STARTS, float((times[-1] - times[0]) / (len(times) - 1)))
         for run in runs:
             used = run.analyzed(after=0.5)
             m, c_v = used.order.rotation(), used.order.c_v
@@ -100,6 +140,48 @@ def hysteresis(run: Recording) -> NDArray[np.float64]:
         with np.errstate(invalid="ignore"):
             ways.append(total / count)
     return np.array(ways)
+
+
+@dataclass(frozen=True, slots=True)
+class Lifetime:
+    """How long flocks stay in both states at the density where they leave both most alike.
+
+    Attributes
+    ----------
+    density : int
+        That density.
+    dwell : DwellTimes
+        Stays of the runs from both starts there.
+    log_s : float64 array, shape (RESAMPLES + 1,)
+        Logarithm of the geometric mean of both mean dwell times in s: as measured, with half a
+        change added to each count, and drawn from the Gamma distribution of each rate.
+    """
+
+    density: int
+    dwell: DwellTimes
+    log_s: NDArray[np.float64]
+
+
+def lifetime(dwells: Mapping[int, DwellTimes], draws_seed: int) -> Lifetime:
+    """Return the lifetime at coexistence, given the stays at each density.
+
+    The counts of changes are Poisson's, and the prior of the rates is that of Jeffreys.
+    """
+
+    def unlike(density: int) -> float:
+        rates = _changes(dwells[density]) / np.maximum(dwells[density].time_s, 1.0)
+        return float(abs(np.log(rates[0] / rates[1])))
+
+    density = min(dwells, key=unlike)
+    dwell = dwells[density]
+    rng = np.random.default_rng(draws_seed)
+    drawn = rng.gamma(_changes(dwell), size=(RESAMPLES, 2))
+    rates = np.vstack([_changes(dwell), drawn]) / np.maximum(dwell.time_s, 1.0)
+    return Lifetime(density, dwell, -np.log(rates).mean(axis=1))
+
+
+def _changes(dwell: DwellTimes) -> NDArray[np.float64]:
+    return np.asarray(dwell.changes.sum(axis=1) + 0.5)
 
 
 class Loops:
@@ -154,3 +236,24 @@ class Measured:
         """Return the difference of Ψ_o cos φ_o between the two starts, seed by seed."""
         rotating, jammed = (self.stationary[growth, density, start].outward for start in STARTS)
         return student_interval(jammed - rotating)
+
+    def lifetime(self, growth: Growth) -> Lifetime:
+        """Return how long flocks of a size stay in both states at coexistence."""
+        dwells = {}
+        for density in self.design.densities[growth.way]:
+            first, second = (self.stationary[growth, density, start].dwell for start in STARTS)
+            dwells[density] = first + second
+        return lifetime(dwells, growth.n_boats)
+
+    def lifetime_growth(self, way: str) -> NDArray[np.float64]:
+        """Return by how much the logarithm of the lifetime grows per doubling of the flock.
+
+        Returns
+        -------
+        float64 array, shape (RESAMPLES + 1,)
+            Slope of a straight line over all sizes, with its replicates.
+        """
+        x = np.log2(self.design.sizes)
+        x = x - x.mean()
+        y = [self.lifetime(Growth(way, n)).log_s for n in self.design.sizes]
+        return np.asarray(x @ np.array(y) / (x @ x))

@@ -9,6 +9,7 @@ not. Binder's cumulant 1 - <m⁴>/(3<m²>²) and that of C_v are shown with thes
 where few of the frames rotate, which means coexistence only where runs forget their initial state.
 """
 
+import math
 from collections.abc import Sequence
 from itertools import product
 
@@ -28,7 +29,9 @@ from flockenv.reproduce.transition.design import (
 from flockenv.reproduce.transition.measured import (
     C_V_EDGES,
     CENTERS,
+    JAMMED_ABOVE,
     M_EDGES,
+    ROTATING_BELOW,
     Loops,
     Measured,
     Stationary,
@@ -41,6 +44,7 @@ from flockenv.statistics.intervals import interval, student_interval
 __all__ = [
     "BISTABILITY",
     "HYSTERESIS",
+    "LIFETIMES",
     "NO_LAG",
     "REPRODUCTIONS",
     "conclusion",
@@ -65,6 +69,14 @@ NO_LAG = Claim(
     text="Loops in density do not close when run more slowly",
     section="5.2, left open",
     quantity=f"opening of loops run {SLOWER:g} times as slowly minus 0.7 of the faster ones'",
+    low=0.0,
+)
+
+LIFETIMES = Claim(
+    text="Lifetimes at coexistence grow with the number of boats",
+    section="5.2, left open",
+    quantity="slope of the logarithm of the mean dwell time per doubling of the number of boats, "
+    "at the densities where flocks leave jam and rotation most alike",
     low=0.0,
 )
 
@@ -143,13 +155,16 @@ def _analyse(design: TransitionDesign, settings: Settings, results: Results) -> 
         found = conclusion([claim for triple in larger for claim in triple])
         notes.append(f"The result with a growing {way} is {found}.")
         claims += [claim for triple in judged for claim in triple]
+        claims.append(LIFETIMES.check(*interval(measured.lifetime_growth(way)), way))
     notes += [_cumulants_note(measured), *_method_notes(design, settings)]
     tables = {
         "transition": _points_table(measured),
         "loops": _loops_table(measured),
         "histograms": _histograms(measured),
+        "lifetimes": _lifetimes_table(measured),
     }
-    return Outcome(tables, pictures(measured), claims, notes, captions=_CAPTIONS)
+    shown = ["lifetimes"]
+    return Outcome(tables, pictures(measured), claims, notes, shown, _CAPTIONS)
 
 
 def _cumulants_note(measured: Measured) -> str:
@@ -184,6 +199,12 @@ def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
         "simulation with dt = 0.05 s. Intervals are Student's over seeds; those of cumulants are a "
         "bootstrap over runs and blocks within them, and are too narrow with so few runs. Shorter "
         "runs of seeds 0 to 2 and 1000 fixed the densities and the criteria.",
+        "A flock counts as jammed from where Ψ_o cos φ_o, averaged over 30 s, exceeds "
+        f"{JAMMED_ABOVE:g} to where it falls below {ROTATING_BELOW:g}. The lifetime is the "
+        "geometric mean of the mean dwell times in both states, at the density where flocks leave "
+        "both most alike; half a change is added to each count. Its interval follows from "
+        "Poisson's counts. Lifetimes that grow are expected at both kinds of transition: as a "
+        "power of the size at a continuous one, and exponentially at one of first order.",
         f"The compute budget is {settings.budget_core_min:g} minutes of one core. The design has "
         f"{design.runs} seeds, {stationary:g} minutes per run, {loop:g} minutes per loop and "
         f"{SLOWER * loop:g} per slow loop, and {len(design.sizes)} sizes up to {max(design.sizes)} "
@@ -243,6 +264,22 @@ def _loops_table(measured: Measured) -> pd.DataFrame:
         ends = {"opening": value, "opening_low": low, "opening_high": high}
         tables.append(pd.DataFrame({**keys, **columns, **ends}))
     return pd.concat(tables)
+
+
+def _lifetimes_table(measured: Measured) -> pd.DataFrame:
+    rows = []
+    for growth in measured.design.growths():
+        found = measured.lifetime(growth)
+        value, low, high = (math.exp(end) / 60 for end in interval(found.log_s))
+        row: dict[str, object] = {"way": growth.way, "boats": growth.n_boats}
+        row |= {"density": found.density, "lifetime, min": number(value)}
+        row["interval"] = f"{number(low)} to {number(high)}"
+        for state, time_s, changes in zip(
+            STARTS, found.dwell.time_s, found.dwell.changes.sum(axis=1), strict=True
+        ):
+            row |= {f"{state}, min": number(time_s / 60), f"changes from {state}": int(changes)}
+        rows.append(row)
+    return pd.DataFrame(rows)
 
 
 def _histograms(measured: Measured) -> pd.DataFrame:
