@@ -121,8 +121,8 @@ def _started(
     if not isinstance(start, bytes):
         if not isinstance(start, Mapping):
             raise TypeError(
-                "start must be a snapshot (bytes) or a dictionary with pose, velocity and perhaps "
-                f"time_s, not {shown(start)}"
+                "start must be a snapshot (bytes) or a dictionary with pose and perhaps velocity "
+                f"and time_s, not {shown(start)}"
             )
         return _core.Flock.from_state(parameters, seed, dict(start))
     flock = _core.Flock.from_snapshot(start)

@@ -79,9 +79,14 @@ def print_anywhere() -> None:
 
 
 class _Bar(Progress):
-    """A bar that goes away with an error, which is all that is left to read then."""
+    """A bar that goes away with an error, which is all that is left to read then.
+
+    Without one it ends full, whatever the rounding of its parts.
+    """
 
     def __exit__(self, kind: type[BaseException] | None, *rest: Any) -> None:
+        for task in self.tasks if kind is None else ():
+            self.update(task.id, completed=task.total)
         self.live.transient = kind is not None and not issubclass(kind, KeyboardInterrupt)
         super().__exit__(kind, *rest)
 

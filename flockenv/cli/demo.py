@@ -37,7 +37,6 @@ def demo(
     with interruptible("Nothing was written."), progress_bar(quiet or as_json) as progress:
         task = progress.add_task("simulating", total=len(DEMO_POLICIES) * minutes * 60)
         runs = demo_runs(seed, minutes, lambda seconds: progress.advance(task, seconds))
-        progress.update(task, completed=len(DEMO_POLICIES) * minutes * 60)
         with writable(out):
             write_replay(out, runs)
     summaries = {name: summary_of(run) for name, run in runs.items()}

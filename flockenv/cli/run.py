@@ -95,7 +95,6 @@ def run(
             contacts=contacts,
             progress=lambda seconds: progress.advance(task, seconds),
         )
-        progress.update(task, completed=minutes * 60)
     shown = printable(policy)
     remark = f"flockenv {recording.version}: seed {seed}, policy {shown}, {minutes:g} min"
 

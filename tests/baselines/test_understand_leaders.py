@@ -1,5 +1,6 @@
 """Pictures of what leaders do: drawn, and their numbers those of the flock itself."""
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,20 @@ def test_it_draws(script, tmp_path: Path, capsys) -> None:
     assert (means["at_wall"] + means["beside_wall"]).max() > 0.0
     assert list(means.index) == ["damped law", "straight ahead"]
     assert means.loc["straight ahead", "rudder"] == 0.0
+
+
+def test_the_names_of_phases_lie_on_no_color(script) -> None:
+    parameters = flockenv.FlockParameters(bw_s=0.3)
+    columns = ("cycle_s", "misalignment_rad", "spin_rad_s", "rudder")
+    rows = pd.DataFrame(np.zeros((30, 4)), columns=columns)
+    figure = script.draw_rudders({"a": rows, "b": rows}, parameters)
+    figure.draw_without_rendering()
+    for axes in figure.axes[:4]:
+        names = [text.get_window_extent() for text in axes.texts]
+        assert len(names) == 4
+        assert all(axes.bbox.y1 <= name.y0 for name in names)
+        assert all(name.y1 <= axes.title.get_window_extent().y0 for name in names)
+        assert all(left.x1 < right.x0 for left, right in pairwise(names))
 
 
 def test_files_of_one_name_are_distinguished(script, tmp_path: Path) -> None:

@@ -226,7 +226,7 @@ def test_a_start_that_the_flock_cannot_have_is_refused():
         flockenv.simulate(PARAMETERS.replace(bw_s=0.9), 3, 1.0, start=snapshot)
     with pytest.raises(flockenv.ParameterError, match="seed = 4 is not accepted"):
         flockenv.simulate(PARAMETERS, 4, 1.0, start=snapshot)
-    with pytest.raises(TypeError, match="dictionary with pose, velocity"):
+    with pytest.raises(TypeError, match="dictionary with pose and"):
         flockenv.simulate(PARAMETERS, 3, 1.0, start="snapshot")
 
 

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from flockenv.cli.console import print_anywhere, print_json, say
+from flockenv.cli.console import print_anywhere, print_json, progress_bar, say
 
 
 @pytest.fixture
@@ -48,6 +48,16 @@ def test_json_is_the_same_on_every_console(printed):
         reported = printed(encoding, data, print_one=print_json)
         assert reported.isascii()
         assert json.loads(reported) == data
+
+
+def test_a_bar_ends_full_but_after_an_error():
+    with progress_bar(False) as bar:
+        bar.add_task("parts", total=1.0, completed=0.999)
+    assert bar.finished
+    bar.reset(0)
+    with pytest.raises(InterruptedError), bar:
+        raise InterruptedError
+    assert not bar.finished
 
 
 # Ctrl-C as soon as a package is looked for.

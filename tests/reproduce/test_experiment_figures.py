@@ -1,5 +1,7 @@
 """Law: the experiment's figures hold what their runs hold, and claims follow from them by rule."""
 
+import re
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -58,6 +60,14 @@ def test_a_figure_of_short_runs_is_written(name, folder):
     assert len(reported) == len(claims[name]) > 0
     assert set(reported["verdict"]) <= {"holds", "does not hold", "inconclusive"}
     assert "short runs: 0.333 min" in next((folder / name).glob("*.svg")).read_text()
+
+
+def test_the_axis_of_order_ends_at_one(folder):
+    reproduce(plan(["fig12"], SHORT), folder)
+    picture = (folder / "fig12" / "fig12.svg").read_text()
+    ticks = [float(each) for each in re.findall(r">(\d\.\d)</text>", picture)]
+    assert max(ticks) == 1.0
+    assert len(ticks) == 6
 
 
 def test_motion_is_written_without_claims(folder):
