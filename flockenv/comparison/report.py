@@ -139,7 +139,7 @@ class ComparisonReport:
         )
         if not is_wide:
             table.box, table.padding, table.pad_edge = None, (0, 1, 0, 0), False
-        table.add_column("policy", no_wrap=is_wide)
+        table.add_column("policy", overflow="fold")
         table.add_column("leaders", no_wrap=True)
         for quantity in QUANTITIES:
             table.add_column(NAMES[quantity], no_wrap=is_wide, min_width=_INTERVAL_WIDTH)

@@ -185,11 +185,19 @@ def test_a_pool_of_ones_own(cli, tmp_path):
 
 
 def test_a_table_in_80_columns(cli, tmp_path):
-    done = cli("compare", "--pool", "table-1", *TINY, "-q", "--out", tmp_path)
-    assert done.stderr == ""
-    table, _ = done.stdout.split("means over")
-    assert max(map(len, table.splitlines())) <= 80
-    assert "…" not in table
+    own = tmp_path / "a_folder_of_my_own" / "policy.npz"
+    own.parent.mkdir()
+    flockenv.policies.load("learned", pool="table-1").save(own)
+    named = ["--policy", "tuned sign-corrected law", "--policy", str(own)]
+    for columns in ("80", "200"):
+        words = ["compare", "--pool", "table-1", *TINY, "-q", "--out", tmp_path, *named]
+        done = cli(*words, COLUMNS=columns)
+        assert done.stderr == ""
+        table, _ = done.stdout.split("means over")
+        assert max(map(len, table.splitlines())) <= int(columns)
+        assert "…" not in table
+        rows = (line.strip("│ ").split() for line in table.splitlines())
+        assert str(own) in "".join(words[0] for words in rows if words)
 
 
 def test_a_sweep_keeps_what_was_asked_beside_its_table(cli, tmp_path):
