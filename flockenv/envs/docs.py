@@ -22,7 +22,7 @@ _TASK = """Boats drive through a ring-shaped pool in cycles: forward for 2 s, dr
 spin and destroys order, the more the longer it lasts (Tarcai et al. 2011). A few boats, the
 leaders, have a rudder. The task is to make the *normal* boats circulate in the target direction."""
 
-_START = """`flockenv/Circulate-easy-v0` is the environment to start with: nine boats, of which one
+_FIRST = """`flockenv/Circulate-easy-v0` is the environment to start with: nine boats, of which one
 leads and is rewarded for its own velocity towards the target. PPO visibly learns it within a
 minute of processor time, which docs/easy.md shows. The other interfaces take the same options:
 `gymnasium.spec("flockenv/Circulate-easy-v0").kwargs`. The ids are registered by `import flockenv`;
@@ -62,7 +62,7 @@ _HISTORY = f"- v0, observation version {OBSERVATION_VERSION}: initial version."
 
 _SHARED = {
     "task": _TASK,
-    "start": _START,
+    "start": _FIRST,
     "rudder": _RUDDER,
     "frame": _FRAME,
     "observation_table": observation_table(observation_entries()),
