@@ -18,7 +18,6 @@ import time
 from pathlib import Path
 from typing import Any
 
-import cmaes
 import numpy as np
 import pandas as pd
 import tomli_w
@@ -27,6 +26,7 @@ from run_number import run_number
 
 import flockenv
 from flockenv._io.atomic_write import atomic_write
+from flockenv._io.extras import require
 from flockenv._io.provenance import made_by
 from flockenv.comparison import run_episodes
 from flockenv.policies import DampedLaw, SignCorrectedLaw
@@ -63,7 +63,8 @@ def tune(law: str, pool: str, options: argparse.Namespace, progress: Progress) -
     make, ranges = LAWS[law]
     middle, widths = np.array(list(ranges.values())).T
     # The search needs two coordinates at least; for a law with one gain the second has no effect.
-    search = cmaes.CMA(mean=np.zeros(max(2, len(ranges))), sigma=0.5, seed=options.seed)
+    first = np.zeros(max(2, len(ranges)))
+    search = require("cmaes", "fit").CMA(mean=first, sigma=0.5, seed=options.seed)
     parameters, rows = flock_parameters(pool, options), []
 
     def gains(place: np.ndarray) -> dict[str, float]:
