@@ -9,7 +9,7 @@ from numpy.typing import DTypeLike, NDArray
 from flockenv import _core
 from flockenv.errors import ParameterError, shown
 from flockenv.parameters import FlockParameters
-from flockenv.policies.base import LeaderPolicy, control_rate
+from flockenv.policies.base import LeaderPolicy, check_action_mode, decision_rate
 from flockenv.policies.model import ModelPolicy, as_policy
 from flockenv.policies.registry import named_policy, policy_name
 from flockenv.recording import PHASES, PRECISIONS, Recording
@@ -82,8 +82,9 @@ def simulate(
     ------
     ParameterError
         For arguments out of range, unknown names of policies and pools that a policy is not made
-        for, boats that do not fit the pool, a start that this flock cannot have, rudders that are
-        NaN, and a recording of more than 16 GiB; nothing is returned then.
+        for, policies whose actions are no rudders, boats that do not fit the pool, a start that
+        this flock cannot have, rudders that are NaN, and a recording of more than 16 GiB; nothing
+        is returned then.
     OSError
         If a policy's file cannot be opened.
     TypeError
@@ -100,6 +101,7 @@ def simulate(
             f"policy = {shown(policy)} is not accepted: None, a policy's name or file, or an "
             "object with predict"
         )
+    check_action_mode(policy, "rudder", "in a simulation")
     if isinstance(policy, ModelPolicy) and parameters.n_leaders > 0:
         policy.check_leaders(parameters.n_leaders)
     return recorded(
@@ -196,7 +198,7 @@ def _control(
         "steer": steer,
         "observation": dict(getattr(policy, "observation", None) or {}),
         "mirror_to_target": mirrored,
-        "control_hz": control_rate(policy) if control_hz is None else control_hz,
+        "control_hz": decision_rate(policy) if control_hz is None else control_hz,
     }
 
 

@@ -61,7 +61,13 @@ def read_headed(
 
 
 Kind = TypeVar("Kind")
-_KINDS = {bool: "true or false", int: "a whole number", str: "a text", dict: "a table"}
+_KINDS = {
+    bool: "true or false",
+    int: "a whole number",
+    float: "a number",
+    str: "a text",
+    dict: "a table",
+}
 
 
 def entry_of(header: Mapping[str, Any], name: str, kind: type[Kind]) -> Kind:

@@ -13,7 +13,13 @@ from flockenv._io.extras import require
 from flockenv._io.moved_modules import renamed_argument
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
-from flockenv.policies.base import CONTROL_HZ, LeaderPolicy, control_rate
+from flockenv.policies.base import (
+    CONTROL_HZ,
+    LeaderPolicy,
+    action_mode,
+    check_action_mode,
+    control_rate,
+)
 from flockenv.policies.model import ModelPolicy, as_policy
 from flockenv.runs.executors import in_order
 from flockenv.runs.seeds import check_evaluation_seeds
@@ -90,13 +96,16 @@ def compare_leaders(
     Raises
     ------
     ParameterError
-        For parameters, options and durations out of range, for training seeds, and for models that
-        steer another number of leaders at once.
+        For parameters, options and durations out of range, for training seeds, for models that
+        steer another number of leaders at once, and for policies of another action mode than that
+        of `environment`.
     """
     pandas = require("pandas", "plot")
     check_evaluation_seeds(seeds)
     _check_leaders(parameters, leaders)
     for policy in (as_policy(make()) for make in policies.values()):
+        if environment and "action_mode" in environment and not isinstance(policy, str):
+            check_action_mode(policy, environment["action_mode"], "in this environment")
         if isinstance(policy, ModelPolicy):
             for k in (k for k in leaders if k > 0):
                 policy.check_leaders(k)
@@ -175,6 +184,7 @@ def run_episodes(
         "observation": getattr(policy, "observation", {}),
         "mirror_to_target": getattr(policy, "mirror_to_target", False),
         "control_hz": control_hz,
+        **_decisions(policy, options),
     }
     env = _environment(parameters, len(seeds), duration_s, {**options, **layout})
     observations, _ = env.reset(seed=list(seeds))
@@ -183,10 +193,19 @@ def run_episodes(
     while not ended.all():
         actions, state = policy.predict(observations, state)
         observations, _, _, ended, infos = env.step(actions)
-        progress(len(seeds) / control_hz)
+        progress(len(seeds) / env.metadata["render_fps"])
     summary = infos["episode_summary"]
     names = (*QUANTITIES, *ORDERING_TIMES)
     return {name: _told(summary, name, len(seeds)) for name in names}
+
+
+def _decisions(policy: LeaderPolicy, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the options by which actions are read, those of the policy; others are refused."""
+    if "action_mode" in options:
+        check_action_mode(policy, options["action_mode"], "in this environment")
+    own = getattr(policy, "decision_period_s", None)
+    period = own if own is not None else options.get("decision_period_s")
+    return {"action_mode": action_mode(policy), "decision_period_s": period}
 
 
 def _told(summary: Mapping[str, Any], name: str, episodes: int) -> NDArray[np.float64]:

@@ -25,7 +25,7 @@ class SingleEnvironmentBase:
         self.num_leaders = parsed.parameters.n_leaders
         self._batch = LeaderBatch(parsed, [self.num_leaders], "disabled")
         self.state_space = self._batch.state_space
-        fps = self._batch.settings["control_hz"]
+        fps = self._batch.decisions_hz
         self.render_mode = render_mode
         self._render_mode = RenderMode(render_mode, render_size, fps)
         self.metadata = {**self.metadata, "render_fps": fps}
@@ -33,6 +33,15 @@ class SingleEnvironmentBase:
     def state(self) -> NDArray[np.float32]:
         """Return the global state for centralized critics, shape (state size,), float32."""
         return self._batch.core.state(0)
+
+    def flock_features(self) -> NDArray[np.float32]:
+        """Return features of the flock, shape (features,), float32.
+
+        They depend neither on the order of boats nor on absolute angles, and are in the frame of
+        the target; `envs.observation.flock_feature_entries` lists them.
+        """
+        features: NDArray[np.float32] = self._batch.core.flock_features()[0]
+        return features
 
     def episode(self) -> dict[str, Any]:
         """Return target, backward duration, seed and step of the episode."""

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv import _core
-from flockenv.envs.observation import state_space
+from flockenv.envs.observation import flock_feature_space, state_space
 from flockenv.envs.options import EnvOptions, known_reset_options
 from flockenv.envs.reward import TERMS
 from flockenv.errors import ParameterError, shown
@@ -32,6 +32,10 @@ class LeaderBatch:
         self.leaders = tuple(leaders)
         self.observation_size: int = self.core.observation_size
         self.state_space = state_space(options.parameters.n_boats)
+        self.flock_feature_space = flock_feature_space()
+        #: Control steps from one decision to the next, and decisions per second.
+        self.period_steps: int = self.core.period_steps
+        self.decisions_hz: float = self.settings["control_hz"] / self.period_steps
 
     def reset(
         self,

@@ -6,6 +6,8 @@ from typing import TypeVar
 from flockenv import _core
 from flockenv.envs.observation import (
     OBSERVATION_VERSION,
+    feature_table,
+    flock_feature_entries,
     observation_entries,
     observation_table,
     state_entries,
@@ -31,7 +33,13 @@ minute of processor time, which docs/easy.md shows. The other interfaces take th
 _RUDDER = """A rudder is held for a control step. A positive rudder turns a boat that moves forward
 counter-clockwise, and works in reverse on a boat that moves backward. Numbers beyond ±1 are
 clipped. NaN is an error, and nothing moves then. With `rudder_levels=n`, levels 0 to n - 1 are
-rudders evenly spaced from -1 to 1, which `policies.WithLevels` chooses for a policy of rudders."""
+rudders evenly spaced from -1 to 1, which `policies.WithLevels` chooses for a policy of rudders.
+With `action_mode="heading"` an action stands for a heading, its angle outward of the target's
+tangent over π, and `DampedLaw()` steers to it in every control step. With `"lean"` it stands for
+that angle over 1.2 rad, and the damped law with the gains tuned in the pool steers to it: 0 is that
+law itself, bit for bit. Both laws read what the leader sees of itself. A step holds its action for
+`decision_period_s`; its reward is the sum over those control steps, or over fewer where the episode
+ends, and its `reward_terms` are means over them."""
 
 _FRAME = """All entries are in the local-angle polar (LAP) frame of the leader's own position,
 outward and clockwise. They are scaled, and clipped at the bounds below; the share of clipped
@@ -67,6 +75,8 @@ _SHARED = {
     "frame": _FRAME,
     "observation_table": observation_table(observation_entries()),
     "state_table": observation_table(state_entries(1)),
+    "flock_feature_table": feature_table(flock_feature_entries()),
+    "flock_feature_count": str(len(flock_feature_entries())),
     "reward_table": terms_table(),
     "starting_state": _START,
     "episode_end": _END,

@@ -14,6 +14,9 @@ __all__ = [
     "OBSERVATION_VERSION",
     "Entry",
     "ObservationSpace",
+    "feature_table",
+    "flock_feature_entries",
+    "flock_feature_space",
     "observation_entries",
     "observation_space",
     "observation_table",
@@ -54,6 +57,17 @@ def observation_entries(blocks: Mapping[str, Any] | None = None) -> list[Entry]:
     return [Entry(*row) for row in _core.observation_table(dict(blocks or {}))]
 
 
+def flock_feature_entries() -> list[Entry]:
+    """Return every feature of a whole flock, in order."""
+    return [Entry(*row) for row in _core.flock_feature_table()]
+
+
+def flock_feature_space() -> "_Box":
+    """Return the space of a flock's features."""
+    low, high = _bounds(flock_feature_entries()).T.copy()
+    return _Box(low, high, dtype=np.float32)
+
+
 def state_entries(n_boats: int) -> list[Entry]:
     """Return every entry of the global state of a flock of this size, in order."""
     return [Entry(*row) for row in _core.state_table(n_boats)]
@@ -81,15 +95,21 @@ class ObservationSpace(_Box):
     leaders
         Number of leaders.
     options
-        Options of the environment that a policy depends on: ``observation``, ``mirror_to_target``
-        and ``control_hz``.
+        Options of the environment that a policy depends on: ``observation``, ``mirror_to_target``,
+        ``control_hz``, ``action_mode`` and ``decision_period_s``.
     """
 
     def __init__(self, options: Mapping[str, Any], leaders: int = 1) -> None:
         bounds = np.tile(_bounds(observation_entries(options["observation"])), (leaders, 1))
         super().__init__(*bounds.T.copy(), dtype=np.float32)
         self.leaders = leaders
-        names = ("observation", "mirror_to_target", "control_hz")
+        names = (
+            "observation",
+            "mirror_to_target",
+            "control_hz",
+            "action_mode",
+            "decision_period_s",
+        )
         self.options = {name: options[name] for name in names}
 
 
@@ -138,6 +158,20 @@ def observe(
         For unknown blocks, and where a block needs normal boats that are not there.
     """
     return _core.observe(flock, dict(observation or {}), mirror_to_target, rudder)
+
+
+def feature_table(entries: Iterable[Entry]) -> str:
+    """Return features of a whole flock as a Markdown table; blocks with equal ones once."""
+    blocks: dict[str, list[str]] = {}
+    features = {}
+    for entry in entries:
+        blocks.setdefault(entry.name, []).append(entry.block)
+        features[entry.name] = entry
+    lines = ["| blocks | feature | bounds | meaning |", "| --- " * 4 + "|"]
+    for name, entry in features.items():
+        bounds = f"[{entry.low:g}, {entry.high:g}]"
+        lines.append(f"| {', '.join(blocks[name])} | `{name}` | {bounds} | {entry.meaning} |")
+    return "\n".join(lines)
 
 
 def observation_table(entries: Iterable[Entry]) -> str:

@@ -65,6 +65,8 @@ class EnvOptions:
             if isinstance(settings.get(name), Mapping):
                 settings[name] = dict(settings[name])
                 refuse_unknown(settings[name], known, f"part of {name}")
+        if isinstance(settings.get("action_mode"), str):
+            refuse_unknown((settings["action_mode"],), _core.action_modes(), "action mode")
         target = settings.get("target")
         if isinstance(target, str) and target in ("cw", "ccw"):
             given["target"] = target

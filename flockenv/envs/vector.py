@@ -52,6 +52,11 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
 
     {state_table}
 
+    `flock_features()` gives features of every flock that depend neither on the order of boats nor
+    on absolute angles, shape (num_envs, {flock_feature_count}), in `flock_feature_space`.
+
+    {flock_feature_table}
+
     ## Rewards
     The weighted sum of the terms below, mean over a flock's leaders; `signed_order` with weight 1
     unless `reward` says otherwise. `reward_terms()` returns those of the last step.
@@ -104,7 +109,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         )
         levels = self._batch.settings["rudder_levels"]
         self.render_mode = render_mode
-        fps = self._batch.settings["control_hz"]
+        fps = self._batch.decisions_hz
         self._render_mode = RenderMode(render_mode, render_size, fps, ("rgb_array",))
         self.metadata = {
             **self.metadata,
@@ -116,6 +121,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.single_state_space = self._batch.state_space
+        self.flock_feature_space = self._batch.flock_feature_space
         self._actions_shape = (num_envs, self.num_leaders)
 
     def reset(
@@ -165,7 +171,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         NDArray[np.bool_],
         dict[str, Any],
     ]:
-        """Take one control step in every flock.
+        """Take one decision in every flock, for one control step or `decision_period_s`.
 
         Parameters
         ----------
@@ -212,6 +218,14 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
     def state(self) -> NDArray[np.float32]:
         """Return the global state of every flock, shape (num_envs, state size)."""
         return np.stack([self._batch.core.state(flock) for flock in range(self.num_envs)])
+
+    def flock_features(self) -> NDArray[np.float32]:
+        """Return features of every flock, shape (num_envs, features), float32.
+
+        They depend neither on the order of boats nor on absolute angles, and are in the frame of
+        the target.
+        """
+        return self._batch.core.flock_features()
 
     def reward_terms(self) -> dict[str, NDArray[np.float64]]:
         """Return each term of the last step's reward, shape (num_envs,), mean over leaders."""

@@ -9,9 +9,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
 from flockenv.envs.observation import observation_entries
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, shown
 
-__all__ = ["CONTROL_HZ", "LeaderPolicy", "RowPolicy", "control_rate"]
+__all__ = [
+    "CONTROL_HZ",
+    "LeaderPolicy",
+    "RowPolicy",
+    "action_mode",
+    "check_action_mode",
+    "control_rate",
+    "decision_rate",
+]
 
 
 class LeaderPolicy(Protocol):
@@ -31,6 +39,33 @@ def control_rate(policy: Any) -> float:
     return CONTROL_HZ if rate is None else float(rate)
 
 
+def decision_rate(policy: Any) -> float:
+    """Return how often per second a policy decides: with each control step, if it has no period."""
+    period: float | None = getattr(policy, "decision_period_s", None)
+    return control_rate(policy) if period is None else 1.0 / period
+
+
+def action_mode(policy: Any) -> str:
+    """Return what a policy's actions stand for, as in the environments' option of that name."""
+    return getattr(policy, "action_mode", None) or "rudder"
+
+
+def check_action_mode(policy: Any, mode: str, where: str) -> None:
+    """Refuse a policy whose actions stand for something else.
+
+    Raises
+    ------
+    ParameterError
+        If the policy's action mode is not `mode`.
+    """
+    own = action_mode(policy)
+    if own != mode:
+        raise ParameterError(
+            f"{shown(policy)} gives actions of action_mode {own!r}, which is not accepted "
+            f"{where}: it takes those of action_mode {mode!r}"
+        )
+
+
 class RowPolicy(ABC):
     """A policy that maps one leader's observation to its rudder, with the interface of SB3's.
 
@@ -41,7 +76,15 @@ class RowPolicy(ABC):
         option of that name.
     mirror_to_target
         The environments' option of that name.
+
+    Attributes
+    ----------
+    action_mode, decision_period_s
+        The environments' options of those names that its actions are for.
     """
+
+    action_mode: str = "rudder"
+    decision_period_s: float | None = None
 
     def __init__(self, observation: Mapping[str, Any] | None, mirror_to_target: bool) -> None:
         self.observation = dict(observation or {})

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
+from flockenv.policies.base import action_mode
 
 __all__ = ["WithLevels"]
 
@@ -30,6 +31,8 @@ class WithLevels:
     def __init__(self, policy: Any, rudder_levels: int) -> None:
         self.policy = policy
         self.rudder_levels = rudder_levels
+        self.action_mode = action_mode(policy)
+        self.decision_period_s = getattr(policy, "decision_period_s", None)
         self._nearest(np.zeros(0))
 
     def predict(

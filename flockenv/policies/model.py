@@ -50,6 +50,9 @@ class ModelPolicy:
         Number of leaders that the model steers at once.
     control_hz : float or None
         Control steps per second that it was trained with, where the space says so.
+    action_mode : str
+    decision_period_s : float or None
+        The environments' options of those names that it was trained with.
 
     Raises
     ------
@@ -74,6 +77,8 @@ class ModelPolicy:
         self.observation: dict[str, Any] = dict(reported.get("observation", {}))
         self.mirror_to_target = bool(reported.get("mirror_to_target", False))
         self.control_hz: float | None = reported.get("control_hz")
+        self.action_mode: str = reported.get("action_mode", "rudder")
+        self.decision_period_s: float | None = reported.get("decision_period_s")
         one = observation_space(self.observation)
         self._size = one.shape[0]
         self.leaders = _leaders_of(space, one)

@@ -1,12 +1,15 @@
 """Learned policies: small networks in an ``.npz`` file, evaluated with NumPy alone."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from flockenv import _core
 from flockenv._io.npz_header import array_of, entry_of
+from flockenv.envs.options import refuse_unknown
 from flockenv.errors import ParameterError
 from flockenv.policies.files import StoredPolicy
 
@@ -38,6 +41,9 @@ class NetworkPolicy(StoredPolicy):
     observation, mirror_to_target
         Layout of the observations, as in the environments' options of those names. Without weights
         for the whole layout the policy is refused.
+    action_mode, decision_period_s
+        What the output stands for, and for how long it is held: the environments' options of those
+        names.
     made
         What made it: any short texts by name, such as the command, the seed and the samples.
 
@@ -56,9 +62,18 @@ class NetworkPolicy(StoredPolicy):
         *,
         observation: Mapping[str, Any] | None = None,
         mirror_to_target: bool = False,
+        action_mode: str = "rudder",
+        decision_period_s: float | None = None,
         made: Mapping[str, str] | None = None,
     ) -> None:
         super().__init__(observation, mirror_to_target)
+        refuse_unknown((action_mode,), _core.action_modes(), "action mode")
+        if decision_period_s is not None and not 0.0 < decision_period_s < math.inf:
+            raise ParameterError(
+                f"decision_period_s = {decision_period_s!r} is not accepted: a positive time in s"
+            )
+        self.action_mode = action_mode
+        self.decision_period_s = None if decision_period_s is None else float(decision_period_s)
         self.activation = activation
         self.made = {str(name): str(text) for name, text in (made or {}).items()}
         self._layers = _checked_layers(weights, biases, self._size)
@@ -94,6 +109,11 @@ class NetworkPolicy(StoredPolicy):
             "layers": len(self._layers),
             "made": self.made,
         }
+        # Only where they differ from the default, so that files and digests of rudders stay.
+        if self.action_mode != "rudder":
+            header["action_mode"] = self.action_mode
+        if self.decision_period_s is not None:
+            header["decision_period_s"] = self.decision_period_s
         arrays: dict[str, NDArray[Any]] = {}
         for place, (weight, bias) in enumerate(self._layers):
             arrays |= {f"weight_{place}": weight, f"bias_{place}": bias}
@@ -116,11 +136,17 @@ class NetworkPolicy(StoredPolicy):
             observation=entry_of(header, "observation", dict),
             mirror_to_target=entry_of(header, "mirror_to_target", bool),
             made=entry_of(header, "made", dict),
+            **_action_of(header),
         )
 
     def __repr__(self) -> str:
         sizes = [self._size, *(len(bias) for _, bias in self._layers)]
         return f"{type(self).__name__}({'-'.join(map(str, sizes))}, {self.activation})"
+
+
+def _action_of(header: Mapping[str, Any]) -> dict[str, Any]:
+    kinds = {"action_mode": str, "decision_period_s": float}
+    return {name: entry_of(header, name, kind) for name, kind in kinds.items() if name in header}
 
 
 def _checked_layers(

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from importlib import resources
 from typing import Any
 
+from flockenv import _core
 from flockenv.errors import ParameterError
 from flockenv.policies.files import read_policy
 from flockenv.policies.laws import LAWS, ObservedPolicy
@@ -22,13 +23,15 @@ _KINDS: dict[str, type[NetworkPolicy] | type[LeaningLaw]] = {
     "leaning law": LeaningLaw,
 }
 
-TUNED_GAINS: Mapping[str, Mapping[str, Mapping[str, float]]] = {
-    "sign-corrected law": {"500-boats": {"gain": 1.91}, "table-1": {"gain": 0.957}},
-    "damped law": {
-        "500-boats": {"gain": 1.42, "backward_gain": 3.28, "damping": 17.0},
-        "table-1": {"gain": 3.02, "backward_gain": 4.1, "damping": 35.6},
-    },
-}
+
+def _tuned_gains() -> dict[str, dict[str, dict[str, float]]]:
+    by_law: dict[str, dict[str, dict[str, float]]] = {}
+    for law, pool, gains in _core.tuned_gains():
+        by_law.setdefault(law, {})[pool] = dict(gains)
+    return by_law
+
+
+TUNED_GAINS: Mapping[str, Mapping[str, Mapping[str, float]]] = _tuned_gains()
 """Gains by law and pool: found by `python baselines/tune_laws.py` (seed 0) for three leaders
 among 27 boats at each pool's critical noise, on training seeds."""
 

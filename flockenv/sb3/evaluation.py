@@ -10,6 +10,9 @@ from stable_baselines3.common.evaluation import evaluate_policy
 from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
 
+from flockenv.envs.observation import ObservationSpace
+from flockenv.policies import ModelPolicy
+from flockenv.policies.base import check_action_mode
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
 
 __all__ = ["FlockEvalCallback", "PerFlock", "evaluate_flocks"]
@@ -43,6 +46,22 @@ class PerFlock(VecEnvWrapper):
         self._leaders = np.bincount(leaders.flock_of_slot)
         self._first = np.cumsum(self._leaders) - self._leaders
         self.num_envs = leaders.num_flocks
+
+    def check_action_mode(self, model: Any) -> None:
+        """Refuse a model that was trained with another action mode than that of the flocks.
+
+        Raises
+        ------
+        ParameterError
+            If the model's observation space names another one.
+        """
+        leaders = self.venv.unwrapped
+        assert isinstance(leaders, LeaderVecEnv)
+        space = getattr(model, "observation_space", None)
+        if isinstance(space, ObservationSpace):
+            model = ModelPolicy(model)
+        mode = leaders.action_mode
+        check_action_mode(model, mode, "in this evaluation")
 
     def reset(self) -> Any:
         """Start episodes in all flocks; return observations, a row per leader."""
@@ -97,8 +116,11 @@ def evaluate_flocks(
     ------
     TypeError
         If `env` is no `LeaderVecEnv`.
+    ParameterError
+        For a model that was trained with another action mode.
     """
     flocks = PerFlock(env)
+    flocks.check_action_mode(model)
     if seed is not None:
         flocks.seed(seed)
     return evaluate_policy(
@@ -139,6 +161,9 @@ class FlockEvalCallback(EvalCallback):
             # The types differ by `PerFlock` on purpose.
             warnings.filterwarnings("ignore", "Training and eval env are not of the same type")
             super()._init_callback()
+        for each in _layers(self.eval_env):
+            if isinstance(each, PerFlock):
+                each.check_action_mode(self.model)
 
     def _on_step(self) -> bool:
         if self.seed is not None:

@@ -88,6 +88,11 @@ class LeaderVecEnv(VecEnv):
 
     {state_table}
 
+    `flock_features()` gives each slot features of its flock that depend neither on the order of
+    boats nor on absolute angles, shape (slots, {flock_feature_count}), in `flock_feature_space`.
+
+    {flock_feature_table}
+
     ## Rewards
     Each slot gets the weighted sum of the terms below, its own where they are a leader's own;
     `signed_order` with weight 1 unless `reward` says otherwise. `reward_terms()` returns those of
@@ -132,11 +137,15 @@ class LeaderVecEnv(VecEnv):
         settings = self._batch.settings
         self.num_flocks = num_flocks
         self.render_mode = render_mode
-        fps = settings["control_hz"]
+        fps = self._batch.decisions_hz
         self._render_mode = RenderMode(render_mode, render_size, fps, ("rgb_array",))
         self.observation_space = ObservationSpace(settings)
         self.action_space = leader_action_space(settings["rudder_levels"])
         self.state_space = self._batch.state_space
+        self.flock_feature_space = self._batch.flock_feature_space
+        #: What actions stand for, and decisions per second.
+        self.action_mode: str = settings["action_mode"]
+        self.decisions_hz = self._batch.decisions_hz
         self.slots = [
             LeaderSlot(self, flock, leader)
             for flock, k in enumerate(leaders)
@@ -147,7 +156,7 @@ class LeaderVecEnv(VecEnv):
         self._random = np.random.default_rng()
         self._actions: NDArray[np.float64] | None = None
         super().__init__(len(self.slots), self.observation_space, self.action_space)
-        self.metadata = {"render_modes": ["rgb_array"], "render_fps": fps}
+        self.metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": fps}
         self._actions_shape = (self.num_envs, *(self.action_space.shape or ()))
 
     def seed(self, seed: int | None = None) -> Sequence[int | None]:
@@ -192,7 +201,7 @@ class LeaderVecEnv(VecEnv):
     def step_wait(
         self,
     ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_], list[dict[str, Any]]]:
-        """Take the control step.
+        """Take the decision's control steps.
 
         Returns
         -------
@@ -230,8 +239,13 @@ class LeaderVecEnv(VecEnv):
                 infos[slot]["terminal_observation"] = row.copy()
                 infos[slot]["terminal_state"] = self._batch.core.final_state(flock)
                 if leader == 0:
-                    infos[slot]["episode"] = _monitored(infos[slot]["episode_summary"])
+                    infos[slot]["episode"] = self._monitored(infos[slot]["episode_summary"])
                 self.reset_infos[slot] = self._batch.reset_info(flock)
+
+    def _monitored(self, summary: Mapping[str, Any]) -> dict[str, Any]:
+        # As `Monitor` does, but for the time: infos depend on seeds alone.
+        decisions = -(-summary["steps"] // self._batch.period_steps)
+        return {"r": summary["total_reward"], "l": decisions}
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
         """Return an attribute of each slot's `LeaderSlot`."""
@@ -259,6 +273,14 @@ class LeaderVecEnv(VecEnv):
         """Return the global state of each slot's flock, shape (slots, state size)."""
         flocks = [self._batch.core.state(flock) for flock in range(self.num_flocks)]
         return np.stack(flocks)[self.flock_of_slot]
+
+    def flock_features(self) -> NDArray[np.float32]:
+        """Return features of each slot's flock, shape (slots, features), float32.
+
+        They depend neither on the order of boats nor on absolute angles, and are in the frame of
+        the target.
+        """
+        return self._batch.core.flock_features()[self.flock_of_slot]
 
     def reward_terms(self) -> dict[str, NDArray[np.float64]]:
         """Return each term of the last step's reward, shape (slots,)."""
@@ -290,11 +312,6 @@ class LeaderVecEnv(VecEnv):
 
     def close(self) -> None:
         """Nothing is held open."""
-
-
-def _monitored(summary: Mapping[str, Any]) -> dict[str, Any]:
-    # As `Monitor` does, but for the time: infos depend on seeds alone.
-    return {"r": summary["total_reward"], "l": summary["steps"]}
 
 
 def _leader_counts(n_leaders: Any) -> list[int]:

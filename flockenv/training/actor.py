@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError
 from flockenv.policies import NetworkPolicy
+from flockenv.policies.base import check_action_mode
 from flockenv.training.settings import TrainingSettings
 
 require("torch", "train")
@@ -51,6 +52,7 @@ def network_policy(
         observation=settings.observation,
         mirror_to_target=settings.mirror_to_target,
         made=made,
+        **settings.decisions,
     )
 
 
@@ -64,6 +66,7 @@ def copy_into_actor(
     ParameterError
         If hidden layers, activation or layout are not those of the settings.
     """
+    check_action_mode(start, settings.decisions["action_mode"], "to start this training from")
     hidden = tuple(len(bias) for bias in start.biases[:-1])
     for name, own, asked in (
         ("net_arch", hidden, settings.net_arch),

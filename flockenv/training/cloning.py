@@ -11,7 +11,7 @@ from flockenv._io.provenance import made_by
 from flockenv.envs.observation import BLOCKS
 from flockenv.errors import ParameterError
 from flockenv.policies import ModelPolicy, NetworkPolicy, load
-from flockenv.policies.base import RowPolicy
+from flockenv.policies.base import RowPolicy, check_action_mode
 from flockenv.policies.laws import LAWS
 from flockenv.training.actor import ACTIVATION_MODULES, one_thread
 from flockenv.training.pools import PooledVecEnv
@@ -90,6 +90,7 @@ def clone_law(
     asked = ({**BLOCKS, **settings.observation}, settings.mirror_to_target)
     if own != asked:
         raise ParameterError(f"the law's layout is {own!r}, that of the settings {asked!r}")
+    check_action_mode(law, settings.decisions["action_mode"], "to clone for this training")
     begin = time.perf_counter()
     generator = torch.Generator().manual_seed(settings.seed)
     rows, rudders = _visited(law, settings, samples)
@@ -111,6 +112,7 @@ def clone_law(
         observation=settings.observation,
         mirror_to_target=settings.mirror_to_target,
         made={**made, "cloned": repr(law)},
+        **settings.decisions,
     )
     error = policy.predict(rows[held_out])[0][:, 0] - rudders[held_out]
     policy.made["clone_rms"] = f"{np.sqrt(np.mean(error**2)):.4f}"

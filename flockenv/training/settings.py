@@ -162,6 +162,14 @@ class TrainingSettings:
             **self.options,
         }
 
+    @property
+    def decisions(self) -> dict[str, Any]:
+        """What actions stand for and how long they are held, as `options` say."""
+        return {
+            "action_mode": self.options.get("action_mode", "rudder"),
+            "decision_period_s": self.options.get("decision_period_s"),
+        }
+
     def learning_rate_at(self, samples: int) -> float:
         """Return the learning rate after a number of samples."""
         done = min(1.0, samples / self.samples)

@@ -2,7 +2,7 @@
 
 use crate::error::{FlockError, Result};
 use crate::geometry::{Vec2, wrap_angle};
-use crate::parameters::Target;
+use crate::parameters::{Pool, Target};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Rudder command of eq. (10): s = clamp(6·(β − α)/π, −1, 1), with β − α wrapped into (−π, π];
@@ -44,30 +44,85 @@ pub enum Law {
 /// The gain of eq. (10) in 1/rad: full rudder from 30° of misalignment on.
 pub(crate) const PAPER_GAIN: f64 = 6.0 / PI;
 
+/// The damped law where nothing has been tuned: eq. (10)'s gain in both directions.
+pub const DAMPED_LAW: Law = Law::Damped {
+    gain: PAPER_GAIN,
+    backward_gain: PAPER_GAIN,
+    damping: 3.0,
+};
+
+/// Laws with the gains tuned in a named pool: (name of the law, pool, law).
+///
+/// Source: `python baselines/tune_laws.py` (seed 0) for three leaders among 27 boats at each pool's critical
+/// noise, on training seeds.
+pub const TUNED_LAWS: [(&str, &str, Law); 4] = [
+    (
+        "sign-corrected law",
+        "500-boats",
+        Law::SignCorrected { gain: 1.91 },
+    ),
+    (
+        "sign-corrected law",
+        "table-1",
+        Law::SignCorrected { gain: 0.957 },
+    ),
+    (
+        "damped law",
+        "500-boats",
+        Law::Damped {
+            gain: 1.42,
+            backward_gain: 3.28,
+            damping: 17.0,
+        },
+    ),
+    (
+        "damped law",
+        "table-1",
+        Law::Damped {
+            gain: 3.02,
+            backward_gain: 4.1,
+            damping: 35.6,
+        },
+    ),
+];
+
 impl Law {
+    /// Names and values of the gains.
+    pub fn gains(&self) -> Vec<(&'static str, f64)> {
+        match *self {
+            Self::Steering => Vec::new(),
+            Self::SignCorrected { gain } => vec![("gain", gain)],
+            Self::Damped {
+                gain,
+                backward_gain,
+                damping,
+            } => vec![
+                ("gain", gain),
+                ("backward_gain", backward_gain),
+                ("damping", damping),
+            ],
+        }
+    }
+
+    /// The damped law with the gains tuned in a pool; `None` for pools in which it has not been tuned.
+    pub fn tuned_damped(pool: &Pool) -> Option<Self> {
+        let pool = pool.name()?;
+        let tuned = TUNED_LAWS.iter();
+        let mut tuned = tuned.filter(|(_, of, _)| *of == pool).map(|each| each.2);
+        tuned.find(|law| matches!(law, Self::Damped { .. }))
+    }
+
     /// Checks the gains.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for gains that are not finite.
     pub fn check(&self) -> Result<()> {
-        let gains = match *self {
-            Self::Steering => [("gain", PAPER_GAIN), ("", 0.0), ("", 0.0)],
-            Self::SignCorrected { gain } => [("gain", gain), ("", 0.0), ("", 0.0)],
-            Self::Damped {
-                gain,
-                backward_gain,
-                damping,
-            } => [
-                ("gain", gain),
-                ("backward_gain", backward_gain),
-                ("damping", damping),
-            ],
-        };
-        match gains
-            .iter()
+        match self
+            .gains()
+            .into_iter()
             .find(|(_, value)| value.is_nan() || value.abs() > 1e9)
         {
-            Some(&(name, value)) => Err(FlockError::parameter(name, value, "a finite number")),
+            Some((name, value)) => Err(FlockError::parameter(name, value, "a finite number")),
             None => Ok(()),
         }
     }

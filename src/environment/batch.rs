@@ -2,9 +2,11 @@
 //! it is in nor on the number of threads.
 
 use super::averages::FirstAverages;
+use super::credit::{ContactCredit, NoCredit};
 use super::flock_env::StoredEnv;
 use super::options::NamedSettings;
-use super::{Averages, EnvSettings, FlockEnv, ResetRequest};
+use super::reward::FirstTerms;
+use super::{Averages, EnvSettings, FlockEnv, ResetRequest, Terms};
 use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
 use crate::parallel;
@@ -13,8 +15,8 @@ use crate::sealed_bytes::{Magic, seal, unseal};
 use serde::de::DeserializeOwned;
 
 const MAGIC: Magic = Magic {
-    now: *b"flocken2",
-    earlier: &[*b"flocken1"],
+    now: *b"flocken3",
+    earlier: &[*b"flocken2", *b"flocken1"],
 };
 
 /// Where a step writes: one row per leader, flock after flock, and one flag per flock.
@@ -109,7 +111,7 @@ impl EnvBatch {
             .try_for_each(|env| env.check_ready(self.settings.autoreset))
     }
 
-    /// One control step of every flock, or the start of its next episode where one is due.
+    /// One decision of every flock, held over its control steps, or the start of its next episode where one is due.
     ///
     /// # Errors
     /// Those of [`Self::check_step`], before anything moves; [`FlockError::Solver`] and
@@ -203,21 +205,27 @@ impl EnvBatch {
     /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed batch.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         if bytes.starts_with(&MAGIC.now) {
-            Self::read::<NamedSettings, FlockParameters, Averages>(bytes)
+            type Credit = Option<ContactCredit>;
+            Self::read::<NamedSettings, FlockParameters, Averages, Terms, Credit>(bytes)
+        } else if bytes.starts_with(b"flocken2") {
+            Self::read::<NamedSettings, FlockParameters, Averages, FirstTerms, NoCredit>(bytes)
         } else {
-            Self::read::<EnvSettings, FirstParameters, FirstAverages>(bytes)
+            Self::read::<EnvSettings, FirstParameters, FirstAverages, FirstTerms, NoCredit>(bytes)
         }
     }
 
-    fn read<S, P, A>(bytes: &[u8]) -> Result<Self>
+    fn read<S, P, A, T, C>(bytes: &[u8]) -> Result<Self>
     where
         S: DeserializeOwned + Into<EnvSettings>,
         P: DeserializeOwned + Into<FlockParameters>,
         A: DeserializeOwned,
+        T: DeserializeOwned,
+        C: DeserializeOwned + Into<Option<ContactCredit>>,
         Averages: From<A>,
+        Terms: From<T>,
     {
-        type Stored<S, P, A> = (S, Vec<P>, Vec<StoredEnv<A>>);
-        let (settings, members, states) = unseal::<Stored<S, P, A>>(&MAGIC, bytes)?;
+        type Stored<S, P, A, T, C> = (S, Vec<P>, Vec<StoredEnv<A, T, C>>);
+        let (settings, members, states) = unseal::<Stored<S, P, A, T, C>>(&MAGIC, bytes)?;
         let settings = settings.into();
         let members = members.into_iter().map(Into::into).collect();
         let mut batch = Self::new(settings, members)?;

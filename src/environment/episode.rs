@@ -1,17 +1,21 @@
 //! One episode under way: the flock, its leaders' rudders, what was observed and rewarded so far.
 
-use super::observation::{Camera, CameraState, FlockView, Observer, StateObserver};
+use super::credit::{ContactCredit, LeaderCredit};
+use super::observation::{
+    Camera, CameraState, FlockFeatures, FlockView, LeaderLaw, Observer, StateObserver,
+};
 use super::reset::flock_from;
 use super::statistics::EpisodeStatistics;
 use super::{
     Averages, EnvSettings, EpisodeSchedule, EpisodeSummary, Reward, RewardTerms, Servo, TERMS,
+    Terms,
 };
 use crate::analysis::OrderParameters;
 use crate::analysis::quantities::Boats;
 use crate::clock::seconds;
 use crate::error::{FlockError, Result};
 use crate::flock::Flock;
-use crate::integrator::Steering;
+use crate::integrator::{Integrator, Steering};
 use crate::parameters::FlockParameters;
 
 /// What observations and rewards are computed from.
@@ -43,14 +47,15 @@ impl EpisodeState {
 
 /// What is stored of an episode.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-pub struct StoredEpisode<A = Averages> {
+pub struct StoredEpisode<A = Averages, T = Terms, C = Option<ContactCredit>> {
     flock: Vec<u8>,
     schedule: EpisodeSchedule,
     rudders: Vec<f64>,
     camera: Option<CameraState>,
-    terms: Vec<RewardTerms>,
-    statistics: EpisodeStatistics<A>,
+    terms: Vec<T>,
+    statistics: EpisodeStatistics<A, T>,
     ended: bool,
+    credit: C,
 }
 
 /// An episode under way.
@@ -59,6 +64,12 @@ pub struct Episode {
     state: EpisodeState,
     observer: Observer,
     camera: Option<Camera>,
+    /// The law that steers to a heading, where actions stand for one.
+    law: Option<LeaderLaw>,
+    /// Commands of the control step under way.
+    commands: Vec<f64>,
+    /// What the leaders' contacts do, where a reward asks for it.
+    credit: Option<ContactCredit>,
     terms: Vec<RewardTerms>,
     statistics: EpisodeStatistics,
     ended: bool,
@@ -66,8 +77,15 @@ pub struct Episode {
 
 impl Episode {
     /// An episode that starts with this flock.
-    pub fn new(settings: &EnvSettings, schedule: EpisodeSchedule, flock: Flock) -> Self {
-        let leaders = flock.parameters().n_leaders;
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] where the flock's pool has no law that the settings need.
+    pub fn new(settings: &EnvSettings, schedule: EpisodeSchedule, flock: Flock) -> Result<Self> {
+        let parameters = flock.parameters();
+        let (leaders, boats) = (parameters.n_leaders, parameters.n_boats);
+        let law = settings.action.steering_law(parameters)?;
+        let law = law.map(|law| LeaderLaw::new(law, parameters)).transpose()?;
+        let credit = settings.reward.need_credit();
         let camera = settings.camera.is_active().then(|| {
             let (poses, velocities) = (flock.poses(), flock.velocities());
             Camera::new(
@@ -78,8 +96,11 @@ impl Episode {
                 velocities,
             )
         });
-        Self {
-            observer: Observer::new(settings.observation, flock.parameters()),
+        Ok(Self {
+            observer: Observer::new(settings.observation, parameters)?,
+            law,
+            commands: vec![0.0; leaders],
+            credit: credit.then(|| ContactCredit::new(leaders, boats)),
             camera,
             terms: vec![[0.0; TERMS]; leaders],
             statistics: EpisodeStatistics::default(),
@@ -90,7 +111,7 @@ impl Episode {
                 schedule,
                 flock,
             },
-        }
+        })
     }
 
     /// The flock.
@@ -113,7 +134,7 @@ impl Episode {
         self.state.order.as_ref()
     }
 
-    /// Each leader's reward terms in the last control step.
+    /// Each leader's reward terms, means over the control steps since the last decision.
     pub fn terms(&self) -> &[RewardTerms] {
         &self.terms
     }
@@ -130,13 +151,7 @@ impl Episode {
 
     /// Writes what leaders see now; returns how many numbers were clipped.
     pub fn observe(&mut self, out: &mut [f32]) -> u32 {
-        let mut view = self.state.view();
-        if let Some(camera) = &self.camera {
-            view.poses = &camera.seen().poses;
-            view.velocities = &camera.seen().velocities;
-            view.hulls = camera.hulls();
-            view.order = camera.order();
-        }
+        let view = seen_view(&self.state, self.camera.as_ref());
         self.observer.observe(&view, out)
     }
 
@@ -151,10 +166,16 @@ impl Episode {
         observer.observe(&self.state.view(), self.state.schedule.elapsed(), out);
     }
 
-    /// Takes one control step with checked actions, one per leader, and writes the rewards.
+    /// Writes the features of the flock, which no camera stands before.
+    pub(crate) fn observe_features(&self, features: &FlockFeatures, out: &mut [f32]) {
+        features.observe(&self.state.view(), self.state.schedule.elapsed(), out);
+    }
+
+    /// Holds checked actions, one per leader, over the control steps until the next decision or the episode's end,
+    /// and writes the rewards, sums over them.
     ///
     /// # Errors
-    /// [`FlockError::Solver`]; the flock stays where it was, and the episode is over.
+    /// [`FlockError::Solver`]; the flock stays where it was in that control step, and the episode is over.
     pub fn step(
         &mut self,
         settings: &EnvSettings,
@@ -162,34 +183,92 @@ impl Episode {
         actions: &[f64],
         rewards: &mut [f64],
     ) -> Result<()> {
-        let state = &mut self.state;
-        let target = state.schedule.target();
+        let target = self.state.schedule.target();
+        // A rudder that was chosen in the mirrored view stays what it is when the target turns round.
         let mirrored = settings.observation.mirror_to_target && target.sign() < 0.0;
-        for (rudder, &action) in state.rudders.iter_mut().zip(actions) {
-            let command = settings.rudder.command(action);
-            *rudder = servo.moved(*rudder, if mirrored { -command } else { command });
+        let mut taken = 0;
+        while taken == 0 || (taken < settings.period_steps() && !self.ended) {
+            self.command(settings, actions, mirrored);
+            self.advance(settings, servo)?;
+            self.compute_rewards(settings, rewards, taken == 0);
+            self.advance_schedule();
+            taken += 1;
         }
-        let (plan, step) = (&settings.episode, state.schedule.step);
-        let end = state.flock.time() + plan.time_of(step + 1) - plan.time_of(step);
-        if let Err(error) = state.flock.advance_to(end, Steering::Held(&state.rudders)) {
-            self.ended = true;
-            return Err(error);
-        }
-        state.order = state.flock.order_parameters(false).ok();
-        self.compute_rewards(settings, rewards);
-        self.advance_schedule();
+        let taken = f64::from(taken);
+        let terms = self.terms.iter_mut().flatten();
+        terms.for_each(|term| *term /= taken);
         Ok(())
     }
 
-    /// Rewards of the step just taken, with the target that held in it.
-    fn compute_rewards(&mut self, settings: &EnvSettings, rewards: &mut [f64]) {
+    /// Works out the commands of a control step.
+    fn command(&mut self, settings: &EnvSettings, actions: &[f64], mirrored: bool) {
+        let mut commands = std::mem::take(&mut self.commands);
+        let view = seen_view(&self.state, self.camera.as_ref());
+        for (leader, (command, &action)) in commands.iter_mut().zip(actions).enumerate() {
+            let value = settings.rudder.command(action);
+            *command = match &self.law {
+                Some(law) => law.rudder(&view, leader, settings.action.angle(value)),
+                None if mirrored => -value,
+                None => value,
+            };
+        }
+        self.commands = commands;
+    }
+
+    /// Moves the flock through a control step.
+    fn advance(&mut self, settings: &EnvSettings, servo: &Servo) -> Result<()> {
+        let state = &mut self.state;
+        for (rudder, &command) in state.rudders.iter_mut().zip(&self.commands) {
+            *rudder = servo.moved(*rudder, command);
+        }
+        let (plan, step) = (&settings.episode, state.schedule.step);
+        let end = state.flock.time() + plan.time_of(step + 1) - plan.time_of(step);
+        let steering = Steering::Held(&state.rudders);
+        let advanced = match &mut self.credit {
+            None => state.flock.advance_to(end, steering),
+            Some(credit) => {
+                credit.start();
+                let watch = &mut |flock: &Integrator| credit.add(flock);
+                state.flock.advance_watched(end, steering, watch)
+            }
+        };
+        if let Err(error) = advanced {
+            self.ended = true;
+            return Err(error);
+        }
+        if let Some(credit) = &mut self.credit {
+            credit.remember(&state.flock.integrator, 1.0 / plan.control_hz);
+        }
+        state.order = state.flock.order_parameters(false).ok();
+        Ok(())
+    }
+
+    /// Rewards of the control step just taken, with the target that held in it: the first since a decision, or added
+    /// to those before.
+    fn compute_rewards(&mut self, settings: &EnvSettings, rewards: &mut [f64], is_first: bool) {
         let view = self.state.view();
         let reward = Reward::new(self.state.flock.parameters(), &view);
         let share = 1.0 / rewards.len() as f64;
-        for (leader, (terms, paid)) in self.terms.iter_mut().zip(rewards).enumerate() {
-            *terms = reward.terms(&view, leader);
-            *paid = settings.reward.total(terms);
-            self.statistics.add_reward(share, terms, *paid);
+        let factor = settings.reward_factor();
+        for (leader, (sums, sum)) in self.terms.iter_mut().zip(rewards).enumerate() {
+            let credit = self
+                .credit
+                .as_ref()
+                .map_or_else(LeaderCredit::default, |each| {
+                    let (flock, hz) = (&self.state.flock.integrator, settings.episode.control_hz);
+                    each.of(leader, flock, view.target, 1.0 / hz)
+                });
+            let terms = reward.terms(&view, leader, &credit);
+            let paid = factor * settings.reward.total(&terms);
+            self.statistics.add_reward(share, &terms, paid);
+            if is_first {
+                (*sums, *sum) = (terms, paid);
+            } else {
+                *sum += paid;
+                sums.iter_mut()
+                    .zip(terms)
+                    .for_each(|(sum, term)| *sum += term);
+            }
         }
         let (flock, schedule) = (&self.state.flock, &self.state.schedule);
         let counted = 10 * (u64::from(schedule.step) + 1) > u64::from(schedule.steps);
@@ -228,9 +307,10 @@ impl Episode {
             schedule: self.state.schedule.clone(),
             rudders: self.state.rudders.clone(),
             camera: self.camera.as_ref().map(Camera::state),
-            terms: self.terms.clone(),
+            terms: self.terms.iter().copied().map(Terms).collect(),
             statistics: self.statistics,
             ended: self.ended,
+            credit: self.credit.clone(),
         }
     }
 
@@ -238,21 +318,26 @@ impl Episode {
     ///
     /// # Errors
     /// [`FlockError::Snapshot`] if it does not belong there.
-    pub(crate) fn restored<A>(
+    pub(crate) fn restored<A, T, C>(
         settings: &EnvSettings,
         parameters: &FlockParameters,
-        stored: StoredEpisode<A>,
+        stored: StoredEpisode<A, T, C>,
     ) -> Result<Self>
     where
         Averages: From<A>,
+        Terms: From<T>,
+        C: Into<Option<ContactCredit>>,
     {
         let (leaders, boats) = (parameters.n_leaders, parameters.n_boats);
         let flock = flock_from(&stored.flock, parameters)?;
+        let credit: Option<ContactCredit> = stored.credit.into();
         let fits = stored.rudders.len() == leaders
             && stored.rudders.iter().all(|rudder| rudder.abs() <= 1.0)
             && stored.terms.len() == leaders
             && stored.schedule.steps == settings.episode.steps()
             && stored.schedule.bw_s == flock.parameters().bw_s
+            && credit.is_some() == settings.reward.need_credit()
+            && credit.as_ref().is_none_or(|each| each.fits(leaders, boats))
             && stored.camera.is_some() == settings.camera.is_active()
             && stored
                 .camera
@@ -264,16 +349,30 @@ impl Episode {
             ));
         }
         let seed = stored.schedule.flock_seed;
-        let mut episode = Self::new(settings, stored.schedule, flock);
+        let mut episode = Self::new(settings, stored.schedule, flock)?;
         episode.state.rudders = stored.rudders;
         episode.camera = stored.camera.map(|state| {
             let mut camera = Camera::unexposed(settings.camera, seed);
             camera.set_state(state, leaders);
             camera
         });
-        episode.terms = stored.terms;
+        let terms = stored.terms.into_iter();
+        episode.terms = terms.map(|term| Terms::from(term).0).collect();
+        episode.credit = credit;
         episode.statistics = stored.statistics.restored();
         episode.ended = stored.ended;
         Ok(episode)
     }
+}
+
+/// What leaders see: through the camera, if there is one.
+fn seen_view<'a>(state: &'a EpisodeState, camera: Option<&'a Camera>) -> FlockView<'a> {
+    let mut view = state.view();
+    if let Some(camera) = camera {
+        view.poses = &camera.seen().poses;
+        view.velocities = &camera.seen().velocities;
+        view.hulls = camera.hulls();
+        view.order = camera.order();
+    }
+    view
 }

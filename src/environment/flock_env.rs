@@ -1,9 +1,11 @@
 //! One flock as an environment: an episode after another, each seeded.
 
+use super::credit::ContactCredit;
 use super::episode::StoredEpisode;
-use super::observation::StateObserver;
+use super::observation::{FlockFeatures, StateObserver};
 use super::{
     Autoreset, Averages, EnvSettings, Episode, EpisodeSeeds, EpisodeSummary, ResetRequest, Servo,
+    Terms,
 };
 use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
@@ -11,10 +13,10 @@ use crate::parameters::FlockParameters;
 
 /// What is stored of an environment.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-pub struct StoredEnv<A = Averages> {
+pub struct StoredEnv<A = Averages, T = Terms, C = Option<ContactCredit>> {
     seeds: Option<EpisodeSeeds>,
-    episode: Option<StoredEpisode<A>>,
-    finished: Option<EpisodeSummary<A>>,
+    episode: Option<StoredEpisode<A, T, C>>,
+    finished: Option<EpisodeSummary<A, T>>,
     final_observation: Vec<f32>,
     final_state: Vec<f32>,
 }
@@ -25,6 +27,7 @@ pub struct FlockEnv {
     parameters: FlockParameters,
     servo: Servo,
     state_observer: StateObserver,
+    features: FlockFeatures,
     seeds: Option<EpisodeSeeds>,
     episode: Option<Episode>,
     finished: Option<EpisodeSummary>,
@@ -38,6 +41,7 @@ impl FlockEnv {
         Self {
             servo: settings.rudder.servo(1.0 / settings.episode.control_hz),
             state_observer: StateObserver::new(&parameters, settings.observation.mirror_to_target),
+            features: FlockFeatures::new(&parameters),
             seeds: None,
             episode: None,
             finished: None,
@@ -94,7 +98,7 @@ impl FlockEnv {
         let flock_seed = seeds.next_seed();
         let (schedule, flock) =
             request.build(settings, &self.parameters, flock_seed, keep_going)?;
-        Ok((seeds, Episode::new(settings, schedule, flock)))
+        Ok((seeds, Episode::new(settings, schedule, flock)?))
     }
 
     /// Starts a prepared episode.
@@ -117,7 +121,7 @@ impl FlockEnv {
         Err(FlockError::Episode(message.to_owned()))
     }
 
-    /// One control step with checked actions, or the start of the next episode where one is due. Writes
+    /// One decision with checked actions, held over its control steps, or the start of the next episode where one is due. Writes
     /// observations and rewards of the leaders and returns whether the episode was truncated.
     ///
     /// # Errors
@@ -196,6 +200,14 @@ impl FlockEnv {
         }
     }
 
+    /// Writes the features of the flock, zeros before the first reset.
+    pub fn observe_features(&self, out: &mut [f32]) {
+        match &self.episode {
+            Some(episode) => episode.observe_features(&self.features, out),
+            None => out.fill(0.0),
+        }
+    }
+
     /// The environment, to be stored.
     pub(crate) fn stored(&self) -> StoredEnv {
         StoredEnv {
@@ -211,9 +223,15 @@ impl FlockEnv {
     ///
     /// # Errors
     /// [`FlockError::Snapshot`] if the state does not belong to such an environment.
-    pub(crate) fn restored<A>(&self, settings: &EnvSettings, stored: StoredEnv<A>) -> Result<Self>
+    pub(crate) fn restored<A, T, C>(
+        &self,
+        settings: &EnvSettings,
+        stored: StoredEnv<A, T, C>,
+    ) -> Result<Self>
     where
         Averages: From<A>,
+        Terms: From<T>,
+        C: Into<Option<ContactCredit>>,
     {
         let whole = self.parameters.n_leaders * settings.observation.size();
         let episode = stored

@@ -2,7 +2,7 @@
 //! defaults and the documentation follow from this table.
 
 use super::observation::{Block, ObservationLayout};
-use super::{Autoreset, EnvSettings, RewardTerm, RewardWeights, TERMS, TargetChoice};
+use super::{ActionMode, Autoreset, EnvSettings, RewardTerm, RewardWeights, TERMS, TargetChoice};
 use crate::error::{FlockError, Result};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -94,7 +94,7 @@ macro_rules! named_types {
     };
 }
 
-named_types!(TargetChoice, Autoreset);
+named_types!(TargetChoice, Autoreset, ActionMode);
 
 impl OptionType for ObservationLayout {
     fn shown(&self) -> OptionValue {
@@ -162,6 +162,10 @@ declare_options! {
     episode_s: episode.episode_s;
     /// control steps per second
     control_hz: episode.control_hz;
+    /// what an action in [-1, 1] stands for: "rudder"; "heading", the angle outward of the target's tangent over pi, to which the damped law steers; or "lean", that angle over 1.2 rad, to which the pool's tuned damped law steers, so that 0 is that law
+    action_mode: action.mode;
+    /// time in s from one decision to the next, a whole number of control steps, through which a step holds its action; None: one control step
+    decision_period_s: action.decision_period_s;
     /// range (low, high) that bw_s is drawn from, uniformly, for each episode; None: the parameters' own bw_s
     bw_range_s: episode.bw_range_s;
     /// blocks that differ from the default layout, such as `{'order': False, 'neighbors': 4}`
@@ -174,6 +178,8 @@ declare_options! {
     delay_frames: camera.delay_frames;
     /// weights of the reward's terms; terms that are not named weigh nothing
     reward: reward;
+    /// time T in s: a control step's reward counts for its length over T, so that sums over T are means, of order one; None: each counts in full
+    reward_horizon_s: reward_horizon_s;
     /// number of levels of the discrete action, 2 to 1001; None: continuous
     rudder_levels: rudder.levels;
     /// time constant of the rudder servo in s

@@ -1,10 +1,12 @@
 //! The reward: named terms, each larger for better, and their weights.
 
+use super::credit::LeaderCredit;
 use super::observation::{FlockView, speed_scale_cm_s};
 use crate::analysis::OrderParameters;
 use crate::error::{FlockError, Result};
 use crate::geometry::LapFrame;
 use crate::parameters::{FlockParameters, named_choice};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 named_choice! {
     /// A term of the reward.
@@ -19,6 +21,12 @@ named_choice! {
         RudderEffort = "rudder_effort",
         /// Minus the jam: −Ψ_o·max(cos φ_o, 0)·max(1 − Ψ_v/preferred speed, 0), in [−1, 0].
         Jam = "jam",
+        /// Tangential momentum that the leader's contacts give to normal boats towards the target, in cm/s².
+        ContactPush = "contact_push",
+        /// Angular velocity that they give to normal boats towards the target's tangent, in rad/s².
+        ContactAlignment = "contact_alignment",
+        /// Signed order of the boats that the leader turned lately against what it would be unturned.
+        TouchedOrder = "touched_order",
     }
 }
 
@@ -34,6 +42,14 @@ impl RewardTerm {
         matches!(
             self,
             Self::SignedOrder | Self::TangentialVelocity | Self::Jam
+        ) || self.is_credit()
+    }
+
+    /// Whether the term comes from the leader's contacts, which are watched only where such a term has a weight.
+    pub fn is_credit(self) -> bool {
+        matches!(
+            self,
+            Self::ContactPush | Self::ContactAlignment | Self::TouchedOrder
         )
     }
 
@@ -55,18 +71,79 @@ impl RewardTerm {
                 "minus psi_o*max(cos(phi_o), 0)*max(1 - psi_v/preferred speed, 0), in [-1, 0]; the \
                  same for all leaders"
             }
+            Self::ContactPush => {
+                "tangential momentum that the leader's contacts gave to normal boats towards the target, \
+                 sum of impulse*(normal*tangent) over the step's length, in cm/s^2; 0 where no contact_... or \
+                 touched_order has a weight"
+            }
+            Self::ContactAlignment => {
+                "angular velocity that the leader's contacts gave to normal boats, each times the sine of \
+                 the angle that the boat has to turn to head along the target, over the step's length, in rad/s^2; 0 as \
+                 contact_push"
+            }
+            Self::TouchedOrder => {
+                "sum over normal boats of cos(d) - cos(d + a), where d is the boat's angle to the target's \
+                 tangent and a the angle that the leader's contacts turned it by: its spin by them decays as \
+                 eq. (9) damps it, and the angle is forgotten within 4 s; 0 as contact_push"
+            }
         }
     }
 }
 
+/// Terms as they are stored since format 3: as many as there were then, in the order of [`RewardTerm::ALL`], to
+/// which new ones are appended.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Terms(pub RewardTerms);
+
+impl Serialize for Terms {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        self.0.as_slice().serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Terms {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        Ok(Self::of_earlier(&Vec::deserialize(deserializer)?))
+    }
+}
+
+impl Terms {
+    fn of_earlier(stored: &[f64]) -> Self {
+        let mut terms = Self::default();
+        for (term, value) in terms.0.iter_mut().zip(stored) {
+            *term = *value;
+        }
+        terms
+    }
+}
+
+/// Terms, or their weights, as states of formats 1 and 2 hold them.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub struct FirstTerms([f64; 5]);
+
+impl From<FirstTerms> for Terms {
+    fn from(first: FirstTerms) -> Self {
+        Self::of_earlier(&first.0)
+    }
+}
+
+impl From<FirstTerms> for RewardWeights {
+    fn from(first: FirstTerms) -> Self {
+        Self(Terms::from(first).0)
+    }
+}
+
 /// A weight for each term.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(from = "FirstTerms")]
 pub struct RewardWeights(pub RewardTerms);
 
 impl Default for RewardWeights {
     /// The signed order alone.
     fn default() -> Self {
-        Self([1.0, 0.0, 0.0, 0.0, 0.0])
+        let mut weights = [0.0; TERMS];
+        weights[RewardTerm::SignedOrder as usize] = 1.0;
+        Self(weights)
     }
 }
 
@@ -89,6 +166,14 @@ impl RewardWeights {
             }
         }
         Ok(())
+    }
+
+    /// Whether a term from the leaders' contacts has a weight.
+    pub fn need_credit(&self) -> bool {
+        let weights = RewardTerm::ALL.iter().zip(self.0);
+        weights
+            .into_iter()
+            .any(|(term, weight)| term.is_credit() && weight != 0.0)
     }
 
     /// The weighted sum.
@@ -126,7 +211,7 @@ impl Reward {
     }
 
     /// All terms for one leader.
-    pub fn terms(&self, view: &FlockView, leader: usize) -> RewardTerms {
+    pub fn terms(&self, view: &FlockView, leader: usize, credit: &LeaderCredit) -> RewardTerms {
         let clockwise = LapFrame::at(view.poses[leader].position)
             .components(view.velocities[leader].linear)
             .y;
@@ -134,6 +219,9 @@ impl Reward {
         terms[RewardTerm::LeaderVelocity as usize] =
             view.target.sign() * clockwise * self.inverse_speed;
         terms[RewardTerm::RudderEffort as usize] = -view.rudders[leader].powi(2);
+        terms[RewardTerm::ContactPush as usize] = credit.push;
+        terms[RewardTerm::ContactAlignment as usize] = credit.alignment;
+        terms[RewardTerm::TouchedOrder as usize] = credit.touched_order;
         terms
     }
 }

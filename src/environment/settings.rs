@@ -1,7 +1,7 @@
 //! Everything about an environment that is not the flock's own parameters.
 
 use super::observation::{CameraSettings, ObservationLayout};
-use super::{EpisodeSettings, RewardWeights, RudderSettings};
+use super::{ActionSettings, EpisodeSettings, RewardWeights, RudderSettings};
 use crate::error::{FlockError, Result};
 use crate::parameters::{FlockParameters, named_choice};
 
@@ -19,7 +19,7 @@ named_choice! {
 
 /// The settings of an environment. States of format 1 hold them in this order; what was added since is left out of
 /// it by `#[serde(skip)]`.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
 pub struct EnvSettings {
     /// Episodes.
     pub episode: EpisodeSettings,
@@ -33,6 +33,12 @@ pub struct EnvSettings {
     pub rudder: RudderSettings,
     /// What happens at an episode's end.
     pub autoreset: Autoreset,
+    /// What actions stand for, and how long they are held.
+    #[serde(skip)]
+    pub action: ActionSettings,
+    /// Time in s over which rewards are means; `None`: one control step.
+    #[serde(skip)]
+    pub reward_horizon_s: Option<f64>,
 }
 
 impl Default for EnvSettings {
@@ -44,6 +50,8 @@ impl Default for EnvSettings {
             reward: RewardWeights::default(),
             rudder: RudderSettings::default(),
             autoreset: Autoreset::NextStep,
+            action: ActionSettings::default(),
+            reward_horizon_s: None,
         }
     }
 }
@@ -65,6 +73,14 @@ impl EnvSettings {
         self.observation.check()?;
         self.camera.check()?;
         self.rudder.check()?;
+        self.action.check(parameters, self.episode.control_hz)?;
+        self.observation.law(parameters)?;
+        if let Some(horizon) = self.reward_horizon_s
+            && !(horizon > 0.0 && horizon <= 1e6)
+        {
+            let accepted = "a positive time of at most 1e6 s, or none";
+            return Err(FlockError::parameter("reward_horizon_s", horizon, accepted));
+        }
         if self.observation.order && parameters.n_leaders == parameters.n_boats {
             return Err(FlockError::parameter(
                 "observation order",
@@ -73,5 +89,15 @@ impl EnvSettings {
             ));
         }
         self.reward.check(parameters)
+    }
+    /// Control steps from one decision to the next.
+    pub fn period_steps(&self) -> u32 {
+        self.action.control_steps(self.episode.control_hz)
+    }
+
+    /// What the weighted sum of a control step's terms is multiplied by.
+    pub fn reward_factor(&self) -> f64 {
+        self.reward_horizon_s
+            .map_or(1.0, |horizon| 1.0 / (self.episode.control_hz * horizon))
     }
 }

@@ -1,7 +1,7 @@
 //! Sums over an episode, and the summary given at its end.
 
 use super::Averages;
-use super::{EpisodeSchedule, RewardTerms, TERMS};
+use super::{EpisodeSchedule, RewardTerms, TERMS, Terms};
 use crate::analysis::OrderParameters;
 use crate::analysis::collective_state::OrderingWatch;
 use crate::analysis::quantities::Boats;
@@ -16,8 +16,8 @@ pub const ORDERED_WITHIN: [f64; 2] = [PI / 20.0, PI / 4.0];
 
 /// Sums over the control steps of an episode.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
-pub struct EpisodeStatistics<A = Averages> {
-    terms: RewardTerms,
+pub struct EpisodeStatistics<A = Averages, T = Terms> {
+    terms: T,
     reward: f64,
     window_steps: u32,
     averages: A,
@@ -27,11 +27,14 @@ pub struct EpisodeStatistics<A = Averages> {
     observed: u64,
 }
 
-impl<A> EpisodeStatistics<A> {
+impl<A, T> EpisodeStatistics<A, T> {
     /// The statistics as a state of any format has them.
-    pub fn restored<B: From<A>>(self) -> EpisodeStatistics<B> {
+    pub fn restored<B: From<A>>(self) -> EpisodeStatistics<B>
+    where
+        Terms: From<T>,
+    {
         EpisodeStatistics {
-            terms: self.terms,
+            terms: self.terms.into(),
             reward: self.reward,
             window_steps: self.window_steps,
             averages: self.averages.into(),
@@ -47,7 +50,7 @@ impl EpisodeStatistics {
     /// Adds a leader's terms and reward in one step, as its share of the leaders' mean.
     pub fn add_reward(&mut self, share: f64, terms: &RewardTerms, reward: f64) {
         self.reward += share * reward;
-        for (sum, term) in self.terms.iter_mut().zip(terms) {
+        for (sum, term) in self.terms.0.iter_mut().zip(terms) {
             *sum += share * term;
         }
     }
@@ -76,7 +79,7 @@ impl EpisodeStatistics {
     pub fn summary(&self, schedule: &EpisodeSchedule) -> EpisodeSummary {
         let steps = f64::from(schedule.step);
         let mut terms = [0.0; TERMS];
-        for (mean, sum) in terms.iter_mut().zip(&self.terms) {
+        for (mean, sum) in terms.iter_mut().zip(&self.terms.0) {
             *mean = sum / steps;
         }
         let window = f64::from(self.window_steps);
@@ -85,7 +88,7 @@ impl EpisodeStatistics {
             bw_s: schedule.bw_s,
             steps: schedule.step,
             total_reward: self.reward,
-            terms,
+            terms: Terms(terms),
             averages: self.averages.over(window),
             share_towards_target: f64::from(self.steps_towards_target) / window,
             ordering_times_s: self.ordering.map(|watch| watch.ordering_time_s()),
@@ -96,7 +99,7 @@ impl EpisodeStatistics {
 
 /// The summary of an episode.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct EpisodeSummary<A = Averages> {
+pub struct EpisodeSummary<A = Averages, T = Terms> {
     /// Seed of its flock.
     pub flock_seed: u64,
     /// Its backward duration: length of the backward phase in s.
@@ -106,7 +109,7 @@ pub struct EpisodeSummary<A = Averages> {
     /// Sum of the rewards, mean over leaders.
     pub total_reward: f64,
     /// Each reward term, mean over steps and leaders; NaN before the first step.
-    pub terms: RewardTerms,
+    pub terms: T,
     /// Means over the control steps in the analysis window after the first tenth of the episode; NaN
     /// where there is none.
     pub averages: A,
@@ -119,17 +122,20 @@ pub struct EpisodeSummary<A = Averages> {
     pub clip_rate: f64,
 }
 
-impl<A> EpisodeSummary<A> {
+impl<A, T> EpisodeSummary<A, T> {
     /// The summary as a stored state of any version has it: version 0.1.0 wrote NaN for ordering times
     /// that never came.
-    pub(crate) fn restored<B: From<A>>(self) -> EpisodeSummary<B> {
+    pub(crate) fn restored<B: From<A>>(self) -> EpisodeSummary<B>
+    where
+        Terms: From<T>,
+    {
         let or_never = |time: f64| if time.is_nan() { f64::INFINITY } else { time };
         EpisodeSummary {
             flock_seed: self.flock_seed,
             bw_s: self.bw_s,
             steps: self.steps,
             total_reward: self.total_reward,
-            terms: self.terms,
+            terms: self.terms.into(),
             averages: self.averages.into(),
             share_towards_target: self.share_towards_target,
             ordering_times_s: self.ordering_times_s.map(or_never),

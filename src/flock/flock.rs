@@ -226,6 +226,16 @@ impl Flock {
     /// # Errors
     /// [`FlockError::Solver`] if numbers left their range; the flock is unchanged then.
     pub fn advance_to(&mut self, end: Ticks, steering: Steering) -> Result<()> {
+        self.advance_watched(end, steering, &mut |_| {})
+    }
+
+    /// As [`Self::advance_to`], showing the motion after every substep.
+    pub(crate) fn advance_watched(
+        &mut self,
+        end: Ticks,
+        steering: Steering,
+        watch: &mut impl FnMut(&Integrator),
+    ) -> Result<()> {
         self.integrator.save(&mut self.before);
         let begin = self.time;
         let dt = ticks(self.parameters.dt_s);
@@ -243,6 +253,7 @@ impl Flock {
                 substep.length = substep.length.div_ceil(2);
             }
             self.time += substep.length;
+            watch(&self.integrator);
             // Contacts of numbers out of range take long to give up: no more of them.
             if self.integrator.statistics.unsolved > unsolved && !self.integrator.is_in_range() {
                 break;

@@ -6,6 +6,7 @@ use super::flock::PyFlock;
 use super::parameters::to_python;
 use super::settings::{settings_from, settings_to_dict, term_names};
 use super::state::state_from;
+use crate::environment::observation::FlockFeatures;
 use crate::environment::{
     BatchRows, EnvBatch, Episode, EpisodeSummary, FlockEnv, ResetRequest, Start, TERMS,
 };
@@ -78,6 +79,11 @@ impl PyEnvBatch {
     #[getter]
     fn episode_steps(&self) -> Result<u32> {
         Ok(self.0.read()?.settings().episode.steps())
+    }
+
+    #[getter]
+    fn period_steps(&self) -> Result<u32> {
+        Ok(self.0.read()?.settings().period_steps())
     }
 
     #[getter]
@@ -180,6 +186,22 @@ impl PyEnvBatch {
         env.episode().ok_or_else(never_reset)?;
         let array = PyArray1::zeros(py, env.state_size(), false);
         env.observe_state(array.readwrite().as_slice_mut()?);
+        Ok(array)
+    }
+
+    /// Features of every flock: (flocks, features).
+    fn flock_features<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let batch = self.0.read()?;
+        let array = PyArray2::zeros(py, [batch.envs().len(), FlockFeatures::SIZE], false);
+        let mut numbers = array.readwrite();
+        let rows = numbers
+            .as_slice_mut()?
+            .chunks_exact_mut(FlockFeatures::SIZE);
+        for (env, row) in batch.envs().iter().zip(rows) {
+            env.episode().ok_or_else(never_reset)?;
+            env.observe_features(row);
+        }
+        drop(numbers);
         Ok(array)
     }
 
@@ -318,7 +340,7 @@ impl PyEnvBatch {
 
 fn summary_dict<'py>(py: Python<'py>, summary: &EpisodeSummary) -> PyResult<Bound<'py, PyDict>> {
     let terms = PyDict::new(py);
-    for (name, mean) in term_names(py).iter().zip(summary.terms) {
+    for (name, mean) in term_names(py).iter().zip(summary.terms.0) {
         terms.set_item(name, mean)?;
     }
     let dict = PyDict::new(py);

@@ -36,8 +36,8 @@ mod _core {
     use super::flock::PyFlock;
     #[pymodule_export]
     use super::observation::{
-        PyObservedLaw, level_rudders, nearest_levels, observation_table, observation_version,
-        observe, state_table,
+        PyObservedLaw, flock_feature_table, level_rudders, nearest_levels, observation_table,
+        observation_version, observe, state_table, tuned_gains,
     };
     #[pymodule_export]
     use super::order::{PyOrderParameters, PyOrderSeries, collective_state_names, order_series};
@@ -52,7 +52,7 @@ mod _core {
     #[pymodule_export]
     use super::recording::{phase_names, record, sampled_analysis_window};
     #[pymodule_export]
-    use super::settings::{env_defaults, env_meanings, reward_terms};
+    use super::settings::{action_modes, env_defaults, env_meanings, reward_terms};
     #[pymodule_export]
     use super::statistics::PyStatistics;
     #[pymodule_export]

@@ -3,11 +3,11 @@
 use super::arguments::{floats, real, text};
 use super::flock::PyFlock;
 use super::settings::{count, layout_from};
-use crate::boat::Law;
+use crate::boat::{Law, TUNED_LAWS};
 use crate::environment::RudderSettings;
 use crate::environment::observation::{
     BOAT, Entry, FlockView, OBSERVATION_VERSION, ObservationLayout, ObservedLaw, Observer,
-    state_entries,
+    flock_feature_entries, state_entries,
 };
 use crate::error::FlockError;
 use crate::flock::Flock;
@@ -80,6 +80,22 @@ pub fn state_table(n_boats: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
         .collect())
 }
 
+/// Every feature of a whole flock, in order.
+#[pyfunction]
+pub fn flock_feature_table() -> Vec<Row> {
+    let entries = flock_feature_entries().into_iter();
+    entries.map(|(block, entry)| row(block, 0, entry)).collect()
+}
+
+/// The tuned gains: by law and pool, names and values.
+#[pyfunction]
+pub fn tuned_gains() -> Vec<(&'static str, &'static str, Vec<(&'static str, f64)>)> {
+    let tuned = TUNED_LAWS.iter();
+    tuned
+        .map(|(name, pool, law)| (*name, *pool, law.gains()))
+        .collect()
+}
+
 /// What the leaders of a flock observe now: (k, size) float32. `rudder`: as the rudders stand.
 #[pyfunction]
 #[pyo3(signature = (flock, blocks, mirror_to_target=false, rudder=None))]
@@ -126,7 +142,7 @@ pub fn observed<'py>(
         order: order.as_ref(),
     };
     let array = PyArray2::zeros(py, [leaders, layout.size()], false);
-    Observer::new(layout, parameters).observe(&view, array.readwrite().as_slice_mut()?);
+    Observer::new(layout, parameters)?.observe(&view, array.readwrite().as_slice_mut()?);
     Ok(array)
 }
 

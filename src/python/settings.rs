@@ -3,7 +3,7 @@
 
 use super::arguments::{real, text, truth, whole, wrong_type};
 use crate::environment::observation::{Block, ObservationLayout};
-use crate::environment::{EnvOption, EnvSettings, OPTIONS, OptionValue, RewardTerm};
+use crate::environment::{ActionMode, EnvOption, EnvSettings, OPTIONS, OptionValue, RewardTerm};
 use crate::error::FlockError;
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
@@ -175,6 +175,12 @@ pub fn env_meanings(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         meanings.set_item(option.name, option.doc.trim())?;
     }
     Ok(meanings)
+}
+
+/// What an action may stand for.
+#[pyfunction]
+pub fn action_modes() -> Vec<&'static str> {
+    ActionMode::ALL.iter().map(|mode| mode.name()).collect()
 }
 
 /// The terms of the reward: (name, description).

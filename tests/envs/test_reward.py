@@ -39,11 +39,15 @@ def test_terms_follow_from_the_flock():
                     "leader_velocity": -clockwise[place] / 15,
                     "rudder_effort": -(row[place] ** 2),
                     "jam": -jam,
+                    # Without a weight nobody watches the contacts.
+                    "contact_push": 0.0,
+                    "contact_alignment": 0.0,
+                    "touched_order": 0.0,
                 },
                 abs=1e-9,
             )
             assert rewards[agent] == pytest.approx(sum(ALL[name] * terms[name] for name in ALL))
-    assert set(TERMS) == set(ALL)
+    assert set(TERMS) == {*ALL, "contact_push", "contact_alignment", "touched_order"}
 
 
 def test_default_is_the_signed_order():

@@ -127,6 +127,9 @@ impl Entry {
 const UNIT: (f64, f64) = (-1.0, 1.0);
 const FLAG: (f64, f64) = (0.0, 1.0);
 const TWICE: (f64, f64) = (-2.0, 2.0);
+const SQUARE: (f64, f64) = (0.0, 4.0);
+const PRODUCT: (f64, f64) = (-2.2, 2.2);
+const SEVERAL: (f64, f64) = (-40.0, 40.0);
 
 /// The leader itself.
 #[rustfmt::skip]
@@ -180,6 +183,12 @@ pub const ORDER: [Entry; 4] = [
     Entry::new("mean_clockwise_velocity", "cm/s", Scale::Speed, TWICE, "mean velocity, clockwise part: psi_v*sin(phi_v)").odd(),
 ];
 
+/// What the tuned law would do.
+#[rustfmt::skip]
+pub const LAW_RUDDER: [Entry; 1] = [
+    Entry::new("law_rudder", "", Scale::Plain, UNIT, "rudder of the pool's tuned damped law, which reads what the leader sees of itself").odd(),
+];
+
 /// One boat of the global state.
 #[rustfmt::skip]
 pub const BOAT: [Entry; 10] = [
@@ -199,3 +208,41 @@ pub const BOAT: [Entry; 10] = [
 #[rustfmt::skip]
 pub const CLOCK: [Entry; 1] =
     [Entry::new("episode_elapsed", "", Scale::Plain, FLAG, "part of the episode that is over")];
+
+/// Means over a group of boats, in the frame of the target.
+#[rustfmt::skip]
+pub const GROUP: [Entry; 24] = [
+    Entry::new("radial_position", "", Scale::Plain, (-1.1, 1.1), "mean radial position r, scaled as that of a leader"),
+    Entry::new("radial_position_squared", "", Scale::Plain, (0.0, 1.21), "mean r^2"),
+    Entry::new("outward", "", Scale::Plain, UNIT, "mean cosine of the LAP orientation"),
+    Entry::new("outward_squared", "", Scale::Plain, FLAG, "its mean square"),
+    Entry::new("ahead", "", Scale::Plain, UNIT, "mean cosine of the angle to the target's tangent: the signed order"),
+    Entry::new("ahead_outward", "", Scale::Plain, UNIT, "mean product of the two"),
+    Entry::new("outward_velocity", "", Scale::Plain, TWICE, "mean velocity away from the center over the preferred speed"),
+    Entry::new("outward_velocity_squared", "", Scale::Plain, SQUARE, "its mean square"),
+    Entry::new("velocity_ahead", "", Scale::Plain, TWICE, "mean tangential velocity v towards the target over the preferred speed"),
+    Entry::new("velocity_ahead_squared", "", Scale::Plain, SQUARE, "mean v^2"),
+    Entry::new("spin_ahead", "", Scale::Plain, TWICE, "mean angular velocity over 2 rad/s, positive in the sense of the target's circulation"),
+    Entry::new("spin_ahead_squared", "", Scale::Plain, SQUARE, "its mean square"),
+    Entry::new("radial_outward", "", Scale::Plain, (-1.1, 1.1), "mean of r times the cosine of the LAP orientation"),
+    Entry::new("radial_ahead", "", Scale::Plain, (-1.1, 1.1), "mean of r times the cosine of the angle to the tangent"),
+    Entry::new("radial_velocity_ahead", "", Scale::Plain, PRODUCT, "mean of r*v"),
+    Entry::new("against_inside", "", Scale::Plain, FLAG, "share of boats in the inner half (r <= 0) that head against the target, within 60 degrees"),
+    Entry::new("against_outside", "", Scale::Plain, FLAG, "the same in the outer half"),
+    Entry::new("across_inside", "", Scale::Plain, FLAG, "share in the inner half that head neither against nor along the target"),
+    Entry::new("across_outside", "", Scale::Plain, FLAG, "the same in the outer half"),
+    Entry::new("along_inside", "", Scale::Plain, FLAG, "share in the inner half that head along the target, within 60 degrees"),
+    Entry::new("along_outside", "", Scale::Plain, FLAG, "the same in the outer half"),
+    Entry::new("clumping_1", "", Scale::Plain, FLAG, "|mean exp(i*theta)| of the polar angles theta"),
+    Entry::new("clumping_2", "", Scale::Plain, FLAG, "|mean exp(2i*theta)|"),
+    Entry::new("clumping_3", "", Scale::Plain, FLAG, "|mean exp(3i*theta)|"),
+];
+
+/// Means over the leaders of sums over the normal boats, each with exp(-d²/2) of its distance in 6 boat radii.
+#[rustfmt::skip]
+pub const NEAR_LEADERS: [Entry; 4] = [
+    Entry::new("near", "", Scale::Plain, SEVERAL, "mean over leaders of the sum over normal boats of the weight exp(-d^2/2), d their distance over 6 boat radii"),
+    Entry::new("near_outward", "", Scale::Plain, SEVERAL, "the same of the weight times the cosine of the LAP orientation"),
+    Entry::new("near_ahead", "", Scale::Plain, SEVERAL, "the same of the weight times the cosine of the angle to the target's tangent"),
+    Entry::new("near_velocity_ahead", "", Scale::Plain, SEVERAL, "the same of the weight times the velocity towards the target over the preferred speed"),
+];

@@ -1,8 +1,10 @@
 //! The entries that a leader observes, in order.
 
-use super::entry::{BOAT, CLOCK, Entry, NEIGHBOR, ORDER, OWN, PHASE, TARGET};
+use super::entry::{BOAT, CLOCK, Entry, LAW_RUDDER, NEIGHBOR, ORDER, OWN, PHASE, TARGET};
+use crate::boat::Law;
+use crate::environment::tuned_law;
 use crate::error::{FlockError, Result};
-use crate::parameters::named_choice;
+use crate::parameters::{FlockParameters, named_choice};
 
 /// Version of the observation: of the entries, their order, scales and bounds. A policy belongs to one.
 pub const OBSERVATION_VERSION: u32 = 1;
@@ -23,6 +25,8 @@ named_choice! {
         Neighbors = "neighbors",
         /// Order parameters of the normal boats.
         Order = "order",
+        /// The rudder of the pool's tuned law.
+        LawRudder = "law_rudder",
     }
 }
 
@@ -40,6 +44,7 @@ impl Block {
             Self::Target => "observation target",
             Self::Neighbors => "observation neighbors",
             Self::Order => "observation order",
+            Self::LawRudder => "observation law_rudder",
         }
     }
 }
@@ -60,6 +65,9 @@ pub struct ObservationLayout {
     /// Whether observation and action are reflected where the target is counter-clockwise, so that
     /// both directions are one task, the clockwise one.
     pub mirror_to_target: bool,
+    /// The rudder of the pool's tuned law.
+    #[serde(skip)]
+    pub law_rudder: bool,
 }
 
 impl Default for ObservationLayout {
@@ -71,6 +79,7 @@ impl Default for ObservationLayout {
             neighbors: 6,
             order: true,
             mirror_to_target: false,
+            law_rudder: false,
         }
     }
 }
@@ -93,10 +102,20 @@ impl ObservationLayout {
             return Err(FlockError::parameter(
                 "observation",
                 "no block",
-                "at least one of own, phase, target, neighbors and order",
+                "at least one of own, phase, target, neighbors, order and law_rudder",
             ));
         }
         Ok(())
+    }
+
+    /// The law whose rudder is observed, if it is.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] in a pool in which it has not been tuned.
+    pub fn law(&self, parameters: &FlockParameters) -> Result<Option<Law>> {
+        self.law_rudder
+            .then(|| tuned_law("observation law_rudder", "true", parameters))
+            .transpose()
     }
 
     /// The entries of a block; those of `Neighbors` are one neighbor's.
@@ -107,6 +126,7 @@ impl ObservationLayout {
             Block::Target => &TARGET,
             Block::Neighbors => &NEIGHBOR,
             Block::Order => &ORDER,
+            Block::LawRudder => &LAW_RUDDER,
         }
     }
 
@@ -118,6 +138,7 @@ impl ObservationLayout {
             Block::Target => usize::from(self.target),
             Block::Neighbors => self.neighbors,
             Block::Order => usize::from(self.order),
+            Block::LawRudder => usize::from(self.law_rudder),
         }
     }
 
@@ -129,6 +150,7 @@ impl ObservationLayout {
             Block::Target => self.target = repeats > 0,
             Block::Neighbors => self.neighbors = repeats,
             Block::Order => self.order = repeats > 0,
+            Block::LawRudder => self.law_rudder = repeats > 0,
         }
     }
 

@@ -2,7 +2,9 @@
 
 mod camera;
 mod entry;
+mod flock_features;
 mod layout;
+mod leader_law;
 mod observed_law;
 mod observer;
 
@@ -10,7 +12,9 @@ pub use camera::CameraSettings;
 pub(crate) use camera::{Camera, CameraState};
 pub(crate) use entry::{ANGULAR_VELOCITY_SCALE, speed_scale_cm_s};
 pub use entry::{BOAT, Entry, Scale};
+pub use flock_features::{FlockFeatures, flock_feature_entries};
 pub use layout::{Block, OBSERVATION_VERSION, ObservationLayout, state_entries};
+pub use leader_law::LeaderLaw;
 pub use observed_law::ObservedLaw;
 pub(crate) use observer::StateObserver;
 pub use observer::{FlockView, Observer};

@@ -52,13 +52,23 @@ impl ObservedLaw {
 
     /// The rudder for one observation, in the observation's own sense where it is mirrored.
     pub fn rudder(&self, observation: &[f32]) -> f64 {
+        self.rudder_about(observation, 0.0)
+    }
+
+    /// The same where the desired heading is turned outward of the target's tangent by an angle in rad.
+    pub fn rudder_about(&self, observation: &[f32], outward: f64) -> f64 {
         let read = |place: usize| f64::from(observation[place]);
         let target = self.target.map_or(1.0, read);
         // δ = φ − φ_target with φ_target = ±π/2.
         let sin = -target * read(self.cos_orientation);
         let cos = target * read(self.sin_orientation);
+        let mut misalignment = sin.atan2(cos);
+        if outward != 0.0 {
+            // Outward of the tangent is counter-clockwise for a clockwise target.
+            misalignment += target * outward;
+        }
         let spin = ANGULAR_VELOCITY_SCALE * read(self.clockwise_spin);
         self.law
-            .rudder(sin.atan2(cos), read(self.forward_velocity), -spin)
+            .rudder(misalignment, read(self.forward_velocity), -spin)
     }
 }

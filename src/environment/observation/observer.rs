@@ -1,10 +1,11 @@
 //! From a flock to the numbers that leaders and critics get.
 
 use super::entry::{BOAT, Entry, NEIGHBOR, ORDER, OWN, PHASE};
-use super::{ObservationLayout, state_entries};
+use super::{LeaderLaw, ObservationLayout, state_entries};
 use crate::analysis::OrderParameters;
 use crate::boat::misalignment;
 use crate::clock::seconds;
+use crate::error::Result;
 use crate::geometry::{HullPose, LapFrame, Pose, Vec2, Velocity, cross};
 use crate::integrator::PhaseMoment;
 use crate::parameters::{FlockParameters, Target};
@@ -34,7 +35,7 @@ pub struct FlockView<'a> {
 
 /// Scales, offsets and bounds of a row of numbers, ready to apply.
 #[derive(Debug, Clone, PartialEq)]
-struct Scaling {
+pub(super) struct Scaling {
     /// Gain as it is, and where the view is mirrored.
     gains: [Vec<f64>; 2],
     offsets: Vec<f64>,
@@ -43,7 +44,7 @@ struct Scaling {
 }
 
 impl Scaling {
-    fn new(entries: impl Iterator<Item = Entry>, parameters: &FlockParameters) -> Self {
+    pub(super) fn new(entries: impl Iterator<Item = Entry>, parameters: &FlockParameters) -> Self {
         let mut scaling = Self {
             gains: [Vec::new(), Vec::new()],
             offsets: Vec::new(),
@@ -66,7 +67,7 @@ impl Scaling {
     }
 
     /// Writes scaled and clipped numbers; returns how many were clipped.
-    fn write(&self, physical: &[f64], mirrored: bool, out: &mut [f32]) -> u32 {
+    pub(super) fn write(&self, physical: &[f64], mirrored: bool, out: &mut [f32]) -> u32 {
         let n = self.len();
         let gains = &self.gains[usize::from(mirrored)][..n];
         let (offsets, lows, highs) = (&self.offsets[..n], &self.lows[..n], &self.highs[..n]);
@@ -89,21 +90,28 @@ impl Scaling {
 pub struct Observer {
     layout: ObservationLayout,
     scaling: Scaling,
+    law: Option<LeaderLaw>,
     physical: Vec<f64>,
     nearest: Vec<(f64, u32)>,
 }
 
 impl Observer {
     /// For a checked layout and checked parameters.
-    pub fn new(layout: ObservationLayout, parameters: &FlockParameters) -> Self {
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for `law_rudder` in a pool in which the law has not been tuned.
+    pub fn new(layout: ObservationLayout, parameters: &FlockParameters) -> Result<Self> {
         let entries = layout.entries().into_iter().map(|(_, _, entry)| entry);
         let scaling = Scaling::new(entries, parameters);
-        Self {
+        let law = layout.law(parameters)?;
+        let law = law.map(|law| LeaderLaw::new(law, parameters)).transpose()?;
+        Ok(Self {
+            law,
             physical: Vec::with_capacity(scaling.len()),
             scaling,
             nearest: Vec::with_capacity(layout.neighbors + 1),
             layout,
-        }
+        })
     }
 
     /// The layout.
@@ -148,6 +156,9 @@ impl Observer {
         }
         if self.layout.order {
             self.physical.extend_from_slice(order);
+        }
+        if let Some(law) = &self.law {
+            self.physical.push(law.rudder(view, leader, 0.0));
         }
     }
 
@@ -202,7 +213,7 @@ impl Observer {
     }
 }
 
-fn own(view: &FlockView, leader: usize, frame: &LapFrame) -> [f64; OWN.len()] {
+pub(super) fn own(view: &FlockView, leader: usize, frame: &LapFrame) -> [f64; OWN.len()] {
     let (pose, velocity) = (&view.poses[leader], &view.velocities[leader]);
     let (cos, sin) = orientation(view, leader, frame);
     let lap_velocity = frame.components(velocity.linear);
@@ -232,7 +243,7 @@ fn orientation(view: &FlockView, leader: usize, frame: &LapFrame) -> (f64, f64) 
     (-towards * sin, towards * cos)
 }
 
-fn phase(view: &FlockView) -> [f64; PHASE.len()] {
+pub(super) fn phase(view: &FlockView) -> [f64; PHASE.len()] {
     let mut entries = [0.0; PHASE.len()];
     entries[view.phase.phase.index()] = 1.0;
     entries[4] = seconds(view.phase.left);

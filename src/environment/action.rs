@@ -1,0 +1,117 @@
+//! What an action stands for: a rudder, or a heading that a steering law steers to; and how long it is held.
+
+use crate::boat::{DAMPED_LAW, Law};
+use crate::error::{FlockError, Result};
+use crate::parameters::{FlockParameters, named_choice};
+use std::f64::consts::PI;
+
+named_choice! {
+    /// What an action stands for.
+    pub enum ActionMode ("action_mode") {
+        /// The rudder itself.
+        Rudder = "rudder",
+        /// Any heading: its angle outward of the target's tangent over π. The damped law steers to it.
+        Heading = "heading",
+        /// A heading about the tangent: its angle outward over [`LARGEST_LEAN`]. The pool's tuned damped law
+        /// steers to it, and 0 is that law itself.
+        Lean = "lean",
+    }
+}
+
+/// The angle in rad that a lean of 1 stands for.
+pub const LARGEST_LEAN: f64 = 1.2;
+
+/// How actions are read, and how long they are held.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ActionSettings {
+    /// What an action stands for.
+    pub mode: ActionMode,
+    /// Time in s between decisions, a whole number of control steps; `None`: one control step.
+    pub decision_period_s: Option<f64>,
+}
+
+impl Default for ActionSettings {
+    fn default() -> Self {
+        Self {
+            mode: ActionMode::Rudder,
+            decision_period_s: None,
+        }
+    }
+}
+
+impl ActionSettings {
+    /// Checks the settings for episodes with so many control steps per second.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`].
+    pub fn check(&self, parameters: &FlockParameters, control_hz: f64) -> Result<()> {
+        self.steering_law(parameters)?;
+        let Some(period) = self.decision_period_s else {
+            return Ok(());
+        };
+        let refuse =
+            |accepted: String| Err(FlockError::parameter("decision_period_s", period, accepted));
+        let steps = period * control_hz;
+        if !(steps > 0.0 && steps <= 1e9) {
+            return refuse(format!(
+                "a whole number of control steps of {} s, at most 1e9 of them",
+                1.0 / control_hz
+            ));
+        }
+        if (steps - steps.round()).abs() > 1e-9 * steps.max(1.0) {
+            let [below, above] = [steps.floor().max(1.0), steps.ceil()].map(|n| n / control_hz);
+            let nearest = if below == above {
+                format!("{above} s is")
+            } else {
+                format!("{below} and {above} s are")
+            };
+            return refuse(format!(
+                "a whole number of control steps of {} s: {nearest} nearest",
+                1.0 / control_hz
+            ));
+        }
+        Ok(())
+    }
+
+    /// Control steps from one decision to the next.
+    pub fn control_steps(&self, control_hz: f64) -> u32 {
+        self.decision_period_s
+            .map_or(1, |period| (period * control_hz).round() as u32)
+    }
+
+    /// The law that steers to the heading that an action stands for; `None` where actions are rudders.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for leans in a pool in which the law has not been tuned.
+    pub fn steering_law(&self, parameters: &FlockParameters) -> Result<Option<Law>> {
+        match self.mode {
+            ActionMode::Rudder => Ok(None),
+            ActionMode::Heading => Ok(Some(DAMPED_LAW)),
+            ActionMode::Lean => tuned_law("action_mode", "\"lean\"", parameters).map(Some),
+        }
+    }
+
+    /// The angle in rad outward of the target's tangent that an action in [−1, 1] stands for.
+    pub fn angle(&self, action: f64) -> f64 {
+        match self.mode {
+            ActionMode::Rudder => 0.0,
+            ActionMode::Heading => PI * action,
+            ActionMode::Lean => LARGEST_LEAN * action,
+        }
+    }
+}
+
+/// The damped law tuned for the parameters' pool, which some setting needs.
+///
+/// # Errors
+/// [`FlockError::Parameter`] for other pools.
+pub(crate) fn tuned_law(
+    setting: &'static str,
+    value: &str,
+    parameters: &FlockParameters,
+) -> Result<Law> {
+    Law::tuned_damped(&parameters.pool).ok_or_else(|| {
+        let accepted = "the damped law is tuned in the pools 500-boats and table-1 alone";
+        FlockError::parameter(setting, value, accepted)
+    })
+}

@@ -1,0 +1,151 @@
+//! What a leader's contacts do to normal boats, from the impulses of the contact solver. None of it has the noise of
+//! boats that the leader does not touch.
+
+use crate::geometry::LapFrame;
+use crate::integrator::Integrator;
+use crate::parameters::Target;
+
+/// Time in s after which a turn that a leader gave counts for 1/e.
+pub const MEMORY_S: f64 = 4.0;
+
+/// How one leader has turned one normal boat.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+struct Turned {
+    /// The part of the boat's angular velocity that is left of the leader's impulses, in rad/s.
+    spin: f64,
+    /// The part of its heading, in rad.
+    angle: f64,
+}
+
+/// One leader's credit for a control step.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LeaderCredit {
+    /// Σ λ·(n·t̂): tangential momentum given towards the target, per time, in cm/s².
+    pub push: f64,
+    /// Σ Δα̇·sin δ: angular velocity given towards the target's tangent, per time, in rad/s².
+    pub alignment: f64,
+    /// Σ cos δ − cos(δ + turned angle): the order of touched boats against what it would be unturned.
+    pub touched_order: f64,
+}
+
+/// The credit of a flock's leaders, and its memory.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct ContactCredit {
+    leaders: usize,
+    /// (momentum in cm/s, angular velocity in rad/s) given by each leader in the control step.
+    given: Vec<(f64, f64)>,
+    /// For each leader each normal boat.
+    turned: Vec<Turned>,
+}
+
+impl ContactCredit {
+    /// Without a memory yet.
+    pub fn new(leaders: usize, boats: usize) -> Self {
+        Self {
+            leaders,
+            given: vec![(0.0, 0.0); leaders],
+            turned: vec![Turned::default(); leaders * (boats - leaders)],
+        }
+    }
+
+    /// Whether a stored credit is one of so many leaders and boats.
+    pub fn fits(&self, leaders: usize, boats: usize) -> bool {
+        self.leaders == leaders
+            && self.given.len() == leaders
+            && self.turned.len() == leaders * (boats - leaders)
+    }
+
+    /// Forgets what was given in the control step before.
+    pub(crate) fn start(&mut self) {
+        self.given.fill((0.0, 0.0));
+    }
+
+    /// Adds the contacts of the substep just taken.
+    pub(crate) fn add(&mut self, flock: &Integrator) {
+        let normal = flock.poses.len() - self.leaders;
+        let contacts = flock.contacts.contacts().iter();
+        for (contact, &impulse) in contacts.zip(flock.contacts.impulses()) {
+            let Some(boat) = contact.second().filter(|_| impulse > 0.0) else {
+                continue;
+            };
+            // Leaders come first, and the partner of a contact after its boat.
+            let leader = contact.boat as usize;
+            if leader >= self.leaders || boat < self.leaders {
+                continue;
+            }
+            let frame = LapFrame::at(flock.poses[boat].position);
+            let towards = flock.parameters.target.sign();
+            let push = frame.components(-contact.gap.normal * impulse).y;
+            let spin = -contact.gap.arm_j * impulse * flock.inertia[boat].angular;
+            // sin δ, where δ is how far counter-clockwise the boat has to turn.
+            let misaligned = -towards * frame.components(flock.boats[boat].axis).x;
+            let given = &mut self.given[leader];
+            given.0 += towards * push;
+            given.1 += spin * misaligned;
+            self.turned[leader * normal + boat - self.leaders].spin += spin;
+        }
+    }
+
+    /// Has turns go on for a control step, as eq. (9) damps them, and be forgotten by and by.
+    pub(crate) fn remember(&mut self, flock: &Integrator, step_s: f64) {
+        let normal = flock.poses.len() - self.leaders;
+        if normal == 0 {
+            return;
+        }
+        let forgetting = (-step_s / MEMORY_S).exp();
+        for turned in self.turned.chunks_exact_mut(normal) {
+            for (turned, boat) in turned.iter_mut().zip(self.leaders..) {
+                if *turned == Turned::default() {
+                    continue;
+                }
+                let velocity = &flock.velocities[boat];
+                let along = flock.boats[boat].axis.dot(&velocity.linear);
+                let rate = flock.motion.turn_damping(velocity.angular, along);
+                turned.angle = forgetting * (turned.angle + turned.spin * step_s);
+                turned.spin *= (-rate * step_s).exp();
+            }
+        }
+    }
+
+    /// The credit of a leader for a control step of this length.
+    pub(crate) fn of(
+        &self,
+        leader: usize,
+        flock: &Integrator,
+        target: Target,
+        step_s: f64,
+    ) -> LeaderCredit {
+        let normal = flock.poses.len() - self.leaders;
+        let (push, alignment) = self.given[leader];
+        let own = &self.turned[leader * normal..(leader + 1) * normal];
+        let gains = own.iter().zip(self.leaders..).map(|(turned, boat)| {
+            if turned.angle == 0.0 {
+                return 0.0;
+            }
+            let frame = LapFrame::at(flock.poses[boat].position);
+            let orientation = frame.components(flock.boats[boat].axis);
+            // sin δ and cos δ.
+            let (sin, cos) = (
+                -target.sign() * orientation.x,
+                target.sign() * orientation.y,
+            );
+            let (turned_sin, turned_cos) = turned.angle.sin_cos();
+            cos - (cos * turned_cos - sin * turned_sin)
+        });
+        LeaderCredit {
+            push: push / step_s,
+            alignment: alignment / step_s,
+            touched_order: gains.sum(),
+        }
+    }
+}
+
+/// What stands for the credit in states of formats 1 and 2, which hold none.
+#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
+pub struct NoCredit;
+
+impl From<NoCredit> for Option<ContactCredit> {
+    fn from(_: NoCredit) -> Self {
+        None
+    }
+}

@@ -1,0 +1,167 @@
+//! Features of a whole flock that depend neither on the order of boats nor on absolute angles, for critics that see
+//! everything. All are in the frame of the target: "ahead" is along it, whichever direction it is.
+
+use super::entry::{ANGULAR_VELOCITY_SCALE, CLOCK, Entry, GROUP, NEAR_LEADERS, PHASE, Scale};
+use super::observer::{FlockView, Scaling, phase};
+use crate::geometry::{LapFrame, Vec2};
+use crate::parameters::FlockParameters;
+
+/// Boats of the two groups: normal ones and leaders.
+const GROUPS: usize = 2;
+const SIZE: usize = GROUPS * GROUP.len() + NEAR_LEADERS.len() + PHASE.len() + CLOCK.len();
+
+/// All features of a flock in order, each with its block.
+pub fn flock_feature_entries() -> Vec<(&'static str, Entry)> {
+    let blocks: [(&str, &[Entry]); 5] = [
+        ("normal boats", &GROUP),
+        ("leaders", &GROUP),
+        ("near leaders", &NEAR_LEADERS),
+        ("clock", &PHASE),
+        ("clock", &CLOCK),
+    ];
+    let each = |(block, entries): (&'static str, &'static [Entry])| {
+        entries.iter().map(move |entry| (block, *entry))
+    };
+    blocks.into_iter().flat_map(each).collect()
+}
+
+/// One boat in the frame of the target, scaled as observations are and within their bounds.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    radial: f64,
+    outward: f64,
+    ahead: f64,
+    outward_velocity: f64,
+    velocity_ahead: f64,
+    spin_ahead: f64,
+    polar: Vec2,
+    center: Vec2,
+}
+
+/// Writes the features of one flock.
+#[derive(Debug, Clone)]
+pub struct FlockFeatures {
+    scaling: Scaling,
+    radial: (f64, f64),
+    speed: f64,
+    /// One over twice the square of the distance within which boats count as near a leader, in 1/cm².
+    near: f64,
+}
+
+impl FlockFeatures {
+    /// How many there are.
+    pub const SIZE: usize = SIZE;
+
+    /// For checked parameters.
+    pub fn new(parameters: &FlockParameters) -> Self {
+        let entries = flock_feature_entries().into_iter();
+        let length = Scale::Length.affine(parameters).0;
+        Self {
+            scaling: Scaling::new(entries.map(|(_, entry)| entry), parameters),
+            radial: Scale::Radial.affine(parameters),
+            speed: Scale::Speed.affine(parameters).0,
+            near: 0.5 * length * length,
+        }
+    }
+
+    /// Writes the features; `elapsed` is the part of the episode that is over.
+    pub fn observe(&self, view: &FlockView, elapsed: f64, out: &mut [f32]) {
+        let seen: Vec<_> = (0..view.poses.len())
+            .map(|boat| self.seen(view, boat))
+            .collect();
+        let (leaders, normal) = seen.split_at(view.leaders);
+        let mut features = Vec::with_capacity(SIZE);
+        features.extend(moments(normal));
+        features.extend(moments(leaders));
+        features.extend(self.near_leaders(leaders, normal));
+        features.extend(phase(view));
+        features.push(elapsed);
+        self.scaling.write(&features, false, out);
+    }
+
+    fn seen(&self, view: &FlockView, boat: usize) -> Seen {
+        let (pose, velocity, hull) = (&view.poses[boat], &view.velocities[boat], &view.hulls[boat]);
+        let frame = LapFrame::at(pose.position);
+        let towards = view.target.sign();
+        let orientation = frame.components(hull.axis);
+        let lap_velocity = frame.components(velocity.linear) * self.speed;
+        let spin = -velocity.angular / ANGULAR_VELOCITY_SCALE;
+        Seen {
+            radial: (pose.position.norm() * self.radial.0 + self.radial.1).clamp(-1.1, 1.1),
+            outward: orientation.x,
+            ahead: towards * orientation.y,
+            outward_velocity: lap_velocity.x.clamp(-2.0, 2.0),
+            velocity_ahead: (towards * lap_velocity.y).clamp(-2.0, 2.0),
+            spin_ahead: (towards * spin).clamp(-2.0, 2.0),
+            polar: frame.outward,
+            center: hull.center,
+        }
+    }
+
+    /// Means over the leaders of sums over the normal boats, each with exp(−d²/2) of its distance.
+    fn near_leaders(&self, leaders: &[Seen], normal: &[Seen]) -> [f64; NEAR_LEADERS.len()] {
+        let mut sums = [0.0; NEAR_LEADERS.len()];
+        for leader in leaders {
+            for boat in normal {
+                let square = (boat.center - leader.center).norm_squared();
+                let weight = (-self.near * square).exp();
+                let values = [1.0, boat.outward, boat.ahead, boat.velocity_ahead];
+                for (sum, value) in sums.iter_mut().zip(values) {
+                    *sum += weight * value;
+                }
+            }
+        }
+        sums.map(|sum| sum / leaders.len().max(1) as f64)
+    }
+}
+
+/// Means over a group, zero for an empty one.
+fn moments(group: &[Seen]) -> [f64; GROUP.len()] {
+    let mut sums = [0.0; GROUP.len()];
+    // cos(mθ) and sin(mθ) for m = 1, 2 and 3.
+    let mut harmonics = [Vec2::zeros(); 3];
+    for boat in group {
+        let place = usize::from(boat.radial > 0.0) + 2 * heading_bin(boat.ahead);
+        let mut share = [0.0; 6];
+        share[place] = 1.0;
+        let values = [
+            boat.radial,
+            boat.radial * boat.radial,
+            boat.outward,
+            boat.outward * boat.outward,
+            boat.ahead,
+            boat.ahead * boat.outward,
+            boat.outward_velocity,
+            boat.outward_velocity * boat.outward_velocity,
+            boat.velocity_ahead,
+            boat.velocity_ahead * boat.velocity_ahead,
+            boat.spin_ahead,
+            boat.spin_ahead * boat.spin_ahead,
+            boat.radial * boat.outward,
+            boat.radial * boat.ahead,
+            boat.radial * boat.velocity_ahead,
+        ];
+        for (sum, value) in sums.iter_mut().zip(values.into_iter().chain(share)) {
+            *sum += value;
+        }
+        let turn = boat.polar;
+        let mut power = turn;
+        for harmonic in &mut harmonics {
+            *harmonic += power;
+            power = Vec2::new(
+                power.x * turn.x - power.y * turn.y,
+                power.x * turn.y + power.y * turn.x,
+            );
+        }
+    }
+    let first = GROUP.len() - harmonics.len();
+    for (sum, harmonic) in sums[first..].iter_mut().zip(harmonics) {
+        *sum = harmonic.norm();
+    }
+    sums.map(|sum| sum / group.len().max(1) as f64)
+}
+
+/// 0 for boats that head against the target, 2 for those that head along it, within 60°; 1 for the others.
+fn heading_bin(ahead: f64) -> usize {
+    usize::from(ahead > -0.5) + usize::from(ahead > 0.5)
+}
