@@ -10,8 +10,10 @@ use serde::de::DeserializeOwned;
 pub struct Magic {
     /// In the present format, whose checksum is CRC-32.
     pub now: [u8; 8],
-    /// In earlier ones, whose checksum is FNV-1a.
+    /// In earlier ones with the same checksum.
     pub earlier: &'static [[u8; 8]],
+    /// In still earlier ones, whose checksum is FNV-1a.
+    pub first: &'static [[u8; 8]],
 }
 
 /// A state as bytes.
@@ -46,9 +48,9 @@ pub fn opened<'a>(magic: &Magic, bytes: &'a [u8]) -> Result<&'a [u8]> {
     let Some((found, rest)) = bytes.split_first_chunk::<8>() else {
         return refuse("the bytes are too short to be a snapshot");
     };
-    let checksum = if *found == magic.now {
+    let checksum = if *found == magic.now || magic.earlier.contains(found) {
         crc_32
-    } else if magic.earlier.contains(found) {
+    } else if magic.first.contains(found) {
         fnv_1a
     } else {
         return refuse("the bytes are no flockenv snapshot of this kind and format");

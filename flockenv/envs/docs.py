@@ -44,7 +44,7 @@ ends, and its `reward_terms` are means over them."""
 _FRAME = """All entries are in the local-angle polar (LAP) frame of the leader's own position,
 outward and clockwise. They are scaled, and clipped at the bounds below; the share of clipped
 numbers is reported at the end of the episode. The entries of `neighbors` repeat for each of the
-nearest boats, nearest first."""
+nearest boats, nearest first. The block `law_rudder` is off unless `observation` switches it on."""
 
 _START = """Boats start at rest at random positions with random headings, without overlap, in phase
 fw. The seed fixes the initial state, the noise (whatever the policy does), the target and the
@@ -73,7 +73,7 @@ _SHARED = {
     "start": _FIRST,
     "rudder": _RUDDER,
     "frame": _FRAME,
-    "observation_table": observation_table(observation_entries()),
+    "observation_table": observation_table(observation_entries({"law_rudder": True})),
     "state_table": observation_table(state_entries(1)),
     "flock_feature_table": feature_table(flock_feature_entries()),
     "flock_feature_count": str(len(flock_feature_entries())),

@@ -16,8 +16,10 @@ use serde::de::DeserializeOwned;
 
 const MAGIC: Magic = Magic {
     now: *b"flocken3",
-    earlier: &[*b"flocken2", *b"flocken1"],
+    earlier: &[FORMAT_2],
+    first: &[*b"flocken1"],
 };
+const FORMAT_2: [u8; 8] = *b"flocken2";
 
 /// Where a step writes: one row per leader, flock after flock, and one flag per flock.
 #[derive(Debug)]
@@ -207,7 +209,7 @@ impl EnvBatch {
         if bytes.starts_with(&MAGIC.now) {
             type Credit = Option<ContactCredit>;
             Self::read::<NamedSettings, FlockParameters, Averages, Terms, Credit>(bytes)
-        } else if bytes.starts_with(b"flocken2") {
+        } else if bytes.starts_with(&FORMAT_2) {
             Self::read::<NamedSettings, FlockParameters, Averages, FirstTerms, NoCredit>(bytes)
         } else {
             Self::read::<EnvSettings, FirstParameters, FirstAverages, FirstTerms, NoCredit>(bytes)

@@ -86,7 +86,7 @@ impl ContactCredit {
         }
     }
 
-    /// Has turns go on for a control step, as eq. (9) damps them, and be forgotten by and by.
+    /// Moves the turns through a control step: eq. (9) damps the spins, and the angles are forgotten.
     pub(crate) fn remember(&mut self, flock: &Integrator, step_s: f64) {
         let normal = flock.poses.len() - self.leaders;
         if normal == 0 {

@@ -11,7 +11,8 @@ use crate::sealed_bytes::{Magic, decode, opened, seal, unseal};
 
 const MAGIC: Magic = Magic {
     now: *b"flockst3",
-    earlier: &[*b"flockst2", FORMAT_1],
+    earlier: &[],
+    first: &[*b"flockst2", FORMAT_1],
 };
 /// Of snapshots that end one number earlier: at the statistics' worst overlap.
 const FORMAT_1: [u8; 8] = *b"flockst1";

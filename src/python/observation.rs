@@ -87,9 +87,12 @@ pub fn flock_feature_table() -> Vec<Row> {
     entries.map(|(block, entry)| row(block, 0, entry)).collect()
 }
 
-/// The tuned gains: by law and pool, names and values.
+/// A law, a pool, and names and values of the law's gains.
+type Tuned = (&'static str, &'static str, Vec<(&'static str, f64)>);
+
+/// The gains tuned for each law and pool.
 #[pyfunction]
-pub fn tuned_gains() -> Vec<(&'static str, &'static str, Vec<(&'static str, f64)>)> {
+pub fn tuned_gains() -> Vec<Tuned> {
     let tuned = TUNED_LAWS.iter();
     tuned
         .map(|(name, pool, law)| (*name, *pool, law.gains()))
