@@ -2,7 +2,7 @@
 //! everything. All are in the frame of the target: "ahead" is along it, whichever direction it is.
 
 use super::entry::{ANGULAR_VELOCITY_SCALE, CLOCK, Entry, GROUP, NEAR_LEADERS, PHASE, Scale};
-use super::observer::{FlockView, Scaling, phase};
+use super::view::{FlockView, Scaling, phase};
 use crate::geometry::{LapFrame, Vec2};
 use crate::parameters::FlockParameters;
 

@@ -1,7 +1,7 @@
 //! A steering law on the leader's own view, whatever blocks the leader observes.
 
 use super::entry::{Entry, OWN, TARGET};
-use super::observer::{FlockView, Scaling, own};
+use super::view::{FlockView, Scaling, own};
 use super::{Block, ObservationLayout, ObservedLaw};
 use crate::boat::Law;
 use crate::error::Result;

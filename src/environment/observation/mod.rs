@@ -7,6 +7,7 @@ mod layout;
 mod leader_law;
 mod observed_law;
 mod observer;
+mod view;
 
 pub use camera::CameraSettings;
 pub(crate) use camera::{Camera, CameraState};
@@ -16,5 +17,6 @@ pub use flock_features::{FlockFeatures, flock_feature_entries};
 pub use layout::{Block, OBSERVATION_VERSION, ObservationLayout, state_entries};
 pub use leader_law::LeaderLaw;
 pub use observed_law::ObservedLaw;
+pub use observer::Observer;
 pub(crate) use observer::StateObserver;
-pub use observer::{FlockView, Observer};
+pub use view::FlockView;

@@ -1,89 +1,11 @@
 //! From a flock to the numbers that leaders and critics get.
 
-use super::entry::{BOAT, Entry, NEIGHBOR, ORDER, OWN, PHASE};
+use super::entry::{BOAT, NEIGHBOR, ORDER, PHASE};
+use super::view::{FlockView, Scaling, own, phase};
 use super::{LeaderLaw, ObservationLayout, state_entries};
-use crate::analysis::OrderParameters;
-use crate::boat::misalignment;
-use crate::clock::seconds;
 use crate::error::Result;
-use crate::geometry::{HullPose, LapFrame, Pose, Vec2, Velocity, cross};
-use crate::integrator::PhaseMoment;
-use crate::parameters::{FlockParameters, Target};
-
-/// Everything that an observation depends on.
-#[derive(Debug, Clone, Copy)]
-pub struct FlockView<'a> {
-    /// Poses, leaders first.
-    pub poses: &'a [Pose],
-    /// The poses with their direction vectors.
-    pub hulls: &'a [HullPose],
-    /// Velocities.
-    pub velocities: &'a [Velocity],
-    /// How many of the boats are leaders.
-    pub leaders: usize,
-    /// Where in the cycle the flock is.
-    pub phase: PhaseMoment,
-    /// Length of the backward phase in s.
-    pub bw_s: f64,
-    /// The direction to lead in.
-    pub target: Target,
-    /// The leaders' rudders as they stand.
-    pub rudders: &'a [f64],
-    /// Order parameters of the normal boats; `None` where there is none.
-    pub order: Option<&'a OrderParameters>,
-}
-
-/// Scales, offsets and bounds of a row of numbers, ready to apply.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Scaling {
-    /// Gain as it is, and where the view is mirrored.
-    gains: [Vec<f64>; 2],
-    offsets: Vec<f64>,
-    lows: Vec<f64>,
-    highs: Vec<f64>,
-}
-
-impl Scaling {
-    pub(super) fn new(entries: impl Iterator<Item = Entry>, parameters: &FlockParameters) -> Self {
-        let mut scaling = Self {
-            gains: [Vec::new(), Vec::new()],
-            offsets: Vec::new(),
-            lows: Vec::new(),
-            highs: Vec::new(),
-        };
-        for entry in entries {
-            let (gain, offset) = entry.scale.affine(parameters);
-            scaling.gains[0].push(gain);
-            scaling.gains[1].push(if entry.mirrored { -gain } else { gain });
-            scaling.offsets.push(offset);
-            scaling.lows.push(entry.low);
-            scaling.highs.push(entry.high);
-        }
-        scaling
-    }
-
-    fn len(&self) -> usize {
-        self.offsets.len()
-    }
-
-    /// Writes scaled and clipped numbers; returns how many were clipped.
-    pub(super) fn write(&self, physical: &[f64], mirrored: bool, out: &mut [f32]) -> u32 {
-        let n = self.len();
-        let gains = &self.gains[usize::from(mirrored)][..n];
-        let (offsets, lows, highs) = (&self.offsets[..n], &self.lows[..n], &self.highs[..n]);
-        let (physical, out) = (&physical[..n], &mut out[..n]);
-        let mut clipped = 0;
-        for i in 0..n {
-            let value = gains[i] * physical[i] + offsets[i];
-            // NaN becomes the lower bound.
-            let raised = if value > lows[i] { value } else { lows[i] };
-            let bounded = if raised < highs[i] { raised } else { highs[i] };
-            clipped += u32::from(bounded != value);
-            out[i] = bounded as f32;
-        }
-        clipped
-    }
-}
+use crate::geometry::{LapFrame, Vec2, cross};
+use crate::parameters::FlockParameters;
 
 /// Writes observations of one flock's leaders.
 #[derive(Debug, Clone)]
@@ -211,44 +133,6 @@ impl Observer {
         self.physical
             .extend(std::iter::repeat_n(0.0, missing * NEIGHBOR.len()));
     }
-}
-
-pub(super) fn own(view: &FlockView, leader: usize, frame: &LapFrame) -> [f64; OWN.len()] {
-    let (pose, velocity) = (&view.poses[leader], &view.velocities[leader]);
-    let (cos, sin) = orientation(view, leader, frame);
-    let lap_velocity = frame.components(velocity.linear);
-    [
-        pose.position.norm(),
-        cos,
-        sin,
-        lap_velocity.x,
-        lap_velocity.y,
-        view.hulls[leader].axis.dot(&velocity.linear),
-        -velocity.angular,
-        view.rudders.get(leader).copied().unwrap_or_default(),
-    ]
-}
-
-/// Cosine and sine of the LAP orientation φ. Where the heading is opposite to the target's, to rounding, they
-/// come by way of the steering law's own misalignment δ = φ − φ_target: its jump at δ = ±π then has the same
-/// sign for whoever reads the observation.
-fn orientation(view: &FlockView, leader: usize, frame: &LapFrame) -> (f64, f64) {
-    let orientation = frame.components(view.hulls[leader].axis);
-    let towards = view.target.sign();
-    if orientation.x.abs() > 1e-9 || towards * orientation.y > 0.0 {
-        return (orientation.x, orientation.y);
-    }
-    let pose = &view.poses[leader];
-    let (sin, cos) = misalignment(pose.position, pose.heading, view.target).sin_cos();
-    (-towards * sin, towards * cos)
-}
-
-pub(super) fn phase(view: &FlockView) -> [f64; PHASE.len()] {
-    let mut entries = [0.0; PHASE.len()];
-    entries[view.phase.phase.index()] = 1.0;
-    entries[4] = seconds(view.phase.left);
-    entries[5] = view.bw_s;
-    entries
 }
 
 fn order(view: &FlockView) -> [f64; ORDER.len()] {
