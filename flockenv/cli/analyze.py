@@ -96,14 +96,24 @@ def export(
 
     Example: `flockenv export results/run.npz --out run.gsd`
     """
+    from flockenv.tracks import EXPORTS
     from flockenv.tracks import export as write
 
+    if out.suffix.lower() not in EXPORTS:
+        endings = ", ".join(EXPORTS)
+        raise ParameterError(f"--out {out} is not accepted: a name that ends in {endings}")
+    beside = out.with_suffix(".toml")
     check_file(out)
-    refuse_overwriting(file, "FILE", [out, out.with_suffix(".toml")])
-    for path in (out, out.with_suffix(".toml")):
-        if path.exists() and not force and (path == out or out.suffix != ".gsd"):
-            raise ParameterError(f"{path} is there already: --force overwrites it")
+    refuse_overwriting(file, "FILE", [out, beside])
     recording = load_recording(file, layout, quiet=quiet)
+    if not force and out.exists():
+        raise ParameterError(f"{out} is there already: --force overwrites it")
+    if not force and out.suffix.lower() != ".gsd" and beside.exists():
+        other = out.with_stem(f"{out.stem}-tracks")
+        raise ParameterError(
+            f"{beside} is there already, and the layout of the table goes there: name another "
+            f"--out, such as {other}, or overwrite it with --force"
+        )
     with writable(out):
         written = write(recording, out)
     if as_json:

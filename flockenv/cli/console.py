@@ -88,7 +88,10 @@ class _Bar(Progress):
         for task in self.tasks if kind is None else ():
             self.update(task.id, completed=task.total)
         self.live.transient = kind is not None and not issubclass(kind, KeyboardInterrupt)
-        super().__exit__(kind, *rest)
+        if self.live.transient and not self.console.is_interactive:
+            self.live.stop()  # What is left where no bar was drawn is an empty line.
+        else:
+            super().__exit__(kind, *rest)
 
 
 def progress_bar(disable: bool) -> Progress:

@@ -173,7 +173,8 @@ def _seeds(seeds: Any) -> tuple[int, ...]:
     if isinstance(seeds, list) and seeds and len(set(map(repr, seeds))) == len(seeds):
         return tuple(seeds)
     raise ParameterError(
-        f"seeds = {seeds!r} is not accepted: how many (1 or more), or a list of different seeds"
+        f"seeds = {seeds!r} is not accepted: how many (1 to {MOST_RUNS}), or a list of different "
+        "seeds"
     )
 
 

@@ -74,6 +74,8 @@ def test_mistakes_are_one_line_with_exit_code_2(cli, run, tmp_path):
         (["analyze", "run.npz", "--out", "other.csv"], "ends in .npz"),
         (["export", "run.npz", "--out", "run.xlsx"], ".csv, .parquet, .gsd"),
         (["export", "run.npz", "--out", "alone.csv"], "--force overwrites it"),
+        (["export", "run.npz", "--out", "layout.csv"], "layout-tracks.csv, or overwrite it"),
+        (["export", "absent.npz", "--out", "alone.csv"], "absent.npz cannot be read"),
     ):
         paths = [str(tmp_path / each) if "." in each else each for each in arguments]
         done = cli(*paths)

@@ -50,14 +50,16 @@ def test_json_is_the_same_on_every_console(printed):
         assert json.loads(reported) == data
 
 
-def test_a_bar_ends_full_but_after_an_error():
+def test_a_bar_ends_full_but_after_an_error(capsys):
     with progress_bar(False) as bar:
         bar.add_task("parts", total=1.0, completed=0.999)
     assert bar.finished
+    assert "100 %" in capsys.readouterr().err
     bar.reset(0)
     with pytest.raises(InterruptedError), bar:
         raise InterruptedError
     assert not bar.finished
+    assert capsys.readouterr().err == "", "no empty line above the error"
 
 
 # Ctrl-C as soon as a package is looked for.
