@@ -1,4 +1,4 @@
-"""The console script: the command line, which Ctrl-C ends in a line until a command begins.
+"""The console script: the command line, which Ctrl-C ends in a line until a command starts.
 
 It stands beside the package, because importing anything in the package imports the package.
 """

@@ -66,9 +66,9 @@ def leans(law: LeaningLaw, means: dict[str, float]) -> pd.DataFrame:
 
 def variants(law: LeaningLaw, means: dict[str, float]) -> dict[str, LeaningLaw]:
     def without(*left_out: str) -> LeaningLaw:
-        kept = {name: weight for name, weight in law.weights.items() if name not in left_out}
+        rest = {name: weight for name, weight in law.weights.items() if name not in left_out}
         bias = law.bias + sum(law.weights.get(name, 0.0) * means[name] for name in left_out)
-        return LeaningLaw(law.gains, bias, kept)
+        return LeaningLaw(law.gains, bias, rest)
 
     found = {"whole": law, "no weights": without(*FEATURES)}
     for name, group in GROUPS.items():

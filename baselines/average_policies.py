@@ -6,7 +6,7 @@
 
 Searches of the same form from the same initial law end around the same law, and each differs from
 it by the noise of its own episodes. Their mean may differ less. The search moves logarithms of
-gains, so the mean gain is the geometric one. The mean's `made` holds the provenance of each part.
+gains, so the mean gain is the geometric one. The mean's `provenance` holds that of each part.
 With --pool, all laws and the tuned damped law lead in training episodes that no search uses; these
 decide whether the mean is distributed, before it is run on the seeds of a comparison.
 """
@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 import flockenv
-from flockenv._io.provenance import made_by
+from flockenv._io.provenance import provenance_of
 from flockenv.comparison import run_episodes
 from flockenv.policies import LeaningLaw, load
 from flockenv.policies.leaning_law import FEATURES, GAINS
@@ -34,7 +34,7 @@ LISTED = ("command", "commit", "seed", "samples", "wall_s")
 
 def total(laws: list[LeaningLaw], name: str) -> int:
     """Return the sum of a number over the parts that have it."""
-    return sum(int(law.made.get(name, "0")) for law in laws)
+    return sum(int(law.provenance.get(name, "0")) for law in laws)
 
 
 def average(laws: list[LeaningLaw], command: str) -> LeaningLaw:
@@ -45,18 +45,20 @@ def average(laws: list[LeaningLaw], command: str) -> LeaningLaw:
     logs = np.log([[law.gains[name] for name in GAINS] for law in laws])
     weights = np.mean([[law.weights.get(name, 0.0) for name in FEATURES] for law in laws], axis=0)
     parts = {
-        f"part {number}: {name}": law.made.get(name, "unknown")
+        f"part {number}: {name}": law.provenance.get(name, "unknown")
         for number, law in enumerate(laws)
         for name in LISTED
     }
-    made = made_by(command, seed=0, samples=total(laws, "samples"), wall_s=total(laws, "wall_s"))
-    made["seed"] = ", ".join(law.made.get("seed", "unknown") for law in laws)
+    provenance = provenance_of(
+        command, seed=0, samples=total(laws, "samples"), wall_s=total(laws, "wall_s")
+    )
+    provenance["seed"] = ", ".join(law.provenance.get("seed", "unknown") for law in laws)
     return LeaningLaw(
         dict(zip(GAINS, np.exp(logs.mean(axis=0)).tolist(), strict=True)),
         float(np.mean([law.bias for law in laws])),
         dict(zip(FEATURES, weights.tolist(), strict=True)),
         observation=first.observation,
-        made={**made, **parts},
+        provenance={**provenance, **parts},
     )
 
 

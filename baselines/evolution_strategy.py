@@ -32,7 +32,7 @@ from run_number import run_number
 
 import flockenv
 from flockenv._io.array_file import read_arrays, write_arrays
-from flockenv._io.provenance import made_by
+from flockenv._io.provenance import provenance_of
 from flockenv.cli.parameters import changed_fields
 from flockenv.envs.observation import OBSERVATION_VERSION
 from flockenv.envs.reward import TERMS
@@ -265,19 +265,19 @@ def search(options: argparse.Namespace, command: str) -> NetworkPolicy | Leaning
     if state is None:
         weights = shape.first(np.random.default_rng(options.seed))
         state = State(0, weights, 0 * weights, 0 * weights, weights, 0.0, np.empty(0))
-    begin = time.perf_counter() - state.wall_s
+    start = time.perf_counter() - state.wall_s
     with Progress(disable=options.quiet) as progress:
         task = progress.add_task("", total=options.generations, completed=state.generation)
         while state.generation < options.generations:
             env = envs[leaders_of(options, state.generation)]
             state = next_generation(state, env, shape, options)
-            state.wall_s = time.perf_counter() - begin
+            state.wall_s = time.perf_counter() - start
             save_state(path, state, options)
             words = f"mean reward of the candidates {state.curve[-1]:.3f}"
             progress.update(task, description=words, completed=state.generation)
     samples = samples_of(options, state.generation)
-    made = made_by(command, seed=options.seed, samples=samples, wall_s=state.wall_s)
-    policy = shape.policy(state.average, made)
+    provenance = provenance_of(command, seed=options.seed, samples=samples, wall_s=state.wall_s)
+    policy = shape.policy(state.average, provenance)
     policy.save(options.out / "policy.npz")
     return policy
 
@@ -285,12 +285,12 @@ def search(options: argparse.Namespace, command: str) -> NetworkPolicy | Leaning
 def print_held_out(options: argparse.Namespace, policies: dict[str, Any]) -> None:
     """Print the rewards of policies in episodes that the search has not used."""
     env = environment(options, options.episodes, options.leaders[0])
-    for name, policy in policies.items():
+    for label, policy in policies.items():
         steer = lambda rows, policy=policy: policy.predict(rows)[0]  # noqa: E731
         found = mean_rewards(env, list(POLICY_SEEDS["evaluation"].seeds(options.episodes)), steer)
-        for what, values in zip((options.reward, "signed order"), found, strict=True):
+        for name, values in zip((options.reward, "signed order"), found, strict=True):
             half = 1.96 * values.std(ddof=1) / np.sqrt(options.episodes)
-            print(f"{name}: mean {what} {values.mean():.3f} ± {half:.3f}")
+            print(f"{label}: mean {name} {values.mean():.3f} ± {half:.3f}")
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -71,7 +71,7 @@ class Curve(BaseCallback):
         self.known = {"policy": "PPO", "seed": seed}
         self.every, self.due, self.rows = every, 0, list[dict[str, Any]]()
         self.venv = LeaderVecEnv(EPISODES, **OPTIONS)
-        self.begin, self.outside = time.process_time(), 0.0
+        self.start, self.outside = time.process_time(), 0.0
 
     def _on_rollout_start(self) -> None:
         if self.num_timesteps >= self.due:
@@ -82,7 +82,7 @@ class Curve(BaseCallback):
         """Add a point."""
         paused = time.process_time()
         found = score(self.model, self.venv)
-        cpu_s = paused - self.begin - self.outside
+        cpu_s = paused - self.start - self.outside
         self.rows.append({**self.known, "samples": self.num_timesteps, "cpu_s": cpu_s, **found})
         self.outside += time.process_time() - paused
         print(self.rows[-1], flush=True)

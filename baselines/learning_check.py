@@ -126,9 +126,9 @@ def train(interface: str, samples: int, seed: int) -> tuple[PPO, float]:
     # The seed of PPO itself would seed the environment too, with other seeds than those above.
     model.set_random_seed(seed)
     env.seed(first)
-    begin = time.perf_counter()
+    start = time.perf_counter()
     model.learn(samples)
-    return model, time.perf_counter() - begin
+    return model, time.perf_counter() - start
 
 
 def mean_rewards(

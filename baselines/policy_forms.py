@@ -43,14 +43,14 @@ class Shape:
 
         return steer
 
-    def policy(self, flat: np.ndarray, made: dict[str, str]) -> NetworkPolicy:
+    def policy(self, flat: np.ndarray, provenance: dict[str, str]) -> NetworkPolicy:
         layers = self.split(flat)
         return NetworkPolicy(
             [matrix for matrix, _ in layers],
             [bias[0] for _, bias in layers],
             "tanh",
             mirror_to_target=True,
-            made=made,
+            provenance=provenance,
         )
 
     def first(self, random: np.random.Generator) -> np.ndarray:
@@ -70,22 +70,22 @@ class LeaningShape:
     log_gain_steps, bias_step_rad, lean_step_rad = np.array([0.3, 0.4, 0.3]), 0.12, 0.1
 
     def __init__(
-        self, begin: DampedLaw, env: flockenv.LeadersVectorEnv, seeds: list[int], steps: int
+        self, initial: DampedLaw, env: flockenv.LeadersVectorEnv, seeds: list[int], steps: int
     ) -> None:
         """Measure the features of the initial law's observations, so that all get equal steps."""
-        self.begin = begin
+        self.initial = initial
         rows, _ = env.reset(seed=seeds)
         seen = []
         for _ in range(steps):
-            rows, *_ = env.step(begin.predict(rows)[0])
+            rows, *_ = env.step(initial.predict(rows)[0])
             seen.append(features(rows.reshape(-1, len(NAMES)), NAMES))
         self.usual = np.mean(seen, axis=(0, 1))
         self.steps = self.lean_step_rad / np.maximum(np.std(seen, axis=(0, 1)), 0.05)
 
     def split(self, flat: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Gains, biases and weights of vectors (..., size)."""
-        begin = np.array([self.begin.gains[name] for name in GAINS])
-        gains = begin * np.exp(self.log_gain_steps * flat[..., : len(GAINS)])
+        initial = np.array([self.initial.gains[name] for name in GAINS])
+        gains = initial * np.exp(self.log_gain_steps * flat[..., : len(GAINS)])
         weights = self.steps * flat[..., len(GAINS) + 1 :]
         bias = self.bias_step_rad * flat[..., len(GAINS)] - weights @ self.usual
         return gains, bias, weights
@@ -102,13 +102,13 @@ class LeaningShape:
 
         return steer
 
-    def policy(self, flat: np.ndarray, made: dict[str, str]) -> LeaningLaw:
+    def policy(self, flat: np.ndarray, provenance: dict[str, str]) -> LeaningLaw:
         gains, bias, weights = self.split(flat)
         return LeaningLaw(
             dict(zip(GAINS, gains.tolist(), strict=True)),
             float(bias),
             dict(zip(FEATURES, weights.tolist(), strict=True)),
-            made=made,
+            provenance=provenance,
         )
 
     def first(self, random: np.random.Generator) -> np.ndarray:

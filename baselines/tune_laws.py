@@ -27,7 +27,7 @@ from run_number import run_number
 import flockenv
 from flockenv._io.atomic_write import atomic_write
 from flockenv._io.extras import require
-from flockenv._io.provenance import made_by
+from flockenv._io.provenance import provenance_of
 from flockenv.comparison import run_episodes
 from flockenv.policies import DampedLaw, SignCorrectedLaw
 from flockenv.runs.seeds import POLICY_SEEDS
@@ -106,17 +106,17 @@ def main(arguments: list[str] | None = None) -> None:
         parser.error("generations and episodes are at least 1")
     given = sys.argv[1:] if arguments is None else arguments
     command = shlex.join(["python", "baselines/tune_laws.py", *given])
-    begin, tuned = time.perf_counter(), {}
+    start, tuned = time.perf_counter(), {}
     try:
         options.out.mkdir(parents=True, exist_ok=True)
         with Progress(disable=options.quiet) as progress:
             for law in options.law or LAWS:
                 for pool in options.pool or POOLS:
                     tuned.setdefault(law, {})[pool] = tune(law, pool, options, progress)
-        wall_s = time.perf_counter() - begin
-        made = made_by(command, seed=options.seed, samples=0, wall_s=wall_s)
+        wall_s = time.perf_counter() - start
+        provenance = provenance_of(command, seed=options.seed, samples=0, wall_s=wall_s)
         with atomic_write(options.out / "gains.toml") as file:
-            file.write(tomli_w.dumps({**tuned, "made": made}).encode())
+            file.write(tomli_w.dumps({**tuned, "made": provenance}).encode())
     except KeyboardInterrupt:
         sys.exit(f"Interrupted: candidates so far are in {options.out}, but no gains")
     except (flockenv.FlockError, OSError) as error:

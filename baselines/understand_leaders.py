@@ -195,7 +195,7 @@ def draw_places(found: dict[str, pd.DataFrame], parameters: flockenv.FlockParame
 def draw_tracks(
     names: list[str], parameters: flockenv.FlockParameters, options: argparse.Namespace
 ) -> Figure:
-    """Draw two minutes in the middle of one episode; every track begins at its dot."""
+    """Draw two minutes in the middle of one episode; every track starts at its dot."""
     figure = column_figure(6.5, 6.0 * len(names))
     outer, inner = pool_radii_cm(parameters.pool)
     middle = options.minutes * 30.0

@@ -16,11 +16,11 @@ def rate(step: Callable[[], None], steps_each: int, seconds: float) -> float:
     """Environment steps per second over at least so many seconds, after a warm-up."""
     for _ in range(5):
         step()
-    done, begin = 0, time.perf_counter()
-    while time.perf_counter() - begin < seconds:
+    done, start = 0, time.perf_counter()
+    while time.perf_counter() - start < seconds:
         step()
         done += steps_each
-    return done / (time.perf_counter() - begin)
+    return done / (time.perf_counter() - start)
 
 
 def vmas_flocking(seconds: float) -> float:

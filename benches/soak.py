@@ -26,7 +26,7 @@ SCENE = {"n_boats": 27, "n_leaders": 4, "bw_s": (0.0, 1.0), "target": "random", 
 POOLS = ("500-boats", "table-1")
 FLOCKS = 64
 #: Share of the steps before memory is stationary, and number of readings.
-SETTLING, SAMPLES = 0.2, 200
+TRANSIENT, SAMPLES = 0.2, 200
 #: Steps between two round trips through bytes, and until an average leader moves its rudder.
 STORED_EVERY, RUDDER_HELD = 1000, 5
 MOST_GROWTH_KIB = 1024.0
@@ -57,7 +57,7 @@ class Pool:
         observations, rewards, _, truncated, _ = self.env.step(self.rudders)
         if not (np.isfinite(observations).all() and np.isfinite(rewards).all()):
             raise SystemExit(f"{self.name}: NaN after {self.steps} control steps")
-        # The step after an episode's end begins the next one, and moves nothing.
+        # The step after an episode's end starts the next one, and moves nothing.
         self.steps += int((~self.ended).sum())
         self.ended = truncated
         for flock in np.flatnonzero(truncated).tolist():
@@ -112,12 +112,12 @@ def soak(total: int, seed: int) -> tuple[list[Pool], np.ndarray]:
 
 def growth(memory: np.ndarray) -> tuple[float, float]:
     """Return KiB per million control steps (least squares) and the range of all samples in KiB."""
-    late = memory[memory[:, 0] >= SETTLING * memory[-1, 0]]
+    late = memory[memory[:, 0] >= TRANSIENT * memory[-1, 0]]
     return 1e6 * np.polyfit(*late.T, 1)[0], np.ptp(late[:, 1])
 
 
 def failures(pools: list[Pool], memory: np.ndarray) -> list[str]:
-    late = memory[memory[:, 0] >= SETTLING * memory[-1, 0]]
+    late = memory[memory[:, 0] >= TRANSIENT * memory[-1, 0]]
     grown = growth(memory)[0] * (late[-1, 0] - late[0, 0]) / 1e6
     found = [f"memory grew by {grown:.0f} KiB"] if grown > MOST_GROWTH_KIB else []
     for pool in pools:
@@ -169,9 +169,9 @@ def page(pools: list[Pool], memory: np.ndarray, seed: int, wall_s: float) -> str
         f"| --- |{' --- |' * len(pools)}",
         *(f"| {name} | {' | '.join(cells)} |" for name, cells in rows.items()),
         "",
-        f"The resident memory is {memory[0, 1] / 1024:.1f} MiB at the beginning and "
+        f"The resident memory is {memory[0, 1] / 1024:.1f} MiB at the start and "
         f"{memory[-1, 1] / 1024:.1f} MiB at the end. At 20, 40, 60, 80 and 100 % of the steps it "
-        f"is {fifths} KiB. After the first {SETTLING:.0%} of the steps it changes by "
+        f"is {fifths} KiB. After the first {TRANSIENT:.0%} of the steps it changes by "
         f"{slope:+.1f} KiB per million control steps (least squares of {len(memory)} readings), "
         f"and all readings lie within {apart:.0f} KiB.",
         "",
@@ -189,9 +189,9 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "soak.md")
     options = parser.parse_args()
-    begin = time.perf_counter()
+    start = time.perf_counter()
     pools, memory = soak(int(options.steps), options.seed)
-    text = page(pools, memory, options.seed, time.perf_counter() - begin)
+    text = page(pools, memory, options.seed, time.perf_counter() - start)
     with atomic_write(options.out) as file:
         file.write(text.encode())
     print(text)

@@ -71,7 +71,7 @@ fn jam_of_27_by_scheme(bencher: Bencher, scheme: &str) {
     );
 }
 
-/// What an environment asks for: 0.1 s at the default step, two leaders' rudders held.
+/// A control step of an environment: 0.1 s at the default step, two leaders' rudders held.
 #[divan::bench]
 fn control_step(bencher: Bencher) {
     let parameters = FlockParameters {

@@ -44,11 +44,11 @@ def control_step_us(pool: str, seconds: float) -> float:
     actions = np.random.default_rng(0).uniform(-1, 1, (300, *env.action_space.shape))
     for row in actions:
         env.step(row)
-    steps, begin = 0, time.perf_counter()
-    while time.perf_counter() - begin < seconds:
+    steps, start = 0, time.perf_counter()
+    while time.perf_counter() - start < seconds:
         env.step(actions[steps % 300])
         steps += 1
-    return (time.perf_counter() - begin) / (steps * 64) * 1e6
+    return (time.perf_counter() - start) / (steps * 64) * 1e6
 
 
 def batch_steps_per_s(pool: str, seconds: float) -> float:
@@ -83,10 +83,10 @@ def vec_env_overhead_us(seconds: float) -> float:
     best = np.inf
     end = time.perf_counter() + seconds
     while time.perf_counter() < end:
-        begin = time.perf_counter()
+        start = time.perf_counter()
         for _ in range(2000):
             env.step(actions)
-        best = min(best, (time.perf_counter() - begin) / 2000)
+        best = min(best, (time.perf_counter() - start) / 2000)
     return best / 64 * 1e6
 
 
@@ -104,19 +104,19 @@ def ppo_environment_share(seconds: float) -> float:
     class Timed(LeaderVecEnv):
         def step(self, actions):
             nonlocal spent
-            begin = time.perf_counter()
+            start = time.perf_counter()
             result = super().step(actions)
-            spent += time.perf_counter() - begin
+            spent += time.perf_counter() - start
             return result
 
     model = PPO(
         "MlpPolicy", Timed(16, **SCENE), n_steps=64, batch_size=512, n_epochs=10, device="cpu"
     )
     model.learn(64 * 64)
-    spent, begin = 0.0, time.perf_counter()
-    while time.perf_counter() - begin < seconds:
+    spent, start = 0.0, time.perf_counter()
+    while time.perf_counter() - start < seconds:
         model.learn(64 * 64, reset_num_timesteps=False)
-    return 100 * spent / (time.perf_counter() - begin)
+    return 100 * spent / (time.perf_counter() - start)
 
 
 #: Rows measured here: name, function of seconds, threads of the simulator (None: all).
@@ -186,7 +186,7 @@ def results(found: dict[str, list[float]], seconds: float) -> dict[str, Any]:
 
 def page(found: Mapping[str, Any]) -> str:
     """Return the page of the results."""
-    made = found["made"]
+    provenance = found["made"]
 
     def line(row: str, what: str, unit: str) -> str:
         return f"| {what} | {number(found[row]['median'])} {unit} | {spread(found[row])} |"
@@ -200,12 +200,13 @@ def page(found: Mapping[str, Any]) -> str:
         "",
         f"A control step of one flock takes {step:.3g} µs of one core in the pool `500-boats` and "
         f"{table_1:.3g} µs in `table-1`. A batch of 64 flocks advances by "
-        f"{number(batch['median'], 3)} flock control steps per second on {os_cores(made)}.",
+        f"{number(batch['median'], 3)} flock control steps per second on {os_cores(provenance)}.",
         "",
-        f"`make throughput` measured all numbers of this page on {made['date']}: "
-        f"{made['machine']}; load average at the end {made['load']:.1f}. Every number is the "
-        f"median of {made['rounds']} processes of {made['seconds']:g} s each, which took turns. "
-        "The range is over these processes, and `docs/throughput.toml` holds the numbers.",
+        f"`make throughput` measured all numbers of this page on {provenance['date']}: "
+        f"{provenance['machine']}; load average at the end {provenance['load']:.1f}. "
+        f"Every number is the median of {provenance['rounds']} processes of "
+        f"{provenance['seconds']:g} s each, which took turns. The range is over these processes, "
+        "and `docs/throughput.toml` holds the numbers.",
         "",
         "A flock has 27 boats, 4 of them leaders. It runs 10 control steps per second of five "
         "substeps of 0.02 s each (`leapfrog`, white noise, exact contacts), with the default "
@@ -230,8 +231,8 @@ def page(found: Mapping[str, Any]) -> str:
         f"| flockenv, 64 flocks, `500-boats` | {number(batch['median'])} | {spread(batch)} | 1 |",
     ]
     for row, name in (
-        ("vmas", f"VMAS {made['vmas']} `flocking`, 27 agents, 64 environments"),
-        ("mpe2", f"MPE2 {made['mpe2']} `simple_spread`, 27 agents"),
+        ("vmas", f"VMAS {provenance['vmas']} `flocking`, 27 agents, 64 environments"),
+        ("mpe2", f"MPE2 {provenance['mpe2']} `simple_spread`, 27 agents"),
     ):
         median = found[row]["median"]
         ratio = batch["median"] / median
@@ -250,9 +251,9 @@ def number(value: float, digits: int = 4) -> str:
     return f"{float(f'{value:.{digits}g}'):,g}"
 
 
-def os_cores(made: Mapping[str, Any]) -> str:
+def os_cores(provenance: Mapping[str, Any]) -> str:
     """Return the number of cores that the machine's description names."""
-    return next(part for part in made["machine"].split(", ") if part.endswith(" cores"))
+    return next(part for part in provenance["machine"].split(", ") if part.endswith(" cores"))
 
 
 #: Columns from the speed-against-error report: heading, file, scene and number.

@@ -22,8 +22,8 @@ SEED, DURATION_S = 7, 480.0
 POLICIES = {"steering law": None, "learned": named_policy("learned", PARAMETERS.pool)()}
 SIZE = (1160, 816)
 # The picture ends below the charts.
-KEPT = (0, 0, 1160, 798)
-BEGIN_S, STEP_S, FRAMES, FPS = 150.0, 0.4, 60, 10.0
+CROP = (0, 0, 1160, 798)
+START_S, STEP_S, FRAMES, FPS = 150.0, 0.4, 60, 10.0
 # A boat is pointed at for some of the frames.
 BOAT, POINTED = 3, range(24, 36)
 
@@ -64,11 +64,11 @@ def frames(page: Path) -> Iterator[Image.Image]:
         driver.execute_script("document.activeElement.blur(); player.toggle()")
         for frame in range(FRAMES):
             driver.execute_script(
-                "player.seek(arguments[0]); player.show()", BEGIN_S + STEP_S * frame
+                "player.seek(arguments[0]); player.show()", START_S + STEP_S * frame
             )
             point(driver, frame in POINTED)
             picture = Image.open(io.BytesIO(driver.get_screenshot_as_png()))
-            yield picture.crop(KEPT).convert("RGB")
+            yield picture.crop(CROP).convert("RGB")
     finally:
         driver.quit()
 

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tomllib
 from collections.abc import Iterator
+from fnmatch import fnmatch
 from pathlib import Path
 from typing import Any
 
@@ -35,15 +36,17 @@ def main() -> int:
 def refused(name: str, text: str) -> Iterator[str]:
     """Yield a line for each refused word in the text of a file."""
     banned = WORDS["everywhere"] | (WORDS["pages"] if name.endswith(".md") else {})
-    allowed = WORDS["allowed"].get(name, ())
+    allowed = [
+        word for files, words in WORDS["allowed"].items() if fnmatch(name, files) for word in words
+    ]
     pattern = re.compile("|".join(rf"\b(?:{word})\b" for word in banned), re.IGNORECASE)
     for number, line in enumerate(text.splitlines(), 1):
         for match in pattern.finditer(line):
             if not any(re.fullmatch(word, match[0], re.IGNORECASE) for word in allowed):
-                (advice, *_) = (
+                advice = next(
                     advice
                     for word, advice in banned.items()
-                    if re.fullmatch(word, match[0], re.IGNORECASE)
+                    if re.compile(rf"\b(?:{word})\b", re.IGNORECASE).match(line, match.start())
                 )
                 yield f"{name}:{number}: {match[0]!r}: write {advice}"
 

@@ -109,7 +109,7 @@ def record(
     flock: Flock,
     duration_s: float,
     sample_hz: float,
-    kept: dict[str, bool],
+    options: dict[str, bool],
     changes: list[tuple[float, str | FlockParameters]],
     control: dict[str, Any] | None = None,
     progress: Callable[[float], object] | None = None,

@@ -17,7 +17,7 @@ from flockenv.recording import PHASES, PRECISIONS, Recording
 __all__ = ["Change", "LeaderPolicy", "recorded", "simulate"]
 
 Change = tuple[float, str | FlockParameters]
-"""A time in s from the beginning of a run, and the target or the parameters from then on."""
+"""A time in s from the start of a run, and the target or the parameters from then on."""
 
 
 def simulate(
@@ -67,7 +67,7 @@ def simulate(
     progress
         Called now and then with the flock-seconds simulated since; what it raises ends the run.
     start
-        Where the run begins, and at which time. None: at random, at rest, at 0 s. A snapshot, as
+        Where the run starts, and at which time. None: at random, at rest, at 0 s. A snapshot, as
         bytes of `Flock.snapshot`, of a flock with these parameters (the target aside) and this
         seed: under the law the run continues with the same bits. A dictionary with ``pose`` (n, 3)
         and, if need be, ``velocity`` (n, 3), ``time_s`` and ``allow_overlap``, as in
@@ -156,7 +156,7 @@ def recorded(
     Parameters
     ----------
     flock
-        Where the run begins.
+        Where the run starts.
     parameters
         What the recording says of the run.
     changes
@@ -169,9 +169,9 @@ def recorded(
         As for `simulate`, as are the errors.
     """
     single = bool(_precision(dtype) == np.float32)
-    kept = {"single_precision": single, "contacts": contacts}
+    options = {"single_precision": single, "contacts": contacts}
     control = None if policy is None else _control(policy, flock.parameters, control_hz)
-    columns = _core.record(flock, duration_s, sample_hz, kept, list(changes), control, progress)
+    columns = _core.record(flock, duration_s, sample_hz, options, list(changes), control, progress)
     columns["phase"] = PHASES[columns["phase"]]
     return Recording(
         **columns,

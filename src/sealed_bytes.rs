@@ -5,7 +5,7 @@ use crate::error::{FlockError, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// What a stored state begins with.
+/// What a stored state starts with.
 #[derive(Debug)]
 pub struct Magic {
     /// In the present format, whose checksum is CRC-32.

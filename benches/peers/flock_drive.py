@@ -23,7 +23,7 @@ class FlockDrive:
         self._noise = np.random.default_rng(task["seed"])
 
     def push(self, state: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Forces (n, 2), angular accelerations (n,) and kicks (n,) of the step that begins now."""
+        """Forces (n, 2), angular accelerations (n,) and noise increments (n,) of the step."""
         elapsed = self._time % int(self._phase_ends[-1])
         phase = int(np.searchsorted(self._phase_ends, elapsed, side="right"))
         self._time += self._dt
@@ -32,10 +32,10 @@ class FlockDrive:
         force = self.c0 * (self._thrusts[phase] * axis - velocity)
         along = (axis * velocity).sum(axis=1)
         spin_up = -self.c1 * omega**3 - self.c3 * omega * along
-        kicks = np.zeros(len(state))
+        increments = np.zeros(len(state))
         if self.c4 > 0:
-            kicks = self.c4 * math.sqrt(self.dt_s) * self._noise.standard_normal(len(state))
-        return force, spin_up, kicks
+            increments = self.c4 * math.sqrt(self.dt_s) * self._noise.standard_normal(len(state))
+        return force, spin_up, increments
 
 
 def outer_corners(radius: float) -> np.ndarray:

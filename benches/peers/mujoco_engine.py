@@ -32,11 +32,11 @@ class Engine:
 
     def push(self) -> None:
         """Applies the forces of the next step."""
-        force, spin_up, kicks = self.drive.push(self.state())
+        force, spin_up, increments = self.drive.push(self.state())
         applied = self.data.qfrc_applied.reshape(-1, 3)
         applied[:, :2] = force
         applied[:, 2] = self.moment * spin_up
-        self.data.qvel[2::3] += kicks
+        self.data.qvel[2::3] += increments
 
     def step(self) -> None:
         """One step: what is timed."""

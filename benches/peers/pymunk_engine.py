@@ -72,12 +72,12 @@ class Engine:
     def push(self) -> None:
         """Applies the forces of the next step."""
         state = self.state()
-        force, spin_up, kicks = self.drive.push(state)
+        force, spin_up, increments = self.drive.push(state)
         # The buffer takes the layout of what was read into it last.
         self._write.clear()
         batch.get_space_bodies(self.space, PUSH, self._write)
         rows = np.frombuffer(self._write.float_buf()).reshape(-1, 4)[: len(self.boats)]
-        rows[:, 0] = state[:, 5] + kicks
+        rows[:, 0] = state[:, 5] + increments
         rows[:, 1:3] = force
         rows[:, 3] = self.moment * spin_up
         batch.set_space_bodies(self.space, PUSH, self._write)

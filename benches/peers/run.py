@@ -36,9 +36,9 @@ def run(files: Path, job: tuple[str, str, int], task: dict) -> dict:
         spent = 0.0
         for step in range(1, task["steps"] + 1):
             engine.push()
-            begin = time.perf_counter()
+            called_s = time.perf_counter()
             engine.step()
-            spent += time.perf_counter() - begin
+            spent += time.perf_counter() - called_s
             if task["measure"] == "wall_push":
                 forces.append(engine.wall_force())
             if step % task["record_every"] == 0:
@@ -60,7 +60,7 @@ def run(files: Path, job: tuple[str, str, int], task: dict) -> dict:
 
 
 def jobs_of(tasks: list[dict]) -> list[tuple[str, str, int]]:
-    """Default settings work off everything, others what is asked at the middle step."""
+    """Default settings work off everything, others those of the middle step."""
     jobs = []
     for name, module in ENGINES.items():
         for place, setting in enumerate(module.SETTINGS):

@@ -12,7 +12,7 @@ import argparse
 from pathlib import Path
 
 import sections
-from machine import made, read_made, write_made
+from machine import provenance, read_provenance, write_provenance
 from measurements import Measurements
 from plots import draw_all
 from recommendation import recommendation
@@ -32,8 +32,8 @@ def main() -> None:
     m = Measurements.read(folder)
     if arguments.files is not None:
         draw_all(m, folder)
-        write_made(folder, made(Path(__file__).parents[1], arguments.files))
-    origin = read_made(folder)
+        write_provenance(folder, provenance(Path(__file__).parents[1], arguments.files))
+    origin = read_provenance(folder)
     warning = (
         "**This is a trial run, which is too short for results.**\n\n" if arguments.trial else ""
     )

@@ -10,10 +10,10 @@ import tomllib
 from datetime import UTC, datetime
 from pathlib import Path
 
-MADE = "made.toml"
+FILE = "made.toml"
 
 
-def made(benches: Path, files: Path) -> dict[str, str]:
+def provenance(benches: Path, files: Path) -> dict[str, str]:
     """Return the date, the machine and the versions of a measurement that has just ended."""
     return {
         "date": str(datetime.now(UTC).date()),
@@ -22,15 +22,15 @@ def made(benches: Path, files: Path) -> dict[str, str]:
     }
 
 
-def write_made(folder: Path, found: dict[str, str]) -> None:
+def write_provenance(folder: Path, found: dict[str, str]) -> None:
     """Store them beside the tables."""
     lines = [f"{name} = {json.dumps(text, ensure_ascii=False)}\n" for name, text in found.items()]
-    (folder / MADE).write_text("".join(lines), encoding="utf-8")
+    (folder / FILE).write_text("".join(lines), encoding="utf-8")
 
 
-def read_made(folder: Path) -> dict[str, str]:
-    """Return what `write_made` stored."""
-    return tomllib.loads((folder / MADE).read_text(encoding="utf-8"))
+def read_provenance(folder: Path) -> dict[str, str]:
+    """Return what `write_provenance` stored."""
+    return tomllib.loads((folder / FILE).read_text(encoding="utf-8"))
 
 
 def _machine() -> str:

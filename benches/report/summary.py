@@ -79,8 +79,8 @@ def _deepest(settings: pd.DataFrame) -> list[list[str]]:
     for relinearizations in range(3):
         row = pick(settings, ours("leapfrog", relinearizations))
         deepest = max(row.jam_overlap_max_cm, row.cycle_overlap_max_cm)
-        what = f"deepest overlap, jam and cycle, relinearizations = {relinearizations}"
-        rows.append([what, f"{plain(deepest)} cm"])
+        label = f"deepest overlap, jam and cycle, relinearizations = {relinearizations}"
+        rows.append([label, f"{plain(deepest)} cm"])
     return rows
 
 

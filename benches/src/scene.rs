@@ -4,14 +4,14 @@ use flockenv::{Flock, FlockParameters};
 use flockenv::geometry::{Pose, Velocity};
 use flockenv::parameters::{Pool, Preset};
 
-/// Where a run begins.
+/// Where a run starts.
 #[derive(Debug, Clone)]
 pub struct Start {
     /// Poses of all boats.
     pub poses: Vec<Pose>,
     /// Their velocities.
     pub velocities: Vec<Velocity>,
-    /// Time in s: where in the cycle of phases the run begins.
+    /// Time in s: where in the cycle of phases the run starts.
     pub time_s: f64,
 }
 

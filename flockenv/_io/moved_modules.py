@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Callable
 from typing import Any, ParamSpec, TypeVar
 
-__all__ = ["MOVED", "keep_old_names", "renamed_argument"]
+__all__ = ["MOVED", "keep_old_names", "renamed_argument", "renamed_attribute"]
 
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
@@ -83,3 +83,14 @@ def renamed_argument(old: str, new: str) -> Callable[[Callable[_P, _R]], Callabl
         return call
 
     return renamed
+
+
+def renamed_attribute(old: str, new: str) -> property:
+    """Return the property that answers by an attribute's old name."""
+
+    def value(owner: Any) -> Any:
+        words = f"the attribute {old} is called {new}"
+        warnings.warn(words, DeprecationWarning, stacklevel=2)
+        return getattr(owner, new)
+
+    return property(value)

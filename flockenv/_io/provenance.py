@@ -1,4 +1,4 @@
-"""What made a file: version, commit, command."""
+"""The provenance of a file: version, commit, command."""
 
 import platform
 import subprocess
@@ -6,7 +6,7 @@ from pathlib import Path
 
 from flockenv import _core
 
-__all__ = ["commit", "made_by"]
+__all__ = ["commit", "provenance_of"]
 
 
 def commit() -> str:
@@ -30,7 +30,7 @@ def commit() -> str:
         return "unknown"
 
 
-def made_by(command: str, *, seed: int, samples: int, wall_s: float) -> dict[str, str]:
+def provenance_of(command: str, *, seed: int, samples: int, wall_s: float) -> dict[str, str]:
     """Return the provenance of a policy's file as short texts."""
     return {
         "command": command,

@@ -49,7 +49,7 @@ def evaluate(
         bool, typer.Option("--alternate", help="Directions alternate, 4 x 4 minutes (figure 7).")
     ] = False,
     dropout_rate: Annotated[
-        float, typer.Option(help="Chance that the camera misses a boat in a frame.")
+        float, typer.Option(help="Chance that the camera does not see a boat in a frame.")
     ] = 0.0,
     episodes: Annotated[int, typer.Option(min=2, help="Seeds for each case.")] = 512,
     minutes: Annotated[

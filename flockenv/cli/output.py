@@ -159,15 +159,15 @@ def keep(path: Path, write: Callable[[Path], object]) -> None:
 def _written_in(folder: Path, name: str, write: Callable[[Path], object]) -> Path | None:
     """Write results into a new folder of another one; return where they are, or None."""
     try:
-        made = mkdtemp(prefix="flockenv-", dir=folder)
+        aside = mkdtemp(prefix="flockenv-", dir=folder)
     except OSError:
         return None
     try:
-        write(Path(made, name))
+        write(Path(aside, name))
     except OSError:
-        rmtree(made, ignore_errors=True)
+        rmtree(aside, ignore_errors=True)
         return None
-    return Path(made, name).absolute()
+    return Path(aside, name).absolute()
 
 
 @contextmanager

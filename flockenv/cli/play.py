@@ -72,7 +72,7 @@ def play(
         finally:
             window.close()
         if len(rudders) == 0:
-            say("The window was closed before the run began: nothing was written.")
+            say("The window was closed before the run started: nothing was written.")
             return
         runs = {
             name: simulate(

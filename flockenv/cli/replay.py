@@ -59,8 +59,8 @@ def replay(
             written = write_replay(page, recordings)
         progress.advance(task)
     if as_json:
-        facts = {"html": str(page), "bytes": written.size, "every": written.every}
-        print_json(facts)
+        written_page = {"html": str(page), "bytes": written.size, "every": written.every}
+        print_json(written_page)
     else:
         thinned = "" if written.every == 1 else f", every {written.every}th sample"
         size = f"{written.size / 1e6:.1f} MB"

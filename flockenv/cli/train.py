@@ -61,7 +61,7 @@ def train(
         policies = [out / f"{name}.npz" for name in ("best", "last", "start")]
         refuse_overwriting(wanted.start, "start", policies)
     with interruptible(lambda: _last_checkpoint(out)), progress_bar(quiet or as_json) as bar:
-        task = bar.add_task("beginning", total=wanted.samples)
+        task = bar.add_task("start", total=wanted.samples)
 
         def report(progress: training.Progress) -> None:
             words = f"{progress.samples} samples"

@@ -235,7 +235,7 @@ def _simulated(
     duration_s: float,
     progress: Callable[[float], None],
 ) -> dict[str, NDArray[np.float64]]:
-    # The environment derives a flock's seed from its own: ask it, to pair the runs.
+    # The environment derives a flock's seed from its own, which pairs the runs.
     some = parameters.replace(n_leaders=max(1, parameters.n_leaders))
     env = _environment(some, len(seeds), duration_s, {})
     _, infos = env.reset(seed=list(seeds))

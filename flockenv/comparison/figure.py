@@ -90,7 +90,7 @@ def leader_curve(
             legend = axes.legend(
                 frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.16), fontsize=8
             )
-            # Policies may have the names of files: a dollar sign there begins no formula.
+            # Policies may have the names of files: a dollar sign there starts no formula.
             for text in legend.get_texts():
                 text.set_parse_math(False)
         figure.suptitle(title, fontsize=9, parse_math=False)

@@ -45,7 +45,7 @@ def model_card(
         takes = f"It takes version {OBSERVATION_VERSION} of the observation."
         lines += [f"The policy is `{policy!r}`. {takes}", ""]
         lines += ["| provenance | |", "| --- | --- |"]
-        lines += [f"| {what} | `{text}` |" for what, text in policy.made.items()]
+        lines += [f"| {name} | `{text}` |" for name, text in policy.provenance.items()]
     elif policy == EVERY_SUBSTEP:
         law = "The policy is the paper's law, eq. (10), from the pose at every substep."
         lines += [f"{law} It has no learned parameters."]

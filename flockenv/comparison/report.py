@@ -14,7 +14,7 @@ from rich.text import Text
 from flockenv._core import __version__
 from flockenv._io.atomic_write import atomic_write, write_text
 from flockenv._io.extras import require
-from flockenv._io.moved_modules import renamed_argument
+from flockenv._io.moved_modules import renamed_argument, renamed_attribute
 from flockenv.comparison.episodes import (
     CONTROL_HZ,
     NO_LEADERS,
@@ -71,18 +71,21 @@ class ComparisonReport:
         seed, for each number of leaders; empty for a single policy.
     runs : pandas.DataFrame
         One row per episode, of `compare_leaders`.
-    asked : dict
+    conditions : dict
         What the numbers depend on, the parameters aside: seeds, policies, options.
     environment : dict
         Options of the environment that differ from its defaults.
     """
+
+    scene = renamed_attribute("scene", "parameters")
+    asked = renamed_attribute("asked", "conditions")
 
     parameters: FlockParameters
     means: "pd.DataFrame"
     lines: dict[tuple[str, str], Line]
     differences: "pd.DataFrame"
     runs: "pd.DataFrame"
-    asked: Mapping[str, Any]
+    conditions: Mapping[str, Any]
     environment: Mapping[str, Any] = field(default_factory=dict)
 
     def write(self, folder: Path) -> None:
@@ -108,7 +111,7 @@ class ComparisonReport:
         ):
             with atomic_write(folder / f"{name}.csv") as file:
                 table.to_csv(file, index=False)
-        write_text(folder / "run.toml", tomli_w.dumps(dict(self.asked)))
+        write_text(folder / "run.toml", tomli_w.dumps(dict(self.conditions)))
         header = f"# flockenv {__version__}: the flock; seeds, policies and options in run.toml\n"
         write_text(folder / "parameters.toml", header + self.parameters.to_toml())
         picture = folder / "leader_curve.png"
@@ -203,7 +206,7 @@ def report(
         for quantity in QUANTITIES if own["leaders"].nunique() > 1 else ():
             lines[policy, quantity] = fit_line(own["leaders"], own[quantity])
     differences = _differences(runs, list(policies))
-    asked = {
+    conditions = {
         "flockenv": __version__,
         "duration_s": float(duration_s),
         "leaders": [int(k) for k in leaders],
@@ -215,7 +218,9 @@ def report(
             **(environment or {}),
         },
     }
-    return ComparisonReport(parameters, means, lines, differences, runs, asked, environment or {})
+    return ComparisonReport(
+        parameters, means, lines, differences, runs, conditions, environment or {}
+    )
 
 
 def _means(runs: "pd.DataFrame") -> "pd.DataFrame":

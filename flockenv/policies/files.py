@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv._io.array_file import write_arrays
+from flockenv._io.moved_modules import renamed_attribute
 from flockenv._io.npz_header import read_headed
 from flockenv.envs.observation import OBSERVATION_VERSION
 from flockenv.errors import ParameterError
@@ -20,11 +21,16 @@ __all__ = ["StoredPolicy", "read_policy"]
 FORMAT = "flockenv policy 1"
 """First entry of every policy file."""
 
+PROVENANCE = "made"
+"""Key of the provenance in the header of a file."""
+
 _LARGEST_FILE = 5 << 20
 
 
 class StoredPolicy(RowPolicy):
     """A policy of rows that a file holds: a header and plain arrays."""
+
+    made = renamed_attribute("made", "provenance")
 
     @abstractmethod
     def _contents(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
@@ -46,7 +52,7 @@ class StoredPolicy(RowPolicy):
     def digest(self) -> str:
         """The first digits of the SHA-256 of layout and numbers, whatever made them."""
         header, arrays = self._contents()
-        plain = {name: value for name, value in header.items() if name != "made"}
+        plain = {name: value for name, value in header.items() if name != PROVENANCE}
         whole = hashlib.sha256(json.dumps(plain, sort_keys=True).encode())
         for name in sorted(arrays):
             array = np.ascontiguousarray(arrays[name])

@@ -6,10 +6,11 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from flockenv._io.moved_modules import renamed_argument
 from flockenv._io.npz_header import array_of, entry_of
 from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError
-from flockenv.policies.files import StoredPolicy
+from flockenv.policies.files import PROVENANCE, StoredPolicy
 from flockenv.policies.laws import DampedLaw
 
 __all__ = ["FEATURES", "GAINS", "LeaningLaw", "features", "leaned"]
@@ -157,7 +158,7 @@ class LeaningLaw(StoredPolicy):
         Rad a feature, by its name; 0 for those left out.
     observation
         Blocks of the observation that differ from the default layout.
-    made
+    provenance
         Its provenance: any short texts by name, such as the command, the seed and the samples.
 
     Raises
@@ -167,6 +168,7 @@ class LeaningLaw(StoredPolicy):
         features.
     """
 
+    @renamed_argument("made", "provenance")
     def __init__(
         self,
         gains: Mapping[str, float],
@@ -174,7 +176,7 @@ class LeaningLaw(StoredPolicy):
         weights: Mapping[str, float],
         *,
         observation: Mapping[str, Any] | None = None,
-        made: Mapping[str, str] | None = None,
+        provenance: Mapping[str, str] | None = None,
     ) -> None:
         super().__init__(observation, mirror_to_target=True)
         self.gains = _checked(gains, GAINS)
@@ -182,7 +184,7 @@ class LeaningLaw(StoredPolicy):
             raise ParameterError(f"gains = {dict(gains)!r} are not accepted: {', '.join(GAINS)}")
         self.weights = _checked(weights, FEATURES)
         self.bias = _checked({"bias": bias}, ("bias",))["bias"]
-        self.made = {str(name): str(text) for name, text in (made or {}).items()}
+        self.provenance = {str(name): str(text) for name, text in (provenance or {}).items()}
         self._names = [entry.name for entry in observation_entries(self.observation)]
         for name in (*_OWN, *_ORDER, "present"):
             if name not in self._names:
@@ -203,7 +205,7 @@ class LeaningLaw(StoredPolicy):
             "kind": "leaning law",
             "observation": self.observation,
             "features": FEATURES,
-            "made": self.made,
+            PROVENANCE: self.provenance,
         }
         arrays = {
             "gains": np.array([self.gains[name] for name in GAINS]),
@@ -231,7 +233,7 @@ class LeaningLaw(StoredPolicy):
             array_of(arrays, "bias", ()).item(),
             dict(zip(names, weights, strict=True)),
             observation=entry_of(header, "observation", dict),
-            made=entry_of(header, "made", dict),
+            provenance=entry_of(header, PROVENANCE, dict),
         )
 
     def __repr__(self) -> str:

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv import _core
 from flockenv._io.array_file import is_special
 from flockenv._io.extras import require
+from flockenv._io.moved_modules import renamed_argument, renamed_attribute
 from flockenv.envs.observation import ObservationSpace, observation_space
 from flockenv.errors import ParameterError
 
@@ -41,8 +42,8 @@ class ModelPolicy:
     observation, mirror_to_target
         The environments' options of those names that it was trained with. None: what the
         observation space says, and the defaults where that is no space of an environment here.
-    made
-        What made it: any short texts by name.
+    provenance
+        Where it comes from: any short texts by name.
 
     Attributes
     ----------
@@ -60,16 +61,19 @@ class ModelPolicy:
         If the spaces are none of an environment here with those options.
     """
 
+    made = renamed_attribute("made", "provenance")
+
+    @renamed_argument("made", "provenance")
     def __init__(
         self,
         model: Any,
         *,
         observation: Mapping[str, Any] | None = None,
         mirror_to_target: bool | None = None,
-        made: Mapping[str, str] | None = None,
+        provenance: Mapping[str, str] | None = None,
     ) -> None:
         self.model = model
-        self.made = dict(made or {})
+        self.provenance = dict(provenance or {})
         space = model.observation_space
         reported = space.options if isinstance(space, ObservationSpace) else {}
         given = {"observation": observation, "mirror_to_target": mirror_to_target}
@@ -172,7 +176,7 @@ class ModelPolicy:
         return rudders
 
     def __repr__(self) -> str:
-        name = self.made.get("file", type(self.model).__name__)
+        name = self.provenance.get("file", type(self.model).__name__)
         takes = "one leader" if self.leaders == 1 else f"{self.leaders} leaders at once"
         rate = "" if self.control_hz is None else f", {self.control_hz:g} Hz"
         return f"{type(self).__name__}({name}, {takes}{rate})"
@@ -250,13 +254,18 @@ def load_model(
             f"{path} is no model that can be read: {type(error).__name__}: {error}"
         ) from error
     content = Path(path).read_bytes()
-    made = {
+    provenance = {
         "file": Path(path).name,
         "sha256": hashlib.sha256(content).hexdigest(),
         "samples": str(stored.get("num_timesteps")),
         "seed": str(stored.get("seed")),
     }
-    return ModelPolicy(model, observation=observation, mirror_to_target=mirror_to_target, made=made)
+    return ModelPolicy(
+        model,
+        observation=observation,
+        mirror_to_target=mirror_to_target,
+        provenance=provenance,
+    )
 
 
 def _policy_of(data: Mapping[str, Any]) -> Any:

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
+from flockenv._io.moved_modules import renamed_argument
 from flockenv._io.npz_header import array_of, entry_of
 from flockenv.envs.options import refuse_unknown
 from flockenv.errors import ParameterError
-from flockenv.policies.files import StoredPolicy
+from flockenv.policies.files import PROVENANCE, StoredPolicy
 
 __all__ = ["ACTIVATIONS", "NetworkPolicy"]
 
@@ -44,8 +45,8 @@ class NetworkPolicy(StoredPolicy):
     action_mode, decision_period_s
         What the output stands for, and for how long it is held: the environments' options of those
         names.
-    made
-        What made it: any short texts by name, such as the command, the seed and the samples.
+    provenance
+        Where it comes from: any short texts by name, such as the command, the seed and the samples.
 
     Raises
     ------
@@ -54,6 +55,7 @@ class NetworkPolicy(StoredPolicy):
         unknown activations.
     """
 
+    @renamed_argument("made", "provenance")
     def __init__(
         self,
         weights: Sequence[ArrayLike],
@@ -64,7 +66,7 @@ class NetworkPolicy(StoredPolicy):
         mirror_to_target: bool = False,
         action_mode: str = "rudder",
         decision_period_s: float | None = None,
-        made: Mapping[str, str] | None = None,
+        provenance: Mapping[str, str] | None = None,
     ) -> None:
         super().__init__(observation, mirror_to_target)
         refuse_unknown((action_mode,), _core.action_modes(), "action mode")
@@ -75,7 +77,7 @@ class NetworkPolicy(StoredPolicy):
         self.action_mode = action_mode
         self.decision_period_s = None if decision_period_s is None else float(decision_period_s)
         self.activation = activation
-        self.made = {str(name): str(text) for name, text in (made or {}).items()}
+        self.provenance = {str(name): str(text) for name, text in (provenance or {}).items()}
         self._layers = _checked_layers(weights, biases, self._size)
         if activation not in ACTIVATIONS:
             raise ParameterError(
@@ -107,7 +109,7 @@ class NetworkPolicy(StoredPolicy):
             "mirror_to_target": self.mirror_to_target,
             "activation": self.activation,
             "layers": len(self._layers),
-            "made": self.made,
+            PROVENANCE: self.provenance,
         }
         # Only where they differ from the default, so that files and digests of rudders stay.
         if self.action_mode != "rudder":
@@ -135,7 +137,7 @@ class NetworkPolicy(StoredPolicy):
             entry_of(header, "activation", str),
             observation=entry_of(header, "observation", dict),
             mirror_to_target=entry_of(header, "mirror_to_target", bool),
-            made=entry_of(header, "made", dict),
+            provenance=entry_of(header, PROVENANCE, dict),
             **_action_of(header),
         )
 

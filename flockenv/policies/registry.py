@@ -73,8 +73,8 @@ def named_policy(name: str, pool: Any, *, trust: bool = False) -> Callable[[], L
     if name in POLICIES:
         return POLICIES[name]
     if name in POOL_POLICIES:
-        made = POOL_POLICIES[name](pool)
-        return lambda: made
+        found = POOL_POLICIES[name](pool)
+        return lambda: found
     if name.endswith(FILES):
         read = load(name, trust=trust)
         return lambda: read

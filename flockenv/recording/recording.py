@@ -48,7 +48,7 @@ class Recording:
     time_s : float64 array, shape (t,)
         Times in s, increasing.
     phase : str array, shape (t,)
-        The phase that begins or holds at each time: "fw", "nop1", "bw" or "nop2".
+        The phase that starts or holds at each time: "fw", "nop1", "bw" or "nop2".
     in_analysis_window : bool array, shape (t,)
         Whether each time lies in the second half of fw or the first half of nop1 (Section 4).
     pose : float64 or float32 array, shape (t, n, 3)
@@ -179,10 +179,10 @@ class Recording:
         """
         if len(self) == 0 or not self.has_poses:
             raise ParameterError("this recording holds no poses, of which a flock is made")
-        begin, end = self.time_s[0], self.time_s[-1]
-        if not begin <= time_s <= end:
+        start, end = self.time_s[0], self.time_s[-1]
+        if not start <= time_s <= end:
             raise ParameterError(
-                f"time_s = {time_s!r} is not accepted: a time from {begin} to {end} s"
+                f"time_s = {time_s!r} is not accepted: a time from {start} to {end} s"
             )
         sample = int(np.searchsorted(self.time_s, time_s, side="right")) - 1
         there = np.isfinite(self.pose[sample, :, 0])
@@ -313,7 +313,7 @@ class Recording:
         return bool(self.pose.shape[1] > 0)
 
     def analyzed(self, after: float = DISCARDED_SHARE) -> Self:
-        """Return the samples that figures use: those in the analysis window of a settled flock.
+        """Return the samples that figures use: those in the analysis window of a stationary flock.
 
         Parameters
         ----------
@@ -383,6 +383,6 @@ class Recording:
 
 def _contacts_at(contacts: ContactSeries, samples: NDArray[np.bool_]) -> ContactSeries:
     """Return the contacts of some of the samples, shape (t,)."""
-    kept = np.repeat(samples, contacts.count)
-    each = (getattr(contacts, name)[kept] for name in CONTACTS[1:])
+    chosen = np.repeat(samples, contacts.count)
+    each = (getattr(contacts, name)[chosen] for name in CONTACTS[1:])
     return ContactSeries(contacts.count[samples], *each)

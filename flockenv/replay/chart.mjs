@@ -9,7 +9,7 @@ const EDGE = { left: 40, right: 10, top: 8, bottom: 20 };
 export class Chart {
   /** `reach` in s shows that much before and after the cursor; null shows the whole run. */
   constructor(canvas, runs, reach, seek) {
-    Object.assign(this, { canvas, runs, reach, kept: null });
+    Object.assign(this, { canvas, runs, reach, cached: null });
     const go = (event) => seek(this.timeAt(event.clientX - canvas.getBoundingClientRect().left));
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
@@ -20,14 +20,14 @@ export class Chart {
     canvas.addEventListener("lostpointercapture", () => { this.held = null; });
   }
 
-  /** Where the times shown begin and end: around the cursor, or all there are. */
+  /** Where the times shown start and end: around the cursor, or all there are. */
   #choose(time) {
-    const [begin, end] = span(this.runs);
-    [this.from, this.to] = [begin, Math.max(end, begin + 1e-3)];
+    const [start, end] = span(this.runs);
+    [this.from, this.to] = [start, Math.max(end, start + 1e-3)];
     if (this.held) {
       [this.from, this.to] = this.held;
-    } else if (this.reach !== null && end - begin > 2 * this.reach) {
-      this.from = Math.min(Math.max(time - this.reach, begin), end - 2 * this.reach);
+    } else if (this.reach !== null && end - start > 2 * this.reach) {
+      this.from = Math.min(Math.max(time - this.reach, start), end - 2 * this.reach);
       this.to = this.from + 2 * this.reach;
     }
   }
@@ -73,16 +73,16 @@ export class Chart {
   /** The whole run changes with the size, the series and the colors only. */
   #drawKept(context, quantity, palette) {
     const key = JSON.stringify([this.canvas.width, this.canvas.height, quantity.key, palette]);
-    if (this.kept?.key !== key) {
+    if (this.cached?.key !== key) {
       const picture = document.createElement("canvas");
       [picture.width, picture.height] = [this.canvas.width, this.canvas.height];
       const other = picture.getContext("2d");
       other.setTransform(context.getTransform());
       this.#drawAll(other, quantity, palette);
-      this.kept = { key, picture };
+      this.cached = { key, picture };
     }
     context.clearRect(0, 0, this.width, this.height);
-    context.drawImage(this.kept.picture, 0, 0, this.width, this.height);
+    context.drawImage(this.cached.picture, 0, 0, this.width, this.height);
   }
 
   #drawAll(context, quantity, palette) {

@@ -34,7 +34,7 @@ export function barOf(force, scale) {
 }
 
 /**
- * Draws the bars of a sample. Each begins where hulls, or a hull and a wall, press, and lies on the boat that is
+ * Draws the bars of a sample. Each starts where hulls, or a hull and a wall, press, and lies on the boat that is
  * pushed, the way it is pushed.
  */
 export function drawForces(scene, sample, scale) {

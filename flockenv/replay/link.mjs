@@ -1,27 +1,27 @@
 // The part of the page's address that selects what is shown: `#t=240&speed=8`.
 
 /**
- * What a fragment asks for: `time` in s and `speed`, null where it says nothing, and `ignored`, a sentence
+ * What a fragment requests: `time` in s and `speed`, null where it says nothing, and `ignored`, a sentence
  * for each part that cannot be followed.
  */
-export function readLink(fragment, { begin, end, speeds }) {
-  const asked = { time: null, speed: null, ignored: [] };
+export function readLink(fragment, { start, end, speeds }) {
+  const requested = { time: null, speed: null, ignored: [] };
   for (const [key, text] of new URLSearchParams(fragment.replace(/^#/, ""))) {
     const value = text.trim() === "" ? NaN : Number(text);
-    if (key === "t" && value >= begin && value <= end) {
-      asked.time = value;
+    if (key === "t" && value >= start && value <= end) {
+      requested.time = value;
     } else if (key === "speed" && speeds.includes(value)) {
-      asked.speed = value;
+      requested.speed = value;
     } else {
-      asked.ignored.push(refusal(key, text, { begin, end, speeds }));
+      requested.ignored.push(refusal(key, text, { start, end, speeds }));
     }
   }
-  return asked;
+  return requested;
 }
 
-function refusal(key, text, { begin, end, speeds }) {
+function refusal(key, text, { start, end, speeds }) {
   const accepted = {
-    t: `t is a time from ${begin} to ${end} s`,
+    t: `t is a time from ${start} to ${end} s`,
     speed: `speed is one of ${speeds.join(", ")}`,
   };
   const shown = text.length > 40 ? `${text.slice(0, 40)}…` : text;

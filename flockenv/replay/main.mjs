@@ -1,12 +1,12 @@
-// Starts the page: unpacks its runs, shows them at the most telling moment, and plays.
+// Starts the page: unpacks its runs, shows them at the moment of the largest change, and plays.
 
 import { unpack } from "./packing.mjs";
 import { Player } from "./player.mjs";
 import { Run } from "./run.mjs";
 
 async function start() {
-  const { runs: facts, quantities, moment, plays } = JSON.parse(document.getElementById("data").textContent);
-  const runs = await Promise.all(facts.map(async (fact) => new Run(fact, await unpack(fact.data))));
+  const { runs: described, quantities, moment, plays } = JSON.parse(document.getElementById("data").textContent);
+  const runs = await Promise.all(described.map(async (run) => new Run(run, await unpack(run.data))));
   window.player = new Player(runs, quantities, moment.time_s);
   const thinned = Math.max(...runs.map((run) => run.every));
   document.getElementById("note").textContent =

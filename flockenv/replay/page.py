@@ -24,7 +24,7 @@ from flockenv.flock import ContactSeries
 from flockenv.parameters import FlockParameters
 from flockenv.recording import PHASES, Recording
 from flockenv.replay.packing import Packer
-from flockenv.replay.quantities import ShownQuantity, shown_quantities, telling_minute
+from flockenv.replay.quantities import ShownQuantity, decisive_minute, shown_quantities
 
 __all__ = ["MOST_BYTES", "MOST_INLINE_BYTES", "Replay", "inline_replay", "write_replay"]
 
@@ -80,10 +80,10 @@ def write_replay(
 ) -> Replay:
     """Write one or two recordings as one HTML page that plays them and needs no network.
 
-    The page opens at the most telling minute and plays from there at eight times real time. This is
-    for one run the minute in which signed order changes most (mean of its second half minus mean of
-    its first), and for two runs the minute in which their signed orders differ most on average. A
-    link to the page may end in ``#t=240&speed=8``, a time in s and a speed.
+    The page opens at the minute of the largest change and plays at eight times real time. For
+    one run this is the minute in which signed order changes most (mean of its second half minus
+    mean of its first), and for two runs the minute in which their signed orders differ most on
+    average. A link to the page may end in ``#t=240&speed=8``, a time in s and a speed.
 
     Parameters
     ----------
@@ -166,11 +166,11 @@ def replay_page(
 
 
 def _page(recordings: Mapping[str, Recording], every: int, plays: bool) -> str:
-    time_s, words = telling_minute(list(recordings.values()))
+    time_s, words = decisive_minute(list(recordings.values()))
     quantities = shown_quantities(list(recordings.values()))
-    facts = {
+    data = {
         "runs": [_run(name, each, every, quantities) for name, each in recordings.items()],
-        "quantities": [each.facts() for each in quantities],
+        "quantities": [each.described() for each in quantities],
         "moment": {"time_s": time_s, "words": words},
         "plays": plays,
     }
@@ -189,7 +189,7 @@ def _page(recordings: Mapping[str, Recording], every: int, plays: bool) -> str:
         ),
         "style": style,
         "script": script,
-        "facts": _as_script_content(facts),
+        "data": _as_script_content(data),
     }
     # One pass over the template alone: nothing that a recording says is taken for a place in it.
     return re.sub(r"\{\{(\w+)\}\}", lambda match: parts[match[1]], _read("page.html"))
@@ -304,15 +304,15 @@ def _add_contacts(
     packer: Packer, recording: Recording, contacts: ContactSeries, every: int
 ) -> None:
     sample = np.repeat(np.arange(len(recording)), contacts.count)
-    kept = sample % every == 0
-    sample, i, normal = sample[kept], contacts.i[kept], contacts.normal[kept]
+    chosen = sample % every == 0
+    sample, i, normal = sample[chosen], contacts.i[chosen], contacts.normal[chosen]
     # A hull's surface point is its place along the core and the normal: one number remains.
     pose = recording.pose[sample, i].astype(np.float64)
     radius_cm = recording.parameters.boat_radius_cm
-    along_cm = _core.contact_along_cm(pose, normal, contacts.point_cm[kept], radius_cm)
+    along_cm = _core.contact_along_cm(pose, normal, contacts.point_cm[chosen], radius_cm)
     packer.add_plain("contact_count", contacts.count[::every])
     packer.add_plain("contact_i", i)
-    packer.add_plain("contact_j", contacts.j[kept])
+    packer.add_plain("contact_j", contacts.j[chosen])
     packer.add_plain("contact_along_cm", along_cm, 0.1)
     packer.add_plain("contact_angle", np.arctan2(normal[:, 1], normal[:, 0]), 0.02)
-    packer.add_plain("contact_force", np.minimum(contacts.force[kept], 1e6), _FORCE)
+    packer.add_plain("contact_force", np.minimum(contacts.force[chosen], 1e6), _FORCE)

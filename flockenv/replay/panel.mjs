@@ -20,7 +20,7 @@ export class Panel {
     const title = element("h2");
     const swatch = element("span", `swatch run-${place + 1}`);
     title.append(...(several ? [swatch] : []), element("span", "name", run.name),
-      element("span", "faint facts", run.ids ? "tracks" : `seed ${run.seed} · flockenv ${run.version}`));
+      element("span", "faint origin", run.ids ? "tracks" : `seed ${run.seed} · flockenv ${run.version}`));
     this.picture = element("div", "picture");
     this.canvas = element("canvas");
     this.canvas.setAttribute("role", "img");

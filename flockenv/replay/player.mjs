@@ -25,8 +25,8 @@ export class Player {
         "help", "keys", "letters", "status"]
         .map((id) => [id, document.getElementById(id)]),
     );
-    [this.begin, this.end] = span(runs);
-    this.time = this.begin;
+    [this.start, this.end] = span(runs);
+    this.time = this.start;
     this.playing = false;
     this.hovered = this.pinned = null;
     this.palette = colors();
@@ -59,7 +59,7 @@ export class Player {
     speed.append(...SPEEDS.map((each) => new Option(`${each} ×`, each)));
     speed.value = FIRST_SPEED;
     quantity.append(...this.quantities.map((each) => new Option(caption(each), each.key)));
-    [scrub.min, scrub.max, scrub.value] = [this.begin, this.end, this.begin];
+    [scrub.min, scrub.max, scrub.value] = [this.start, this.end, this.start];
     boat.append(new Option("none", ""));
     for (let k = 0; k < this.#mostBoats(); k += 1) {
       boat.append(new Option(this.runs.some((run) => k < run.leaders) ? `${k}, leader` : k, k));
@@ -125,7 +125,7 @@ export class Player {
       ArrowRight: () => (event.shiftKey ? this.seek(this.time + FAR) : this.step(1)),
       PageUp: () => this.seek(this.time + MINUTE),
       PageDown: () => this.seek(this.time - MINUTE),
-      Home: () => this.seek(this.begin),
+      Home: () => this.seek(this.start),
       End: () => this.seek(this.end),
       Escape: () => this.pin(null),
     };
@@ -177,7 +177,7 @@ export class Player {
     this.playing = !this.playing;
     if (this.playing) {
       if (this.time >= this.end) {
-        this.time = this.begin;
+        this.time = this.start;
       }
       this.before = performance.now();
       requestAnimationFrame((now) => this.#tick(now));
@@ -190,7 +190,7 @@ export class Player {
 
   /** The last time, up to this one, at which a run has a sample. */
   #sampled(time) {
-    return Math.max(this.begin, ...this.runs.map((run) => run.time[run.sampleAt(time)]).filter((each) => each <= time + 1e-9));
+    return Math.max(this.start, ...this.runs.map((run) => run.time[run.sampleAt(time)]).filter((each) => each <= time + 1e-9));
   }
 
   /** One sample back or on, of whichever run has the next one. */
@@ -203,13 +203,13 @@ export class Player {
 
   /** Goes to the last sample up to a time, so that picture and numbers belong together. */
   seek(time) {
-    this.time = this.#sampled(Math.min(Math.max(time, this.begin), this.end));
+    this.time = this.#sampled(Math.min(Math.max(time, this.start), this.end));
     this.before = performance.now();
     this.#writeLink();
     this.request();
   }
 
-  /** Shows the page once before the next frame, however often it is asked to. */
+  /** Shows the page once before the next frame, however often it is requested. */
   request() {
     this.requested ??= requestAnimationFrame(() => this.show());
   }
@@ -230,13 +230,13 @@ export class Player {
 
   /** Does what the page's link says, and reports what of it cannot be done. */
   #followLink() {
-    const asked = readLink(location.hash, { begin: this.begin, end: this.end, speeds: SPEEDS });
-    this.controls.status.textContent = asked.ignored.join(" ");
-    if (asked.speed !== null) {
-      this.controls.speed.value = asked.speed;
+    const requested = readLink(location.hash, { start: this.start, end: this.end, speeds: SPEEDS });
+    this.controls.status.textContent = requested.ignored.join(" ");
+    if (requested.speed !== null) {
+      this.controls.speed.value = requested.speed;
     }
-    if (asked.time !== null) {
-      this.seek(asked.time);
+    if (requested.time !== null) {
+      this.seek(requested.time);
     }
   }
 
@@ -272,7 +272,7 @@ export class Player {
     play.classList.toggle("playing", this.playing);
     play.setAttribute("aria-label", this.playing ? "Pause" : "Play");
     scrub.value = this.time;
-    scrub.style.setProperty("--done", `${(100 * (this.time - this.begin)) / (this.end - this.begin || 1)}%`);
+    scrub.style.setProperty("--done", `${(100 * (this.time - this.start)) / (this.end - this.start || 1)}%`);
     clock.textContent = `${fixed(this.#sampled(this.time), 1)} s of ${fixed(this.end, 1)} s`;
     scrub.setAttribute("aria-valuetext", clock.textContent);
     this.#legend(chosen);

@@ -1,4 +1,4 @@
-"""The series that a page charts, and their most telling minute."""
+"""The series that a page charts, and the minute in which they change most."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from flockenv import _core
 from flockenv.recording import Recording
 
-__all__ = ["ShownQuantity", "shown_quantities", "telling_minute"]
+__all__ = ["ShownQuantity", "decisive_minute", "shown_quantities"]
 
 _Series = Callable[[Recording], NDArray[np.float64]]
 
@@ -50,7 +50,7 @@ class ShownQuantity:
         """What values are rounded to: a twentieth of the last digit that is shown."""
         return 10.0**-self.decimals / 20
 
-    def facts(self) -> dict[str, Any]:
+    def described(self) -> dict[str, Any]:
         """Return what the page's script reads."""
         names = ("key", "words", "unit", "range", "decimals")
         return {name: getattr(self, name) for name in names}
@@ -95,31 +95,31 @@ def _is_defined(values: NDArray[np.float64]) -> bool:
     return bool(np.isfinite(values).all())
 
 
-def telling_minute(recordings: Sequence[Recording]) -> tuple[float, str]:
-    """Return where the most telling minute starts, in s, and what it is in words.
+def decisive_minute(recordings: Sequence[Recording]) -> tuple[float, str]:
+    """Return where the minute of the largest change starts, in s, and what it is in words.
 
     Of one recording it is the minute in which signed order changes most: the mean over its second
     half minus that over its first, in absolute value. Of two it is the minute in which the mean of
     their difference in signed order is largest. It is the first sample, with no words, where the
     recordings have no whole minute in common or no normal boats.
     """
-    begin = max(float(each.time_s[0]) for each in recordings)
+    first = max(float(each.time_s[0]) for each in recordings)
     end = min(float(each.time_s[-1]) for each in recordings)
     signed = [_signed_order(each) for each in recordings]
-    if end - begin < _MINUTE_S or not all(map(_is_defined, signed)):
+    if end - first < _MINUTE_S or not all(map(_is_defined, signed)):
         return min(float(each.time_s[0]) for each in recordings), ""
-    steps = np.arange(begin, end - _STEP_S / 2, _STEP_S)
+    steps = np.arange(first, end - _STEP_S / 2, _STEP_S)
     series = [np.interp(steps, each.time_s, s) for each, s in zip(recordings, signed, strict=True)]
     minute = round(_MINUTE_S / _STEP_S)
     if len(series) == 1:
         halves = _means(series[0], minute // 2)
         found = np.abs(halves[minute // 2 :] - halves[: -(minute // 2)]).argmax()
-        what = "in which order changes most"
+        meaning = "in which order changes most"
     else:
         found = np.abs(_means(series[0] - series[1], minute)).argmax()
-        what = "in which the runs differ most"
+        meaning = "in which the runs differ most"
     start = float(steps[found])
-    return start, f"The page opens at {start:g} s, the beginning of the minute {what}."
+    return start, f"The page opens at {start:g} s, the start of the minute {meaning}."
 
 
 def _means(values: NDArray[np.float64], count: int) -> NDArray[np.float64]:

@@ -1,8 +1,8 @@
 // A run: what the recording says at each of its samples, and in between for the picture.
 
 export class Run {
-  constructor(facts, columns) {
-    Object.assign(this, facts);
+  constructor(described, columns) {
+    Object.assign(this, described);
     this.columns = columns;
     const time = columns.get("time_s");
     this.length = time.length;

@@ -2,10 +2,10 @@
 
 /** An element with a class and text. */
 export function element(kind, className = "", text = "") {
-  const made = document.createElement(kind);
-  made.className = className;
-  made.textContent = text;
-  return made;
+  const node = document.createElement(kind);
+  node.className = className;
+  node.textContent = text;
+  return node;
 }
 
 /** A number with a real minus sign; what rounds to zero has no sign, what is not there is a dash. */

@@ -133,7 +133,7 @@ def ray(
         # Repeated without end where a worker or its node is lost; an error of the function is not.
         remote = package.remote(num_cpus=1, max_retries=-1)(function)
         while True:
-            # Asked again each time: nodes come and go.
+            # Counted again each time: nodes come and go.
             at_once = max(2, 2 * int(package.cluster_resources().get("CPU", 0)))
             for place in itertools.islice(waiting, max(0, at_once - len(tasks))):
                 tasks[remote.remote(items[place])] = place

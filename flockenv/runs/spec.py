@@ -1,4 +1,4 @@
-"""Runs as data: what to run, a picklable spec, and what is kept of it."""
+"""Runs as data: what to run, a picklable spec, and what is stored of it."""
 
 import hashlib
 import json
@@ -26,8 +26,8 @@ from flockenv.simulation import simulate
 __all__ = ["KEEP", "ORDER_NAMES", "PROTOCOLS", "RunSpec", "execute"]
 
 KEEP = ("window", "order", "poses")
-"""What can be kept of a run: order parameters of the samples in the analysis window after the first
-tenth; of all samples; or these and all poses and velocities."""
+"""What can be stored of a run: order parameters of the samples in the analysis window after the
+first tenth; of all samples; or these and all poses and velocities."""
 
 ORDER_NAMES = tuple(each.name for each in RECORDED)
 
@@ -93,7 +93,7 @@ class RunSpec:
         `runs.protocols.hysteresis`; and policies tuned or trained for a named pool, whatever the
         pool of the run, such as "learned (500-boats)".
     keep : str
-        What is kept of the run, one of `KEEP`.
+        What is stored of the run, one of `KEEP`.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Finished runs on disk: each kept whole under the hash of its spec, so that work resumes."""
+"""Finished runs on disk: each stored whole under the hash of its spec, so that work resumes."""
 
 import os
 import warnings
@@ -33,7 +33,7 @@ RUNS_FOLDER = "runs"
 """Folder of finished runs, inside a folder of results."""
 
 RESULTS_VERSION = 2
-"""Rises whenever the same spec comes to give other numbers: what was kept before is then redone."""
+"""Rises whenever the same spec comes to give other numbers: stored runs are then redone."""
 
 _FORMAT = "flockenv run 2"
 
@@ -43,7 +43,7 @@ class StorageError(FlockError, OSError):
 
 
 class StoreWarning(UserWarning):
-    """A kept run could not be used; it was moved aside and is done again."""
+    """A stored run could not be used; it was moved aside and is done again."""
 
 
 def _warn(message: str) -> None:
@@ -63,7 +63,7 @@ class RunStore:
     folder
         Where; made with the first run.
     notify
-        Called with a line of text for each kept run that cannot be used: of another version or
+        Called with a line of text for each stored run that cannot be used: of another version or
         damaged. Such a file is moved to ``set_aside`` and the run counts as missing. By default a
         `StoreWarning`.
     """
@@ -75,7 +75,7 @@ class RunStore:
         self._notify = notify
 
     def path(self, spec: RunSpec) -> Path:
-        """Return where the run of a spec is or would be kept."""
+        """Return where the run of a spec is or would be stored."""
         return self.folder / spec.key[:2] / f"{spec.key}.npz"
 
     def save(self, spec: RunSpec, run: Recording) -> None:
@@ -104,7 +104,7 @@ class RunStore:
             ) from error
 
     def load(self, spec: RunSpec) -> Recording | None:
-        """Return the kept run of a spec, or None if there is none that can be used.
+        """Return the stored run of a spec, or None if there is none that can be used.
 
         Raises
         ------
@@ -228,7 +228,7 @@ def run_missing(
     specs
         The runs; repeated ones are made once. Expensive ones start first.
     store
-        Where finished runs are kept. Ctrl-C or a full disk ends the work, and costs only the runs
+        Where finished runs are stored. Ctrl-C or a full disk ends the work, and costs only the runs
         under way.
     engine
         Where to run, one of `flockenv.runs.executors.ENGINES`. The results are the same on each.

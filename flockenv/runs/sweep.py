@@ -40,9 +40,9 @@ def summary(run: Recording) -> dict[str, float]:
     order, target = used.order, run.parameters.target
     row: dict[str, float] = {"frames": len(used)}
     for name in _AVERAGED:
-        kept = order.series(name, target)
-        row[f"{name}_mean"] = float(kept.mean()) if len(kept) else np.nan
-        row[f"{name}_std"] = float(kept.std()) if len(kept) else np.nan
+        series = order.series(name, target)
+        row[f"{name}_mean"] = float(series.mean()) if len(series) else np.nan
+        row[f"{name}_std"] = float(series.std()) if len(series) else np.nan
     return row
 
 

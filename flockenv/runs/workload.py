@@ -101,7 +101,7 @@ def measure_workload(specs: Iterable[RunSpec], store: RunStore) -> Workload:
     specs
         The runs; repeated ones count once.
     store
-        Where finished runs are kept; nothing is written there.
+        Where finished runs are stored; nothing is written there.
 
     Returns
     -------

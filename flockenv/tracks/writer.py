@@ -36,11 +36,11 @@ def _gsd(recording: Recording, path: Path) -> None:
     hoomd: Any = require("gsd.hoomd", "tracks")
     # The library opens names, not files: it is made elsewhere first.
     with TemporaryDirectory() as folder:
-        made = Path(folder, "made.gsd")
-        with hoomd.open(str(made), "w") as file:
+        written = Path(folder, "made.gsd")
+        with hoomd.open(str(written), "w") as file:
             file.extend(_gsd_frame(hoomd, recording, sample) for sample in range(len(recording)))
         with atomic_write(path) as file:
-            file.write(made.read_bytes())
+            file.write(written.read_bytes())
 
 
 def _gsd_frame(hoomd: Any, recording: Recording, sample: int) -> Any:

@@ -31,7 +31,7 @@ def _layers(policy: ActorCriticPolicy) -> list[torch.nn.Linear]:
 
 
 def network_policy(
-    policy: ActorCriticPolicy, settings: TrainingSettings, made: Mapping[str, str]
+    policy: ActorCriticPolicy, settings: TrainingSettings, provenance: Mapping[str, str]
 ) -> NetworkPolicy:
     """Return the mean of an actor as a policy that needs no torch.
 
@@ -51,7 +51,7 @@ def network_policy(
         settings.activation,
         observation=settings.observation,
         mirror_to_target=settings.mirror_to_target,
-        made=made,
+        provenance=provenance,
         **settings.decisions,
     )
 
@@ -68,15 +68,15 @@ def copy_into_actor(
     """
     check_action_mode(start, settings.decisions["action_mode"], "to start this training from")
     hidden = tuple(len(bias) for bias in start.biases[:-1])
-    for name, own, asked in (
+    for name, own, wanted in (
         ("net_arch", hidden, settings.net_arch),
         ("activation", start.activation, settings.activation),
         ("observation", start.observation, dict(settings.observation)),
         ("mirror_to_target", start.mirror_to_target, settings.mirror_to_target),
     ):
-        if own != asked:
+        if own != wanted:
             raise ParameterError(
-                f"{name} = {asked!r} is not accepted: the policy to start from has {own!r}"
+                f"{name} = {wanted!r} is not accepted: the policy to start from has {own!r}"
             )
     with torch.no_grad():
         for layer, weight, bias in zip(_layers(policy), start.weights, start.biases, strict=True):

@@ -39,7 +39,7 @@ State = dict[str, NDArray[Any]]
 
 @dataclass
 class Progress:
-    """How far a run is: what began it, samples, seconds, and what was measured on the way."""
+    """How far a run is: what started it, samples, seconds, and what was measured on the way."""
 
     command: str = ""
     samples: int = 0

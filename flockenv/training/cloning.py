@@ -7,7 +7,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from flockenv._io.provenance import made_by
+from flockenv._io.provenance import provenance_of
 from flockenv.envs.observation import BLOCKS
 from flockenv.errors import ParameterError
 from flockenv.policies import ModelPolicy, NetworkPolicy, load
@@ -77,7 +77,7 @@ def clone_law(
     Returns
     -------
     NetworkPolicy
-        ``made["clone_rms"]`` is its root mean square difference from the law where held out.
+        ``provenance["clone_rms"]`` is its root mean square difference from the law where held out.
 
     Raises
     ------
@@ -87,11 +87,11 @@ def clone_law(
         If the loss is not finite.
     """
     own = ({**BLOCKS, **law.observation}, law.mirror_to_target)
-    asked = ({**BLOCKS, **settings.observation}, settings.mirror_to_target)
-    if own != asked:
-        raise ParameterError(f"the law's layout is {own!r}, that of the settings {asked!r}")
+    wanted = ({**BLOCKS, **settings.observation}, settings.mirror_to_target)
+    if own != wanted:
+        raise ParameterError(f"the law's layout is {own!r}, that of the settings {wanted!r}")
     check_action_mode(law, settings.decisions["action_mode"], "to clone for this training")
-    begin = time.perf_counter()
+    start = time.perf_counter()
     generator = torch.Generator().manual_seed(settings.seed)
     rows, rudders = _visited(law, settings, samples)
     order = torch.randperm(len(rows), generator=generator).numpy()
@@ -102,8 +102,8 @@ def clone_law(
             network = _network(rows.shape[1], settings)
         _fit(network, rows[seen], rudders[seen], epochs, generator)
     layers = [layer for layer in network if isinstance(layer, torch.nn.Linear)]
-    made = made_by(
-        command, seed=settings.seed, samples=len(rows), wall_s=time.perf_counter() - begin
+    provenance = provenance_of(
+        command, seed=settings.seed, samples=len(rows), wall_s=time.perf_counter() - start
     )
     policy = NetworkPolicy(
         [layer.weight.detach().numpy().T for layer in layers],
@@ -111,11 +111,11 @@ def clone_law(
         settings.activation,
         observation=settings.observation,
         mirror_to_target=settings.mirror_to_target,
-        made={**made, "cloned": repr(law)},
+        provenance={**provenance, "cloned": repr(law)},
         **settings.decisions,
     )
     error = policy.predict(rows[held_out])[0][:, 0] - rudders[held_out]
-    policy.made["clone_rms"] = f"{np.sqrt(np.mean(error**2)):.4f}"
+    policy.provenance["clone_rms"] = f"{np.sqrt(np.mean(error**2)):.4f}"
     return policy
 
 
@@ -161,7 +161,7 @@ def _fit(
             error = network(inputs[batch])[:, 0] - targets[batch]
             # The rudder is clipped: beyond the end of its range any output is right.
             beyond = (targets[batch].abs() >= 1.0) & (error * targets[batch] > 0.0)
-            loss = error.masked_fill(beyond, 0.0).square().mean()
+            loss = error.mwanted_fill(beyond, 0.0).square().mean()
             if not torch.isfinite(loss):
                 raise TrainingError("cloning: the loss is not finite")
             optimizer.zero_grad()

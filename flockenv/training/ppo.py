@@ -15,7 +15,7 @@ from stable_baselines3.common.utils import FloatSchedule
 
 from flockenv._io.atomic_write import write_text
 from flockenv._io.locks import held
-from flockenv._io.provenance import made_by
+from flockenv._io.provenance import provenance_of
 from flockenv.errors import ParameterError
 from flockenv.policies import NetworkPolicy, load
 from flockenv.training import checkpoint
@@ -183,7 +183,7 @@ class _Run:
     ) -> None:
         self.model, self.settings, self.folder = model, settings, folder
         self.progress, self.report = progress, report
-        self.begin = time.perf_counter() - progress.wall_s
+        self.started_s = time.perf_counter() - progress.wall_s
         self.log = Logger(None, [])
         self.rollback_point: RollbackPoint | None = None
 
@@ -216,7 +216,7 @@ class _Run:
         before = progress.samples
         row = self._rollout_and_update()
         progress.samples = self.model.num_timesteps
-        progress.wall_s = time.perf_counter() - self.begin
+        progress.wall_s = time.perf_counter() - self.started_s
         progress.curve.append({"samples": progress.samples, **row})
         self._log()
         ends = progress.samples >= settings.samples
@@ -263,7 +263,7 @@ class _Run:
         )
 
     def _validate(self) -> None:
-        policy = self._policy(self._made(self.progress))
+        policy = self._policy(self._provenance(self.progress))
         scores = validation_scores(policy, self.settings)
         score = sum(scores.values()) / len(scores)
         for name, value in {**scores, "mean": score}.items():
@@ -272,7 +272,7 @@ class _Run:
         row = {"samples": self.progress.samples, "mean": score, **scores}
         self.progress.validations.append(row)
         if self.progress.best_score is None or score > self.progress.best_score:
-            policy.made["validation"] = f"{score:.4f}"
+            policy.provenance["validation"] = f"{score:.4f}"
             with _written(self.folder, self.progress):
                 policy.save(self.folder / "best.npz")
             self.progress.best_score = score
@@ -286,11 +286,11 @@ class _Run:
                 self.log = Logger(None, [])
                 raise
 
-    def _policy(self, made: dict[str, str]) -> NetworkPolicy:
-        return network_policy(actor_of(self.model), self.settings, made)
+    def _policy(self, provenance: dict[str, str]) -> NetworkPolicy:
+        return network_policy(actor_of(self.model), self.settings, provenance)
 
-    def _made(self, progress: Progress) -> dict[str, str]:
-        return made_by(
+    def _provenance(self, progress: Progress) -> dict[str, str]:
+        return provenance_of(
             progress.command,
             seed=self.settings.seed,
             samples=progress.samples,
@@ -299,7 +299,9 @@ class _Run:
 
     def _write_rollback_point(self) -> None:
         if self.rollback_point is not None:
-            self.rollback_point.policy.made.update(self._made(self.rollback_point.progress))
+            self.rollback_point.policy.provenance.update(
+                self._provenance(self.rollback_point.progress)
+            )
             with _written(self.folder, self.rollback_point.progress):
                 self.rollback_point.write(self.folder)
             self.rollback_point = None

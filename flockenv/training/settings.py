@@ -294,8 +294,8 @@ def _checked_number(name: str, value: Any, whole: bool) -> Any:
     low, high = _RANGES[name]
     kinds = int if whole else int | float
     if isinstance(value, bool) or not isinstance(value, kinds) or not low <= value <= high:
-        what = "a whole number" if whole else "a number"
+        kind = "a whole number" if whole else "a number"
         raise ParameterError(
-            f"{name} = {shown(value)} is not accepted: {what} in [{low:g}, {high:g}]"
+            f"{name} = {shown(value)} is not accepted: {kind} in [{low:g}, {high:g}]"
         )
     return value if whole else float(value)

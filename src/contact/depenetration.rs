@@ -15,7 +15,7 @@ pub const PENETRATION_SLOP: f64 = 0.002;
 /// linearization means little. A boat turns by 1 rad at most.
 const LARGEST_STEP: f64 = 0.2;
 
-/// Asked now and then in long work: whether to continue.
+/// Called now and then in long work: whether to continue.
 pub type KeepGoing<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// A projection of poses, with its scratch space.

@@ -11,7 +11,7 @@ pub struct Islands {
     /// Island of each island's first boat, and of each contact.
     island_of_root: Vec<u32>,
     island_of_contact: Vec<u32>,
-    /// Where each island begins in `members`.
+    /// Where each island starts in `members`.
     starts: Vec<u32>,
     /// Contact indices, island by island.
     members: Vec<u32>,
@@ -39,10 +39,10 @@ impl Islands {
             *own = *island;
             self.starts[*island as usize + 1] += 1;
         }
-        let mut begin = 0;
+        let mut first = 0;
         for start in &mut self.starts[1..] {
             // Filling moves every start to its island's end.
-            begin += std::mem::replace(start, begin);
+            first += std::mem::replace(start, first);
         }
         self.members.resize(contacts.len(), 0);
         for (k, &island) in self.island_of_contact.iter().enumerate() {

@@ -4,7 +4,7 @@
 //! With biases that follow from the gaps at hand alone, every solution obeys: rest satisfies them. Biases
 //! that look ahead along a curve, for a flank on the inner wall or by relinearization, may demand more
 //! where a boat turns far in one substep: the contact has then passed from one end of the hull to the
-//! other, and pushing as at the substep's beginning opens nothing.
+//! other, and pushing as at the substep's start opens nothing.
 
 use super::ContactProblem;
 use super::velocity_bias::VelocityBias;

@@ -207,7 +207,7 @@ impl ContactResolver {
     }
 
     /// Solves the contacts found last for free velocities and effective inertia; the result is in
-    /// [`Self::velocities`]. Poses are those at the substep's beginning.
+    /// [`Self::velocities`]. Poses are those at the substep's start.
     ///
     /// [`ContactOutcome::TooLong`] changes nothing but the statistics.
     pub(crate) fn resolve(
@@ -328,7 +328,7 @@ impl ContactResolver {
     }
 
     /// Sets the velocity biases so that the gaps at the substep's end, evaluated where the last solve moves the
-    /// boats, open to zero: the normals stay those of the substep's beginning, along which forces act,
+    /// boats, open to zero: the normals stay those of the substep's start, along which forces act,
     /// and so does the factor. Returns the deepest overlap at the substep's end in cm. A shortened
     /// substep leaves its share of an overlap from before, which does not count.
     fn relinearize(&mut self, poses: &[Pose], dt: f64) -> f64 {

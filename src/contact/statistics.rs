@@ -28,7 +28,7 @@ pub struct Statistics {
     pub neighbor_builds: u64,
     /// Largest natural residual of a solve in cm/s.
     pub worst_residual_cm_s: f64,
-    /// Deepest overlap met at the beginning of a substep in cm, positive.
+    /// Deepest overlap met at the start of a substep in cm, positive.
     pub worst_overlap_cm: f64,
     /// Angular momentum about the pool's center that came or went where deep overlaps were undone, in
     /// cm²/s: its changes, each positive, summed. Hulls that slide past each other while they overlap

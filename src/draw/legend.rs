@@ -194,7 +194,7 @@ impl Sheet<'_> {
             .write(&mut self.canvas, text, x, baseline, ink);
     }
 
-    /// Returns where the text begins.
+    /// Returns where the text starts.
     fn write_to_right(&mut self, text: &str, baseline: f32, ink: Rgb) -> f32 {
         let x = self.width - EDGE * self.em - self.typeface.width(text);
         self.write(text, x, baseline, ink);

@@ -21,7 +21,7 @@ use view::View;
 pub struct FrameRenderer {
     canvas: Pixmap,
     legend: Legend,
-    kept: Vec<Background>,
+    backgrounds: Vec<Background>,
 }
 
 /// Water and walls of a pool, as they look with a target.
@@ -43,8 +43,8 @@ impl FrameRenderer {
     pub const SHORTEST: u32 = 64;
     /// The longest side of a frame, in pixels.
     pub const LONGEST: u32 = 4096;
-    /// Backgrounds that are kept: both targets of two pools.
-    const MOST_KEPT: usize = 4;
+    /// Most backgrounds at a time: both targets of two pools.
+    const MOST_BACKGROUNDS: usize = 4;
 
     /// For frames of this size in pixels.
     ///
@@ -62,7 +62,7 @@ impl FrameRenderer {
         Ok(Self {
             legend: Legend::new(width, height),
             canvas,
-            kept: Vec::new(),
+            backgrounds: Vec::new(),
         })
     }
 
@@ -128,16 +128,16 @@ impl FrameRenderer {
             water::draw(&mut self.canvas, &pool, target, view);
             return;
         }
-        let same = |kept: &Background| kept.pool == pool && kept.target == target;
-        if let Some(kept) = self.kept.iter().find(|kept| same(kept)) {
-            self.canvas.data_mut().copy_from_slice(kept.image.data());
+        let same = |each: &Background| each.pool == pool && each.target == target;
+        if let Some(found) = self.backgrounds.iter().find(|each| same(each)) {
+            self.canvas.data_mut().copy_from_slice(found.image.data());
             return;
         }
         water::draw(&mut self.canvas, &pool, target, view);
-        if self.kept.len() == Self::MOST_KEPT {
-            self.kept.remove(0);
+        if self.backgrounds.len() == Self::MOST_BACKGROUNDS {
+            self.backgrounds.remove(0);
         }
-        self.kept.push(Background {
+        self.backgrounds.push(Background {
             pool,
             target,
             image: self.canvas.clone(),

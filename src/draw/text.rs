@@ -50,7 +50,7 @@ impl Typeface {
         self.known(text).map(|glyph| glyph.advance).sum()
     }
 
-    /// Writes a text that begins at x, on a baseline.
+    /// Writes a text that starts at x, on a baseline.
     pub fn write(&self, canvas: &mut PixmapMut, text: &str, x: f32, baseline: f32, ink: Rgb) {
         let (mut pen, baseline) = (x, baseline.round() as i32);
         for glyph in self.known(text) {

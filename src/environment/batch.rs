@@ -144,7 +144,7 @@ impl EnvBatch {
         self.reset_while(&|| true, requests)
     }
 
-    /// As [`Self::reset`], but large flocks take seconds to place: it asks now and then whether to continue.
+    /// As [`Self::reset`], but large flocks take seconds to place: it checks now and then whether to continue.
     ///
     /// # Errors
     /// As for [`Self::reset`]; [`FlockError::Interrupted`] where `keep_going` said no.

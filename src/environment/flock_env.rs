@@ -238,7 +238,7 @@ impl FlockEnv {
             .episode
             .map(|episode| Episode::restored(settings, &self.parameters, episode))
             .transpose()?;
-        let whole_or_none = |kept: &[f32], whole| kept.is_empty() || kept.len() == whole;
+        let whole_or_none = |stored: &[f32], whole| stored.is_empty() || stored.len() == whole;
         if !whole_or_none(&stored.final_observation, whole)
             || !whole_or_none(&stored.final_state, self.state_size())
             || (episode.is_some() && stored.seeds.is_none())

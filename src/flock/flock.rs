@@ -48,7 +48,7 @@ impl Flock {
         Self::new_while(&|| true, parameters, seed)
     }
 
-    /// As [`Self::new`], but large flocks take seconds to place: it asks now and then whether to continue.
+    /// As [`Self::new`], but large flocks take seconds to place: it checks now and then whether to continue.
     ///
     /// # Errors
     /// As for [`Self::new`]; [`FlockError::Interrupted`] where `keep_going` said no.
@@ -237,7 +237,7 @@ impl Flock {
         watch: &mut impl FnMut(&Integrator),
     ) -> Result<()> {
         self.integrator.save(&mut self.before);
-        let begin = self.time;
+        let start = self.time;
         let dt = ticks(self.parameters.dt_s);
         let unsolved = self.integrator.statistics.unsolved;
         while self.time < end {
@@ -263,7 +263,7 @@ impl Flock {
             return Ok(());
         }
         self.integrator.return_to(&self.before);
-        self.time = begin;
+        self.time = start;
         Err(FlockError::Solver(
             "the motion left the range of 1e9 cm, cm/s, rad and rad/s; smaller dt_s or milder constants \
              may help"

@@ -149,14 +149,14 @@ impl Region {
 
     /// How many boats, taken in order, overlap none before them.
     fn count_disjoint(&self, poses: &[Pose]) -> usize {
-        let mut kept: Vec<HullPose> = Vec::with_capacity(poses.len());
+        let mut placed: Vec<HullPose> = Vec::with_capacity(poses.len());
         for pose in poses {
             let boat = HullPose::new(pose);
-            if self.is_clear(&boat, &kept, 0.0) {
-                kept.push(boat);
+            if self.is_clear(&boat, &placed, 0.0) {
+                placed.push(boat);
             }
         }
-        kept.len()
+        placed.len()
     }
 }
 
@@ -166,7 +166,7 @@ fn by_rejection(
     rng: &mut StreamRng,
     keep_going: KeepGoing,
 ) -> Option<Vec<Pose>> {
-    // Random sequential addition of stadiums stalls near half the area; do not even begin there. The
+    // Random sequential addition of stadiums stalls near half the area; do not even start there. The
     // quadratic search would also be slow for very large flocks, which growing handles.
     if boats as f64 * region.hull.area() > 0.4 * region.area() || boats > 4000 {
         return None;

@@ -54,7 +54,7 @@ impl Sampling {
         self.count
     }
 
-    /// When a sample is taken, counted from the beginning of the run.
+    /// When a sample is taken, counted from the start of the run.
     pub fn time(&self, sample: u64) -> Ticks {
         ticks(sample as f64 / self.sample_hz)
     }
@@ -102,7 +102,7 @@ impl ContactSamples {
 pub struct Recording<T> {
     /// Times in s.
     pub time_s: Vec<f64>,
-    /// The phase that begins or holds at each time.
+    /// The phase that starts or holds at each time.
     pub phase: Vec<Phase>,
     /// Whether each time lies in the analysis window.
     pub in_analysis_window: Vec<bool>,
@@ -207,7 +207,7 @@ impl<T: Real> Recording<T> {
 pub enum Pause {
     /// The work it was given is done; it can continue at any time.
     Work,
-    /// A control step begins: [`Recorder::steer`] may give other rudder commands.
+    /// A control step starts: [`Recorder::steer`] may give other rudder commands.
     Control,
     /// The last sample is taken.
     End,
@@ -232,7 +232,7 @@ impl Control {
 pub struct Recorder<T> {
     flock: Flock,
     sampling: Sampling,
-    begin: Ticks,
+    start: Ticks,
     taken: u64,
     changes: VecDeque<(Ticks, Change)>,
     control: Option<Control>,
@@ -248,7 +248,7 @@ impl<T: Real> Recorder<T> {
         flock.end_of(seconds(sampling.time(sampling.count() - 1)))?;
         Ok(Self {
             recording: Recording::with_room_for(&sampling, flock.parameters())?,
-            begin: flock.time(),
+            start: flock.time(),
             taken: 0,
             changes: VecDeque::new(),
             control: None,
@@ -264,7 +264,7 @@ impl<T: Real> Recorder<T> {
         self
     }
 
-    /// The same run with changes at times from its beginning on, after the sample at that time.
+    /// The same run with changes at times from its start on, after the sample at that time.
     #[must_use]
     pub fn with_changes(mut self, mut changes: Vec<(Ticks, Change)>) -> Self {
         changes.sort_by_key(|&(time, _)| time);
@@ -321,7 +321,7 @@ impl<T: Real> Recorder<T> {
     pub fn run(&mut self, boat_substeps: u64) -> Result<Pause> {
         let mut left = boat_substeps;
         loop {
-            let now = self.flock.time() - self.begin;
+            let now = self.flock.time() - self.start;
             self.sample_and_change(now)?;
             if let Some(control) = &mut self.control
                 && control.next() <= now
@@ -336,7 +336,7 @@ impl<T: Real> Recorder<T> {
             if left == 0 {
                 return Ok(Pause::Work);
             }
-            let next = self.begin + self.next_event();
+            let next = self.start + self.next_event();
             let steering = match &self.control {
                 Some(control) => Steering::Held(&control.rudder),
                 None => Steering::Law,
@@ -373,9 +373,9 @@ impl<T: Real> Recorder<T> {
         next
     }
 
-    /// Seconds from the beginning of the run to where it is now.
+    /// Seconds from the start of the run to where it is now.
     pub fn elapsed_s(&self) -> f64 {
-        seconds(self.flock.time() - self.begin)
+        seconds(self.flock.time() - self.start)
     }
 
     /// What has been recorded.

@@ -11,7 +11,7 @@ pub struct NeighborList {
     reference: Vec<Vec2>,
     /// Boats by polar angle.
     order: Vec<u32>,
-    /// For each place in `order`, where its partners begin in `partners`.
+    /// For each place in `order`, where its partners start in `partners`.
     starts: Vec<u32>,
     /// Partners earlier in `order`.
     partners: Vec<u32>,
@@ -110,7 +110,7 @@ impl NeighborList {
         self.grid.sort(&self.reference, &self.order, cutoff);
         for place in 0..self.order.len() {
             let center = self.reference[self.order[place] as usize];
-            let begin = self.partners.len();
+            let start = self.partners.len();
             self.grid.for_each_near(center, |other| {
                 let near = (center - self.reference[self.order[other as usize] as usize])
                     .norm_squared()
@@ -119,7 +119,7 @@ impl NeighborList {
                     self.partners.push(other);
                 }
             });
-            let group = &mut self.partners[begin..];
+            let group = &mut self.partners[start..];
             group.sort_unstable();
             group
                 .iter_mut()

@@ -128,9 +128,9 @@ fn remember(flock: &mut Integrator, substep: &Substep) {
     match substep.steering {
         Steering::Law => last.rudder = None,
         Steering::Held(commands) => {
-            let kept = last.rudder.get_or_insert_default();
-            kept.clear();
-            kept.extend_from_slice(commands);
+            let commanded = last.rudder.get_or_insert_default();
+            commanded.clear();
+            commanded.extend_from_slice(commands);
         }
     }
 }

@@ -23,7 +23,7 @@ impl Phase {
         self as usize
     }
 
-    /// Whether a time is analyzed that lies so long after the phase began and before it ends: the second half of
+    /// Whether a time is analyzed that lies so long after the phase started and before it ends: the second half of
     /// fw and the first half of the drift after it (Section 4).
     fn is_analyzed<T: PartialOrd>(self, elapsed: T, left: T) -> bool {
         match self {
@@ -39,12 +39,12 @@ impl Phase {
 pub fn sampled_analysis_window(times_s: &[f64], phases: &[Phase]) -> Vec<bool> {
     let mut analyzed = Vec::with_capacity(times_s.len());
     for samples in phases.chunk_by(|a, b| a == b) {
-        let begin = analyzed.len();
-        let end = (begin + samples.len()).min(times_s.len() - 1);
+        let start = analyzed.len();
+        let end = (start + samples.len()).min(times_s.len() - 1);
         analyzed.extend(
-            times_s[begin..begin + samples.len()]
+            times_s[start..start + samples.len()]
                 .iter()
-                .map(|time| samples[0].is_analyzed(time - times_s[begin], times_s[end] - time)),
+                .map(|time| samples[0].is_analyzed(time - times_s[start], times_s[end] - time)),
         );
     }
     analyzed
@@ -55,7 +55,7 @@ pub fn sampled_analysis_window(times_s: &[f64], phases: &[Phase]) -> Vec<bool> {
 pub struct PhaseMoment {
     /// The phase that holds from this time on.
     pub phase: Phase,
-    /// Time since the phase began.
+    /// Time since the phase started.
     pub elapsed: Ticks,
     /// Time until the next switch.
     pub left: Ticks,
@@ -89,7 +89,7 @@ impl PhaseSchedule {
         self.durations[phase.index()]
     }
 
-    /// The phase at a time; a switch belongs to the phase that begins there.
+    /// The phase at a time; a switch belongs to the phase that starts there.
     pub fn at(&self, time: Ticks) -> PhaseMoment {
         let mut elapsed = time % self.cycle;
         for &phase in Phase::ALL {

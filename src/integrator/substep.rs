@@ -16,7 +16,7 @@ pub enum Steering<'a> {
 /// One substep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Substep<'a> {
-    /// When it begins.
+    /// When it starts.
     pub start: Ticks,
     /// How long it lasts.
     pub length: Ticks,

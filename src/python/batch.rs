@@ -134,8 +134,8 @@ impl PyEnvBatch {
             let request = request.as_ref().map(|request| request_from(request, boats));
             read.push(request.transpose()?);
         }
-        let asked = shapes.iter().zip(&read);
-        let boats = asked.filter_map(|(boats, request)| request.as_ref().map(|_| boats));
+        let requested = shapes.iter().zip(&read);
+        let boats = requested.filter_map(|(boats, request)| request.as_ref().map(|_| boats));
         let boats = boats.sum();
         let mut batch = self.0.write()?;
         let batch = &mut *batch;
@@ -381,9 +381,9 @@ fn request_from(options: &Bound<'_, PyDict>, boats: usize) -> PyResult<ResetRequ
             }
         }
     }
-    let begins_twice = options.contains("state")? && options.contains("snapshot")?;
+    let starts_twice = options.contains("state")? && options.contains("snapshot")?;
     let noise_twice = options.contains("bw_s")? && options.contains("snapshot")?;
-    if begins_twice || noise_twice {
+    if starts_twice || noise_twice {
         let accepted = "a snapshot alone: it brings its own state and bw_s along";
         return Err(FlockError::parameter("reset options", "snapshot and others", accepted).into());
     }

@@ -73,10 +73,10 @@ fn class<'py>(
     let body = PyDict::new(py);
     body.set_item("__module__", "flockenv.errors")?;
     body.set_item("__doc__", doc)?;
-    let made = py
+    let class = py
         .get_type::<PyType>()
         .call1((name, PyTuple::new(py, bases)?, body))?;
-    Ok(made.cast_into()?)
+    Ok(class.cast_into()?)
 }
 
 /// Puts the exception classes into the module.

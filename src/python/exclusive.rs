@@ -25,7 +25,7 @@ impl<T> Exclusive<T> {
         }
     }
 
-    /// The object, to look at.
+    /// The object, to read.
     ///
     /// # Errors
     /// [`FlockError::InUse`] while another thread changes it.
@@ -52,11 +52,11 @@ impl<T> Exclusive<T> {
 
 /// Boats that are placed at once, too fast to interrupt.
 const FEW_BOATS: usize = 1000;
-/// Time between two looks at Python's signals.
+/// Time between two checks of Python's signals.
 const PATIENCE: Duration = Duration::from_millis(20);
 
 /// Work on so many boats, without the interpreter lock, that stops where a signal's handler
-/// raises: it has a thread of its own then, since Python looks at signals in this one.
+/// raises: it has a thread of its own then, since Python checks signals in this one.
 pub fn interruptible<T: Send>(
     py: Python<'_>,
     boats: usize,

@@ -44,7 +44,7 @@ impl PyFlock {
         Self(Exclusive::new(flock, "the flock"))
     }
 
-    /// The flock, to look at.
+    /// The flock, to read.
     ///
     /// # Errors
     /// [`FlockError::InUse`] while another thread changes it.

@@ -38,7 +38,7 @@ pub fn sampled_analysis_window<'py>(
 /// What of a run is kept besides its states, and how precisely.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub struct Kept {
+pub struct RecordingOptions {
     single_precision: bool,
     contacts: bool,
 }
@@ -58,14 +58,14 @@ pub struct Control<'py> {
 /// `changes` are times in s from the start of the run and what changes then: a target or parameters. Without
 /// `control` leaders follow the steering law.
 #[pyfunction]
-#[pyo3(signature = (flock, duration_s, sample_hz, kept, changes, control=None, progress=None))]
+#[pyo3(signature = (flock, duration_s, sample_hz, options, changes, control=None, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "as many as a run has")]
 pub fn record<'py>(
     py: Python<'py>,
     flock: &PyFlock,
     duration_s: DurationS,
     sample_hz: SampleHz,
-    kept: Kept,
+    options: RecordingOptions,
     changes: Vec<(f64, Bound<'py, PyAny>)>,
     control: Option<Control<'py>>,
     progress: Option<Bound<'py, PyAny>>,
@@ -78,12 +78,12 @@ pub fn record<'py>(
     let run = Run {
         flock: flock.read()?.clone(),
         sampling,
-        contacts: kept.contacts,
+        contacts: options.contacts,
         changes,
         control,
         progress,
     };
-    if kept.single_precision {
+    if options.single_precision {
         run.recorded::<f32>(py)
     } else {
         run.recorded::<f64>(py)

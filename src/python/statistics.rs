@@ -76,8 +76,8 @@ macro_rules! statistics {
                 let fields = PyDict::new(slf.py());
                 $(fields.set_item(stringify!($name), slf.get().$name)?;)+
                 let partial = slf.py().import("functools")?.getattr("partial")?;
-                let made = partial.call((slf.get_type(),), Some(&fields))?;
-                Ok((made, PyTuple::empty(slf.py())))
+                let copy = partial.call((slf.get_type(),), Some(&fields))?;
+                Ok((copy, PyTuple::empty(slf.py())))
             }
 
             /// Earlier name of `depenetration_passes`.

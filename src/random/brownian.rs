@@ -12,7 +12,7 @@ use rand_distr::StandardNormal;
 /// Standard normal draws keyed by (cell, node, boat).
 #[derive(Debug, Clone)]
 struct KeyedNormals {
-    /// At its beginning.
+    /// At its start.
     words: StreamRng,
     tail: StreamRng,
 }
@@ -102,7 +102,7 @@ pub struct BrownianPaths {
 const HALF_TICK_S: f64 = 0.5e-9;
 
 impl BrownianPaths {
-    /// Paths for `boats` boats; cells of `cell_length` half ticks, the first of them beginning
+    /// Paths for `boats` boats; cells of `cell_length` half ticks, the first of them start
     /// `shift` half ticks before time 0.
     pub fn new(seed: u64, boats: usize, cell_length: u64, shift: u64) -> Self {
         let zeros = vec![0.0; boats];
@@ -122,9 +122,9 @@ impl BrownianPaths {
         let (first, last) = (from / self.cell_length, (to - 1) / self.cell_length);
         increments.fill(0.0);
         for cell in first..=last {
-            let begin = cell * self.cell_length;
-            let a = from.max(begin) - begin;
-            let b = to.min(begin + self.cell_length) - begin;
+            let start = cell * self.cell_length;
+            let a = from.max(start) - start;
+            let b = to.min(start + self.cell_length) - start;
             self.add_path_value(cell, b, 1.0, increments);
             self.add_path_value(cell, a, -1.0, increments);
         }
@@ -135,12 +135,12 @@ impl BrownianPaths {
         self.normals.fill(time, 0, draws);
     }
 
-    /// Adds `sign` times the path's value at `offset` half ticks into a cell, 0 at its beginning.
+    /// Adds `sign` times the path's value at `offset` half ticks into a cell, 0 at its start.
     fn add_path_value(&mut self, cell: u64, offset: u64, sign: f64, sums: &mut [f64]) {
         if offset == 0 {
             return;
         }
-        let (mut begin, mut end, mut node) = (0_u64, self.cell_length, 1_u32);
+        let (mut start, mut end, mut node) = (0_u64, self.cell_length, 1_u32);
         let scale = (end as f64 * HALF_TICK_S).sqrt();
         self.normals.fill(cell, 0, &mut self.high);
         if offset == end {
@@ -152,9 +152,9 @@ impl BrownianPaths {
         self.high.iter_mut().for_each(|value| *value *= scale);
         self.low.fill(0.0);
         loop {
-            let middle = begin + (end - begin) / 2;
+            let middle = start + (end - start) / 2;
             self.normals.fill(cell, node, &mut self.draws);
-            let (left, right) = ((middle - begin) as f64, (end - middle) as f64);
+            let (left, right) = ((middle - start) as f64, (end - middle) as f64);
             let spread = (left * right / (left + right) * HALF_TICK_S).sqrt();
             for ((draw, low), high) in self.draws.iter_mut().zip(&self.low).zip(&self.high) {
                 *draw = (low * right + high * left) / (left + right) + spread * *draw;
@@ -164,7 +164,7 @@ impl BrownianPaths {
             }
             let beyond = offset > middle;
             if beyond {
-                (begin, node) = (middle, 2 * node + 1);
+                (start, node) = (middle, 2 * node + 1);
                 std::mem::swap(&mut self.low, &mut self.draws);
             } else {
                 (end, node) = (middle, 2 * node);

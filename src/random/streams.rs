@@ -41,7 +41,7 @@ impl Stream {
         }
     }
 
-    /// The generator of this stream for a seed, at its beginning.
+    /// The generator of this stream for a seed, at its start.
     pub(crate) fn rng(self, seed: u64) -> StreamRng {
         let mut key = [0_u8; 32];
         key[..8].copy_from_slice(&seed.to_le_bytes());

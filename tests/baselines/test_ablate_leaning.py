@@ -38,7 +38,7 @@ def test_a_short_run(script, tmp_path: Path, capsys) -> None:
     script.main([str(tmp_path / "law.npz"), *arguments, *out])
     table = pd.read_csv(tmp_path / "a.csv", index_col="law")
     assert table.loc["whole", "beyond_whole"] == 0.0
-    # A group without weights is nothing to miss.
+    # A group without weights takes nothing away.
     assert table.loc["without outer wall", "beyond_whole"] == 0.0
     assert table.loc["no weights", "beyond_whole"] != 0.0
     lean = pd.read_csv(tmp_path / "a-lean.csv", index_col="feature")

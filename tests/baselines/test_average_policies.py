@@ -10,8 +10,8 @@ from flockenv.policies import LeaningLaw, NetworkPolicy, load
 
 def law(gain: float, bias: float, weights: dict[str, float], seed: int) -> LeaningLaw:
     gains = {"gain": gain, "backward_gain": 2.0, "damping": 9.0}
-    made = {"seed": str(seed), "samples": "100", "wall_s": "7", "command": f"search {seed}"}
-    return LeaningLaw(gains, bias, weights, made=made)
+    provenance = {"seed": str(seed), "samples": "100", "wall_s": "7", "command": f"search {seed}"}
+    return LeaningLaw(gains, bias, weights, provenance=provenance)
 
 
 def test_the_mean_of_two(script, tmp_path: Path) -> None:
@@ -22,12 +22,12 @@ def test_the_mean_of_two(script, tmp_path: Path) -> None:
     mean = load(out)
     assert mean.gains == pytest.approx({"gain": 2.0, "backward_gain": 2.0, "damping": 9.0})
     assert mean.bias == pytest.approx(0.2)
-    kept = {name: weight for name, weight in mean.weights.items() if weight}
-    assert kept == pytest.approx({"near": 0.3, "leaders": -0.5})
-    assert mean.made["samples"] == "200"
-    assert mean.made["seed"] == "3, 4"
-    assert mean.made["part 1: command"] == "search 4"
-    assert "average_policies.py" in mean.made["command"]
+    rest = {name: weight for name, weight in mean.weights.items() if weight}
+    assert rest == pytest.approx({"near": 0.3, "leaders": -0.5})
+    assert mean.provenance["samples"] == "200"
+    assert mean.provenance["seed"] == "3, 4"
+    assert mean.provenance["part 1: command"] == "search 4"
+    assert "average_policies.py" in mean.provenance["command"]
 
 
 def test_parts_and_mean_lead_in_episodes_for_training(

@@ -40,8 +40,8 @@ def test_resumed_is_uninterrupted(script, tmp_path: Path, hidden: list[str]) -> 
     rows = np.random.default_rng(0).uniform(-1, 1, (20, size)).astype(np.float32)
     np.testing.assert_array_equal(one.predict(rows)[0], other.predict(rows)[0])
     # 3 generations, 6 candidates, one flock with 2 leaders, 10 steps.
-    assert one.made["samples"] == str(3 * 6 * 2 * 10)
-    assert one.made["command"].startswith("python baselines/evolution_strategy.py")
+    assert one.provenance["samples"] == str(3 * 6 * 2 * 10)
+    assert one.provenance["command"].startswith("python baselines/evolution_strategy.py")
 
 
 def test_candidates_steer_as_their_policies_do(script) -> None:
@@ -81,11 +81,11 @@ def test_leaning_candidates_steer_as_their_policies_do(script, tmp_path: Path) -
         expected = policy.predict(rows[candidate])[0][:, 0]
         np.testing.assert_allclose(rudders[candidate], expected, atol=1e-6)
         seen.append(expected)
-    # What it begins as is the damped law.
-    assert shape.begin.gains == tuned_law("damped law", "table-1").gains
-    begin = shape.policy(shape.first(random), {})
+    # What it starts as is the damped law.
+    assert shape.initial.gains == tuned_law("damped law", "table-1").gains
+    initial = shape.policy(shape.first(random), {})
     np.testing.assert_allclose(
-        begin.predict(rows)[0][..., 0], shape.begin.predict(rows)[0][..., 0], atol=1e-5
+        initial.predict(rows)[0][..., 0], shape.initial.predict(rows)[0][..., 0], atol=1e-5
     )
     assert np.ptp(seen, axis=0).max() > 0.1
 

@@ -90,13 +90,13 @@ def test_no_critical_noise_without_runs(imported, arguments, capsys) -> None:
 
 
 @pytest.mark.parametrize(
-    ("kept", "words"), [(False, "no checkpoint yet"), (True, "--resume continues")]
+    ("stored", "words"), [(False, "no checkpoint yet"), (True, "--resume continues")]
 )
 def test_ppo_reports_what_is_stored(
-    imported, tmp_path: Path, monkeypatch, kept: bool, words: str
+    imported, tmp_path: Path, monkeypatch, stored: bool, words: str
 ) -> None:
     def interrupted(settings, out, **_options):
-        if kept:
+        if stored:
             np.savez(out / "checkpoint.npz")
         raise KeyboardInterrupt
 

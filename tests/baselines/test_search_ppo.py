@@ -49,11 +49,11 @@ def test_it_stores_every_run_and_resumes(short, script, tmp_path: Path, capsys) 
         assert math.isclose(float(getattr(best, name)), float(winner[name]), rel_tol=1e-4)
     assert best.final_learning_rate == pytest.approx(best.learning_rate / 10)
 
-    kept = path.read_bytes()
+    before = path.read_bytes()
     changed = [(folder / "checkpoint.npz").stat().st_mtime_ns for folder in tmp_path.glob("run-*")]
     path.unlink()
     script.main(arguments)
-    assert path.read_bytes() == kept
+    assert path.read_bytes() == before
     again = [(folder / "checkpoint.npz").stat().st_mtime_ns for folder in tmp_path.glob("run-*")]
     assert again == changed
     with pytest.raises(SystemExit, match="of another search"):

@@ -1,4 +1,4 @@
-"""Law: a flock moves only as asked; whatever it refuses leaves it as it was, and usable."""
+"""Law: a flock moves only as commanded; whatever it refuses leaves it as it was, and usable."""
 
 import contextlib
 import copy
@@ -325,11 +325,11 @@ def test_a_flock_from_a_state_is_one_that_was_put_there():
     put = Flock(parameters, 9)
     put.set_state(pose, velocity, 3.0, allow_overlap=True)
     state = {"pose": pose, "velocity": velocity, "time_s": 3.0, "allow_overlap": True}
-    made = Flock.from_state(parameters, 9, state)
-    for flock in (put, made):
+    given = Flock.from_state(parameters, 9, state)
+    for flock in (put, given):
         flock.advance(10.0)
-    assert np.array_equal(put.pose, made.pose)
-    assert made.seed == 9
-    assert made.snapshot() == put.snapshot()
+    assert np.array_equal(put.pose, given.pose)
+    assert given.seed == 9
+    assert given.snapshot() == put.snapshot()
     with pytest.raises(TypeError, match="state"):
         Flock.from_state(parameters, 9, pose)

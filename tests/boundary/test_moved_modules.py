@@ -10,6 +10,7 @@ from flockenv import FlockParameters
 from flockenv._io.moved_modules import MOVED
 from flockenv.comparison import run_episodes
 from flockenv.policies import SteeringLaw
+from flockenv.policies.pretrained import learned
 
 
 @pytest.mark.parametrize("old", MOVED)
@@ -46,3 +47,9 @@ def test_an_old_argument_is_the_new_one_and_warns():
     with pytest.warns(DeprecationWarning, match="the argument scene is called parameters"):
         found = run_episodes(scene=parameters, **rest)
     assert found == expected
+
+
+def test_an_old_attribute_is_the_new_one_and_warns():
+    law = learned("table-1")
+    with pytest.warns(DeprecationWarning, match="the attribute made is called provenance"):
+        assert law.made is law.provenance

@@ -1,4 +1,4 @@
-"""Law: order parameters are those of Section 3.2, of the normal boats unless asked otherwise."""
+"""Law: order parameters are those of Section 3.2, of the normal boats or of all."""
 
 import math
 import pickle

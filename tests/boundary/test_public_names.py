@@ -39,7 +39,7 @@ SIGNATURES = {
 def test_names_are_where_they_were(owner):
     flock = flockenv.Flock(PARAMETERS, seed=1)
     run = flockenv.simulate(PARAMETERS, 1, 0.1)
-    made = {
+    instances = {
         "Flock": flock,
         "Recording": run,
         "OrderParameters": flock.order_parameters(),
@@ -47,9 +47,9 @@ def test_names_are_where_they_were(owner):
         "Contacts": flock.contacts(),
     }
     thing = getattr(flockenv, owner) if owner else flockenv
-    if owner in made:
-        assert isinstance(made[owner], thing)
-        thing = made[owner]
+    if owner in instances:
+        assert isinstance(instances[owner], thing)
+        thing = instances[owner]
     assert [name for name in NAMES[owner].split() if not hasattr(thing, name)] == []
 
 

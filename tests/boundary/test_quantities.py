@@ -24,7 +24,7 @@ def run():
     return flockenv.simulate(PARAMETERS, seed=3, duration_s=20.0)
 
 
-def test_the_table_begins_with_the_order_parameters_of_the_paper():
+def test_the_table_starts_with_the_order_parameters_of_the_paper():
     assert RECORDED[:6] == ["psi_o", "phi_o", "c_o", "psi_v", "phi_v", "c_v"]
     assert {"nematic", "milling"} <= set(RECORDED)
 

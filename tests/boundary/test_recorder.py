@@ -61,10 +61,10 @@ class Watching:
     """Rudders from what is seen, and how often they were requested."""
 
     def __init__(self, mirror_to_target: bool = False) -> None:
-        self.asked, self.mirror_to_target = 0, mirror_to_target
+        self.calls, self.mirror_to_target = 0, mirror_to_target
 
     def predict(self, observation, state=None, episode_start=None):
-        self.asked += 1
+        self.calls += 1
         turns = 0 if state is None else state
         return 2.0 * np.sin(observation[:, :3].sum(axis=1) + turns), turns + 1
 
@@ -89,13 +89,13 @@ def test_rudders_are_held_between_control_steps(control_hz, mirrored):
             )
             actions, state = by_hand.predict(seen, state)
             rudder = np.clip(actions, -1.0, 1.0) * (-1.0 if mirrored else 1.0)
-    assert (place, policy.asked) == (31, by_hand.asked)
+    assert (place, policy.calls) == (31, by_hand.calls)
 
 
 def test_a_policy_without_leaders_is_not_asked():
     policy = Watching()
     flockenv.simulate(PARAMETERS.replace(n_leaders=0), 3, 2.0, policy=policy)
-    assert policy.asked == 0
+    assert policy.calls == 0
 
 
 def test_progress_is_reported_with_and_without_a_policy():

@@ -129,8 +129,8 @@ def with_arrays(**changes) -> bytes:
         path = Path(folder, "run.npz")
         RUN.save(path)
         with np.load(path, allow_pickle=False) as arrays:
-            kept = dict(arrays) | changes
-        np.savez(path, **{name: array for name, array in kept.items() if array is not None})
+            stored = dict(arrays) | changes
+        np.savez(path, **{name: array for name, array in stored.items() if array is not None})
         return path.read_bytes()
 
 

@@ -15,10 +15,10 @@ class Constant:
     """Rudders that never move, and a count of the calls."""
 
     def __init__(self, rudder: float) -> None:
-        self.rudder, self.asked = rudder, 0
+        self.rudder, self.calls = rudder, 0
 
     def predict(self, observation, state=None, episode_start=None):  # type: ignore[no-untyped-def]
-        self.asked += 1
+        self.calls += 1
         return np.full(len(observation), self.rudder), state
 
 
@@ -38,7 +38,7 @@ def test_held_rudders(parameters: flockenv.FlockParameters) -> None:
         assert recording.phase[place] == flock.phase
         flock.advance(0.1, [0.5, 0.5])
         flock.advance(0.1, [0.5, 0.5])
-    assert policy.asked == 61
+    assert policy.calls == 61
 
 
 def test_the_law_in_an_environment_is_the_law_in_a_run(

@@ -126,13 +126,13 @@ class ReplayPage:
         WebDriverWait(self.driver, 30).until(lambda _: self.state())
 
     def rest(self) -> None:
-        """Pause at the beginning, in real time."""
+        """Pause at the start, in real time."""
         self.script("""
             if (player.playing) {
               player.toggle();
             }
             player.controls.speed.value = 1;
-            player.seek(player.begin)""")
+            player.seek(player.start)""")
         self.wait_until_drawn()
 
     def is_playing(self) -> bool:
@@ -242,6 +242,6 @@ class ReplayPage:
 
 
 def number(text: str) -> float:
-    """The number that a text begins with."""
+    """The number that a text starts with."""
     word = text.split()[0].replace("−", "-")
     return math.nan if word == "–" else float(word)

@@ -1,10 +1,10 @@
-"""Law: a replay begins where its link or its data say, and does what is clicked and typed."""
+"""Law: a replay starts where its link or its data say, and does what is clicked and typed."""
 
 import time
 
 import pytest
 
-from flockenv.replay.quantities import telling_minute
+from flockenv.replay.quantities import decisive_minute
 
 pytestmark = pytest.mark.browser
 
@@ -21,9 +21,9 @@ def test_play_keeps_real_time_and_pauses(page, law):
     page.check(law)
 
 
-def test_it_opens_playing_at_its_most_telling_minute(open_page, pages, law, damped):
+def test_it_opens_playing_at_its_most_decisive_minute(open_page, pages, law, damped):
     for name, recordings in (("one", [law]), ("two", [law, damped])):
-        moment, _ = telling_minute(recordings)
+        moment, _ = decisive_minute(recordings)
         page = open_page(pages / f"{name}.html", rests=False)
         assert page.is_playing()
         assert page.find("#speed").get_attribute("value") == "8"
@@ -79,8 +79,8 @@ def test_a_link_that_cannot_be_followed_is_reported(open_link, pages, law, fragm
     wrong = fragment[1:].split("&")[-1]
     assert f"link's {wrong}" in page.text("#status")
     assert "ignored" in page.text("#status")
-    begin = 40.0 if "t=40" in fragment else telling_minute([law])[0]
-    assert begin <= page.time() < begin + 30.0
+    start = 40.0 if "t=40" in fragment else decisive_minute([law])[0]
+    assert start <= page.time() < start + 30.0
     assert page.find("#speed").get_attribute("value") == "8"
 
 
@@ -92,7 +92,7 @@ def test_speed(page):
     assert 16.0 <= page.time() <= 48.0
 
 
-def test_it_stops_at_the_end_and_begins_again(page):
+def test_it_stops_at_the_end_and_starts_again(page):
     page.press("END")
     assert page.time() == 120.0
     page.click("#play")

@@ -36,7 +36,7 @@ def test_forces_are_drawn_where_hulls_touch(page, law):
     k, c = strong[len(strong) // 2]
     page.script("player.seek(arguments[0])", law.time_s[k])
     page.wait_until_drawn()
-    # A bar begins where hulls touch, and lies on the boat that is pushed.
+    # A bar starts where hulls touch, and lies on the boat that is pushed.
     inside = law.contacts.point_cm[c] + 1.0 * law.contacts.normal[c]
     place = page.pixels(0, *map(float, inside))
     assert page.color(0, *place) == FORCE
@@ -62,9 +62,9 @@ def test_a_forces_drawn_length_reports_its_size(page, law):
     for force in np.linspace(0.5, 3.0, 6) * scale:
         c = alone[np.abs(law.contacts.force[alone] - force).argmin()]
         page.script("player.seek(arguments[0]); player.show()", law.time_s[sample[c]])
-        begin = np.array(page.pixels(0, *map(float, points[c])))
+        start = np.array(page.pixels(0, *map(float, points[c])))
         along = np.arange(0.0, 6.0 * hull_px, 0.5)[:, None] * law.contacts.normal[c] * (1, -1)
-        drawn = 0.5 * sum(page.color(0, *place) == FORCE for place in begin + along)
+        drawn = 0.5 * sum(page.color(0, *place) == FORCE for place in start + along)
         lengths.append((float(law.contacts.force[c]), drawn))
     for force, length in lengths:
         assert length == pytest.approx(hull_px * force / scale, abs=2.0)

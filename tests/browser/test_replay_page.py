@@ -1,4 +1,4 @@
-"""Law: a replay shows what the recording says, and asks no network."""
+"""Law: a replay shows what the recording says, and needs no network."""
 
 import dataclasses
 import json
@@ -10,7 +10,7 @@ import pytest
 import flockenv
 from flockenv.replay import MOST_BYTES, inline_replay, write_replay
 from flockenv.replay import page as replay_page
-from flockenv.replay.quantities import ShownQuantity, telling_minute
+from flockenv.replay.quantities import ShownQuantity, decisive_minute
 
 pytestmark = pytest.mark.browser
 
@@ -18,19 +18,19 @@ pytestmark = pytest.mark.browser
 def test_it_opens_without_a_network_or_a_complaint(page, law):
     assert page.state() == "true"
     assert page.driver.title == "law – flockenv replay"
-    assert "seed 7" in page.text(".facts", 0)
-    assert f"flockenv {law.version}" in page.text(".facts", 0)
+    assert "seed 7" in page.text(".origin", 0)
+    assert f"flockenv {law.version}" in page.text(".origin", 0)
     page.click("#play")
     time.sleep(0.5)
     assert page.driver.get_log("browser") == []
     log = [json.loads(entry["message"])["message"] for entry in page.driver.get_log("performance")]
-    asked = [
+    requested = [
         each["params"]["request"]["url"]
         for each in log
         if each["method"] == "Network.requestWillBeSent"
     ]
-    assert asked
-    assert [url for url in asked if not url.startswith(("file:", "data:", "blob:"))] == []
+    assert requested
+    assert [url for url in requested if not url.startswith(("file:", "data:", "blob:"))] == []
 
 
 def test_its_policy_forbids_the_network(page):
@@ -163,7 +163,7 @@ def test_recorded_words_are_not_run(open_page, law, tmp_path):
     assert page.state() == "true"
     assert page.script("return window.hacked") is None
     assert page.text(".name", 0) == evil
-    assert page.text(".facts", 0) == f"seed 7 · flockenv {evil}"
+    assert page.text(".origin", 0) == f"seed 7 · flockenv {evil}"
     assert page.script("return document.images.length") == 0
 
 
@@ -192,18 +192,18 @@ def test_an_hour_opens_at_once_and_scrubs_smoothly(open_page, parameters, tmp_pa
     run = flockenv.simulate(parameters, 7, 3600.0, contacts=True)
     assert write_replay(tmp_path / "hour.html", {"hour": run}).every == 1
     assert (tmp_path / "hour.html").stat().st_size < MOST_BYTES
-    begin = time.perf_counter()
+    start = time.perf_counter()
     page = open_page(tmp_path / "hour.html")
-    assert time.perf_counter() - begin < 10.0
+    assert time.perf_counter() - start < 10.0
     source = """
         const scrub = document.getElementById("scrub");
-        const begin = performance.now();
+        const start = performance.now();
         for (let k = 0; k < 100; k += 1) {
           scrub.value = 3600 * ((k * 0.618) % 1);
           scrub.dispatchEvent(new Event("input"));
           player.show();
         }
-        return (performance.now() - begin) / 100"""
+        return (performance.now() - start) / 100"""
     assert page.script(source) < 40.0
     page.click_at("#scrub", 0.7)
     page.check(run)
@@ -216,7 +216,7 @@ def test_it_plays_inside_a_notebook(open_page, law, tmp_path):
     outside.driver.switch_to.frame(0)
     outside.wait()
     assert not outside.is_playing()
-    moment, _ = telling_minute([law])
+    moment, _ = decisive_minute([law])
     assert outside.time() == moment
     outside.check(law)
     outside.click("#play")

@@ -15,7 +15,7 @@ SHORT = ["--episodes", "3", "--minutes", "0.5", "--set", "n_boats=8", "--pool", 
 def learned(folder: Path) -> str:
     size = len(observation_entries())
     policy = NetworkPolicy(
-        [np.zeros((size, 1))], [[0.25]], made={"command": "by hand", "seed": "7"}
+        [np.zeros((size, 1))], [[0.25]], provenance={"command": "by hand", "seed": "7"}
     )
     policy.save(folder / "leaning.npz")
     return str(folder / "leaning.npz")

@@ -227,7 +227,7 @@ def test_ctrl_c_says_where_finished_work_is(cli, name, tmp_path):
     process = cli.start(name, *arguments, *out, stderr=own, COLUMNS="200", TERM="xterm")
     os.close(own)
     try:
-        # The bar appears when the work begins.
+        # The bar appears when the work starts.
         assert os.read(terminal, 1000)
         time.sleep(0.5)
         process.send_signal(signal.SIGINT)

@@ -71,11 +71,11 @@ def test_a_run_whose_folder_was_taken_away_is_kept_elsewhere(cli, tmp_path, monk
     monkeypatch.setattr(sys.modules["flockenv.cli.run"], "simulate", meanwhile)
     done = cli("run", *TINY)
     assert done.returncode == 2
-    (kept,) = tmp_path.glob("flockenv-*/run.npz")
-    assert str(kept) in done.stderr
+    (stored,) = tmp_path.glob("flockenv-*/run.npz")
+    assert str(stored) in done.stderr
     assert "results/run.npz cannot be written" in done.stderr
-    assert len(flockenv.Recording.load(kept)) == 13
-    assert kept.with_suffix(".toml").is_file()
+    assert len(flockenv.Recording.load(stored)) == 13
+    assert stored.with_suffix(".toml").is_file()
 
 
 def test_a_comparison_whose_folder_was_taken_away_is_kept_elsewhere(cli, tmp_path, monkeypatch):
@@ -88,9 +88,9 @@ def test_a_comparison_whose_folder_was_taken_away_is_kept_elsewhere(cli, tmp_pat
     monkeypatch.setattr(report, "compare_leaders", meanwhile)
     done = cli("compare", *EPISODES, "--most-leaders", "1", "--policy", "straight ahead")
     assert done.returncode == 2
-    (kept,) = tmp_path.glob("flockenv-*/table-1")
-    assert str(kept) in done.stderr.replace("\n", "")
-    assert {"runs.csv", "leader_curve.png", "run.toml"} <= {each.name for each in kept.iterdir()}
+    (stored,) = tmp_path.glob("flockenv-*/table-1")
+    assert str(stored) in done.stderr.replace("\n", "")
+    assert {"runs.csv", "leader_curve.png", "run.toml"} <= {each.name for each in stored.iterdir()}
 
 
 def test_what_cannot_be_kept_anywhere_says_so(monkeypatch, tmp_path):

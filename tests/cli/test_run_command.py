@@ -84,8 +84,10 @@ def test_commands_at_once_lose_no_recording(cli, tmp_path, monkeypatch, out):
     assert done.returncode == 0, done.stderr
     assert "Written to results/run-3.npz and results/run-3.toml" in done.stdout
     assert done.stderr == "results/run.npz was written by another command meanwhile.\n"
-    kept = {each.name: flockenv.Recording.load(each).seed for each in Path("results").glob("*.npz")}
-    assert kept == {"run.npz": 2, "run-2.npz": 1, "run-3.npz": 3}
+    before = {
+        each.name: flockenv.Recording.load(each).seed for each in Path("results").glob("*.npz")
+    }
+    assert before == {"run.npz": 2, "run-2.npz": 1, "run-3.npz": 3}
 
 
 def test_replay_writes_a_page_beside_the_recording(cli, run, tmp_path):

@@ -47,8 +47,8 @@ def test_it_trains_and_resumes(cli, tiny: str, tmp_path: Path) -> None:
     assert done.stderr == ""
     policy = load(tmp_path / "run" / "best.npz")
     assert policy.weights[0].shape[1] == 4
-    assert policy.made["seed"] == "5"
-    assert "train --settings" in policy.made["command"]
+    assert policy.provenance["seed"] == "5"
+    assert "train --settings" in policy.provenance["command"]
     more = cli("train", "--resume", "--samples", "384", "--out", out, "--quiet")
     assert more.returncode == 0, more.stderr
     assert "samples: 384" in more.stdout
@@ -75,7 +75,7 @@ def test_errors_are_one_line_with_exit_code_2(cli, tiny: str, tmp_path: Path) ->
         assert done.returncode == 2, done.stderr
         assert words in done.stderr
         assert "Traceback" not in done.stderr
-        # A policy to start from is read only when training begins.
+        # A policy to start from is read only when training starts.
         assert done.stderr.startswith("Error:") or "start=" in " ".join(arguments)
 
 

@@ -78,12 +78,12 @@ def test_the_report_writes_its_files(
     }
     stored = (folder / "parameters.toml").read_text("utf-8")
     assert flockenv.FlockParameters.from_toml(stored) == parameters
-    asked = tomllib.loads((folder / "run.toml").read_text("utf-8"))
-    assert asked["leaders"] == [0, 1, 2]
-    assert asked["duration_s"] == 40.0
-    assert asked["seeds"] == {"first": 0, "last": 1, "number": 2}
-    assert asked["policies"]["damped law"] == repr(POLICIES["damped law"]())
-    assert asked["environment"] == {"target": "cw", "control_hz": 10.0}
+    conditions = tomllib.loads((folder / "run.toml").read_text("utf-8"))
+    assert conditions["leaders"] == [0, 1, 2]
+    assert conditions["duration_s"] == 40.0
+    assert conditions["seeds"] == {"first": 0, "last": 1, "number": 2}
+    assert conditions["policies"]["damped law"] == repr(POLICIES["damped law"]())
+    assert conditions["environment"] == {"target": "cw", "control_hz": 10.0}
     assert len(result.means) == 1 + 3 * 2
     assert len(result.differences) == 3 * 2
     assert (folder / "leader_curve.png").read_bytes().startswith(b"\x89PNG")
@@ -98,8 +98,8 @@ def test_the_report_reports_the_environment(
     for words in ("alternating targets", "0.3 % of positions dropped", "control_hz = 5.0"):
         assert words in result.title()
     assert "target cw" not in result.title()
-    asked = tomllib.loads((tmp_path / "run.toml").read_text("utf-8"))
-    assert asked["environment"] == options
+    conditions = tomllib.loads((tmp_path / "run.toml").read_text("utf-8"))
+    assert conditions["environment"] == options
     stored = (tmp_path / "parameters.toml").read_text("utf-8")
     assert flockenv.FlockParameters.from_toml(stored) == parameters
 

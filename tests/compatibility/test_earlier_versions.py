@@ -31,7 +31,7 @@ def folder(request):
 
 
 @pytest.fixture
-def facts(folder):
+def contents(folder):
     return json.loads((folder / "facts.json").read_text())
 
 
@@ -43,15 +43,15 @@ def test_there_is_a_folder_of_an_earlier_version():
     assert "v0.1.0" in VERSIONS
 
 
-def test_parameters(folder, facts):
+def test_parameters(folder, contents):
     from_toml = FlockParameters.from_toml((folder / "parameters.toml").read_text())
-    assert FlockParameters.from_dict(facts["parameters"]) == from_toml
+    assert FlockParameters.from_dict(contents["parameters"]) == from_toml
     assert pickle.loads((folder / "parameters.pickle").read_bytes()) == from_toml
 
 
 @pytest.mark.parametrize("name", ["recording", "recording_contacts"])
-def test_recordings(folder, facts, name):
-    recording, known = Recording.load(folder / f"{name}.npz"), facts[name]
+def test_recordings(folder, contents, name):
+    recording, known = Recording.load(folder / f"{name}.npz"), contents[name]
     assert (len(recording), recording.seed) == (known["samples"], known["seed"])
     assert sha(recording.pose) == known["pose"]
     assert sha(recording.velocity) == known["velocity"]
@@ -84,8 +84,11 @@ def test_recordings_in_format_3():
     assert sha(recording.rudder)[:16] == "110ccdb33da0756c"
 
 
-def test_snapshots(folder, facts):
-    flock, known = Flock.from_snapshot((folder / "flock.snapshot").read_bytes()), facts["snapshot"]
+def test_snapshots(folder, contents):
+    flock, known = (
+        Flock.from_snapshot((folder / "flock.snapshot").read_bytes()),
+        contents["snapshot"],
+    )
     assert (flock.time_s, flock.phase) == (known["time_s"], known["phase"])
     assert sha(flock.pose) == known["pose"]
     assert sha(flock.velocity) == known["velocity"]
@@ -136,8 +139,8 @@ def test_every_format_of_an_environments_state_goes_on_alike():
     assert new.keys() - old.keys() >= {"milling", "nematic"}
 
 
-def test_states_of_an_environment(folder, facts):
-    env, known = gymnasium.make("flockenv/Leaders-v0", **SMALL).unwrapped, facts["environment"]
+def test_states_of_an_environment(folder, contents):
+    env, known = gymnasium.make("flockenv/Leaders-v0", **SMALL).unwrapped, contents["environment"]
     env.reset(seed=1)
     env.set_state((folder / "environment.state").read_bytes())
     assert sha(env.flock.pose) == known["pose"]
@@ -145,23 +148,23 @@ def test_states_of_an_environment(folder, facts):
     env.step(np.zeros(2, np.float32))
 
 
-def test_states_of_a_vector_environment(folder, facts):
-    env, known = gymnasium.make_vec("flockenv/Leaders-v0", num_envs=2, **SMALL), facts["vector"]
+def test_states_of_a_vector_environment(folder, contents):
+    env, known = gymnasium.make_vec("flockenv/Leaders-v0", num_envs=2, **SMALL), contents["vector"]
     env.reset(seed=1)
     env.set_state((folder / "vector.state").read_bytes())
     assert sha(env.state()) == known["state"]
     env.step(np.zeros((2, 2), np.float32))
 
 
-def test_keys_of_runs(facts):
-    parameters = FlockParameters.from_dict(facts["parameters"])
-    for protocol, key in facts["run_keys"].items():
+def test_keys_of_runs(contents):
+    parameters = FlockParameters.from_dict(contents["parameters"])
+    for protocol, key in contents["run_keys"].items():
         assert RunSpec(parameters=parameters, seed=3, duration_s=30.0, protocol=protocol).key == key
 
 
 @pytest.mark.parametrize("keep", ["window", "order", "poses"])
-def test_kept_runs_of_other_results_say_so_and_stay(folder, facts, keep, tmp_path):
-    parameters, known = FlockParameters.from_dict(facts["parameters"]), facts["runs"][keep]
+def test_kept_runs_of_other_results_say_so_and_stay(folder, contents, keep, tmp_path):
+    parameters, known = FlockParameters.from_dict(contents["parameters"]), contents["runs"][keep]
     spec = RunSpec(parameters=parameters, seed=3, duration_s=10.0, keep=keep)
     assert spec.key == known["key"]
     shutil.copytree(folder / "runs", tmp_path / "runs")
@@ -173,10 +176,10 @@ def test_kept_runs_of_other_results_say_so_and_stay(folder, facts, keep, tmp_pat
 
 
 @pytest.mark.parametrize("name", ["network", "leaning"])
-def test_policies(folder, facts, name):
+def test_policies(folder, contents, name):
     policy = flockenv.policies.load(folder / f"{name}.npz")
     rudders, _ = policy.predict(np.load(folder / "rows.npy"))
-    assert rudders.ravel() == pytest.approx(facts[name]["rudders"], abs=1e-5)
+    assert rudders.ravel() == pytest.approx(contents[name]["rudders"], abs=1e-5)
 
 
 def test_checkpoints(folder):

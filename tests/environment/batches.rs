@@ -11,7 +11,7 @@ fn action(seed: u64, leader: usize, time: u32) -> f64 {
     (seed as f64 + 1.7 * leader as f64 + 0.3 * f64::from(time)).sin()
 }
 
-/// All observations and rewards of each flock, over episodes that end and begin again.
+/// All observations and rewards of each flock, over episodes that end and start again.
 fn trails(leaders: &[usize], first_seed: u64, threads: usize) -> Vec<Vec<f64>> {
     let pool = ThreadPoolBuilder::new()
         .num_threads(threads)

@@ -75,7 +75,7 @@ fn random_targets_are_even_and_noise_levels_uniform() {
 }
 
 #[test]
-fn autoresets_begin_the_same_episode() {
+fn autoresets_start_the_same_episode() {
     let same_step = EnvSettings {
         autoreset: Autoreset::SameStep,
         ..settings(4)

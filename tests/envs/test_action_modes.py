@@ -181,32 +181,34 @@ def lean_policy(period=0.5):
 def test_policies_of_another_action_mode_are_refused_by_name(tmp_path):
     from flockenv.comparison.episodes import compare_leaders
 
-    scene = flockenv.FlockParameters(n_boats=6, n_leaders=1, pool="table-1")
+    parameters = flockenv.FlockParameters(n_boats=6, n_leaders=1, pool="table-1")
     policy = lean_policy()
     with pytest.raises(ParameterError, match=r"NetworkPolicy.*'lean'.*simulation.*'rudder'"):
-        flockenv.simulate(scene, 0, 1.0, policy=policy)
+        flockenv.simulate(parameters, 0, 1.0, policy=policy)
     path = tmp_path / "lean.npz"
     policy.save(path)
     with pytest.raises(ParameterError, match=r"'lean'.*'rudder'"):
-        flockenv.simulate(scene, 0, 1.0, policy=str(path))
+        flockenv.simulate(parameters, 0, 1.0, policy=str(path))
     for made, mode in ((lambda: policy, "rudder"), (DampedLaw, "lean")):
         with pytest.raises(ParameterError, match="in this environment"):
-            compare_leaders(scene, [1], {"it": made}, [0], 5.0, environment={"action_mode": mode})
+            compare_leaders(
+                parameters, [1], {"it": made}, [0], 5.0, environment={"action_mode": mode}
+            )
 
 
 def test_a_leaning_policy_is_compared_in_its_own_action_mode(tmp_path):
     from flockenv.comparison.episodes import run_episodes
 
-    scene = flockenv.FlockParameters(n_boats=6, n_leaders=1, pool="table-1")
+    parameters = flockenv.FlockParameters(n_boats=6, n_leaders=1, pool="table-1")
     lean_policy().save(tmp_path / "lean.npz")
     read = flockenv.policies.load(tmp_path / "lean.npz")
     assert (read.action_mode, read.decision_period_s) == ("lean", 0.5)
     zero = NetworkPolicy([np.zeros((67, 1))], [[0.0]], action_mode="lean", decision_period_s=0.5)
-    law = run_episodes(scene, tuned_law("damped law", "table-1"), [0, 1], 20.0)
-    leaning = run_episodes(scene, zero, [0, 1], 20.0)
+    law = run_episodes(parameters, tuned_law("damped law", "table-1"), [0, 1], 20.0)
+    leaning = run_episodes(parameters, zero, [0, 1], 20.0)
     np.testing.assert_array_equal(leaning["signed_order"], law["signed_order"])
     assert not np.array_equal(
-        run_episodes(scene, read, [0, 1], 20.0)["signed_order"], law["signed_order"]
+        run_episodes(parameters, read, [0, 1], 20.0)["signed_order"], law["signed_order"]
     )
 
 

@@ -62,7 +62,7 @@ def test_next_step_autoreset():
     assert not truncations.any()
     assert infos == {}
     assert (observations != last).any()
-    # The second episode begins as after a reset, and the ignored action has moved nothing.
+    # The second episode starts as after a reset, and the ignored action has moved nothing.
     again = vector_env()
     again.reset(seed=0)
     np.testing.assert_array_equal(observations, again.reset()[0])
@@ -120,17 +120,17 @@ def test_partial_reset_with_seeds_touches_no_other_flock():
 @pytest.mark.parametrize("mode", ["next_step", "same_step"])
 def test_nothing_returned_is_written_to_later(mode):
     venv = vector_env(autoreset_mode=mode)
-    kept = [venv.reset(seed=1)[0]]
+    stored = [venv.reset(seed=1)[0]]
     rewards = []
-    copies = [kept[0].copy()]
+    copies = [stored[0].copy()]
     for step in range(STEPS + 3):
         observations, reward, _, truncated, _ = venv.step(actions_of(venv, step))
-        kept += [observations, reward, truncated]
+        stored += [observations, reward, truncated]
         copies += [observations.copy(), reward.copy(), truncated.copy()]
         rewards.append(reward)
-    for array, copy in zip(kept, copies, strict=True):
+    for array, copy in zip(stored, copies, strict=True):
         np.testing.assert_array_equal(array, copy)
-    assert len({array.__array_interface__["data"][0] for array in kept}) == len(kept)
+    assert len({array.__array_interface__["data"][0] for array in stored}) == len(stored)
 
 
 def test_first_episode_has_the_flock_of_the_seed():

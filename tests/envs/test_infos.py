@@ -63,7 +63,7 @@ def test_means_are_those_of_the_normal_boats_in_the_window():
 
 
 def test_means_over_a_window_that_was_not_reached_are_left_out():
-    # The first forward phase, 2 s, begins at rest: its analysis window begins after 1 s, the one
+    # The first forward phase, 2 s, starts at rest: its analysis window starts after 1 s, the one
     # after it at 2.5 s.
     summary = last_info(episode_s=0.5)["episode_summary"]
     assert not WINDOW_MEANS & summary.keys()

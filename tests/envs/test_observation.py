@@ -119,11 +119,11 @@ def test_order_is_that_of_the_normal_boats():
 def test_blocks_can_be_switched_off(off):
     flock = flockenv.Flock(flockenv.FlockParameters(n_boats=12, n_leaders=3), seed=3)
     entries = observation_entries()
-    kept = [place for place, entry in enumerate(entries) if entry.block != off]
+    left = [place for place, entry in enumerate(entries) if entry.block != off]
     blocks = {off: 0 if off == "neighbors" else False}
-    np.testing.assert_array_equal(observe(flock, blocks), observe(flock)[:, kept])
+    np.testing.assert_array_equal(observe(flock, blocks), observe(flock)[:, left])
     env = flockenv.LeadersEnv(observation=blocks)
-    assert env.observation_space.shape == (3 * len(kept),)
+    assert env.observation_space.shape == (3 * len(left),)
     env.reset(seed=0)
 
 

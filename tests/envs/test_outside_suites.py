@@ -144,7 +144,7 @@ def test_torchrl_wraps_the_native_vector_environment():
     env.set_seed(0)
     rollout = env.rollout(20, policy=lambda _: torch.zeros(3, 2))
     native = flockenv.LeadersVectorEnv(3, **options)
-    # TorchRL resets once with the seed, and once more to begin.
+    # TorchRL resets once with the seed, and once more to start.
     native.reset(seed=0)
     observations, _ = native.reset()
     assert rollout["observation"].shape == (3, 20, observations.shape[1])

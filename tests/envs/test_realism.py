@@ -77,12 +77,12 @@ def test_dropouts_do_not_depend_on_the_policy():
         )
         env.reset(seed=3)
         shown = [env.observe()]
-        missed = []
+        dropped = []
         for _ in range(50):
             observation = env.step(np.full(3, rudder))[0].reshape(3, 8)[:, 3:7]
-            missed.append((observation == shown[-1]).all(axis=1) if len(shown) > 1 else None)
+            dropped.append((observation == shown[-1]).all(axis=1) if len(shown) > 1 else None)
             shown.append(observation)
-        return np.array(missed[1:])
+        return np.array(dropped[1:])
 
     np.testing.assert_array_equal(gaps(1.0), gaps(-1.0))
 

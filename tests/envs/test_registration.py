@@ -14,10 +14,10 @@ from flockenv.policies import DampedLaw, RandomRudders
 
 @pytest.mark.parametrize("env_id", ENVIRONMENTS)
 def test_ids_bring_their_options(env_id):
-    made = gymnasium.make(env_id).unwrapped
+    env = gymnasium.make(env_id).unwrapped
     own = flockenv.LeadersEnv(**gymnasium.spec(env_id).kwargs)
-    assert made.parameters == own.parameters
-    assert made._batch.settings == own._batch.settings
+    assert env.parameters == own.parameters
+    assert env._batch.settings == own._batch.settings
     assert gymnasium.make_vec(env_id, num_envs=2).num_envs == 2
     assert gymnasium.make(env_id, n_boats=5).unwrapped.parameters.n_boats == 5
 

@@ -81,9 +81,9 @@ def test_rewinding_is_exact():
     env = flockenv.LeadersEnv(**OPTIONS)
     env.reset(seed=0)
     env.step(np.ones(3))
-    kept = env.get_state()
+    before = env.get_state()
     first = [env.step(np.ones(3))[1] for _ in range(20)]
-    env.set_state(kept)
+    env.set_state(before)
     assert [env.step(np.ones(3))[1] for _ in range(20)] == first
 
 

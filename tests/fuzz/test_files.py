@@ -34,7 +34,7 @@ RUN = simulate(PARAMETERS, 1, 0.5, contacts=True)
 SPEC = RunSpec(parameters=PARAMETERS, seed=1, duration_s=5.0, keep="poses")
 RESULT = execute(SPEC)
 SIZE = len(observation_entries())
-POLICY = NetworkPolicy([np.full((SIZE, 1), 0.1)], [[0.25]], made={"seed": "7"})
+POLICY = NetworkPolicy([np.full((SIZE, 1), 0.1)], [[0.25]], provenance={"seed": "7"})
 SWEEP = """
 minutes = 0.1
 seeds = 2
@@ -47,7 +47,7 @@ bw_s = [0.0, 0.2]
 
 
 def load_run(path: Path):
-    """The kept run, or None if it was set aside with a warning."""
+    """The stored run, or None if it was set aside with a warning."""
     store = RunStore(path.parent / "store")
     target = store.path(SPEC)
     target.parent.mkdir(parents=True)
@@ -69,10 +69,10 @@ def same_policy(found) -> bool:
 KINDS = {
     "recording": (RUN.save, Recording.load, lambda found: found == RUN),
     "policy": (POLICY.save, load, same_policy),
-    "kept run": (
+    "stored run": (
         lambda path: (
             (Path(path).parent / "made").mkdir()
-            or Path(path).write_bytes(kept(Path(path).parent / "made"))
+            or Path(path).write_bytes(stored(Path(path).parent / "made"))
         ),
         load_run,
         lambda found: found == RESULT,
@@ -94,10 +94,10 @@ KINDS = {
     ),
 }
 kinds = st.sampled_from(sorted(KINDS))
-archives = st.sampled_from(["recording", "policy", "kept run", "arrays of tracks"])
+archives = st.sampled_from(["recording", "policy", "stored run", "arrays of tracks"])
 
 
-def kept(folder: Path) -> bytes:
+def stored(folder: Path) -> bytes:
     store = RunStore(folder)
     store.save(SPEC, RESULT)
     return store.path(SPEC).read_bytes()
@@ -147,8 +147,8 @@ def test_archives_with_changed_bytes(kind, changes):
 @given(st.sampled_from(["sweep", "parameters"]), st.data())
 def test_changed_texts(kind, data):
     text = written(kind)
-    begin, end = sorted(data.draw(st.tuples(*[st.integers(0, len(text))] * 2)))
-    read(kind, text[:begin] + data.draw(st.binary(max_size=10)) + text[end:])
+    start, end = sorted(data.draw(st.tuples(*[st.integers(0, len(text))] * 2)))
+    read(kind, text[:start] + data.draw(st.binary(max_size=10)) + text[end:])
 
 
 @FUZZ
@@ -211,7 +211,7 @@ def replaced(blob: bytes, changes) -> bytes:
         st.integers(0, 40), st.one_of(st.none(), st.sampled_from(HOSTILE_ARRAYS)), min_size=1
     ),
 )
-@example("kept run", {0: np.array(1.0)})
+@example("stored run", {0: np.array(1.0)})
 def test_archives_with_foreign_arrays(kind, changes):
     found = read(kind, replaced(written(kind), changes))
     assert not TRAP.exists()
@@ -287,7 +287,7 @@ def test_an_archive_that_would_fill_the_memory_is_refused_unread(tmp_path):
 WRITERS = {
     "recording": lambda path: RUN.save(path.with_suffix(".npz")),
     "policy": lambda path: POLICY.save(path.with_suffix(".npz")),
-    "kept run": lambda path: RunStore(path.parent / "runs").save(SPEC, RESULT),
+    "stored run": lambda path: RunStore(path.parent / "runs").save(SPEC, RESULT),
     "parameters": lambda path: save_parameters(path.with_suffix(".toml"), PARAMETERS, "seed 1"),
     "page": lambda path: write_replay(path.with_suffix(".html"), {"run": RUN}),
     "GIF": lambda path: save_animation(

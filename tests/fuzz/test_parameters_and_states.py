@@ -84,8 +84,8 @@ def test_mappings_of_any_kind(values):
 def test_toml(data):
     text = "a = " + "[" * 100_000
     if data is not None:
-        begin, end = sorted(data.draw(st.tuples(*[st.integers(0, len(TOML))] * 2)))
-        text = TOML[:begin] + data.draw(st.text(max_size=20)) + TOML[end:]
+        start, end = sorted(data.draw(st.tuples(*[st.integers(0, len(TOML))] * 2)))
+        text = TOML[:start] + data.draw(st.text(max_size=20)) + TOML[end:]
     try:
         same_after_a_round_trip(FlockParameters.from_toml(text))
     except FlockError:

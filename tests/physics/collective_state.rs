@@ -89,7 +89,7 @@ fn run(from: f64, off: f64) -> (Vec<f64>, Vec<OrderParameters>) {
 }
 
 #[test]
-fn the_ordering_time_is_when_order_begins() {
+fn the_ordering_time_is_when_order_starts() {
     for from in [0.0, 20.0, 50.0] {
         let (times, series) = run(from, 0.1);
         let found = ordering_time(&times, &series, PI / 20.0);

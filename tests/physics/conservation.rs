@@ -182,10 +182,10 @@ fn a_lone_boat_keeps_its_energy_along_a_round_wall_but_for_the_chords() {
         take_substeps(&mut flock, 500);
         let delta: f64 = 10.0 * 0.02 / 85.0;
         let expected = 50.0 * (1.0 - 0.75 * delta * delta);
-        let kept = kinetic_energy(&flock);
+        let before = kinetic_energy(&flock);
         let slack = 50.0 * 500.0 * delta.powi(4);
-        assert!((kept - expected).abs() < slack, "{kept} {expected}");
-        assert!(kept < 50.0);
+        assert!((before - expected).abs() < slack, "{before} {expected}");
+        assert!(before < 50.0);
         let at = flock.poses()[0].position.norm();
         assert!((at - 85.0).abs() < 85.0 * delta * delta);
     }

@@ -171,7 +171,7 @@ fn two_control_rates_meet_the_same_path() {
             spins(&flock)
         };
         for (control, end) in [(0.05, 0.7), (0.07, 0.7), (0.02, 0.7), (0.007, 1.4)] {
-            // 0.7 s is a multiple of both; the substep before it begins at 0.68 or at a cut of its own.
+            // 0.7 s is a multiple of both; the substep before it starts at 0.68 or at a cut of its own.
             let (cut, whole) = (spins_at(control, end), spins_at(0.1, end));
             let same_last = scheme != Scheme::Leapfrog || control != 0.007;
             for (a, b) in cut.iter().zip(&whole) {

@@ -115,11 +115,11 @@ fn placement_ends_where_it_is_told_to() {
                 pool,
                 ..FlockParameters::preset(Preset::Simulation)
             };
-            let asked = AtomicU32::new(0);
-            let keep_going = || asked.fetch_add(1, Ordering::Relaxed) < patience;
+            let called = AtomicU32::new(0);
+            let keep_going = || called.fetch_add(1, Ordering::Relaxed) < patience;
             let placed = Flock::new_while(&keep_going, p, 1);
             assert_eq!(placed.err(), Some(FlockError::Interrupted), "{n_boats}");
-            assert!(asked.into_inner() < 50, "it keeps asking");
+            assert!(called.into_inner() < 50, "it keeps calling");
         }
     }
 }

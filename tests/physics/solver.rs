@@ -244,12 +244,12 @@ fn compare(scene: &Owned, reference: Option<Reference>) -> Result<(), TestCaseEr
         "{residual:e}"
     );
     if let Some(expected) = reference {
-        // Of two points that minimize ½|x|² for multipliers λ and λ', and miss the constraints by at most
+        // Of two points that minimize ½|x|² for multipliers λ and λ', and violate the constraints by at most
         // ε and ε', the distance is at most |x − x'|² ≤ Σλ·ε' + Σλ'·ε. Nearly dependent constraints have
         // large multipliers.
         let x = Dense::scaled(&scene.problem(), &velocities);
-        let missed = |x: &DVector<f64>| (&dense.g * x - &dense.h).min().min(0.0).abs() + 1e-12;
-        let apart = total * missed(&expected.x) + expected.total * (missed(&x) + residual);
+        let violation = |x: &DVector<f64>| (&dense.g * x - &dense.h).min().min(0.0).abs() + 1e-12;
+        let apart = total * violation(&expected.x) + expected.total * (violation(&x) + residual);
         let error = (&x - &expected.x).norm();
         let bound = 1e-9 * (1.0 + expected.x.norm()) + 2.0 * apart.sqrt();
         prop_assert!(error < bound, "{error:e} {bound:e}");

@@ -81,7 +81,7 @@ fn clarabel_comes_close_and_agrees_once_polished() {
             .collect();
         let x = dense.polished(&set, nalgebra::DVector::zeros(3 * n)).x;
         let exact = Dense::scaled(&scene.problem(), &velocities);
-        // A contact loaded with less than the cut is missed, and moves boats by as little.
+        // A contact loaded with less than the cut is left out, and moves boats by as little.
         let light: f64 = impulses.iter().filter(|&&i| i <= 2e-5 * largest).sum();
         let error = (&x - &exact).norm();
         assert!(

@@ -195,7 +195,7 @@ fn without_a_command_a_leader_steers_by_the_law() {
             n_leaders: 1,
             ..driven(scheme)
         };
-        // Moving outward at full speed: the law asks for a full turn clockwise, as rudder −1 does.
+        // Moving outward at full speed: the law commands a full turn clockwise, as rudder −1 does.
         let states = [([50.0, 0.0, 0.0], [15.0, 0.0, 0.0])];
         let (mut law, mut held) = (flock_of(&p, &states), flock_of(&p, &states));
         assert_eq!(law.steering_law(0), -1.0);

@@ -24,17 +24,17 @@ pub const R: f64 = 5.0;
 pub const RHO: f64 = 4.74;
 
 /// So many draws of a property test, the same ones every time. PROPTEST_CASES and PROPTEST_RNG_SEED in
-/// the environment ask for more and for others.
+/// the environment select more and for others.
 pub fn cases(count: u32) -> ProptestConfig {
-    let asked = ProptestConfig::default();
+    let given = ProptestConfig::default();
     ProptestConfig {
-        cases: std::env::var("PROPTEST_CASES").map_or(count, |_| asked.cases),
-        rng_seed: match asked.rng_seed {
+        cases: std::env::var("PROPTEST_CASES").map_or(count, |_| given.cases),
+        rng_seed: match given.rng_seed {
             RngSeed::Random => RngSeed::Fixed(2011),
             fixed @ RngSeed::Fixed(_) => fixed,
         },
         failure_persistence: None,
-        ..asked
+        ..given
     }
 }
 

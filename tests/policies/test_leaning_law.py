@@ -85,11 +85,11 @@ def test_a_file_keeps_every_bit(tmp_path):
     weights = dict(
         zip(FEATURES, np.random.default_rng(0).normal(0, 0.1, len(FEATURES)), strict=True)
     )
-    law = LeaningLaw(GAINS, 0.1, weights, made={"seed": "3"})
+    law = LeaningLaw(GAINS, 0.1, weights, provenance={"seed": "3"})
     law.save(tmp_path / "law.npz")
     again, rows = load(tmp_path / "law.npz"), visited()
     np.testing.assert_array_equal(law.predict(rows)[0], again.predict(rows)[0])
-    assert again.made == {"seed": "3"}
+    assert again.provenance == {"seed": "3"}
     assert again.mirror_to_target
     assert repr(again) == repr(law)
 

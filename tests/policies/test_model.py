@@ -49,9 +49,9 @@ MODELS = {
 @pytest.fixture(scope="module", params=MODELS, ids=str)
 def model(request):
     algorithm, make, options = MODELS[request.param]
-    made = algorithm("MlpPolicy", make(**options), seed=3, device="cpu")
-    made.given = options
-    return made
+    model = algorithm("MlpPolicy", make(**options), seed=3, device="cpu")
+    model.given = options
+    return model
 
 
 @pytest.fixture
@@ -74,7 +74,7 @@ def test_a_file_steers_as_the_model(model, file):
     assert (own.observation, own.mirror_to_target) == (read.observation, read.mirror_to_target)
     assert own.control_hz == read.control_hz == model.given.get("control_hz", 10.0)
     assert own.leaders == read.leaders
-    assert len(read.made["sha256"]) == 64
+    assert len(read.provenance["sha256"]) == 64
     venv = flockenv.LeadersVectorEnv(3, **{**OPTIONS, **model.given, "rudder_levels": None})
     observations, _ = venv.reset(seed=0)
     expected = by_hand(model, observations)

@@ -66,14 +66,14 @@ def test_every_form_of_observation(policy):
 
 def test_a_file_keeps_every_bit(tmp_path):
     policy = network(
-        mirror_to_target=True, activation="relu", made={"command": "train", "seed": "1"}
+        mirror_to_target=True, activation="relu", provenance={"command": "train", "seed": "1"}
     )
     policy.save(tmp_path / "policy.npz")
     again = load(tmp_path / "policy.npz")
     observations = np.random.default_rng(2).uniform(-1, 1, (50, SIZE))
     np.testing.assert_array_equal(again.predict(observations)[0], policy.predict(observations)[0])
     assert again.mirror_to_target
-    assert again.made == {"command": "train", "seed": "1"}
+    assert again.provenance == {"command": "train", "seed": "1"}
     assert again.activation == "relu"
 
 

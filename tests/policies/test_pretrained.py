@@ -15,9 +15,9 @@ POOLS = ("500-boats", "table-1")
 def test_every_one_is_there_for_every_pool(pool: str) -> None:
     for law, gains in TUNED_GAINS.items():
         assert tuned_law(law, pool).gains == gains[pool]
-    made = learned(pool).made
-    assert {"command", "seed", "commit", "samples", "wall_s"} <= made.keys()
-    assert "baselines/" in made["command"]
+    provenance = learned(pool).provenance
+    assert {"command", "seed", "commit", "samples", "wall_s"} <= provenance.keys()
+    assert "baselines/" in provenance["command"]
     for name in POOL_POLICIES:
         assert repr(named_policy(name, pool)()) == repr(POOL_POLICIES[name](pool))
 

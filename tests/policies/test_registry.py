@@ -28,7 +28,7 @@ def test_learned_leaders_are_loaded_by_name_and_by_file() -> None:
         assert repr(named) == repr(named_policy("learned", pool)())
         file = REPOSITORY / "baselines" / "policies" / f"{pool}.npz"
         assert repr(named) == repr(flockenv.policies.load(file))
-        assert named.made == flockenv.policies.load(file).made
+        assert named.provenance == flockenv.policies.load(file).provenance
 
 
 def test_learned_leaders_have_one_home() -> None:

@@ -78,7 +78,7 @@ fn a_fixed_scene_has_fixed_bytes() {
     assert_eq!(hashes, HASHES, "{hashes:#x?}");
 }
 
-/// To be renewed, after a look at the pictures, when the drawing changes.
+/// To be renewed, after the pictures were inspected, when the drawing changes.
 const HASHES: [u64; 3] = [
     0xbd61_b16c_8e6a_bf53,
     0x6492_104d_c51b_b772,

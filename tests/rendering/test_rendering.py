@@ -61,10 +61,10 @@ def test_a_frame_of_a_recording_is_that_of_its_flock():
 def test_a_returned_frame_is_never_written_to_again():
     scene = flock()
     first = rendering.frame(scene, 100, 100)
-    kept = first.copy()
+    before = first.copy()
     scene.advance(3.0)
     rendering.frame(scene, 100, 100)
-    np.testing.assert_array_equal(first, kept)
+    np.testing.assert_array_equal(first, before)
 
 
 def test_frames_may_be_drawn_in_several_threads():
@@ -240,7 +240,7 @@ def test_animations_keep_time_and_few_colors(tmp_path, suffix, durations):
 
 
 @pytest.mark.parametrize(("name", "longest"), [("run.gif", 65), ("run.png", 6)])
-def test_a_still_longer_than_the_format_can_say(tmp_path, name, longest):
+def test_a_constant_picture_longer_than_the_format_can_say(tmp_path, name, longest):
     rendering.save_animation(tmp_path / name, [plain(1), *[plain(2)] * longest], 0.1)
     before = (tmp_path / name).read_bytes()
     with pytest.raises(flockenv.ParameterError, match="stand still"):

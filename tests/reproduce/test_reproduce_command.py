@@ -111,10 +111,10 @@ def test_killed_and_resumed_it_writes_the_same_bytes(
 ) -> None:
     code, _ = interrupted(cli, tmp_path, signal.SIGKILL)
     assert code == -signal.SIGKILL
-    kept = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.npz")}
+    before = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.npz")}
     done = cli("reproduce", *SHORT, "--out", str(tmp_path))
     assert done.returncode == 0, done.stderr
-    assert all(path.stat().st_mtime_ns == then for path, then in kept.items())
+    assert all(path.stat().st_mtime_ns == then for path, then in before.items())
     assert written(tmp_path) == written(uninterrupted)
 
 

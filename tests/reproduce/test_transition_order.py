@@ -52,7 +52,7 @@ def test_binder() -> None:
     assert np.isnan(binder(np.zeros(1), np.zeros(1))).all()
 
 
-def made(outward: NDArray[np.float64], m: NDArray[np.float64]) -> flockenv.Recording:
+def recorded(outward: NDArray[np.float64], m: NDArray[np.float64]) -> flockenv.Recording:
     """A run of 1000 samples whose Ψ_o cos φ_o and m are these."""
     parameters = flockenv.FlockParameters.preset("simulation")
     samples = 1000
@@ -76,7 +76,7 @@ def made(outward: NDArray[np.float64], m: NDArray[np.float64]) -> flockenv.Recor
 
 def test_an_open_loop() -> None:
     there = np.arange(1000) < 500
-    run = made(np.where(there, 0.1, 0.7), np.where(there, -0.9, 0.0))
+    run = recorded(np.where(there, 0.1, 0.7), np.where(there, -0.9, 0.0))
     up, down = hysteresis(run)
     assert up == pytest.approx(0.1)
     assert down == pytest.approx(0.7)
@@ -85,7 +85,7 @@ def test_an_open_loop() -> None:
 
 def test_runs_at_one_density_count_in_their_second_half() -> None:
     late = np.arange(1000) > 500
-    jam = Stationary([made(np.where(late, 0.8, 0.0), np.where(late, 0.1, 1.0))] * 2, 7)
+    jam = Stationary([recorded(np.where(late, 0.8, 0.0), np.where(late, 0.1, 1.0))] * 2, 7)
     assert jam.outward == pytest.approx([0.8, 0.8])
     # |m| is the same in all that counts, as is C_v.
     assert jam.binder_m == pytest.approx(2 / 3, abs=1e-6)
@@ -177,7 +177,7 @@ def test_the_conclusion_follows_its_rule() -> None:
 def test_a_small_design_from_runs_to_tables(tmp_path: object) -> None:
     densities = {"whole pool": (5, 10), "circumference": (5, 10)}
     design = TransitionDesign(
-        sizes=(20, 40), densities=densities, runs=2, still_minutes=1.0, loop_minutes=1.0
+        sizes=(20, 40), densities=densities, runs=2, stationary_minutes=1.0, loop_minutes=1.0
     )
     settings = Settings(minutes=1.0)
     reproduction = transition_order(design)
@@ -192,7 +192,7 @@ def test_a_small_design_from_runs_to_tables(tmp_path: object) -> None:
     lifetimes = outcome.tables["lifetimes"]
     minutes = lifetimes["rotating, min"].astype(float) + lifetimes["jammed, min"].astype(float)
     # Two runs of a minute from each of two starts; the last analysis window ends within the last
-    # motor cycle of some 6 s, and the first one begins within the second.
+    # motor cycle of some 6 s, and the first one starts within the second.
     assert minutes.between(4 * 0.7, 4 * 1.0).all()
     assert outcome.tables["loops"]["there"].between(-1, 1).any()
     histograms = outcome.tables["histograms"]
@@ -239,15 +239,19 @@ def test_every_design_reaches_1600_boats(design: TransitionDesign) -> None:
 def test_a_loop_that_never_jams_is_no_closed_loop(back: float, verdict: str, note: str) -> None:
     growth = Growth("circumference", 400)
     design = TransitionDesign(
-        sizes=(400,), densities={growth.way: (20,)}, runs=2, still_minutes=1.0, loop_minutes=1.0
+        sizes=(400,),
+        densities={growth.way: (20,)},
+        runs=2,
+        stationary_minutes=1.0,
+        loop_minutes=1.0,
     )
     steady = np.full(1000, 0.1)
-    still = Stationary([made(steady, steady)] * 2, 7)
+    stationary = Stationary([recorded(steady, steady)] * 2, 7)
     there = np.arange(1000) < 450
-    loop = Loops([made(np.where(there, 0.1, back), steady)] * 2)
+    loop = Loops([recorded(np.where(there, 0.1, back), steady)] * 2)
     measured = Measured(
         design,
-        {(growth, 20, start): still for start in STARTS},
+        {(growth, 20, start): stationary for start in STARTS},
         {(growth, kind): loop for kind in ("density", "slow density")},
     )
     _, hysteresis_claim, lag = judge(measured, growth)

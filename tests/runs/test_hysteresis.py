@@ -75,7 +75,7 @@ def test_a_dense_loop_keeps_boats_inside_and_apart() -> None:
     assert min(flock.contacts().gap_cm, default=0.0) > -0.1
 
 
-def test_the_noise_loop_ends_as_it_began(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_noise_loop_ends_as_it_started(monkeypatch: pytest.MonkeyPatch) -> None:
     loop = simulate_loop(PARAMETERS, 5, 400.0, 10.0, "rotating-noise-loop")
     backing = loop.phase == "bw"
     thirds = np.array_split(backing, 5)

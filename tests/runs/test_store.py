@@ -1,4 +1,4 @@
-"""A finished run is kept whole and comes back bit for bit; whatever else lies there is named."""
+"""A finished run is stored whole and comes back bit for bit; whatever else lies there is named."""
 
 import os
 import resource
@@ -148,14 +148,14 @@ def test_a_full_disk_is_named_and_leaves_no_half_file(spec: RunSpec, tmp_path: P
     store = RunStore(tmp_path)
     result = execute(spec)
     # What a full disk does, for this process only: writes beyond 1 kB fail.
-    kept = resource.getrlimit(resource.RLIMIT_FSIZE)
+    stored = resource.getrlimit(resource.RLIMIT_FSIZE)
     handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (1024, kept[1]))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1024, stored[1]))
     try:
         with pytest.raises(StorageError, match=r"cannot be written.*resumes"):
             store.save(spec, result)
     finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, kept)
+        resource.setrlimit(resource.RLIMIT_FSIZE, stored)
         signal.signal(signal.SIGXFSZ, handler)
     assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
     store.save(spec, result)

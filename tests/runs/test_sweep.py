@@ -77,10 +77,10 @@ def test_a_sweep_resumes_and_engines_agree(tmp_path: Path) -> None:
     run_sweep(sweep, tmp_path / "one")
     half = SweepSpec(sweep.axes, sweep.points, sweep.runs[:5], sweep.seeds)
     run_sweep(half, tmp_path / "other", joblib)
-    kept = {path: path.stat().st_mtime_ns for path in (tmp_path / "other").rglob("*.npz")}
-    assert len(kept) == 5
+    before = {path: path.stat().st_mtime_ns for path in (tmp_path / "other").rglob("*.npz")}
+    assert len(before) == 5
     run_sweep(sweep, tmp_path / "other", joblib)
-    assert all(path.stat().st_mtime_ns == time for path, time in kept.items())
+    assert all(path.stat().st_mtime_ns == time for path, time in before.items())
     for name in ("sweep.csv", "sweep.parquet"):
         one, other = ((tmp_path / folder / name).read_bytes() for folder in ("one", "other"))
         assert one == other

@@ -32,7 +32,7 @@ def means(runs: list[NDArray[np.float64]], block: float) -> NDArray[np.float64]:
 def test_the_spread_of_a_correlated_mean() -> None:
     expected = 1 / ((1 - A) * np.sqrt(SAMPLES))
     with_blocks = np.mean([means([autoregressive(s)], 100.0)[1:].std() for s in range(20)])
-    # Blocks of 100 samples, ten correlation times, miss some 5 % of the variance on average.
+    # Blocks of 100 samples, ten correlation times, omit some 5 % of the variance on average.
     assert with_blocks == pytest.approx(expected, rel=0.12)
     single = np.mean([means([autoregressive(s)], 1.0)[1:].std() for s in range(20)])
     assert single == pytest.approx(expected * np.sqrt((1 - A) / (1 + A)), rel=0.12)

@@ -17,8 +17,8 @@ def test_a_clone_is_much_nearer_than_going_straight(tiny: TrainingSettings) -> N
     law = DampedLaw(mirror_to_target=True)
     clone = clone_law(law, settings, samples=12_000, epochs=15)
     # Its rudders have a root mean square of 0.9: they are at an end most of the time.
-    assert float(clone.made["clone_rms"]) < 0.4
-    assert clone.made["cloned"].startswith("DampedLaw")
+    assert float(clone.provenance["clone_rms"]) < 0.4
+    assert clone.provenance["cloned"].startswith("DampedLaw")
 
 
 def test_the_same_seed_clones_the_same_bits(tiny: TrainingSettings) -> None:
@@ -35,7 +35,7 @@ def test_a_run_starts_from_a_clone_of_a_leaning_law(tiny: TrainingSettings, tmp_
     settings = tiny.replace(start=str(tmp_path / "law.npz"), samples=192)
     train(settings, tmp_path / "run")
     start = load(tmp_path / "run" / "start.npz")
-    assert start.made["cloned"].startswith("LeaningLaw")
+    assert start.provenance["cloned"].startswith("LeaningLaw")
     assert [matrix.shape[1] for matrix in start.weights] == [8, 1]
 
 
@@ -50,7 +50,7 @@ def test_a_run_starts_from_a_trusted_model(tiny: TrainingSettings, tmp_path: Pat
     assert not (tmp_path / "run").exists()
     train(settings, tmp_path / "run", trust=True)
     start = load(tmp_path / "run" / "start.npz")
-    assert start.made["cloned"].startswith("ModelPolicy(model.zip")
+    assert start.provenance["cloned"].startswith("ModelPolicy(model.zip")
 
 
 def test_a_model_of_two_leaders_at_once_is_no_start_for_one(

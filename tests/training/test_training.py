@@ -121,8 +121,8 @@ def test_start_from_a_policy(tiny: TrainingSettings, tmp_path: Path) -> None:
         copied.weights + copied.biases, start.weights + start.biases, strict=True
     ):
         np.testing.assert_array_equal(own, other)
-    still = tiny.replace(samples=192, start=path, learning_rate=0.0, final_learning_rate=0.0)
-    untrained = training.train(still, tmp_path / "still").policy
+    unchanging = tiny.replace(samples=192, start=path, learning_rate=0.0, final_learning_rate=0.0)
+    untrained = training.train(unchanging, tmp_path / "still").policy
     for own, other in zip(untrained.weights, start.weights, strict=True):
         np.testing.assert_array_equal(own, other)
 
@@ -165,7 +165,7 @@ def test_a_full_disk_leaves_the_last_checkpoint(
         if FullDisk.versions < 3:
             return write_arrays(path, arrays, **options)
         with atomic_write(path) as file:
-            file.write(b"PK the beginning")
+            file.write(b"PK the start")
             raise OSError(errno.ENOSPC, "No space left on device")
 
     write_arrays = checkpoint.write_arrays
@@ -232,11 +232,13 @@ def test_folders_are_not_mixed_up(tiny: TrainingSettings, tmp_path: Path) -> Non
         training.train(tiny, tmp_path)
 
 
-@pytest.mark.parametrize("kept", [0, 100, 5000])
-def test_damaged_checkpoints_are_refused(tiny: TrainingSettings, tmp_path: Path, kept: int) -> None:
+@pytest.mark.parametrize("stored", [0, 100, 5000])
+def test_damaged_checkpoints_are_refused(
+    tiny: TrainingSettings, tmp_path: Path, stored: int
+) -> None:
     training.train(tiny.replace(samples=192), tmp_path)
     path = tmp_path / "checkpoint.npz"
-    path.write_bytes(path.read_bytes()[:kept])
+    path.write_bytes(path.read_bytes()[:stored])
     with pytest.raises(flockenv.ParameterError, match=r"checkpoint\.npz"):
         training.resume(tmp_path)
 
@@ -254,15 +256,15 @@ def test_a_run_that_is_cut_short_has_its_policy(tiny: TrainingSettings, tmp_path
     assert not (tmp_path / "best.npz").exists()
     result = training.resume(tmp_path, samples=192)
     assert result.progress.samples == 192
-    assert result.policy.made["samples"] == "192"
+    assert result.policy.provenance["samples"] == "192"
 
 
 def test_what_a_run_leaves(tiny: TrainingSettings, tmp_path: Path) -> None:
     result = training.train(tiny, tmp_path, command="the command")
     best = load(tmp_path / "best.npz")
-    assert best.made["command"] == "the command"
-    assert best.made["seed"] == "0"
-    assert set(best.made) >= {"commit", "flockenv", "samples", "wall_s", "validation"}
+    assert best.provenance["command"] == "the command"
+    assert best.provenance["seed"] == "0"
+    assert set(best.provenance) >= {"commit", "flockenv", "samples", "wall_s", "validation"}
     assert TrainingSettings.from_toml((tmp_path / "settings.toml").read_text()) == tiny
     rows = result.progress.validations
     assert [row["samples"] for row in rows] == [384, 768]

@@ -54,11 +54,11 @@ fn row(boats: usize, effort: Effort) -> Vec<String> {
     flock.advance(20.0, None).expect("the motion stays finite");
     let warm = *flock.statistics();
     let timed_s = effort.choose(2.0, if boats < 1000 { 20.0 } else { 10.0 });
-    let begin = Instant::now();
+    let start = Instant::now();
     flock
         .advance(timed_s, None)
         .expect("the motion stays finite");
-    let time = begin.elapsed().as_secs_f64();
+    let time = start.elapsed().as_secs_f64();
     let bytes = (ALLOCATOR.current_usage() - before) as f64;
     // A copy holds what is in use, and no room to grow.
     let copy = std::hint::black_box(flock.clone());

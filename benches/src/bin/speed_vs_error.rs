@@ -33,7 +33,7 @@ fn main() {
         }
         Some(folder) => {
             while let Some(part) = arguments.next() {
-                let begin = Instant::now();
+                let start = Instant::now();
                 match part {
                     "tasks" => {
                         exchange::write_tasks(Path::new(arguments.next().expect(USAGE)), effort);
@@ -44,7 +44,7 @@ fn main() {
                     }
                     _ => measure(part, Path::new(folder), effort),
                 }
-                println!("{part}: {:.1} s", begin.elapsed().as_secs_f64());
+                println!("{part}: {:.1} s", start.elapsed().as_secs_f64());
             }
         }
         None => panic!("{USAGE}"),

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 /// What Box2D's tolerances take for a meter, in cm, as for rapier; one for the whole process.
 const LENGTH_UNIT_CM: f32 = 10.0;
-/// Contacts of one boat that are looked at.
+/// Contacts of one boat that are examined.
 const MOST_CONTACTS: usize = 64;
 
 /// Box2D keeps its worlds in one list, without a lock of its own.
@@ -31,7 +31,7 @@ pub struct Box2d {
 }
 
 impl Box2d {
-    /// A scene that begins at the start given; Box2D advises 4 substeps.
+    /// A scene that starts at the start given; Box2D advises 4 substeps.
     pub fn new(parameters: &FlockParameters, seed: u64, start: &Start, substeps: i32) -> Self {
         let world = create_world();
         let pool = parameters.pool;
@@ -59,7 +59,7 @@ impl Box2d {
     }
 
     fn apply_forces(&mut self) {
-        self.driver.begin_step();
+        self.driver.start_step();
         for (boat, &id) in self.boats.iter().enumerate() {
             // SAFETY: the bodies live as long as the world, which lives as long as self.
             let rotation = unsafe { b2Body_GetRotation(id) };
@@ -79,10 +79,10 @@ impl Engine for Box2d {
     fn advance(&mut self, steps: usize) {
         for _ in 0..steps {
             self.apply_forces();
-            let begin = Instant::now();
+            let start = Instant::now();
             // SAFETY: the world lives as long as self.
             unsafe { b2World_Step(self.world, self.dt, self.substeps) };
-            self.step_call += begin.elapsed();
+            self.step_call += start.elapsed();
         }
     }
 

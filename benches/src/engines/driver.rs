@@ -32,7 +32,7 @@ pub struct Driver {
 }
 
 impl Driver {
-    /// Kicks are those that flockenv's `moreau` scheme meets on this seed.
+    /// Noise increments are those that flockenv's `moreau` scheme meets on this seed.
     pub fn new(parameters: &FlockParameters, seed: u64, time_s: f64) -> Self {
         let (n, dt) = (parameters.n_boats, ticks(parameters.dt_s));
         Self {
@@ -47,8 +47,8 @@ impl Driver {
         }
     }
 
-    /// Draws the noise of the step that begins now, and moves the clock to its end.
-    pub fn begin_step(&mut self) {
+    /// Draws the noise of the step that starts now, and moves the clock to its end.
+    pub fn start_step(&mut self) {
         let end = self.time + self.dt;
         if let Some(noise) = &mut self.noise {
             noise.increments(2 * self.time, 2 * end, &mut self.noise_increments);

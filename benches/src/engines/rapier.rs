@@ -48,7 +48,7 @@ pub struct Rapier {
 }
 
 impl Rapier {
-    /// A scene that begins at the start given.
+    /// A scene that starts at the start given.
     pub fn new(parameters: &FlockParameters, seed: u64, start: &Start, settings: Settings) -> Self {
         let mut world = PhysicsWorld {
             gravity: Vector::new(0.0, 0.0),
@@ -74,7 +74,7 @@ impl Rapier {
     }
 
     fn apply_forces(&mut self) {
-        self.driver.begin_step();
+        self.driver.start_step();
         for (boat, &handle) in self.boats.iter().enumerate() {
             let body = &mut self.world.bodies[handle];
             let rotation = body.rotation();
@@ -93,9 +93,9 @@ impl Engine for Rapier {
     fn advance(&mut self, steps: usize) {
         for _ in 0..steps {
             self.apply_forces();
-            let begin = Instant::now();
+            let start = Instant::now();
             self.world.step();
-            self.step_call += begin.elapsed();
+            self.step_call += start.elapsed();
         }
     }
 

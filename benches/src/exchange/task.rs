@@ -1,4 +1,4 @@
-//! What engines in other languages are asked to simulate.
+//! Tasks of engines in other languages.
 
 use crate::{Scene, Start};
 use crate::configuration::STEP_S;
@@ -145,7 +145,7 @@ pub fn write_tasks(files: &Path, effort: Effort) {
             &[wall_push::start(1e-9)],
         );
         tasks.push(pushing.timed(
-            wall_push::SETTLING_S,
+            wall_push::TRANSIENT_S,
             wall_push::AVERAGED_S,
             wall_push::AVERAGED_S,
         ));

@@ -13,7 +13,7 @@ use flockenv::parameters::Scheme;
 pub const HORIZONS_S: [f64; 2] = [0.5, 1.0];
 const BOATS: usize = 27;
 
-/// Where runs are at the beginning of a forward phase, three cycles in.
+/// Where runs are at the start of a forward phase, three cycles in.
 pub fn starts(scene: Scene, effort: Effort) -> Vec<Start> {
     let seeds: Vec<u64> = (1..=effort.choose(4, 12)).collect();
     on_all_cores(&seeds, |&seed| {

@@ -36,12 +36,12 @@ impl Effort {
     }
 }
 
-/// A table whose rows begin with a configuration.
+/// A table whose rows start with a configuration.
 pub fn table(columns: &[&str]) -> Table {
     Table::new(&[Configuration::COLUMNS.as_slice(), columns].concat())
 }
 
-/// Appends a row that begins with the cells of a configuration.
+/// Appends a row that starts with the cells of a configuration.
 pub fn push_row(table: &mut Table, configuration: &[String], cells: Vec<String>) {
     table.row([configuration, cells.as_slice()].concat());
 }

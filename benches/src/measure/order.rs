@@ -57,7 +57,7 @@ impl Frames {
         }
     }
 
-    /// Looks at a frame.
+    /// Measures a frame.
     pub fn look(&mut self, time_s: f64, poses: &[Pose], velocities: &[Velocity]) {
         if time_s < self.first_s || !self.schedule.in_analysis_window(ticks(time_s)) {
             return;

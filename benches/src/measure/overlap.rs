@@ -31,7 +31,7 @@ impl Overlap {
         }
     }
 
-    /// Looks at the poses at a step's end.
+    /// Measures the poses at a step's end.
     pub fn look(&mut self, poses: &[Pose]) {
         self.boats.clear();
         self.boats.extend(poses.iter().map(HullPose::new));

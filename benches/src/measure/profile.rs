@@ -79,10 +79,10 @@ impl States {
     fn noise(&self) -> f64 {
         let (n, dt) = (self.before.parameters().n_boats, ticks(STEP_S));
         let mut paths = BrownianPaths::new(1, n, 2 * dt, dt);
-        let mut kicks = vec![0.0; n];
+        let mut increments = vec![0.0; n];
         self.per_step(|| {
             for k in 1..=self.boats.len() as Ticks {
-                paths.increments(2 * k * dt - dt, 2 * k * dt + dt, black_box(&mut kicks));
+                paths.increments(2 * k * dt - dt, 2 * k * dt + dt, black_box(&mut increments));
             }
         })
     }
@@ -120,9 +120,9 @@ impl States {
     }
 
     fn per_step(&self, work: impl FnOnce()) -> f64 {
-        let begin = Instant::now();
+        let start = Instant::now();
         work();
-        begin.elapsed().as_secs_f64() * 1e6 / self.boats.len() as f64
+        start.elapsed().as_secs_f64() * 1e6 / self.boats.len() as f64
     }
 
     fn parts(&self) -> [f64; 6] {

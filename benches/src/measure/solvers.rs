@@ -124,13 +124,13 @@ fn problems(boats: usize, count: usize) -> Vec<Problem> {
 /// How long all problems take a solver, in µs a problem, and what it reports.
 fn solve_all(problems: &[Problem], kind: Solver) -> (f64, Vec<SolveReport>) {
     let mut solver = ContactSolver::new(kind);
-    let begin = Instant::now();
+    let start = Instant::now();
     let reports: Vec<_> = problems
         .iter()
         .map(|problem| problem.solve(&mut solver))
         .collect();
     (
-        begin.elapsed().as_secs_f64() * 1e6 / problems.len() as f64,
+        start.elapsed().as_secs_f64() * 1e6 / problems.len() as f64,
         reports,
     )
 }

@@ -62,9 +62,9 @@ pub fn take_turns(entries: &[Entry], seeds: u64, timed_s: f64) -> Vec<Times> {
             for ((entry, engine), times) in entries.iter().zip(&mut engines).zip(&mut times) {
                 let steps = entry.configuration.steps(Scene::BLOCK_S);
                 let before = engine.step_call();
-                let begin = Instant::now();
+                let start = Instant::now();
                 engine.advance(steps);
-                let whole = begin.elapsed();
+                let whole = start.elapsed();
                 let call = engine.step_call().zip(before).map(|(now, then)| now - then);
                 times.push(steps, whole, call);
             }

@@ -9,7 +9,7 @@ use flockenv::parameters::Pool;
 
 const BOATS: usize = 5;
 /// Time for the row to come to rest, in s.
-pub const SETTLING_S: f64 = 1.0;
+pub const TRANSIENT_S: f64 = 1.0;
 /// Time that the force is averaged over, in s.
 pub const AVERAGED_S: f64 = 1.0;
 
@@ -49,7 +49,7 @@ pub fn expected() -> f64 {
 
 fn measured(configuration: &Configuration) -> f64 {
     let mut engine = configuration.build(&scene(), 1, &start(0.0));
-    engine.advance(configuration.steps(SETTLING_S));
+    engine.advance(configuration.steps(TRANSIENT_S));
     let steps = configuration.steps(AVERAGED_S);
     let mut sum = 0.0;
     for _ in 0..steps {

@@ -181,8 +181,8 @@ def _state_claims(
     def claim(
         text: str, quantity: str, values: NDArray[np.float64], low: float, high: float = np.inf
     ) -> CheckedClaim:
-        made = Claim(text=text, section="4.1, Table 2", quantity=quantity, low=low, high=high)
-        return made.check(*interval(values), scope=_SCOPE)
+        claim = Claim(text=text, section="4.1, Table 2", quantity=quantity, low=low, high=high)
+        return claim.check(*interval(values), scope=_SCOPE)
 
     return [
         claim(

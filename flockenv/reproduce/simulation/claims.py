@@ -31,7 +31,7 @@ Replicates = NDArray[np.float64]
 
 
 class Evidence:
-    """The series of a model, each read when a claim first asks for it."""
+    """The series of a model, each read when a claim first needs it."""
 
     def __init__(self, settings: Settings, results: Results, model: Model, design: Design) -> None:
         self._settings, self._results = settings, results

@@ -75,21 +75,21 @@ class TransitionDesign:
         of other seeds put them where rotation gives way to the jam.
     runs : int
         Seeds for each point and loop.
-    still_minutes, loop_minutes : float
+    stationary_minutes, loop_minutes : float
         Length of a run at one density, and of a loop that is not slow.
     """
 
     sizes: tuple[int, ...]
     densities: Mapping[str, tuple[int, ...]]
     runs: int
-    still_minutes: float
+    stationary_minutes: float
     loop_minutes: float
 
     def stationary(
         self, settings: Settings, growth: Growth, density: int, start: str
     ) -> tuple[RunSpec, ...]:
         """Return the runs at one density without noise, from one of `STARTS`."""
-        length = settings.duration_s(self.still_minutes)
+        length = settings.duration_s(self.stationary_minutes)
         return self._seeded(length, settings.seed, growth.parameters(density), start, "window")
 
     def loop(self, settings: Settings, growth: Growth, kind: str) -> tuple[RunSpec, ...]:
@@ -150,16 +150,24 @@ FULL = TransitionDesign(
     sizes=(50, 100, 200, 400, 800, 1600),
     densities={"whole pool": (4, 6, 10, 16, 24), "circumference": (16, 24, 36, 54, 80)},
     runs=4,
-    still_minutes=30.0,
+    stationary_minutes=30.0,
     loop_minutes=20.0,
 )
 
 DESIGNS = (
     TransitionDesign(
-        sizes=(100, 400, 1600), densities=_DENSITIES, runs=3, still_minutes=6.0, loop_minutes=4.0
+        sizes=(100, 400, 1600),
+        densities=_DENSITIES,
+        runs=3,
+        stationary_minutes=6.0,
+        loop_minutes=4.0,
     ),
     TransitionDesign(
-        sizes=(100, 400, 1600), densities=_DENSITIES, runs=3, still_minutes=12.0, loop_minutes=9.0
+        sizes=(100, 400, 1600),
+        densities=_DENSITIES,
+        runs=3,
+        stationary_minutes=12.0,
+        loop_minutes=9.0,
     ),
     FULL,
 )

@@ -189,7 +189,7 @@ def _cumulants_note(measured: Measured) -> str:
 
 def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
     stationary, loop = (
-        settings.duration_s(m) / 60 for m in (design.still_minutes, design.loop_minutes)
+        settings.duration_s(m) / 60 for m in (design.stationary_minutes, design.loop_minutes)
     )
     return [
         "The density is the number of boats for each free area of the pool 500-boats. Runs at one "

@@ -1,7 +1,7 @@
-"""Flocks that begin in order: all boats circulating, or all pressing outward.
+"""Flocks that start in order: all boats circulating, or all pressing outward.
 
 At a transition of first order both states last at one density, and where a run ends depends on
-where it began; a random start shows one of the two, or neither.
+where it started; a random start shows one of the two, or neither.
 """
 
 import numpy as np

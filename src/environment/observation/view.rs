@@ -1,4 +1,4 @@
-//! A flock as it is looked at, and how physical values become observed ones.
+//! A flock as it is observed, and how physical values become observed ones.
 
 use super::entry::{Entry, OWN, PHASE};
 use crate::analysis::OrderParameters;

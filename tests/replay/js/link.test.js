@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { linkTo, readLink } from "../../../flockenv/replay/link.mjs";
 
-const PAGE = { begin: 0, end: 480, speeds: [0.5, 1, 8] };
+const PAGE = { start: 0, end: 480, speeds: [0.5, 1, 8] };
 
 test("a time and a speed", () => {
   assert.deepEqual(readLink("#t=240&speed=8", PAGE), { time: 240, speed: 8, ignored: [] });

@@ -70,7 +70,7 @@ test("a value is that of the sample, and undefined where there is no such series
   assert.equal(runOf().value("milling", 2), undefined);
 });
 
-test("runs together begin with the first and end with the last", () => {
+test("runs together start with the first and end with the last", () => {
   const later = runOf();
   later.time = Float64Array.of(2, 3, 4);
   assert.deepEqual(span([runOf(), later]), [0, 4]);

@@ -27,7 +27,7 @@ const NO_ENTRY: Entry = Entry {
 #[derive(Debug, Clone, Copy)]
 struct Node {
     /// Its entries, whole groups of them.
-    begin: u32,
+    start: u32,
     end: u32,
     /// How many entries it holds, without the zeros that fill up its groups.
     count: u32,
@@ -41,7 +41,7 @@ struct Node {
 }
 
 const EMPTY: Node = Node {
-    begin: 0,
+    start: 0,
     end: 0,
     count: 0,
     parent: NONE,
@@ -171,13 +171,13 @@ impl Factor {
     /// Computes row k, whose entries lie on the paths from `starts` up to it.
     fn compute(&mut self, rows: &[Row], k: usize, starts: [u32; 2], regularization: f64) {
         self.add_couplings(rows, k);
-        let begin = self.used;
-        let most = begin + k + GROUP;
+        let start = self.used;
+        let most = start + k + GROUP;
         if self.entries.len() < most {
             self.entries.resize(2 * most, NO_ENTRY);
         }
         let (nodes, work) = (self.nodes.as_mut_slice(), self.work.as_mut_slice());
-        let (known, new) = self.entries.split_at_mut(begin);
+        let (known, new) = self.entries.split_at_mut(start);
         let mut pivot = rows[k].diagonal * (1.0 + regularization);
         let [mut a, mut b] = starts;
         let mut count = 0;
@@ -208,17 +208,17 @@ impl Factor {
 
     /// Fills up the entries of a row that has been computed, and clears `work`.
     fn finish(&mut self, k: usize, count: usize) {
-        let begin = self.used;
-        self.used = begin + count.max(1).div_ceil(GROUP) * GROUP;
-        self.entries[begin + count..begin + count + GROUP].fill(Entry {
+        let start = self.used;
+        self.used = start + count.max(1).div_ceil(GROUP) * GROUP;
+        self.entries[start + count..start + count + GROUP].fill(Entry {
             column: self.nodes.len() as u32,
             value: 0.0,
         });
-        for entry in &self.entries[begin..self.used] {
+        for entry in &self.entries[start..self.used] {
             self.work[entry.column as usize] = 0.0;
         }
         let node = &mut self.nodes[k];
-        (node.begin, node.end) = (begin as u32, self.used as u32);
+        (node.start, node.end) = (start as u32, self.used as u32);
         node.count = count as u32;
         (node.is_factored, node.is_dirty) = (true, false);
     }
@@ -259,7 +259,7 @@ impl Factor {
 
 #[inline]
 fn row_of<'a>(entries: &'a [Entry], node: &Node) -> &'a [[Entry; GROUP]] {
-    entries[node.begin as usize..node.end as usize]
+    entries[node.start as usize..node.end as usize]
         .as_chunks()
         .0
 }
