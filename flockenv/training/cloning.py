@@ -161,7 +161,7 @@ def _fit(
             error = network(inputs[batch])[:, 0] - targets[batch]
             # The rudder is clipped: beyond the end of its range any output is right.
             beyond = (targets[batch].abs() >= 1.0) & (error * targets[batch] > 0.0)
-            loss = error.mwanted_fill(beyond, 0.0).square().mean()
+            loss = error.masked_fill(beyond, 0.0).square().mean()
             if not torch.isfinite(loss):
                 raise TrainingError("cloning: the loss is not finite")
             optimizer.zero_grad()
