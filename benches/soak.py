@@ -64,7 +64,7 @@ class Pool:
             self.note(flock)
 
     def note(self, flock: int) -> None:
-        ended = self.env._batch.core.flock(flock)
+        ended = self.env._batch.flock(flock)
         if not (np.isfinite(ended.pose).all() and np.isfinite(ended.velocity).all()):
             raise SystemExit(f"{self.name}: NaN in a state after {self.steps} control steps")
         found = ended.statistics

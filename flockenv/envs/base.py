@@ -32,7 +32,7 @@ class SingleEnvironmentBase:
 
     def state(self) -> NDArray[np.float32]:
         """Return the global state for centralized critics, shape (state size,), float32."""
-        return self._batch.core.state(0)
+        return self._batch.state(0)
 
     def flock_features(self) -> NDArray[np.float32]:
         """Return features of the flock, shape (features,), float32.
@@ -40,25 +40,25 @@ class SingleEnvironmentBase:
         They depend neither on the order of boats nor on absolute angles, and are in the frame of
         the target; `envs.observation.flock_feature_entries` lists them.
         """
-        features: NDArray[np.float32] = self._batch.core.flock_features()[0]
+        features: NDArray[np.float32] = self._batch.flock_features()[0]
         return features
 
     def episode(self) -> dict[str, Any]:
         """Return target, backward duration, seed and step of the episode."""
-        return self._batch.core.episode(0)
+        return self._batch.episode(0)
 
     @property
     def flock(self) -> _core.Flock:
         """A copy of the flock in its present state."""
-        return self._batch.core.flock(0)
+        return self._batch.flock(0)
 
     def get_state(self) -> bytes:
         """Return everything that the future depends on, as bytes."""
-        return self._batch.core.to_bytes()
+        return self._batch.to_bytes()
 
     def set_state(self, state: bytes) -> None:
         """Continue from `get_state` of an environment with the same options, bit for bit."""
-        self._batch.core.restore(state)
+        self._batch.restore(state)
 
     def clone(self) -> Self:
         """Return an independent copy that continues with the same bits."""

@@ -12,6 +12,7 @@ from flockenv.envs.observation import flock_feature_space, state_space
 from flockenv.envs.options import EnvOptions, known_reset_options
 from flockenv.envs.reward import TERMS
 from flockenv.errors import ParameterError, shown
+from flockenv.parameters import FlockParameters
 
 __all__ = ["LeaderBatch", "at_least_one", "drawn_seed", "seeds_from"]
 
@@ -26,15 +27,16 @@ class LeaderBatch:
     def __init__(self, options: EnvOptions, leaders: Sequence[int], autoreset_mode: str) -> None:
         by_count = {k: options.parameters.replace(n_leaders=k) for k in set(leaders)}
         members = [by_count[k] for k in leaders]
-        self.core = _core.EnvBatch(members, {**options.settings, "autoreset_mode": autoreset_mode})
-        self.settings: dict[str, Any] = self.core.options
+        self._core = _core.EnvBatch(members, {**options.settings, "autoreset_mode": autoreset_mode})
+        self.settings: dict[str, Any] = self._core.options
         self.num_flocks = len(members)
         self.leaders = tuple(leaders)
-        self.observation_size: int = self.core.observation_size
+        self.observation_size: int = self._core.observation_size
         self.state_space = state_space(options.parameters.n_boats)
         self.flock_feature_space = flock_feature_space()
         #: Control steps from one decision to the next, and decisions per second.
-        self.period_steps: int = self.core.period_steps
+        self.period_steps: int = self._core.period_steps
+        self.episode_steps: int = self._core.episode_steps
         self.decisions_hz: float = self.settings["control_hz"] / self.period_steps
 
     def reset(
@@ -50,10 +52,10 @@ class LeaderBatch:
         requests: list[dict[str, Any] | None] = [None] * self.num_flocks
         for flock in np.flatnonzero(chosen).tolist():
             seed = seeds[flock]
-            if seed is None and not self.core.is_seeded(flock):
+            if seed is None and not self._core.is_seeded(flock):
                 seed = new_seed()
             requests[flock] = {**per_flock[flock], "seed": seed}
-        self.core.reset(requests)
+        self._core.reset(requests)
 
     def _per_flock(self, options: Mapping[str, Any]) -> list[dict[str, Any]]:
         """Options for each flock: lists have one entry per flock, anything else holds for all."""
@@ -68,22 +70,88 @@ class LeaderBatch:
                 own[name] = each
         return per_flock
 
+    def step(
+        self, actions: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_]]:
+        """Take a control step: observations and rewards by row, and by flock whether it ended."""
+        return self._core.step(actions)
+
+    def observe(self) -> NDArray[np.float32]:
+        """Return every leader's observation, a row each."""
+        return self._core.observe()
+
+    def final_observation(self, flock: int) -> NDArray[np.float32]:
+        """Return the last observation of the episode that ended in the last step."""
+        return self._core.final_observation(flock)
+
+    def state(self, flock: int) -> NDArray[np.float32]:
+        """Return the global state of a flock."""
+        return self._core.state(flock)
+
+    def final_state(self, flock: int) -> NDArray[np.float32]:
+        """Return the last global state of the episode that ended in the last step."""
+        return self._core.final_state(flock)
+
+    def flock_features(self) -> NDArray[np.float32]:
+        """Return the features of every flock, a row each."""
+        return self._core.flock_features()
+
+    def order_parameters(self) -> NDArray[np.float64]:
+        """Return the order parameters of every flock, a row each."""
+        return self._core.order_parameters()
+
+    def in_analysis_window(self) -> NDArray[np.bool_]:
+        """Return for every flock whether its episode is in the analysis window."""
+        return self._core.in_analysis_window()
+
+    def rudders(self) -> NDArray[np.float64]:
+        """Return every leader's rudder as it stands."""
+        return self._core.rudders()
+
+    def is_running(self, flock: int) -> bool:
+        """Return whether an episode is under way."""
+        return self._core.is_running(flock)
+
+    def flock(self, flock: int) -> _core.Flock:
+        """Return a copy of a flock in its present state."""
+        return self._core.flock(flock)
+
+    def parameters(self, flock: int) -> FlockParameters:
+        """Return the parameters of a flock's environment."""
+        return self._core.parameters(flock)
+
+    def episode(self, flock: int) -> dict[str, Any]:
+        """Return target, backward duration, seed and step of a flock's episode."""
+        return self._core.episode(flock)
+
+    def summary(self, flock: int) -> dict[str, Any]:
+        """Return the statistics of a flock's episode so far."""
+        return self._core.summary(flock)
+
+    def to_bytes(self) -> bytes:
+        """Return everything that the future depends on."""
+        return self._core.to_bytes()
+
+    def restore(self, state: bytes) -> None:
+        """Continue from the bytes of a batch with the same options."""
+        self._core.restore(state)
+
     def reset_info(self, flock: int) -> dict[str, Any]:
         """Return the infos of the start of an episode."""
-        episode = self.core.episode(flock)
+        episode = self._core.episode(flock)
         seed = np.uint64(episode["flock_seed"])
         return {"target": episode["target"], "bw_s": episode["bw_s"], "flock_seed": seed}
 
     def end_info(self, flock: int) -> dict[str, Any]:
         """Return the infos of the end of an episode."""
-        summary = self.core.finished(flock)
+        summary = self._core.finished(flock)
         if summary is None:
             return {}
         return {"episode_summary": {**summary, "flock_seed": np.uint64(summary["flock_seed"])}}
 
     def reward_terms(self) -> dict[str, NDArray[np.float64]]:
         """Return each term of the last step's reward, one number per row."""
-        return dict(zip(TERMS, self.core.reward_terms(), strict=True))
+        return dict(zip(TERMS, self._core.reward_terms(), strict=True))
 
 
 def drawn_seed(random: np.random.Generator) -> int:

@@ -157,7 +157,7 @@ class LeadersParallelEnv(
             Before the first reset and after the end.
         """
         flat = self._flat(actions)
-        rows, rewards, truncated = self._batch.core.step(flat)
+        rows, rewards, truncated = self._batch.step(flat)
         agents, over = self.agents, bool(truncated[0])
         infos = self._infos(over)
         if over:
@@ -205,12 +205,12 @@ class LeadersParallelEnv(
 
     def observe(self) -> Observations:
         """Return the observations as they are now, by agent."""
-        return self._by_agent(self._batch.core.observe())
+        return self._by_agent(self._batch.observe())
 
     def set_state(self, state: bytes) -> None:
         """Continue from `get_state` of an environment with the same options, bit for bit."""
         super().set_state(state)
-        self.agents = self.possible_agents[:] if self._batch.core.is_running(0) else []
+        self.agents = self.possible_agents[:] if self._batch.is_running(0) else []
 
 
 def parallel_env(*, render_mode: str | None = None, **options: Any) -> LeadersParallelEnv:

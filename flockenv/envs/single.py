@@ -133,7 +133,7 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
             Before the first reset and after the end.
         """
         flat = flat_actions(action, (self.num_leaders,), self._batch.settings["rudder_levels"])
-        rows, rewards, truncated = self._batch.core.step(flat)
+        rows, rewards, truncated = self._batch.step(flat)
         terms = {name: float(each.mean()) for name, each in self._batch.reward_terms().items()}
         info: dict[str, Any] = {"reward_terms": terms}
         over = bool(truncated[0])
@@ -144,4 +144,4 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
 
     def observe(self) -> NDArray[np.float32]:
         """Return the present observation."""
-        return self._batch.core.observe().reshape(-1)
+        return self._batch.observe().reshape(-1)

@@ -160,7 +160,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         infos: dict[str, Any] = {}
         for flock in range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist():
             infos = self._add_info(infos, self._batch.reset_info(flock), flock)
-        return self._shaped(self._batch.core.observe()), infos
+        return self._shaped(self._batch.observe()), infos
 
     def step(
         self, actions: NDArray[Any]
@@ -191,7 +191,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
             Before the first reset, and after an episode's end with ``"disabled"``.
         """
         flat = flat_actions(actions, self._actions_shape, self._batch.settings["rudder_levels"])
-        observations, rewards, truncated = self._batch.core.step(flat)
+        observations, rewards, truncated = self._batch.step(flat)
         infos = self._end_infos(truncated) if truncated.any() else {}
         return (
             self._shaped(observations),
@@ -209,7 +209,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         for flock in np.flatnonzero(truncated).tolist():
             info = self._batch.end_info(flock)
             if self.autoreset_mode == AutoresetMode.SAME_STEP:
-                last = self._batch.core.final_observation(flock).reshape(-1)
+                last = self._batch.final_observation(flock).reshape(-1)
                 infos = self._add_info(infos, {"final_obs": last, "final_info": info}, flock)
                 info = self._batch.reset_info(flock)
             infos = self._add_info(infos, info, flock)
@@ -217,7 +217,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
 
     def state(self) -> NDArray[np.float32]:
         """Return the global state of every flock, shape (num_envs, state size)."""
-        return np.stack([self._batch.core.state(flock) for flock in range(self.num_envs)])
+        return np.stack([self._batch.state(flock) for flock in range(self.num_envs)])
 
     def flock_features(self) -> NDArray[np.float32]:
         """Return features of every flock, shape (num_envs, features), float32.
@@ -225,7 +225,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         They depend neither on the order of boats nor on absolute angles, and are in the frame of
         the target.
         """
-        return self._batch.core.flock_features()
+        return self._batch.flock_features()
 
     def reward_terms(self) -> dict[str, NDArray[np.float64]]:
         """Return each term of the last step's reward, shape (num_envs,), mean over leaders."""
@@ -239,23 +239,23 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
 
         Shape (num_envs, 6): the fields of `OrderParameters`, in its order.
         """
-        return self._batch.core.order_parameters()
+        return self._batch.order_parameters()
 
     def in_analysis_window(self) -> NDArray[np.bool_]:
         """Return which flocks are in the paper's analysis window now."""
-        return self._batch.core.in_analysis_window()
+        return self._batch.in_analysis_window()
 
     def get_state(self) -> bytes:
         """Return everything that the future depends on, as bytes."""
-        return self._batch.core.to_bytes()
+        return self._batch.to_bytes()
 
     def set_state(self, state: bytes) -> None:
         """Continue from `get_state` of an environment with the same options, bit for bit."""
-        self._batch.core.restore(state)
+        self._batch.restore(state)
 
     def observe(self) -> NDArray[np.float32]:
         """Return the observations as they are now."""
-        return self._shaped(self._batch.core.observe())
+        return self._shaped(self._batch.observe())
 
     def clone(self) -> Self:
         """Return an independent copy that continues with the same bits."""
@@ -265,7 +265,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         """Return a frame of each flock, (height, width, 3) uint8, if that is the render mode."""
         if self.render_mode is None:
             return None
-        flocks = map(self._batch.core.flock, range(self.num_envs))
+        flocks = map(self._batch.flock, range(self.num_envs))
         return tuple(map(self._render_mode.frame, flocks))
 
 

@@ -40,15 +40,15 @@ class LeaderSlot:
     @property
     def parameters(self) -> FlockParameters:
         """Parameters of the slot's flock; an episode may have its own target and bw_s."""
-        return self._env._batch.core.parameters(self.flock_index)
+        return self._env._batch.parameters(self.flock_index)
 
     def episode(self) -> dict[str, Any]:
         """Return target, backward duration, seed and step of the slot's flock."""
-        return self._env._batch.core.episode(self.flock_index)
+        return self._env._batch.episode(self.flock_index)
 
     def state(self) -> NDArray[np.float32]:
         """Return the global state of the slot's flock, shape (state size,)."""
-        return self._env._batch.core.state(self.flock_index)
+        return self._env._batch.state(self.flock_index)
 
 
 @specified
@@ -188,7 +188,7 @@ class LeaderVecEnv(VecEnv):
         self._reset_options()
         start = [self._batch.reset_info(flock) for flock in range(self.num_flocks)]
         self.reset_infos = [dict(start[flock]) for flock in self.flock_of_slot]
-        return self._batch.core.observe()
+        return self._batch.observe()
 
     def step_async(self, actions: NDArray[Any]) -> None:
         """Take note of actions, shape (slots, 1) rudders or (slots,) numbers of levels."""
@@ -219,7 +219,7 @@ class LeaderVecEnv(VecEnv):
         if self._actions is None:
             raise EpisodeError("step_wait was called without step_async")
         flat, self._actions = self._actions, None
-        observations, rewards, truncated = self._batch.core.step(flat)
+        observations, rewards, truncated = self._batch.step(flat)
         infos: list[dict[str, Any]] = [{} for _ in self.slots]
         if truncated.any():
             self._report_ends(truncated, infos)
@@ -230,14 +230,14 @@ class LeaderVecEnv(VecEnv):
 
     def _report_ends(self, truncated: NDArray[np.bool_], infos: list[dict[str, Any]]) -> None:
         for flock in np.flatnonzero(truncated).tolist():
-            last = self._batch.core.final_observation(flock)
+            last = self._batch.final_observation(flock)
             first = int(np.searchsorted(self.flock_of_slot, flock))
             for leader, row in enumerate(last):
                 slot = first + leader
                 infos[slot] = self._batch.end_info(flock)
                 infos[slot]["TimeLimit.truncated"] = True
                 infos[slot]["terminal_observation"] = row.copy()
-                infos[slot]["terminal_state"] = self._batch.core.final_state(flock)
+                infos[slot]["terminal_state"] = self._batch.final_state(flock)
                 if leader == 0:
                     infos[slot]["episode"] = self._monitored(infos[slot]["episode_summary"])
                 self.reset_infos[slot] = self._batch.reset_info(flock)
@@ -271,7 +271,7 @@ class LeaderVecEnv(VecEnv):
 
     def state(self) -> NDArray[np.float32]:
         """Return the global state of each slot's flock, shape (slots, state size)."""
-        flocks = [self._batch.core.state(flock) for flock in range(self.num_flocks)]
+        flocks = [self._batch.state(flock) for flock in range(self.num_flocks)]
         return np.stack(flocks)[self.flock_of_slot]
 
     def flock_features(self) -> NDArray[np.float32]:
@@ -280,7 +280,7 @@ class LeaderVecEnv(VecEnv):
         They depend neither on the order of boats nor on absolute angles, and are in the frame of
         the target.
         """
-        return self._batch.core.flock_features()[self.flock_of_slot]
+        return self._batch.flock_features()[self.flock_of_slot]
 
     def reward_terms(self) -> dict[str, NDArray[np.float64]]:
         """Return each term of the last step's reward, shape (slots,)."""
@@ -288,16 +288,16 @@ class LeaderVecEnv(VecEnv):
 
     def order_parameters(self) -> NDArray[np.float64]:
         """Return order parameters now, shape (flocks, 6); see `LeadersVectorEnv`."""
-        return self._batch.core.order_parameters()
+        return self._batch.order_parameters()
 
     def get_state(self) -> bytes:
         """Return everything that the future depends on, as bytes."""
-        return self._batch.core.to_bytes()
+        return self._batch.to_bytes()
 
     def set_state(self, state: bytes) -> NDArray[np.float32]:
         """Continue from `get_state` of the same options, bit for bit; return the observations."""
-        self._batch.core.restore(state)
-        return self._batch.core.observe()
+        self._batch.restore(state)
+        return self._batch.observe()
 
     def clone(self) -> Self:
         """Return an independent copy that continues with the same bits."""
@@ -307,7 +307,7 @@ class LeaderVecEnv(VecEnv):
         """Return a frame of each flock; nothing to see where `render_mode` is None."""
         if self.render_mode is None:
             return [None for _ in self.slots]
-        flocks = map(self._batch.core.flock, range(self.num_flocks))
+        flocks = map(self._batch.flock, range(self.num_flocks))
         return [self._render_mode.frame(flock) for flock in flocks]
 
     def close(self) -> None:

@@ -61,7 +61,7 @@ def test_samples_are_the_flocks_own(script) -> None:
     actions = np.array([[0.5, -1.0, 0.0]], np.float32)
     for _ in range(37):
         observations, *_ = env.step(actions)
-    flock = env._batch.core.flock(0)
+    flock = env._batch.flock(0)
     rows = script.samples(observations, actions, env.state(), parameters)
     place = flock.pose[:3, :2] @ [1, 1j]
     np.testing.assert_allclose(rows["radius_cm"], abs(place), atol=1e-3)

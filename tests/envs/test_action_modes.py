@@ -27,8 +27,8 @@ def rolled(steps, actions=None, policy=None, **options):
         given = np.full((3, 2), actions) if policy is None else policy.predict(seen)[0]
         seen, reward, *_ = env.step(given)
         rewards.append(reward)
-    rudders = env._batch.core.rudders()
-    return seen, np.array(rewards), rudders, env._batch.core.flock(1).pose
+    rudders = env._batch.rudders()
+    return seen, np.array(rewards), rudders, env._batch.flock(1).pose
 
 
 def same(one, other):
@@ -64,7 +64,7 @@ def test_leaders_steer_outward_of_the_tangent_by_the_angle(mode, largest, gain, 
     angle = 0.3
     env.step([angle / largest])
     # Outward of a clockwise tangent is counter-clockwise, where positive rudders turn to.
-    rudders = env._batch.core.rudders()
+    rudders = env._batch.rudders()
     assert rudders == pytest.approx([sign * gain * angle], rel=1e-6)
     for _ in range(18):
         env.step([angle / largest])
@@ -229,5 +229,5 @@ def test_the_law_rudder_is_observed(pool):
         np.testing.assert_array_equal(seen.reshape(2, 2, -1)[..., -1], rudders)
         seen = env.step(rudders)[0]
     assert np.abs(rudders).max() > 0.0
-    outside = flockenv.envs.observation.observe(env._batch.core.flock(0), {"law_rudder": True})
+    outside = flockenv.envs.observation.observe(env._batch.flock(0), {"law_rudder": True})
     assert outside.shape == (2, seen.shape[1] // 2)

@@ -105,7 +105,7 @@ def test_a_credit_changes_no_bits_and_survives_a_stored_state():
         for _ in range(5):
             seen = plain.step(np.full((2, 3), 0.2))[0]
         assert seen.tobytes() == credited.step(np.full((2, 3), 0.2))[0].tobytes()
-    assert plain._batch.core.flock(0).statistics == credited._batch.core.flock(0).statistics
+    assert plain._batch.flock(0).statistics == credited._batch.flock(0).statistics
     copy = LeadersVectorEnv(2, reward=CREDIT, decision_period_s=0.5, **options)
     copy.reset(seed=9)
     copy.set_state(credited.get_state())

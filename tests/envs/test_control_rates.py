@@ -18,7 +18,7 @@ def test_no_control_rate_kicks_boats(control_hz, scheme):
     while not truncated.any():
         _, _, _, truncated, _ = venv.step(np.zeros((2, 3)))
         steps += 1
-        fastest = max(fastest, *(np.abs(venv._batch.core.flock(i).velocity).max() for i in (0, 1)))
+        fastest = max(fastest, *(np.abs(venv._batch.flock(i).velocity).max() for i in (0, 1)))
     # The motors drive at 15 cm/s.
     assert fastest < 20.0
     assert steps == round(20.0 * control_hz)

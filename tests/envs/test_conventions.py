@@ -43,8 +43,8 @@ def test_time_limit_is_truncation_in_the_parallel_environment():
 
 
 def test_default_length_is_eight_minutes_and_sixteen_with_alternating_targets():
-    assert flockenv.LeadersEnv()._batch.core.episode_steps == 4800
-    assert flockenv.LeadersEnv(target="alternate")._batch.core.episode_steps == 9600
+    assert flockenv.LeadersEnv()._batch.episode_steps == 4800
+    assert flockenv.LeadersEnv(target="alternate")._batch.episode_steps == 9600
 
 
 def test_next_step_autoreset():
@@ -231,7 +231,7 @@ def test_summary_reports_means_over_the_episode():
     for step in range(200):
         _, reward, _, _, info = env.step(np.zeros(3))
         rewards.append(reward)
-        if step >= 20 and env._batch.core.in_analysis_window()[0]:
+        if step >= 20 and env._batch.in_analysis_window()[0]:
             in_window.append(reward)
     summary = info["episode_summary"]
     assert summary["total_reward"] == pytest.approx(sum(rewards), rel=1e-12)

@@ -104,4 +104,4 @@ def test_leaders_alone_can_be_rewarded_for_their_own_motion():
     )
     env.reset(seed=0)
     env.step(np.zeros(3))
-    assert np.isnan(env._batch.core.order_parameters()).all()
+    assert np.isnan(env._batch.order_parameters()).all()

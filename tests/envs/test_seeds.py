@@ -39,13 +39,13 @@ def aec(seed):
 def vector(seed):
     env = flockenv.LeadersVectorEnv(1, **OPTIONS)
     env.reset(seed=seed)
-    return env._batch.core.flock(0).pose
+    return env._batch.flock(0).pose
 
 
 def vector_of_a_list(seed):
     env = flockenv.LeadersVectorEnv(1, **OPTIONS)
     env.reset(seed=[seed])
-    return env._batch.core.flock(0).pose
+    return env._batch.flock(0).pose
 
 
 def slots(seed):
@@ -55,7 +55,7 @@ def slots(seed):
     env = LeaderVecEnv(1, **OPTIONS)
     env.seed(seed)
     env.reset()
-    return env._batch.core.flock(0).pose
+    return env._batch.flock(0).pose
 
 
 INTERFACES = [single, made, parallel, aec, vector, vector_of_a_list, slots]
