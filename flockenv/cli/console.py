@@ -53,7 +53,22 @@ def print_json(data: Any) -> None:
     console.print_json(data=data, ensure_ascii=True)
 
 
-_PLAIN_SIGNS = {"–": "-", "—": "-", "−": "-", "×": "x", "·": "*", "±": "+-"}
+_PLAIN_SIGNS = {
+    "–": "-",
+    "—": "-",
+    "−": "-",
+    "×": "x",
+    "·": "*",
+    "±": "+-",
+    "°": "deg",
+    "≥": ">=",
+    "≤": "<=",
+    "≈": "~",
+    "√": "sqrt",
+    "→": "->",
+    "«": '"',
+    "»": '"',
+}
 
 
 def _plain(error: UnicodeError) -> tuple[str | bytes, int]:

@@ -5,9 +5,11 @@ import json
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
+import flockenv
 from flockenv.cli.console import print_anywhere, print_json, progress_bar, say
 
 
@@ -28,12 +30,23 @@ def printed(monkeypatch):
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252", "latin-1", "cp437", "utf-8"])
 def test_greek_is_printed_or_spelt(encoding, printed):
-    reported = printed(encoding, "mean Ψ_o → φ – 3×2…").decode(encoding)
+    text = "mean Ψ_o ≥ 0.3 → φ ≤ π – 3×2… ♥"
+    reported = printed(encoding, text).decode(encoding)
     if encoding == "utf-8":
-        assert reported == "mean Ψ_o → φ – 3×2…\n"
+        assert reported == f"{text}\n"
+    elif encoding == "ascii":
+        assert reported == "mean Psi_o >= 0.3 -> phi <= pi - 3x2... ?\n"
     else:
-        assert reported.startswith("mean Psi_o ? ")
-        assert "?" not in reported[12:]
+        assert reported.startswith("mean Psi_o ")
+        assert reported.count("?") == 1
+
+
+def test_every_sign_of_the_package_has_a_plain_one(printed):
+    package = Path(flockenv.__file__).parent
+    sources = "".join(path.read_text("utf-8") for path in package.rglob("*.py"))
+    signs = "".join(sorted({sign for sign in sources if not sign.isascii()}))
+    assert "Ψ" in signs
+    assert b"?" not in printed("ascii", signs)
 
 
 def test_a_file_name_comes_out_as_its_own_bytes(printed):
