@@ -1,7 +1,8 @@
 """Watch PPO learn in the easy environment, and write its learning curves.
 
-    python baselines/learn_easy.py                    # three seeds, into docs/easy
-    python baselines/learn_easy.py --seeds 0 --samples 20000 --out results/easy
+    python baselines/learn_easy.py                    # three seeds, into results/easy
+    python baselines/learn_easy.py --seeds 0 --samples 20000
+    python baselines/learn_easy.py --out docs/easy    # the data of docs/easy.md
 
 PPO of stable-baselines3 is trained on 64 flocks of `flockenv/Circulate-easy-v0` at once. Each
 point of a curve is the mean reward per control step of the mean policy, over the same 64 held-out
@@ -35,7 +36,6 @@ from flockenv.sb3 import LeaderVecEnv, evaluate_flocks
 ENV_ID = "flockenv/Circulate-easy-v0"
 OPTIONS = gymnasium.spec(ENV_ID).kwargs
 EPISODES = 64
-RESULTS = Path(__file__).parents[1] / "docs" / "easy"
 COLUMNS = ("policy", "seed", "samples", "cpu_s", "reward", "reward_low", "reward_high")
 
 
@@ -146,7 +146,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--seeds", nargs="+", type=run_number, default=[0, 1, 2])
     parser.add_argument("--samples", type=int, default=200_000)
     parser.add_argument("--processes", type=int, default=2, help="curves at once")
-    parser.add_argument("--out", type=Path, default=RESULTS)
+    parser.add_argument("--out", type=Path, default=Path("results/easy"))
     options = parser.parse_args(arguments)
     rows = references()
     try:
@@ -163,6 +163,7 @@ def main(arguments: list[str] | None = None) -> None:
             shown = {n: round(v, 4) if isinstance(v, float) else v for n, v in row.items()}
             table.writerow(shown)
     draw(rows, options.out / "curve.png")
+    print(f"written to {options.out}")
 
 
 if __name__ == "__main__":

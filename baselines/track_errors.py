@@ -1,12 +1,12 @@
 """How well a camera's tracks give back the order parameters of a flock whose truth is known.
 
-    python baselines/track_errors.py
+    python baselines/track_errors.py    # into results/track_errors.csv
+    python baselines/track_errors.py --out docs/results/track_errors.csv    # for docs/tracks.md
 
 Runs of the simulator are seen by a camera: positions in whole pixels, headings with an error,
 detections that fail, and names that are exchanged between boats that are close to each other. The
 tracks are read as anybody's would be (`flockenv.tracks`), and the quantities of the normal boats
-are compared with those of the run. Writes docs/results/track_errors.csv, which `make tables` shows
-in docs/tracks.md.
+are compared with those of the run. `make tables` shows the errors in docs/tracks.md.
 """
 
 import argparse
@@ -20,7 +20,6 @@ import flockenv
 from flockenv.statistics.structure import largest_cluster
 from flockenv.tracks import TrackLayout, from_table
 
-OUT = Path(__file__).parents[1] / "docs/results/track_errors.csv"
 QUANTITIES = ("psi_o", "nematic", "milling", "psi_v", "largest_cluster")
 LAYOUT = TrackLayout(pool="500-boats", leaders=("0", "1", "2"), fps=25.0, wrapped=False)
 
@@ -85,7 +84,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--runs", type=int, default=8)
     parser.add_argument("--minutes", type=float, default=8.0)
-    parser.add_argument("--out", type=Path, default=OUT)
+    parser.add_argument("--out", type=Path, default=Path("results/track_errors.csv"))
     options = parser.parse_args()
     bw_s = flockenv.FlockParameters.critical_bw_s("simulation", "500-boats")
     parameters = flockenv.FlockParameters(n_boats=27, n_leaders=3, pool="500-boats", bw_s=bw_s)
@@ -102,6 +101,7 @@ def main() -> None:
             left_out = {"jumps": tracks.report.jumps, "broken": tracks.report.broken}
             rows.append({"camera": name, "seed": seed, **errors, **left_out})
     table = pd.DataFrame(rows)
+    options.out.parent.mkdir(parents=True, exist_ok=True)
     table.to_csv(options.out, index=False, float_format="%.6g", lineterminator="\n")
     print(table.groupby("camera", sort=False)[[*QUANTITIES]].mean().to_string())
     print(f"written to {options.out}")
