@@ -24,6 +24,7 @@ from flockenv.cli.presets import presets
 from flockenv.cli.replay import replay
 from flockenv.cli.reproduce import reproduce
 from flockenv.cli.run import run
+from flockenv.cli.signal import signal
 from flockenv.cli.sweep import sweep
 from flockenv.cli.train import train
 from flockenv.errors import FlockError
@@ -62,6 +63,7 @@ COMMANDS = (
     reproduce,
     sweep,
     train,
+    signal,
 )
 
 for command in COMMANDS:

@@ -11,6 +11,7 @@ require("stable_baselines3", "train")
 from flockenv.sb3.evaluation import FlockEvalCallback, PerFlock, evaluate_flocks
 from flockenv.sb3.leader_vec_env import LeaderSlot, LeaderVecEnv
 from flockenv.sb3.monitor import FlockMonitor
+from flockenv.sb3.shared_noise import SharedNoisePolicy, shared_noise
 
 __all__ = [
     "FlockEvalCallback",
@@ -18,5 +19,7 @@ __all__ = [
     "LeaderSlot",
     "LeaderVecEnv",
     "PerFlock",
+    "SharedNoisePolicy",
     "evaluate_flocks",
+    "shared_noise",
 ]
