@@ -13,7 +13,7 @@ import typer
 from rich.table import Table
 
 from flockenv._io.atomic_write import write_text
-from flockenv._io.provenance import made_by
+from flockenv._io.provenance import provenance_of
 from flockenv.cli.console import console, finished_in, print_json, progress_bar, say
 from flockenv.cli.output import check_folder, keep, printable, refuse_overwriting
 from flockenv.cli.parameters import ChangesOption, FileOption, PresetOption, TrustOption
@@ -141,9 +141,10 @@ def signal(
     if out is not None:
         command = printable(shlex.join(["flockenv", *sys.argv[1:]]))
         samples = sum({(each.pool, each.samples): each.samples for each in signals}.values())
-        made = made_by(command, seed=seed, samples=samples, wall_s=time.perf_counter() - started)
+        wall_s = time.perf_counter() - started
+        provenance = provenance_of(command, seed=seed, samples=samples, wall_s=wall_s)
         keep(out / "signals.csv", lambda path: write_text(path, _as_csv(rows)))
-        keep(out / "run.toml", lambda path: write_text(path, tomli_w.dumps(made)))
+        keep(out / "run.toml", lambda path: write_text(path, tomli_w.dumps(provenance)))
     if as_json:
         print_json(rows)
         return

@@ -305,10 +305,10 @@ class _Round:
         self.decisions_hz = batch.decisions_hz
         rows = settings.flocks * self.leaders
         batch.reset(list(seeds), None, lambda: 0)
-        seen = batch.core.observe()
+        seen = batch.observe()
         inputs: list[NDArray[np.float32]] = []
         scores: list[NDArray[np.float64]] = []
-        terms: list[NDArray[np.float64]] = []
+        terms: list[dict[str, NDArray[np.float64]]] = []
         noise = np.zeros(rows)
         over = False
         while not over:
@@ -320,18 +320,17 @@ class _Round:
                 np.asarray(policy.predict(seen)[0], np.float64).reshape(rows)
                 for policy in (start, towards)
             )
-            features = np.repeat(batch.core.flock_features(), self.leaders, axis=0)
+            features = np.repeat(batch.flock_features(), self.leaders, axis=0)
             inputs.append(np.concatenate([seen, features], axis=1))
             scores.append(noise * (other - mean) / settings.deviation)
             actions = np.clip(mean + settings.deviation * noise, -1.0, 1.0)
-            seen, _, truncated = batch.core.step(actions)
-            terms.append(batch.core.reward_terms())
+            seen, _, truncated = batch.step(actions)
+            terms.append(batch.reward_terms())
             over = bool(truncated.all())
             progress(settings.flocks / self.decisions_hz)
         self.scores = np.array(scores)
         self.inputs = np.array(inputs, np.float32)
-        every = np.array(terms)
-        self.terms = {name: every[:, place] for place, name in enumerate(TERMS)}
+        self.terms = {name: np.array([each[name] for each in terms]) for name in TERMS}
 
     def estimates(
         self, weights: Mapping[str, float], horizon_s: float
