@@ -129,11 +129,13 @@ def signal(
         work = len(found) * rounds * flocks * settings.duration_s
         task = bar.add_task("simulating", total=work)
         for parameters in found:
-            begin, end = (_policy(name, action_mode, parameters.pool, trust) for name in names)
+            start_policy, end_policy = (
+                _policy(name, action_mode, parameters.pool, trust) for name in names
+            )
             signals += measured_signals(
                 parameters.replace(n_leaders=leaders),
-                begin,
-                end,
+                start_policy,
+                end_policy,
                 settings,
                 lambda seconds: bar.advance(task, seconds),
             )

@@ -26,7 +26,7 @@ from flockenv.runs.seeds import POLICY_SEEDS
 
 __all__ = ["ConstantAction", "Signal", "SignalSettings", "measured_signals"]
 
-_RIDGE = 1e-3
+_REGULARIZATION = 1e-3
 #: Rows that a baseline is fitted to, about.
 _ROWS = 20_000
 
@@ -74,7 +74,7 @@ class SignalSettings:
     shared
         Whether all leaders of a flock explore with the same noise.
     flocks, rounds
-        Flocks at a time, an even number, and how often as many start anew.
+        Flocks at a time, an even number, and how often that many start.
     duration_s
         Length of an episode in s.
     options
@@ -383,6 +383,8 @@ def _fit(
         row = np.concatenate([rows, np.ones((len(rows), 1))], axis=1) * part
         squares += row.T @ row
         products += row.T @ wanted
-    ridge = _RIDGE * np.trace(squares) / size
-    solution: NDArray[np.float64] = np.linalg.solve(squares + ridge * np.eye(size), products)
+    regularization = _REGULARIZATION * np.trace(squares) / size
+    solution: NDArray[np.float64] = np.linalg.solve(
+        squares + regularization * np.eye(size), products
+    )
     return solution

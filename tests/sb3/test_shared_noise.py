@@ -1,5 +1,5 @@
 """Law: the noise of a flock's leaders is one number, other flocks' are independent of it, and it is
-held for exactly the time that was asked for."""
+held for exactly the time that was given."""
 
 import numpy as np
 import pytest
@@ -10,8 +10,15 @@ import flockenv
 from flockenv.comparison import run_episodes
 from flockenv.errors import ParameterError
 from flockenv.sb3 import LeaderVecEnv, SharedNoisePolicy, evaluate_flocks, shared_noise
+from flockenv.training.actor import one_thread
 
 OPTIONS = {"n_boats": 6, "pool": "table-1", "action_mode": "lean", "decision_period_s": 0.5}
+
+
+@pytest.fixture(autouse=True)
+def alone():
+    with one_thread():
+        yield
 
 
 def model_of(venv, hold_s=2.0, **options):
@@ -40,7 +47,7 @@ def test_noise_is_shared_by_a_flock_and_held():
     venv = LeaderVecEnv(40, n_leaders=[1, 2, 3], **OPTIONS)
     venv.seed(0)
     rows = venv.reset()
-    policy = model_of(venv).policy
+    policy = model_of(venv, net_arch=[2]).policy
     noises = np.array([noise_of(policy, rows) for _ in range(400)])
     flock = venv.flock_of_slot
     first = np.searchsorted(flock, np.arange(40))
