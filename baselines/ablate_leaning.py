@@ -9,13 +9,13 @@ each feature in those states and its contribution to the lean (rad) are written 
 """
 
 import argparse
-import sys
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 from rich.progress import Progress
 from run_number import run_number
+from script_end import one_line_end
 
 import flockenv
 from flockenv._io.atomic_write import atomic_write
@@ -123,7 +123,7 @@ def main(arguments: list[str] | None = None) -> None:
     )
     if options.episodes < 2:
         parser.error("--episodes is at least 2")
-    try:
+    with one_line_end(lambda: "nothing was written"):
         law = load(options.law)
         if not isinstance(law, LeaningLaw):
             raise flockenv.ParameterError(f"{options.law} is a {law!r}, not a leaning law")
@@ -139,10 +139,6 @@ def main(arguments: list[str] | None = None) -> None:
         for path, each in tables.items():
             with atomic_write(path) as file:
                 file.write(each.to_csv(lineterminator="\n").encode())
-    except KeyboardInterrupt:
-        sys.exit("Interrupted: nothing was written")
-    except (flockenv.FlockError, OSError) as error:
-        sys.exit(f"Error: {error}")
     print(f"written to {options.out}")
 
 

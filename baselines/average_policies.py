@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from script_end import one_line_end
 
 import flockenv
 from flockenv._io.provenance import provenance_of
@@ -87,7 +88,7 @@ def main(arguments: list[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     given = sys.argv[1:] if arguments is None else arguments
     command = shlex.join(["python", "baselines/average_policies.py", *given])
-    try:
+    with one_line_end(lambda: "nothing was written"):
         laws = []
         for path in options.policies:
             law = load(path)
@@ -101,10 +102,6 @@ def main(arguments: list[str] | None = None) -> None:
             named = {str(path): law for path, law in zip(options.policies, laws, strict=True)}
             tuned = tuned_law("damped law", options.pool)
             validate({**named, "their mean": mean, "tuned damped law": tuned}, options)
-    except KeyboardInterrupt:
-        sys.exit("Interrupted")
-    except (flockenv.FlockError, OSError) as error:
-        sys.exit(f"Error: {error}")
     print(f"{mean!r}\nwritten to {options.out}")
 
 

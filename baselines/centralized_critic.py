@@ -8,7 +8,6 @@ critic's network gets both. Only the actor is needed afterwards: `predict` never
 """
 
 import argparse
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -16,11 +15,11 @@ import numpy as np
 import torch
 from gymnasium.spaces import Box
 from run_number import run_number
+from script_end import one_line_end
 from stable_baselines3 import PPO
 from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.vec_env import VecEnvWrapper
 
-import flockenv
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import LeaderVecEnv
 
@@ -115,14 +114,10 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--out", type=Path, default=Path("results/centralized_critic"))
     options = parser.parse_args(arguments)
     episode = {"target": "random", "episode_s": 120.0}
-    try:
+    with one_line_end(lambda: "nothing was saved"):
         model = train(options.samples, options.flocks, options.seed, **episode)
         options.out.parent.mkdir(parents=True, exist_ok=True)
         model.save(options.out)
-    except KeyboardInterrupt:
-        sys.exit("Interrupted: nothing was saved")
-    except (flockenv.FlockError, OSError) as error:
-        sys.exit(f"Error: {error}")
     print(f"saved {options.out}.zip")
 
 

@@ -29,6 +29,7 @@ import numpy as np
 from policy_forms import NAMES, LeaningShape, Shape
 from rich.progress import Progress
 from run_number import run_number
+from script_end import one_line_end
 
 import flockenv
 from flockenv._io.array_file import read_arrays, write_arrays
@@ -354,18 +355,15 @@ def main(arguments: list[str] | None = None) -> None:
         parser.error("--tuned is for --form leaning")
     given = sys.argv[1:] if arguments is None else arguments
     command = shlex.join(["python", "baselines/evolution_strategy.py", *given])
-    try:
+    path = options.out / "state.npz"
+    with one_line_end(
+        lambda: (
+            f"the same command resumes from {path}" if path.exists() else "nothing is stored yet"
+        )
+    ):
         policy = search(options, command)
         ahead = flockenv.policies.StraightAhead(mirror_to_target=True)
         print_held_out(options, {"evolved": policy, "straight ahead": ahead})
-    except KeyboardInterrupt:
-        path = options.out / "state.npz"
-        stored = (
-            f"the same command resumes from {path}" if path.exists() else "nothing is stored yet"
-        )
-        sys.exit(f"Interrupted: {stored}")
-    except (flockenv.FlockError, OSError) as error:
-        sys.exit(f"Error: {error}")
     print(f"written to {options.out / 'policy.npz'}")
 
 

@@ -12,11 +12,9 @@ docs/easy.md.
 
 import argparse
 import csv
-import sys
+import itertools
 import time
-from concurrent.futures import ProcessPoolExecutor
-from itertools import repeat
-from multiprocessing import get_context
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -25,11 +23,13 @@ import numpy as np
 import torch
 from matplotlib.figure import Figure
 from run_number import run_number
+from script_end import one_line_end
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 
 import flockenv  # noqa: F401 - registers the environment
 from flockenv.policies import DampedLaw, RandomRudders, SteeringLaw
+from flockenv.runs.executors import joblib
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import LeaderVecEnv, evaluate_flocks
 
@@ -149,12 +149,10 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--out", type=Path, default=Path("results/easy"))
     options = parser.parse_args(arguments)
     rows = references()
-    try:
-        with ProcessPoolExecutor(options.processes, mp_context=get_context("spawn")) as pool:
-            for found in pool.map(learn, options.seeds, repeat(options.samples)):
-                rows += found
-    except KeyboardInterrupt:
-        sys.exit("Interrupted: nothing was written")
+    with one_line_end(lambda: "nothing was written"):
+        task = partial(learn, samples=options.samples)
+        found = dict(joblib(task, options.seeds, options.processes))
+        rows += itertools.chain.from_iterable(found[place] for place in range(len(found)))
     options.out.mkdir(parents=True, exist_ok=True)
     with (options.out / "curve.csv").open("w", encoding="utf-8", newline="") as file:
         table = csv.DictWriter(file, COLUMNS, lineterminator="\n")

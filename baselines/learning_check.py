@@ -22,6 +22,7 @@ import numpy as np
 import torch
 from gymnasium.vector import AutoresetMode
 from run_number import run_number
+from script_end import one_line_end
 from stable_baselines3 import PPO
 from stable_baselines3.common.vec_env import DummyVecEnv, VecEnv
 
@@ -228,12 +229,10 @@ def main(arguments: list[str] | None = None) -> int:
     # Small networks: more threads only wait for each other.
     torch.set_num_threads(1)
     results = []
-    try:
+    with one_line_end(lambda: "no page was written"):
         for interface in options.interfaces:
             results.append(check(interface, options.samples, options.seed, options.episodes))
             print(results[-1], flush=True)
-    except KeyboardInterrupt:
-        sys.exit("Interrupted: no page was written")
     given = sys.argv[1:] if arguments is None else arguments
     command = shlex.join(["python", "baselines/learning_check.py", *given])
     options.out.parent.mkdir(parents=True, exist_ok=True)

@@ -14,7 +14,8 @@ import shlex
 import sys
 from pathlib import Path
 
-import flockenv
+from script_end import one_line_end
+
 from flockenv import training
 from flockenv.training import TrainingSettings
 
@@ -68,7 +69,10 @@ def main(arguments: list[str] | None = None) -> None:
             flush=True,
         )
 
-    try:
+    path = options.out / "checkpoint.npz"
+    with one_line_end(
+        lambda: f"--resume continues from {path}" if path.exists() else "there is no checkpoint yet"
+    ):
         if options.resume:
             result = training.resume(options.out, samples=options.samples, report=report)
         else:
@@ -76,14 +80,6 @@ def main(arguments: list[str] | None = None) -> None:
             given = sys.argv[1:] if arguments is None else arguments
             command = shlex.join(["python", "baselines/ppo_shared_policy.py", *given])
             result = training.train(settings, options.out, command=command, report=report)
-    except KeyboardInterrupt:
-        path = options.out / "checkpoint.npz"
-        stored = (
-            f"--resume continues from {path}" if path.exists() else "there is no checkpoint yet"
-        )
-        sys.exit(f"\nInterrupted: {stored}")
-    except flockenv.FlockError as error:
-        sys.exit(f"\nError: {error}")
     for name, value in result.progress.validations[-1].items():
         print(f"\n{name}: {value:g}", end="")
     print(f"\nwritten to {options.out / 'best.npz'}")

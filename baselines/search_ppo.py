@@ -21,6 +21,7 @@ from ppo_shared_policy import SETTINGS
 from rich.progress import Progress
 from run_number import run_number
 from scipy.stats import qmc
+from script_end import one_line_end
 
 import flockenv
 from flockenv import training
@@ -123,13 +124,9 @@ def main(arguments: list[str] | None = None) -> None:
         parser.error("there is at least one run")
     given = sys.argv[1:] if arguments is None else arguments
     command = shlex.join(["python", "baselines/search_ppo.py", *given])
-    try:
+    with one_line_end(lambda: f"the same command resumes from {options.out}"):
         options.out.mkdir(parents=True, exist_ok=True)
         table = search(options, command)
-    except KeyboardInterrupt:
-        sys.exit(f"Interrupted: the same command resumes from {options.out}")
-    except (flockenv.FlockError, OSError) as error:
-        sys.exit(f"Error: {error}")
     print(table.sort_values("mean", ascending=False).to_string(index=False))
     print(f"written to {options.out}")
 

@@ -23,6 +23,7 @@ import pandas as pd
 import tomli_w
 from rich.progress import Progress
 from run_number import run_number
+from script_end import one_line_end
 
 import flockenv
 from flockenv._io.atomic_write import atomic_write
@@ -107,7 +108,7 @@ def main(arguments: list[str] | None = None) -> None:
     given = sys.argv[1:] if arguments is None else arguments
     command = shlex.join(["python", "baselines/tune_laws.py", *given])
     start, tuned = time.perf_counter(), {}
-    try:
+    with one_line_end(lambda: f"candidates so far are in {options.out}, but no gains"):
         options.out.mkdir(parents=True, exist_ok=True)
         with Progress(disable=options.quiet) as progress:
             for law in options.law or LAWS:
@@ -117,10 +118,6 @@ def main(arguments: list[str] | None = None) -> None:
         provenance = provenance_of(command, seed=options.seed, samples=0, wall_s=wall_s)
         with atomic_write(options.out / "gains.toml") as file:
             file.write(tomli_w.dumps({**tuned, "made": provenance}).encode())
-    except KeyboardInterrupt:
-        sys.exit(f"Interrupted: candidates so far are in {options.out}, but no gains")
-    except (flockenv.FlockError, OSError) as error:
-        sys.exit(f"Error: {error}")
     print(tomli_w.dumps(tuned))
     print(f"written to {options.out}")
 

@@ -11,7 +11,6 @@ critical noise, clockwise targets and paired seeds, and the first tenth of each 
 """
 
 import argparse
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +19,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from rich.progress import Progress
+from script_end import one_line_end
 
 import flockenv
 from flockenv._core import pool_radii_cm
@@ -244,7 +244,7 @@ def main(arguments: list[str] | None = None) -> None:
         bw_s=flockenv.FlockParameters.critical_bw_s("simulation", options.pool),
     )
     found, means = {}, []
-    try:
+    with one_line_end(lambda: "means.csv was not written"):
         check_evaluation_seeds(range(options.seed, options.seed + options.episodes))
         options.out.mkdir(parents=True, exist_ok=True)
         with Progress(disable=options.quiet) as progress:
@@ -263,10 +263,6 @@ def main(arguments: list[str] | None = None) -> None:
             for name, figure in figures.items():
                 with atomic_write(options.out / f"{name}.png") as file:
                     figure.savefig(file, dpi=200, format="png")
-    except KeyboardInterrupt:
-        sys.exit("Interrupted: means.csv was not written")
-    except (flockenv.FlockError, OSError) as error:
-        sys.exit(f"Error: {error}")
     table = pd.DataFrame(means).drop(columns=["cycle_s", "misalignment_rad", "spin_rad_s"])
     with atomic_write(options.out / "means.csv") as file:
         file.write(table.to_csv(index=False, lineterminator="\n").encode())

@@ -1,7 +1,9 @@
 import io
 import itertools
+import json
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -48,6 +50,18 @@ def _no_chance(monkeypatch: pytest.MonkeyPatch) -> None:
         "np_random",
         lambda seed=None: seeded(next(numbers) if seed is None else seed),
     )
+
+
+@pytest.fixture(scope="session")
+def page_runs():
+    """Read a replay page: name, seed, samples and number of boats of each run that it holds."""
+
+    def read(path):
+        data = re.search(r'id="data">(.*?)</script>', path.read_text("utf-8"))
+        runs = json.loads(data[1])["runs"]
+        return [(run["name"], run["seed"], run["samples"], run["boats"]) for run in runs]
+
+    return read
 
 
 @pytest.fixture

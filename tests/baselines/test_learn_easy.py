@@ -2,11 +2,12 @@
 
 import csv
 import pickle
-from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.image import imread
+
+from flockenv.runs.executors import local
 
 pytest.importorskip("stable_baselines3")
 
@@ -14,9 +15,7 @@ pytest.importorskip("stable_baselines3")
 def test_a_short_run(script, tmp_path, monkeypatch):
     # A thread needs no PyTorch of its own; a process could be given the same task.
     assert pickle.loads(pickle.dumps(script.learn)) is script.learn
-    monkeypatch.setattr(
-        script, "ProcessPoolExecutor", lambda workers, mp_context: ThreadPoolExecutor(workers)
-    )
+    monkeypatch.setattr(script, "joblib", local)
     monkeypatch.setattr(script, "EPISODES", 8)
     script.main(["--seeds", "3", "--samples", "4096", "--out", str(tmp_path)])
     with (tmp_path / "curve.csv").open(encoding="utf-8") as file:

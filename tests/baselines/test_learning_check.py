@@ -1,5 +1,7 @@
 """Law: the learning check runs through every interface, and says so when nothing was learned."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -9,13 +11,40 @@ pytest.importorskip("stable_baselines3")
 def test_a_short_run_of_each_interface(script, tmp_path):
     out = tmp_path / "docs" / "check.md"
     arguments = ["--samples", "500", "--episodes", "4", "--out", str(out)]
-    failed = script.main(arguments)
+    script.main(arguments)
     page = out.read_text()
-    count = len(script.INTERFACES)
-    assert failed == (f"learns through {count} of the {count} interfaces" not in page)
-    for interface in script.INTERFACES:
-        assert f"| {interface} |" in page
+    # 500 samples take one rollout of 128 steps: of 16 flocks, or of their 32 leaders.
+    for interface, samples in (("parallel", 4096), ("single", 2048), ("vector", 2048)):
+        assert f"| {interface} | {samples} |" in page
+    rows = (re.search(rf"\| {each} .* s \| (.*)", page)[1] for each in ("single", "vector"))
+    assert len({*rows}) == 1, "the same samples teach the same policy"
     assert "baselines/learning_check.py --samples 500" in page
+
+
+@pytest.mark.parametrize("learned", [(), ("vector",), ("parallel", "single", "vector")])
+def test_the_verdict_counts_the_interfaces_that_learned(script, tmp_path, monkeypatch, learned):
+    values = np.random.default_rng(0).uniform(0.0, 0.1, 8)
+
+    def known(interface, episodes, act):
+        zeros = np.zeros((episodes, 4), np.float32)
+        is_random = act(zeros, np.random.default_rng(0)).std() > 0
+        return values + (interface in learned and not is_random)
+
+    class Model:
+        num_timesteps = 500
+
+        def predict(self, rows, deterministic):
+            return np.zeros((len(rows), 1), np.float32), None
+
+    monkeypatch.setattr(script, "train", lambda *_: (Model(), 1.0))
+    monkeypatch.setattr(script, "mean_rewards", known)
+    out = tmp_path / "check.md"
+    assert script.main(["--out", str(out)]) == (len(learned) < 3)
+    page = out.read_text()
+    assert f"learns through {len(learned)} of the 3 interfaces" in page
+    for interface in script.INTERFACES:
+        row = next(line for line in page.splitlines() if line.startswith(f"| {interface} "))
+        assert row.endswith("| yes |" if interface in learned else "| no |")
 
 
 def test_interfaces_start_the_same_from_the_same_training_seed(script):

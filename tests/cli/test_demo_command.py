@@ -16,11 +16,12 @@ def _in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.chdir(tmp_path)
 
 
-def test_both_runs_are_those_of_simulate(cli, tmp_path: Path) -> None:
+def test_both_runs_are_those_of_simulate(cli, page_runs, tmp_path: Path) -> None:
     done = cli("demo", "--minutes", "1", "--no-open", "--json")
     assert done.stderr == ""
     reported = json.loads(done.stdout)
-    assert (tmp_path / reported["html"]).stat().st_size > 100_000
+    names = ("paper's law", "learned")
+    assert page_runs(tmp_path / reported["html"]) == [(name, "7", 601, 27) for name in names]
     assert list(reported["runs"]) == ["paper's law", "learned"]
     for name, policy in (("paper's law", "law"), ("learned", "learned")):
         run = flockenv.simulate(DEMO_PARAMETERS, 7, 60.0, policy=policy)

@@ -52,13 +52,13 @@ def folder(tmp_path_factory):
 @pytest.mark.parametrize(
     "name", ["fig4", "fig6", "fig7", "fig9", "fig10", "fig12", "table2", "fig14"]
 )
-def test_a_figure_of_short_runs_is_written(name, folder):
+def test_a_figure_of_short_runs_is_written(name, folder, follows):
     claims = reproduce(plan([name], SHORT), folder)
     for ending in ("csv", "parquet", "png", "svg"):
         assert list((folder / name).glob(f"{name}*.{ending}"))
     reported = pd.read_csv(folder / name / "claims.csv")
     assert len(reported) == len(claims[name]) > 0
-    assert set(reported["verdict"]) <= {"holds", "does not hold", "inconclusive"}
+    assert all(follows(row) for _, row in reported.iterrows())
     assert "short runs: 0.333 min" in next((folder / name).glob("*.svg")).read_text()
 
 

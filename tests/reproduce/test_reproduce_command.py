@@ -22,13 +22,14 @@ def written(folder: Path) -> dict[str, bytes]:
 
 
 @pytest.fixture(scope="module")
-def uninterrupted(cli, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def uninterrupted(cli, follows, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("uninterrupted")
     done = cli("reproduce", *SHORT, "--out", str(folder), "--json")
     assert done.returncode == 0, done.stderr
     claims = json.loads(done.stdout)
     assert {row["figure"] for row in claims} == {"fig17"}
-    assert {row["verdict"] for row in claims} <= {"holds", "does not hold", "inconclusive"}
+    assert claims
+    assert all(follows(row) for row in claims)
     assert done.stderr == ""
     return folder
 
