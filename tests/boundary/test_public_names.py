@@ -1,6 +1,7 @@
 """Law: the names that a user's notebook relies on keep their import paths and their meaning."""
 
 import inspect
+from operator import attrgetter
 from pathlib import Path
 
 import gymnasium
@@ -14,13 +15,14 @@ PARAMETERS = flockenv.FlockParameters(n_boats=4, n_leaders=1, pool="table-1")
 #: Names by the object that has them.
 NAMES = {
     "": "Flock FlockError FlockParameters LeadersEnv LeadersParallelEnv LeadersVectorEnv "
-    "ParameterError Recording SolverError parallel_env policies simulate",
+    "ParameterError Recording SolverError order_series parallel_env policies simulate",
     "FlockParameters": "preset presets replace to_dict from_dict to_toml from_toml",
     "Flock": "set_state pose velocity time_s phase advance order_parameters contacts statistics "
     "snapshot restore",
-    "Recording": "time_s phase pose velocity order save load",
+    "Recording": "time_s phase pose velocity order save load from_tracks to_dataframe to_xarray "
+    "analyzed",
     "OrderParameters": "psi_o phi_o c_o psi_v phi_v c_v",
-    "OrderSeries": "psi_o phi_o c_o psi_v phi_v c_v",
+    "OrderSeries": "psi_o phi_o c_o psi_v phi_v c_v plot",
     "Contacts": "gap_cm normal force",
     "policies": "SteeringLaw load",
 }
@@ -32,6 +34,14 @@ FIELDS = (
 SIGNATURES = {
     "Flock": ["parameters", "seed"],
     "simulate": ["parameters", "seed", "duration_s", "sample_hz", "policy"],
+    "order_series": ["pose", "velocity"],
+}
+#: Arguments that are given by name, in any place.
+NAMED = {
+    "simulate": "start",
+    "Recording.from_tracks": "time_s pose pool hull velocity phase ids",
+    "Recording.analyzed": "after",
+    "policies.load": "pool",
 }
 
 
@@ -68,6 +78,18 @@ def test_arguments_keep_their_names_and_order(name):
     assert arguments[: len(SIGNATURES[name])] == SIGNATURES[name]
 
 
+@pytest.mark.parametrize("name", NAMED)
+def test_named_arguments_are_known(name):
+    arguments = inspect.signature(attrgetter(name)(flockenv)).parameters
+    assert set(NAMED[name].split()) <= {*arguments}
+
+
+def test_pretrained_leaders_have_a_name():
+    law = flockenv.policies.load("learned", pool="500-boats")
+    run = flockenv.simulate(PARAMETERS.replace(pool="500-boats"), 1, 0.3, policy="learned")
+    assert run == flockenv.simulate(PARAMETERS.replace(pool="500-boats"), 1, 0.3, policy=law)
+
+
 def test_environments_are_made_as_they_were():
     options = {"n_boats": 4, "n_leaders": 2, "target": "random", "episode_s": 1.0, "control_hz": 2}
     agents = flockenv.parallel_env(**options)
@@ -88,7 +110,7 @@ def test_leaders_are_slots_of_stable_baselines3():
 
 def test_commands_keep_their_names():
     names = {command.__name__ for command in COMMANDS}
-    wanted = "run compare reproduce sweep train evaluate replay presets demo fit play"
+    wanted = "run compare reproduce sweep train evaluate replay presets demo analyze signal"
     assert set(wanted.split()) <= names
 
 
