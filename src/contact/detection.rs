@@ -5,8 +5,9 @@ use crate::geometry::{
     Gap, Hull, HullPose, NeighborList, PairFeature, Velocity, inner_wall_gap, outer_wall_gap,
     pair_gap, pair_gaps,
 };
+use crate::parallel;
 use crate::parameters::{FlockParameters, Pool};
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
 
 /// Geometry of a flock: hulls, walls and the neighbor list.
 #[derive(Debug, Clone)]
@@ -16,7 +17,13 @@ pub struct ContactDetector {
     /// Candidate pairs.
     pub(crate) neighbors: NeighborList,
     skin: f64,
+    threads: usize,
+    /// Contacts found by other threads, part after part of the flock.
+    parts: Vec<Vec<Contact>>,
 }
+
+/// Parts of a flock for each thread: one that is done early takes another.
+const PARTS_A_THREAD: usize = 2;
 
 impl ContactDetector {
     /// For checked parameters.
@@ -29,7 +36,20 @@ impl ContactDetector {
             pool: parameters.pool,
             neighbors: NeighborList::default(),
             skin,
+            threads: 1,
+            parts: Vec::new(),
         }
+    }
+
+    /// Has contacts sought by so many threads; which are found does not depend on how many.
+    pub(crate) fn set_threads(&mut self, threads: usize) {
+        self.threads = threads;
+        let others = if threads > 1 {
+            PARTS_A_THREAD * threads - 1
+        } else {
+            0
+        };
+        self.parts.resize_with(others, Vec::new);
     }
 
     /// The hull that all boats share.
@@ -56,10 +76,38 @@ impl ContactDetector {
         let distance = 2.0 * self.hull.reach() + margin;
         self.neighbors
             .update(boats.iter().map(|boat| boat.center), distance, self.skin);
+        if self.threads == 1 {
+            self.detect_among(0..boats.len(), boats, margin, contacts);
+            return;
+        }
+        let mut parts = std::mem::take(&mut self.parts);
+        let size = boats.len().div_ceil(parts.len() + 1);
+        let outputs = std::iter::once(&mut *contacts).chain(&mut parts);
+        let tasks = outputs.enumerate();
+        parallel::hand_out(&mut vec![(); self.threads], tasks, |(), (number, found)| {
+            let begin = (number * size).min(boats.len());
+            let end = (begin + size).min(boats.len());
+            found.clear();
+            self.detect_among(begin..end, boats, margin, found);
+        });
+        for part in &parts {
+            contacts.extend_from_slice(part);
+        }
+        self.parts = parts;
+    }
+
+    /// Adds the contacts of the boats at some places of the neighbor list.
+    fn detect_among(
+        &self,
+        places: Range<usize>,
+        boats: &[HullPose],
+        margin: f64,
+        contacts: &mut Vec<Contact>,
+    ) {
         // Of a boat and a wall only one moves.
         let wall_margin = 0.5 * margin;
         let open = self.open_water(wall_margin);
-        for (boat, partners) in self.neighbors.groups() {
+        for (boat, partners) in self.neighbors.groups(places) {
             let pose = &boats[boat as usize];
             if !open.contains(&pose.center.norm_squared()) {
                 self.detect_walls(boat, pose, wall_margin, contacts);

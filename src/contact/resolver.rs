@@ -80,6 +80,12 @@ impl ContactResolver {
         }
     }
 
+    /// Has contacts found and solved by so many threads.
+    pub(crate) fn set_threads(&mut self, threads: usize) {
+        self.detector.set_threads(threads);
+        self.solver.set_threads(threads);
+    }
+
     /// The contacts found last.
     pub fn contacts(&self) -> &[Contact] {
         &self.contacts

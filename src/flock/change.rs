@@ -28,7 +28,7 @@ impl Flock {
                 let mut next = Self::new(FlockParameters::clone(parameters), self.seed())?;
                 // A smaller pool may let hulls overlap a little; the contact solver parts them.
                 next.set_state(&poses, self.velocities(), self.time_s(), true)?;
-                *self = next;
+                self.replace(next);
             }
         }
         Ok(())

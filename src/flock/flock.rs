@@ -10,6 +10,7 @@ use crate::geometry::{HullPose, Pose, Vec2, Velocity};
 use crate::integrator::{
     Checkpoint, Integrator, PhaseMoment, PhaseSchedule, Steering, StepOutcome, Substep,
 };
+use crate::parallel;
 use crate::parameters::{FlockParameters, Target};
 
 /// The latest time a flock may reach: 10⁹ s.
@@ -36,7 +37,11 @@ pub struct Flock {
     pub(crate) integrator: Integrator,
     /// The motion before the last advance, to return to if it fails.
     before: Box<Checkpoint>,
+    threads: usize,
 }
+
+/// Flocks of fewer boats are moved by one thread: the others would wake up too late.
+const SHARED_BOATS: usize = 200;
 
 impl Flock {
     /// A flock placed at random without overlap, at rest.
@@ -71,6 +76,7 @@ impl Flock {
             schedule: PhaseSchedule::new(&parameters),
             integrator: Integrator::new(&parameters, seed),
             before: Box::default(),
+            threads: 1,
             seed,
             time: 0,
             parameters,
@@ -90,8 +96,30 @@ impl Flock {
     /// # Errors
     /// As for [`Self::new_while`]; the flock is unchanged then.
     pub fn reset_while(&mut self, keep_going: KeepGoing, seed: u64) -> Result<()> {
-        *self = Self::new_while(keep_going, self.parameters.clone(), seed)?;
+        let next = Self::new_while(keep_going, self.parameters.clone(), seed)?;
+        self.replace(next);
         Ok(())
+    }
+
+    /// Takes on the state of another flock, but not its threads.
+    pub(super) fn replace(&mut self, next: Self) {
+        let threads = self.threads;
+        *self = next;
+        self.set_threads(threads);
+    }
+
+    /// How many threads a substep is shared out to.
+    pub fn threads(&self) -> usize {
+        self.threads
+    }
+
+    /// Has the substeps of a flock of 200 boats or more shared out to so many threads, 1 to begin with; 0 counts as 1.
+    /// The motion is the same, bit for bit, and snapshots do not hold the number.
+    pub fn set_threads(&mut self, threads: usize) {
+        self.threads = threads.max(1);
+        let is_shared = self.parameters.n_boats >= SHARED_BOATS;
+        self.integrator
+            .set_threads(if is_shared { self.threads } else { 1 });
     }
 
     /// The parameters.
@@ -226,10 +254,16 @@ impl Flock {
     /// # Errors
     /// [`FlockError::Solver`] if numbers left their range; the flock is unchanged then.
     pub fn advance_to(&mut self, end: Ticks, steering: Steering) -> Result<()> {
-        self.advance_watched(end, steering, &mut |_| {})
+        let other_threads = self.shared_threads() - 1;
+        let advance = || self.advance_watched(end, steering, &mut |_| {});
+        if other_threads > 0 {
+            parallel::inside(other_threads, advance)
+        } else {
+            advance()
+        }
     }
 
-    /// As [`Self::advance_to`], showing the motion after every substep.
+    /// As [`Self::advance_to`] on one thread, showing the motion after every substep.
     pub(crate) fn advance_watched(
         &mut self,
         end: Ticks,

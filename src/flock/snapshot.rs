@@ -117,7 +117,7 @@ impl Flock {
                 "the snapshot is of a flock with other parameters".to_owned(),
             ));
         }
-        *self = restored;
+        self.replace(restored);
         Ok(())
     }
 

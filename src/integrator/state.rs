@@ -75,6 +75,11 @@ impl Integrator {
         self.update_boats();
     }
 
+    /// Has the work of a substep shared out to so many threads.
+    pub(crate) fn set_threads(&mut self, threads: usize) {
+        self.contacts.set_threads(threads);
+    }
+
     /// Changes the direction that leaders steer to.
     pub fn set_target(&mut self, target: Target) {
         self.parameters.target = target;

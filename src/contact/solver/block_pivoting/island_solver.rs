@@ -4,6 +4,7 @@ use super::factor::Factor;
 use super::rows::{Rows, TOLERANCE};
 use crate::contact::ContactProblem;
 use crate::contact::solver::{EXACT, SolveReport};
+use crate::geometry::Velocity;
 
 /// Rounds without fewer violations before the descent takes over.
 const PATIENCE: u32 = 5;
@@ -98,6 +99,21 @@ impl IslandSolver {
         report.factor_entries += self.factor.len();
         self.drop_negative();
         report.residual = self.worst_residual(regularization, report.residual);
+    }
+
+    /// The contacts, whether they are active, and their impulses.
+    pub fn solution(&self) -> impl Iterator<Item = (u32, bool, f64)> {
+        let rows = self.rows.rows.iter();
+        rows.map(|row| (row.contact, row.is_active, row.impulse))
+    }
+
+    /// The boats and their velocities.
+    pub fn velocities(&self) -> impl Iterator<Item = (u32, Velocity)> {
+        // The first body is the walls.
+        self.rows.bodies[1..].iter().map(|body| {
+            let [x, y, angular] = body.velocity;
+            (body.boat, Velocity::new(x, y, angular))
+        })
     }
 
     /// Impulses that close exactly the active gaps, and the slacks of all; returns factored rows.
