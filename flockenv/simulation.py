@@ -32,6 +32,7 @@ def simulate(
     contacts: bool = False,
     progress: Callable[[float], object] | None = None,
     start: bytes | Mapping[str, Any] | None = None,
+    threads: int = 1,
 ) -> Recording:
     """Run a flock and record it: a pure function of its arguments.
 
@@ -104,8 +105,10 @@ def simulate(
     check_action_mode(policy, "rudder", "in a simulation")
     if isinstance(policy, ModelPolicy) and parameters.n_leaders > 0:
         policy.check_leaders(parameters.n_leaders)
+    flock = _core.Flock(parameters, seed) if start is None else _started(parameters, seed, start)
+    flock.threads = threads
     return recorded(
-        _core.Flock(parameters, seed) if start is None else _started(parameters, seed, start),
+        flock,
         parameters,
         duration_s,
         sample_hz,

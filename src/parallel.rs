@@ -89,7 +89,8 @@ pub fn hand_out<W: Send, T: Send>(
             work(worker, item);
         }
     };
-    in_parallel(workers, &take_all);
+    let count = workers.len().min(rayon::current_num_threads());
+    in_parallel(&mut workers[..count], &take_all);
 }
 
 fn in_parallel<W: Send>(workers: &mut [W], work: &(impl Fn(&mut W) + Sync)) {

@@ -49,6 +49,9 @@ def run(
     seed: Annotated[int, typer.Option(min=0, help="Seed of placement and noise.")] = 0,
     minutes: Annotated[float, typer.Option(min=0.0, help="Length of the run.")] = 8.0,
     hz: Annotated[float, typer.Option(help="Samples per second.")] = 10.0,
+    threads: Annotated[
+        int, typer.Option(min=1, max=1024, help="Threads for 200 boats or more; same result.")
+    ] = 1,
     contacts: Annotated[
         bool, typer.Option("--contacts/--no-contacts", help="Record contact forces too.")
     ] = True,
@@ -93,6 +96,7 @@ def run(
             hz,
             leaders,
             contacts=contacts,
+            threads=threads,
             progress=lambda seconds: progress.advance(task, seconds),
         )
     shown = printable(policy)

@@ -42,6 +42,7 @@ pub struct Flock {
 
 /// Flocks of fewer boats are moved by one thread: the others would wake up too late.
 const SHARED_BOATS: usize = 200;
+const MOST_THREADS: usize = 1024;
 
 impl Flock {
     /// A flock placed at random without overlap, at rest.
@@ -105,7 +106,7 @@ impl Flock {
     pub(super) fn replace(&mut self, next: Self) {
         let threads = self.threads;
         *self = next;
-        self.set_threads(threads);
+        self.share_out(threads);
     }
 
     /// How many threads a substep is shared out to.
@@ -113,13 +114,25 @@ impl Flock {
         self.threads
     }
 
-    /// Has the substeps of a flock of 200 boats or more shared out to so many threads, 1 to begin with; 0 counts as 1.
-    /// The motion is the same, bit for bit, and snapshots do not hold the number.
-    pub fn set_threads(&mut self, threads: usize) {
-        self.threads = threads.max(1);
+    /// Has the substeps of a flock of 200 boats or more shared out to so many threads, 1 to begin with. The motion is
+    /// the same, bit for bit, and snapshots do not hold the number.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for no thread, and for more than 1024.
+    pub fn set_threads(&mut self, threads: usize) -> Result<()> {
+        if !(1..=MOST_THREADS).contains(&threads) {
+            let accepted = "a whole number from 1 to 1024";
+            return Err(FlockError::parameter("threads", threads, accepted));
+        }
+        self.share_out(threads);
+        Ok(())
+    }
+
+    fn share_out(&mut self, threads: usize) {
+        self.threads = threads;
         let is_shared = self.parameters.n_boats >= SHARED_BOATS;
         self.integrator
-            .set_threads(if is_shared { self.threads } else { 1 });
+            .set_threads(if is_shared { threads } else { 1 });
     }
 
     /// The parameters.

@@ -28,6 +28,8 @@ macro_rules! named_arguments {
 named_arguments! {
     /// A seed of the random streams.
     Seed(u64) = whole("seed");
+    /// Into how many threads work is shared out.
+    Threads(u64) = whole("threads");
     /// How long to advance, in s.
     Seconds(f64) = real("seconds");
     /// A point in time, in s.

@@ -1,6 +1,6 @@
 //! `flockenv.Flock`.
 
-use super::arguments::{Seconds, Seed, TimeS, floats, text};
+use super::arguments::{Seconds, Seed, Threads, TimeS, floats, text};
 use super::contacts::PyContacts;
 use super::exclusive::{Exclusive, interruptible};
 use super::order::PyOrderParameters;
@@ -170,6 +170,20 @@ impl PyFlock {
     #[getter]
     fn statistics(&self) -> PyResult<PyStatistics> {
         Ok(self.read()?.statistics().into())
+    }
+
+    /// Threads that the substeps of 200 boats or more are shared out to: 1 to 1024, 1 to begin with. The motion is the
+    /// same, bit for bit. Snapshots and pickles do not hold the number; `restore` and `reset` leave it. There are
+    /// never more threads than RAYON_NUM_THREADS, or than cores where that is not set.
+    #[getter]
+    fn threads(&self) -> Result<usize> {
+        Ok(self.read()?.threads())
+    }
+
+    #[setter]
+    fn set_threads(&self, threads: Threads) -> Result<()> {
+        let threads = usize::try_from(threads.0).unwrap_or(usize::MAX);
+        self.0.write()?.set_threads(threads)
     }
 
     /// Put the boats somewhere else.

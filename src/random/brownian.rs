@@ -32,7 +32,9 @@ impl KeyedNormals {
         // copy, only once.
         let mut words = self.words.clone();
         words.set_stream(cell);
-        words.set_word_pos(u128::from(node) << 32);
+        if node > 0 {
+            words.set_word_pos(u128::from(node) << 32);
+        }
         for (boat, draw) in draws.iter_mut().enumerate() {
             let place = (u128::from(node) << 28 | boat as u128) << 8;
             let first = Some(words.next_u64());

@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import numpy as np
+import pytest
 
 import flockenv
 
@@ -28,6 +29,40 @@ def test_processes_and_thread_counts_agree():
     here = flockenv.simulate(p, seed=5, duration_s=30.0)
     hashes.add(hashlib.sha256(here.pose.tobytes() + here.velocity.tobytes()).hexdigest())
     assert len(hashes) == 1
+
+
+def test_a_large_flock_moves_alike_on_any_number_of_threads():
+    # Four threads where there are fewer cores, too.
+    script = """
+import hashlib, flockenv
+p = flockenv.FlockParameters(n_boats=240, pool=(219.0, 66.0), nop1_s=0.0, bw_s=0.0, nop2_s=0.0)
+for threads in (1, 2, 3, 4):
+    run = flockenv.simulate(p, seed=5, duration_s=4.0, threads=threads)
+    print(hashlib.sha256(run.pose.tobytes() + run.velocity.tobytes()).hexdigest())
+"""
+    environment = {**os.environ, "RAYON_NUM_THREADS": "4"}
+    command = [sys.executable, "-c", script]
+    run = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
+    hashes = run.stdout.split()
+    assert len(hashes) == 4
+    assert len(set(hashes)) == 1
+
+
+def test_a_flock_keeps_its_threads(parameters):
+    flock = flockenv.Flock(parameters, 0)
+    assert flock.threads == 1
+    flock.threads = 3
+    flock.restore(flockenv.Flock(parameters, 1).snapshot())
+    assert flock.threads == 3
+    flock.reset(2)
+    assert flock.threads == 3
+    for wrong in (0, 1025, -1, 2**70):
+        with pytest.raises(flockenv.ParameterError, match="threads"):
+            flock.threads = wrong
+    for wrong in (True, "2", None):
+        with pytest.raises(TypeError, match="threads"):
+            flock.threads = wrong
+    assert flock.threads == 3
 
 
 def test_seeds_differ(parameters):
