@@ -23,7 +23,8 @@ def plain(value: float, digits: int = 2) -> str:
 
 def times(value: float) -> str:
     """A ratio."""
-    return f"{plain(value)} ×"
+    text = plain(value)
+    return text if text == NOTHING else f"{text} ×"
 
 
 def table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> str:

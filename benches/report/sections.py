@@ -156,25 +156,25 @@ def parts(m: Measurements) -> str:
 
 def growth(m: Measurements) -> str:
     """Return time and memory against the number of boats."""
-    rows = [
-        [
-            str(row.n),
-            plain(row.us_per_step),
-            plain(row.times_real_time),
-            plain(row.contacts_per_step, 3),
-            plain(row.bytes_in_use_per_boat - 8 * row.factor_entries_per_boat, 3),
-            plain(row.bytes_per_boat, 3),
-            plain(row.factor_entries),
-            plain(8 * row.factor_entries_per_boat),
-        ]
-        for row in m.growth.itertuples()
-    ]
-    header = [
-        "boats", "µs per step", "× real time", "contacts per step",
-        "bytes per boat in use, without factor", "bytes per boat held", "factor entries",
-        "factor bytes per boat",
-    ]  # fmt: skip
-    return table(header, rows)
+    columns = {
+        "boats": m.growth.n.map(str),
+        "µs per step": m.growth.us_per_step.map(plain),
+        "× real time": m.growth.times_real_time.map(plain),
+        "contacts per step": m.growth.contacts_per_step.map(lambda value: plain(value, 3)),
+        "bytes per boat in use, without factor": (
+            m.growth.bytes_in_use_per_boat - 8 * m.growth.factor_entries_per_boat
+        ).map(lambda value: plain(value, 3)),
+        "bytes per boat held": m.growth.bytes_per_boat.map(lambda value: plain(value, 3)),
+        "factor entries": m.growth.factor_entries.map(plain),
+        "factor bytes per boat": (8 * m.growth.factor_entries_per_boat).map(plain),
+    }
+    if "two_threads_faster" not in m.growth:
+        return table(columns, zip(*columns.values(), strict=True))
+    columns["speed on two threads"] = m.growth.two_threads_faster.map(times)
+    return table(columns, zip(*columns.values(), strict=True)) + (
+        "\n\nTimes are those of one thread. The speed on two threads (`Flock.threads`) compares "
+        "the same motion, turn by turn; flocks of fewer than 200 boats keep to one."
+    )
 
 
 def order_parameters(m: Measurements) -> str:

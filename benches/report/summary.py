@@ -55,6 +55,7 @@ def summary(m: Measurements) -> str:
         ["solves without an exact solution", plain(own.unsolved.sum())],
         *_deepest(settings),
         [f"{most} boats at dt = 0.02 s: speed", f"{times(growth.times_real_time[most])} real time"],
+        *_two_threads(growth),
         ["memory in use besides the factor, as a power of n", plain(_power(in_use))],
         [
             "memory held, room for growth included, as a power of n",
@@ -62,6 +63,17 @@ def summary(m: Measurements) -> str:
         ],
     ]
     return table(["at dt = 0.01 s", "measured"], rows)
+
+
+def _two_threads(growth: pd.DataFrame) -> list[list[str]]:
+    if "two_threads_faster" not in growth:
+        return []
+    measured = growth.two_threads_faster.dropna()
+    return [
+        [f"{boats} boats at dt = 0.02 s: speed on two threads against one", times(ratio)]
+        for boats, ratio in measured.items()
+        if boats in (1000, measured.index.max())
+    ]
 
 
 def _box2d(m: Measurements) -> list[list[str]]:
