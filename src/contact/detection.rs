@@ -85,10 +85,10 @@ impl ContactDetector {
         let outputs = std::iter::once(&mut *contacts).chain(&mut parts);
         let tasks = outputs.enumerate();
         parallel::hand_out(&mut vec![(); self.threads], tasks, |(), (number, found)| {
-            let begin = (number * size).min(boats.len());
-            let end = (begin + size).min(boats.len());
+            let start = (number * size).min(boats.len());
+            let end = (start + size).min(boats.len());
             found.clear();
-            self.detect_among(begin..end, boats, margin, found);
+            self.detect_among(start..end, boats, margin, found);
         });
         for part in &parts {
             contacts.extend_from_slice(part);

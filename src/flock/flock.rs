@@ -114,7 +114,7 @@ impl Flock {
         self.threads
     }
 
-    /// Has the substeps of a flock of 200 boats or more shared out to so many threads, 1 to begin with. The motion is
+    /// Has the substeps of a flock of 200 boats or more shared out to so many threads, 1 by default. The motion is
     /// the same, bit for bit, and snapshots do not hold the number.
     ///
     /// # Errors
@@ -130,9 +130,16 @@ impl Flock {
 
     fn share_out(&mut self, threads: usize) {
         self.threads = threads;
-        let is_shared = self.parameters.n_boats >= SHARED_BOATS;
-        self.integrator
-            .set_threads(if is_shared { threads } else { 1 });
+        self.integrator.set_threads(self.shared_threads());
+    }
+
+    /// How many threads a flock of this size is shared out to.
+    fn shared_threads(&self) -> usize {
+        if self.parameters.n_boats < SHARED_BOATS {
+            1
+        } else {
+            self.threads
+        }
     }
 
     /// The parameters.
@@ -268,7 +275,7 @@ impl Flock {
     /// [`FlockError::Solver`] if numbers left their range; the flock is unchanged then.
     pub fn advance_to(&mut self, end: Ticks, steering: Steering) -> Result<()> {
         let other_threads = self.shared_threads() - 1;
-        let advance = || self.advance_watched(end, steering, &mut |_| {});
+        let mut advance = || self.advance_watched(end, steering, &mut |_| {});
         if other_threads > 0 {
             parallel::inside(other_threads, advance)
         } else {

@@ -172,7 +172,7 @@ impl PyFlock {
         Ok(self.read()?.statistics().into())
     }
 
-    /// Threads that the substeps of 200 boats or more are shared out to: 1 to 1024, 1 to begin with. The motion is the
+    /// Threads that the substeps of 200 boats or more are shared out to: 1 to 1024, 1 by default. The motion is the
     /// same, bit for bit. Snapshots and pickles do not hold the number; `restore` and `reset` leave it. There are
     /// never more threads than RAYON_NUM_THREADS, or than cores where that is not set.
     #[getter]

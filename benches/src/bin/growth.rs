@@ -95,9 +95,9 @@ fn two_threads_faster(flock: &Flock, timed_s: f64) -> Option<f64> {
     let (mut alone, mut shared) = (flock.clone(), flock.clone());
     shared.set_threads(2).expect("a number of threads");
     let turn = |flock: &mut Flock| {
-        let begin = Instant::now();
+        let start = Instant::now();
         flock.advance(1.0, None).expect("the motion stays finite");
-        begin.elapsed().as_secs_f64()
+        start.elapsed().as_secs_f64()
     };
     let ratios: Vec<f64> = (0..timed_s as usize)
         .map(|_| turn(&mut alone) / turn(&mut shared))

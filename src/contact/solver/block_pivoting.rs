@@ -208,16 +208,16 @@ impl BlockPivoting {
         self.left.sort_unstable_by_key(|&number| {
             (Reverse(islands.range(number as usize).len()), number)
         });
-        let mut kept: Vec<_> = self.islands.iter_mut().map(Some).collect();
+        let mut solvers: Vec<_> = self.islands.iter_mut().map(Some).collect();
         let keeps_factors = self.keeps_factors;
         let tasks = self.left.iter().map(|&number| {
-            let solver = keeps_factors.then(|| kept[number as usize].take());
+            let solver = keeps_factors.then(|| solvers[number as usize].take());
             (islands.contacts(number as usize), solver.flatten())
         });
         let (rights, regularization) = (&self.rights, self.regularization);
         self.workers.iter_mut().for_each(Worker::clear);
-        parallel::hand_out(&mut self.workers, tasks, |worker, (contacts, kept)| {
-            let island = match kept {
+        parallel::hand_out(&mut self.workers, tasks, |worker, (contacts, solver)| {
+            let island = match solver {
                 Some(island) => island,
                 None => {
                     worker.solver.is_built = false;
