@@ -218,6 +218,20 @@ def first_training() -> str:
     return markdown(["leaders", "damped law", "trained", "trained minus damped law"], body)
 
 
+def signals() -> str:
+    """Return what `flockenv signal` measured: z per million samples of each reward and horizon."""
+    file = "results/signals.csv"
+    found = rows(file)
+    horizons = list(dict.fromkeys(row["horizon_s"] for row in found))
+    body = []
+    for pool, reward_name in dict.fromkeys((row["pool"], row["reward"]) for row in found):
+        each = (one(file, pool=pool, reward=reward_name, horizon_s=horizon) for horizon in horizons)
+        cells = (f"{float(row['z_per_million']):+.1f} ± {float(row['error']):.1f}" for row in each)
+        body.append([f"`{pool}`", f"`{reward_name}`", *cells])
+    titles = (f"horizon {float(horizon):g} s" for horizon in horizons)
+    return markdown(["pool", "reward", *titles], body)
+
+
 def ppo_search() -> str:
     """Return the runs of the search of PPO's settings, best first."""
     found = rows("leaders/ppo_search.csv")
@@ -346,6 +360,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "first-training": first_training,
     "ppo-comparison": ppo_comparison,
     "ppo-search": ppo_search,
+    "signals": signals,
     "fit-targets": fit_targets,
     "fit-variants": fit_variants,
     "track-errors": track_errors,
