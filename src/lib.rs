@@ -24,6 +24,8 @@
 //! solver (how the contact problem is solved), phase, LAP frame, order parameter, rudder command,
 //! control step (policy) and substep (physics).
 
+#![warn(unreachable_pub)]
+
 pub mod analysis;
 pub mod boat;
 pub mod clock;

@@ -13,13 +13,13 @@ static FORKED: Mutex<Option<(u32, &'static ThreadPool)>> = Mutex::new(None);
 
 /// Notes that rayon's own threads live in this process, in case other code starts them.
 #[cfg(feature = "python")]
-pub fn note_process() {
+pub(crate) fn note_process() {
     FIRST_PROCESS.get_or_init(id);
 }
 
 /// Maps items in order. One item, or one thread, is worked on at once where it is: waking a pool takes
 /// about as long as a control step.
-pub fn map<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
+pub(crate) fn map<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
     if items.len() <= 1 || rayon::current_num_threads() == 1 {
         return items.into_iter().map(work).collect();
     }
@@ -35,7 +35,7 @@ pub fn map<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync + Send)
 /// Does some work on one of the pool's threads and keeps so many others awake meanwhile, for [`hand_out`]: to wake
 /// one takes about as long as what it is handed. Work that is on such a thread already, or has no other threads
 /// beside it, is done where it is.
-pub fn inside<R: Send>(others: usize, work: impl FnOnce() -> R + Send) -> R {
+pub(crate) fn inside<R: Send>(others: usize, work: impl FnOnce() -> R + Send) -> R {
     if rayon::current_thread_index().is_some() || rayon::current_num_threads() == 1 {
         return work();
     }
@@ -77,7 +77,7 @@ fn stay_awake(is_done: &AtomicBool) {
 }
 
 /// Hands items out to workers, in order, to whichever is free. Only [`inside`] do workers have threads of their own.
-pub fn hand_out<W: Send, T: Send>(
+pub(crate) fn hand_out<W: Send, T: Send>(
     workers: &mut [W],
     items: impl Iterator<Item = T> + Send,
     work: impl Fn(&mut W, T) + Sync,

@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 
 /// What a stored state starts with.
 #[derive(Debug)]
-pub struct Magic {
+pub(crate) struct Magic {
     /// In the present format, whose checksum is CRC-32.
     pub now: [u8; 8],
     /// In earlier ones with the same checksum.
@@ -17,7 +17,7 @@ pub struct Magic {
 }
 
 /// A state as bytes.
-pub fn seal<T: Serialize>(magic: &Magic, state: &T) -> Vec<u8> {
+pub(crate) fn seal<T: Serialize>(magic: &Magic, state: &T) -> Vec<u8> {
     let mut bytes = magic.now.to_vec();
     bytes.extend_from_slice(&[0; 8]);
     // Writing to a Vec fails only out of memory, where the allocator ends the process first.
@@ -35,7 +35,7 @@ pub fn seal<T: Serialize>(magic: &Magic, state: &T) -> Vec<u8> {
 ///
 /// # Errors
 /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed state of this kind.
-pub fn unseal<T: DeserializeOwned>(magic: &Magic, bytes: &[u8]) -> Result<T> {
+pub(crate) fn unseal<T: DeserializeOwned>(magic: &Magic, bytes: &[u8]) -> Result<T> {
     decode(opened(magic, bytes)?)
 }
 
@@ -43,7 +43,7 @@ pub fn unseal<T: DeserializeOwned>(magic: &Magic, bytes: &[u8]) -> Result<T> {
 ///
 /// # Errors
 /// As for [`unseal`].
-pub fn opened<'a>(magic: &Magic, bytes: &'a [u8]) -> Result<&'a [u8]> {
+pub(crate) fn opened<'a>(magic: &Magic, bytes: &'a [u8]) -> Result<&'a [u8]> {
     let refuse = |why: &str| Err(FlockError::Snapshot(why.to_owned()));
     let Some((found, rest)) = bytes.split_first_chunk::<8>() else {
         return refuse("the bytes are too short to be a snapshot");
@@ -68,7 +68,7 @@ pub fn opened<'a>(magic: &Magic, bytes: &'a [u8]) -> Result<&'a [u8]> {
 ///
 /// # Errors
 /// [`FlockError::Snapshot`] for an encoding of something else.
-pub fn decode<T: DeserializeOwned>(body: &[u8]) -> Result<T> {
+pub(crate) fn decode<T: DeserializeOwned>(body: &[u8]) -> Result<T> {
     postcard::from_bytes(body).map_err(|error| {
         FlockError::Snapshot(format!("the snapshot's content is not readable: {error}"))
     })

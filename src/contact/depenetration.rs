@@ -10,7 +10,7 @@ use crate::geometry::{HullPose, Pose, Velocity};
 
 /// Overlaps beyond this, in boat radii (0.01 cm of 5), are undone by moving poses; smaller ones are left
 /// to the velocities.
-pub const PENETRATION_SLOP: f64 = 0.002;
+pub(super) const PENETRATION_SLOP: f64 = 0.002;
 /// The most that one pass opens a gap or moves a boat by, in boat radii (1 cm of 5): beyond it the
 /// linearization means little. A boat turns by 1 rad at most.
 const LARGEST_STEP: f64 = 0.2;
@@ -20,7 +20,7 @@ pub type KeepGoing<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// A projection of poses, with its scratch space.
 #[derive(Debug, Clone)]
-pub struct Depenetration {
+pub(super) struct Depenetration {
     solver: ContactSolver,
     contacts: Vec<Contact>,
     biases: Vec<f64>,
@@ -33,7 +33,7 @@ pub struct Depenetration {
 
 impl Depenetration {
     /// For `boats` boats of a radius and a radius of gyration ρ.
-    pub fn new(boats: usize, boat_radius: f64, gyration_radius: f64) -> Self {
+    pub(super) fn new(boats: usize, boat_radius: f64, gyration_radius: f64) -> Self {
         let inertia = InverseInertia {
             linear: 1.0,
             angular: 1.0 / (gyration_radius * gyration_radius),
@@ -52,7 +52,7 @@ impl Depenetration {
 
     /// Displaces poses until no overlap exceeds `allowed` (cm, positive), `most_passes` are made or
     /// `keep_going` says no; returns the smallest gap seen last.
-    pub fn run(
+    pub(super) fn run(
         &mut self,
         detector: &mut ContactDetector,
         poses: &mut [Pose],

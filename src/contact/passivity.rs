@@ -17,7 +17,7 @@ const ALLOWED: f64 = 0.01;
 
 /// Whether contacts might drive a boat, checked quickly: an impulse λ at a contact that opens at the speed
 /// −b adds at most −b·λ.
-pub fn may_drive(problem: &ContactProblem, impulses: &[f64], bias: VelocityBias) -> bool {
+pub(super) fn may_drive(problem: &ContactProblem, impulses: &[f64], bias: VelocityBias) -> bool {
     let adds_much = |k: usize| {
         let contact = &problem.contacts[k];
         let ahead = bias.of_gap(&contact.gap).min(0.0) - problem.biases[k];
@@ -29,20 +29,20 @@ pub fn may_drive(problem: &ContactProblem, impulses: &[f64], bias: VelocityBias)
 
 /// Finds islands that contacts drive, with its scratch space.
 #[derive(Debug, Clone, Default)]
-pub struct Passivity {
+pub(super) struct Passivity {
     counted: Vec<bool>,
 }
 
 impl Passivity {
     /// For a new set of contacts of so many boats.
-    pub fn reset(&mut self, boats: usize) {
+    pub(super) fn reset(&mut self, boats: usize) {
         self.counted.clear();
         self.counted.resize(boats, false);
     }
 
     /// Whether the contacts of an island, given by their numbers, add to the energy of its boats, beyond
     /// what opening overlaps takes.
-    pub fn is_driven(
+    pub(super) fn is_driven(
         &mut self,
         island: &[u32],
         problem: &ContactProblem,

@@ -17,7 +17,7 @@ const MOST_PASSES: u32 = 20;
 
 /// What the contacts of a substep came to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ContactOutcome {
+pub(crate) enum ContactOutcome {
     /// Nothing is near enough to touch within the substep.
     Untouched,
     /// The contacts have been solved.
@@ -28,7 +28,7 @@ pub enum ContactOutcome {
 
 /// Finds and solves the contacts of a flock, substep after substep.
 #[derive(Debug, Clone)]
-pub struct ContactResolver {
+pub(crate) struct ContactResolver {
     detector: ContactDetector,
     solver: ContactSolver,
     contacts: Vec<Contact>,
@@ -52,7 +52,7 @@ pub struct ContactResolver {
 
 impl ContactResolver {
     /// For checked parameters.
-    pub fn new(parameters: &FlockParameters) -> Self {
+    pub(crate) fn new(parameters: &FlockParameters) -> Self {
         let penetration_slop = PENETRATION_SLOP * parameters.boat_radius_cm;
         Self {
             detector: ContactDetector::new(parameters),
@@ -87,22 +87,22 @@ impl ContactResolver {
     }
 
     /// The contacts found last.
-    pub fn contacts(&self) -> &[Contact] {
+    pub(crate) fn contacts(&self) -> &[Contact] {
         &self.contacts
     }
 
     /// Impulses of the contacts found last, in cm/s.
-    pub fn impulses(&self) -> &[f64] {
+    pub(crate) fn impulses(&self) -> &[f64] {
         &self.solver.impulses
     }
 
     /// The velocities of the last solve.
-    pub fn velocities(&self) -> &[Velocity] {
+    pub(crate) fn velocities(&self) -> &[Velocity] {
         &self.solver.velocities
     }
 
     /// Geometry of the flock and its pool.
-    pub fn detector(&self) -> &ContactDetector {
+    pub(crate) fn detector(&self) -> &ContactDetector {
         &self.detector
     }
 
@@ -112,7 +112,7 @@ impl ContactResolver {
     }
 
     /// Candidate pairs of boats.
-    pub fn neighbors(&self) -> &NeighborList {
+    pub(crate) fn neighbors(&self) -> &NeighborList {
         &self.detector.neighbors
     }
 
@@ -127,7 +127,7 @@ impl ContactResolver {
     }
 
     /// Forgets contacts and impulses: the poses have been set from outside.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.contacts.clear();
         self.solver.impulses.clear();
         self.warm_start_cache.clear();
@@ -136,7 +136,7 @@ impl ContactResolver {
 
     /// Finds the contacts that matter within `dt` at these velocities. Deep overlaps are undone first,
     /// by moving poses. Returns whether there is any contact.
-    pub fn find(
+    pub(crate) fn find(
         &mut self,
         poses: &mut [Pose],
         boats: &mut Vec<HullPose>,

@@ -5,14 +5,14 @@ use crate::geometry::{HullPose, Pose, Velocity};
 
 /// Poses at a substep's end, on trial.
 #[derive(Debug, Clone, Default)]
-pub struct Trial {
+pub(super) struct Trial {
     poses: Vec<Pose>,
     hulls: Vec<HullPose>,
 }
 
 impl Trial {
     /// Moves boats from these poses with these velocities for `dt`.
-    pub fn place(&mut self, poses: &[Pose], velocities: &[Velocity], dt: f64) {
+    pub(super) fn place(&mut self, poses: &[Pose], velocities: &[Velocity], dt: f64) {
         let moved = poses
             .iter()
             .zip(velocities)
@@ -23,7 +23,12 @@ impl Trial {
     }
 
     /// Whether anything found as a contact overlaps by more than `allowed`.
-    pub fn overlaps(&self, detector: &ContactDetector, contacts: &[Contact], allowed: f64) -> bool {
+    pub(super) fn overlaps(
+        &self,
+        detector: &ContactDetector,
+        contacts: &[Contact],
+        allowed: f64,
+    ) -> bool {
         contacts.iter().any(|contact| match contact.second() {
             Some(second) => {
                 let gaps = detector.pair_gaps_at(contact.boat, second, &self.hulls);
@@ -35,7 +40,7 @@ impl Trial {
 
     /// The gap of contact k. Between two hulls the touch may have passed from one end to the other
     /// without moving: a contact follows it, and the only contact of a pair stands for the whole pair.
-    pub fn gap(&self, detector: &ContactDetector, contacts: &[Contact], k: usize) -> f64 {
+    pub(super) fn gap(&self, detector: &ContactDetector, contacts: &[Contact], k: usize) -> f64 {
         let contact = &contacts[k];
         let own = || detector.gap_at(contact, &self.hulls).gap;
         let (Some(second), 0 | 1) = (contact.second(), contact.feature) else {

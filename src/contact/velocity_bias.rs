@@ -5,7 +5,7 @@ use crate::geometry::Gap;
 /// How fast gaps may close in one substep: the speculative margin of a gap that is open, the speed at
 /// which an overlap closes.
 #[derive(Debug, Clone, Copy)]
-pub struct VelocityBias {
+pub(super) struct VelocityBias {
     /// Length of the substep in s.
     pub dt: f64,
     /// What an overlap has to close in, in s: a substep that a phase or control step cuts to 1 ns would
@@ -17,7 +17,7 @@ pub struct VelocityBias {
 
 impl VelocityBias {
     /// The bias that follows from the gap at hand, in cm/s.
-    pub fn of_gap(&self, gap: &Gap) -> f64 {
+    pub(super) fn of_gap(&self, gap: &Gap) -> f64 {
         match gap.gap {
             gap if gap < -self.penetration_slop => 0.0,
             gap if gap < 0.0 => gap / self.closing_s,
@@ -26,7 +26,7 @@ impl VelocityBias {
     }
 
     /// What turning a flank into the inner wall, with this spin, takes off the bias.
-    pub fn of_flank(&self, gap: &Gap, spin: f64) -> f64 {
+    pub(super) fn of_flank(&self, gap: &Gap, spin: f64) -> f64 {
         if gap.gap < -self.penetration_slop {
             0.0
         } else {

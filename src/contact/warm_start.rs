@@ -4,11 +4,11 @@ use super::Contact;
 use super::contact::ContactKey;
 
 /// A contact that carried an impulse, and the impulse in cm/s.
-pub type CachedImpulse = (ContactKey, f64);
+pub(crate) type CachedImpulse = (ContactKey, f64);
 
 /// The contacts and impulses of one substep, to be looked up by contact.
 #[derive(Debug, Clone, Default)]
-pub struct WarmStartCache {
+pub(super) struct WarmStartCache {
     /// In the order of detection; contacts without an impulse may be missing.
     entries: Vec<CachedImpulse>,
     /// The last entry of each boat, and for each entry the one before it of the same boat.
@@ -22,7 +22,7 @@ const AHEAD: usize = 4;
 
 impl WarmStartCache {
     /// The contacts that carried an impulse, in the order of detection.
-    pub fn impulses(&self) -> impl Iterator<Item = CachedImpulse> {
+    pub(super) fn impulses(&self) -> impl Iterator<Item = CachedImpulse> {
         self.entries
             .iter()
             .copied()
@@ -30,12 +30,12 @@ impl WarmStartCache {
     }
 
     /// Forgets all contacts.
-    pub fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.entries.clear();
     }
 
     /// Replaces all contacts and their impulses.
-    pub fn replace(&mut self, entries: impl Iterator<Item = CachedImpulse>) {
+    pub(super) fn replace(&mut self, entries: impl Iterator<Item = CachedImpulse>) {
         self.entries.clear();
         self.entries.extend(entries);
     }
@@ -45,7 +45,7 @@ impl WarmStartCache {
     /// impulse of a contact between the same boats that is there no more.
     ///
     /// Contacts mostly come in the order of the last substep, a few gone and a few new.
-    pub fn lookup(&mut self, boats: usize, contacts: &[Contact], impulses: &mut Vec<f64>) {
+    pub(super) fn lookup(&mut self, boats: usize, contacts: &[Contact], impulses: &mut Vec<f64>) {
         impulses.clear();
         let mut next = 0;
         let mut is_indexed = false;

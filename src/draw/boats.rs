@@ -16,7 +16,7 @@ const LEAST_RADIUS: f32 = 1.0;
 const LEAST_MARKED: f32 = 2.5;
 
 /// Draws all boats, leaders on top.
-pub fn draw(canvas: &mut Pixmap, flock: &Flock, view: &View) {
+pub(super) fn draw(canvas: &mut Pixmap, flock: &Flock, view: &View) {
     let hull = Hull::new(flock.parameters());
     let shape = Shape::new(&hull, view);
     let (leaders, normal) = flock.hulls().split_at(flock.parameters().n_leaders);

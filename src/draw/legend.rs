@@ -24,13 +24,13 @@ const GAUGE: f32 = 9.0;
 
 /// The legend of frames of one size.
 #[derive(Debug, Clone)]
-pub struct Legend {
+pub(super) struct Legend {
     typeface: Option<Typeface>,
 }
 
 impl Legend {
     /// For frames of this size.
-    pub fn new(width: u32, height: u32) -> Self {
+    pub(super) fn new(width: u32, height: u32) -> Self {
         let (width, height) = (width as f32, height as f32);
         let side = width.min(height);
         let size = (side / SIDE_OVER_SIZE).max(LEGIBLE_SIZE);
@@ -43,7 +43,7 @@ impl Legend {
     }
 
     /// Writes it, for a frame with or without a grid.
-    pub fn draw(&self, canvas: &mut Pixmap, flock: &Flock, grid_cm: Option<f64>) {
+    pub(super) fn draw(&self, canvas: &mut Pixmap, flock: &Flock, grid_cm: Option<f64>) {
         let Some(typeface) = &self.typeface else {
             return;
         };

@@ -20,14 +20,14 @@ struct Glyph {
 
 /// DejaVu Sans in one size.
 #[derive(Debug, Clone)]
-pub struct Typeface {
+pub(super) struct Typeface {
     glyphs: BTreeMap<char, Glyph>,
     size: f32,
 }
 
 impl Typeface {
     /// The glyphs at a size in pixels.
-    pub fn new(size: f32) -> Self {
+    pub(super) fn new(size: f32) -> Self {
         let mut glyphs = BTreeMap::new();
         if let Ok(font) = FontRef::try_from_slice(dejavu::sans::regular()) {
             // The size is that of the em square, as in print; ab_glyph counts the line's height.
@@ -41,17 +41,24 @@ impl Typeface {
     }
 
     /// The em square in pixels.
-    pub fn size(&self) -> f32 {
+    pub(super) fn size(&self) -> f32 {
         self.size
     }
 
     /// Width of a text in pixels.
-    pub fn width(&self, text: &str) -> f32 {
+    pub(super) fn width(&self, text: &str) -> f32 {
         self.known(text).map(|glyph| glyph.advance).sum()
     }
 
     /// Writes a text that starts at x, on a baseline.
-    pub fn write(&self, canvas: &mut PixmapMut, text: &str, x: f32, baseline: f32, ink: Rgb) {
+    pub(super) fn write(
+        &self,
+        canvas: &mut PixmapMut,
+        text: &str,
+        x: f32,
+        baseline: f32,
+        ink: Rgb,
+    ) {
         let (mut pen, baseline) = (x, baseline.round() as i32);
         for glyph in self.known(text) {
             glyph.blend(canvas, pen.round() as i32, baseline, ink);

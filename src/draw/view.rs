@@ -15,7 +15,7 @@ const STEPS: f64 = 8.0;
 
 /// A similarity from world (cm) to pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct View {
+pub(super) struct View {
     /// World point in the middle of the frame, in cm.
     pub center: Vec2,
     /// Pixels in a cm.
@@ -26,7 +26,7 @@ pub struct View {
 
 impl View {
     /// The whole pool, or in open water the boats' bounding box, in a frame of this size.
-    pub fn of(flock: &Flock, width: u32, height: u32) -> Self {
+    pub(super) fn of(flock: &Flock, width: u32, height: u32) -> Self {
         let size = Vec2::new(f64::from(width), f64::from(height));
         let pool = &flock.parameters().pool;
         let (center, scale) = if pool.has_outer_wall() {
@@ -43,7 +43,7 @@ impl View {
     }
 
     /// Where a world point falls, in pixels.
-    pub fn pixel(&self, world: Vec2) -> Point {
+    pub(super) fn pixel(&self, world: Vec2) -> Point {
         let offset = (world - self.center) * self.scale;
         Point {
             x: (self.middle.x + offset.x) as f32,
@@ -52,7 +52,7 @@ impl View {
     }
 
     /// A world direction as one of the frame.
-    pub fn direction(world: Vec2) -> Point {
+    pub(super) fn direction(world: Vec2) -> Point {
         Point {
             x: world.x as f32,
             y: -world.y as f32,
@@ -60,12 +60,12 @@ impl View {
     }
 
     /// A length in pixels.
-    pub fn length(&self, cm: f64) -> f32 {
+    pub(super) fn length(&self, cm: f64) -> f32 {
         (cm * self.scale) as f32
     }
 
     /// Whether anything within a reach (cm) of a world point is in the frame.
-    pub fn shows(&self, world: Vec2, reach: f64) -> bool {
+    pub(super) fn shows(&self, world: Vec2, reach: f64) -> bool {
         let room = self.middle / self.scale + Vec2::repeat(reach);
         let offset = (world - self.center).abs();
         offset.x <= room.x && offset.y <= room.y

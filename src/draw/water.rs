@@ -13,7 +13,7 @@ const LEAST_SPACING: f64 = 60.0;
 const LEAST_ISLAND: f32 = 24.0;
 
 /// Draws all of it.
-pub fn draw(canvas: &mut Pixmap, pool: &Pool, target: Option<Target>, view: &View) {
+pub(super) fn draw(canvas: &mut Pixmap, pool: &Pool, target: Option<Target>, view: &View) {
     let wall = wall_width(canvas);
     if pool.has_outer_wall() {
         canvas.fill(GROUND.color());
@@ -93,7 +93,7 @@ fn grid(canvas: &mut Pixmap, view: &View) {
 }
 
 /// Distance of grid lines in cm: 1, 2, 5, 10, 20, …
-pub fn grid_spacing(view: &View) -> f64 {
+pub(super) fn grid_spacing(view: &View) -> f64 {
     let least = LEAST_SPACING / view.scale;
     // Whole powers as text are exact, and print as people write them.
     let decade = least.log10().floor() as i32;

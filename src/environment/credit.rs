@@ -6,7 +6,7 @@ use crate::integrator::Integrator;
 use crate::parameters::Target;
 
 /// Time in s after which a turn that a leader gave counts for 1/e.
-pub const MEMORY_S: f64 = 4.0;
+pub(super) const MEMORY_S: f64 = 4.0;
 
 /// How one leader has turned one normal boat.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]

@@ -47,7 +47,7 @@ impl EpisodeState {
 
 /// What is stored of an episode.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-pub struct StoredEpisode<A = Averages, T = Terms, C = Option<ContactCredit>> {
+pub(crate) struct StoredEpisode<A = Averages, T = Terms, C = Option<ContactCredit>> {
     flock: Vec<u8>,
     schedule: EpisodeSchedule,
     rudders: Vec<f64>,

@@ -13,7 +13,7 @@ use crate::parameters::FlockParameters;
 
 /// What is stored of an environment.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-pub struct StoredEnv<A = Averages, T = Terms, C = Option<ContactCredit>> {
+pub(crate) struct StoredEnv<A = Averages, T = Terms, C = Option<ContactCredit>> {
     seeds: Option<EpisodeSeeds>,
     episode: Option<StoredEpisode<A, T, C>>,
     finished: Option<EpisodeSummary<A, T>>,

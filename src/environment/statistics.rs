@@ -16,7 +16,7 @@ pub const ORDERED_WITHIN: [f64; 2] = [PI / 20.0, PI / 4.0];
 
 /// Sums over the control steps of an episode.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
-pub struct EpisodeStatistics<A = Averages, T = Terms> {
+pub(super) struct EpisodeStatistics<A = Averages, T = Terms> {
     terms: T,
     reward: f64,
     window_steps: u32,
@@ -29,7 +29,7 @@ pub struct EpisodeStatistics<A = Averages, T = Terms> {
 
 impl<A, T> EpisodeStatistics<A, T> {
     /// The statistics as a state of any format has them.
-    pub fn restored<B: From<A>>(self) -> EpisodeStatistics<B>
+    pub(super) fn restored<B: From<A>>(self) -> EpisodeStatistics<B>
     where
         Terms: From<T>,
     {
@@ -48,7 +48,7 @@ impl<A, T> EpisodeStatistics<A, T> {
 
 impl EpisodeStatistics {
     /// Adds a leader's terms and reward in one step, as its share of the leaders' mean.
-    pub fn add_reward(&mut self, share: f64, terms: &RewardTerms, reward: f64) {
+    pub(super) fn add_reward(&mut self, share: f64, terms: &RewardTerms, reward: f64) {
         self.reward += share * reward;
         for (sum, term) in self.terms.0.iter_mut().zip(terms) {
             *sum += share * term;
@@ -56,27 +56,27 @@ impl EpisodeStatistics {
     }
 
     /// Adds a step inside the analysis window.
-    pub fn add_window(&mut self, boats: &Boats, target: Target) {
+    pub(super) fn add_window(&mut self, boats: &Boats, target: Target) {
         self.window_steps += 1;
         self.averages.add(boats, target);
         self.steps_towards_target += u32::from(boats.order.signed_order(target) > TOWARDS_TARGET);
     }
 
     /// Takes note of the order at a time since the episode started; `is_late` in its second half.
-    pub fn watch_order(&mut self, order: &OrderParameters, time_s: f64, is_late: bool) {
+    pub(super) fn watch_order(&mut self, order: &OrderParameters, time_s: f64, is_late: bool) {
         for (watch, within) in self.ordering.iter_mut().zip(ORDERED_WITHIN) {
             watch.note(time_s, order, within, is_late);
         }
     }
 
     /// Counts numbers observed, and those clipped among them.
-    pub fn count_clipped(&mut self, clipped: u32, observed: usize) {
+    pub(super) fn count_clipped(&mut self, clipped: u32, observed: usize) {
         self.clipped += u64::from(clipped);
         self.observed += observed as u64;
     }
 
     /// The summary of an episode with these statistics.
-    pub fn summary(&self, schedule: &EpisodeSchedule) -> EpisodeSummary {
+    pub(super) fn summary(&self, schedule: &EpisodeSchedule) -> EpisodeSummary {
         let steps = f64::from(schedule.step);
         let mut terms = [0.0; TERMS];
         for (mean, sum) in terms.iter_mut().zip(&self.terms.0) {

@@ -32,7 +32,11 @@ const OPEN_WATER_AREAS: f64 = 25.0;
 /// # Errors
 /// [`FlockError::Placement`] if no placement without overlap was found, [`FlockError::Interrupted`]
 /// where `keep_going` said no.
-pub fn place(parameters: &FlockParameters, seed: u64, keep_going: KeepGoing) -> Result<Vec<Pose>> {
+pub(super) fn place(
+    parameters: &FlockParameters,
+    seed: u64,
+    keep_going: KeepGoing,
+) -> Result<Vec<Pose>> {
     let mut rng = Stream::Placement.rng(seed);
     let region = Region::new(parameters);
     if !region.holds_a_boat() {

@@ -7,7 +7,7 @@ use std::ops::Range;
 /// Candidate pairs, in an order that follows the polar angle around the pool: contacts listed in this
 /// order give the contact matrix a narrow envelope.
 #[derive(Debug, Clone, Default)]
-pub struct NeighborList {
+pub(crate) struct NeighborList {
     /// Centers the list was built from; empty before the first build.
     reference: Vec<Vec2>,
     /// Boats by polar angle.
@@ -28,17 +28,17 @@ const ALL_PAIRS: usize = 64;
 
 impl NeighborList {
     /// Centers the list was last built from, for snapshots.
-    pub fn reference(&self) -> &[Vec2] {
+    pub(crate) fn reference(&self) -> &[Vec2] {
         &self.reference
     }
 
     /// How often the list was built.
-    pub fn builds(&self) -> u64 {
+    pub(crate) fn builds(&self) -> u64 {
         self.builds
     }
 
     /// Forgets the list, so that the next update rebuilds it.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.reference.clear();
         self.cutoff = 0.0;
     }
@@ -66,7 +66,7 @@ impl NeighborList {
     }
 
     /// Rebuilds the list of a snapshot from its reference centers.
-    pub fn restore(&mut self, reference: &[Vec2], cutoff: f64) {
+    pub(crate) fn restore(&mut self, reference: &[Vec2], cutoff: f64) {
         self.reference.clear();
         self.reference.extend_from_slice(reference);
         if self.reference.is_empty() {
@@ -82,7 +82,7 @@ impl NeighborList {
 
     /// Boats by polar angle, those at some places of that order, each with the candidate partners that come before
     /// it.
-    pub fn groups(&self, places: Range<usize>) -> impl Iterator<Item = (u32, &[u32])> {
+    pub(crate) fn groups(&self, places: Range<usize>) -> impl Iterator<Item = (u32, &[u32])> {
         let ranges = self.starts[places.start..=places.end].windows(2);
         self.order[places].iter().zip(ranges).map(|(&boat, range)| {
             let range = range[0] as usize..range[1] as usize;

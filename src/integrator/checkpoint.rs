@@ -8,7 +8,7 @@ use crate::geometry::{Pose, Vec2, Velocity};
 /// The complete state of the motion, apart from parameters, seed and time.
 /// Snapshots store the fields in this order.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
-pub struct Checkpoint {
+pub(crate) struct Checkpoint {
     /// Poses of all boats.
     pub poses: Vec<Pose>,
     /// Velocities of all boats.

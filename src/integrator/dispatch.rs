@@ -7,7 +7,7 @@ use crate::parameters::Scheme;
 
 impl Integrator {
     /// Takes one substep with the scheme of the parameters.
-    pub fn step(&mut self, substep: &Substep) -> StepOutcome {
+    pub(crate) fn step(&mut self, substep: &Substep) -> StepOutcome {
         let outcome = match self.parameters.scheme {
             Scheme::Leapfrog => leapfrog::step(self, substep),
             Scheme::Moreau => moreau::step(self, substep),

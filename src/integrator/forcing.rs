@@ -37,7 +37,7 @@ impl Integrator {
     }
 
     /// The paper's rudder command for a boat where it is now, eq. (10).
-    pub fn law(&self, boat: usize) -> f64 {
+    pub(crate) fn law(&self, boat: usize) -> f64 {
         let pose = &self.poses[boat];
         steering_law(misalignment(
             pose.position,

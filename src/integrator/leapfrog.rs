@@ -17,7 +17,7 @@ use crate::geometry::{Vec2, Velocity};
 const SHORTEST_KICK: f64 = 0.25;
 
 /// One kick and one drift.
-pub fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
+pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
     let half_ticks = flock.last.length + substep.length;
     let kick = 0.5 * seconds(half_ticks);
     let start = 2 * substep.start - flock.last.length.min(2 * substep.start);

@@ -6,7 +6,7 @@ use crate::clock::seconds;
 use crate::contact::ContactOutcome;
 
 /// Free velocities by explicit Euler, contacts on them, then poses with the *new* velocities.
-pub fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
+pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
     let dt = seconds(substep.length);
     flock.draw_substep_noise(substep);
     flock.fill_drives(substep);

@@ -15,7 +15,7 @@ use crate::clock::seconds;
 const ROUNDING: f64 = 1e-10;
 
 /// One step of the appendix.
-pub fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
+pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
     let dt = seconds(substep.length);
     flock.step_length_s = dt;
     flock.draw_substep_noise(substep);

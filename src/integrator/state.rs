@@ -11,7 +11,7 @@ use rand::RngExt;
 
 /// State and working memory of a flock's motion.
 #[derive(Debug, Clone)]
-pub struct Integrator {
+pub(crate) struct Integrator {
     pub(crate) parameters: FlockParameters,
     pub(crate) motion: FreeMotion,
     /// Per-boat factor of the motor's speed; empty where all boats are alike.
@@ -36,7 +36,7 @@ pub struct Integrator {
 
 impl Integrator {
     /// For checked parameters; boats at the origin, to be placed.
-    pub fn new(parameters: &FlockParameters, seed: u64) -> Self {
+    pub(crate) fn new(parameters: &FlockParameters, seed: u64) -> Self {
         let n = parameters.n_boats;
         let p = parameters;
         let density = 1.0 / (p.gyration_radius_cm * p.gyration_radius_cm);
@@ -66,7 +66,7 @@ impl Integrator {
     }
 
     /// Puts boats somewhere else; motion so far is forgotten.
-    pub fn place(&mut self, poses: &[Pose], velocities: &[Velocity]) {
+    pub(crate) fn place(&mut self, poses: &[Pose], velocities: &[Velocity]) {
         self.poses.copy_from_slice(poses);
         self.velocities.copy_from_slice(velocities);
         self.last = LastSubstep::default();
@@ -81,7 +81,7 @@ impl Integrator {
     }
 
     /// Changes the direction that leaders steer to.
-    pub fn set_target(&mut self, target: Target) {
+    pub(crate) fn set_target(&mut self, target: Target) {
         self.parameters.target = target;
     }
 

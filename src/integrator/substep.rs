@@ -15,7 +15,7 @@ pub enum Steering<'a> {
 
 /// One substep.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Substep<'a> {
+pub(crate) struct Substep<'a> {
     /// When it starts.
     pub start: Ticks,
     /// How long it lasts.
@@ -28,7 +28,7 @@ pub struct Substep<'a> {
 
 /// What came of a substep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum StepOutcome {
+pub(crate) enum StepOutcome {
     /// The substep was taken.
     Taken,
     /// It is too long for its contacts: a shorter one has to be tried. Deep overlaps may have been
@@ -39,7 +39,7 @@ pub enum StepOutcome {
 /// What the leapfrog scheme remembers of the substep before: its second half belongs to the next kick.
 /// Snapshots store the fields in this order.
 #[derive(Debug, PartialEq, Default, serde::Serialize, serde::Deserialize)]
-pub struct LastSubstep {
+pub(crate) struct LastSubstep {
     /// Its length; 0 if there was none since the state was set.
     pub length: Ticks,
     /// The phase it lay in.

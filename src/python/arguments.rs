@@ -13,7 +13,7 @@ use pyo3::types::{PyBytes, PyFloat, PySequence, PyString};
 macro_rules! named_arguments {
     ($($(#[$meta:meta])* $type:ident($inner:ty) = $read:ident($name:literal);)+) => {
         $($(#[$meta])*
-        pub struct $type(pub $inner);
+        pub(crate) struct $type(pub(crate) $inner);
 
         impl<'py> FromPyObject<'_, 'py> for $type {
             type Error = PyErr;
@@ -41,7 +41,7 @@ named_arguments! {
 }
 
 /// A whole number that fits 64 bits, from anything with `__index__` but a bool.
-pub fn whole(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<u64> {
+pub(crate) fn whole(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<u64> {
     let accepted = "a whole number of at least 0, below 2^64";
     if object.extract::<bool>().is_ok() {
         return Err(wrong_type(object, name, "an integer"));
@@ -57,7 +57,7 @@ pub fn whole(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<u64> {
 }
 
 /// A real number, from anything with `__float__` but a bool.
-pub fn real(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<f64> {
+pub(crate) fn real(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<f64> {
     if object.extract::<bool>().is_ok() {
         return Err(wrong_type(object, name, "a number"));
     }
@@ -71,13 +71,13 @@ pub fn real(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<f64> {
 }
 
 /// A bool of Python or NumPy.
-pub fn truth(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<bool> {
+pub(crate) fn truth(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<bool> {
     let given = object.extract::<bool>();
     given.map_err(|_| wrong_type(object, name, "True or False"))
 }
 
 /// A string.
-pub fn text(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<String> {
+pub(crate) fn text(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<String> {
     let given = object.extract::<String>();
     given.map_err(|_| wrong_type(object, name, "a string"))
 }
@@ -91,7 +91,7 @@ const DEEPEST: usize = 64;
 /// copies nested sequences before it shows their shape, and a short tuple of broadcast views or a
 /// `range` may claim more than there is memory.
 #[pyfunction]
-pub fn oversized_shape(values: &Bound<'_, PyAny>, expected: Vec<usize>) -> Option<String> {
+pub(crate) fn oversized_shape(values: &Bound<'_, PyAny>, expected: Vec<usize>) -> Option<String> {
     let most = expected.iter().product::<usize>().max(HARMLESS);
     let oversized = claimed(values, most, DEEPEST) > most;
     oversized.then(|| shape_text(&outer_shape(values)))
@@ -156,7 +156,7 @@ fn sequence_length(object: &Bound<'_, PyAny>) -> Option<usize> {
 
 /// The numbers of an array-like of a given shape, row by row. Its size is checked before anything is
 /// copied.
-pub fn floats(
+pub(crate) fn floats(
     object: &Bound<'_, PyAny>,
     name: &'static str,
     expected: &[usize],
@@ -209,7 +209,7 @@ fn shape_text(shape: &[usize]) -> String {
 }
 
 /// The `TypeError` for an argument.
-pub fn wrong_type(object: &Bound<'_, PyAny>, name: &str, accepted: &str) -> PyErr {
+pub(crate) fn wrong_type(object: &Bound<'_, PyAny>, name: &str, accepted: &str) -> PyErr {
     let kind = object.get_type();
     let kind = kind
         .name()
@@ -221,7 +221,7 @@ pub fn wrong_type(object: &Bound<'_, PyAny>, name: &str, accepted: &str) -> PyEr
 }
 
 /// What a message shows of a value: its repr, cut at a length that fits a line.
-pub fn shown(object: &Bound<'_, PyAny>) -> String {
+pub(crate) fn shown(object: &Bound<'_, PyAny>) -> String {
     const LONGEST: usize = 80;
     // A repr may fail: that of an int of more than 4300 digits does.
     let full = object.repr().map_or_else(
@@ -235,7 +235,7 @@ pub fn shown(object: &Bound<'_, PyAny>) -> String {
 }
 
 /// Refuses a series of another length than those it belongs to.
-pub fn same_length(field: &'static str, found: usize, expected: usize) -> PyResult<()> {
+pub(crate) fn same_length(field: &'static str, found: usize, expected: usize) -> PyResult<()> {
     if found == expected {
         return Ok(());
     }

@@ -182,7 +182,7 @@ impl PyContactSeries {
 /// Where along the cores of hulls recorded contacts push, from their centers to the bows, in cm: of the pushed
 /// boats' poses (c, 3), the normals and points (c, 2) of a `ContactSeries`, and the hulls' radius.
 #[pyfunction]
-pub fn contact_along_cm<'py>(
+pub(crate) fn contact_along_cm<'py>(
     py: Python<'py>,
     pose: PyReadonlyArray2<'py, f64>,
     normal: PyReadonlyArray2<'py, f32>,

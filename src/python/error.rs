@@ -80,7 +80,7 @@ fn class<'py>(
 }
 
 /// Puts the exception classes into the module.
-pub fn add_exceptions(module: &Bound<'_, PyModule>) -> PyResult<()> {
+pub(crate) fn add_exceptions(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let exceptions = Exceptions::get(module.py())?;
     module.add("FlockError", &exceptions.flock)?;
     module.add("ParameterError", &exceptions.parameter)?;

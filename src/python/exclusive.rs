@@ -11,14 +11,14 @@ use std::time::Duration;
 
 /// An object that says so, instead of waiting, where another thread is at work with it.
 #[derive(Debug)]
-pub struct Exclusive<T> {
+pub(crate) struct Exclusive<T> {
     object: RwLock<T>,
     name: &'static str,
 }
 
 impl<T> Exclusive<T> {
     /// An object that errors call `name`.
-    pub fn new(object: T, name: &'static str) -> Self {
+    pub(crate) fn new(object: T, name: &'static str) -> Self {
         Self {
             object: RwLock::new(object),
             name,
@@ -29,7 +29,7 @@ impl<T> Exclusive<T> {
     ///
     /// # Errors
     /// [`FlockError::InUse`] while another thread changes it.
-    pub fn read(&self) -> Result<RwLockReadGuard<'_, T>> {
+    pub(crate) fn read(&self) -> Result<RwLockReadGuard<'_, T>> {
         match self.object.try_read() {
             Ok(object) => Ok(object),
             Err(TryLockError::Poisoned(object)) => Ok(PoisonError::into_inner(object)),
@@ -41,7 +41,7 @@ impl<T> Exclusive<T> {
     ///
     /// # Errors
     /// [`FlockError::InUse`] while another thread uses it.
-    pub fn write(&self) -> Result<RwLockWriteGuard<'_, T>> {
+    pub(crate) fn write(&self) -> Result<RwLockWriteGuard<'_, T>> {
         match self.object.try_write() {
             Ok(object) => Ok(object),
             Err(TryLockError::Poisoned(object)) => Ok(PoisonError::into_inner(object)),
@@ -57,7 +57,7 @@ const PATIENCE: Duration = Duration::from_millis(20);
 
 /// Work on so many boats, without the interpreter lock, that stops where a signal's handler
 /// raises: it has a thread of its own then, since Python checks signals in this one.
-pub fn interruptible<T: Send>(
+pub(crate) fn interruptible<T: Send>(
     py: Python<'_>,
     boats: usize,
     work: impl FnOnce(KeepGoing) -> Result<T> + Send,

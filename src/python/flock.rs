@@ -359,7 +359,7 @@ impl PyFlock {
 const NOTEBOOK_PIXELS: u32 = 400;
 
 /// Work between two checks of Python's signals: about 30 ms.
-pub const BOAT_SUBSTEPS_A_PIECE: u64 = 200_000;
+pub(crate) const BOAT_SUBSTEPS_A_PIECE: u64 = 200_000;
 
 /// Advances without the interpreter lock, letting Ctrl-C in between pieces that end on the substep
 /// grid; whatever stops it leaves the flock as it was before.

@@ -1,22 +1,22 @@
 //! The Python module `flockenv._core`: call, convert, return. The only place that names pyo3 and numpy.
 
-pub mod arguments;
-pub mod batch;
-pub mod contacts;
-pub mod draw;
-pub mod error;
-pub mod exclusive;
-pub mod flock;
-pub mod observation;
-pub mod order;
-pub mod parameters;
-pub mod quantities;
-pub mod recording;
-pub mod result;
-pub mod settings;
-pub mod state;
-pub mod statistics;
-pub mod structure;
+pub(crate) mod arguments;
+pub(crate) mod batch;
+pub(crate) mod contacts;
+pub(crate) mod draw;
+pub(crate) mod error;
+pub(crate) mod exclusive;
+pub(crate) mod flock;
+pub(crate) mod observation;
+pub(crate) mod order;
+pub(crate) mod parameters;
+pub(crate) mod quantities;
+pub(crate) mod recording;
+pub(crate) mod result;
+pub(crate) mod settings;
+pub(crate) mod state;
+pub(crate) mod statistics;
+pub(crate) mod structure;
 
 use pyo3::prelude::*;
 

@@ -18,7 +18,7 @@ use pyo3::types::PyDict;
 
 /// Version of the observation.
 #[pyfunction]
-pub fn observation_version() -> u32 {
+pub(crate) fn observation_version() -> u32 {
     OBSERVATION_VERSION
 }
 
@@ -51,7 +51,7 @@ fn row(block: &'static str, count: usize, entry: Entry) -> Row {
 
 /// Every entry of an observation with these blocks, in order.
 #[pyfunction]
-pub fn observation_table(blocks: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
+pub(crate) fn observation_table(blocks: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
     let entries = layout_from(blocks, false)?.entries();
     Ok(entries
         .into_iter()
@@ -61,7 +61,7 @@ pub fn observation_table(blocks: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
 
 /// Every entry of the global state of so many boats, in order.
 #[pyfunction]
-pub fn state_table(n_boats: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
+pub(crate) fn state_table(n_boats: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
     let n_boats = count(n_boats, "n_boats")?;
     if n_boats > FlockParameters::MOST_BOATS {
         let accepted = format!("0 to {}", FlockParameters::MOST_BOATS);
@@ -82,7 +82,7 @@ pub fn state_table(n_boats: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
 
 /// Every feature of a whole flock, in order.
 #[pyfunction]
-pub fn flock_feature_table() -> Vec<Row> {
+pub(crate) fn flock_feature_table() -> Vec<Row> {
     let entries = flock_feature_entries().into_iter();
     entries.map(|(block, entry)| row(block, 0, entry)).collect()
 }
@@ -92,7 +92,7 @@ type Tuned = (&'static str, &'static str, Vec<(&'static str, f64)>);
 
 /// The gains tuned for each law and pool.
 #[pyfunction]
-pub fn tuned_gains() -> Vec<Tuned> {
+pub(crate) fn tuned_gains() -> Vec<Tuned> {
     let tuned = TUNED_LAWS.iter();
     tuned
         .map(|(name, pool, law)| (*name, *pool, law.gains()))
@@ -102,7 +102,7 @@ pub fn tuned_gains() -> Vec<Tuned> {
 /// What the leaders of a flock observe now: (k, size) float32. `rudder`: as the rudders stand.
 #[pyfunction]
 #[pyo3(signature = (flock, blocks, mirror_to_target=false, rudder=None))]
-pub fn observe<'py>(
+pub(crate) fn observe<'py>(
     py: Python<'py>,
     flock: &PyFlock,
     blocks: &Bound<'py, PyAny>,
@@ -119,7 +119,7 @@ pub fn observe<'py>(
 }
 
 /// What the leaders of a flock observe, given the rudders as they stand.
-pub fn observed<'py>(
+pub(crate) fn observed<'py>(
     py: Python<'py>,
     flock: &Flock,
     layout: ObservationLayout,
@@ -236,7 +236,7 @@ fn with_levels(rudder_levels: &Bound<'_, PyAny>) -> PyResult<RudderSettings> {
 
 /// The rudders that numbers of levels stand for, of so many that an environment may have.
 #[pyfunction]
-pub fn level_rudders<'py>(
+pub(crate) fn level_rudders<'py>(
     py: Python<'py>,
     levels: PyReadonlyArray1<'py, i64>,
     rudder_levels: &Bound<'py, PyAny>,
@@ -252,7 +252,7 @@ pub fn level_rudders<'py>(
 
 /// Numbers of the levels nearest to rudders, of so many that an environment may have.
 #[pyfunction]
-pub fn nearest_levels<'py>(
+pub(crate) fn nearest_levels<'py>(
     py: Python<'py>,
     rudders: PyReadonlyArray1<'py, f64>,
     rudder_levels: &Bound<'py, PyAny>,

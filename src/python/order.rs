@@ -362,7 +362,7 @@ impl PyOrderSeries {
 
 /// Names of the collective states (Table 2; ordered motion by its direction).
 #[pyfunction]
-pub fn collective_state_names() -> Vec<&'static str> {
+pub(crate) fn collective_state_names() -> Vec<&'static str> {
     let states = CollectiveState::ALL.iter();
     states.map(|state| state.name()).collect()
 }
@@ -371,7 +371,7 @@ pub fn collective_state_names() -> Vec<&'static str> {
 ///
 /// Rows of NaN stand for boats that are not there; where too few are, quantities are NaN.
 #[pyfunction]
-pub fn order_series<'py>(
+pub(crate) fn order_series<'py>(
     py: Python<'py>,
     pose: PyReadonlyArray3<'py, f64>,
     velocity: PyReadonlyArray3<'py, f64>,

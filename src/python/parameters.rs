@@ -72,7 +72,10 @@ fn written<'py>(value: &Value, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
 }
 
 /// Every field by name, in the order of documentation.
-pub fn to_dict<'py>(py: Python<'py>, parameters: &FlockParameters) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn to_dict<'py>(
+    py: Python<'py>,
+    parameters: &FlockParameters,
+) -> PyResult<Bound<'py, PyDict>> {
     let fields = PyDict::new(py);
     for (field, value) in FlockParameters::FIELDS.iter().zip(parameters.values()) {
         fields.set_item(field.name, written(&value, py)?)?;
@@ -82,7 +85,7 @@ pub fn to_dict<'py>(py: Python<'py>, parameters: &FlockParameters) -> PyResult<B
 
 /// What is declared of each field: (name, type, unit, accepted, meaning).
 #[pyfunction]
-pub fn parameter_table() -> Vec<(&'static str, &'static str, &'static str, String, String)> {
+pub(crate) fn parameter_table() -> Vec<(&'static str, &'static str, &'static str, String, String)> {
     let fields = FlockParameters::FIELDS.iter();
     fields
         .map(|field| {
@@ -124,12 +127,12 @@ static CLASS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
 /// Names the class that parameters are handed out as, once: it takes the fields as keyword arguments.
 /// Without one they are handed out as a dict.
 #[pyfunction]
-pub fn set_parameters_class(py: Python<'_>, class: Py<PyAny>) {
+pub(crate) fn set_parameters_class(py: Python<'_>, class: Py<PyAny>) {
     CLASS.get_or_init(py, || class);
 }
 
 /// The parameters as users know them.
-pub fn to_python<'py>(
+pub(crate) fn to_python<'py>(
     py: Python<'py>,
     parameters: &FlockParameters,
 ) -> PyResult<Bound<'py, PyAny>> {
@@ -142,7 +145,7 @@ pub fn to_python<'py>(
 
 /// The fields of a preset.
 #[pyfunction]
-pub fn preset_fields<'py>(
+pub(crate) fn preset_fields<'py>(
     py: Python<'py>,
     name: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -152,7 +155,7 @@ pub fn preset_fields<'py>(
 
 /// The fields that a choice of physics sets.
 #[pyfunction]
-pub fn physics_fields<'py>(
+pub(crate) fn physics_fields<'py>(
     py: Python<'py>,
     name: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -167,13 +170,13 @@ pub fn physics_fields<'py>(
 
 /// The names of the presets.
 #[pyfunction]
-pub fn preset_names() -> Vec<&'static str> {
+pub(crate) fn preset_names() -> Vec<&'static str> {
     Preset::ALL.iter().map(|preset| preset.name()).collect()
 }
 
 /// Where each field of a preset comes from.
 #[pyfunction]
-pub fn preset_sources<'py>(
+pub(crate) fn preset_sources<'py>(
     py: Python<'py>,
     name: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -188,7 +191,7 @@ pub fn preset_sources<'py>(
 
 /// Checks an object's fields and returns them as plain Python values.
 #[pyfunction]
-pub fn checked_fields<'py>(
+pub(crate) fn checked_fields<'py>(
     py: Python<'py>,
     parameters: FlockParameters,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -198,7 +201,7 @@ pub fn checked_fields<'py>(
 
 /// The radius of gyration of parameters with a resized hull, in cm.
 #[pyfunction]
-pub fn resized_gyration_radius_cm(
+pub(crate) fn resized_gyration_radius_cm(
     parameters: FlockParameters,
     boat_radius_cm: &Bound<'_, PyAny>,
     boat_shape: &Bound<'_, PyAny>,
@@ -214,13 +217,13 @@ pub fn resized_gyration_radius_cm(
 
 /// The critical noise of a preset in a pool, or `None` where it has not been measured.
 #[pyfunction]
-pub fn critical_bw_s(preset: &str, pool: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+pub(crate) fn critical_bw_s(preset: &str, pool: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
     Ok(preset.parse::<Preset>()?.critical_bw_s(&pool_from(pool)?))
 }
 
 /// Radii of a pool in cm, outer and inner, whether it has a name or not.
 #[pyfunction]
-pub fn pool_radii_cm(pool: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
+pub(crate) fn pool_radii_cm(pool: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
     let pool = pool_from(pool)?;
     Ok((pool.outer_radius_cm, pool.inner_radius_cm))
 }

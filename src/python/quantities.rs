@@ -21,7 +21,7 @@ use pyo3::prelude::*;
 ///     "recorded": kept with every sample of a recording; "derived": follows from recorded ones and the
 ///     target direction; "structure": computed from poses on request.
 #[pyclass(name = "Quantity", module = "flockenv._core", frozen, get_all)]
-pub struct PyQuantity {
+pub(crate) struct PyQuantity {
     name: &'static str,
     label: &'static str,
     symbol: &'static str,
@@ -36,7 +36,7 @@ pub struct PyQuantity {
 
 /// The table of quantities.
 #[pyfunction]
-pub fn quantities() -> Vec<PyQuantity> {
+pub(crate) fn quantities() -> Vec<PyQuantity> {
     let entries = QUANTITIES.iter();
     entries
         .map(|each| PyQuantity {

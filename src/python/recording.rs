@@ -16,13 +16,13 @@ use pyo3::types::{PyDict, PyString};
 
 /// The phases in the order of a cycle; samples hold their place in it.
 #[pyfunction]
-pub fn phase_names() -> Vec<&'static str> {
+pub(crate) fn phase_names() -> Vec<&'static str> {
     Phase::ALL.iter().map(|phase| phase.name()).collect()
 }
 
 /// Whether each of some times (s) lies in the analysis window, by the phases then: names, shape (t,).
 #[pyfunction]
-pub fn sampled_analysis_window<'py>(
+pub(crate) fn sampled_analysis_window<'py>(
     py: Python<'py>,
     time_s: PyReadonlyArray1<'py, f64>,
     phase: Vec<String>,
@@ -38,7 +38,7 @@ pub fn sampled_analysis_window<'py>(
 /// What of a run is kept besides its states, and how precisely.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub struct RecordingOptions {
+pub(crate) struct RecordingOptions {
     single_precision: bool,
     contacts: bool,
 }
@@ -46,7 +46,7 @@ pub struct RecordingOptions {
 /// What steers at every control step: a function of the leaders' observation (k, size) that returns rudders (k,).
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub struct Control<'py> {
+pub(crate) struct Control<'py> {
     steer: Bound<'py, PyAny>,
     observation: Bound<'py, PyAny>,
     mirror_to_target: bool,
@@ -60,7 +60,7 @@ pub struct Control<'py> {
 #[pyfunction]
 #[pyo3(signature = (flock, duration_s, sample_hz, options, changes, control=None, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "as many as a run has")]
-pub fn record<'py>(
+pub(crate) fn record<'py>(
     py: Python<'py>,
     flock: &PyFlock,
     duration_s: DurationS,

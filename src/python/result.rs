@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// `Class(field=value, …)`, as a dataclass prints.
-pub fn repr_of<'py, T: IntoPyObjectExt<'py>>(
+pub(crate) fn repr_of<'py, T: IntoPyObjectExt<'py>>(
     py: Python<'py>,
     class: &str,
     fields: impl Iterator<Item = (&'static str, T)>,
@@ -19,7 +19,11 @@ pub fn repr_of<'py, T: IntoPyObjectExt<'py>>(
 }
 
 /// Whether arrays are equal in pairs; NaN equals NaN.
-pub fn arrays_equal(py: Python<'_>, mine: &[Py<PyAny>], theirs: &[Py<PyAny>]) -> PyResult<bool> {
+pub(crate) fn arrays_equal(
+    py: Python<'_>,
+    mine: &[Py<PyAny>],
+    theirs: &[Py<PyAny>],
+) -> PyResult<bool> {
     let array_equal = py.import("numpy")?.getattr("array_equal")?;
     let with_nan = PyDict::new(py);
     with_nan.set_item("equal_nan", true)?;

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
 
 /// Settings from the options that are given; the others have their defaults.
-pub fn settings_from(options: &Bound<'_, PyDict>) -> PyResult<EnvSettings> {
+pub(crate) fn settings_from(options: &Bound<'_, PyDict>) -> PyResult<EnvSettings> {
     let mut settings = EnvSettings::default();
     for (name, value) in options {
         let name = text(&name, "option")?;
@@ -47,7 +47,7 @@ fn read(
 }
 
 /// The settings as the dictionary that they would be read from.
-pub fn settings_to_dict<'py>(
+pub(crate) fn settings_to_dict<'py>(
     py: Python<'py>,
     settings: &EnvSettings,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -89,7 +89,7 @@ fn written(value: OptionValue, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
 }
 
 /// A layout from its blocks and whether it is mirrored.
-pub fn layout_from(blocks: &Bound<'_, PyAny>, mirror: bool) -> PyResult<ObservationLayout> {
+pub(crate) fn layout_from(blocks: &Bound<'_, PyAny>, mirror: bool) -> PyResult<ObservationLayout> {
     let mut layout = ObservationLayout {
         mirror_to_target: mirror,
         ..ObservationLayout::default()
@@ -141,7 +141,7 @@ fn bw_range(value: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
 }
 
 /// A whole number of at least 0.
-pub fn count(value: &Bound<'_, PyAny>, name: &'static str) -> PyResult<usize> {
+pub(crate) fn count(value: &Bound<'_, PyAny>, name: &'static str) -> PyResult<usize> {
     // Saturates on 32-bit targets, far beyond what any count may be.
     Ok(usize::try_from(whole(value, name)?).unwrap_or(usize::MAX))
 }
@@ -163,13 +163,13 @@ fn unknown(field: &'static str, name: &str, accepted: &str) -> PyErr {
 
 /// The options of environments with their defaults.
 #[pyfunction]
-pub fn env_defaults(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+pub(crate) fn env_defaults(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     settings_to_dict(py, &EnvSettings::default())
 }
 
 /// What each option of environments means, by name.
 #[pyfunction]
-pub fn env_meanings(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+pub(crate) fn env_meanings(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let meanings = PyDict::new(py);
     for option in OPTIONS {
         meanings.set_item(option.name, option.doc.trim())?;
@@ -179,13 +179,13 @@ pub fn env_meanings(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
 
 /// What an action may stand for.
 #[pyfunction]
-pub fn action_modes() -> Vec<&'static str> {
+pub(crate) fn action_modes() -> Vec<&'static str> {
     ActionMode::ALL.iter().map(|mode| mode.name()).collect()
 }
 
 /// The terms of the reward: (name, description).
 #[pyfunction]
-pub fn reward_terms() -> Vec<(&'static str, &'static str)> {
+pub(crate) fn reward_terms() -> Vec<(&'static str, &'static str)> {
     let terms = RewardTerm::ALL.iter();
     terms
         .map(|term| (term.name(), term.description()))
@@ -193,7 +193,7 @@ pub fn reward_terms() -> Vec<(&'static str, &'static str)> {
 }
 
 /// Names as Python strings, to build dictionaries with.
-pub fn term_names(py: Python<'_>) -> Vec<Bound<'_, PyString>> {
+pub(crate) fn term_names(py: Python<'_>) -> Vec<Bound<'_, PyString>> {
     let terms = RewardTerm::ALL.iter();
     terms.map(|term| PyString::new(py, term.name())).collect()
 }

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// {"pose": (n, 3), "velocity": (n, 3), "time_s": float, "allow_overlap": bool}; the pose alone will do.
-pub fn state_from(value: &Bound<'_, PyAny>, boats: usize) -> PyResult<State> {
+pub(crate) fn state_from(value: &Bound<'_, PyAny>, boats: usize) -> PyResult<State> {
     let accepted = "a dictionary with pose and, if need be, velocity, time_s and allow_overlap";
     let state = value.cast::<PyDict>();
     let state = state.map_err(|_| wrong_type(value, "state", accepted))?;
@@ -39,19 +39,19 @@ pub fn state_from(value: &Bound<'_, PyAny>, boats: usize) -> PyResult<State> {
 }
 
 /// Poses of the numbers in an array (n, 3).
-pub fn poses_of(numbers: &[f64]) -> Vec<Pose> {
+pub(crate) fn poses_of(numbers: &[f64]) -> Vec<Pose> {
     let rows = numbers.as_chunks::<3>().0.iter();
     rows.map(|&[x, y, a]| Pose::new(x, y, a)).collect()
 }
 
 /// Velocities of the numbers in an array (n, 3).
-pub fn velocities_of(numbers: &[f64]) -> Vec<Velocity> {
+pub(crate) fn velocities_of(numbers: &[f64]) -> Vec<Velocity> {
     let rows = numbers.as_chunks::<3>().0.iter();
     rows.map(|&[x, y, w]| Velocity::new(x, y, w)).collect()
 }
 
 /// Rows of three numbers as an array (n, 3).
-pub fn rows_of_three(
+pub(crate) fn rows_of_three(
     py: Python<'_>,
     rows: impl Iterator<Item = [f64; 3]>,
 ) -> PyResult<Bound<'_, PyArray2<f64>>> {

@@ -13,7 +13,7 @@ type Pairs<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
 
 /// Part of the boats in the largest cluster, at each time.
 #[pyfunction]
-pub fn largest_cluster<'py>(
+pub(crate) fn largest_cluster<'py>(
     py: Python<'py>,
     parameters: FlockParameters,
     pose: PyReadonlyArray3<'py, f64>,
@@ -26,7 +26,7 @@ pub fn largest_cluster<'py>(
 
 /// Part of the boats on the outer wall, at each time.
 #[pyfunction]
-pub fn on_outer_wall<'py>(
+pub(crate) fn on_outer_wall<'py>(
     py: Python<'py>,
     parameters: FlockParameters,
     pose: PyReadonlyArray3<'py, f64>,
@@ -39,7 +39,7 @@ pub fn on_outer_wall<'py>(
 
 /// LAP orientation φ of each boat at each time, in (-π, π].
 #[pyfunction]
-pub fn lap_orientation<'py>(
+pub(crate) fn lap_orientation<'py>(
     py: Python<'py>,
     pose: PyReadonlyArray3<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
@@ -50,7 +50,7 @@ pub fn lap_orientation<'py>(
 
 /// Pairs by distance, over all times.
 #[pyfunction]
-pub fn pair_counts<'py>(
+pub(crate) fn pair_counts<'py>(
     py: Python<'py>,
     pose: PyReadonlyArray3<'py, f64>,
     edges: PyReadonlyArray1<'py, f64>,
@@ -76,7 +76,7 @@ pub fn pair_counts<'py>(
 
 /// Mean-square displacement in cm² and heading correlation after each lag, in samples.
 #[pyfunction]
-pub fn lagged_motion<'py>(
+pub(crate) fn lagged_motion<'py>(
     py: Python<'py>,
     pose: PyReadonlyArray3<'py, f64>,
     lags: Vec<usize>,
@@ -94,14 +94,14 @@ pub fn lagged_motion<'py>(
 }
 
 /// Poses, or velocities, sample after sample.
-pub struct Samples {
+pub(crate) struct Samples {
     poses: Vec<Pose>,
     boats: usize,
 }
 
 impl Samples {
     /// Of an array of shape (t, n, 3).
-    pub fn read(array: &PyReadonlyArray3<'_, f64>, name: &'static str) -> PyResult<Self> {
+    pub(crate) fn read(array: &PyReadonlyArray3<'_, f64>, name: &'static str) -> PyResult<Self> {
         let array = array.as_array();
         let (times, boats, numbers) = array.dim();
         if numbers != 3 || boats == 0 {
@@ -123,7 +123,7 @@ impl Samples {
     }
 
     /// Refuses velocities of other times or boats than the poses.
-    pub fn check_same_shape(&self, velocities: &Self) -> PyResult<()> {
+    pub(crate) fn check_same_shape(&self, velocities: &Self) -> PyResult<()> {
         let shape = |samples: &Self| (samples.poses.len() / samples.boats, samples.boats, 3);
         if shape(self) == shape(velocities) {
             return Ok(());
@@ -148,7 +148,7 @@ impl Samples {
     }
 
     /// The poses and velocities of the boats that have both, one sample after another.
-    pub fn present_with<'a>(
+    pub(crate) fn present_with<'a>(
         &'a self,
         motions: &'a Self,
     ) -> impl Iterator<Item = (Vec<Pose>, Vec<Velocity>)> + 'a {

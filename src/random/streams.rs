@@ -7,11 +7,11 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 /// A stream's generator.
-pub type StreamRng = ChaCha8Rng;
+pub(crate) type StreamRng = ChaCha8Rng;
 
 /// The streams of a flock.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stream {
+pub(crate) enum Stream {
     /// Initial positions and headings.
     Placement,
     /// η of eq. (9).

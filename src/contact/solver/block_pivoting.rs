@@ -18,7 +18,7 @@ use std::cmp::Reverse;
 
 /// The solvers of islands.
 #[derive(Debug, Clone, Default)]
-pub struct BlockPivoting {
+pub(super) struct BlockPivoting {
     /// Added to the diagonal, relative to it, so that redundant contacts share their impulse.
     regularization: f64,
     /// Whether each island keeps its factor for another solve. Otherwise all share one solver, whose memory stays
@@ -59,7 +59,7 @@ const SHARED_CONTACTS: usize = 128;
 
 impl BlockPivoting {
     /// A solver with a relative regularization.
-    pub fn new(regularization: f64) -> Self {
+    pub(super) fn new(regularization: f64) -> Self {
         Self {
             regularization,
             workers: vec![Worker::default()],
@@ -68,12 +68,12 @@ impl BlockPivoting {
     }
 
     /// Has islands shared out to so many threads.
-    pub fn set_threads(&mut self, threads: usize) {
+    pub(crate) fn set_threads(&mut self, threads: usize) {
         self.workers.resize_with(threads.max(1), Worker::default);
     }
 
     /// Forgets the factors; so many islands of so many boats come next.
-    pub fn reset(&mut self, boats: usize, islands: usize) {
+    pub(super) fn reset(&mut self, boats: usize, islands: usize) {
         let solvers = if self.keeps_factors { islands } else { 1 };
         if self.islands.len() < solvers {
             self.islands.resize_with(solvers, IslandSolver::default);
@@ -87,7 +87,7 @@ impl BlockPivoting {
     }
 
     /// Solves all islands.
-    pub fn solve(
+    pub(super) fn solve(
         &mut self,
         problem: &ContactProblem,
         islands: &Islands,

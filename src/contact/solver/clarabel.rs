@@ -12,7 +12,7 @@ use crate::geometry::Velocity;
 const GOOD: f64 = 1e-3;
 
 /// Solves min ½ dᵀ·M·d over d = v − v_free with −J·d ≤ J·v_free + bound.
-pub fn solve(
+pub(super) fn solve(
     problem: &ContactProblem,
     impulses: &mut [f64],
     velocities: &mut Vec<Velocity>,

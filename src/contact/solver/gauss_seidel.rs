@@ -10,7 +10,7 @@ const MOST_SWEEPS: u64 = 20_000;
 const SWEEPS_BETWEEN_CHECKS: u64 = 10;
 
 /// Solves by sweeping, from the impulses given.
-pub fn solve(
+pub(super) fn solve(
     problem: &ContactProblem,
     impulses: &mut [f64],
     velocities: &mut Vec<Velocity>,

@@ -49,7 +49,7 @@ impl CameraSettings {
 
 /// Poses and velocities as seen in one frame.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
-pub struct Frame {
+pub(crate) struct Frame {
     /// Poses of all boats.
     pub poses: Vec<Pose>,
     /// Velocities of all boats.
@@ -65,7 +65,7 @@ impl Frame {
 
 /// The frames of one episode.
 #[derive(Debug, Clone)]
-pub struct Camera {
+pub(crate) struct Camera {
     settings: CameraSettings,
     rng: StreamRng,
     frame: u64,
@@ -76,11 +76,11 @@ pub struct Camera {
 }
 
 /// What a camera holds, to be stored.
-pub type CameraState = (u64, Frame, Frame);
+pub(crate) type CameraState = (u64, Frame, Frame);
 
 impl Camera {
     /// A camera that sees the whole flock in its first frame.
-    pub fn new(
+    pub(crate) fn new(
         settings: CameraSettings,
         seed: u64,
         leaders: usize,
@@ -135,7 +135,7 @@ impl Camera {
     }
 
     /// The frame that leaders see now.
-    pub fn seen(&self) -> &Frame {
+    pub(crate) fn seen(&self) -> &Frame {
         if self.settings.delay_frames > 0 {
             &self.before
         } else {
@@ -144,17 +144,17 @@ impl Camera {
     }
 
     /// Direction vectors of the frame that leaders see.
-    pub fn hulls(&self) -> &[HullPose] {
+    pub(crate) fn hulls(&self) -> &[HullPose] {
         &self.hulls
     }
 
     /// Order parameters of that frame.
-    pub fn order(&self) -> Option<&OrderParameters> {
+    pub(crate) fn order(&self) -> Option<&OrderParameters> {
         self.order.as_ref()
     }
 
     /// Whether a stored state is one of a camera on so many boats.
-    pub fn fits((_, now, before): &CameraState, boats: usize) -> bool {
+    pub(crate) fn fits((_, now, before): &CameraState, boats: usize) -> bool {
         [now, before].into_iter().all(|frame| {
             frame.poses.len() == boats
                 && frame.velocities.len() == boats
@@ -164,12 +164,12 @@ impl Camera {
     }
 
     /// The frames, to be stored.
-    pub fn state(&self) -> CameraState {
+    pub(crate) fn state(&self) -> CameraState {
         (self.frame, self.now.clone(), self.before.clone())
     }
 
     /// Puts back what [`Self::state`] gave, for as many boats.
-    pub fn set_state(&mut self, state: CameraState, leaders: usize) {
+    pub(crate) fn set_state(&mut self, state: CameraState, leaders: usize) {
         (self.frame, self.now, self.before) = state;
         self.develop(leaders);
     }

@@ -133,7 +133,7 @@ const SEVERAL: (f64, f64) = (-40.0, 40.0);
 
 /// The leader itself.
 #[rustfmt::skip]
-pub const OWN: [Entry; 8] = [
+pub(super) const OWN: [Entry; 8] = [
     Entry::new("radial_position", "cm", Scale::Radial, (-1.1, 1.1), "distance from the pool's center"),
     Entry::new("cos_orientation", "", Scale::Plain, UNIT, "cosine of the LAP orientation: 1 heads at the outer wall"),
     Entry::new("sin_orientation", "", Scale::Plain, UNIT, "sine of the LAP orientation: 1 heads clockwise").odd(),
@@ -146,7 +146,7 @@ pub const OWN: [Entry; 8] = [
 
 /// Where in the cycle the flock is.
 #[rustfmt::skip]
-pub const PHASE: [Entry; 6] = [
+pub(super) const PHASE: [Entry; 6] = [
     Entry::new("fw", "", Scale::Plain, FLAG, "1 in the forward phase"),
     Entry::new("nop1", "", Scale::Plain, FLAG, "1 in the drift after it"),
     Entry::new("bw", "", Scale::Plain, FLAG, "1 in the backward phase"),
@@ -157,13 +157,13 @@ pub const PHASE: [Entry; 6] = [
 
 /// The direction to lead in.
 #[rustfmt::skip]
-pub const TARGET: [Entry; 1] = [
+pub(super) const TARGET: [Entry; 1] = [
     Entry::new("target", "", Scale::Plain, UNIT, "+1 clockwise, -1 counter-clockwise").odd(),
 ];
 
 /// One neighbor; all zero where there are fewer boats than places.
 #[rustfmt::skip]
-pub const NEIGHBOR: [Entry; 8] = [
+pub(super) const NEIGHBOR: [Entry; 8] = [
     Entry::new("present", "", Scale::Plain, FLAG, "1 where there is such a neighbor"),
     Entry::new("outward_distance", "cm", Scale::Length, (-4.0, 4.0), "its center, seen from the leader along the leader's outward axis"),
     Entry::new("clockwise_distance", "cm", Scale::Length, (-4.0, 4.0), "the same along the leader's clockwise axis").odd(),
@@ -176,7 +176,7 @@ pub const NEIGHBOR: [Entry; 8] = [
 
 /// Order parameters of the normal boats, as vectors in LAP axes.
 #[rustfmt::skip]
-pub const ORDER: [Entry; 4] = [
+pub(super) const ORDER: [Entry; 4] = [
     Entry::new("mean_cos_orientation", "", Scale::Plain, UNIT, "mean orientation, outward part: psi_o*cos(phi_o)"),
     Entry::new("mean_sin_orientation", "", Scale::Plain, UNIT, "mean orientation, clockwise part: psi_o*sin(phi_o)").odd(),
     Entry::new("mean_outward_velocity", "cm/s", Scale::Speed, TWICE, "mean velocity, outward part: psi_v*cos(phi_v)"),
@@ -185,7 +185,7 @@ pub const ORDER: [Entry; 4] = [
 
 /// What the tuned law would do.
 #[rustfmt::skip]
-pub const LAW_RUDDER: [Entry; 1] = [
+pub(super) const LAW_RUDDER: [Entry; 1] = [
     Entry::new("law_rudder", "", Scale::Plain, UNIT, "rudder of the pool's tuned damped law, which reads what the leader sees of itself").odd(),
 ];
 
@@ -206,12 +206,12 @@ pub const BOAT: [Entry; 10] = [
 
 /// The rest of the global state besides the boats, the phase and the target.
 #[rustfmt::skip]
-pub const CLOCK: [Entry; 1] =
+pub(super) const CLOCK: [Entry; 1] =
     [Entry::new("episode_elapsed", "", Scale::Plain, FLAG, "part of the episode that is over")];
 
 /// Means over a group of boats, in the frame of the target.
 #[rustfmt::skip]
-pub const GROUP: [Entry; 24] = [
+pub(super) const GROUP: [Entry; 24] = [
     Entry::new("radial_position", "", Scale::Plain, (-1.1, 1.1), "mean radial position r, scaled as that of a leader"),
     Entry::new("radial_position_squared", "", Scale::Plain, (0.0, 1.21), "mean r^2"),
     Entry::new("outward", "", Scale::Plain, UNIT, "mean cosine of the LAP orientation"),
@@ -240,7 +240,7 @@ pub const GROUP: [Entry; 24] = [
 
 /// Means over the leaders of sums over the normal boats, each with exp(-d²/2) of its distance in 6 boat radii.
 #[rustfmt::skip]
-pub const NEAR_LEADERS: [Entry; 4] = [
+pub(super) const NEAR_LEADERS: [Entry; 4] = [
     Entry::new("near", "", Scale::Plain, SEVERAL, "mean over leaders of the sum over normal boats of the weight exp(-d^2/2), d their distance over 6 boat radii"),
     Entry::new("near_outward", "", Scale::Plain, SEVERAL, "the same of the weight times the cosine of the LAP orientation"),
     Entry::new("near_ahead", "", Scale::Plain, SEVERAL, "the same of the weight times the cosine of the angle to the target's tangent"),

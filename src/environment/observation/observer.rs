@@ -150,7 +150,7 @@ fn order(view: &FlockView) -> [f64; ORDER.len()] {
 
 /// Writes the global state of one flock, for critics that see everything.
 #[derive(Debug, Clone)]
-pub struct StateObserver {
+pub(crate) struct StateObserver {
     boats: usize,
     boat: Scaling,
     rest: Scaling,
@@ -159,7 +159,7 @@ pub struct StateObserver {
 
 impl StateObserver {
     /// For checked parameters; mirrored like the observations.
-    pub fn new(parameters: &FlockParameters, mirror_to_target: bool) -> Self {
+    pub(crate) fn new(parameters: &FlockParameters, mirror_to_target: bool) -> Self {
         let rest = state_entries(0).into_iter();
         Self {
             boats: parameters.n_boats,
@@ -170,12 +170,12 @@ impl StateObserver {
     }
 
     /// How many numbers there are.
-    pub fn size(&self) -> usize {
+    pub(crate) fn size(&self) -> usize {
         self.boats * self.boat.len() + self.rest.len()
     }
 
     /// Writes the state; `elapsed` is the part of the episode that is over.
-    pub fn observe(&self, view: &FlockView, elapsed: f64, out: &mut [f32]) {
+    pub(crate) fn observe(&self, view: &FlockView, elapsed: f64, out: &mut [f32]) {
         let mirrored = self.mirror_to_target && view.target.sign() < 0.0;
         let (boats, rest) = out.split_at_mut(self.boats * self.boat.len());
         for (boat, row) in boats.chunks_exact_mut(self.boat.len()).enumerate() {

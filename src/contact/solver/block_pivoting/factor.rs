@@ -69,7 +69,7 @@ const NO_ROW: Chain = Chain {
 
 /// The factor of one island.
 #[derive(Debug, Clone, Default)]
-pub struct Factor {
+pub(super) struct Factor {
     nodes: Vec<Node>,
     entries: Vec<Entry>,
     /// How many entries are in use.
@@ -84,7 +84,7 @@ pub struct Factor {
 
 impl Factor {
     /// The factor of no row, of an island with so many rows.
-    pub fn reset(&mut self, rows: usize) {
+    pub(super) fn reset(&mut self, rows: usize) {
         self.nodes.clear();
         self.nodes.resize(rows, EMPTY);
         self.used = 0;
@@ -95,19 +95,19 @@ impl Factor {
     }
 
     /// How many numbers the factor of the active rows holds.
-    pub fn len(&self) -> u64 {
+    pub(super) fn len(&self) -> u64 {
         let rows = self.active.iter().map(|&k| &self.nodes[k as usize]);
         rows.map(|node| u64::from(node.count) + 1).sum()
     }
 
     /// Takes note that rows have entered or left the active ones.
-    pub fn set_stale(&mut self) {
+    pub(super) fn set_stale(&mut self) {
         self.is_stale = true;
     }
 
     /// Computes the rows that have changed; returns how many. `regularization` is added to the diagonal, relative to
     /// it.
-    pub fn update(&mut self, rows: &Rows, regularization: f64) -> u64 {
+    pub(super) fn update(&mut self, rows: &Rows, regularization: f64) -> u64 {
         if !std::mem::take(&mut self.is_stale) {
             return 0;
         }
@@ -237,7 +237,7 @@ impl Factor {
     }
 
     /// Solves A_FF·x = x in place, for active rows; others hold zeros, and there is one more place at the end.
-    pub fn solve(&self, x: &mut [f64]) {
+    pub(super) fn solve(&self, x: &mut [f64]) {
         x[self.nodes.len()] = 0.0;
         for &k in &self.active {
             let row = row_of(&self.entries, &self.nodes[k as usize]);

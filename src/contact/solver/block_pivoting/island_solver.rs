@@ -17,7 +17,7 @@ const SWEEPS: u32 = 2;
 
 /// One island with its factor.
 #[derive(Debug, Clone, Default)]
-pub struct IslandSolver {
+pub(super) struct IslandSolver {
     pub rows: Rows,
     pub factor: Factor,
     /// Whether the rows are those of the contacts at hand.
@@ -33,7 +33,7 @@ pub struct IslandSolver {
 
 impl IslandSolver {
     /// Lays out the rows of some contacts, unless they are.
-    pub fn build(
+    pub(super) fn build(
         &mut self,
         problem: &ContactProblem,
         contacts: &[u32],
@@ -57,7 +57,7 @@ impl IslandSolver {
     }
 
     /// Takes on biases, free velocities and right-hand sides.
-    pub fn set_right(&mut self, problem: &ContactProblem, rights: &[f64]) {
+    pub(super) fn set_right(&mut self, problem: &ContactProblem, rights: &[f64]) {
         for body in &mut self.rows.bodies {
             if let Some(free) = problem.free.get(body.boat as usize) {
                 body.free = [free.linear.x, free.linear.y, free.angular];
@@ -70,7 +70,7 @@ impl IslandSolver {
     }
 
     /// Solves for impulses and velocities.
-    pub fn solve(&mut self, regularization: f64, report: &mut SolveReport) {
+    pub(super) fn solve(&mut self, regularization: f64, report: &mut SolveReport) {
         if std::mem::take(&mut self.is_guess_old) && self.rows.rows.len() > SWEPT_ROWS {
             self.rows.sweep(SWEEPS);
         }
@@ -102,13 +102,13 @@ impl IslandSolver {
     }
 
     /// The contacts, whether they are active, and their impulses.
-    pub fn solution(&self) -> impl Iterator<Item = (u32, bool, f64)> {
+    pub(crate) fn solution(&self) -> impl Iterator<Item = (u32, bool, f64)> {
         let rows = self.rows.rows.iter();
         rows.map(|row| (row.contact, row.is_active, row.impulse))
     }
 
     /// The boats and their velocities.
-    pub fn velocities(&self) -> impl Iterator<Item = (u32, Velocity)> {
+    pub(crate) fn velocities(&self) -> impl Iterator<Item = (u32, Velocity)> {
         // The first body is the walls.
         self.rows.bodies[1..].iter().map(|body| {
             let [x, y, angular] = body.velocity;

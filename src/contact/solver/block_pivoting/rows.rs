@@ -3,20 +3,20 @@
 use crate::contact::{ContactProblem, InverseInertia};
 
 /// Signs are judged with this tolerance in cm/s, well below [`EXACT`](crate::contact::solver::EXACT).
-pub const TOLERANCE: f64 = 1e-11;
+pub(super) const TOLERANCE: f64 = 1e-11;
 
 /// No row.
-pub const NONE: u32 = u32::MAX;
+pub(super) const NONE: u32 = u32::MAX;
 /// The place of the walls among an island's bodies: at rest, and nothing moves them.
-pub const WALLS: u32 = 0;
+pub(super) const WALLS: u32 = 0;
 
 /// Linear and angular parts of a row of J, or of a velocity.
-pub type Motion = [f64; 3];
+pub(super) type Motion = [f64; 3];
 
 /// One row of J and of J·M⁻¹, with its part of the solution. A contact with a wall has the walls as its
 /// second body, so that all rows look alike.
 #[derive(Debug, Clone, Copy)]
-pub struct Row {
+pub(super) struct Row {
     /// The contact it belongs to.
     pub contact: u32,
     /// Its bodies, by their place in the island.
@@ -40,7 +40,7 @@ pub struct Row {
 
 /// A boat of an island.
 #[derive(Debug, Clone, Copy)]
-pub struct Body {
+pub(super) struct Body {
     /// Its number in the flock; none for the walls.
     pub boat: u32,
     /// Its velocity without contacts, and with.
@@ -97,7 +97,7 @@ impl Row {
 
     /// A_kl of two rows through a body that is on these sides of them.
     #[inline]
-    pub fn coupling(&self, side: usize, other: &Self, other_side: usize) -> f64 {
+    pub(super) fn coupling(&self, side: usize, other: &Self, other_side: usize) -> f64 {
         dot(&self.response[side], &other.jacobian[other_side])
     }
 
@@ -118,7 +118,7 @@ impl Row {
 
     /// Whether the contact pulls, or overlaps although it carries nothing.
     #[inline]
-    pub fn is_violated(&self) -> bool {
+    pub(super) fn is_violated(&self) -> bool {
         let value = if self.is_active {
             self.impulse * self.diagonal
         } else {
@@ -129,7 +129,7 @@ impl Row {
 
     /// w_k = J_k·v + bias_k.
     #[inline]
-    pub fn slack(&self, bodies: &[Body]) -> f64 {
+    pub(super) fn slack(&self, bodies: &[Body]) -> f64 {
         dot(&self.jacobian[0], &bodies[self.bodies[0] as usize].velocity)
             + dot(&self.jacobian[1], &bodies[self.bodies[1] as usize].velocity)
             + self.bias
@@ -138,14 +138,14 @@ impl Row {
 
 /// The rows and bodies of one island.
 #[derive(Debug, Clone, Default)]
-pub struct Rows {
+pub(super) struct Rows {
     pub rows: Vec<Row>,
     pub bodies: Vec<Body>,
 }
 
 impl Rows {
     /// Lays out the rows of some contacts. `places` is scratch space, [`NONE`] for every boat.
-    pub fn build(&mut self, problem: &ContactProblem, contacts: &[u32], places: &mut [u32]) {
+    pub(super) fn build(&mut self, problem: &ContactProblem, contacts: &[u32], places: &mut [u32]) {
         self.bodies.clear();
         self.bodies.push(Body::WALLS);
         self.rows.resize(contacts.len(), Row::EMPTY);
@@ -185,7 +185,7 @@ impl Rows {
 
     /// Guesses which rows are active: those that push after sweeps of projected Gauss–Seidel, from the impulses at
     /// hand. Most of what one substep changes is local, so that two sweeps find it.
-    pub fn sweep(&mut self, sweeps: u32) {
+    pub(super) fn sweep(&mut self, sweeps: u32) {
         self.set_velocities();
         let Self { rows, bodies } = self;
         for _ in 0..sweeps {
@@ -210,7 +210,7 @@ impl Rows {
 
     /// Brings velocities and slacks up to date with the impulses; returns how many signs are wrong, and the
     /// largest slack of an active row.
-    pub fn update(&mut self) -> (usize, f64) {
+    pub(super) fn update(&mut self) -> (usize, f64) {
         self.set_velocities();
         let (mut violations, mut worst) = (0, 0.0_f64);
         for row in &mut self.rows {
