@@ -1,6 +1,28 @@
 //! Flocks of radio-controlled boats in an annular pool, aligning through frictionless, perfectly
 //! inelastic collisions alone, with a few steerable leaders among them (Tarcai et al. 2011).
 //!
+//! # Example
+//! Three of 27 boats steer by the paper's law for ten seconds:
+//!
+//! ```
+//! use flockenv::flock::Flock;
+//! use flockenv::parameters::{FlockParameters, Preset};
+//!
+//! let parameters = FlockParameters {
+//!     n_boats: 27,
+//!     n_leaders: 3,
+//!     ..FlockParameters::preset(Preset::Simulation)
+//! };
+//! let mut flock = Flock::new(parameters, 7)?;
+//! flock.advance(10.0, None)?;
+//! let order = flock.order_parameters(false)?;
+//! println!("{} s: polarization {:.2}", flock.time_s(), order.psi_o);
+//! # assert!((0.0..=1.0).contains(&order.psi_o));
+//! # Ok::<(), flockenv::FlockError>(())
+//! ```
+//!
+//! The folder `examples` has self-propelled rods in a dish, a steering law of one's own, and a batch of environments.
+//!
 //! # Flow
 //! [`parameters`] → [`geometry`] → [`boat`] → [`contact`] → [`integrator`] → [`flock`] → [`environment`] →
 //! policy (Python). What is measured stands in [`analysis`], pictures in `draw`.
