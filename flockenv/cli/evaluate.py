@@ -13,6 +13,7 @@ from flockenv.cli.console import console, finished_in, print_json, progress_bar,
 from flockenv.cli.output import check_folder, keep, printable, refuse_overwriting
 from flockenv.cli.parameters import ChangesOption, FileOption, PresetOption, TrustOption
 from flockenv.cli.pools import PoolOption, compared_flocks, pool_name
+from flockenv.cli.suite import evaluate_suite, refuse_altered
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 
@@ -51,11 +52,20 @@ def evaluate(
     dropout_rate: Annotated[
         float, typer.Option(help="Chance that the camera does not see a boat in a frame.")
     ] = 0.0,
-    episodes: Annotated[int, typer.Option(min=2, help="Seeds for each case.")] = 512,
+    episodes: Annotated[int | None, typer.Option(min=2, help="Seeds for each case. [512]")] = None,
     minutes: Annotated[
         float | None, typer.Option(min=0.0, help="Length of an episode. [8; 16 with --alternate]")
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="First seed.")] = 0,
+    suite: Annotated[
+        str | None, typer.Option(help="Score the policy on the frozen tasks of a suite: v1.")
+    ] = None,
+    task: Annotated[
+        list[str] | None, typer.Option(help="Of the suite, one task, repeatable. [every task]")
+    ] = None,
+    flock_hours: Annotated[
+        float | None, typer.Option(help="With --suite: what making the policy has simulated.")
+    ] = None,
     out: Annotated[Path, typer.Option(help="Folder for tables, pictures and the card.")] = Path(
         "results/evaluate"
     ),
@@ -68,8 +78,36 @@ def evaluate(
     Writes `card.md` and, for each pool and backward duration, a folder with tables, picture,
     `run.toml` and the exact parameters, as `flockenv compare` does.
 
+    With `--suite v1` the policy is scored on frozen tasks instead, and the options of flocks and
+    episodes are refused.
+
     Example: `flockenv evaluate learned --pool table-1 --leaders 3`
     """
+    if suite is not None:
+        altered: dict[str, object] = {
+            "--against": against,
+            "--pool": pool,
+            "--preset": preset,
+            "--params": params,
+            "--set": changes,
+            "--leaders": leaders,
+            "--bw-s": bw_s,
+            "--alternate": alternate,
+            "--dropout-rate": dropout_rate,
+            "--episodes": episodes,
+            "--minutes": minutes,
+            "--seed": seed,
+        }
+        refuse_altered(suite, altered)
+        names = task or []
+        evaluate_suite(
+            policy, suite, names, flock_hours, out, trust=trust, as_json=as_json, quiet=quiet
+        )
+        return
+    for option, value in (("--task", task), ("--flock-hours", flock_hours)):
+        if value is not None:
+            raise ParameterError(f"{option} is not accepted without --suite")
+
     from flockenv.comparison.model_card import model_card
     from flockenv.comparison.report import ComparisonReport, report
     from flockenv.policies.registry import FILES, POOL_POLICIES, named_policy
@@ -86,7 +124,8 @@ def evaluate(
         options["target"] = "alternate"
     duration_s = 60.0 * (minutes if minutes is not None else 16.0 if alternate else 8.0)
     numbers = sorted(set(leaders or (1, 2, 3, 4)))
-    seeds = range(seed, seed + episodes)
+    count = 512 if episodes is None else episodes
+    seeds = range(seed, seed + count)
     found = _by_folder(compared_flocks(preset, params, changes, pool, bw_s))
     pools = {each.pool for each in found.values()}
     if policy in POOL_POLICIES and len(pools) > 1:
@@ -101,8 +140,8 @@ def evaluate(
     refuse_overwriting(params, "--params", [out / each / "parameters.toml" for each in found])
     results: dict[str, ComparisonReport] = {}
     with finished_in(out, results), progress_bar(quiet or as_json) as progress:
-        work = len(found) * len(numbers) * len(named) * episodes * duration_s
-        task = progress.add_task("simulating", total=work)
+        work = len(found) * len(numbers) * len(named) * count * duration_s
+        bar = progress.add_task("simulating", total=work)
         for folder, parameters in found.items():
             result = report(
                 parameters,
@@ -110,7 +149,7 @@ def evaluate(
                 policies[parameters.pool],
                 seeds,
                 duration_s,
-                lambda seconds: progress.advance(task, seconds),
+                lambda seconds: progress.advance(bar, seconds),
                 options,
             )
             keep(out / folder, result.write)
