@@ -17,6 +17,7 @@ from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from flockenv._io.atomic_write import atomic_write
+from flockenv._io.interrupts import interrupt_held
 from flockenv.errors import ParameterError
 
 __all__ = ["is_special", "read_arrays", "write_arrays"]
@@ -33,13 +34,15 @@ def write_arrays(
 ) -> None:
     """Write arrays to a file, by way of a temporary file beside it that is then renamed.
 
+    A Ctrl-C acts when the file is written.
+
     Raises
     ------
     OSError
         If the file cannot be written; what was there before is still there.
     """
     save = np.savez_compressed if compressed else np.savez
-    with atomic_write(path) as file:
+    with interrupt_held(), atomic_write(path) as file:
         save(file, allow_pickle=False, **dict(arrays))
         if compressed and _inflates(sum(array.nbytes for array in arrays.values()), file.tell()):
             # Constants compress beyond what is read again.

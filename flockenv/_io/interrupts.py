@@ -5,8 +5,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from threading import current_thread, main_thread
 from types import FrameType
+from typing import Any
 
-__all__ = ["on_interrupt"]
+__all__ = ["interrupt_held", "on_interrupt"]
 
 
 @contextmanager
@@ -32,3 +33,33 @@ def on_interrupt(
         yield
     finally:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@contextmanager
+def interrupt_held() -> Iterator[None]:
+    """Hold a Ctrl-C back until the end of a `with` block; a second one acts at once.
+
+    Packages that an exception cuts off anywhere raise others instead, as `zipfile` does amid an
+    entry, and the Ctrl-C would be lost. Nothing changes outside of the main thread.
+    """
+    handler = signal.getsignal(signal.SIGINT)
+    if not callable(handler) or current_thread() is not main_thread():
+        yield
+        return
+    held: list[tuple[int, FrameType | None]] = []
+
+    def hold(*arrived: Any) -> None:
+        held.append(arrived)
+        if len(held) > 1:
+            held.clear()
+            signal.signal(signal.SIGINT, handler)
+            handler(*arrived)
+
+    signal.signal(signal.SIGINT, hold)
+    try:
+        yield
+    finally:
+        if signal.getsignal(signal.SIGINT) is hold:
+            signal.signal(signal.SIGINT, handler)
+        if held:
+            handler(*held[0])
