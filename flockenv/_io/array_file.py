@@ -17,7 +17,7 @@ from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from flockenv._io.atomic_write import atomic_write
-from flockenv._io.interrupts import interrupt_held
+from flockenv._io.interrupts import held_interrupts
 from flockenv.errors import ParameterError
 
 __all__ = ["is_special", "read_arrays", "write_arrays"]
@@ -42,7 +42,7 @@ def write_arrays(
         If the file cannot be written; what was there before is still there.
     """
     save = np.savez_compressed if compressed else np.savez
-    with interrupt_held(), atomic_write(path) as file:
+    with held_interrupts(), atomic_write(path) as file:
         save(file, allow_pickle=False, **dict(arrays))
         if compressed and _inflates(sum(array.nbytes for array in arrays.values()), file.tell()):
             # Constants compress beyond what is read again.

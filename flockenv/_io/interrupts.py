@@ -7,7 +7,7 @@ from threading import current_thread, main_thread
 from types import FrameType
 from typing import Any
 
-__all__ = ["interrupt_held", "on_interrupt"]
+__all__ = ["held_interrupts", "on_interrupt"]
 
 
 @contextmanager
@@ -36,30 +36,46 @@ def on_interrupt(
 
 
 @contextmanager
-def interrupt_held() -> Iterator[None]:
-    """Hold a Ctrl-C back until the end of a `with` block; a second one acts at once.
+def held_interrupts() -> Iterator[Callable[[], None]]:
+    """Hold back a Ctrl-C within a `with` block; it acts at the block's end, a second one at once.
 
-    Packages that an exception cuts off anywhere raise others instead, as `zipfile` does amid an
-    entry, and the Ctrl-C would be lost. Nothing changes outside of the main thread.
+    Packages do not expect one everywhere: amid an entry of an archive `zipfile` raises a ValueError
+    in its place, one in the middle of tensorboard's writing leaves a queue whose closing waits for
+    ever, and one in torch's backward pass leaves gradients off. Nothing changes outside of the main
+    thread, nor where somebody ignores Ctrl-C. An error within the block takes the Ctrl-C's place.
+
+    Yields
+    ------
+    Callable
+        Lets what is held back act, if anything: for places within the block that can be left.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        At the end of the block, if one was held back.
     """
     handler = signal.getsignal(signal.SIGINT)
     if not callable(handler) or current_thread() is not main_thread():
-        yield
+        yield lambda: None
         return
-    held: list[tuple[int, FrameType | None]] = []
+    held: list[Any] = []
 
     def hold(*arrived: Any) -> None:
-        held.append(arrived)
-        if len(held) > 1:
+        if held:
             held.clear()
             signal.signal(signal.SIGINT, handler)
             handler(*arrived)
+        held.append(arrived)
+
+    def release() -> None:
+        if held:
+            signal.signal(signal.SIGINT, handler)
+            handler(*held.pop())
 
     signal.signal(signal.SIGINT, hold)
     try:
-        yield
+        yield release
     finally:
         if signal.getsignal(signal.SIGINT) is hold:
             signal.signal(signal.SIGINT, handler)
-        if held:
-            handler(*held[0])
+    release()

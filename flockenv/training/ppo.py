@@ -14,6 +14,7 @@ from stable_baselines3.common.logger import KVWriter, Logger, TensorBoardOutputF
 from stable_baselines3.common.utils import FloatSchedule
 
 from flockenv._io.atomic_write import write_text
+from flockenv._io.interrupts import held_interrupts
 from flockenv._io.locks import held
 from flockenv._io.provenance import provenance_of
 from flockenv.errors import ParameterError
@@ -22,7 +23,6 @@ from flockenv.training import checkpoint
 from flockenv.training.actor import copy_into_actor, network_policy, one_thread
 from flockenv.training.checkpoint import LEARNED, Progress
 from flockenv.training.cloning import initial_policy
-from flockenv.training.interrupts import held_interrupts
 from flockenv.training.learner import Watch, actor_of, learner
 from flockenv.training.rollback_point import RollbackPoint
 from flockenv.training.settings import TrainingError, TrainingSettings

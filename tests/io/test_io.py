@@ -16,7 +16,6 @@ from flockenv import FlockError, FlockParameters, InUseError, ParameterError, Re
 from flockenv._io import array_file
 from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv._io.atomic_write import atomic_write, write_text
-from flockenv._io.interrupts import interrupt_held
 from flockenv._io.locks import held
 from flockenv._io.toml import read_toml_file
 from flockenv.policies import load
@@ -172,30 +171,3 @@ def test_an_interrupt_waits_for_the_file_that_is_being_written(tmp_path, monkeyp
     assert read_arrays(path)["x"].tolist() == [0, 1, 2]
     assert list(tmp_path.iterdir()) == [path]
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
-
-
-def test_a_second_interrupt_does_not_wait():
-    reached = []
-
-    def interrupted():
-        with interrupt_held():
-            signal.raise_signal(signal.SIGINT)
-            reached.append("first")
-            signal.raise_signal(signal.SIGINT)
-            reached.append("second")
-
-    with pytest.raises(KeyboardInterrupt):
-        interrupted()
-    assert reached == ["first"]
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
-
-
-def test_an_error_while_an_interrupt_waits_is_shown_with_it():
-    def failing():
-        with interrupt_held():
-            signal.raise_signal(signal.SIGINT)
-            raise OSError("no space")
-
-    with pytest.raises(KeyboardInterrupt) as raised:
-        failing()
-    assert isinstance(raised.value.__context__, OSError)
