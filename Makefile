@@ -266,8 +266,9 @@ $(STAMPS)/peers: benches/peers/requirements.txt | $(STAMPS)/venv
 	$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check -r benches/peers/requirements.txt
 	@touch $@
 
-# An install from elsewhere, such as `pip install .` in this .venv, takes the place of the editable one.
-ifeq ($(shell grep -lxF "$(CURDIR)" $(VENV)/lib/python3*/site-packages/flockenv.pth 2> /dev/null),)
+# An install from elsewhere, such as `pip install .` in this .venv, takes the place of the editable one; and
+# `git clean` removes what was compiled.
+ifeq ($(and $(wildcard flockenv/_core.*.so flockenv/_core.*.pyd),$(shell grep -lxF "$(CURDIR)" $(VENV)/lib/python3*/site-packages/flockenv.pth 2> /dev/null)),)
 .PHONY: $(STAMPS)/core
 endif
 

@@ -1,4 +1,5 @@
-"""Law: `make build` builds again where another install took the place of this folder's own."""
+"""Law: `make build` builds again where another install took the place of this folder's own, and
+where what was compiled is gone."""
 
 import shutil
 import subprocess
@@ -15,7 +16,7 @@ def clone(tmp_path: Path) -> Path:
     """A folder in which everything is built, as far as make can see."""
     for name in ("Makefile", "pyproject.toml", "requirements-excluded.txt"):
         shutil.copy(REPOSITORY / name, tmp_path)
-    for name in ("Cargo.toml", "Cargo.lock", "src/lib.rs"):
+    for name in ("Cargo.toml", "Cargo.lock", "src/lib.rs", "flockenv/_core.abi3.so"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).touch()
     packages = tmp_path / ".venv" / "lib" / "python3.11" / "site-packages"
@@ -38,6 +39,11 @@ def builds(clone: Path) -> bool:
 
 def test_what_is_built_stays(clone: Path) -> None:
     assert not builds(clone)
+
+
+def test_what_was_removed_is_built_again(clone: Path) -> None:
+    (clone / "flockenv" / "_core.abi3.so").unlink()
+    assert builds(clone)
 
 
 def test_an_install_that_is_not_editable_is_replaced(clone: Path) -> None:
