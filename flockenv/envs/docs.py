@@ -68,12 +68,17 @@ entries are left out."""
 
 _HISTORY = f"- v0, observation version {OBSERVATION_VERSION}: initial version."
 
+# Those that are off by default, too.
+_EVERY_BLOCK = {
+    block: True for block, repeats in _core.env_defaults()["observation"].items() if not repeats
+}
+
 _SHARED = {
     "task": _TASK,
     "start": _FIRST,
     "rudder": _RUDDER,
     "frame": _FRAME,
-    "observation_table": observation_table(observation_entries({"law_rudder": True})),
+    "observation_table": observation_table(observation_entries(_EVERY_BLOCK)),
     "state_table": observation_table(state_entries(1)),
     "flock_feature_table": feature_table(flock_feature_entries()),
     "flock_feature_count": str(len(flock_feature_entries())),
