@@ -52,13 +52,13 @@ def evaluate_suite(
     policies = {task.name: named_policy(policy, task.pool, trust=trust) for task in tasks}
     steering = {task.name: str(as_policy(policies[task.name]())) for task in tasks}
     check_folder(out)
-    episodes: dict[str, Any] = {}
+    episodes: list[tuple[Task, Any]] = []
     scores: dict[str, Score] = {}
     with finished_in(out, scores), progress_bar(quiet or as_json) as progress:
         bar = progress.add_task("simulating", total=3600 * sum(each.flock_hours for each in tasks))
         for task in tasks:
             orders = run_task(task, policies[task.name], lambda s: progress.advance(bar, s))
-            episodes[task.name] = orders
+            episodes.append((task, orders))
             scores[task.name] = score(task, orders)
             keep(out / "episodes.csv", lambda path: _write_episodes(path, episodes))
     table = scores_table(printable(policy), scores)
@@ -103,12 +103,12 @@ def refuse_altered(suite: str, given: dict[str, object]) -> None:
             )
 
 
-def _write_episodes(path: Path, episodes: dict[str, Any]) -> None:
+def _write_episodes(path: Path, episodes: "list[tuple[Task, Any]]") -> None:
     pandas = require("pandas", "plot")
     table = pandas.concat(
         [
-            pandas.DataFrame({"task": name, "seed": range(len(orders)), "signed_order": orders})
-            for name, orders in episodes.items()
+            pandas.DataFrame({"task": task.name, "seed": task.seeds, "signed_order": orders})
+            for task, orders in episodes
         ]
     )
     with atomic_write(path) as file:

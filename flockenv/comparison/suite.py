@@ -6,7 +6,6 @@ suite.
 """
 
 import csv
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
@@ -23,7 +22,7 @@ from flockenv.parameters import FlockParameters
 from flockenv.policies.base import LeaderPolicy, control_rate
 from flockenv.policies.model import ModelPolicy, as_policy
 from flockenv.runs.seeds import POLICY_SEEDS
-from flockenv.statistics.intervals import CONFIDENCE
+from flockenv.statistics.intervals import interval, mean_replicates
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -51,7 +50,6 @@ BUDGETS_H = (100, 1_000, 10_000)
 REFERENCES = ("steering law", "tuned damped law")
 """The policies that have score 0 and score 1."""
 
-_RESAMPLES = 9999
 _MINUTES = 60.0
 
 
@@ -235,8 +233,8 @@ class Score:
         Mean over the episodes.
     score, low, high : float
         (signed order - that of the paper's law) / (that of the tuned damped law - that of the
-        paper's law), with its interval at level `CONFIDENCE`: a percentile bootstrap of episodes,
-        in which all three policies have the same seeds.
+        paper's law), with its interval at level `statistics.intervals.CONFIDENCE`: a percentile
+        bootstrap of episodes, in which all three policies have the same seeds.
     """
 
     signed_order: float
@@ -255,19 +253,10 @@ def score(task: Task, signed_order: NDArray[np.float64]) -> Score:
     signed_order
         Shape (EPISODES,), of `run_task`.
     """
-    values = np.stack([signed_order, *(_references()[task.name, name] for name in REFERENCES)])
-    rng = np.random.default_rng(0)
-    found = [_score(values.mean(axis=1))]
-    for _ in range(_RESAMPLES):
-        found.append(_score(values[:, rng.integers(0, EPISODES, EPISODES)].mean(axis=1)))
-    tail = (1 - CONFIDENCE) / 2
-    low, high = np.quantile(found[1:], [tail, 1 - tail])
-    return Score(float(values[0].mean()), found[0], float(low), float(high))
-
-
-def _score(means: NDArray[np.float64]) -> float:
-    policy, law, tuned = means
-    return float((policy - law) / (tuned - law)) if tuned != law else math.nan
+    law, tuned = (_references()[task.name, name] for name in REFERENCES)
+    # The same draws for both, since they have the same seed and length.
+    gain, unit = mean_replicates(signed_order - law), mean_replicates(tuned - law)
+    return Score(float(signed_order.mean()), *interval(gain / unit))
 
 
 @cache

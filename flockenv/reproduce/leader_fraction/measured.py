@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.optimize import isotonic_regression
 
 from flockenv.recording import Recording
-from flockenv.statistics.intervals import RESAMPLES
+from flockenv.statistics.intervals import RESAMPLES, mean_replicates
 
 __all__ = ["GUIDED", "Curve", "exponent", "guiding_fraction"]
 
@@ -81,14 +81,8 @@ def _replicates(
     n_boats: int, means: Mapping[int, NDArray[np.float64]], draws_seed: int
 ) -> NDArray[np.float64]:
     fractions = np.array(list(means)) / n_boats
-    values = np.stack(list(means.values()))
-    rng = np.random.default_rng(draws_seed)
-    found = [guiding_fraction(fractions, values.mean(axis=1))]
-    for _ in range(RESAMPLES):
-        places = rng.integers(0, values.shape[1], values.shape)
-        drawn = np.take_along_axis(values, places, axis=1)
-        found.append(guiding_fraction(fractions, drawn.mean(axis=1)))
-    return np.array(found)
+    curves = zip(*(mean_replicates(each, draws_seed + k) for k, each in means.items()), strict=True)
+    return np.array([guiding_fraction(fractions, np.array(curve)) for curve in curves])
 
 
 def exponent(curves: Sequence[Curve]) -> NDArray[np.float64]:
