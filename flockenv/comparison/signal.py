@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv.envs.batch import LeaderBatch
+from flockenv.envs.batch import LeaderBatch, held_decisions
 from flockenv.envs.observation import BLOCKS, ObservationSpace
 from flockenv.envs.options import EnvOptions, refuse_unknown
 from flockenv.envs.reward import TERMS
@@ -203,7 +203,9 @@ def measured_signals(
     for policy in (start, towards):
         check_action_mode(policy, mode, "in this environment")
         _check_layout(policy, batch)
-    hold = _hold_steps(settings, batch)
+    hold = 1
+    if settings.hold_s is not None:
+        hold = held_decisions(settings.hold_s, batch.decisions_hz)
     pairs = [(name, h) for name in settings.rewards for h in settings.horizons_s]
     found: dict[tuple[str, float], list[tuple[NDArray[np.float64], float]]] = {}
     samples, differs = 0, False
@@ -267,16 +269,6 @@ def _check_layout(policy: Any, batch: LeaderBatch) -> None:
             f"{shown(policy)} observes another layout than the environment: set the options "
             "observation and mirror_to_target to those of the policy"
         )
-
-
-def _hold_steps(settings: SignalSettings, batch: LeaderBatch) -> int:
-    steps = 1.0 if settings.hold_s is None else settings.hold_s * batch.decisions_hz
-    if not steps >= 1.0 or abs(steps - round(steps)) > 1e-9 * steps:
-        raise ParameterError(
-            f"hold_s = {shown(settings.hold_s)} is not accepted: a whole number of decisions of "
-            f"{1.0 / batch.decisions_hz:g} s"
-        )
-    return round(steps)
 
 
 class _Round:

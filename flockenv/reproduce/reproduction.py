@@ -1,8 +1,8 @@
 """What a reproduced figure is made of: the runs it needs, and what becomes of them."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import pandas as pd
 from matplotlib.figure import Figure
@@ -15,7 +15,7 @@ from flockenv.runs.store import RunStore
 
 Derived = TypeVar("Derived")
 
-__all__ = ["Outcome", "Reproduction", "Results", "Settings"]
+__all__ = ["Outcome", "Reproduction", "Results", "Settings", "within_budget"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +56,31 @@ class Settings:
     def duration_s(self, paper_minutes: float) -> float:
         """Return the length of a run in s, given the paper's in minutes."""
         return 60.0 * (paper_minutes if self.minutes is None else self.minutes)
+
+
+class _Design(Protocol):
+    def core_minutes(self, settings: Settings) -> float: ...
+
+
+Design = TypeVar("Design", bound=_Design)
+
+
+def within_budget(name: str, designs: Sequence[Design], settings: Settings) -> Design:
+    """Return the largest design that the budget allows, out of increasing ones.
+
+    Raises
+    ------
+    ParameterError
+        If it does not suffice for the smallest design; the message has `name`.
+    """
+    for design in reversed(designs):
+        if design.core_minutes(settings) <= settings.budget_core_min:
+            return design
+    least = designs[0].core_minutes(settings)
+    raise ParameterError(
+        f"budget = {settings.budget_core_min:g} core-minutes is not enough for {name}: "
+        f"at least {least:.1f}, or shorter runs"
+    )
 
 
 class Results(Mapping[RunSpec, Recording]):

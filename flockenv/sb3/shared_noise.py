@@ -1,6 +1,5 @@
 """Exploration that all leaders of a flock share and hold for a time."""
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -9,6 +8,7 @@ from stable_baselines3.common.distributions import DiagGaussianDistribution
 from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.vec_env import VecEnv
 
+from flockenv.envs.batch import held_decisions
 from flockenv.errors import ParameterError
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
 
@@ -40,17 +40,10 @@ def shared_noise(venv: VecEnv, hold_s: float) -> dict[str, Any]:
     leaders = venv.unwrapped
     if not isinstance(leaders, LeaderVecEnv):
         raise TypeError(f"a LeaderVecEnv is needed, not {type(leaders).__name__}")
-    steps = hold_s * leaders.decisions_hz
-    if not 0.0 < steps < 1e9 or abs(steps - round(steps)) > 1e-9 * max(1.0, steps):
-        near = ""
-        if 0.0 < steps < 1e9:
-            times = sorted({max(1, math.floor(steps)), math.ceil(steps)})
-            near = f", such as {' or '.join(f'{n / leaders.decisions_hz:g}' for n in times)}"
-        raise ParameterError(
-            f"hold_s = {hold_s!r} is not accepted: a whole number of decisions of "
-            f"{1.0 / leaders.decisions_hz:g} s{near}"
-        )
-    return {"flock_of_slot": leaders.flock_of_slot.tolist(), "hold_steps": round(steps)}
+    return {
+        "flock_of_slot": leaders.flock_of_slot.tolist(),
+        "hold_steps": held_decisions(hold_s, leaders.decisions_hz),
+    }
 
 
 class SharedNoiseDistribution(DiagGaussianDistribution):

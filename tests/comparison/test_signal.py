@@ -79,6 +79,7 @@ def test_the_baseline_explains_returns_and_every_pair_is_listed():
         ({"flocks": 5}, "even number"),
         ({"deviation": 0.0}, "deviation"),
         ({"hold_s": 0.25}, "whole number of decisions"),
+        ({"hold_s": float("inf")}, "whole number of decisions"),
         ({"options": {"action_mode": "leen"}}, "did you mean 'lean'"),
         ({"options": {"action_mode": "lean"}}, r"ConstantAction.*'rudder'.*'lean'"),
         ({"options": {"observation": {"order": False}}}, None),

@@ -9,9 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
 
-from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
-from flockenv.reproduce.reproduction import Settings
+from flockenv.reproduce.reproduction import Settings, within_budget
 from flockenv.reproduce.transition.design import WAYS, Growth
 from flockenv.runs.spec import RunSpec
 
@@ -116,18 +115,5 @@ DESIGNS = (
 
 
 def within(settings: Settings) -> FractionDesign:
-    """Return the largest design that the budget allows.
-
-    Raises
-    ------
-    ParameterError
-        If it does not suffice for the smallest design.
-    """
-    for design in reversed(DESIGNS):
-        if design.core_minutes(settings) <= settings.budget_core_min:
-            return design
-    least = DESIGNS[0].core_minutes(settings)
-    raise ParameterError(
-        f"budget = {settings.budget_core_min:g} core-minutes is not enough for leader-fraction: "
-        f"at least {least:.1f}, or shorter runs"
-    )
+    """Return the largest of `DESIGNS` that the budget allows; errors as for `within_budget`."""
+    return within_budget("leader-fraction", DESIGNS, settings)

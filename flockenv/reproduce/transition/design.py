@@ -7,9 +7,8 @@ fixed width does not. Both are run. How much is run follows from a budget of com
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
-from flockenv.reproduce.reproduction import Settings
+from flockenv.reproduce.reproduction import Settings, within_budget
 from flockenv.runs.protocols.hysteresis import resized
 from flockenv.runs.protocols.initial_state import STARTS
 from flockenv.runs.spec import RunSpec
@@ -175,18 +174,5 @@ DESIGNS = (
 
 
 def within(settings: Settings) -> TransitionDesign:
-    """Return the largest design that the budget allows.
-
-    Raises
-    ------
-    ParameterError
-        If it does not suffice for the smallest design.
-    """
-    for design in reversed(DESIGNS):
-        if design.core_minutes(settings) <= settings.budget_core_min:
-            return design
-    least = DESIGNS[0].core_minutes(settings)
-    raise ParameterError(
-        f"budget = {settings.budget_core_min:g} core-minutes is not enough for transition-order: "
-        f"at least {least:.1f}, or shorter runs"
-    )
+    """Return the largest of `DESIGNS` that the budget allows; errors as for `within_budget`."""
+    return within_budget("transition-order", DESIGNS, settings)
