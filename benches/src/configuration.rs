@@ -1,8 +1,8 @@
 //! An engine with its settings and its step.
 
-use crate::{Engine, Start};
 use crate::engines::{Box2d, Ours, rapier_f32, rapier_f64};
 use crate::table::{number, text};
+use crate::{Engine, Start};
 use flockenv::FlockParameters;
 use flockenv::parameters::{Scheme, Solver};
 

@@ -1,8 +1,8 @@
 //! The scenes that everything is measured on.
 
-use flockenv::{Flock, FlockParameters};
 use flockenv::geometry::{Pose, Velocity};
 use flockenv::parameters::{Pool, Preset};
+use flockenv::{Flock, FlockParameters};
 
 /// Where a run starts.
 #[derive(Debug, Clone)]

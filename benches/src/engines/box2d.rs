@@ -2,11 +2,11 @@
 //! One thread, single precision, vector instructions as Box2D chooses them.
 #![allow(unsafe_code, reason = "Box2D is a C library")]
 
-use crate::{Engine, Start};
 use crate::engines::{Driver, Side, circle};
+use crate::{Engine, Start};
+use boxdd_sys::ffi::*;
 use flockenv::FlockParameters;
 use flockenv::geometry::{Hull, Pose, Vec2, Velocity};
-use boxdd_sys::ffi::*;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 

@@ -1,11 +1,11 @@
 //! flockenv itself.
 
 use crate::{Engine, Start};
-use flockenv::{Flock, FlockParameters};
 use flockenv::clock::{Ticks, ticks};
 use flockenv::contact::{Partner, Statistics};
 use flockenv::geometry::{Pose, Velocity};
 use flockenv::integrator::Steering;
+use flockenv::{Flock, FlockParameters};
 
 /// A flock.
 pub struct Ours {

@@ -7,8 +7,8 @@
 )]
 
 use super::{Real, rapier};
-use crate::{Engine, Start};
 use crate::engines::{Driver, Side, circle};
+use crate::{Engine, Start};
 use flockenv::FlockParameters;
 use flockenv::geometry::{Hull, Pose, Vec2, Velocity};
 use rapier::parry::mass_properties::MassProperties;

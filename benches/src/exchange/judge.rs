@@ -2,7 +2,9 @@
 
 use super::task::{ORDER_SEEDS, Task, TaskStart};
 use crate::Scene;
-use crate::measure::{Effort, horizon, momentum, order, overlap, push_row, slide, speed, table, wall_push};
+use crate::measure::{
+    Effort, horizon, momentum, order, overlap, push_row, slide, speed, table, wall_push,
+};
 use crate::table::{Table, number};
 use flockenv::geometry::{Pose, Velocity};
 use serde::Deserialize;

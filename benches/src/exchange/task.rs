@@ -1,8 +1,8 @@
 //! Tasks of engines in other languages.
 
-use crate::{Scene, Start};
 use crate::configuration::STEP_S;
 use crate::measure::{Effort, horizon, momentum, order, slide, speed, wall_push};
+use crate::{Scene, Start};
 use flockenv::FlockParameters;
 use flockenv::geometry::{Hull, Pose, Velocity};
 use serde::{Deserialize, Serialize};

@@ -3,11 +3,11 @@
 //! its path differs between steps.
 
 use super::{Effort, distance, on_all_cores, push_row, table};
-use crate::{Configuration, Engine, Scene, Start};
 use crate::table::{Table, number, quartiles, text};
-use flockenv::{Flock, FlockParameters};
+use crate::{Configuration, Engine, Scene, Start};
 use flockenv::geometry::Pose;
 use flockenv::parameters::Scheme;
+use flockenv::{Flock, FlockParameters};
 
 /// Times at which poses are compared, in s.
 pub const HORIZONS_S: [f64; 2] = [0.5, 1.0];

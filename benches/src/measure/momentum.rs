@@ -2,8 +2,8 @@
 //! angular momentum about any point.
 
 use super::{on_all_cores, push_row, table};
-use crate::{Configuration, Scene, Start};
 use crate::table::{Table, number};
+use crate::{Configuration, Scene, Start};
 use flockenv::FlockParameters;
 use flockenv::geometry::{Pose, Vec2, Velocity, cross};
 use flockenv::parameters::Pool;

@@ -5,14 +5,14 @@
 //! between steps, and chaos parts the rest: the intervals are what counts.
 
 use super::{Effort, on_all_cores, push_row, table};
-use crate::{Configuration, Start};
 use crate::configuration::STEP_S;
 use crate::table::{Table, number, text};
-use flockenv::{FlockParameters, OrderParameters};
+use crate::{Configuration, Start};
 use flockenv::clock::ticks;
 use flockenv::geometry::{Pose, Velocity};
 use flockenv::integrator::PhaseSchedule;
 use flockenv::parameters::{Preset, Scheme};
+use flockenv::{FlockParameters, OrderParameters};
 
 /// Runs a seed that the reference is the mean of.
 const REPLICAS: u64 = 4;

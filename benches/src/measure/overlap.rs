@@ -2,8 +2,8 @@
 //! and for flockenv what the solver did and left.
 
 use super::{Effort, on_all_cores, push_row, speed, table};
-use crate::{Configuration, Scene, Start};
 use crate::table::{Table, number, text};
+use crate::{Configuration, Scene, Start};
 use flockenv::FlockParameters;
 use flockenv::contact::{Contact, ContactDetector, Statistics};
 use flockenv::geometry::{HullPose, Pose};

@@ -1,9 +1,9 @@
 //! What each part of a scene costs: the cycle scene of 27 boats with one thing changed at a time.
 
 use super::{Effort, speed};
-use crate::{Configuration, Engine, Scene, Start};
 use crate::configuration::STEP_S;
 use crate::table::{Table, number, quartiles, text};
+use crate::{Configuration, Engine, Scene, Start};
 use flockenv::FlockParameters;
 use flockenv::parameters::{Noise, Pool, Scheme};
 use speed::{Entry, take_turns};

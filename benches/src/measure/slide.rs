@@ -2,8 +2,8 @@
 //! distance from where it ends to where steps of 1e-4 s take it.
 
 use super::{distance, on_all_cores, push_row, table};
-use crate::{Configuration, Scene, Start};
 use crate::table::{Table, number, quartiles};
+use crate::{Configuration, Scene, Start};
 use flockenv::FlockParameters;
 use flockenv::geometry::{Hull, Pose, Vec2, Velocity, turned_left};
 use flockenv::parameters::Scheme;

@@ -5,12 +5,12 @@ use super::Effort;
 use crate::Scene;
 use crate::configuration::STEP_S;
 use crate::table::{Table, median, number, quartiles, text};
-use flockenv::{Flock, FlockParameters};
 use flockenv::boat::{Drive, FreeMotion};
-use flockenv::contact::{Contact, ContactDetector, ContactProblem, InverseInertia};
 use flockenv::contact::solver::{ContactSolver, SolveReport};
+use flockenv::contact::{Contact, ContactDetector, ContactProblem, InverseInertia};
 use flockenv::geometry::{HullPose, Vec2, Velocity};
 use flockenv::parameters::Solver;
+use flockenv::{Flock, FlockParameters};
 use std::time::Instant;
 
 /// Overlaps deeper than this (cm) are no matter of the solver.

@@ -4,9 +4,9 @@
 //! meets them alike. Ratios are taken turn by turn.
 
 use super::{Effort, push_row, table};
-use crate::{Configuration, Engine, Scene, Start};
 use crate::configuration::STEP_S;
 use crate::table::{Table, number, quartiles, text};
+use crate::{Configuration, Engine, Scene, Start};
 use flockenv::FlockParameters;
 use flockenv::parameters::Scheme;
 use std::time::{Duration, Instant};

@@ -1,8 +1,8 @@
 //! Five boats in a row, bow to stern, push the outer wall, which has to carry 5·c0·v0.
 
 use super::{on_all_cores, push_row, table};
-use crate::{Configuration, Scene, Start};
 use crate::table::{Table, number, text};
+use crate::{Configuration, Scene, Start};
 use flockenv::FlockParameters;
 use flockenv::geometry::{Hull, Pose, Velocity};
 use flockenv::parameters::Pool;
