@@ -4,15 +4,19 @@
 //! `cargo bench --bench instructions` compares, `-- --write` measures again, `-- --strict` fails where valgrind
 //! is missing. Callgrind's own files stay in `target/instructions`, for `callgrind_annotate`.
 
+mod support;
+
 use flockenv::Flock;
 use flockenv::contact::Statistics;
-use flockenv::environment::{BatchRows, EnvBatch, EnvSettings, Episode, ResetRequest};
-use flockenv::parameters::{FlockParameters, Pool, Preset};
+use flockenv::environment::{EnvBatch, Episode};
+use flockenv::parameters::{FlockParameters, Pool};
 use std::fmt::Write as _;
 use std::fs;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
+use support::scene::Scene;
+use support::{control, environment, warm_batch};
 
 /// Part by which a count may differ from the one that is pinned: compilers, memcpy of other processors.
 const TOLERANCE: f64 = 0.03;
@@ -23,7 +27,7 @@ const HEADER: &str = "scene,instructions per step,per boat and substep,per conta
 type Failure = Box<dyn std::error::Error>;
 
 /// What is counted: substeps of a flock, or control steps of an environment.
-enum Scene {
+enum Work {
     Flock(FlockParameters),
     Environment(FlockParameters),
 }
@@ -35,25 +39,27 @@ struct Done {
     statistics: Statistics,
 }
 
-fn scene(name: &str) -> Option<Scene> {
-    let flock = |boats, is_jam, relinearizations| {
-        let parameters = FlockParameters {
+fn work(name: &str) -> Option<Work> {
+    let flock = |scene: Scene, boats, relinearizations| {
+        Work::Flock(FlockParameters {
+            dt_s: 0.01,
             relinearizations,
-            ..flock_parameters(boats, is_jam)
-        };
-        Some(Scene::Flock(parameters))
+            ..scene.parameters(boats)
+        })
     };
-    match name {
-        "jam of 27" => flock(27, true, 0),
-        "jam of 27, 1 relinearization" => flock(27, true, 1),
-        "jam of 27, 2 relinearizations" => flock(27, true, 2),
-        "cycle of 27" => flock(27, false, 0),
-        "cycle of 27, 1 relinearization" => flock(27, false, 1),
-        "jam of 1000" => flock(1000, true, 0),
-        "control step in 500-boats" => Some(environment(Pool::FIVE_HUNDRED_BOATS, 0.3)),
-        "control step in table-1" => Some(environment(Pool::TABLE_1, 0.4)),
-        _ => None,
-    }
+    Some(match name {
+        "jam of 27" => flock(Scene::Jam, 27, 0),
+        "jam of 27, 1 relinearization" => flock(Scene::Jam, 27, 1),
+        "jam of 27, 2 relinearizations" => flock(Scene::Jam, 27, 2),
+        "cycle of 27" => flock(Scene::Cycle, 27, 0),
+        "cycle of 27, 1 relinearization" => flock(Scene::Cycle, 27, 1),
+        "jam of 1000" => flock(Scene::Jam, 1000, 0),
+        "control step in 500-boats" => {
+            Work::Environment(environment(Pool::FIVE_HUNDRED_BOATS, 0.3))
+        }
+        "control step in table-1" => Work::Environment(environment(Pool::TABLE_1, 0.4)),
+        _ => return None,
+    })
 }
 
 const SCENES: [&str; 8] = [
@@ -67,38 +73,10 @@ const SCENES: [&str; 8] = [
     "control step in table-1",
 ];
 
-/// The scenes of the comparison with other engines, `benches/src/scene.rs`.
-fn flock_parameters(boats: usize, is_jam: bool) -> FlockParameters {
-    let scale = (boats as f64 / 50.0).sqrt().max(1.0);
-    let rest = if is_jam { 0.0 } else { 1.0 };
-    FlockParameters {
-        n_boats: boats,
-        pool: Pool {
-            outer_radius_cm: Pool::TABLE_1.outer_radius_cm * scale,
-            inner_radius_cm: Pool::TABLE_1.inner_radius_cm * scale,
-        },
-        nop1_s: rest,
-        bw_s: 2.0 * rest,
-        nop2_s: rest,
-        dt_s: 0.01,
-        ..FlockParameters::preset(Preset::Simulation)
-    }
-}
-
-fn environment(pool: Pool, bw_s: f64) -> Scene {
-    Scene::Environment(FlockParameters {
-        n_boats: 27,
-        n_leaders: 4,
-        pool,
-        bw_s,
-        ..FlockParameters::preset(Preset::Simulation)
-    })
-}
-
 /// Seeds that a count is the mean of.
 const SEEDS: u64 = 4;
 
-impl Scene {
+impl Work {
     /// States after 20 s, one a seed: what callgrind would take minutes for.
     fn warmed_up(&self, seed: u64) -> Result<Vec<u8>, Failure> {
         match self {
@@ -108,13 +86,7 @@ impl Scene {
                 Ok(flock.snapshot())
             }
             Self::Environment(parameters) => {
-                let mut batch = EnvBatch::new(EnvSettings::default(), vec![parameters.clone()])?;
-                let request = ResetRequest {
-                    seed: Some(seed),
-                    ..ResetRequest::default()
-                };
-                batch.reset(&[Some(request)])?;
-                control(&mut batch, 200)?;
+                let batch = warm_batch(parameters, seed..seed + 1)?;
                 Ok(batch.to_bytes())
             }
         }
@@ -166,23 +138,6 @@ fn difference(now: &Statistics, before: &Statistics) -> Statistics {
     }
 }
 
-/// Control steps with the rudders held.
-fn control(batch: &mut EnvBatch, steps: u64) -> Result<(), Failure> {
-    let actions = vec![0.5; batch.rows()];
-    let mut observations = vec![0.0; batch.rows() * batch.observation_size()];
-    let mut rewards = vec![0.0; batch.rows()];
-    for _ in 0..steps {
-        let rows = BatchRows {
-            observations: &mut observations,
-            rewards: &mut rewards,
-            truncated: &mut [false],
-        };
-        batch.step(&actions, rows)?;
-    }
-    black_box(&observations);
-    Ok(())
-}
-
 /// Callgrind counts what happens in here, and nothing else.
 #[inline(never)]
 fn counted<R>(work: impl FnOnce() -> R) -> R {
@@ -195,7 +150,7 @@ fn measure(name: &str) -> Result<String, Failure> {
     for seed in 1..=SEEDS {
         let file = |kind: &str| PathBuf::from(FOLDER).join(format!("{name}.{seed}.{kind}"));
         let (state, profile) = (file("state"), file("callgrind"));
-        let warmed_up = scene(name).ok_or("no such scene")?.warmed_up(seed)?;
+        let warmed_up = work(name).ok_or("no such scene")?.warmed_up(seed)?;
         fs::write(&state, warmed_up)?;
         let output = Command::new("valgrind")
             .args([
@@ -239,7 +194,7 @@ fn total(profile: &Path) -> Result<u64, Failure> {
 
 /// Runs in valgrind: prints steps, substeps, boats and contacts.
 fn count(name: &str, state: &str) -> Result<(), Failure> {
-    let done = scene(name)
+    let done = work(name)
         .ok_or("no such scene")?
         .count(&fs::read(state)?)?;
     let statistics = done.statistics;

@@ -1,24 +1,16 @@
 //! Quick looks while developing: `cargo bench`. What is published comes from `make speed-vs-error`.
 
-use divan::{Bencher, black_box};
-use flockenv::parameters::{Pool, Preset, Scheme};
-use flockenv::{Flock, FlockParameters};
+mod support;
 
-/// Boats in pool `table-1`, scaled by sqrt(n/50) beyond 50; engines always forward if it is a jam.
-fn scene(boats: usize, is_jam: bool) -> FlockParameters {
-    let scale = (boats as f64 / 50.0).sqrt().max(1.0);
-    let rest = if is_jam { 0.0 } else { 1.0 };
+use divan::{Bencher, black_box};
+use flockenv::parameters::{Preset, Scheme};
+use flockenv::{Flock, FlockParameters};
+use support::scene::Scene;
+
+fn scene(scene: Scene, boats: usize) -> FlockParameters {
     FlockParameters {
-        n_boats: boats,
-        pool: Pool {
-            outer_radius_cm: Pool::TABLE_1.outer_radius_cm * scale,
-            inner_radius_cm: Pool::TABLE_1.inner_radius_cm * scale,
-        },
-        nop1_s: rest,
-        bw_s: 2.0 * rest,
-        nop2_s: rest,
         dt_s: 0.01,
-        ..FlockParameters::preset(Preset::Simulation)
+        ..scene.parameters(boats)
     }
 }
 
@@ -33,19 +25,19 @@ fn advance_a_cycle(bencher: Bencher, parameters: FlockParameters) {
     let mut flock = warmed_up(parameters);
     bencher.counter(600_u32).bench_local(|| {
         flock
-            .advance(black_box(6.0), None)
+            .advance(black_box(Scene::BLOCK_S), None)
             .expect("the motion stays finite");
     });
 }
 
 #[divan::bench(args = [27, 50, 200, 1000], sample_count = 20, sample_size = 1)]
 fn jam(bencher: Bencher, boats: usize) {
-    advance_a_cycle(bencher, scene(boats, true));
+    advance_a_cycle(bencher, scene(Scene::Jam, boats));
 }
 
 #[divan::bench(args = [27, 50, 200, 1000], sample_count = 20, sample_size = 1)]
 fn cycle(bencher: Bencher, boats: usize) {
-    advance_a_cycle(bencher, scene(boats, false));
+    advance_a_cycle(bencher, scene(Scene::Cycle, boats));
 }
 
 #[divan::bench(args = [0, 1, 2], sample_count = 50, sample_size = 1)]
@@ -54,7 +46,7 @@ fn jam_of_27_relinearized(bencher: Bencher, relinearizations: usize) {
         bencher,
         FlockParameters {
             relinearizations,
-            ..scene(27, true)
+            ..scene(Scene::Jam, 27)
         },
     );
 }
@@ -66,7 +58,7 @@ fn jam_of_27_by_scheme(bencher: Bencher, scheme: &str) {
         bencher,
         FlockParameters {
             scheme,
-            ..scene(27, true)
+            ..scene(Scene::Jam, 27)
         },
     );
 }
