@@ -19,6 +19,7 @@ __all__ = [
     "check_action_mode",
     "control_rate",
     "decision_rate",
+    "leaders_observed",
 ]
 
 
@@ -26,7 +27,31 @@ class LeaderPolicy(Protocol):
     """Anything with the ``predict`` of a stable-baselines3 policy."""
 
     def predict(self, observation: Any, state: Any = None, episode_start: Any = None) -> Any:
-        """Return actions for observations, and the next state of a recurrent policy."""
+        """Return actions for observations.
+
+        Parameters
+        ----------
+        observation
+            Shape (..., m * observation size): m leaders' observations one after another in the
+            last axis, as the environments give them. The policies of this package also take a
+            dictionary of such arrays by agent, and then return one.
+        state, episode_start
+            The state that the last call returned, and shape (flocks,): whether an episode has just
+            started. Both are for recurrent policies.
+
+        Returns
+        -------
+        action : numpy.ndarray or dict
+            Shape (..., m), in [-1, 1], and float32 from the policies of this package.
+        state
+            The next state of a recurrent policy; others return the one that was given.
+
+        Raises
+        ------
+        ParameterError
+            From the policies of this package, if the last axis is no multiple of the observation's
+            size.
+        """
 
 
 CONTROL_HZ: float = _core.env_defaults()["control_hz"]
@@ -66,6 +91,23 @@ def check_action_mode(policy: Any, mode: str, where: str) -> None:
         )
 
 
+def leaders_observed(observation: NDArray[Any], size: int) -> int:
+    """Return how many leaders' observations, each of a size, the last axis holds.
+
+    Raises
+    ------
+    ParameterError
+        If it holds no whole number of them.
+    """
+    width = observation.shape[-1] if observation.ndim else 0
+    if width == 0 or width % size != 0:
+        raise ParameterError(
+            f"observation has shape {observation.shape}, which is not accepted: its last axis must "
+            f"be a multiple of {size}, the size of a leader's observation"
+        )
+    return width // size
+
+
 class RowPolicy(ABC):
     """A policy that maps one leader's observation to its rudder, with the interface of SB3's.
 
@@ -102,39 +144,13 @@ class RowPolicy(ABC):
         episode_start: Any = None,
         deterministic: bool = True,
     ) -> tuple[Any, Any]:
-        """Return rudders for observations.
-
-        Parameters
-        ----------
-        observation
-            Shape (..., m * observation size): m leaders' observations one after another in the
-            last axis, as the environments give them; or a dictionary of such arrays by agent.
-        state, episode_start, deterministic
-            Not used: no memory, and one way to act.
-
-        Returns
-        -------
-        action : numpy.ndarray or dict
-            Shape (..., m), float32, in [-1, 1].
-        state
-            As it was given.
-
-        Raises
-        ------
-        ParameterError
-            If the last axis is no multiple of the layout's size.
-        """
+        """Return rudders for observations, as `LeaderPolicy`; there is one way to act."""
         if isinstance(observation, Mapping):
             return {agent: self._rudders(each) for agent, each in observation.items()}, state
         return self._rudders(observation), state
 
     def _rudders(self, observation: ArrayLike) -> NDArray[np.float32]:
         array = np.ascontiguousarray(observation, np.float32)
-        width = array.shape[-1] if array.ndim else 0
-        if width == 0 or width % self._size != 0:
-            raise ParameterError(
-                f"observation has shape {array.shape}, which is not accepted: its last axis must "
-                f"be a multiple of {self._size}, the size of a leader's observation"
-            )
+        leaders = leaders_observed(array, self._size)
         rudders = np.asarray(self._steer(array.reshape(-1, self._size)), np.float32)
-        return rudders.reshape(*array.shape[:-1], width // self._size)
+        return rudders.reshape(*array.shape[:-1], leaders)

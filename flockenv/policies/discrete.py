@@ -42,20 +42,7 @@ class WithLevels:
         episode_start: Any = None,
         deterministic: bool = True,
     ) -> tuple[Any, Any]:
-        """Return levels for observations.
-
-        Parameters
-        ----------
-        observation, state, episode_start, deterministic
-            What the policy takes.
-
-        Returns
-        -------
-        action : numpy.ndarray or dict
-            Of the shape of the policy's rudders, int64; where those are a dictionary by agent, a
-            number each.
-        state
-            The policy's.
+        """Return the levels, int64, that are nearest to the policy's rudders.
 
         Raises
         ------

@@ -18,11 +18,8 @@ class ObservedPolicy(RowPolicy):
 
     Parameters
     ----------
-    observation
-        Blocks of the observation that differ from the default layout, as in the environments'
-        option of that name.
-    mirror_to_target
-        The environments' option of that name.
+    observation, mirror_to_target
+        Layout of the observations, as in the environments' options of those names.
 
     Raises
     ------

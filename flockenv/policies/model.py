@@ -19,6 +19,7 @@ from flockenv._io.extras import require
 from flockenv._io.moved_modules import renamed_argument, renamed_attribute
 from flockenv.envs.observation import ObservationSpace, observation_space
 from flockenv.errors import ParameterError
+from flockenv.policies.base import leaders_observed
 
 __all__ = ["ModelPolicy", "as_policy", "is_model_file", "load_model"]
 
@@ -109,29 +110,15 @@ class ModelPolicy:
         episode_start: Any = None,
         deterministic: bool = True,
     ) -> tuple[Any, Any]:
-        """Return rudders for observations.
+        """Return rudders for observations, as `LeaderPolicy`.
 
-        Parameters
-        ----------
-        observation
-            Shape (..., m * observation size): m leaders' observations one after another in the
-            last axis, as the environments give them; or a dictionary of such arrays by agent. A
-            model of k leaders takes each k that follow each other for a flock.
-        state, episode_start, deterministic
-            As of the model.
-
-        Returns
-        -------
-        action : numpy.ndarray or dict
-            Shape (..., m), float32, in [-1, 1].
-        state
-            The model's.
+        A model of k leaders takes each k that follow each other for a flock; `deterministic` is the
+        model's.
 
         Raises
         ------
         ParameterError
-            If the last axis is no multiple of the observation's size, or the leaders are no
-            multiple of the model's.
+            If the leaders are no multiple of the model's, too.
         """
         if isinstance(observation, Mapping):
             stacked = np.stack([np.asarray(each) for each in observation.values()])
@@ -142,13 +129,7 @@ class ModelPolicy:
     def _predict(
         self, array: NDArray[Any], state: Any, episode_start: Any, deterministic: bool
     ) -> tuple[NDArray[np.float32], Any]:
-        width = array.shape[-1] if array.ndim else 0
-        leaders, rest = divmod(width, self._size)
-        if width == 0 or rest:
-            raise ParameterError(
-                f"observation has shape {array.shape}, which is not accepted: its last axis must "
-                f"be a multiple of {self._size}, the size of a leader's observation"
-            )
+        leaders = leaders_observed(array, self._size)
         rows = array.size // self._size
         if rows % self.leaders or (leaders > 1 and leaders % self.leaders):
             raise ParameterError(
