@@ -1,7 +1,9 @@
-//! The exact clock of a flock.
+//! The exact clock of a flock, and how many steps a duration holds.
 //!
 //! Time is counted in integer ticks of 1 ns, so that a substep can end exactly on a phase switch or
 //! a control step, and no sliver of a step is left by rounding where the two meet.
+
+use crate::error::{FlockError, Result};
 
 /// Ticks in a second.
 pub(crate) const TICKS_PER_SECOND: f64 = 1e9;
@@ -17,4 +19,30 @@ pub fn ticks(seconds: f64) -> Ticks {
 /// Ticks as seconds.
 pub fn seconds(ticks: Ticks) -> f64 {
     ticks as f64 / TICKS_PER_SECOND
+}
+
+/// How many steps a duration in s holds, which has to be a whole number of them.
+///
+/// `rate_hz`: steps per second; `steps`: what they are, for the message.
+///
+/// # Errors
+/// [`FlockError::Parameter`] that names the durations nearest to a `duration_s` that is no whole number of steps.
+pub fn whole_steps(field: &'static str, duration_s: f64, rate_hz: f64, steps: &str) -> Result<u32> {
+    let refuse = |but: String| {
+        let accepted = format!("a whole number of {steps} of {} s{but}", 1.0 / rate_hz);
+        Err(FlockError::parameter(field, duration_s, accepted))
+    };
+    let count = duration_s * rate_hz;
+    if !(count > 0.0 && count <= 1e9) {
+        return refuse(", at most 1e9 of them".to_owned());
+    }
+    if (count - count.round()).abs() > 1e-9 * count.max(1.0) {
+        let [below, above] = [count.floor().max(1.0), count.ceil()].map(|n| n / rate_hz);
+        return refuse(if below == above {
+            format!(": {above} s is nearest")
+        } else {
+            format!(": {below} and {above} s are nearest")
+        });
+    }
+    Ok(count.round() as u32)
 }

@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv.envs.batch import LeaderBatch, held_decisions
+from flockenv import _core
+from flockenv.envs.batch import LeaderBatch
 from flockenv.envs.observation import BLOCKS, ObservationSpace
 from flockenv.envs.options import EnvOptions, refuse_unknown
 from flockenv.envs.reward import TERMS
@@ -205,7 +206,7 @@ def measured_signals(
         _check_layout(policy, batch)
     hold = 1
     if settings.hold_s is not None:
-        hold = held_decisions(settings.hold_s, batch.decisions_hz)
+        hold = _core.held_decisions(settings.hold_s, batch.decisions_hz)
     pairs = [(name, h) for name in settings.rewards for h in settings.horizons_s]
     found: dict[tuple[str, float], list[tuple[NDArray[np.float64], float]]] = {}
     samples, differs = 0, False

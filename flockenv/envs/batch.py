@@ -1,6 +1,5 @@
 """What the environment classes share: one batch of flocks in the core, its seeds and its infos."""
 
-import math
 import operator
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -15,32 +14,11 @@ from flockenv.envs.reward import TERMS
 from flockenv.errors import ParameterError, shown
 from flockenv.parameters import FlockParameters
 
-__all__ = ["LeaderBatch", "at_least_one", "drawn_seed", "held_decisions", "seeds_from"]
+__all__ = ["LeaderBatch", "at_least_one", "drawn_seed", "seeds_from"]
 
 _SEEDS = 2**64
 # More would fill the memory before anything is simulated.
 _MOST = 100_000
-
-
-def held_decisions(hold_s: float, decisions_hz: float) -> int:
-    """Return for how many decisions something is held that is held for a time in s.
-
-    Raises
-    ------
-    ParameterError
-        For a time that is no whole number of decisions.
-    """
-    steps = hold_s * decisions_hz
-    if 0.0 < steps < 1e9 and abs(steps - round(steps)) <= 1e-9 * max(1.0, steps):
-        return round(steps)
-    near = ""
-    if 0.0 < steps < 1e9:
-        times = sorted({max(1, math.floor(steps)), math.ceil(steps)})
-        near = f", such as {' or '.join(f'{n / decisions_hz:g}' for n in times)}"
-    raise ParameterError(
-        f"hold_s = {shown(hold_s)} is not accepted: a whole number of decisions of "
-        f"{1.0 / decisions_hz:g} s{near}"
-    )
 
 
 class LeaderBatch:

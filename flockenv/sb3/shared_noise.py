@@ -8,7 +8,7 @@ from stable_baselines3.common.distributions import DiagGaussianDistribution
 from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.vec_env import VecEnv
 
-from flockenv.envs.batch import held_decisions
+from flockenv import _core
 from flockenv.errors import ParameterError
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
 
@@ -42,7 +42,7 @@ def shared_noise(venv: VecEnv, hold_s: float) -> dict[str, Any]:
         raise TypeError(f"a LeaderVecEnv is needed, not {type(leaders).__name__}")
     return {
         "flock_of_slot": leaders.flock_of_slot.tolist(),
-        "hold_steps": held_decisions(hold_s, leaders.decisions_hz),
+        "hold_steps": _core.held_decisions(hold_s, leaders.decisions_hz),
     }
 
 

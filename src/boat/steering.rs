@@ -86,6 +86,12 @@ pub const TUNED_LAWS: [(&str, &str, Law); 4] = [
     ),
 ];
 
+/// The damped law of each pool in which it has been tuned.
+fn tuned_damped() -> impl Iterator<Item = (&'static str, Law)> {
+    let tuned = TUNED_LAWS.into_iter();
+    tuned.filter_map(|(_, pool, law)| matches!(law, Law::Damped { .. }).then_some((pool, law)))
+}
+
 impl Law {
     /// Names and values of the gains.
     pub fn gains(&self) -> Vec<(&'static str, f64)> {
@@ -107,9 +113,12 @@ impl Law {
     /// The damped law with the gains tuned in a pool; `None` for pools in which it has not been tuned.
     pub fn tuned_damped(pool: &Pool) -> Option<Self> {
         let pool = pool.name()?;
-        let tuned = TUNED_LAWS.iter();
-        let mut tuned = tuned.filter(|(_, of, _)| *of == pool).map(|each| each.2);
-        tuned.find(|law| matches!(law, Self::Damped { .. }))
+        tuned_damped().find_map(|(of, law)| (of == pool).then_some(law))
+    }
+
+    /// The pools in which the damped law has been tuned.
+    pub(crate) fn tuned_damped_pools() -> impl Iterator<Item = &'static str> {
+        tuned_damped().map(|(pool, _)| pool)
     }
 
     /// Checks the gains.

@@ -1,6 +1,7 @@
 //! What an action stands for: a rudder, or a heading that a steering law steers to; and how long it is held.
 
 use crate::boat::{DAMPED_LAW, Law};
+use crate::clock::whole_steps;
 use crate::error::{FlockError, Result};
 use crate::parameters::{FlockParameters, named_choice};
 use std::f64::consts::PI;
@@ -46,31 +47,12 @@ impl ActionSettings {
     /// [`FlockError::Parameter`].
     pub fn check(&self, parameters: &FlockParameters, control_hz: f64) -> Result<()> {
         self.steering_law(parameters)?;
-        let Some(period) = self.decision_period_s else {
-            return Ok(());
-        };
-        let refuse =
-            |accepted: String| Err(FlockError::parameter("decision_period_s", period, accepted));
-        let steps = period * control_hz;
-        if !(steps > 0.0 && steps <= 1e9) {
-            return refuse(format!(
-                "a whole number of control steps of {} s, at most 1e9 of them",
-                1.0 / control_hz
-            ));
+        match self.decision_period_s {
+            Some(period) => {
+                whole_steps("decision_period_s", period, control_hz, "control steps").map(drop)
+            }
+            None => Ok(()),
         }
-        if (steps - steps.round()).abs() > 1e-9 * steps.max(1.0) {
-            let [below, above] = [steps.floor().max(1.0), steps.ceil()].map(|n| n / control_hz);
-            let nearest = if below == above {
-                format!("{above} s is")
-            } else {
-                format!("{below} and {above} s are")
-            };
-            return refuse(format!(
-                "a whole number of control steps of {} s: {nearest} nearest",
-                1.0 / control_hz
-            ));
-        }
-        Ok(())
     }
 
     /// Control steps from one decision to the next.
@@ -111,7 +93,11 @@ pub(crate) fn tuned_law(
     parameters: &FlockParameters,
 ) -> Result<Law> {
     Law::tuned_damped(&parameters.pool).ok_or_else(|| {
-        let accepted = "the damped law is tuned in the pools 500-boats and table-1 alone";
+        let pools: Vec<_> = Law::tuned_damped_pools().collect();
+        let accepted = format!(
+            "the damped law is tuned in the pools {} alone",
+            pools.join(" and ")
+        );
         FlockError::parameter(setting, value, accepted)
     })
 }

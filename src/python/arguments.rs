@@ -38,6 +38,10 @@ named_arguments! {
     DurationS(f64) = real("duration_s");
     /// Samples per second.
     SampleHz(f64) = real("sample_hz");
+    /// How long one target holds, in s.
+    PeriodS(f64) = real("period_s");
+    /// How long a deviation from a policy is held, in s.
+    HoldS(f64) = real("hold_s");
 }
 
 /// A whole number that fits 64 bits, from anything with `__index__` but a bool.

@@ -50,9 +50,9 @@ mod _core {
     #[pymodule_export]
     use super::quantities::{PyQuantity, quantities};
     #[pymodule_export]
-    use super::recording::{phase_names, record, sampled_analysis_window};
+    use super::recording::{phase_names, record, sampled_analysis_window, samples_in};
     #[pymodule_export]
-    use super::settings::{action_modes, env_defaults, env_meanings, reward_terms};
+    use super::settings::{action_modes, env_defaults, env_meanings, held_decisions, reward_terms};
     #[pymodule_export]
     use super::statistics::PyStatistics;
     #[pymodule_export]

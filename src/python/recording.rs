@@ -1,12 +1,12 @@
 //! The loop of `flockenv.simulate`.
 
-use super::arguments::{DurationS, SampleHz, floats, real, same_length, text};
+use super::arguments::{DurationS, PeriodS, SampleHz, floats, real, same_length, text};
 use super::contacts::PyContactSeries;
 use super::flock::{BOAT_SUBSTEPS_A_PIECE, PyFlock};
 use super::observation::observed;
 use super::order::PyOrderSeries;
 use super::settings::layout_from;
-use crate::clock::{Ticks, ticks};
+use crate::clock::{Ticks, ticks, whole_steps};
 use crate::error::Result;
 use crate::flock::{Change, Flock, Pause, Real, Recorder, Recording, Sampling};
 use crate::integrator::Phase;
@@ -33,6 +33,12 @@ pub(crate) fn sampled_analysis_window<'py>(
     let phases = phases.collect::<Result<Vec<_>>>()?;
     let analyzed = crate::integrator::sampled_analysis_window(&times, &phases);
     Ok(PyArray1::from_vec(py, analyzed))
+}
+
+/// How many samples a period has.
+#[pyfunction]
+pub(crate) fn samples_in(period_s: PeriodS, sample_hz: SampleHz) -> Result<u32> {
+    whole_steps("period_s", period_s.0, sample_hz.0, "samples")
 }
 
 /// What of a run is kept besides its states, and how precisely.

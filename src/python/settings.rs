@@ -1,10 +1,11 @@
 //! Options of environments, as a dictionary of plain values, to and from the core's settings. Which there
 //! are is declared in the core.
 
-use super::arguments::{real, text, truth, whole, wrong_type};
+use super::arguments::{HoldS, real, text, truth, whole, wrong_type};
+use crate::clock::whole_steps;
 use crate::environment::observation::{Block, ObservationLayout};
 use crate::environment::{ActionMode, EnvOption, EnvSettings, OPTIONS, OptionValue, RewardTerm};
-use crate::error::FlockError;
+use crate::error::{FlockError, Result};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
@@ -175,6 +176,12 @@ pub(crate) fn env_meanings(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         meanings.set_item(option.name, option.doc.trim())?;
     }
     Ok(meanings)
+}
+
+/// For how many decisions something is held that is held for a time in s.
+#[pyfunction]
+pub(crate) fn held_decisions(hold_s: HoldS, decisions_hz: f64) -> Result<u32> {
+    whole_steps("hold_s", hold_s.0, decisions_hz, "decisions")
 }
 
 /// What an action may stand for.

@@ -107,7 +107,7 @@ def test_models_of_another_action_mode_are_refused():
 
 @pytest.mark.parametrize(
     ("hold_s", "message"),
-    [(0.75, "such as 0.5 or 1"), (0.2, "such as 0.5"), (0.0, "whole number"), (-1.0, "whole")],
+    [(0.75, "0.5 and 1 s"), (0.2, "0.5 s is"), (0.0, "whole number"), (-1.0, "whole")],
 )
 def test_bad_times_are_refused(hold_s, message):
     with pytest.raises(ParameterError, match=message):

@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 
 from flockenv import _core
-from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.recording import Recording
 from flockenv.simulation import recorded
@@ -43,12 +42,7 @@ def simulate_alternating(
     SolverError
         If the motion left its range.
     """
-    samples = round(period_s * sample_hz)
-    if samples < 1 or abs(samples / sample_hz - period_s) > 1e-9:
-        raise ParameterError(
-            f"period_s = {period_s!r} is not accepted: a whole number of samples at "
-            f"{sample_hz!r} a second"
-        )
+    samples = _core.samples_in(period_s, sample_hz)
     stretches = int(duration_s / period_s) + 1 if math.isfinite(duration_s) else 0
     changes = [
         (stretch * samples / sample_hz, TARGETS[stretch % len(TARGETS)])
