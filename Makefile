@@ -46,7 +46,7 @@ TEST_EXTRAS := --extra train --extra plot --extra fit --extra render --extra swe
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help setup build compare test lint format test-rust test-python coverage test-js test-browser test-wheel test-oldest \
+.PHONY: help setup build compare test lint format test-rust test-bare test-python coverage test-js test-browser test-wheel test-oldest \
         test-rllib test-ray test-slurm validate docs wheel audit licenses tables replay-animation \
         instructions learning-check training-physics throughput soak fuzz speed-vs-error lint-benches clean
 
@@ -82,6 +82,10 @@ format: $(STAMPS)/test ## format the Rust and Python sources
 
 test-rust: ## the physics alone, no Python
 	cargo test --locked --features clarabel,draw
+
+# Of this `make lint` compiles every test; running them builds the crate once more.
+test-bare: ## the physics without any feature
+	cargo test --locked
 
 # One thread for each worker's linear algebra, or the workers fight over the cores. Tests of one file share what
 # it prepares.
