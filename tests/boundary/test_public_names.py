@@ -7,9 +7,13 @@ from pathlib import Path
 import gymnasium
 import numpy as np
 import pytest
+import typer
 
 import flockenv
-from flockenv.cli import COMMANDS
+import flockenv.comparison.suite
+import flockenv.reproduce
+import flockenv.runs.workload
+from flockenv.cli import app
 
 PARAMETERS = flockenv.FlockParameters(n_boats=4, n_leaders=1, pool="table-1")
 #: Names by the object that has them.
@@ -42,6 +46,37 @@ NAMED = {
     "Recording.from_tracks": "time_s pose pool hull velocity phase ids",
     "Recording.analyzed": "after",
     "policies.load": "pool",
+}
+
+#: An environment takes each of these; fields of the parameters stand for all of theirs.
+ENVIRONMENT_OPTIONS = {
+    "preset": {"preset": "paper"},
+    "params": {"params": PARAMETERS},
+    "fields": {"n_boats": 5, "bw_s": 0.4, "pool": "table-1"},
+    "target": {"target": "random"},
+    "episode_s": {"episode_s": 960.0},
+    "control_hz": {"control_hz": 5.0},
+    "reward": {"reward": {"signed_order": 1.0, "leader_velocity": 0.5}},
+    "observation": {"observation": {"neighbors": 4, "order": False}},
+    "action_mode": {"action_mode": "lean"},
+    "decision_period_s": {"decision_period_s": 0.5},
+    "physics": {"physics": "training"},
+    "render_mode": {"render_mode": "rgb_array"},
+}
+#: Options of the commands, and what long work has: progress that can be silenced, and a folder.
+LONG_WORK = "--out --quiet"
+COMMANDS = {
+    "run": f"--preset --params --set --policy --seed --minutes {LONG_WORK}",
+    "compare": f"--pool --policy --episodes {LONG_WORK}",
+    "reproduce": f"--minutes --shard {LONG_WORK}",
+    "sweep": f"--shard --dry-run --engine {LONG_WORK}",
+    "train": f"--set --resume {LONG_WORK}",
+    "evaluate": f"--against --suite --task {LONG_WORK}",
+    "replay": "--html --open",
+    "presets": "--json",
+    "demo": f"--seed {LONG_WORK}",
+    "analyze": f"--layout --plot {LONG_WORK}",
+    "signal": f"--reward --horizon {LONG_WORK}",
 }
 
 
@@ -108,10 +143,45 @@ def test_leaders_are_slots_of_stable_baselines3():
     assert flockenv.sb3.LeaderVecEnv(num_flocks=3, n_leaders=2).num_envs == 6
 
 
-def test_commands_keep_their_names():
-    names = {command.__name__ for command in COMMANDS}
-    wanted = "run compare reproduce sweep train evaluate replay presets demo analyze signal"
-    assert set(wanted.split()) <= names
+@pytest.mark.parametrize("name", ENVIRONMENT_OPTIONS)
+def test_environments_take_their_options_in_every_form(name):
+    option = ENVIRONMENT_OPTIONS[name]
+    flockenv.parallel_env(**option)
+    gymnasium.make("flockenv/Leaders-v0", **option)
+    gymnasium.make_vec("flockenv/Leaders-v0", num_envs=1, **option)
+    if name != "render_mode":
+        flockenv.sb3.LeaderVecEnv(1, **option)
+
+
+@pytest.mark.parametrize(
+    ("target", "steps"), [("cw", 48), ("ccw", 48), ("random", 48), ("alternate", 96)]
+)
+def test_an_episode_lasts_eight_minutes_and_sixteen_where_targets_alternate(target, steps):
+    env = flockenv.parallel_env(n_boats=2, n_leaders=1, target=target, control_hz=0.1)
+    env.reset(seed=0)
+    taken = 0
+    while env.agents:
+        env.step({"leader_0": np.zeros(1)})
+        taken += 1
+    assert taken == steps
+
+
+def test_other_environments_keep_their_ids():
+    for name in ("flockenv/Leaders-v0", "flockenv/Circulate-easy-v0"):
+        assert name in gymnasium.registry
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_commands_keep_their_names_and_options(name):
+    command = typer.main.get_command(app).commands[name]
+    options = {option for each in command.params for option in each.opts}
+    assert set(COMMANDS[name].split()) <= options
+
+
+def test_commands_keep_what_they_accept():
+    assert "leader-fraction" in flockenv.reproduce.names()
+    assert flockenv.runs.workload.Shard.parse("2/3")
+    assert len(flockenv.comparison.suite.tasks_named("v1", [])) == 9
 
 
 def test_errors_are_of_their_classes():
