@@ -3,6 +3,7 @@
 import json
 import shlex
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,6 +17,7 @@ from flockenv.cli.pools import PoolOption, compared_flocks, pool_name
 from flockenv.cli.suite import evaluate_suite, refuse_altered
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
+from flockenv.policies.base import LeaderPolicy
 
 __all__ = ["evaluate"]
 
@@ -23,6 +25,7 @@ REFERENCES = ("steering law", "tuned damped law")
 
 
 def evaluate(
+    context: typer.Context,
     policy: Annotated[
         str,
         typer.Argument(
@@ -84,24 +87,9 @@ def evaluate(
     Example: `flockenv evaluate learned --pool table-1 --leaders 3`
     """
     if suite is not None:
-        altered: dict[str, object] = {
-            "--against": against,
-            "--pool": pool,
-            "--preset": preset,
-            "--params": params,
-            "--set": changes,
-            "--leaders": leaders,
-            "--bw-s": bw_s,
-            "--alternate": alternate,
-            "--dropout-rate": dropout_rate,
-            "--episodes": episodes,
-            "--minutes": minutes,
-            "--seed": seed,
-        }
-        refuse_altered(suite, altered)
-        names = task or []
+        refuse_altered(context, suite)
         evaluate_suite(
-            policy, suite, names, flock_hours, out, trust=trust, as_json=as_json, quiet=quiet
+            policy, suite, task or [], flock_hours, out, trust=trust, as_json=as_json, quiet=quiet
         )
         return
     for option, value in (("--task", task), ("--flock-hours", flock_hours)):
@@ -110,39 +98,24 @@ def evaluate(
 
     from flockenv.comparison.model_card import model_card
     from flockenv.comparison.report import ComparisonReport, report
-    from flockenv.policies.registry import FILES, POOL_POLICIES, named_policy
 
-    references = list(against or (each for each in REFERENCES if each != policy))
-    if policy in references:
-        raise ParameterError(f"{policy!r} is both the policy and one of those it is compared with")
-    name = printable(Path(policy).stem if policy.endswith(FILES) else policy)
-    if name in references:
-        name = printable(policy)
-    named = {printable(each): each for each in references} | {name: policy}
     options: dict[str, Any] = {"dropout_rate": dropout_rate} if dropout_rate else {}
     if alternate:
         options["target"] = "alternate"
     duration_s = 60.0 * (minutes if minutes is not None else 16.0 if alternate else 8.0)
     numbers = sorted(set(leaders or (1, 2, 3, 4)))
-    count = 512 if episodes is None else episodes
-    seeds = range(seed, seed + count)
-    found = _by_folder(compared_flocks(preset, params, changes, pool, bw_s))
-    pools = {each.pool for each in found.values()}
-    if policy in POOL_POLICIES and len(pools) > 1:
-        raise ParameterError(
-            f"{policy!r} is another policy in each pool: name one pool with --pool"
-        )
-    policies = {
-        each: {shown: named_policy(given, each, trust=trust) for shown, given in named.items()}
-        for each in pools
-    }
+    seeds = range(seed, seed + (512 if episodes is None else episodes))
+    flocks = _by_folder(compared_flocks(preset, params, changes, pool, bw_s))
+    pools = {each.pool for each in flocks.values()}
+    name, policies = _policies(policy, against, pools, trust)
     check_folder(out)
-    refuse_overwriting(params, "--params", [out / each / "parameters.toml" for each in found])
+    refuse_overwriting(params, "--params", [out / each / "parameters.toml" for each in flocks])
     results: dict[str, ComparisonReport] = {}
     with finished_in(out, results), progress_bar(quiet or as_json) as progress:
-        work = len(found) * len(numbers) * len(named) * count * duration_s
+        work = len(numbers) * len(seeds) * duration_s
+        work *= sum(len(policies[each.pool]) for each in flocks.values())
         bar = progress.add_task("simulating", total=work)
-        for folder, parameters in found.items():
+        for folder, parameters in flocks.items():
             result = report(
                 parameters,
                 numbers,
@@ -164,16 +137,36 @@ def evaluate(
     )
     keep(out / "card.md", lambda path: write_text(path, card))
     if as_json:
-        data = {
-            folder: json.loads(each.differences.to_json(orient="records"))
-            for folder, each in results.items()
-        }
-        print_json(data)
+        tables = {each: result.differences for each, result in results.items()}
+        print_json({each: json.loads(t.to_json(orient="records")) for each, t in tables.items()})
         return
-    for each in results.values():
-        console.print(each.table(console.width))
-        say(each.differences_in_words())
+    for result in results.values():
+        console.print(result.table(console.width))
+        say(result.differences_in_words())
     say(f"Written to {out}")
+
+
+def _policies(
+    policy: str, against: list[str] | None, pools: set[Any], trust: bool
+) -> tuple[str, dict[Any, dict[str, Callable[[], LeaderPolicy | str]]]]:
+    """Return the name by which a policy is shown, and by pool and name all that are compared."""
+    from flockenv.policies.registry import FILES, POOL_POLICIES, named_policy
+
+    references = against or [each for each in REFERENCES if each != policy]
+    if policy in references:
+        raise ParameterError(f"{policy!r} is both the policy and one of those it is compared with")
+    if policy in POOL_POLICIES and len(pools) > 1:
+        raise ParameterError(
+            f"{policy!r} is another policy in each pool: name one pool with --pool"
+        )
+    name = printable(Path(policy).stem if policy.endswith(FILES) else policy)
+    if name in references:
+        name = printable(policy)
+    given = {printable(each): each for each in references} | {name: policy}
+    return name, {
+        pool: {shown: named_policy(each, pool, trust=trust) for shown, each in given.items()}
+        for pool in pools
+    }
 
 
 def _by_folder(flocks: list[FlockParameters]) -> dict[str, FlockParameters]:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import tomli_w
+import typer
 from rich.table import Table
 
 from flockenv._core import __version__
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from flockenv.comparison.suite import Score, Task
 
 __all__ = ["evaluate_suite", "refuse_altered"]
+
+_SUITE_PARAMETERS = ["policy", "trust", "suite", "task", "flock_hours", "out", "as_json", "quiet"]
 
 
 def evaluate_suite(
@@ -80,26 +83,21 @@ def evaluate_suite(
     say(f"Written to {out}")
 
 
-def refuse_altered(suite: str, given: dict[str, object]) -> None:
+def refuse_altered(context: typer.Context, suite: str) -> None:
     """Refuse options that would make another task of one in a suite.
-
-    Parameters
-    ----------
-    suite
-        Its name.
-    given
-        The values of such options, by name; what was not given is None, False or 0.
 
     Raises
     ------
     ParameterError
-        For the first that was given.
+        For the first option of the command that was given and is none of the suite's.
     """
-    for option, value in given.items():
-        if value:
+    for each in context.command.params:
+        source = context.get_parameter_source(str(each.name))
+        is_given = source is not None and source.name == "COMMANDLINE"
+        if is_given and each.name not in _SUITE_PARAMETERS:
             raise ParameterError(
-                f"{option} is not accepted with --suite {suite}, whose tasks fix it: there is no "
-                "score of an altered task"
+                f"{each.opts[0]} is not accepted with --suite {suite}, whose tasks fix it: there "
+                "is no score of an altered task"
             )
 
 

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from flockenv._io.atomic_write import atomic_write
-from flockenv.cli.console import errors, print_json, progress_bar, resumable, say
+from flockenv.cli.console import print_json, progress_bar, resumable, say
 from flockenv.cli.output import check_folder, writable
 from flockenv.cli.workload import (
     DryRun,
@@ -15,6 +15,7 @@ from flockenv.cli.workload import (
     ShardOf,
     Workers,
     chosen_shard,
+    end_if_failed,
     make_shard,
     show_workload,
     warn,
@@ -44,7 +45,8 @@ def sweep(
     Finished runs are stored in `runs/`, and an interrupted sweep resumes with the same command.
     Several machines that share a folder make one shard each, with `--shard 1/8` to `--shard 8/8`;
     the command without `--shard` then writes the table.
-    `docs/sweep.md` describes the TOML file.
+    `docs/sweep.md` describes the TOML file. Runs that fail cost no others: their rows say why, and
+    the command ends with exit code 1.
 
     Example: `flockenv sweep docs/sweep-example.toml`
     """
@@ -74,10 +76,8 @@ def sweep(
             warn,
             workers,
         )
-    failed = int((table["failure"] != "").sum())
-    if failed:
-        errors.print(f"Warning: {failed} of {len(table)} runs failed; see the column failure")
     if as_json:
         print_json(json.loads(table.to_json(orient="records")))
-        return
-    say(f"{len(table)} runs, written to {folder}")
+    else:
+        say(f"{len(table)} runs, written to {folder}")
+    end_if_failed(int((table["failure"] != "").sum()), len(table), "see the column failure")

@@ -19,6 +19,7 @@ __all__ = [
     "ShardOf",
     "Workers",
     "chosen_shard",
+    "end_if_failed",
     "make_shard",
     "show_workload",
     "warn",
@@ -47,6 +48,13 @@ def chosen_shard(text: str | None) -> Shard | None:
 def warn(line: str) -> None:
     """Print a warning."""
     say(f"Warning: {line}", errors)
+
+
+def end_if_failed(failed: int, runs: int, where: str) -> None:
+    """End the command with exit code 1 if some of its runs failed, and say how many and `where`."""
+    if failed:
+        say(f"{failed} of {runs} runs failed: {where}", errors)
+        raise typer.Exit(1)
 
 
 def show_workload(
@@ -91,6 +99,7 @@ def make_shard(
         warn(f"the run of seed {spec.seed} failed: {error}")
     if as_json:
         print_json({"shard": str(shard), "runs": len(mine), "failed": len(failures)})
-        return
-    say(f"Shard {shard}: {len(mine) - len(failures)} of {len(mine)} runs are stored in {runs}")
-    say("When all shards have ended, the same command without --shard writes the results.")
+    else:
+        say(f"Shard {shard}: {len(mine) - len(failures)} of {len(mine)} runs are stored in {runs}")
+        say("When all shards have ended, the same command without --shard writes the results.")
+    end_if_failed(len(failures), len(mine), "see the warnings")

@@ -139,10 +139,10 @@ def mark_where_short(
     if settings.minutes is None:
         return
     own = figure.runs(replace(settings, minutes=None))
-    asked_s, own_s = (max((spec.duration_s for spec in each), default=0.0) for each in (specs, own))
-    if asked_s < own_s:
+    given_s, own_s = (max((spec.duration_s for spec in each), default=0.0) for each in (specs, own))
+    if given_s < own_s:
         for picture in outcome.pictures.values():
-            mark_short(picture, asked_s / 60, own_s / 60)
+            mark_short(picture, given_s / 60, own_s / 60)
 
 
 def _write_report(

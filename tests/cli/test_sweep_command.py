@@ -64,3 +64,24 @@ def test_shards_make_the_table_of_one_command(cli, tmp_path: Path) -> None:
         assert cli(*sweep, str(tmp_path / out)).returncode == 0
     for name in ("sweep.csv", "sweep.parquet"):
         assert (tmp_path / "out" / name).read_bytes() == (tmp_path / "alone" / name).read_bytes()
+
+
+def test_runs_that_fail_are_counted_and_end_the_command_with_exit_code_1(
+    cli, tmp_path: Path
+) -> None:
+    spec = tmp_path / "crowd.toml"
+    spec.write_text('minutes = 0.1\nseeds = 2\n[[grid]]\nn_boats = [6, 400]\npool = ["table-1"]\n')
+    sweep = ["sweep", str(spec), "--quiet", "--out", str(tmp_path / "out")]
+    done = cli(*sweep)
+    assert done.returncode == 1
+    assert "2 of 4 runs failed: see the column failure" in done.stderr
+    assert "4 runs, written to" in done.stdout
+    failure = load_sweep(tmp_path / "out").set_index("n_boats")["failure"]
+    assert (failure.loc[6] == "").all()
+    assert failure.loc[400].str.contains("do not fit the pool").all()
+    printed = cli(*sweep, "--json")
+    assert (printed.returncode, len(json.loads(printed.stdout))) == (1, 4)
+    shard = cli(*sweep, "--shard", "1/1", "--json")
+    assert shard.returncode == 1
+    assert json.loads(shard.stdout) == {"shard": "1/1", "runs": 4, "failed": 2}
+    assert "2 of 4 runs failed" in shard.stderr
