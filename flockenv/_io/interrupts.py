@@ -1,13 +1,78 @@
 """Ctrl-C handled for a while."""
 
 import signal
+import sys
+from _thread import interrupt_main
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from threading import current_thread, main_thread
+from threading import Timer, current_thread, main_thread
 from types import FrameType
 from typing import Any
 
-__all__ = ["held_interrupts", "on_interrupt"]
+__all__ = ["held_interrupts", "interrupts_wait_for_imports", "on_interrupt"]
+
+_PATIENCE_S = 0.02
+
+
+class _AfterImports:
+    """A handler that takes an action as soon as the main thread imports nothing.
+
+    Compiled packages do not expect a Ctrl-C while they are imported: one in matplotlib's aborted
+    the interpreter.
+    """
+
+    def __init__(self, action: Callable[[int, FrameType | None], Any]) -> None:
+        self._action = action
+        self._waits = False
+
+    def __call__(self, number: int, frame: FrameType | None) -> None:
+        if self._waits:
+            return
+        if not _importing():
+            self._action(number, frame)
+            return
+        self._waits = True
+        again = Timer(_PATIENCE_S, self._again)
+        again.daemon = True
+        again.start()
+
+    def _again(self) -> None:
+        self._waits = False
+        if sys.platform == "win32":
+            interrupt_main()
+        else:
+            # Unlike `interrupt_main`, it wakes a main thread that waits for a lock.
+            signal.pthread_kill(main_thread().ident or 0, signal.SIGINT)
+
+
+def _importing() -> bool:
+    frame: FrameType | None = sys._getframe()
+    while frame is not None:
+        if frame.f_code.co_filename == "<frozen importlib._bootstrap>":
+            return True
+        frame = frame.f_back
+    return False
+
+
+_RAISING = _AfterImports(signal.default_int_handler)
+
+
+@contextmanager
+def interrupts_wait_for_imports() -> Iterator[None]:
+    """Let a Ctrl-C within a `with` block raise `KeyboardInterrupt`, but not amid an import.
+
+    Nothing changes elsewhere than in the main thread, nor where somebody handles Ctrl-C already.
+    """
+    before = signal.getsignal(signal.SIGINT)
+    if before is not signal.default_int_handler or current_thread() is not main_thread():
+        yield
+        return
+    signal.signal(signal.SIGINT, _RAISING)
+    try:
+        yield
+    finally:
+        if signal.getsignal(signal.SIGINT) is _RAISING:
+            signal.signal(signal.SIGINT, before)
 
 
 @contextmanager
@@ -22,17 +87,20 @@ def on_interrupt(
     Parameters
     ----------
     action
-        As `signal.signal` takes it. It may set the default handler again.
+        As `signal.signal` takes it; a function is not called amid an import. It may set the default
+        handler again.
     """
-    ours = signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    before = signal.getsignal(signal.SIGINT)
+    ours = before is _RAISING or before is signal.default_int_handler
     if not ours or current_thread() is not main_thread():
         yield
         return
-    signal.signal(signal.SIGINT, action)
+    handler = action if isinstance(action, signal.Handlers) else _AfterImports(action)
+    signal.signal(signal.SIGINT, handler)
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(signal.SIGINT, before)
 
 
 @contextmanager

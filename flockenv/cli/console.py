@@ -18,7 +18,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from flockenv._io.interrupts import on_interrupt
+from flockenv._io.interrupts import interrupts_wait_for_imports, on_interrupt
 
 __all__ = [
     "INTERRUPTED",
@@ -134,7 +134,8 @@ def ends_on_interrupt(command: Callable[..., None]) -> Callable[..., None]:
     def wrapped(*arguments: Any, **options: Any) -> None:
         try:
             _raise_on_interrupt()
-            command(*arguments, **options)
+            with interrupts_wait_for_imports():
+                command(*arguments, **options)
         except KeyboardInterrupt as interrupt:
             notes = getattr(interrupt, "__notes__", ["Work that was finished before is stored."])
             with on_interrupt(signal.SIG_IGN):
