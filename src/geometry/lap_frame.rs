@@ -2,7 +2,7 @@
 //! boat's own polar angle θ. Orientations and tangential velocities count clockwise as positive, the
 //! camera's y-down convention, so that φ = 0 points at the outer wall and +π/2 is clockwise motion.
 
-use super::{HullPose, Pose, Vec2, Velocity, turned_left, wrap_angle};
+use super::{Pose, Vec2, turned_left, wrap_angle};
 
 /// The axes at one place.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,7 +26,7 @@ impl LapFrame {
     }
 
     /// LAP components (outward, clockwise) of a world vector.
-    pub(crate) fn components(&self, world: Vec2) -> Vec2 {
+    pub fn components(&self, world: Vec2) -> Vec2 {
         Vec2::new(world.dot(&self.outward), world.dot(&self.clockwise))
     }
 }
@@ -34,14 +34,4 @@ impl LapFrame {
 /// LAP orientation φ = wrap(θ − α) in (−π, π] (figure 3).
 pub fn orientation(pose: &Pose) -> f64 {
     wrap_angle(pose.position.y.atan2(pose.position.x) - pose.heading)
-}
-
-/// The unit orientation vector o in LAP components: (cos φ, sin φ).
-pub fn orientation_vector(pose: &Pose) -> Vec2 {
-    LapFrame::at(pose.position).components(HullPose::new(pose).axis)
-}
-
-/// The velocity in LAP components (outward, clockwise) in cm/s.
-pub fn velocity_vector(pose: &Pose, velocity: &Velocity) -> Vec2 {
-    LapFrame::at(pose.position).components(velocity.linear)
 }

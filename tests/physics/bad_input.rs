@@ -2,23 +2,10 @@
 //!
 //! On paper: a snapshot taken before a refused call equals the one taken after it, byte for byte.
 
-use crate::support::{bits, driven, flock_of};
+use crate::support::{bits, driven, flock_of, refused_field, table_3};
 use flockenv::geometry::{Pose, Velocity};
-use flockenv::parameters::{Preset, Scheme, Solver, Target};
+use flockenv::parameters::{Scheme, Solver, Target};
 use flockenv::{Flock, FlockError, FlockParameters};
-
-fn table_3() -> FlockParameters {
-    FlockParameters::preset(Preset::Simulation)
-}
-
-fn refused_field(result: Result<(), FlockError>) -> String {
-    match result {
-        Err(FlockError::Parameter { field, .. } | FlockError::Shape { field, .. }) => {
-            field.to_owned()
-        }
-        other => panic!("accepted or another error: {other:?}"),
-    }
-}
 
 #[test]
 fn a_bad_state_changes_nothing() {

@@ -5,8 +5,8 @@
 //! always C = (N·Ψ² − mean|·|²)/(N − 1), which is (N·Ψ_o² − 1)/(N − 1) for unit vectors.
 
 use crate::support::cases;
-use flockenv::geometry::lap_frame::{orientation, orientation_vector, velocity_vector};
-use flockenv::geometry::{Pose, Velocity};
+use flockenv::geometry::lap_frame::{LapFrame, orientation};
+use flockenv::geometry::{Pose, Vec2, Velocity};
 use flockenv::parameters::{Preset, Target};
 use flockenv::{Flock, FlockError, FlockParameters, OrderParameters};
 use proptest::prelude::*;
@@ -88,17 +88,13 @@ fn the_lap_frame_has_the_camera_s_signs() {
     // At the rightmost place, heading up: counter-clockwise, −π/2.
     let up = Pose::new(50.0, 0.0, FRAC_PI_2);
     assert!(near(orientation(&up), -FRAC_PI_2));
-    assert!(near(orientation_vector(&up).y, -1.0));
-    let moving_up = Velocity::new(2.0, 7.0, 0.0);
-    let lap = velocity_vector(&up, &moving_up);
+    let lap = LapFrame::at(up.position).components(Vec2::new(2.0, 7.0));
     assert!(near(lap.x, 2.0) && near(lap.y, -7.0));
     // At the top, heading right: clockwise, +π/2.
     let right = Pose::new(0.0, 50.0, 0.0);
     assert!(near(orientation(&right), FRAC_PI_2));
-    assert!(near(
-        velocity_vector(&right, &Velocity::new(4.0, 0.0, 0.0)).y,
-        4.0
-    ));
+    let lap = LapFrame::at(right.position).components(Vec2::new(4.0, 0.0));
+    assert!(near(lap.x, 0.0) && near(lap.y, 4.0));
     // Headings are not wrapped, orientations are.
     assert!(near(
         orientation(&Pose::new(0.0, 50.0, 6.0 * PI)),

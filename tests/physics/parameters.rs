@@ -2,21 +2,9 @@
 //!
 //! On paper: Tables 1 and 3 are accepted, each of their fields out of range is refused by its name.
 
+use crate::support::{refused_field, table_3};
 use flockenv::parameters::{Field, Kind, Noise, Pool, Preset, Scheme, Solver, Target, Value};
 use flockenv::{Flock, FlockError, FlockParameters};
-
-fn table_3() -> FlockParameters {
-    FlockParameters::preset(Preset::Simulation)
-}
-
-fn refused_field(result: Result<(), FlockError>) -> String {
-    match result {
-        Err(FlockError::Parameter { field, .. } | FlockError::Shape { field, .. }) => {
-            field.to_owned()
-        }
-        other => panic!("accepted or another error: {other:?}"),
-    }
-}
 
 #[test]
 fn presets_are_the_tables() {

@@ -3,7 +3,7 @@
 use flockenv::flock::State;
 use flockenv::geometry::{Pose, Vec2, Velocity, cross};
 use flockenv::parameters::{Noise, Pool, Preset, Scheme};
-use flockenv::{Flock, FlockParameters};
+use flockenv::{Flock, FlockError, FlockParameters};
 use proptest::test_runner::{Config as ProptestConfig, RngSeed};
 
 /// All schemes.
@@ -277,4 +277,17 @@ pub fn root(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
         }
     }
     0.5 * (low + high)
+}
+
+/// The name of the field that a refusal names.
+pub fn refused_field(result: Result<(), FlockError>) -> &'static str {
+    match result {
+        Err(FlockError::Parameter { field, .. } | FlockError::Shape { field, .. }) => field,
+        other => panic!("accepted or another error: {other:?}"),
+    }
+}
+
+/// The parameters of Table 3, with leapfrog and white noise.
+pub fn table_3() -> FlockParameters {
+    FlockParameters::preset(Preset::Simulation)
 }
