@@ -15,7 +15,7 @@ from flockenv.runs.store import RunStore
 
 Derived = TypeVar("Derived")
 
-__all__ = ["Outcome", "Reproduction", "Results", "Settings", "within_budget"]
+__all__ = ["Outcome", "Reproduction", "Results", "Settings", "designed", "within_budget"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +60,8 @@ class Settings:
 
 class _Design(Protocol):
     def core_minutes(self, settings: Settings) -> float: ...
+
+    def all_runs(self, settings: Settings) -> "list[RunSpec]": ...
 
 
 Design = TypeVar("Design", bound=_Design)
@@ -181,3 +183,20 @@ class Reproduction:
     section: str
     runs: Callable[[Settings], list[RunSpec]]
     analyze: Callable[[Settings, Results], Outcome]
+
+
+def designed(
+    name: str,
+    title: str,
+    section: str,
+    chosen: Callable[[Settings], Design],
+    analyze: Callable[[Design, Settings, Results], Outcome],
+) -> Reproduction:
+    """Return a reproduction whose runs are those of the design that is chosen for the settings."""
+    return Reproduction(
+        name=name,
+        title=title,
+        section=section,
+        runs=lambda settings: chosen(settings).all_runs(settings),
+        analyze=lambda settings, results: analyze(chosen(settings), settings, results),
+    )

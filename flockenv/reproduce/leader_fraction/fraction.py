@@ -18,7 +18,7 @@ from flockenv.reproduce.leader_fraction.design import (
 )
 from flockenv.reproduce.leader_fraction.measured import GUIDED, Curve, exponent
 from flockenv.reproduce.leader_fraction.pictures import picture
-from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
+from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings, designed
 from flockenv.reproduce.transition.design import WAYS, Growth
 from flockenv.statistics.intervals import interval, student_interval
 
@@ -145,16 +145,12 @@ def _fractions_table(curves: Curves) -> pd.DataFrame:
 
 def leader_fraction(design: FractionDesign | None = None) -> Reproduction:
     """Return the reproduction, by default in the largest design that the budget allows."""
-
-    def chosen(settings: Settings) -> FractionDesign:
-        return within(settings) if design is None else design
-
-    return Reproduction(
-        name="leader-fraction",
-        title="Do larger flocks need a smaller proportion of leaders?",
-        section="1, citing Couzin et al. (2005)",
-        runs=lambda settings: chosen(settings).all_runs(settings),
-        analyze=lambda settings, results: _analyze(chosen(settings), settings, results),
+    return designed(
+        "leader-fraction",
+        "Do larger flocks need a smaller proportion of leaders?",
+        "1, citing Couzin et al. (2005)",
+        within if design is None else lambda settings: design,
+        _analyze,
     )
 
 

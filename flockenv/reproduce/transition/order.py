@@ -16,7 +16,7 @@ from itertools import product
 import pandas as pd
 
 from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, CheckedClaim, Claim, number
-from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
+from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings, designed
 from flockenv.reproduce.transition.design import (
     FULL,
     LOOPS,
@@ -135,7 +135,7 @@ def _measured(claim: CheckedClaim) -> str:
     return claim.note if claim.ends == "none" else f"{number(claim.measured)}, {claim.ends}"
 
 
-def _analyse(design: TransitionDesign, settings: Settings, results: Results) -> Outcome:
+def _analyze(design: TransitionDesign, settings: Settings, results: Results) -> Outcome:
     stationary = {}
     for growth in design.growths():
         for density, start in product(design.densities[growth.way], STARTS):
@@ -295,16 +295,12 @@ def _histograms(measured: Measured) -> pd.DataFrame:
 
 def transition_order(design: TransitionDesign | None = None) -> Reproduction:
     """Return the reproduction, by default in the largest design that the budget allows."""
-
-    def chosen(settings: Settings) -> TransitionDesign:
-        return within(settings) if design is None else design
-
-    return Reproduction(
-        name="transition-order",
-        title="Is the jamming–order transition of first order?",
-        section="5.2, left open",
-        runs=lambda settings: chosen(settings).all_runs(settings),
-        analyze=lambda settings, results: _analyse(chosen(settings), settings, results),
+    return designed(
+        "transition-order",
+        "Is the jamming–order transition of first order?",
+        "5.2, left open",
+        within if design is None else lambda settings: design,
+        _analyze,
     )
 
 
