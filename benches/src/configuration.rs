@@ -95,6 +95,11 @@ impl Configuration {
         all
     }
 
+    /// All of them: exact, inexact, peers.
+    pub fn all() -> Vec<Self> {
+        [Self::all_exact(), Self::all_inexact(), Self::all_peers()].concat()
+    }
+
     /// The other solvers, at the step of the main comparison.
     pub fn all_inexact() -> Vec<Self> {
         let solvers = [Solver::GaussSeidel, Solver::Clarabel];

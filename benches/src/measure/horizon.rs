@@ -95,13 +95,7 @@ pub fn rows(scene: Scene, ends: &Ends, reference: &Ends) -> Vec<Vec<String>> {
 
 /// Measures every configuration.
 pub fn measure(effort: Effort) -> Table {
-    let inexact = Configuration::all_inexact();
-    let all = [
-        Configuration::all_exact(),
-        inexact,
-        Configuration::all_peers(),
-    ]
-    .concat();
+    let all = Configuration::all();
     let mut table = table(&COLUMNS);
     for scene in Scene::ALL {
         let starts = starts(scene, effort);

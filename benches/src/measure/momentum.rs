@@ -93,13 +93,7 @@ pub const COLUMNS: [&str; 2] = ["momentum_drift", "angular_momentum_drift"];
 
 /// Measures every configuration.
 pub fn measure() -> Table {
-    let inexact = Configuration::all_inexact();
-    let all = [
-        Configuration::all_exact(),
-        inexact,
-        Configuration::all_peers(),
-    ]
-    .concat();
+    let all = Configuration::all();
     let rows = on_all_cores(&all, |configuration| {
         let mut engine = configuration.build(&scene(), 1, &start());
         engine.advance(configuration.steps(FLIGHT_S));

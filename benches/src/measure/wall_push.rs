@@ -75,13 +75,7 @@ pub const COLUMNS: [&str; 4] = ["boats", "force_cm_s2", "expected_cm_s2", "force
 
 /// Measures every configuration.
 pub fn measure() -> Table {
-    let inexact = Configuration::all_inexact();
-    let all = [
-        Configuration::all_exact(),
-        inexact,
-        Configuration::all_peers(),
-    ]
-    .concat();
+    let all = Configuration::all();
     let forces = on_all_cores(&all, measured);
     let mut table = table(&COLUMNS);
     for (configuration, force) in all.iter().zip(forces) {
