@@ -128,7 +128,8 @@ test-oldest: $(STAMPS)/venv ## the oldest supported versions, in .venv-oldest
 	  tests/comparison tests/calibration tests/cli $(PYTEST_ARGS)
 
 # Pages with code cells are executed, and what they trained is trained again.
-docs: $(STAMPS)/docs $(STAMPS)/core ## build the pages, warnings are errors, into docs/_build/html
+docs: $(STAMPS)/docs $(STAMPS)/core ## build the pages, warnings are errors, into docs/_build/html, and those of the crate
+	RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps
 	rm -rf docs/_build/leader
 	OMP_NUM_THREADS=1 $(BIN)/python -m sphinx --fail-on-warning --nitpicky --builder html docs docs/_build/html
 

@@ -15,7 +15,7 @@ __all__ = ["SingleEnvironmentBase"]
 
 
 class SingleEnvironmentBase:
-    """One flock with its episodes and its screen, to be mixed into an interface's class."""
+    """The base of the environments of one flock: its episodes, infos and frames."""
 
     metadata: dict[str, Any]
 

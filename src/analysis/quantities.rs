@@ -178,7 +178,7 @@ pub(crate) const SUMMARIZED: usize = {
 };
 
 /// The quantities that summaries of episodes hold means of, in the order of the table.
-pub fn summarized() -> impl Iterator<Item = &'static Quantity> {
+pub(crate) fn summarized() -> impl Iterator<Item = &'static Quantity> {
     QUANTITIES.iter().filter(|each| each.is_summarized())
 }
 

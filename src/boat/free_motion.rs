@@ -73,7 +73,13 @@ impl FreeMotion {
     /// A spin that a collision left so fast that −c1·α̇³ would turn it round within one step
     /// (c1·α̇²·dt > 1) is stopped instead: beyond 2, explicit steps would grow without end.
     #[inline]
-    pub fn explicit(&self, velocity: &Velocity, axis: Vec2, drive: &Drive, dt: f64) -> Velocity {
+    pub(crate) fn explicit(
+        &self,
+        velocity: &Velocity,
+        axis: Vec2,
+        drive: &Drive,
+        dt: f64,
+    ) -> Velocity {
         let along = axis.dot(&(velocity.linear - drive.water));
         let spin = velocity.angular;
         let excess = (self.c1 * spin * spin * dt - 1.0).max(0.0);

@@ -111,7 +111,7 @@ impl Law {
     }
 
     /// The damped law with the gains tuned in a pool; `None` for pools in which it has not been tuned.
-    pub fn tuned_damped(pool: &Pool) -> Option<Self> {
+    pub(crate) fn tuned_damped(pool: &Pool) -> Option<Self> {
         let pool = pool.name()?;
         tuned_damped().find_map(|(of, law)| (of == pool).then_some(law))
     }

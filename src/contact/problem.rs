@@ -67,7 +67,7 @@ impl ContactProblem<'_> {
     }
 
     /// A_kl: how much an impulse at contact k opens the gap of contact l.
-    pub fn coupling(&self, k: usize, l: usize) -> f64 {
+    pub(crate) fn coupling(&self, k: usize, l: usize) -> f64 {
         let mut sum = 0.0;
         for (boat, normal, arm) in self.contacts[k].sides() {
             for (other, other_normal, other_arm) in self.contacts[l].sides() {
@@ -82,7 +82,7 @@ impl ContactProblem<'_> {
     }
 
     /// Kinetic energy of a boat in the metric of effective inertia, in cm²/s² (mass 1).
-    pub fn energy(&self, boat: usize, velocities: &[Velocity]) -> f64 {
+    pub(crate) fn energy(&self, boat: usize, velocities: &[Velocity]) -> f64 {
         let Velocity { linear, angular } = velocities[boat];
         let inertia = &self.inertia[boat];
         0.5 * (linear.norm_squared() / inertia.linear + angular * angular / inertia.angular)

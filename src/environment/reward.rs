@@ -46,7 +46,7 @@ impl RewardTerm {
     }
 
     /// Whether the term comes from the leader's contacts, which are watched only where such a term has a weight.
-    pub fn is_credit(self) -> bool {
+    pub(crate) fn is_credit(self) -> bool {
         matches!(
             self,
             Self::ContactPush | Self::ContactAlignment | Self::TouchedOrder
@@ -169,7 +169,7 @@ impl RewardWeights {
     }
 
     /// Whether a term from the leaders' contacts has a weight.
-    pub fn need_credit(&self) -> bool {
+    pub(crate) fn need_credit(&self) -> bool {
         let weights = RewardTerm::ALL.iter().zip(self.0);
         weights
             .into_iter()

@@ -96,7 +96,7 @@ impl EnvSettings {
     }
 
     /// What the weighted sum of a control step's terms is multiplied by.
-    pub fn reward_factor(&self) -> f64 {
+    pub(crate) fn reward_factor(&self) -> f64 {
         self.reward_horizon_s
             .map_or(1.0, |horizon| 1.0 / (self.episode.control_hz * horizon))
     }

@@ -28,7 +28,7 @@ impl Hull {
     }
 
     /// Area in cm².
-    pub fn area(&self) -> f64 {
+    pub(crate) fn area(&self) -> f64 {
         (std::f64::consts::PI * self.radius + 4.0 * self.half_length) * self.radius
     }
 

@@ -17,7 +17,7 @@ STARTS = ("rotating", "jammed")
 
 
 def prepared_flock(parameters: FlockParameters, seed: int, start: str) -> _core.Flock:
-    """Return a flock in a prepared state, its boats at the places of a random start.
+    """Return a flock in an initial state of that name, its boats at the places of a random start.
 
     Turning boats where they are may let some overlap; the contact solver takes that out again.
 

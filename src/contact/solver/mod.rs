@@ -73,7 +73,7 @@ impl ContactSolver {
 
     /// An exact solver in which every contact gives way by `regularization`·A_kk·λ_k, so that constraints
     /// that contradict each other are met as well as they can be.
-    pub fn regularized(regularization: f64) -> Self {
+    pub(crate) fn regularized(regularization: f64) -> Self {
         Self {
             pivoting: BlockPivoting::new(regularization),
             ..Self::new(Solver::BlockPivoting)
@@ -110,7 +110,7 @@ impl ContactSolver {
     }
 
     /// Solves with a solver of another kind.
-    pub fn solve_as(&mut self, kind: Solver, problem: &ContactProblem) -> SolveReport {
+    pub(crate) fn solve_as(&mut self, kind: Solver, problem: &ContactProblem) -> SolveReport {
         let mut report = match kind {
             Solver::BlockPivoting => self.pivoting.solve(
                 problem,

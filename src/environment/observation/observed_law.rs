@@ -56,7 +56,7 @@ impl ObservedLaw {
     }
 
     /// The same where the desired heading is turned outward of the target's tangent by an angle in rad.
-    pub fn rudder_about(&self, observation: &[f32], outward: f64) -> f64 {
+    pub(crate) fn rudder_about(&self, observation: &[f32], outward: f64) -> f64 {
         let read = |place: usize| f64::from(observation[place]);
         let target = self.target.map_or(1.0, read);
         // δ = φ − φ_target with φ_target = ±π/2.

@@ -21,7 +21,7 @@ impl Observer {
     /// For a checked layout and checked parameters.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for `law_rudder` in a pool in which the law has not been tuned.
+    /// [`crate::FlockError::Parameter`] for `law_rudder` in a pool in which the law has not been tuned.
     pub fn new(layout: ObservationLayout, parameters: &FlockParameters) -> Result<Self> {
         let entries = layout.entries().into_iter().map(|(_, _, entry)| entry);
         let scaling = Scaling::new(entries, parameters);
