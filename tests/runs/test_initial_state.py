@@ -1,11 +1,11 @@
-"""Prepared flocks are what their names say, on paper: m = 1 and Ψ_o cos φ_o = 1."""
+"""Flocks in an initial state are what its name says, on paper: m = 1 and Ψ_o cos φ_o = 1."""
 
 import numpy as np
 import pytest
 
 import flockenv
 from flockenv.runs.protocols.hysteresis import simulate_prepared
-from flockenv.runs.protocols.initial_state import STARTS, prepared_flock
+from flockenv.runs.protocols.initial_state import STARTS, initial_flock
 
 PARAMETERS = flockenv.FlockParameters.preset("simulation").replace(
     n_boats=20, n_leaders=0, bw_s=0.0
@@ -13,7 +13,7 @@ PARAMETERS = flockenv.FlockParameters.preset("simulation").replace(
 
 
 def test_the_states() -> None:
-    rotating, jammed = (prepared_flock(PARAMETERS, 2, start) for start in STARTS)
+    rotating, jammed = (initial_flock(PARAMETERS, 2, start) for start in STARTS)
     order = rotating.order_parameters()
     assert (order.psi_o, order.phi_o) == pytest.approx((1.0, np.pi / 2))
     assert (order.psi_v, order.phi_v) == pytest.approx((PARAMETERS.speed_cm_s, np.pi / 2))
@@ -36,4 +36,4 @@ def test_runs_are_seeded_and_come_apart(start: str) -> None:
 
 def test_an_unknown_start_is_refused() -> None:
     with pytest.raises(flockenv.ParameterError, match="rotating, jammed"):
-        prepared_flock(PARAMETERS, 0, "asleep")
+        initial_flock(PARAMETERS, 0, "asleep")

@@ -108,7 +108,7 @@ pub fn measure(effort: Effort) -> Table {
         let all = [Configuration::all_exact(), Configuration::all_peers()].concat();
         add(&all, scene, 27, timed_s);
     }
-    let rows = on_all_cores(&runs, look_at);
+    let rows = on_all_cores(&runs, measured);
     let mut table = table(&COLUMNS);
     for (run, row) in runs.iter().zip(rows) {
         push_row(&mut table, &run.configuration.cells(), row);
@@ -116,7 +116,7 @@ pub fn measure(effort: Effort) -> Table {
     table
 }
 
-fn look_at(run: &Run) -> Vec<String> {
+fn measured(run: &Run) -> Vec<String> {
     let scene = run.scene.parameters(run.boats);
     let start = Start::placed(&scene, 1);
     let mut engine = run.configuration.build(&scene, 1, &start);

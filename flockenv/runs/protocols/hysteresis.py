@@ -18,7 +18,7 @@ from flockenv import _core
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.recording import Recording
-from flockenv.runs.protocols.initial_state import prepared_flock
+from flockenv.runs.protocols.initial_state import initial_flock
 from flockenv.simulation import Change, recorded
 
 __all__ = [
@@ -139,7 +139,7 @@ def simulate_loop(
     else:
         half = density_steps(parameters, fixed_width=kind == "rotating-length-loop")
     steps = [*half, *half[-2::-1]]
-    flock = prepared_flock(steps[0], seed, "rotating")
+    flock = initial_flock(steps[0], seed, "rotating")
     changes = _changes(steps, duration_s, sample_hz)
     return recorded(flock, parameters, duration_s, sample_hz, changes=changes)
 
@@ -152,7 +152,7 @@ def simulate_prepared(
     Parameters and errors are those of `simulate_loop`, except for `start`, one of
     `flockenv.runs.protocols.initial_state.STARTS`.
     """
-    flock = prepared_flock(parameters, seed, start)
+    flock = initial_flock(parameters, seed, start)
     return recorded(flock, parameters, duration_s, sample_hz)
 
 

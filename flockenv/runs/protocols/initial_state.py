@@ -10,13 +10,13 @@ from flockenv import _core
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 
-__all__ = ["STARTS", "prepared_flock"]
+__all__ = ["STARTS", "initial_flock"]
 
 STARTS = ("rotating", "jammed")
 """All boats clockwise along the tangent at their full speed; all facing the outer wall at rest."""
 
 
-def prepared_flock(parameters: FlockParameters, seed: int, start: str) -> _core.Flock:
+def initial_flock(parameters: FlockParameters, seed: int, start: str) -> _core.Flock:
     """Return a flock in an initial state of that name, its boats at the places of a random start.
 
     Turning boats where they are may let some overlap; the contact solver takes that out again.
