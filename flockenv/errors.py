@@ -1,4 +1,7 @@
-"""What can go wrong: the exceptions that users meet."""
+"""What can go wrong: the exceptions that users meet, and parts of their messages."""
+
+import difflib
+from collections.abc import Iterable
 
 from flockenv._core import EpisodeError, FlockError, InUseError, ParameterError, SolverError
 
@@ -9,6 +12,9 @@ __all__ = [
     "ParameterError",
     "SolverError",
     "UnknownOptionError",
+    "hint",
+    "nearest",
+    "refuse_unknown",
     "shown",
 ]
 
@@ -28,3 +34,30 @@ def shown(value: object) -> str:
     except Exception:  # That of an int of more than 4300 digits fails, and others may.
         return "a value that cannot be printed"
     return text if len(text) <= 80 else f"{text[:80]}…"
+
+
+def nearest(name: object, known: Iterable[str], cutoff: float = 0.6) -> str | None:
+    """Return the known name that is most like another one, None if none is at least `cutoff`."""
+    near = difflib.get_close_matches(str(name), list(known), n=1, cutoff=cutoff)
+    return near[0] if near else None
+
+
+def hint(name: object, known: Iterable[str]) -> str:
+    """Return what an unknown name may have meant, or all names that there are."""
+    known = list(known)
+    near = nearest(name, known)
+    return f"did you mean {near!r}?" if near else f"there are {', '.join(known)}"
+
+
+def refuse_unknown(names: Iterable[object], known: Iterable[str], what: str) -> None:
+    """Refuse names that are none of those that are known.
+
+    Raises
+    ------
+    ParameterError
+        For the first of them, with the nearest name that is `what`.
+    """
+    known = list(known)
+    for name in names:
+        if name not in known:
+            raise ParameterError(f"{name!r} is no {what}: {hint(name, known)}")

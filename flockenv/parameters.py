@@ -1,8 +1,7 @@
 """Every constant that defines a flock. Values and range checks live in the Rust core."""
 
-import difflib
 import textwrap
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from types import SimpleNamespace
 from typing import Any, Self
@@ -11,7 +10,7 @@ import tomli_w
 
 from flockenv import _core
 from flockenv._io.toml import read_toml
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, refuse_unknown
 
 __all__ = ["FlockParameters"]
 
@@ -77,7 +76,7 @@ class FlockParameters:
 
     def __new__(cls, **values: Any) -> Self:
         """Refuse unknown fields and suggest the nearest name, which a dataclass does not."""
-        _refuse_unknown(values)
+        refuse_unknown(values, _NAMES, "field of FlockParameters")
         if values.get("gyration_radius_cm", 0.0) is None:
             raise TypeError("gyration_radius_cm must be a number or left out, not None")
         if type(values.get("noise")) in (int, float):
@@ -226,15 +225,6 @@ def _changed(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, A
 def _gyration_radius_cm(base: Mapping[str, Any], fields: Mapping[str, Any]) -> float:
     hull = {name: fields[name] for name in _HULL}
     return _core.resized_gyration_radius_cm(SimpleNamespace(**base), **hull)
-
-
-def _refuse_unknown(names: Iterable[str]) -> None:
-    for name in names:
-        if name in _NAMES:
-            continue
-        near = difflib.get_close_matches(name, _NAMES, n=1, cutoff=0.5)
-        hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(_NAMES)}"
-        raise ParameterError(f"{name!r} is no field of FlockParameters: {hint}")
 
 
 def _attributes() -> str:

@@ -21,7 +21,7 @@ from flockenv._io.atomic_write import atomic_write
 from flockenv._io.extras import require
 from flockenv.calibration.targets import NOISE_S, TARGETS, FlockRuns, loss, measure, run_flock
 from flockenv.calibration.targets import single_boat as measure_boat
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, refuse_unknown
 from flockenv.parameters import FlockParameters
 from flockenv.runs.executors import in_order
 from flockenv.runs.seeds import MODEL_SEEDS
@@ -110,8 +110,8 @@ class Fit:
     jobs: int = 1
 
     def __post_init__(self) -> None:
-        _refuse_unknown("free", self.free, list(BOUNDS))
-        _refuse_unknown("only", self.only, [target.key for target in TARGETS])
+        refuse_unknown(self.free, BOUNDS, "entry of free")
+        refuse_unknown(self.only, [target.key for target in TARGETS], "entry of only")
         if not self.free:
             raise ParameterError("free = () is not accepted: at least one constant")
         for name in ("trials", "seeds", "finalists", "jobs"):
@@ -341,9 +341,3 @@ def _same(trial: Trial, constants: Mapping[str, float], log: Path) -> Trial:
             "another --out"
         )
     return trial
-
-
-def _refuse_unknown(name: str, given: Sequence[str], known: Sequence[str]) -> None:
-    for each in given:
-        if each not in known:
-            raise ParameterError(f"{name}: {each!r} is not accepted: one of {', '.join(known)}")

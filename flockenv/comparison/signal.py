@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from flockenv import _core
 from flockenv.envs.batch import LeaderBatch
 from flockenv.envs.observation import BLOCKS, ObservationSpace
-from flockenv.envs.options import EnvOptions, refuse_unknown
+from flockenv.envs.options import EnvOptions
 from flockenv.envs.reward import TERMS
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import LeaderPolicy, check_action_mode
 from flockenv.runs.seeds import POLICY_SEEDS

@@ -1,14 +1,13 @@
 """Options of the environments: one flat set of names, checked once, for all interfaces."""
 
-import difflib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, Self
 
 from flockenv import _core
 from flockenv.envs.observation import BLOCKS
 from flockenv.envs.reward import TERMS
-from flockenv.errors import ParameterError, UnknownOptionError
+from flockenv.errors import ParameterError, UnknownOptionError, hint, nearest, refuse_unknown
 from flockenv.parameters import FlockParameters
 from flockenv.rendering.frames import DEFAULT_SIZE
 
@@ -55,7 +54,7 @@ class EnvOptions:
                 # TorchRL looks for these words.
                 raise UnknownOptionError(
                     f"got an unexpected keyword argument {name!r}, which is no option of the "
-                    f"environment: {_hint(name, _NAMES)}"
+                    f"environment: {hint(name, _NAMES)}"
                 )
         given = dict(options)
         settings = {name: given.pop(name) for name in _SETTINGS if name in given}
@@ -100,20 +99,6 @@ def _parameters(given: dict[str, Any]) -> FlockParameters:
     return params.replace(**given)
 
 
-def refuse_unknown(names: Iterable[str], known: Iterable[str], what: str) -> None:
-    """Raise a `ParameterError` for the first name that is not known."""
-    known = tuple(known)
-    for name in names:
-        if name in known:
-            continue
-        raise ParameterError(f"{name!r} is no {what}: {_hint(name, known)}")
-
-
-def _hint(name: str, known: Sequence[str]) -> str:
-    near = difflib.get_close_matches(str(name), known, n=1, cutoff=0.6)
-    return f"did you mean {near[0]!r}?" if near else f"there are {', '.join(known)}"
-
-
 def known_reset_options(options: Mapping[str, Any] | None) -> dict[str, Any]:
     """Return the reset options that are ours.
 
@@ -124,9 +109,9 @@ def known_reset_options(options: Mapping[str, Any] | None) -> dict[str, Any]:
     if not isinstance(options, Mapping):
         raise TypeError(f"reset options must be a dictionary, not {type(options).__name__}")
     for name in options:
-        near = difflib.get_close_matches(str(name), (*RESET_OPTIONS, "reset_mask"), 1, 0.7)
-        if near and name != near[0]:
-            raise ParameterError(f"{name!r} is no reset option: did you mean {near[0]!r}?")
+        near = nearest(name, (*RESET_OPTIONS, "reset_mask"), cutoff=0.7)
+        if near and name != near:
+            raise ParameterError(f"{name!r} is no reset option: did you mean {near!r}?")
     return {name: options[name] for name in RESET_OPTIONS if name in options}
 
 

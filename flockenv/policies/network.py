@@ -10,8 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv import _core
 from flockenv._io.moved_modules import renamed_argument
 from flockenv._io.npz_header import array_of, entry_of
-from flockenv.envs.options import refuse_unknown
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, refuse_unknown
 from flockenv.policies.files import PROVENANCE, StoredPolicy
 
 __all__ = ["ACTIVATIONS", "NetworkPolicy"]

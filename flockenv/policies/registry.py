@@ -1,11 +1,10 @@
 """Policies by name: closed-form laws, what is tuned or trained for a pool, and files."""
 
-import difflib
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, nearest
 from flockenv.policies.base import LeaderPolicy
 from flockenv.policies.constant import RandomRudders, StraightAhead
 from flockenv.policies.laws import LAWS
@@ -80,11 +79,11 @@ def named_policy(name: str, pool: Any, *, trust: bool = False) -> Callable[[], L
         return lambda: read
     names = [*POLICIES, *POOL_POLICIES]
     parts = [part.strip() for part in name.split(",")]
-    near = difflib.get_close_matches(name, names, n=1)
+    near = nearest(name, names)
     if len(parts) > 1 and set(parts) <= {*names, *_ALSO_CALLED}:
         hint = "policies are named one by one (on the command line, repeat the option)"
     else:
-        hint = f"did you mean {near[0]!r}?" if near else f"there are {quoted(names)}"
+        hint = f"did you mean {near!r}?" if near else f"there are {quoted(names)}"
     raise ParameterError(f"{name!r} is no policy and no .npz or .zip file: {hint}")
 
 

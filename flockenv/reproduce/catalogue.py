@@ -1,11 +1,10 @@
 """What can be reproduced, by name. To add to it: a module with `REPRODUCTIONS`, and a line here."""
 
-import difflib
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
 from flockenv._io.extras import require
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, nearest
 
 if TYPE_CHECKING:
     from flockenv.reproduce.reproduction import Reproduction
@@ -50,10 +49,10 @@ def resolve(given: Iterable[str]) -> list[str]:
     given = list(given)
     for name in given:
         if name != ALL and name not in names():
-            near = difflib.get_close_matches(name, [*names(), ALL], n=1)
-            hint = f"did you mean {near[0]!r}? " if near else ""
+            near = nearest(name, [*names(), ALL])
+            meant = f"did you mean {near!r}? " if near else ""
             raise ParameterError(
-                f"{name!r} cannot be reproduced: {hint}there are {', '.join(names())}, "
+                f"{name!r} cannot be reproduced: {meant}there are {', '.join(names())}, "
                 f"and {ALL!r} for all of the paper"
             )
     return [name for name in names() if name in given or (ALL in given and name in _PAPER)]

@@ -26,7 +26,6 @@ Fields are those of `flockenv.FlockParameters`. A field in a grid must be a list
 and all grids must name the same fields.
 """
 
-import difflib
 import itertools
 import os
 from collections.abc import Iterable, Mapping
@@ -34,7 +33,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from flockenv._io.toml import read_toml_file
-from flockenv.errors import FlockError, ParameterError
+from flockenv.errors import FlockError, ParameterError, refuse_unknown
 from flockenv.parameters import FlockParameters
 from flockenv.runs.spec import RunSpec
 
@@ -113,14 +112,12 @@ def _parse(values: Mapping[str, Any]) -> SweepSpec:
 
 def _refuse_unknown(values: Mapping[str, Any]) -> None:
     for key in values:
-        if key in _KEYS:
-            continue
-        near = difflib.get_close_matches(key, _KEYS, n=1, cutoff=0.5)
-        if key in FlockParameters.__dataclass_fields__:
-            hint = "it is a field of the parameters, which belongs under [fixed] or [[grid]]"
-        else:
-            hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(_KEYS)}"
-        raise ParameterError(f"{key!r} is no key of a sweep: {hint}")
+        if key not in _KEYS and key in FlockParameters.__dataclass_fields__:
+            raise ParameterError(
+                f"{key!r} is no key of a sweep: it is a field of the parameters, which belongs "
+                "under [fixed] or [[grid]]"
+            )
+    refuse_unknown(values, _KEYS, "key of a sweep")
 
 
 def _grids(values: Mapping[str, Any]) -> list[dict[str, list[Any]]]:

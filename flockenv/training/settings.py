@@ -8,8 +8,8 @@ import tomli_w
 
 from flockenv._io.toml import read_toml
 from flockenv.envs.batch import LeaderBatch
-from flockenv.envs.options import EnvOptions, refuse_unknown
-from flockenv.errors import FlockError, ParameterError, shown
+from flockenv.envs.options import EnvOptions
+from flockenv.errors import FlockError, ParameterError, refuse_unknown, shown
 from flockenv.parameters import FlockParameters
 from flockenv.policies.network import ACTIVATIONS
 

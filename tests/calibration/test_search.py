@@ -146,3 +146,8 @@ def test_a_folder_takes_one_fit_at_a_time(quick, tmp_path):
 def test_options_out_of_range_are_refused_by_name(options):
     with pytest.raises(flockenv.ParameterError, match=next(iter(options))):
         Fit(**options)
+
+
+def test_an_unknown_constant_is_refused_with_the_nearest() -> None:
+    with pytest.raises(flockenv.ParameterError, match="did you mean 'reverse_speed_cm_s'"):
+        Fit(free=("reverse_speed",))

@@ -183,7 +183,13 @@ def test_the_command(cli: Any, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("option", "value"),
-    [("--pool", "table-1"), ("--episodes", "512"), ("--set", "n_boats=9"), ("--minutes", "8")],
+    [
+        ("--pool", "table-1"),
+        ("--episodes", "512"),
+        ("--set", "n_boats=9"),
+        ("--minutes", "8"),
+        ("--seed", "0"),
+    ],
 )
 def test_an_altered_task_has_no_score(cli: Any, tmp_path: Path, option: str, value: str) -> None:
     done = cli(*SUITE, option, value, "--out", str(tmp_path / "out"))
