@@ -25,7 +25,7 @@ from script_end import one_line_end
 
 import flockenv
 from flockenv import training
-from flockenv._io.atomic_write import atomic_write
+from flockenv._io.atomic_write import write_csv, write_text
 from flockenv.policies.laws import LAWS
 from flockenv.training.validation import validation_scores
 
@@ -102,12 +102,9 @@ def search(options: argparse.Namespace, command: str) -> pd.DataFrame:
         progress.update(task, completed=1 + len(settings))
     # The law has no settings; the columns are those of a run.
     table = pd.DataFrame(rows)[list(rows[-1])]
-    with atomic_write(options.out / "search.csv") as file:
-        text = table.to_csv(index=False, lineterminator="\n", float_format="%.5g")
-        file.write(text.encode())
+    write_csv(options.out / "search.csv", table, float_format="%.5g")
     best = settings[int(table["mean"][1:].to_numpy().argmax())]
-    with atomic_write(options.out / "best.toml") as file:
-        file.write(best.to_toml().encode())
+    write_text(options.out / "best.toml", best.to_toml())
     return table
 
 

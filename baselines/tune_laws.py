@@ -26,7 +26,7 @@ from run_number import run_number
 from script_end import one_line_end
 
 import flockenv
-from flockenv._io.atomic_write import atomic_write
+from flockenv._io.atomic_write import write_csv, write_text
 from flockenv._io.extras import require
 from flockenv._io.provenance import provenance_of
 from flockenv.comparison import run_episodes
@@ -85,8 +85,7 @@ def tune(law: str, pool: str, options: argparse.Namespace, progress: Progress) -
             rows.append({"generation": generation, **gains(place), "signed_order": score})
             reported.append((place, -score))
         search.tell(reported)
-        with atomic_write(options.out / f"{law.replace(' ', '-')}-{pool}.csv") as file:
-            file.write(pd.DataFrame(rows).to_csv(index=False, lineterminator="\n").encode())
+        write_csv(options.out / f"{law.replace(' ', '-')}-{pool}.csv", pd.DataFrame(rows))
         progress.advance(task)
     return gains(search.mean)
 
@@ -116,8 +115,7 @@ def main(arguments: list[str] | None = None) -> None:
                     tuned.setdefault(law, {})[pool] = tune(law, pool, options, progress)
         wall_s = time.perf_counter() - start
         provenance = provenance_of(command, seed=options.seed, samples=0, wall_s=wall_s)
-        with atomic_write(options.out / "gains.toml") as file:
-            file.write(tomli_w.dumps({**tuned, "made": provenance}).encode())
+        write_text(options.out / "gains.toml", tomli_w.dumps({**tuned, "made": provenance}))
     print(tomli_w.dumps(tuned))
     print(f"written to {options.out}")
 

@@ -23,7 +23,7 @@ from script_end import one_line_end
 
 import flockenv
 from flockenv._core import pool_radii_cm
-from flockenv._io.atomic_write import atomic_write
+from flockenv._io.atomic_write import atomic_write, write_csv
 from flockenv.comparison.figure import policy_colors
 from flockenv.envs.observation import observation_entries, state_entries
 from flockenv.policies.registry import named_policy
@@ -264,8 +264,7 @@ def main(arguments: list[str] | None = None) -> None:
                 with atomic_write(options.out / f"{name}.png") as file:
                     figure.savefig(file, dpi=200, format="png")
     table = pd.DataFrame(means).drop(columns=["cycle_s", "misalignment_rad", "spin_rad_s"])
-    with atomic_write(options.out / "means.csv") as file:
-        file.write(table.to_csv(index=False, lineterminator="\n").encode())
+    write_csv(options.out / "means.csv", table)
     print(table.round(3).to_string(index=False))
     print(f"written to {options.out}")
 

@@ -6,11 +6,14 @@ import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO
+from typing import IO, TYPE_CHECKING, Any
 
 from flockenv._io.locks import hold
 
-__all__ = ["atomic_write", "write_text"]
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["atomic_write", "write_csv", "write_text"]
 
 # File systems take names of 255 bytes; the temporary one is longer by its marks.
 _LONGEST_STEM = 200
@@ -77,3 +80,23 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
     """
     with atomic_write(path) as file:
         file.write(text.encode())
+
+
+def write_csv(path: str | os.PathLike[str], table: "pd.DataFrame", **options: Any) -> None:
+    """Write a table without its index to a CSV file, with the same bytes on every system.
+
+    Parameters
+    ----------
+    path
+        The file, written whole or not at all.
+    table
+        What to write.
+    options
+        As of ``to_csv``.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written; what was there before is still there.
+    """
+    write_text(path, table.to_csv(index=False, lineterminator="\n", **options))

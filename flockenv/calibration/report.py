@@ -9,7 +9,7 @@ import tomli_w
 from rich.table import Table
 
 from flockenv import _core
-from flockenv._io.atomic_write import atomic_write
+from flockenv._io.atomic_write import write_csv, write_text
 from flockenv._io.extras import require
 from flockenv._io.locks import held
 from flockenv.calibration.search import Fit, Trial, residuals, run_flocks
@@ -109,7 +109,7 @@ def _reported(
 ) -> FitReport:
     options = asdict(fit) | {"parameters": fit.parameters.to_dict(), "held_out": held_out}
     header = f"# flockenv {_core.__version__}\n"
-    _write(folder / "fit.toml", header + tomli_w.dumps(options))
+    write_text(folder / "fit.toml", header + tomli_w.dumps(options))
     trials = []
     best = float("inf")
     for trial in fit.search(folder / "trials.csv"):
@@ -121,8 +121,8 @@ def _reported(
     seeds = MODEL_SEEDS["calibration check"].seeds(held_out)
     table = _residuals(parameters, seeds, fit.jobs, progress)
     table["best_seen"] = _best_seen(fit, trials)
-    _write(folder / "parameters.toml", header + parameters.to_toml())
-    _write(folder / "residuals.csv", table.round(4).to_csv(index=False))
+    write_text(folder / "parameters.toml", header + parameters.to_toml())
+    write_csv(folder / "residuals.csv", table.round(4))
     return FitReport(parameters, table)
 
 
@@ -166,9 +166,3 @@ def _best_seen(fit: Fit, trials: Sequence[Trial]) -> list[float]:
 def _rounded(trial: Trial) -> dict[str, float]:
     """Return the constants with three digits, because more are not determined."""
     return {name: float(f"{value:.3g}") for name, value in trial.constants.items()}
-
-
-def _write(path: Path, text: str) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with atomic_write(path) as file:
-        file.write(text.encode())

@@ -10,7 +10,7 @@ import typer
 from rich.table import Table
 
 from flockenv._core import __version__
-from flockenv._io.atomic_write import atomic_write, write_text
+from flockenv._io.atomic_write import write_csv, write_text
 from flockenv._io.extras import require
 from flockenv.cli.console import console, finished_in, print_json, progress_bar, say
 from flockenv.cli.output import check_folder, keep, printable
@@ -65,12 +65,7 @@ def evaluate_suite(
             scores[task.name] = score(task, orders)
             keep(out / "episodes.csv", lambda path: _write_episodes(path, episodes))
     table = scores_table(printable(policy), scores)
-
-    def write_scores(path: Path) -> None:
-        with atomic_write(path) as file:
-            table.to_csv(file, index=False)
-
-    keep(out / "scores.csv", write_scores)
+    keep(out / "scores.csv", lambda path: write_csv(path, table))
     run: dict[str, Any] = {"flockenv": __version__, "suite": suite, "policies": steering}
     if budget is not None:
         run |= {"flock_hours": float(flock_hours or 0.0), "budget_flock_hours": budget}
@@ -109,8 +104,7 @@ def _write_episodes(path: Path, episodes: "list[tuple[Task, Any]]") -> None:
             for task, orders in episodes
         ]
     )
-    with atomic_write(path) as file:
-        table.to_csv(file, index=False)
+    write_csv(path, table)
 
 
 def _printed(policy: str, suite: str, tasks: "list[Task]", scores: "dict[str, Score]") -> Table:

@@ -12,7 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from flockenv._core import __version__
-from flockenv._io.atomic_write import atomic_write, write_text
+from flockenv._io.atomic_write import write_csv, write_text
 from flockenv._io.extras import require
 from flockenv._io.moved_modules import renamed_argument, renamed_attribute
 from flockenv.comparison.episodes import (
@@ -109,8 +109,7 @@ class ComparisonReport:
             ("lines", _lines_table(self.lines)),
             ("differences", self.differences),
         ):
-            with atomic_write(folder / f"{name}.csv") as file:
-                table.to_csv(file, index=False)
+            write_csv(folder / f"{name}.csv", table)
         write_text(folder / "run.toml", tomli_w.dumps(dict(self.conditions)))
         header = f"# flockenv {__version__}: the flock; seeds, policies and options in run.toml\n"
         write_text(folder / "parameters.toml", header + self.parameters.to_toml())

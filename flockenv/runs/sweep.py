@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockenv import _core
-from flockenv._io.atomic_write import atomic_write
+from flockenv._io.atomic_write import atomic_write, write_csv
 from flockenv._io.extras import require
 from flockenv.errors import FlockError, ParameterError
 from flockenv.recording import Recording
@@ -124,8 +124,7 @@ def _outcome(
 
 def _write(table: "pd.DataFrame", folder: Path) -> None:
     try:
-        with atomic_write(folder / "sweep.csv") as file:
-            file.write(table.to_csv(index=False, lineterminator="\n").encode())
+        write_csv(folder / "sweep.csv", table)
         with atomic_write(folder / "sweep.parquet") as file:
             table.to_parquet(file, index=False)
     except OSError as error:

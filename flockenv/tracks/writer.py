@@ -11,7 +11,7 @@ import numpy as np
 import tomli_w
 
 from flockenv import _core
-from flockenv._io.atomic_write import atomic_write
+from flockenv._io.atomic_write import atomic_write, write_csv, write_text
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError
 from flockenv.recording import Recording
@@ -20,9 +20,7 @@ __all__ = ["EXPORTS", "export"]
 
 
 def _csv(recording: Recording, path: Path) -> None:
-    table = recording.to_dataframe(boats=True)
-    with atomic_write(path) as file:
-        file.write(table.to_csv(index=False, lineterminator="\n").encode())
+    write_csv(path, recording.to_dataframe(boats=True))
 
 
 def _parquet(recording: Recording, path: Path) -> None:
@@ -152,8 +150,7 @@ def export(recording: Recording, path: str | os.PathLike[str]) -> list[Path]:
     if path.suffix.lower() == ".gsd":
         return [path]
     beside = path.with_suffix(".toml")
-    with atomic_write(beside) as file:
-        file.write(_layout_text(recording).encode())
+    write_text(beside, _layout_text(recording))
     return [path, beside]
 
 
