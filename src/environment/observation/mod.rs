@@ -5,6 +5,7 @@ mod entry;
 mod flock_features;
 mod layout;
 mod leader_law;
+mod nearest;
 mod observed_law;
 mod observer;
 mod view;

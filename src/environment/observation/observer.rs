@@ -1,6 +1,7 @@
 //! From a flock to the numbers that leaders and critics get.
 
 use super::entry::{BOAT, NEIGHBOR, ORDER, PHASE};
+use super::nearest::Nearest;
 use super::view::{FlockView, Scaling, own, phase};
 use super::{LeaderLaw, ObservationLayout, state_entries};
 use crate::error::Result;
@@ -14,7 +15,7 @@ pub struct Observer {
     scaling: Scaling,
     law: Option<LeaderLaw>,
     physical: Vec<f64>,
-    nearest: Vec<(f64, u32)>,
+    nearest: Nearest,
 }
 
 impl Observer {
@@ -31,7 +32,7 @@ impl Observer {
             law,
             physical: Vec::with_capacity(scaling.len()),
             scaling,
-            nearest: Vec::with_capacity(layout.neighbors + 1),
+            nearest: Nearest::default(),
             layout,
         })
     }
@@ -73,7 +74,6 @@ impl Observer {
             self.physical.push(view.target.sign());
         }
         if self.layout.neighbors > 0 {
-            self.find_nearest(view, leader);
             self.fill_neighbors(view, leader, &frame);
         }
         if self.layout.order {
@@ -84,37 +84,11 @@ impl Observer {
         }
     }
 
-    /// The nearest boats by center distance, nearest first, equally near ones in the order of boats.
-    fn find_nearest(&mut self, view: &FlockView, leader: usize) {
-        let wanted = self.layout.neighbors;
-        let center = view.hulls[leader].center;
-        self.nearest.clear();
-        let mut farthest = f64::INFINITY;
-        for (boat, hull) in view.hulls.iter().enumerate() {
-            let square = (hull.center - center).norm_squared();
-            if square >= farthest || boat == leader {
-                continue;
-            }
-            if self.nearest.len() < wanted {
-                self.nearest.push((square, boat as u32));
-            }
-            // From the back, where most newcomers belong.
-            let mut place = self.nearest.len() - 1;
-            while place > 0 && self.nearest[place - 1].0 > square {
-                self.nearest[place] = self.nearest[place - 1];
-                place -= 1;
-            }
-            self.nearest[place] = (square, boat as u32);
-            if self.nearest.len() == wanted {
-                farthest = self.nearest[wanted - 1].0;
-            }
-        }
-    }
-
     fn fill_neighbors(&mut self, view: &FlockView, leader: usize, frame: &LapFrame) {
         let own = &view.hulls[leader];
-        for &(_, boat) in &self.nearest {
-            let boat = boat as usize;
+        let wanted = self.layout.neighbors;
+        let filled = self.physical.len() + wanted * NEIGHBOR.len();
+        for boat in self.nearest.of_leader(view.hulls, leader, wanted) {
             let other = &view.hulls[boat];
             let distance = frame.components(other.center - own.center);
             let velocity = frame.components(view.velocities[boat].linear);
@@ -129,9 +103,7 @@ impl Observer {
                 f64::from(u8::from(boat < view.leaders)),
             ]);
         }
-        let missing = self.layout.neighbors - self.nearest.len();
-        self.physical
-            .extend(std::iter::repeat_n(0.0, missing * NEIGHBOR.len()));
+        self.physical.resize(filled, 0.0);
     }
 }
 

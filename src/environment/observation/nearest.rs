@@ -1,0 +1,137 @@
+//! The nearest boats of leaders. Which boats are near is nothing that a processor can foresee, so that no branch
+//! depends on it: a wrong guess costs more than the arithmetic for all boats.
+
+use crate::geometry::HullPose;
+use wide::f64x4;
+
+/// Leaders whose distances are worked out together.
+const AT_ONCE: usize = 4;
+/// Up to this many boats are found and sorted without branches.
+const FEW: usize = 16;
+
+/// Finds the nearest boats, with its memory.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Nearest {
+    /// Squared distances of every boat from the leaders at hand, which are infinitely far from themselves.
+    squares: Vec<[f64; AT_ONCE]>,
+    /// Within these, and not much more, every leader at hand has as many boats as are wanted.
+    limits: [f64; AT_ONCE],
+    /// A leader's nearest boats, in front.
+    found: Vec<u32>,
+}
+
+impl Nearest {
+    /// The `wanted` nearest boats of a leader by center distance, or all if there are fewer: nearest first, equally
+    /// near ones in the order of boats. Leaders come one after another.
+    pub(super) fn of_leader(
+        &mut self,
+        hulls: &[HullPose],
+        leader: usize,
+        wanted: usize,
+    ) -> impl Iterator<Item = usize> {
+        let lane = leader % AT_ONCE;
+        if lane == 0 {
+            self.measure(hulls, leader, wanted);
+        }
+        let limit = self.limits[lane];
+        let mut count = 0;
+        for (boat, squares) in self.squares.iter().enumerate() {
+            self.found[count] = boat as u32;
+            count += usize::from(squares[lane] <= limit);
+        }
+        let found = &mut self.found[..count];
+        sort(found, |boat| self.squares[boat as usize][lane]);
+        found.iter().take(wanted).map(|&boat| boat as usize)
+    }
+
+    /// Works out distances from some leaders, and their limits.
+    fn measure(&mut self, hulls: &[HullPose], first: usize, wanted: usize) {
+        let others = hulls[first..].iter().map(|hull| hull.center);
+        let (mut x, mut y) = ([0.0; AT_ONCE], [0.0; AT_ONCE]);
+        for (lane, center) in others.take(AT_ONCE).enumerate() {
+            (x[lane], y[lane]) = (center.x, center.y);
+        }
+        let (x, y) = (f64x4::new(x), f64x4::new(y));
+        self.found.resize(hulls.len() + 1, 0);
+        self.squares.clear();
+        self.squares.extend(hulls.iter().map(|hull| {
+            let (dx, dy) = (hull.center.x - x, hull.center.y - y);
+            (dx * dx + dy * dy).to_array()
+        }));
+        for (lane, own) in self.squares[first..].iter_mut().take(AT_ONCE).enumerate() {
+            own[lane] = f64::INFINITY;
+        }
+        let limits = if wanted <= FEW {
+            self.largest_of_smallest(wanted)
+        } else {
+            f64x4::splat(f64::INFINITY)
+        };
+        self.limits = limits.fast_min(f64x4::splat(f64::MAX)).to_array();
+    }
+
+    /// The largest of the `wanted` smallest squares, at most [`FEW`], for each leader at hand.
+    fn largest_of_smallest(&self, wanted: usize) -> f64x4 {
+        let mut smallest = [f64x4::splat(f64::INFINITY); FEW];
+        let smallest = &mut smallest[..wanted];
+        for &squares in &self.squares {
+            let mut square = f64x4::new(squares);
+            // In ascending order; what has no place any more moves on.
+            for place in &mut *smallest {
+                (*place, square) = (place.fast_min(square), place.fast_max(square));
+            }
+        }
+        smallest[wanted - 1]
+    }
+}
+
+/// Sorts boats, which come in their order, by distance.
+fn sort(found: &mut [u32], square: impl Fn(u32) -> f64) {
+    if found.len() > FEW {
+        found.sort_by(|&a, &b| square(a).total_cmp(&square(b)));
+        return;
+    }
+    let (mut squares, mut ranks, mut sorted) = ([0.0; FEW], [0; FEW], [0; FEW]);
+    for (k, &boat) in found.iter().enumerate() {
+        (squares[k], ranks[k]) = (square(boat), k);
+        for earlier in 0..k {
+            let is_nearer = usize::from(squares[k] < squares[earlier]);
+            ranks[earlier] += is_nearer;
+            ranks[k] -= is_nearer;
+        }
+    }
+    for (&boat, rank) in found.iter().zip(ranks) {
+        sorted[rank] = boat;
+    }
+    found.copy_from_slice(&sorted[..found.len()]);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Pose;
+
+    /// Boats on a grid, so that many are equally far from a leader.
+    fn grid(boats: usize) -> Vec<HullPose> {
+        let place = |boat: usize| Pose::new((7 * boat % 6) as f64, (boat % 5) as f64, 0.0);
+        (0..boats).map(|boat| HullPose::new(&place(boat))).collect()
+    }
+
+    #[test]
+    fn the_nearest_come_first_and_equally_near_ones_in_the_order_of_boats() {
+        for (boats, leaders) in [(1, 1), (2, 2), (27, 6), (90, 5)] {
+            let hulls = grid(boats);
+            for wanted in [1, 3, 6, FEW, FEW + 1, 64] {
+                let mut nearest = Nearest::default();
+                for leader in 0..leaders {
+                    let mut expected: Vec<_> = (0..boats).filter(|&boat| boat != leader).collect();
+                    let center = hulls[leader].center;
+                    let square = |boat: &usize| (hulls[*boat].center - center).norm_squared();
+                    expected.sort_by(|a, b| square(a).total_cmp(&square(b)));
+                    expected.truncate(wanted);
+                    let found: Vec<_> = nearest.of_leader(&hulls, leader, wanted).collect();
+                    assert_eq!(found, expected, "{boats} boats, {wanted} wanted");
+                }
+            }
+        }
+    }
+}
