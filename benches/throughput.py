@@ -274,9 +274,10 @@ def choices() -> str:
         "",
         "The control rate of 10 Hz is the camera's frame rate (Section 2.4), which no leader of "
         "the experiment could exceed. A substep of 0.02 s divides control steps and phases evenly. "
-        "It is the longest substep below that keeps overlaps under 0.01 cm without "
-        "relinearization, and its Ψ_o cannot be distinguished from the reference's. The numbers "
-        "for `leapfrog` with 27 boats are from [Speed against error](speed_vs_error.md):",
+        "Of the substeps in the table below, it is the longest that keeps overlaps in the jam "
+        "under 0.01 cm without relinearization. Its Ψ_o cannot be distinguished from that of the "
+        "reference, which is `leapfrog` at 0.005 s. The numbers are those of `leapfrog` with 27 "
+        "boats (Ψ_o: 20 boats) in [Speed against error](speed_vs_error.md):",
         "",
         f"| dt, s | relinearizations | {' | '.join(ERRORS)} |",
         "| ---: " * (2 + len(ERRORS)) + "|",
