@@ -35,16 +35,16 @@ def markdown_summary(
     lines = [
         f"# {_title(finished)}",
         "",
-        f"Of {len(claims)} claims, one counted for each preset and setup it was measured with, "
-        f"{counts[HOLDS]} hold, {counts[DOES_NOT_HOLD]} do not hold, and {counts[INCONCLUSIVE]} "
-        "are inconclusive.",
+        "A claim counts once for each preset and setup that it was measured with. Of "
+        f"{len(claims)} claims, {counts[HOLDS]} hold, {counts[DOES_NOT_HOLD]} do not hold, and "
+        f"{counts[INCONCLUSIVE]} are inconclusive.",
         "",
         f"`{command(settings, finished)}` of flockenv {_core.__version__} (results version "
-        f"{RESULTS_VERSION}) wrote this page. Its runs are {length}, {hours / 3600:.0f} hours of "
-        f"flock time, with first seed {settings.seed}. A claim holds if the {CONFIDENCE:.0%} "
-        "interval of the measured quantity lies in the claimed range, does not hold if it lies "
-        "outside, and is inconclusive otherwise. The ranges stand in the code and were fixed "
-        "before the runs.",
+        f"{RESULTS_VERSION}) wrote this page. Its runs are {length} and add up to "
+        f"{hours / 3600:.0f} hours of flock time; their first seed is {settings.seed}. "
+        f"A claim holds if the {CONFIDENCE:.0%} interval of the measured quantity lies in the "
+        "claimed range, does not hold if it lies outside, and is inconclusive otherwise. The "
+        "ranges stand in the code and were fixed before the runs.",
         "",
     ]
     for figure, picture, caption in shown_pictures(finished):

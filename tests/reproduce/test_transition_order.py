@@ -207,7 +207,7 @@ def test_a_small_design_from_runs_to_tables(tmp_path: object) -> None:
         "histograms_m",
         "histograms_c_v",
     }
-    verdicts = [note for note in outcome.notes if note.startswith("The result with a growing ")]
+    verdicts = [note for note in outcome.notes if note.startswith("The result where the ")]
     assert all("conclus" in note or "first order" in note for note in verdicts)
     assert len(verdicts) == 2
 

@@ -112,9 +112,10 @@ def _table2(settings: Settings, results: Results) -> Outcome:
         axes.set(xlabel="backward motion time bw (s)", ylabel="share of cycles", ylim=(-0.03, 1.03))
         picture.legend(loc="outside upper center", ncols=3)
     notes = [
-        "The state of a control cycle is the most frequent one in its analysis window; "
-        f"{_SEEDS} runs of 16 minutes at each level. A dwell time is the time in a state "
-        "divided by the changes out of it, so that stays that a run's end cuts off count too.",
+        "The state of a control cycle is the most frequent one in its analysis window. There are "
+        f"{_SEEDS} runs of 16 minutes at each backward duration. A dwell time is the time in a "
+        "state divided by the changes out of it, so that stays that a run's end cuts off count "
+        "too.",
         f"Bars and intervals ({CONFIDENCE:.0%}) are of a bootstrap over runs.",
     ]
     tables = {"table2": pd.DataFrame(rows), "table2_rates": pd.DataFrame(rates)}

@@ -90,7 +90,7 @@ def _picture(name: str, shown: Recording, cycles: pd.DataFrame, led: bool) -> Ou
         panels[2].set_xlabel("time (min)")
         picture.suptitle(f"bw = {shown.parameters.bw_s} s, seed {shown.seed}", fontsize=7)
     notes = [
-        f"The figure shows the run with the median mean Ψ_o of {_SEEDS} runs, as {_CYCLE}.",
+        f"Of {_SEEDS} runs, the figure shows the one whose mean Ψ_o is the median, as {_CYCLE}.",
         f"Intervals ({CONFIDENCE:.0%}) are of a bootstrap over runs.",
     ]
     return Outcome({name: cycles}, {name: picture}, [], notes)

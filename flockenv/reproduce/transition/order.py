@@ -126,8 +126,8 @@ def conclusion(claims: Sequence[CheckedClaim]) -> str:
     )
     return (
         f"inconclusive. {verdicts}. A conclusion needs runs so long that flocks forget their "
-        "initial state, loops so slow that slower ones are alike, and more seeds where an interval "
-        "is too wide"
+        "initial state, loops so slow that slower ones open as far, and more seeds where an "
+        "interval is too wide"
     )
 
 
@@ -153,7 +153,7 @@ def _analyze(design: TransitionDesign, settings: Settings, results: Results) -> 
         judged = [judge(measured, Growth(way, n)) for n in design.sizes]
         larger = judged[len(judged) // 2 :]
         found = conclusion([claim for triple in larger for claim in triple])
-        notes.append(f"The result with a growing {way} is {found}.")
+        notes.append(f"The result where the {way} grows with the flock is {found}.")
         claims += [claim for triple in judged for claim in triple]
         claims.append(LIFETIMES.check(*interval(measured.lifetime_growth(way)), way))
     notes += [_cumulants_note(measured), *_method_notes(design, settings)]
@@ -181,9 +181,10 @@ def _cumulants_note(measured: Measured) -> str:
                 f"{value:.2f} ({low:.2f} to {high:.2f}) at density {density} started {start}, {way}"
             )
     return (
-        f"The lowest Binder cumulants of m with {measured.design.sizes[-1]} boats are: "
-        f"{'; '.join(lowest)}. Where runs from the two initial states differ, the cumulant belongs "
-        "to a state that runs have not left and not to equilibrium, and proves nothing."
+        "The lowest Binder cumulants of the rotation m = Ψ_o sin φ_o with "
+        f"{measured.design.sizes[-1]} boats are: {'; '.join(lowest)}. Where runs from the two "
+        "initial states differ, the runs have not reached equilibrium: the cumulant describes the "
+        "state that they have not left, and proves nothing about the transition."
     )
 
 
@@ -192,13 +193,14 @@ def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
         settings.duration_s(m) / 60 for m in (design.stationary_minutes, design.loop_minutes)
     )
     return [
-        "The density is the number of boats for each free area of the pool 500-boats. Runs at one "
-        "density have no noise but c4, and their second half counts. Loops in density go from the "
-        f"lowest density to {DENSITY_RATIO:g} times that and back. Loops in noise go from bw = 0 "
+        "The density is the number of boats per area of water as large as that of the pool "
+        "500-boats. Runs at one density never back up (bw = 0), so that the angular noise c4 is "
+        "their only noise, and their second half counts. Loops in density go from the lowest "
+        f"density to {DENSITY_RATIO:g} times that and back. Loops in noise go from bw = 0 "
         "to 0.6 s and back at the lowest density. All loops start from rotation. The preset is "
-        "simulation with dt = 0.05 s. Intervals are Student's over seeds; those of cumulants are a "
-        "bootstrap over runs and blocks within them, and are too narrow with so few runs. Shorter "
-        "runs of seeds 0 to 2 and 1000 fixed the densities and the criteria.",
+        "simulation with dt = 0.05 s. Intervals are Student's t intervals over seeds. Those of "
+        "cumulants are a bootstrap over runs and blocks within them, and are too narrow with so "
+        "few runs. Shorter runs of seeds 0 to 2 and 1000 fixed the densities and the criteria.",
         "A flock counts as jammed from where Ψ_o cos φ_o, averaged over 30 s, exceeds "
         f"{JAMMED_ABOVE:g} to where it falls below {ROTATING_BELOW:g}. The lifetime is the "
         "geometric mean of the mean dwell times in both states, at the density where flocks leave "
