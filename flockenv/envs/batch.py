@@ -92,6 +92,10 @@ class LeaderBatch:
         """Return the last global state of the episode that ended in the last step."""
         return self._core.final_state(flock)
 
+    def final_flock_features(self, flock: int) -> NDArray[np.float32]:
+        """Return the flock's features at the end of the episode that ended in the last step."""
+        return self._core.final_flock_features(flock)
+
     def flock_features(self) -> NDArray[np.float32]:
         """Return the features of every flock, a row each."""
         return self._core.flock_features()

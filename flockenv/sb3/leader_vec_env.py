@@ -107,7 +107,7 @@ class LeaderVecEnv(VecEnv):
     ## Episode end
     {episode_end} A flock's slots end together and start the next episode in the same step. Their
     infos then have `"TimeLimit.truncated"` (always True), `"terminal_observation"`,
-    `"terminal_state"` and the `"episode_summary"`.
+    `"terminal_state"`, `"terminal_flock_features"` and the `"episode_summary"`.
 
     ## Arguments
     `num_flocks`: number of flocks; `n_leaders`: leaders of each flock, where a list is dealt out to
@@ -238,6 +238,7 @@ class LeaderVecEnv(VecEnv):
                 infos[slot]["TimeLimit.truncated"] = True
                 infos[slot]["terminal_observation"] = row.copy()
                 infos[slot]["terminal_state"] = self._batch.final_state(flock)
+                infos[slot]["terminal_flock_features"] = self._batch.final_flock_features(flock)
                 if leader == 0:
                     infos[slot]["episode"] = self._monitored(infos[slot]["episode_summary"])
                 self.reset_infos[slot] = self._batch.reset_info(flock)

@@ -122,7 +122,7 @@ def clone_law(
 def _visited(
     law: RowPolicy | ModelPolicy, settings: TrainingSettings, samples: int
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    env = PooledVecEnv(settings)
+    env = PooledVecEnv(settings.replace(critic="observation"))
     random = np.random.default_rng(settings.seed)
     observations: Any = env.reset()
     rows, rudders = [], []

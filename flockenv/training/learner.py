@@ -11,6 +11,7 @@ from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.policies import ActorCriticPolicy
 
 from flockenv.errors import ParameterError
+from flockenv.sb3 import FlockCriticPolicy
 from flockenv.training.actor import ACTIVATION_MODULES
 from flockenv.training.pools import PooledVecEnv
 from flockenv.training.settings import TrainingSettings
@@ -28,18 +29,21 @@ def learner(settings: TrainingSettings) -> PPO:
     """
     if settings.device == "cuda" and not torch.cuda.is_available():
         raise ParameterError("device = 'cuda' is not accepted: torch finds no GPU")
-    layers = list(settings.net_arch)
+    env, layers = PooledVecEnv(settings), list(settings.net_arch)
     policy: dict[str, Any] = {
         "net_arch": {"pi": layers, "vf": layers},
         "activation_fn": ACTIVATION_MODULES[settings.activation],
         "log_std_init": settings.log_std_init,
     }
+    sees_flock = settings.critic == "flock"
+    if sees_flock:
+        policy["seen"] = env.seen
     with warnings.catch_warnings():
         # Small networks are often faster on the CPU, which is the user's choice.
         warnings.filterwarnings("ignore", "You are trying to run PPO on the GPU")
         return PPO(
-            "MlpPolicy",
-            PooledVecEnv(settings),
+            FlockCriticPolicy if sees_flock else "MlpPolicy",
+            env,
             learning_rate=settings.learning_rate,
             n_steps=settings.n_steps,
             batch_size=settings.batch_size,

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from flockenv.errors import ParameterError
 from flockenv.runs.seeds import POLICY_SEEDS
-from flockenv.sb3 import LeaderVecEnv
+from flockenv.sb3 import LeaderVecEnv, WithFlockFeatures
 from flockenv.training.settings import TrainingSettings
 
 # After flockenv.sb3, which says what to install where it is missing.
@@ -27,7 +27,7 @@ class PooledVecEnv(VecEnv):
     """
 
     def __init__(self, settings: TrainingSettings) -> None:
-        self.parts = [
+        flocks = [
             LeaderVecEnv(
                 settings.num_flocks,
                 n_leaders=list(settings.n_leaders),
@@ -35,10 +35,14 @@ class PooledVecEnv(VecEnv):
             )
             for pool in settings.pools
         ]
+        of_flock = settings.critic == "flock"
+        self.parts = [WithFlockFeatures(part) if of_flock else part for part in flocks]
+        #: Numbers of a row that are a leader's observation.
+        (self.seen,) = flocks[0].observation_space.shape or ()
         first = self.parts[0]
         self._ends = np.cumsum([part.num_envs for part in self.parts])
-        flocks = len(self.parts) * settings.num_flocks
-        self._first_seeds = POLICY_SEEDS["training"].seeds(flocks, settings.seed)
+        every = len(self.parts) * settings.num_flocks
+        self._first_seeds = POLICY_SEEDS["training"].seeds(every, settings.seed)
         super().__init__(int(self._ends[-1]), first.observation_space, first.action_space)
 
     def reset(self) -> NDArray[np.float32]:

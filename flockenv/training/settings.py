@@ -56,6 +56,9 @@ class TrainingSettings:
         As in stable-baselines3's PPO; `target_kl` 0: no limit.
     net_arch, activation
         Hidden layers of the actor and, apart, of the critic, and what stands between layers.
+    critic
+        What the critic sees: ``"observation"``, as the actor does, or ``"flock"``, the features of
+        the whole flock, too (`LeaderVecEnv.flock_features`).
     log_std_init, use_sde, sde_sample_freq
         Exploration: logarithm of the first standard deviation, whether it depends on the state
         (gSDE), and control steps after which it is drawn again.
@@ -102,6 +105,7 @@ class TrainingSettings:
     target_kl: float = 0.0
     net_arch: tuple[int, ...] = (64, 64)
     activation: str = "tanh"
+    critic: str = "observation"
     log_std_init: float = -0.5
     use_sde: bool = False
     sde_sample_freq: int = 16
@@ -224,6 +228,7 @@ _NOT_OPTIONS = (
 _CHOICES: Mapping[str, tuple[str, ...]] = {
     "target": ("random", "cw", "ccw", "alternate"),
     "activation": tuple(ACTIVATIONS),
+    "critic": ("observation", "flock"),
     "device": ("auto", "cpu", "cuda"),
 }
 #: Lowest and highest number; numbers of a list each.

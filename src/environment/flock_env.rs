@@ -33,6 +33,8 @@ pub struct FlockEnv {
     finished: Option<EpisodeSummary>,
     final_observation: Vec<f32>,
     final_state: Vec<f32>,
+    /// Not stored: only the step that ends an episode is asked for them.
+    final_features: Vec<f32>,
 }
 
 impl FlockEnv {
@@ -47,6 +49,7 @@ impl FlockEnv {
             finished: None,
             final_observation: Vec::new(),
             final_state: Vec::new(),
+            final_features: Vec::new(),
             parameters,
         }
     }
@@ -79,6 +82,11 @@ impl FlockEnv {
     /// The global state at the end of that episode.
     pub fn final_state(&self) -> &[f32] {
         &self.final_state
+    }
+
+    /// The features of the flock at the end of that episode; empty after a restore.
+    pub fn final_features(&self) -> &[f32] {
+        &self.final_features
     }
 
     /// The next episode, not started yet.
@@ -151,17 +159,21 @@ impl FlockEnv {
         if settings.autoreset == Autoreset::SameStep {
             self.final_observation.clear();
             self.final_observation.extend_from_slice(observations);
-            self.keep_final_state();
+            self.keep_final_views();
             self.start_next(settings, observations)?;
         }
         Ok(true)
     }
 
-    fn keep_final_state(&mut self) {
+    fn keep_final_views(&mut self) {
         let mut state = std::mem::take(&mut self.final_state);
         state.resize(self.state_size(), 0.0);
         self.observe_state(&mut state);
         self.final_state = state;
+        let mut features = std::mem::take(&mut self.final_features);
+        features.resize(FlockFeatures::SIZE, 0.0);
+        self.observe_features(&mut features);
+        self.final_features = features;
     }
 
     fn start_next(&mut self, settings: &EnvSettings, observations: &mut [f32]) -> Result<()> {

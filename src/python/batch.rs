@@ -175,6 +175,19 @@ impl PyEnvBatch {
         ))
     }
 
+    /// Features of the flock at the end of the episode that ended in the last step.
+    fn final_flock_features<'py>(
+        &self,
+        py: Python<'py>,
+        flock: usize,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let batch = self.0.read()?;
+        Ok(PyArray1::from_slice(
+            py,
+            env_of(&batch, flock)?.final_features(),
+        ))
+    }
+
     fn state_size(&self, flock: usize) -> PyResult<usize> {
         let batch = self.0.read()?;
         Ok(env_of(&batch, flock)?.state_size())

@@ -53,14 +53,19 @@ def test_a_folder_takes_one_training_at_a_time(tiny: TrainingSettings, tmp_path:
         training.train(tiny, tmp_path)
 
 
-@pytest.mark.parametrize("use_sde", [False, True])
-def test_resumed_is_uninterrupted(tiny: TrainingSettings, tmp_path: Path, use_sde: bool) -> None:
+@pytest.mark.parametrize(
+    ("use_sde", "critic"), [(False, "observation"), (True, "observation"), (False, "flock")]
+)
+def test_resumed_is_uninterrupted(
+    tiny: TrainingSettings, tmp_path: Path, use_sde: bool, critic: str
+) -> None:
     # Checkpoints every other rollout, a kill after the third: one rollout is done again. Lost
     # frames make sure that the camera continues where it was, too.
     settings = tiny.replace(
         checkpoint_every=384,
         validate_every=768,
         use_sde=use_sde,
+        critic=critic,
         sde_sample_freq=4,
         final_learning_rate=1e-5,
         options={"dropout_rate": 0.2, "delay_frames": 1},
@@ -91,21 +96,27 @@ def test_learning_goes_on_past_the_end(tiny: TrainingSettings, tmp_path: Path) -
 
 
 @pytest.mark.parametrize(
-    ("net_arch", "activation"), [([], "tanh"), ([16], "relu"), ([32, 16], "tanh")]
+    ("net_arch", "activation", "critic"),
+    [
+        ([], "tanh", "observation"),
+        ([16], "relu", "observation"),
+        ([32, 16], "tanh", "observation"),
+        ([32, 16], "tanh", "flock"),
+    ],
 )
 def test_the_exported_mean_is_torchs(
-    tiny: TrainingSettings, net_arch: list[int], activation: str
+    tiny: TrainingSettings, net_arch: list[int], activation: str, critic: str
 ) -> None:
-    settings = tiny.replace(net_arch=net_arch, activation=activation)
+    settings = tiny.replace(net_arch=net_arch, activation=activation, critic=critic)
     model = learner(settings)
     with torch.no_grad():
         # Larger than SB3 starts with, so that the ends of the range are met.
         model.policy.action_net.weight.mul_(300.0)
     policy = network_policy(model.policy, settings, {})
-    rows = model.observation_space.low + np.random.default_rng(0).random(
-        (500, policy.weights[0].shape[0]), np.float32
-    ) * (model.observation_space.high - model.observation_space.low)
+    low, high = model.observation_space.low, model.observation_space.high
+    rows = low + np.random.default_rng(0).random((500, len(low)), np.float32) * (high - low)
     expected, _ = model.predict(rows, deterministic=True)
+    rows = rows[:, : policy.weights[0].shape[0]]
     assert (abs(expected) == 1.0).any()
     assert (abs(expected) < 1.0).any()
     np.testing.assert_allclose(policy.predict(rows)[0], expected, atol=2e-6, rtol=0)
