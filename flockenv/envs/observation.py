@@ -13,6 +13,7 @@ __all__ = [
     "BLOCKS",
     "OBSERVATION_VERSION",
     "Entry",
+    "FlockRowSpace",
     "ObservationSpace",
     "feature_table",
     "flock_feature_entries",
@@ -21,6 +22,7 @@ __all__ = [
     "observation_space",
     "observation_table",
     "observe",
+    "seen_space",
     "state_entries",
     "state_space",
 ]
@@ -111,6 +113,28 @@ class ObservationSpace(_Box):
             "decision_period_s",
         )
         self.options = {name: options[name] for name in names}
+
+
+class FlockRowSpace(_Box):
+    """The space of one leader's observation, followed by the features of its flock.
+
+    Attributes
+    ----------
+    observed : ObservationSpace
+        The space of the first part, which is what a leader sees.
+    """
+
+    def __init__(self, observed: ObservationSpace) -> None:
+        flock = flock_feature_space()
+        low, high = np.append(observed.low, flock.low), np.append(observed.high, flock.high)
+        super().__init__(low, high, dtype=np.float32)
+        self.observed = observed
+
+
+def seen_space(model: Any) -> Any:
+    """Return the space of what a model's actor sees."""
+    space = getattr(model, "observation_space", None)
+    return space.observed if isinstance(space, FlockRowSpace) else space
 
 
 def observation_space(blocks: Mapping[str, Any], leaders: int = 1) -> ObservationSpace:

@@ -17,7 +17,7 @@ from flockenv import _core
 from flockenv._io.array_file import is_special
 from flockenv._io.extras import require
 from flockenv._io.moved_modules import renamed_argument, renamed_attribute
-from flockenv.envs.observation import ObservationSpace, observation_space
+from flockenv.envs.observation import ObservationSpace, observation_space, seen_space
 from flockenv.errors import ParameterError
 from flockenv.policies.base import leaders_observed
 
@@ -75,7 +75,7 @@ class ModelPolicy:
     ) -> None:
         self.model = model
         self.provenance = dict(provenance or {})
-        space = model.observation_space
+        space = seen_space(model)
         reported = space.options if isinstance(space, ObservationSpace) else {}
         given = {"observation": observation, "mirror_to_target": mirror_to_target}
         reported = reported | {name: value for name, value in given.items() if value is not None}

@@ -82,7 +82,6 @@ POLICY_SEEDS: Mapping[str, SeedRange] = {
         _search("averaging", 4),
         _search("easy environment", 5),
         _search("learning check", 6),
-        _search("centralized critic", 7),
         _search("signal", 8),
         SeedRange("validation", FIRST_TRAINING_SEED + (1 << 62), 1 << 32),
     )

@@ -4,12 +4,12 @@ from typing import Any
 
 import numpy as np
 import torch
-from gymnasium.spaces import Box
 from numpy.typing import NDArray
 from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.torch_layers import MlpExtractor
 from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
 
+from flockenv.envs.observation import FlockRowSpace, ObservationSpace
 from flockenv.errors import ParameterError
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
 
@@ -20,7 +20,7 @@ class WithFlockFeatures(VecEnvWrapper):
     """A `LeaderVecEnv` whose rows are a leader's observation, followed by its flock's features.
 
     ``PPO(FlockCriticPolicy, venv, policy_kwargs=venv.policy_kwargs)`` gives the first part alone to
-    the actor.
+    the actor, so that the model steers wherever a policy does.
 
     Parameters
     ----------
@@ -43,10 +43,9 @@ class WithFlockFeatures(VecEnvWrapper):
     def __init__(self, venv: VecEnv) -> None:
         if not isinstance(venv, LeaderVecEnv):
             raise TypeError(f"a LeaderVecEnv is needed, not {type(venv).__name__}")
-        own, flock = venv.observation_space, venv.flock_feature_space
-        assert isinstance(own, Box)
-        space = Box(np.append(own.low, flock.low), np.append(own.high, flock.high))
-        super().__init__(venv, observation_space=space)
+        own = venv.observation_space
+        assert isinstance(own, ObservationSpace)
+        super().__init__(venv, observation_space=FlockRowSpace(own))
         self.policy_kwargs = {"seen": own.shape[0]}
 
     def reset(self) -> NDArray[np.float32]:
@@ -127,6 +126,20 @@ class FlockCriticPolicy(ActorCriticPolicy):
             raise ParameterError(f"seen = {seen!r} is not accepted: from 1 to {size}")
         self._seen = seen
         super().__init__(observation_space, action_space, lr_schedule, **options)
+
+    def predict(
+        self,
+        observation: Any,
+        state: Any = None,
+        episode_start: Any = None,
+        deterministic: bool = False,
+    ) -> tuple[Any, Any]:
+        """Return actions for rows, or for the parts of rows that the actor sees."""
+        rows = np.asarray(observation)
+        if rows.shape[-1:] == (self._seen,):
+            unseen = self.observation_space.shape[0] - self._seen  # type: ignore[index]
+            rows = np.append(rows, np.zeros((*rows.shape[:-1], unseen), rows.dtype), axis=-1)
+        return super().predict(rows, state, episode_start, deterministic)
 
     def _build_mlp_extractor(self) -> None:
         actor, critic = (

@@ -17,7 +17,6 @@ BASELINES = Path(__file__).parents[2] / "baselines"
 #: What is at work when Ctrl-C comes, and arguments without those of the output.
 AT_WORK = {
     "ablate_leaning": ("run_episodes", ["{law}", "--pool", "table-1", "--quiet"]),
-    "centralized_critic": ("train", []),
     "critical_noise": ("order_of_run", ["--seeds", "1", "--pool", "table-1"]),
     "evolution_strategy": ("scores", ["--quiet"]),
     "learning_check": ("train", []),

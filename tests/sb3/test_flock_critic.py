@@ -5,12 +5,16 @@ import pytest
 import torch
 from stable_baselines3 import PPO
 
+from flockenv import FlockParameters
+from flockenv.comparison import run_episodes
 from flockenv.errors import ParameterError
+from flockenv.policies import load
 from flockenv.sb3 import (
     FlockCriticPolicy,
     LeaderVecEnv,
     SharedNoisePolicy,
     WithFlockFeatures,
+    evaluate_flocks,
     shared_noise,
 )
 from flockenv.training.actor import one_thread
@@ -118,6 +122,28 @@ def test_it_goes_with_shared_noise_and_through_a_file(tmp_path):
     read = PPO.load(tmp_path / "model.zip", device="cpu")
     expected = model.predict(rows.numpy(), deterministic=True)[0]
     np.testing.assert_array_equal(read.predict(rows.numpy(), deterministic=True)[0], expected)
+
+
+def test_the_model_steers_wherever_a_policy_does(tmp_path):
+    options = {**OPTIONS, "pool": "table-1", "action_mode": "lean", "decision_period_s": 0.2}
+    options["episode_s"] = 2.0
+    venv = WithFlockFeatures(LeaderVecEnv(2, **options))
+    model = model_of(venv).learn(64)
+    rows = venv.reset()
+    seen = venv.policy_kwargs["seen"]
+    whole, part = (model.predict(each, deterministic=True)[0] for each in (rows, rows[:, :seen]))
+    np.testing.assert_array_equal(whole, part)
+    model.save(tmp_path / "model.zip")
+    policy = load(tmp_path / "model.zip", trust=True)
+    assert (policy.action_mode, policy.decision_period_s, policy.leaders) == ("lean", 0.2, 1)
+    np.testing.assert_array_equal(policy.predict(rows[:, :seen])[0], np.clip(whole, -1.0, 1.0))
+    parameters = FlockParameters(n_boats=8, n_leaders=3, pool="table-1")
+    found = run_episodes(parameters, model, [0], 10.0)
+    assert np.isfinite(found["signed_order"]).all()
+    mean, _ = evaluate_flocks(model, venv, n_eval_episodes=2, seed=0)
+    assert np.isfinite(mean)
+    with pytest.raises(ParameterError, match=r"'lean'.*'rudder'"):
+        evaluate_flocks(model, WithFlockFeatures(LeaderVecEnv(2, **OPTIONS)))
 
 
 def test_bad_input_is_refused():
