@@ -33,7 +33,7 @@ pub struct FlockEnv {
     finished: Option<EpisodeSummary>,
     final_observation: Vec<f32>,
     final_state: Vec<f32>,
-    /// Not stored: only the step that ends an episode is asked for them.
+    /// Not stored: they are read in the step that ends an episode alone.
     final_features: Vec<f32>,
 }
 
