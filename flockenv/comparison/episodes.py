@@ -1,6 +1,8 @@
 """Leader policies against each other: seeded episodes, order by number of leaders (figure 12)."""
 
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import CancelledError
+from threading import Event
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -241,8 +243,16 @@ def _simulated(
     _, infos = env.reset(seed=list(seeds))
     flock_seeds = [int(seed) for seed in infos["flock_seed"]]
 
+    stop = Event()
+
+    def go_on(done: float) -> None:
+        if stop.is_set():
+            raise CancelledError
+
     def run(seed: int) -> list[float]:
-        recording = simulate(parameters, seed, duration_s, CONTROL_HZ, dtype=np.float32)
+        recording = simulate(
+            parameters, seed, duration_s, CONTROL_HZ, dtype=np.float32, progress=go_on
+        )
         order = recording.analyzed().order
         signed = order.signed_order(parameters.target)
         progress(duration_s)
@@ -257,5 +267,5 @@ def _simulated(
             *ordering,
         ]
 
-    means = np.array(in_order(run, flock_seeds))
+    means = np.array(in_order(run, flock_seeds, stop=stop))
     return dict(zip((*QUANTITIES, *ORDERING_TIMES), means.T, strict=True))

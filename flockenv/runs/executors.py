@@ -10,6 +10,7 @@ import itertools
 import os
 from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from threading import Event
 from typing import Any, Protocol, TypeVar
 
 from flockenv._io.extras import require
@@ -38,11 +39,15 @@ class Engine(Protocol):
 
 
 def local(
-    function: Callable[[Item], Value], items: Sequence[Item], workers: int | None = None
+    function: Callable[[Item], Value],
+    items: Sequence[Item],
+    workers: int | None = None,
+    stop: Event | None = None,
 ) -> Generator[tuple[int, Value], None, None]:
     """Run in threads of this process: the simulator lets go of the interpreter while it runs.
 
-    On Ctrl-C runs under way are waited for, all others are dropped.
+    On Ctrl-C runs under way are waited for, all others are dropped. `stop` is set before the
+    waiting, so that runs that heed it end sooner.
     """
     pool = ThreadPoolExecutor(workers or cores())
     try:
@@ -50,14 +55,19 @@ def local(
         for future in as_completed(places):
             yield places.pop(future), future.result()
     finally:
+        if stop is not None:
+            stop.set()
         pool.shutdown(cancel_futures=True)
 
 
 def in_order(
-    function: Callable[[Item], Value], items: Sequence[Item], workers: int | None = None
+    function: Callable[[Item], Value],
+    items: Sequence[Item],
+    workers: int | None = None,
+    stop: Event | None = None,
 ) -> list[Value]:
     """Return the values of a function in the order of the items, computed as by `local`."""
-    values = dict(local(function, items, workers))
+    values = dict(local(function, items, workers, stop))
     return [values[place] for place in range(len(items))]
 
 

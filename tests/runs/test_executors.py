@@ -3,6 +3,7 @@
 import os
 import threading
 from pathlib import Path
+from threading import Event
 
 import pytest
 
@@ -121,3 +122,19 @@ def test_an_unknown_engine_is_refused() -> None:
     with pytest.raises(flockenv.ParameterError, match="local, joblib, ray"):
         named("slurm")
     assert set(ENGINES) == {"local", "joblib", "ray"}
+
+
+def test_runs_that_heed_a_stop_end_with_an_error_of_another():
+    stop, under_way = Event(), Event()
+    heeded = []
+
+    def work(item):
+        if item == 0:
+            assert under_way.wait(20.0)
+            raise ValueError("item 0")
+        under_way.set()
+        heeded.append(stop.wait(20.0))
+
+    with pytest.raises(ValueError, match="item 0"):
+        in_order(work, [0, 1], workers=2, stop=stop)
+    assert heeded == [True]
