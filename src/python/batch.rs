@@ -31,6 +31,17 @@ impl PyEnvBatch {
     fn of(batch: EnvBatch) -> Self {
         Self(Exclusive::new(batch, "the environment"))
     }
+
+    /// Some numbers of one flock: an array of its own.
+    fn numbers<'py>(
+        &self,
+        py: Python<'py>,
+        flock: usize,
+        of: fn(&FlockEnv) -> &[f32],
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let batch = self.0.read()?;
+        Ok(PyArray1::from_slice(py, of(env_of(&batch, flock)?)))
+    }
 }
 
 fn env_of(batch: &EnvBatch, flock: usize) -> Result<&FlockEnv> {
@@ -168,11 +179,7 @@ impl PyEnvBatch {
         py: Python<'py>,
         flock: usize,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let batch = self.0.read()?;
-        Ok(PyArray1::from_slice(
-            py,
-            env_of(&batch, flock)?.final_state(),
-        ))
+        self.numbers(py, flock, FlockEnv::final_state)
     }
 
     /// Features of the flock at the end of the episode that ended in the last step.
@@ -181,11 +188,7 @@ impl PyEnvBatch {
         py: Python<'py>,
         flock: usize,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let batch = self.0.read()?;
-        Ok(PyArray1::from_slice(
-            py,
-            env_of(&batch, flock)?.final_features(),
-        ))
+        self.numbers(py, flock, FlockEnv::final_features)
     }
 
     fn state_size(&self, flock: usize) -> PyResult<usize> {
