@@ -1,15 +1,12 @@
 //! `flockenv._core.EnvBatch`: what all environment classes sit on.
 
-use super::arguments::{real, text, whole, wrong_type};
 use super::exclusive::{Exclusive, interruptible};
 use super::flock::PyFlock;
 use super::parameters::to_python;
 use super::settings::{settings_from, settings_to_dict, term_names};
-use super::state::state_from;
+use super::state::request_from;
 use crate::environment::observation::FlockFeatures;
-use crate::environment::{
-    BatchRows, EnvBatch, Episode, EpisodeSummary, FlockEnv, ResetRequest, Start, TERMS,
-};
+use crate::environment::{BatchRows, EnvBatch, Episode, EpisodeSummary, FlockEnv, TERMS};
 use crate::error::{FlockError, Result};
 use crate::parameters::FlockParameters;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
@@ -377,37 +374,4 @@ fn summary_dict<'py>(py: Python<'py>, summary: &EpisodeSummary) -> PyResult<Boun
     dict.set_item("ordering_time_wide_s", wide)?;
     dict.set_item("clip_rate", summary.clip_rate)?;
     Ok(dict)
-}
-
-/// A request of a flock of so many boats.
-fn request_from(options: &Bound<'_, PyDict>, boats: usize) -> PyResult<ResetRequest> {
-    let mut request = ResetRequest::default();
-    for (name, value) in options {
-        match text(&name, "reset option")?.as_str() {
-            "seed" if value.is_none() => request.seed = None,
-            "seed" => request.seed = Some(whole(&value, "seed")?),
-            "target" => request.target = Some(text(&value, "target")?.parse()?),
-            "bw_s" => request.bw_s = Some(real(&value, "bw_s")?),
-            "state" => request.start = Start::State(state_from(&value, boats)?),
-            "snapshot" => request.start = snapshot_from(&value)?,
-            other => {
-                let accepted = "target, bw_s, state or snapshot";
-                let found = format!("{other:?}");
-                return Err(FlockError::parameter("reset option", found, accepted).into());
-            }
-        }
-    }
-    let starts_twice = options.contains("state")? && options.contains("snapshot")?;
-    let noise_twice = options.contains("bw_s")? && options.contains("snapshot")?;
-    if starts_twice || noise_twice {
-        let accepted = "a snapshot alone: it brings its own state and bw_s along";
-        return Err(FlockError::parameter("reset options", "snapshot and others", accepted).into());
-    }
-    Ok(request)
-}
-
-fn snapshot_from(value: &Bound<'_, PyAny>) -> PyResult<Start> {
-    let bytes = value.cast::<PyBytes>();
-    let bytes = bytes.map_err(|_| wrong_type(value, "snapshot", "bytes of Flock.snapshot"))?;
-    Ok(Start::Snapshot(bytes.as_bytes().to_vec()))
 }

@@ -1,12 +1,13 @@
-//! States of flocks as dictionaries and arrays.
+//! States of flocks as dictionaries and arrays, and requests of episodes that start in them.
 
-use super::arguments::{floats, real, text, truth, wrong_type};
+use super::arguments::{floats, real, text, truth, whole, wrong_type};
+use crate::environment::{ResetRequest, Start};
 use crate::error::FlockError;
 use crate::flock::State;
 use crate::geometry::{Pose, Velocity};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 
 /// {"pose": (n, 3), "velocity": (n, 3), "time_s": float, "allow_overlap": bool}; the pose alone will do.
 pub(crate) fn state_from(value: &Bound<'_, PyAny>, boats: usize) -> PyResult<State> {
@@ -58,4 +59,37 @@ pub(crate) fn rows_of_three(
     let numbers: Vec<f64> = rows.flatten().collect();
     let count = numbers.len() / 3;
     PyArray1::from_vec(py, numbers).reshape([count, 3])
+}
+
+/// A request of a flock of so many boats.
+pub(crate) fn request_from(options: &Bound<'_, PyDict>, boats: usize) -> PyResult<ResetRequest> {
+    let mut request = ResetRequest::default();
+    for (name, value) in options {
+        match text(&name, "reset option")?.as_str() {
+            "seed" if value.is_none() => request.seed = None,
+            "seed" => request.seed = Some(whole(&value, "seed")?),
+            "target" => request.target = Some(text(&value, "target")?.parse()?),
+            "bw_s" => request.bw_s = Some(real(&value, "bw_s")?),
+            "state" => request.start = Start::State(state_from(&value, boats)?),
+            "snapshot" => request.start = snapshot_from(&value)?,
+            other => {
+                let accepted = "target, bw_s, state or snapshot";
+                let found = format!("{other:?}");
+                return Err(FlockError::parameter("reset option", found, accepted).into());
+            }
+        }
+    }
+    let starts_twice = options.contains("state")? && options.contains("snapshot")?;
+    let noise_twice = options.contains("bw_s")? && options.contains("snapshot")?;
+    if starts_twice || noise_twice {
+        let accepted = "a snapshot alone: it brings its own state and bw_s along";
+        return Err(FlockError::parameter("reset options", "snapshot and others", accepted).into());
+    }
+    Ok(request)
+}
+
+fn snapshot_from(value: &Bound<'_, PyAny>) -> PyResult<Start> {
+    let bytes = value.cast::<PyBytes>();
+    let bytes = bytes.map_err(|_| wrong_type(value, "snapshot", "bytes of Flock.snapshot"))?;
+    Ok(Start::Snapshot(bytes.as_bytes().to_vec()))
 }
