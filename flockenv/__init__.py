@@ -62,9 +62,9 @@ _moved = keep_old_names(__name__)
 
 
 def __getattr__(name: str) -> Any:
-    # stable-baselines3 takes seconds to import: only for those who use it.
-    if name == "sb3":
-        return importlib.import_module("flockenv.sb3")
+    # What belongs to other libraries takes seconds to import: only for those who use it.
+    if name in ("sb3", "torchrl"):
+        return importlib.import_module(f"flockenv.{name}")
     if name in _moved:
         return _moved[name]
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -88,6 +88,10 @@ class LeaderBatch:
         """Return the global state of a flock."""
         return self._core.state(flock)
 
+    def states(self) -> NDArray[np.float32]:
+        """Return the global state of every flock, a row each."""
+        return self._core.states()
+
     def final_state(self, flock: int) -> NDArray[np.float32]:
         """Return the last global state of the episode that ended in the last step."""
         return self._core.final_state(flock)

@@ -217,7 +217,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
 
     def state(self) -> NDArray[np.float32]:
         """Return the global state of every flock, shape (num_envs, state size)."""
-        return np.stack([self._batch.state(flock) for flock in range(self.num_envs)])
+        return self._batch.states()
 
     def flock_features(self) -> NDArray[np.float32]:
         """Return features of every flock, shape (num_envs, features), float32.

@@ -4,13 +4,15 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Self
 
+import gymnasium
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
 from flockenv._io.moved_modules import renamed_argument
 from flockenv._io.npz_header import array_of, entry_of
-from flockenv.errors import ParameterError, refuse_unknown
+from flockenv.envs.observation import BLOCKS, ObservationSpace
+from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.policies.files import PROVENANCE, StoredPolicy
 
 __all__ = ["ACTIVATIONS", "NetworkPolicy"]
@@ -83,6 +85,66 @@ class NetworkPolicy(StoredPolicy):
                 f"activation = {activation!r} is not accepted: one of {', '.join(ACTIVATIONS)}"
             )
 
+    @classmethod
+    def from_module(
+        cls,
+        module: Any,
+        space: gymnasium.Space[Any],
+        *,
+        squashed: bool = False,
+        provenance: Mapping[str, str] | None = None,
+    ) -> Self:
+        """Return a torch network as a policy that needs no torch.
+
+        Parameters
+        ----------
+        module
+            A ``torch.nn.Module`` from one leader's observation to its rudder: linear layers in the
+            order in which they follow each other, with one of `ACTIVATIONS` between them. Where
+            the last layer has two outputs, the mean and the spread of a distribution, the mean is
+            the rudder. Layers that change nothing (``Identity``, TorchRL's
+            ``NormalParamExtractor``) are passed over.
+        space
+            The space of the observation that it was trained on, which holds the options that a
+            policy depends on: ``observation_space`` of the environments here.
+        squashed
+            Whether the distribution puts the mean through a hyperbolic tangent, as TorchRL's
+            ``TanhNormal``. The activation has to be "tanh" then.
+        provenance
+            As of `NetworkPolicy`.
+
+        Raises
+        ------
+        ParameterError
+            For other layers, for layers that do not fit, and for spaces of several leaders.
+        """
+        if not isinstance(space, ObservationSpace) or space.leaders != 1:
+            raise ParameterError(
+                f"space = {shown(space)} is not accepted: the space of one leader's observation, "
+                "as the environments have it"
+            )
+        layers, activation = _module_layers(module)
+        weights, biases = (list(each) for each in zip(*layers, strict=True))
+        if len(biases[-1]) == 2:
+            weights[-1], biases[-1] = weights[-1][:, :1], biases[-1][:1]
+        if squashed:
+            if activation != "tanh":
+                raise ParameterError(
+                    f"activation = {activation!r} is not accepted with a squashed mean: 'tanh'"
+                )
+            weights.append(np.ones((1, 1), np.float32))
+            biases.append(np.zeros(1, np.float32))
+        blocks = space.options["observation"]
+        names = ("mirror_to_target", "action_mode", "decision_period_s")
+        return cls(
+            weights,
+            biases,
+            activation,
+            observation={name: block for name, block in blocks.items() if block != BLOCKS[name]},
+            **{name: space.options[name] for name in names},
+            provenance=provenance,
+        )
+
     @property
     def weights(self) -> list[NDArray[np.float32]]:
         """Copies of the layers' matrices, shape (inputs, outputs)."""
@@ -148,6 +210,39 @@ class NetworkPolicy(StoredPolicy):
 def _action_of(header: Mapping[str, Any]) -> dict[str, Any]:
     kinds = {"action_mode": str, "decision_period_s": float}
     return {name: entry_of(header, name, kind) for name, kind in kinds.items() if name in header}
+
+
+#: Names of torch's activations, and of layers that leave the mean as it is.
+_MODULE_ACTIVATIONS = {"Tanh": "tanh", "ReLU": "relu"}
+_PASSED_OVER = ("Identity", "NormalParamExtractor")
+
+
+def _module_layers(
+    module: Any,
+) -> tuple[list[tuple[NDArray[np.float32], NDArray[np.float32]]], str]:
+    """Return the matrices and biases of a torch module, and what stands between them."""
+    layers: list[tuple[NDArray[np.float32], NDArray[np.float32]]] = []
+    between: list[str] = []
+    for layer in module.modules():
+        kind = type(layer).__name__
+        if next(layer.children(), None) is not None or kind in _PASSED_OVER:
+            continue
+        if kind == "Linear" and len(layers) == len(between) and layer.bias is not None:
+            weight, bias = (each.detach().cpu().numpy() for each in (layer.weight, layer.bias))
+            layers.append((weight.T, bias))
+        elif kind in _MODULE_ACTIVATIONS and len(layers) == len(between) + 1:
+            between.append(_MODULE_ACTIVATIONS[kind])
+        else:
+            raise ParameterError(
+                f"a module with the layer {shown(layer)} at this place is not accepted: linear "
+                f"layers with biases and one of {', '.join(_MODULE_ACTIVATIONS)} between them"
+            )
+    if len(layers) != len(between) + 1 or len(set(between)) > 1:
+        raise ParameterError(
+            f"a module with {len(layers)} linear layers and the activations {between} is not "
+            "accepted: one and the same activation between each two layers"
+        )
+    return layers, between[0] if between else "tanh"
 
 
 def _checked_layers(

@@ -272,8 +272,7 @@ class LeaderVecEnv(VecEnv):
 
     def state(self) -> NDArray[np.float32]:
         """Return the global state of each slot's flock, shape (slots, state size)."""
-        flocks = [self._batch.state(flock) for flock in range(self.num_flocks)]
-        return np.stack(flocks)[self.flock_of_slot]
+        return self._batch.states()[self.flock_of_slot]
 
     def flock_features(self) -> NDArray[np.float32]:
         """Return features of each slot's flock, shape (slots, features), float32.

@@ -202,6 +202,24 @@ impl PyEnvBatch {
         Ok(array)
     }
 
+    /// Global states of every flock, which have equally many boats: (flocks, state size).
+    fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let batch = self.0.read()?;
+        let size = batch.envs().first().map_or(0, FlockEnv::state_size);
+        if batch.envs().iter().any(|env| env.state_size() != size) {
+            return Err(FlockError::parameter("n_boats", "of flocks", "equal numbers").into());
+        }
+        let array = PyArray2::zeros(py, [batch.envs().len(), size], false);
+        let mut numbers = array.readwrite();
+        let rows = numbers.as_slice_mut()?.chunks_exact_mut(size.max(1));
+        for (env, row) in batch.envs().iter().zip(rows) {
+            env.episode().ok_or_else(never_reset)?;
+            env.observe_state(row);
+        }
+        drop(numbers);
+        Ok(array)
+    }
+
     /// Features of every flock: (flocks, features).
     fn flock_features<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let batch = self.0.read()?;

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 import flockenv
+from flockenv._core import env_defaults
 from flockenv._io.array_file import read_arrays, write_arrays
-from flockenv.envs.observation import OBSERVATION_VERSION, observation_entries
+from flockenv.envs.observation import OBSERVATION_VERSION, ObservationSpace, observation_entries
 from flockenv.policies import NetworkPolicy, RandomRudders, StraightAhead, load
 
 SIZE = len(observation_entries())
@@ -46,6 +47,88 @@ def test_numpy_and_torch_agree_to_rounding(activation):
             values = getattr(torch, activation)(values)
     expected = values.clamp(-1, 1).numpy()[:, 0]
     np.testing.assert_allclose(policy.predict(observations)[0][:, 0], expected, atol=2e-6)
+
+
+def torch_network(activation, outputs=2):
+    torch = pytest.importorskip("torch")
+    torch.manual_seed(3)
+    between = {"tanh": torch.nn.Tanh, "relu": torch.nn.ReLU}[activation]
+    hidden = torch.nn.Sequential(torch.nn.Linear(SIZE, 9), between())
+    return torch.nn.Sequential(
+        hidden, torch.nn.Linear(9, 7), between(), torch.nn.Linear(7, outputs), torch.nn.Identity()
+    )
+
+
+@pytest.mark.parametrize(("activation", "squashed"), [("tanh", 0), ("tanh", 1), ("relu", 0)])
+@pytest.mark.parametrize("outputs", [1, 2])
+def test_a_torch_network_becomes_a_policy(activation, squashed, outputs, tmp_path):
+    torch = pytest.importorskip("torch")
+    module = torch_network(activation, outputs)
+    options = {"observation": {}, "mirror_to_target": True, "action_mode": "lean"}
+    space = ObservationSpace({**env_defaults(), **options, "decision_period_s": 2.0})
+    policy = NetworkPolicy.from_module(module, space, squashed=bool(squashed))
+    policy.save(tmp_path / "policy.npz")
+    loaded = load(tmp_path / "policy.npz")
+    assert loaded.digest == policy.digest
+    assert (loaded.mirror_to_target, loaded.action_mode) == (True, "lean")
+    assert loaded.decision_period_s == 2.0
+    rows = np.random.default_rng(1).uniform(-2, 2, (500, SIZE)).astype(np.float32)
+    with torch.no_grad():
+        mean = module(torch.from_numpy(rows))[:, 0]
+        expected = (mean.tanh() if squashed else mean.clamp(-1, 1)).numpy()
+    assert expected.std() > 0.02
+    np.testing.assert_allclose(loaded.predict(rows)[0][:, 0], expected, atol=2e-6)
+
+
+def test_the_layout_of_a_torch_network_is_that_of_its_space():
+    torch = pytest.importorskip("torch")
+    few = {"neighbors": 0, "order": False}
+    space = flockenv.LeadersVectorEnv(1, n_leaders=1, observation=few).single_observation_space
+    policy = NetworkPolicy.from_module(torch.nn.Linear(space.shape[0], 1), space)
+    assert policy.observation == few
+
+
+@pytest.mark.parametrize(
+    ("layers", "options", "message"),
+    [
+        (lambda nn: [nn.Linear(SIZE, 4), nn.GELU(), nn.Linear(4, 1)], {}, "GELU"),
+        (lambda nn: [nn.Linear(SIZE, 4), nn.Linear(4, 1)], {}, "out_features=1"),
+        (lambda nn: [nn.Linear(SIZE, 4, bias=False)], {}, "bias=False"),
+        (lambda nn: [nn.Linear(SIZE, 4), nn.Tanh()], {}, "1 linear layers and"),
+        (lambda nn: [], {}, r"Sequential\(\)"),
+        (lambda nn: [nn.Linear(SIZE, 3)], {}, r"layer 0 has weights \(67, 3\)"),
+        (lambda nn: [nn.Linear(5, 1)], {}, r"layer 0 has weights \(5, 1\)"),
+        (
+            lambda nn: [
+                nn.Linear(SIZE, 4),
+                nn.Tanh(),
+                nn.Linear(4, 4),
+                nn.ReLU(),
+                nn.Linear(4, 1),
+            ],
+            {},
+            "one and the same activation",
+        ),
+        (
+            lambda nn: [nn.Linear(SIZE, 4), nn.ReLU(), nn.Linear(4, 1)],
+            {"squashed": True},
+            "'relu' is not accepted with a squashed mean",
+        ),
+    ],
+)
+def test_other_torch_networks_are_refused(layers, options, message):
+    nn = pytest.importorskip("torch").nn
+    module = nn.Sequential(*layers(nn))
+    with pytest.raises(flockenv.ParameterError, match=message):
+        NetworkPolicy.from_module(module, ObservationSpace(env_defaults()), **options)
+
+
+def test_a_torch_network_needs_the_space_of_one_leader():
+    torch = pytest.importorskip("torch")
+    two = flockenv.LeadersVectorEnv(1, n_leaders=2).single_observation_space
+    for space in (two, None):
+        with pytest.raises(flockenv.ParameterError, match="the space of one leader"):
+            NetworkPolicy.from_module(torch.nn.Linear(SIZE, 1), space)
 
 
 @pytest.mark.parametrize("policy", [network(), StraightAhead(), RandomRudders(3)])

@@ -1,0 +1,195 @@
+"""`LeadersEnv`: TorchRL's environment over one batch of flocks, its leaders a group of agents."""
+
+from collections.abc import Callable
+from typing import Any
+
+import gymnasium
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from tensordict import TensorDict, TensorDictBase
+from torchrl.data import Binary, Bounded, Categorical, Composite, Unbounded
+from torchrl.envs import EnvBase
+
+from flockenv.envs.batch import LeaderBatch, at_least_one, seeds_from
+from flockenv.envs.observation import ObservationSpace
+from flockenv.envs.options import EnvOptions
+from flockenv.envs.spaces import flat_actions
+from flockenv.errors import refuse_unknown
+
+__all__ = ["GROUP", "STATES", "LeadersEnv"]
+
+GROUP = "leaders"
+"""Name of the group that all leaders of a flock are in."""
+
+STATES = ("boats", "features", "none")
+"""What the entry ``state`` may hold."""
+
+
+class LeadersEnv(EnvBase):
+    """Many flocks for TorchRL, stepped at once in Rust: batch size ``[flocks]``, leaders a group.
+
+    All flocks have equally many leaders. Tensors share the memory of the arrays that the core
+    returns, and are never written to again.
+
+    ========================================= =============================================
+    key                                       shape, dtype
+    ========================================= =============================================
+    ``("leaders", "observation")``            (flocks, leaders, observation size), float32
+    ``("leaders", "action")``                 (flocks, leaders, 1), float32: rudders; with
+                                              `rudder_levels` (flocks, leaders), int64
+    ``("next", "leaders", "reward")``         (flocks, leaders, 1), float32
+    ``"state"``                               (flocks, state size), float32
+    ``"done"``, ``"terminated"``,             (flocks, 1), bool; episodes are truncated, never
+    ``"truncated"``                           terminated
+    ========================================= =============================================
+
+    The same seed gives the same bits as in `LeadersVectorEnv`: ``set_seed(s)`` makes the next reset
+    seed flock i with s + i. Flocks that have had no seed draw one from torch's generator. ``reset``
+    with a ``"_reset"`` mask starts the flocks in it, and ``reset(options={...})`` takes the
+    options of `LeadersVectorEnv.reset`.
+
+    Parameters
+    ----------
+    num_flocks
+        Number of flocks, at least 1.
+    state
+        What a centralized critic sees: "boats" (the global state, the boats one after another),
+        "features" (features of the flock that do not depend on the order of boats, as
+        `LeadersVectorEnv.flock_features`) or "none".
+    device
+        Where tensors are; the simulator itself runs on the processor.
+    options
+        The environments' options.
+
+    Attributes
+    ----------
+    group_map : dict
+        Names of the agents in the group ``"leaders"``.
+    observation_space : flockenv.envs.observation.ObservationSpace
+        The space of one leader's observation, which `NetworkPolicy.from_module` takes.
+    episode_steps : int
+        Decisions of an episode.
+
+    Raises
+    ------
+    ParameterError
+        For values out of range, and flocks with different numbers of leaders.
+    UnknownOptionError
+        For unknown options, with the nearest known one.
+    """
+
+    def __init__(
+        self,
+        num_flocks: int = 1,
+        *,
+        state: str = "boats",
+        device: torch.device | str = "cpu",
+        **options: Any,
+    ) -> None:
+        flocks = at_least_one(num_flocks, "num_flocks")
+        refuse_unknown((state,), STATES, "state")
+        parsed = EnvOptions.parse(options)
+        self.parameters = parsed.parameters
+        self.num_flocks, self.num_leaders = flocks, parsed.parameters.n_leaders
+        at_least_one(self.num_leaders, "n_leaders")
+        super().__init__(device=device, batch_size=torch.Size([flocks]))
+        self._batch = LeaderBatch(parsed, [self.num_leaders] * flocks, "disabled")
+        settings = self._batch.settings
+        self.observation_space = ObservationSpace(settings)
+        self.episode_steps = -(-self._batch.episode_steps // self._batch.period_steps)
+        self.group_map = {GROUP: [f"leader_{leader}" for leader in range(self.num_leaders)]}
+        self._levels: int | None = settings["rudder_levels"]
+        self._state = _states(self._batch)[state]
+        self._seeds: list[int | None] = [None] * flocks
+        self._make_specs()
+
+    def _make_specs(self) -> None:
+        flocks, device = self.batch_size, self.device
+        each = torch.Size([*flocks, self.num_leaders])
+
+        def bounded(space: gymnasium.spaces.Box, *shape: int) -> Bounded:
+            low, high = (torch.from_numpy(bound) for bound in (space.low, space.high))
+            size = torch.Size([*shape, *space.shape])
+            return Bounded(low.expand(size), high.expand(size), size, device, torch.float32)
+
+        def grouped(**entries: Any) -> Composite:
+            return Composite({GROUP: Composite(entries, shape=each)}, shape=flocks)
+
+        self.observation_spec = grouped(observation=bounded(self.observation_space, *each))
+        if self._state is not None:
+            self.observation_spec["state"] = bounded(self._state[0], *flocks)
+        if self._levels is None:
+            action = Bounded(-1.0, 1.0, torch.Size([*each, 1]), device, torch.float32)
+        else:
+            action = Categorical(self._levels, each, device, torch.int64)
+        self.action_spec = grouped(action=action)
+        self.reward_spec = grouped(reward=Unbounded(torch.Size([*each, 1]), device, torch.float32))
+        ends = ("done", "terminated", "truncated")
+        one = torch.Size([*flocks, 1])
+        self.done_spec = Composite(
+            {name: Binary(shape=one, device=device, dtype=torch.bool) for name in ends},
+            shape=flocks,
+        )
+
+    def _set_seed(self, seed: int | None) -> None:
+        flocks = self.num_flocks
+        self._seeds = [None] * flocks if seed is None else list(seeds_from(seed, flocks))
+
+    def _reset(
+        self,
+        tensordict: TensorDictBase | None = None,
+        *,
+        options: dict[str, Any] | None = None,
+        **_: Any,
+    ) -> TensorDictBase:
+        asked = None if tensordict is None else tensordict.get("_reset", None)
+        mask = None if asked is None else asked.reshape(self.num_flocks).cpu().numpy()
+        self._batch.reset(self._seeds, options, _drawn_seed, mask)
+        started = np.ones(self.num_flocks, np.bool_) if mask is None else mask
+        for flock in np.flatnonzero(started).tolist():
+            self._seeds[flock] = None
+        return self._seen(self._batch.observe())
+
+    def _step(self, tensordict: TensorDictBase) -> TensorDictBase:
+        actions = tensordict.get((GROUP, "action")).detach().cpu().numpy()
+        shape = (self.num_flocks, self.num_leaders)
+        each = shape if self._levels is not None else (*shape, 1)
+        flat = flat_actions(actions, each, self._levels, "the leaders' action")
+        observations, rewards, ended = self._batch.step(flat)
+        result = self._seen(observations)
+        reward = self._tensor(rewards.astype(np.float32)).reshape(*shape, 1)
+        result.set((GROUP, "reward"), reward)
+        truncated = self._tensor(ended).unsqueeze(-1)
+        result.set("truncated", truncated)
+        result.set("done", truncated.clone())
+        result.set("terminated", torch.zeros_like(truncated))
+        return result
+
+    def _seen(self, rows: NDArray[np.float32]) -> TensorDict:
+        each = [self.num_flocks, self.num_leaders]
+        observation = self._tensor(rows).reshape(*each, -1)
+        leaders = TensorDict({"observation": observation}, each, device=self.device)
+        seen: dict[str, Any] = {GROUP: leaders}
+        if self._state is not None:
+            seen["state"] = self._tensor(self._state[1]())
+        return TensorDict(seen, self.batch_size, device=self.device)
+
+    def _tensor(self, array: NDArray[Any]) -> torch.Tensor:
+        return torch.from_numpy(array).to(self.device)
+
+
+def _states(
+    batch: LeaderBatch,
+) -> dict[str, tuple[gymnasium.spaces.Box, Callable[[], NDArray[np.float32]]] | None]:
+    """Return the space of each choice of a state, and the function that gives it."""
+    return {
+        "boats": (batch.state_space, batch.states),
+        "features": (batch.flock_feature_space, batch.flock_features),
+        "none": None,
+    }
+
+
+def _drawn_seed() -> int:
+    """Draw a seed from torch's generator."""
+    return int(torch.randint(2**63 - 1, ()).item())

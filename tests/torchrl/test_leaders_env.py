@@ -1,0 +1,219 @@
+"""Law: TorchRL's environment is the native vector environment, agent by agent, bit for bit."""
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv.errors import ParameterError, UnknownOptionError
+
+torch = pytest.importorskip("torch")
+pytest.importorskip("torchrl")
+
+from torchrl.envs import RewardSum, TransformedEnv  # noqa: E402 - after the check above
+from torchrl.envs.utils import check_env_specs, step_mdp  # noqa: E402
+
+from flockenv.torchrl import LeadersEnv  # noqa: E402
+
+SHORT = {"n_boats": 8, "n_leaders": 2, "episode_s": 2.0}
+VARIANTS = {
+    "default": {},
+    "one flock, one leader": {"num_flocks": 1, "n_leaders": 1},
+    "discrete": {"rudder_levels": 5},
+    "mirrored": {"mirror_to_target": True, "target": "random"},
+    "lean, held": {"action_mode": "lean", "decision_period_s": 0.5},
+    "few blocks": {"observation": {"neighbors": 0, "order": False}},
+    "features": {"state": "features"},
+    "no state": {"state": "none"},
+}
+
+
+def made(**options):
+    return LeadersEnv(**{"num_flocks": 3, **SHORT, **options})
+
+
+def native(**options):
+    return flockenv.LeadersVectorEnv(3, autoreset_mode="disabled", **{**SHORT, **options})
+
+
+def acted(env, rudders):
+    """Return the reset's tensors with these rudders in them, (flocks, leaders)."""
+    step = env.reset()
+    step["leaders", "action"] = torch.as_tensor(rudders, dtype=torch.float32).unsqueeze(-1)
+    return step
+
+
+@pytest.mark.parametrize("options", VARIANTS.values(), ids=VARIANTS.keys())
+def test_check_env_specs(options):
+    env = made(**options)
+    check_env_specs(env, seed=0)
+    rollout = env.rollout(30, break_when_any_done=False)
+    assert rollout.shape == (env.num_flocks, 30)
+    decisions = env.episode_steps
+    assert rollout["next", "truncated"].sum() == env.num_flocks * (30 // decisions)
+    assert not rollout["next", "terminated"].any()
+    # What a step says last is not what the next episode starts with.
+    if decisions < 30:
+        last = rollout["next", "leaders", "observation"][:, decisions - 1]
+        assert not torch.equal(last, rollout["leaders", "observation"][:, decisions])
+
+
+@pytest.mark.parametrize("state", ["boats", "features"])
+def test_the_bits_are_those_of_the_vector_environment(state):
+    env, vector = made(state=state), native()
+    env.set_seed(7)
+    observations, _ = vector.reset(seed=7)
+    step = env.reset()
+    random = np.random.default_rng(0)
+    for _ in range(20):
+        seen = step["leaders", "observation"]
+        np.testing.assert_array_equal(seen.reshape(3, -1).numpy(), observations)
+        state_now = vector.state() if state == "boats" else vector.flock_features()
+        np.testing.assert_array_equal(step["state"].numpy(), state_now)
+        rudders = random.uniform(-1, 1, (3, 2)).astype(np.float32)
+        step["leaders", "action"] = torch.from_numpy(rudders).unsqueeze(-1)
+        stepped = env.step(step)
+        observations, rewards, _, truncated, _ = vector.step(rudders)
+        own = stepped["next", "leaders", "reward"]
+        np.testing.assert_allclose(own.mean(dim=(1, 2)).numpy(), rewards, rtol=1e-6, atol=1e-7)
+        np.testing.assert_array_equal(stepped["next", "truncated"][:, 0].numpy(), truncated)
+        step = step_mdp(stepped)
+    assert truncated.all()
+
+
+def test_rewards_are_each_leaders_own():
+    env, vec = made(reward={"leader_velocity": 1.0}), None
+    env.set_seed(1)
+    rewards = env.step(acted(env, np.ones((3, 2))))["next", "leaders", "reward"][..., 0]
+    parallel = flockenv.parallel_env(**SHORT, reward={"leader_velocity": 1.0})
+    for flock in range(3):
+        parallel.reset(seed=1 + flock)
+        vec = parallel.step({agent: np.ones(1, np.float32) for agent in parallel.agents})[1]
+        np.testing.assert_array_equal(rewards[flock], np.float32(list(vec.values())))
+    assert len(set(rewards.flatten().tolist())) == 6
+
+
+def test_a_mask_resets_some_flocks_alone():
+    env, vector = made(), native()
+    env.set_seed(3)
+    vector.reset(seed=3)
+    stepped = env.step(acted(env, np.zeros((3, 2))))
+    vector.step(np.zeros((3, 2), np.float32))
+    step = step_mdp(stepped)
+    before = step["leaders", "observation"].clone()
+    step["_reset"] = torch.tensor([[False], [True], [False]])
+    after = env.reset(step)["leaders", "observation"]
+    mask = np.array([False, True, False])
+    expected = vector.reset(options={"reset_mask": mask})[0]
+    np.testing.assert_array_equal(after.reshape(3, -1).numpy(), expected)
+    torch.testing.assert_close(after[[0, 2]], before[[0, 2]], rtol=0, atol=0)
+    assert not torch.equal(after[1], before[1])
+
+
+def test_a_seed_waits_for_the_reset_of_its_flock():
+    env, fresh = made(), made()
+    fresh.set_seed(5)
+    expected = fresh.reset()["leaders", "observation"]
+    step = env.reset().set("_reset", torch.tensor([[True], [False], [False]]))
+    env.set_seed(5)
+    assert torch.equal(env.reset(step)["leaders", "observation"][0], expected[0])
+    # Flock 0 has used its seed up by now, and continues with the episode that follows.
+    then = env.reset()["leaders", "observation"]
+    assert torch.equal(then[1:], expected[1:])
+    assert not torch.equal(then[0], expected[0])
+
+
+def test_torch_fixes_what_has_no_seed():
+    first, second = (made() for _ in range(2))
+    starts = []
+    for env in (first, second):
+        torch.manual_seed(11)
+        starts.append(env.reset()["leaders", "observation"])
+    torch.testing.assert_close(*starts, rtol=0, atol=0)
+
+
+def test_reset_options_reach_the_flocks():
+    env = made(state="features")
+    starts = [env.reset(options={"target": target}) for target in ("cw", "ccw")]
+    assert env._batch.episode(0)["target"] == "ccw"
+    assert len(starts) == 2
+    with pytest.raises(ParameterError, match="did you mean 'target'"):
+        env.reset(options={"targt": "cw"})
+
+
+def test_what_was_returned_is_never_written_to():
+    env = made()
+    env.set_seed(0)
+    step = env.reset()
+    kept = step.clone()
+    stepped = env.step(acted(env, np.ones((3, 2))))
+    later = stepped["next"].clone()
+    env.step(step_mdp(stepped).set(("leaders", "action"), torch.ones(3, 2, 1)))
+    assert (step.exclude(("leaders", "action")) == kept).all()
+    assert (stepped["next"] == later).all()
+
+
+def test_copies_and_pickles_continue_with_the_same_bits():
+    env = made()
+    env.set_seed(2)
+    step = acted(env, np.full((3, 2), 0.5))
+    for other in (copy.deepcopy(env), pickle.loads(pickle.dumps(env))):
+        ours, theirs = (each.step(step.clone())["next"] for each in (copy.deepcopy(env), other))
+        assert (ours == theirs).all()
+
+
+def test_a_reward_sum_counts_the_episodes_of_leaders():
+    keys = {"in_keys": [("leaders", "reward")], "out_keys": [("leaders", "episode_reward")]}
+    env = TransformedEnv(made(), RewardSum(**keys, reset_keys=["_reset"]))
+    check_env_specs(env)
+    rollout = env.rollout(40, break_when_any_done=False)
+    sums = rollout["next", "leaders", "episode_reward"][:, 19]
+    expected = rollout["next", "leaders", "reward"][:, :20].sum(dim=1)
+    torch.testing.assert_close(sums, expected, rtol=1e-4, atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"num_flocks": 0}, "num_flocks = 0 is not accepted"),
+        ({"num_flocks": 10**9}, "num_flocks = 1000000000 is not accepted"),
+        ({"n_leaders": 0}, "n_leaders = 0"),
+        ({"state": "boat"}, "'boat' is no state: did you mean 'boats'"),
+        ({"n_boat": 3}, "did you mean 'n_boats'"),
+        ({"rudder_levels": 1}, "rudder_levels"),
+    ],
+)
+def test_bad_options_are_named(options, message):
+    with pytest.raises(ParameterError, match=message):
+        made(**options)
+
+
+def test_flocks_with_different_numbers_of_leaders_are_refused():
+    with pytest.raises((ParameterError, TypeError), match="n_leaders"):
+        made(n_leaders=[1, 2])
+
+
+def test_unknown_options_are_type_errors_too():
+    with pytest.raises(UnknownOptionError):
+        made(frame_skip=2)
+
+
+def test_bad_actions_move_nothing():
+    env = made()
+    env.set_seed(4)
+    step = acted(env, np.full((3, 2), np.nan))
+    before = env._batch.to_bytes()
+    with pytest.raises(ParameterError, match="NaN"):
+        env.step(step)
+    assert env._batch.to_bytes() == before
+
+
+def test_steps_past_the_end_are_refused():
+    env = made(episode_s=0.1)
+    stepped = env.step(acted(env, np.zeros((3, 2))))
+    assert stepped["next", "done"].all()
+    after = step_mdp(stepped).set(("leaders", "action"), torch.zeros(3, 2, 1))
+    with pytest.raises(flockenv.EpisodeError):
+        env.step(after)
