@@ -51,6 +51,7 @@ __all__ = [
     "parameter_table",
     "phase_names",
     "physics_fields",
+    "polarization",
     "pool_radii_cm",
     "preset_fields",
     "preset_names",
@@ -92,6 +93,7 @@ def set_parameters_class(class_: Any, /) -> None: ...
 def largest_cluster(
     parameters: FlockParameters, pose: NDArray[np.float64]
 ) -> NDArray[np.float64]: ...
+def polarization(pose: NDArray[np.float64]) -> NDArray[np.float64]: ...
 def on_outer_wall(
     parameters: FlockParameters, pose: NDArray[np.float64]
 ) -> NDArray[np.float64]: ...

@@ -15,6 +15,7 @@ __all__ = [
     "mean_square_displacement",
     "on_outer_wall",
     "pair_distribution",
+    "polarization",
 ]
 
 
@@ -44,6 +45,26 @@ def on_outer_wall(parameters: FlockParameters, pose: ArrayLike) -> NDArray[np.fl
     Parameters and errors are those of `largest_cluster`.
     """
     return _core.on_outer_wall(parameters, _poses(pose))
+
+
+def polarization(pose: ArrayLike) -> NDArray[np.float64]:
+    """Return the length of the mean heading in the axes of the world, shape (t,).
+
+    It is 1 where all boats point the same way, wherever they are, and some 0.886/√n where n
+    headings are independent: the polarization of flocks in open space (Vicsek et al. 1995). Unlike
+    Ψ_o, whose orientations are relative to the pool, it is small where boats go around the pool.
+
+    Parameters
+    ----------
+    pose
+        Shape (t, n, 3), as in a `Recording`.
+
+    Raises
+    ------
+    ParameterError
+        For another shape, and numbers that are not finite.
+    """
+    return _core.polarization(_poses(pose))
 
 
 def pair_distribution(pose: ArrayLike, edges: ArrayLike) -> NDArray[np.float64]:

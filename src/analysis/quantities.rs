@@ -3,7 +3,7 @@
 //! iterate over it.
 
 use super::OrderParameters;
-use super::structure::{largest_cluster, on_outer_wall};
+use super::structure::{largest_cluster, on_outer_wall, polarization};
 use crate::error::{FlockError, Result};
 use crate::geometry::{HullPose, LapFrame, Pose, Vec2, Velocity, cross};
 use crate::parameters::{FlockParameters, Target};
@@ -157,6 +157,12 @@ pub const QUANTITIES: &[Quantity] = &[
         name: "on_outer_wall", label: "on the outer wall", symbol: "", unit: "", range: UNIT, least_boats: 1,
         is_averaged: false, meaning: "part of the boats within 0.5 cm of the outer wall", source: "",
         formula: Formula::Structure(on_outer_wall),
+    },
+    Quantity {
+        name: "polarization", label: "polarization", symbol: "", unit: "", range: UNIT, least_boats: 1,
+        is_averaged: false, meaning: "length of the mean heading in the axes of the world: 1 where all boats point \
+                                      the same way, wherever they are", source: "Vicsek et al. (1995)",
+        formula: Formula::Structure(|poses, _| polarization(poses)),
     },
 ];
 

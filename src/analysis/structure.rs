@@ -1,6 +1,6 @@
 //! Where boats are relative to each other, to the wall and to where they were.
 
-use crate::geometry::{Hull, HullPose, Pose, outer_wall_gap, pair_gaps};
+use crate::geometry::{Hull, HullPose, Pose, Vec2, outer_wall_gap, pair_gaps};
 use crate::parameters::FlockParameters;
 use std::f64::consts::PI;
 
@@ -30,6 +30,15 @@ pub fn on_outer_wall(poses: &[Pose], parameters: &FlockParameters) -> f64 {
             .any(|&side| outer_wall_gap(boat, side, hull, radius).gap < IN_TOUCH_CM)
     });
     at_wall.count() as f64 / poses.len() as f64
+}
+
+/// Length of the mean heading in the axes of the world (Vicsek et al. 1995): 1 where all boats point the same
+/// way, some 0.886/√N for N independent headings; NaN of none.
+pub fn polarization(poses: &[Pose]) -> f64 {
+    let sum = poses
+        .iter()
+        .fold(Vec2::zeros(), |sum, pose| sum + HullPose::new(pose).axis);
+    sum.norm() / poses.len() as f64
 }
 
 /// Pairs by the distance of their centers, beside those expected of independent boats.

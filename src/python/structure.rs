@@ -37,6 +37,19 @@ pub(crate) fn on_outer_wall<'py>(
     Ok(PyArray1::from_iter(py, shares))
 }
 
+/// Length of the mean heading in the axes of the world, at each time.
+#[pyfunction]
+pub(crate) fn polarization<'py>(
+    py: Python<'py>,
+    pose: PyReadonlyArray3<'py, f64>,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let samples = Samples::read(&pose, "pose")?;
+    let lengths = samples
+        .present()
+        .map(|poses| structure::polarization(&poses));
+    Ok(PyArray1::from_iter(py, lengths))
+}
+
 /// LAP orientation φ of each boat at each time, in (-π, π].
 #[pyfunction]
 pub(crate) fn lap_orientation<'py>(

@@ -3,8 +3,10 @@
 //! On paper: a boat that goes straight is displaced by (v·t)², one that circles by 4R²·sin²(w·t/2);
 //! independent boats have the pair distribution 1.
 
+use approx::assert_abs_diff_eq;
 use flockenv::analysis::structure::{
     PairCounts, heading_correlation, largest_cluster, mean_square_displacement, on_outer_wall,
+    polarization,
 };
 use flockenv::geometry::Pose;
 use flockenv::parameters::{Pool, Preset};
@@ -40,6 +42,15 @@ fn a_cluster_is_what_gaps_below_half_a_centimeter_join() {
     assert_eq!(largest_cluster(&tandem, &p), 1.0);
     let apart = [tandem[0], Pose::new(15.4, 0.0, FRAC_PI_2)];
     assert_eq!(largest_cluster(&apart, &p), 0.5);
+}
+
+#[test]
+fn polarization_is_the_length_of_the_mean_heading_wherever_boats_are() {
+    let pose = |x: f64, heading: f64| Pose::new(x, 0.0, heading);
+    assert_eq!(polarization(&[pose(60.0, 1.0), pose(-60.0, 1.0)]), 1.0);
+    let apart = [pose(60.0, 1.0), pose(60.0, 1.0 + FRAC_PI_2)];
+    assert_abs_diff_eq!(polarization(&apart), 0.5_f64.sqrt(), epsilon = 1e-15);
+    assert!(polarization(&[]).is_nan());
 }
 
 #[test]

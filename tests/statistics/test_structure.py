@@ -18,6 +18,14 @@ def test_clusters_and_the_wall_are_shares_of_the_boats():
     assert structure.on_outer_wall(PARAMETERS, POSE) == pytest.approx([1 / 3] * 4)
 
 
+def test_polarization_is_the_length_of_the_mean_heading():
+    # Two boats head along x and one against it.
+    assert structure.polarization(POSE) == pytest.approx([1 / 3] * 4)
+    absent = POSE.copy()
+    absent[1, 2], absent[2] = np.nan, np.nan
+    assert structure.polarization(absent) == pytest.approx([1 / 3, 1, np.nan, 1 / 3], nan_ok=True)
+
+
 def test_displacement_and_turns_by_lag():
     pose = np.zeros((5, 1, 3))
     pose[:, 0, 0] = 2.0 * np.arange(5)
