@@ -143,8 +143,8 @@ class LeadersEnv(EnvBase):
         options: dict[str, Any] | None = None,
         **_: Any,
     ) -> TensorDictBase:
-        asked = None if tensordict is None else tensordict.get("_reset", None)
-        mask = None if asked is None else asked.reshape(self.num_flocks).cpu().numpy()
+        given = None if tensordict is None else tensordict.get("_reset", None)
+        mask = None if given is None else given.reshape(self.num_flocks).cpu().numpy()
         self._batch.reset(self._seeds, options, _drawn_seed, mask)
         started = np.ones(self.num_flocks, np.bool_) if mask is None else mask
         for flock in np.flatnonzero(started).tolist():

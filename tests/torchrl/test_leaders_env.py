@@ -147,11 +147,11 @@ def test_what_was_returned_is_never_written_to():
     env = made()
     env.set_seed(0)
     step = env.reset()
-    kept = step.clone()
+    copied = step.clone()
     stepped = env.step(acted(env, np.ones((3, 2))))
     later = stepped["next"].clone()
     env.step(step_mdp(stepped).set(("leaders", "action"), torch.ones(3, 2, 1)))
-    assert (step.exclude(("leaders", "action")) == kept).all()
+    assert (step.exclude(("leaders", "action")) == copied).all()
     assert (stepped["next"] == later).all()
 
 
