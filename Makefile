@@ -47,7 +47,7 @@ TEST_EXTRAS := --extra train --extra plot --extra fit --extra render --extra swe
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .PHONY: help setup build compare test lint format test-rust test-bare test-python coverage test-js test-browser test-wheel test-oldest \
-        test-rllib test-ray test-slurm validate docs wheel audit licenses tables replay-animation \
+        test-benchmarl test-rllib test-ray test-slurm validate docs wheel audit licenses tables replay-animation \
         instructions learning-check training-physics throughput soak fuzz speed-vs-error lint-benches clean
 
 help: ## list the commands
@@ -173,6 +173,15 @@ test-rllib: $(STAMPS)/test ## RLlib on the parallel environment, in .venv-rllib
 	VIRTUAL_ENV="$(CURDIR)/.venv-rllib" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
 	OMP_NUM_THREADS=1 .venv-rllib/bin/python -m pytest -m rllib tests/envs/test_rllib.py
 
+# BenchMARL pins an older TorchRL.
+test-benchmarl: $(STAMPS)/test ## the tasks of BenchMARL and its learners, in .venv-benchmarl
+	$(PYTHON) -m venv .venv-benchmarl
+	VIRTUAL_ENV="$(CURDIR)/.venv-benchmarl" $(BIN)/uv pip install -r pyproject.toml --extra benchmarl hypothesis \
+	  pytest pytest-timeout --excludes requirements-excluded.txt
+	VIRTUAL_ENV="$(CURDIR)/.venv-benchmarl" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
+	OMP_NUM_THREADS=1 .venv-benchmarl/bin/python -m pytest -m "benchmarl or not benchmarl" tests/benchmarl \
+	  tests/torchrl $(PYTEST_ARGS)
+
 # Ray core without RLlib pins nothing, but what it starts outlives a test that fails: kept apart.
 test-ray: $(STAMPS)/test ## the ray engine on a real local Ray, in .venv-ray
 	$(PYTHON) -m venv .venv-ray
@@ -219,7 +228,7 @@ clean: ## remove everything that was built or installed here
 	cargo clean
 	rm -rf benches/target $(PEERS) $(JS_TESTS)/node_modules
 	rm -rf docs/_build
-	rm -rf $(VENV) .venv-rllib .venv-ray .venv-peers .venv-oldest flockenv/_core.*.so flockenv/_core.*.pyd dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(VENV) .venv-benchmarl .venv-rllib .venv-ray .venv-peers .venv-oldest flockenv/_core.*.so flockenv/_core.*.pyd dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find . -name __pycache__ -prune -exec rm -rf {} +
 
 # --- setting up -----------------------------------------------------------------------------------------------

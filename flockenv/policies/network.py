@@ -105,8 +105,8 @@ class NetworkPolicy(StoredPolicy):
             the rudder. Layers that change nothing (``Identity``, TorchRL's
             ``NormalParamExtractor``) are passed over.
         space
-            The space of the observation that it was trained on, which holds the options that a
-            policy depends on: ``observation_space`` of the environments here.
+            The space of the observations that it was trained on, of one leader or of several: it
+            holds the options that a policy depends on.
         squashed
             Whether the distribution puts the mean through a hyperbolic tangent, as TorchRL's
             ``TanhNormal``. The activation has to be "tanh" then.
@@ -116,12 +116,12 @@ class NetworkPolicy(StoredPolicy):
         Raises
         ------
         ParameterError
-            For other layers, for layers that do not fit, and for spaces of several leaders.
+            For other layers, for layers that do not fit, and for spaces of other environments.
         """
-        if not isinstance(space, ObservationSpace) or space.leaders != 1:
+        if not isinstance(space, ObservationSpace):
             raise ParameterError(
-                f"space = {shown(space)} is not accepted: the space of one leader's observation, "
-                "as the environments have it"
+                f"space = {shown(space)} is not accepted: the space of observations of an "
+                "environment here"
             )
         layers, activation = _module_layers(module)
         weights, biases = (list(each) for each in zip(*layers, strict=True))

@@ -8,6 +8,6 @@ from flockenv._io.extras import require
 require("torchrl", "torchrl")
 
 # ruff: noqa: E402 - after the check above
-from flockenv.torchrl.leaders_env import GROUP, LeadersEnv
+from flockenv.torchrl.leaders_env import GROUP, STATES, LeadersEnv
 
-__all__ = ["GROUP", "LeadersEnv"]
+__all__ = ["GROUP", "STATES", "LeadersEnv"]

@@ -1,6 +1,7 @@
 """`LeadersEnv`: TorchRL's environment over one batch of flocks, its leaders a group of agents."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import gymnasium
@@ -12,7 +13,7 @@ from torchrl.data import Binary, Bounded, Categorical, Composite, Unbounded
 from torchrl.envs import EnvBase
 
 from flockenv.envs.batch import LeaderBatch, at_least_one, seeds_from
-from flockenv.envs.observation import ObservationSpace
+from flockenv.envs.observation import ObservationSpace, state_entries
 from flockenv.envs.options import EnvOptions
 from flockenv.envs.spaces import flat_actions
 from flockenv.errors import refuse_unknown
@@ -22,7 +23,7 @@ __all__ = ["GROUP", "STATES", "LeadersEnv"]
 GROUP = "leaders"
 """Name of the group that all leaders of a flock are in."""
 
-STATES = ("boats", "features", "none")
+STATES = ("boats", "set", "features", "none")
 """What the entry ``state`` may hold."""
 
 
@@ -39,7 +40,8 @@ class LeadersEnv(EnvBase):
     ``("leaders", "action")``                 (flocks, leaders, 1), float32: rudders; with
                                               `rudder_levels` (flocks, leaders), int64
     ``("next", "leaders", "reward")``         (flocks, leaders, 1), float32
-    ``"state"``                               (flocks, state size), float32
+    ``"state"``                               (flocks, state size), float32; with `state` "set"
+                                              (flocks, boats, entries)
     ``"done"``, ``"terminated"``,             (flocks, 1), bool; episodes are truncated, never
     ``"truncated"``                           terminated
     ========================================= =============================================
@@ -55,8 +57,9 @@ class LeadersEnv(EnvBase):
         Number of flocks, at least 1.
     state
         What a centralized critic sees: "boats" (the global state, the boats one after another),
-        "features" (features of the flock that do not depend on the order of boats, as
-        `LeadersVectorEnv.flock_features`) or "none".
+        "set" (the same with a row for each boat, its own entries and then the clock's, for networks
+        that take sets), "features" (features of the flock that do not depend on the order of boats,
+        as `LeadersVectorEnv.flock_features`) or "none".
     device
         Where tensors are; the simulator itself runs on the processor.
     options
@@ -70,6 +73,8 @@ class LeadersEnv(EnvBase):
         The space of one leader's observation, which `NetworkPolicy.from_module` takes.
     episode_steps : int
         Decisions of an episode.
+    rudder_levels : int or None
+        The environments' option of that name.
 
     Raises
     ------
@@ -99,8 +104,8 @@ class LeadersEnv(EnvBase):
         self.observation_space = ObservationSpace(settings)
         self.episode_steps = -(-self._batch.episode_steps // self._batch.period_steps)
         self.group_map = {GROUP: [f"leader_{leader}" for leader in range(self.num_leaders)]}
-        self._levels: int | None = settings["rudder_levels"]
-        self._state = _states(self._batch)[state]
+        self.rudder_levels: int | None = settings["rudder_levels"]
+        self._state = _states(self._batch, self.parameters.n_boats)[state]
         self._seeds: list[int | None] = [None] * flocks
         self._make_specs()
 
@@ -119,10 +124,10 @@ class LeadersEnv(EnvBase):
         self.observation_spec = grouped(observation=bounded(self.observation_space, *each))
         if self._state is not None:
             self.observation_spec["state"] = bounded(self._state[0], *flocks)
-        if self._levels is None:
+        if self.rudder_levels is None:
             action = Bounded(-1.0, 1.0, torch.Size([*each, 1]), device, torch.float32)
         else:
-            action = Categorical(self._levels, each, device, torch.int64)
+            action = Categorical(self.rudder_levels, each, device, torch.int64)
         self.action_spec = grouped(action=action)
         self.reward_spec = grouped(reward=Unbounded(torch.Size([*each, 1]), device, torch.float32))
         ends = ("done", "terminated", "truncated")
@@ -154,8 +159,8 @@ class LeadersEnv(EnvBase):
     def _step(self, tensordict: TensorDictBase) -> TensorDictBase:
         actions = tensordict.get((GROUP, "action")).detach().cpu().numpy()
         shape = (self.num_flocks, self.num_leaders)
-        each = shape if self._levels is not None else (*shape, 1)
-        flat = flat_actions(actions, each, self._levels, "the leaders' action")
+        each = shape if self.rudder_levels is not None else (*shape, 1)
+        flat = flat_actions(actions, each, self.rudder_levels, "the leaders' action")
         observations, rewards, ended = self._batch.step(flat)
         result = self._seen(observations)
         reward = self._tensor(rewards.astype(np.float32)).reshape(*shape, 1)
@@ -180,14 +185,30 @@ class LeadersEnv(EnvBase):
 
 
 def _states(
-    batch: LeaderBatch,
+    batch: LeaderBatch, boats: int
 ) -> dict[str, tuple[gymnasium.spaces.Box, Callable[[], NDArray[np.float32]]] | None]:
     """Return the space of each choice of a state, and the function that gives it."""
+    space = batch.state_space
+    low, high = (_boat_rows(bound[None], boats)[0] for bound in (space.low, space.high))
+    rows = gymnasium.spaces.Box(low, high, dtype=np.float32)
     return {
-        "boats": (batch.state_space, batch.states),
+        "boats": (space, batch.states),
+        "set": (rows, partial(_batch_rows, batch, boats)),
         "features": (batch.flock_feature_space, batch.flock_features),
         "none": None,
     }
+
+
+def _batch_rows(batch: LeaderBatch, boats: int) -> NDArray[np.float32]:
+    return _boat_rows(batch.states(), boats)
+
+
+def _boat_rows(states: NDArray[np.float32], boats: int) -> NDArray[np.float32]:
+    """Return global states with a row for each boat, and the rest in each row."""
+    rest = len(state_entries(0))
+    own = states[:, :-rest].reshape(len(states), boats, -1)
+    clock = np.broadcast_to(states[:, None, -rest:], (len(states), boats, rest))
+    return np.concatenate([own, clock], axis=2)
 
 
 def _drawn_seed() -> int:

@@ -123,12 +123,21 @@ def test_other_torch_networks_are_refused(layers, options, message):
         NetworkPolicy.from_module(module, ObservationSpace(env_defaults()), **options)
 
 
-def test_a_torch_network_needs_the_space_of_one_leader():
+def test_a_torch_network_of_all_leaders_at_once_is_refused():
     torch = pytest.importorskip("torch")
     two = flockenv.LeadersVectorEnv(1, n_leaders=2).single_observation_space
-    for space in (two, None):
-        with pytest.raises(flockenv.ParameterError, match="the space of one leader"):
-            NetworkPolicy.from_module(torch.nn.Linear(SIZE, 1), space)
+    assert NetworkPolicy.from_module(torch.nn.Linear(SIZE, 1), two).weights[0].shape == (SIZE, 1)
+    with pytest.raises(flockenv.ParameterError, match=rf"layer 0 has weights \({2 * SIZE}, 2\)"):
+        NetworkPolicy.from_module(
+            torch.nn.Sequential(
+                torch.nn.Linear(2 * SIZE, 2), torch.nn.Tanh(), torch.nn.Linear(2, 2)
+            ),
+            two,
+        )
+    with pytest.raises(flockenv.ParameterError, match="space = Box"):
+        NetworkPolicy.from_module(
+            torch.nn.Linear(SIZE, 1), two.__class__.__mro__[1](-1, 1, (SIZE,))
+        )
 
 
 @pytest.mark.parametrize("policy", [network(), StraightAhead(), RandomRudders(3)])

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import flockenv
+from flockenv.envs.observation import state_entries
 from flockenv.errors import ParameterError, UnknownOptionError
 
 torch = pytest.importorskip("torch")
@@ -26,6 +27,7 @@ VARIANTS = {
     "lean, held": {"action_mode": "lean", "decision_period_s": 0.5},
     "few blocks": {"observation": {"neighbors": 0, "order": False}},
     "features": {"state": "features"},
+    "set": {"state": "set"},
     "no state": {"state": "none"},
 }
 
@@ -81,6 +83,18 @@ def test_the_bits_are_those_of_the_vector_environment(state):
         np.testing.assert_array_equal(stepped["next", "truncated"][:, 0].numpy(), truncated)
         step = step_mdp(stepped)
     assert truncated.all()
+
+
+def test_a_set_has_a_row_for_each_boat():
+    env, whole = made(state="set"), made()
+    for each in (env, whole):
+        each.set_seed(1)
+    rows, flat = (each.reset()["state"] for each in (env, whole))
+    boat, clock = (len(each) for each in (state_entries(1), state_entries(0)))
+    assert rows.shape == (3, 8, boat)
+    assert torch.equal(rows[:, 3, : boat - clock], flat[:, 3 * 10 : 4 * 10])
+    for place in range(8):
+        assert torch.equal(rows[:, place, -clock:], flat[:, -clock:])
 
 
 def test_rewards_are_each_leaders_own():
@@ -155,8 +169,9 @@ def test_what_was_returned_is_never_written_to():
     assert (stepped["next"] == later).all()
 
 
-def test_copies_and_pickles_continue_with_the_same_bits():
-    env = made()
+@pytest.mark.parametrize("state", ["boats", "set", "features"])
+def test_copies_and_pickles_continue_with_the_same_bits(state):
+    env = made(state=state)
     env.set_seed(2)
     step = acted(env, np.full((3, 2), 0.5))
     for other in (copy.deepcopy(env), pickle.loads(pickle.dumps(env))):

@@ -1,0 +1,209 @@
+"""PPO in one file on the native vector environment, with a critic that sees the whole flock.
+
+    python baselines/ppo_single_file.py                 # into results/ppo_single_file
+    flockenv evaluate results/ppo_single_file/policy.npz --pool table-1 --set n_boats=9 --leaders 2
+
+All leaders share one actor, which sees what its leader observes. The critic sees features of the
+flock (`LeadersVectorEnv.flock_features`) and is needed in training alone, so that the actor is
+saved as a policy that steers any number of leaders without torch. docs/train_single_file.md runs
+it; needs torch (extra `train`).
+"""
+
+import argparse
+import csv
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+
+import flockenv
+from flockenv.policies import NetworkPolicy
+from flockenv.runs.seeds import POLICY_SEEDS
+
+#: Nine boats, two of them leaders that lean about the target's tangent every two seconds.
+OPTIONS = {
+    "n_boats": 9,
+    "n_leaders": 2,
+    "pool": "table-1",
+    "action_mode": "lean",
+    "decision_period_s": 2.0,
+    "reward": {"contact_push": 1.0, "signed_order": 0.1},
+    "reward_horizon_s": 40.0,
+    "observation": {"law_rudder": True},
+    "physics": "training",
+    "episode_s": 40.0,
+}
+
+
+@dataclass(frozen=True)
+class Settings:
+    """One sample is one leader's decision."""
+
+    samples: int = 100_000
+    seed: int = 0
+    flocks: int = 64
+    steps: int = 20
+    epochs: int = 4
+    minibatches: int = 4
+    learning_rate: float = 1e-3
+    gamma: float = 0.95
+    gae_lambda: float = 0.95
+    clip: float = 0.2
+    value_weight: float = 0.5
+    largest_gradient: float = 0.5
+    first_log_std: float = -1.0
+    hidden: int = 64
+
+
+def layers(inputs: int, hidden: int, last_gain: float) -> torch.nn.Sequential:
+    """Return a network with one output and orthogonal weights."""
+    network = torch.nn.Sequential(
+        torch.nn.Linear(inputs, hidden),
+        torch.nn.Tanh(),
+        torch.nn.Linear(hidden, hidden),
+        torch.nn.Tanh(),
+        torch.nn.Linear(hidden, 1),
+    )
+    for place, gain in ((0, 2**0.5), (2, 2**0.5), (4, last_gain)):
+        torch.nn.init.orthogonal_(network[place].weight, gain)
+        torch.nn.init.zeros_(network[place].bias)
+    return network
+
+
+class Learner:
+    """The actor's and the critic's networks, and the optimizer of both."""
+
+    def __init__(self, settings: Settings, env: flockenv.LeadersVectorEnv) -> None:
+        self.settings, self.leaders = settings, env.num_leaders
+        seen = env.single_observation_space.shape[0] // self.leaders
+        self.mean = layers(seen, settings.hidden, 0.01)
+        self.log_std = torch.nn.Parameter(torch.tensor(settings.first_log_std))
+        self.critic = layers(env.flock_feature_space.shape[0], settings.hidden, 1.0)
+        self.parameters = [*self.mean.parameters(), self.log_std, *self.critic.parameters()]
+        self.optimizer = torch.optim.Adam(self.parameters, settings.learning_rate, eps=1e-5)
+
+    def actions(self, observations: torch.Tensor) -> torch.distributions.Normal:
+        """Return the distribution of actions, (flocks, leaders), from (flocks, leaders * size)."""
+        rows = observations.unflatten(-1, (self.leaders, -1))
+        return torch.distributions.Normal(self.mean(rows).squeeze(-1), self.log_std.exp())
+
+    def values(self, features: torch.Tensor) -> torch.Tensor:
+        """Return the value of flocks from their features."""
+        return self.critic(features).squeeze(-1)
+
+    def update(self, rollout: dict[str, torch.Tensor]) -> None:
+        """Take some passes over a rollout."""
+        settings, size = self.settings, len(rollout["returns"])
+        for _ in range(settings.epochs):
+            for part in torch.randperm(size).chunk(settings.minibatches):
+                batch = {name: each[part] for name, each in rollout.items()}
+                gain = batch["advantages"]
+                gain = ((gain - gain.mean()) / (gain.std() + 1e-8)).unsqueeze(-1)
+                now = self.actions(batch["observations"]).log_prob(batch["actions"])
+                ratio = (now - batch["log_probs"]).exp()
+                clipped = ratio.clamp(1 - settings.clip, 1 + settings.clip)
+                actor_loss = -torch.minimum(ratio * gain, clipped * gain).mean()
+                differences = self.values(batch["features"]) - batch["returns"]
+                loss = actor_loss + settings.value_weight * differences.square().mean()
+                self.optimizer.zero_grad()
+                loss.backward()
+                torch.nn.utils.clip_grad_norm_(self.parameters, settings.largest_gradient)
+                self.optimizer.step()
+
+
+@torch.no_grad()
+def rollout_of(
+    env: flockenv.LeadersVectorEnv, learner: Learner, observations: np.ndarray
+) -> tuple[dict[str, torch.Tensor], np.ndarray, float]:
+    """Return a rollout with advantages, the observations that follow it, and its mean reward."""
+    settings = learner.settings
+    steps: dict[str, list[torch.Tensor]] = {
+        name: []
+        for name in ("observations", "features", "actions", "log_probs", "rewards", "next", "goes")
+    }
+    for _ in range(settings.steps):
+        seen = torch.from_numpy(observations)
+        features = torch.from_numpy(env.flock_features())
+        chances = learner.actions(seen)
+        actions = chances.sample()
+        observations, rewards, _, truncated, _ = env.step(actions.numpy())
+        # An episode that was cut off would have gone on: its end has a value, too.
+        after = learner.values(torch.from_numpy(env.flock_features()))
+        if truncated.any():
+            observations, _ = env.reset(options={"reset_mask": truncated})
+        for name, each in (
+            ("observations", seen),
+            ("features", features),
+            ("actions", actions),
+            ("log_probs", chances.log_prob(actions)),
+            ("rewards", torch.from_numpy(rewards.astype(np.float32))),
+            ("next", after),
+            ("goes", torch.from_numpy(~truncated).float()),
+        ):
+            steps[name].append(each)
+    whole = {name: torch.stack(each) for name, each in steps.items()}
+    values = learner.values(whole["features"])
+    # Generalized advantage estimation (Schulman et al. 2016, eq. 16), backward in time.
+    surprises = whole["rewards"] + settings.gamma * whole["next"] - values
+    advantages, later = torch.empty_like(values), torch.zeros(env.num_envs)
+    for step in reversed(range(settings.steps)):
+        later = surprises[step] + settings.gamma * settings.gae_lambda * whole["goes"][step] * later
+        advantages[step] = later
+    rollout = {name: whole[name] for name in ("observations", "features", "actions", "log_probs")}
+    rollout |= {"advantages": advantages, "returns": advantages + values}
+    flat = {name: each.flatten(0, 1) for name, each in rollout.items()}
+    return flat, observations, float(whole["rewards"].mean())
+
+
+def train(settings: Settings, out: Path, report=print) -> NetworkPolicy:
+    """Train, and write the policy and the learning curve into a folder.
+
+    With 0 samples the policy is the one that training starts from.
+    """
+    torch.manual_seed(settings.seed)
+    torch.set_num_threads(1)
+    env = flockenv.LeadersVectorEnv(settings.flocks, autoreset_mode="disabled", **OPTIONS)
+    learner = Learner(settings, env)
+    seeds = POLICY_SEEDS["training"].seeds(settings.flocks, run=settings.seed)
+    observations, _ = env.reset(seed=seeds)
+    start, samples, curve = time.perf_counter(), 0, []
+    while samples < settings.samples:
+        rollout, observations, reward = rollout_of(env, learner, observations)
+        learner.update(rollout)
+        samples += rollout["actions"].numel()
+        curve.append({"samples": samples, "reward": reward})
+        seconds = time.perf_counter() - start
+        report(f"{samples} samples, mean reward {reward:.4f}, {seconds:.0f} s")
+    policy = NetworkPolicy.from_module(
+        learner.mean,
+        env.single_observation_space,
+        provenance={
+            "learner": "baselines/ppo_single_file.py",
+            **{name: str(value) for name, value in asdict(settings).items()},
+        },
+    )
+    out.mkdir(parents=True, exist_ok=True)
+    policy.save(out / "policy.npz")
+    with (out / "curve.csv").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, ["samples", "reward"])
+        writer.writeheader()
+        writer.writerows(curve)
+    return policy
+
+
+def main(arguments: list[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--samples", type=int, default=Settings.samples)
+    parser.add_argument("--seed", type=int, default=Settings.seed)
+    parser.add_argument("--flocks", type=int, default=Settings.flocks)
+    parser.add_argument("--out", type=Path, default=Path("results/ppo_single_file"))
+    options = vars(parser.parse_args(arguments))
+    out = options.pop("out")
+    train(Settings(**options), out)
+    print(f"written to {out / 'policy.npz'}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,197 @@
+"""`LeadersTask`: the tasks of BenchMARL, their configurations, and the policies of its learners."""
+
+import copy
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import torch
+from benchmarl.environments import task_config_registry
+from benchmarl.environments.common import Task, TaskClass
+from benchmarl.experiment import Experiment
+from benchmarl.models import Mlp
+from benchmarl.utils import _read_yaml_config
+from torchrl.data import Composite
+from torchrl.envs import EnvBase
+
+from flockenv.envs.options import EnvOptions
+from flockenv.errors import ParameterError, refuse_unknown
+from flockenv.policies import NetworkPolicy
+from flockenv.runs.seeds import POLICY_SEEDS
+from flockenv.torchrl import GROUP, STATES, LeadersEnv
+
+__all__ = ["CONF", "LeadersTask", "LeadersTaskClass", "network_policy", "register"]
+
+CONF = Path(__file__).parent / "conf"
+"""The folder of the configurations, as Hydra searches it: ``task/flockenv/NAME.yaml``."""
+
+_ENV_NAME = "flockenv"
+
+
+class LeadersTaskClass(TaskClass):
+    """A task of BenchMARL: flocks whose leaders are the agents of one group.
+
+    Parameters
+    ----------
+    name
+        Name of the task.
+    config
+        ``state``, as of `flockenv.torchrl.LeadersEnv`, and options of the environments. With
+        ``rudder_levels`` the task has discrete actions too, for learners that need them.
+
+    Raises
+    ------
+    ParameterError
+        For unknown options and values out of range.
+    """
+
+    def __init__(self, name: str, config: dict[str, Any] | None) -> None:
+        super().__init__(name, config)
+        options = {each: value for each, value in self.config.items() if each != "state"}
+        refuse_unknown((self.config.get("state", "none"),), STATES, "state")
+        EnvOptions.parse(options)
+
+    def get_env_fun(
+        self,
+        num_envs: int,
+        continuous_actions: bool,
+        seed: int | None,
+        device: torch.device | str,
+    ) -> Callable[[], EnvBase]:
+        """Return the function that makes the environment of a number of flocks.
+
+        Flocks are seeded from the range of training seeds that a run of this number has; see
+        `flockenv.runs.seeds.POLICY_SEEDS`.
+        """
+        options = {"state": "none", **copy.deepcopy(self.config)}
+        if continuous_actions:
+            options.pop("rudder_levels", None)
+        first = None if seed is None else POLICY_SEEDS["training"].seeds(1, run=seed)[0]
+
+        def made() -> EnvBase:
+            env = LeadersEnv(num_envs, device=device, **options)
+            env.set_seed(first)
+            return env
+
+        return made
+
+    def supports_continuous_actions(self) -> bool:
+        """Return True: rudders, or what the action mode says."""
+        return True
+
+    def supports_discrete_actions(self) -> bool:
+        """Return whether the configuration has ``rudder_levels``."""
+        return self.config.get("rudder_levels") is not None
+
+    def max_steps(self, env: EnvBase) -> int:
+        """Return the decisions of an episode."""
+        steps: int = env.episode_steps
+        return steps
+
+    def has_render(self, env: EnvBase) -> bool:
+        """Return False: recordings are played by ``flockenv replay``."""
+        return False
+
+    def group_map(self, env: EnvBase) -> dict[str, list[str]]:
+        """Return the leaders of a flock, a group."""
+        groups: dict[str, list[str]] = env.group_map
+        return groups
+
+    def observation_spec(self, env: EnvBase) -> Composite:
+        """Return the spec of what each leader observes."""
+        return Composite({GROUP: env.observation_spec_unbatched[GROUP]})
+
+    def state_spec(self, env: EnvBase) -> Composite | None:
+        """Return the spec of the flock's state, None where the configuration has none."""
+        if self.config.get("state", "none") == "none":
+            return None
+        return Composite({"state": env.observation_spec_unbatched["state"]})
+
+    def action_spec(self, env: EnvBase) -> Composite:
+        """Return the spec of each leader's action."""
+        return env.full_action_spec_unbatched
+
+    def info_spec(self, env: EnvBase) -> Composite | None:
+        """Return None: there are no infos."""
+        return None
+
+    def action_mask_spec(self, env: EnvBase) -> Composite | None:
+        """Return None: every action is allowed."""
+        return None
+
+    @staticmethod
+    def env_name() -> str:
+        """Return the name of the folder of the configurations."""
+        return _ENV_NAME
+
+
+class LeadersTask(Task):
+    """The tasks: LEADERS, the paper's 27 boats, and LEAN, nine boats whose leaders lean."""
+
+    LEADERS = None
+    LEAN = None
+
+    @staticmethod
+    def associated_class() -> type[LeadersTaskClass]:
+        """Return the class of every task."""
+        return LeadersTaskClass
+
+    def get_from_yaml(self, path: str | None = None) -> LeadersTaskClass:
+        """Return the task with a configuration's file, its own in `CONF` if none is given."""
+        own = CONF / "task" / _ENV_NAME / f"{self.name.lower()}.yaml"
+        task: LeadersTaskClass = self.get_task(
+            _read_yaml_config(str(own if path is None else path))
+        )
+        return task
+
+
+def register() -> None:
+    """Make the tasks known to BenchMARL by name, once: ``flockenv/leaders`` and so on."""
+    for name, task in LeadersTask.__members__.items():
+        task_config_registry[f"{_ENV_NAME}/{name.lower()}"] = task
+
+
+def network_policy(
+    experiment: Experiment, provenance: Mapping[str, str] | None = None
+) -> NetworkPolicy:
+    """Return the policy of an experiment's leaders, which ``save`` writes for every command here.
+
+    Parameters
+    ----------
+    experiment
+        An experiment of a `LeadersTask` whose policy is BenchMARL's MLP, shared by all leaders. The
+        critic may be any.
+    provenance
+        As of `NetworkPolicy`.
+
+    Raises
+    ------
+    ParameterError
+        For another environment or policy: graph networks see other leaders' observations, which a
+        leader here does not.
+    """
+    env = experiment.test_env.base_env
+    if not isinstance(env, LeadersEnv):
+        raise ParameterError(
+            f"an experiment with {type(env).__name__} is not accepted: LeadersTask"
+        )
+    if env.rudder_levels is not None:
+        raise ParameterError(
+            f"rudder_levels = {env.rudder_levels} is not accepted here: a policy's file holds a "
+            "network whose output is a rudder or an angle"
+        )
+    algorithm = experiment.algorithm
+    actor = algorithm.get_policy_for_loss(GROUP)
+    networks = [each for each in actor.modules() if isinstance(each, Mlp)]
+    shared = experiment.config.share_policy_params or env.num_leaders == 1
+    if len(networks) != 1 or not shared:
+        raise ParameterError(
+            "this policy is not accepted: one MLP that all leaders share (model_config = "
+            "MlpConfig, share_policy_params)"
+        )
+    return NetworkPolicy.from_module(
+        networks[0].mlp.get_stateful_net(),
+        env.observation_space,
+        squashed=getattr(algorithm, "use_tanh_normal", False),
+        provenance=provenance,
+    )
