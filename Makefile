@@ -166,12 +166,12 @@ training-physics: $(STAMPS)/test $(STAMPS)/core ## compare training physics with
 	$(BIN)/python baselines/training_physics.py $(TRAINING_PHYSICS_ARGS)
 
 # RLlib pins an older gymnasium, and the peers pin other things: environments of their own.
-test-rllib: $(STAMPS)/test ## RLlib on the parallel environment, in .venv-rllib
+test-rllib: $(STAMPS)/test ## RLlib on the vector environment and on the parallel one, in .venv-rllib
 	$(PYTHON) -m venv .venv-rllib
 	VIRTUAL_ENV="$(CURDIR)/.venv-rllib" $(BIN)/uv pip install -r pyproject.toml --extra ray hypothesis pytest \
 	  pytest-timeout "torch>=2.5" --excludes requirements-excluded.txt
 	VIRTUAL_ENV="$(CURDIR)/.venv-rllib" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
-	OMP_NUM_THREADS=1 .venv-rllib/bin/python -m pytest -m rllib tests/envs/test_rllib.py
+	OMP_NUM_THREADS=1 .venv-rllib/bin/python -m pytest -m rllib tests/rllib
 
 # BenchMARL pins an older TorchRL.
 test-benchmarl: $(STAMPS)/test ## the tasks of BenchMARL and its learners, in .venv-benchmarl

@@ -63,7 +63,7 @@ _moved = keep_old_names(__name__)
 
 def __getattr__(name: str) -> Any:
     # What belongs to other libraries takes seconds to import: only for those who use it.
-    if name in ("benchmarl", "sb3", "torchrl"):
+    if name in ("benchmarl", "rllib", "sb3", "torchrl"):
         return importlib.import_module(f"flockenv.{name}")
     if name in _moved:
         return _moved[name]

@@ -1,0 +1,88 @@
+"""`LeadersModule`: one network for every leader behind the joint interface of a flock."""
+
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any
+
+import gymnasium
+import torch
+from ray.rllib.core.columns import Columns
+from ray.rllib.core.rl_module.apis.value_function_api import ValueFunctionAPI
+from ray.rllib.core.rl_module.default_model_config import DefaultModelConfig
+from ray.rllib.core.rl_module.torch import TorchRLModule
+
+from flockenv.envs.observation import ObservationSpace
+from flockenv.errors import ParameterError, refuse_unknown, shown
+from flockenv.policies import NetworkPolicy
+from flockenv.policies.network import ACTIVATIONS
+
+__all__ = ["LeadersModule"]
+
+_DEFAULTS = {"hidden": (64, 64), "activation": "tanh", "first_log_std": -1.0}
+_LAYERS = {"tanh": torch.nn.Tanh, "relu": torch.nn.ReLU}
+
+
+class LeadersModule(TorchRLModule, ValueFunctionAPI):
+    """RLlib's module for ``flockenv/Leaders-v0``: each leader's action from its own observation.
+
+    RLlib steps many environments at once only where each has one agent. `LeadersVectorEnv` is such
+    an environment: its agent observes all leaders and steers all. This module takes the
+    observation apart again, so that all leaders share one network, and gives the value of the
+    whole observation. It is for PPO and other algorithms with a value function, and for continuous
+    actions.
+
+    ``RLModuleSpec(LeadersModule, model_config={"hidden": (64, 64)})``
+
+    ``model_config`` may hold ``hidden`` (sizes of the hidden layers of both networks),
+    ``activation`` (a name in `flockenv.policies.network.ACTIVATIONS`) and ``first_log_std`` (the
+    logarithm of the first standard deviation of an action, shared by all leaders and learned).
+
+    Raises
+    ------
+    ParameterError
+        For unknown entries of ``model_config``, and for spaces of other environments.
+    """
+
+    def setup(self) -> None:
+        """Make the networks."""
+        given = dict(self.model_config or {})
+        # RLlib adds entries of its own, which say how it makes its networks.
+        of_rllib = {each.name for each in fields(DefaultModelConfig)}
+        refuse_unknown(given.keys() - of_rllib, _DEFAULTS, "entry of model_config")
+        config = {**_DEFAULTS, **given}
+        refuse_unknown((config["activation"],), ACTIVATIONS, "activation")
+        space, actions = self.observation_space, self.action_space
+        if not isinstance(space, ObservationSpace) or not isinstance(actions, gymnasium.spaces.Box):
+            raise ParameterError(
+                f"the spaces {shown(space)} and {shown(actions)} are not accepted: those of "
+                "flockenv/Leaders-v0 with continuous actions"
+            )
+        self.leaders = space.leaders
+        size = space.shape[0]
+        self.mean = _network(size // self.leaders, config)
+        self.value = _network(size, config)
+        self.log_std = torch.nn.Parameter(torch.tensor(float(config["first_log_std"])))
+
+    def _forward(self, batch: Mapping[str, Any], **_: Any) -> dict[str, Any]:
+        rows = batch[Columns.OBS].unflatten(-1, (self.leaders, -1))
+        mean = self.mean(rows).squeeze(-1)
+        spread = self.log_std.expand_as(mean)
+        return {Columns.ACTION_DIST_INPUTS: torch.cat([mean, spread], dim=-1)}
+
+    def compute_values(self, batch: Mapping[str, Any], embeddings: Any = None) -> torch.Tensor:
+        """Return the value of each observation."""
+        values: torch.Tensor = self.value(batch[Columns.OBS]).squeeze(-1)
+        return values
+
+    def network_policy(self, provenance: Mapping[str, str] | None = None) -> NetworkPolicy:
+        """Return the leaders' network as a policy, which ``save`` writes for every command here."""
+        space = self.observation_space
+        return NetworkPolicy.from_module(self.mean, space, provenance=provenance)
+
+
+def _network(inputs: int, config: Mapping[str, Any]) -> torch.nn.Sequential:
+    layers: list[torch.nn.Module] = []
+    for size in config["hidden"]:
+        layers += [torch.nn.Linear(inputs, size), _LAYERS[config["activation"]]()]
+        inputs = size
+    return torch.nn.Sequential(*layers, torch.nn.Linear(inputs, 1))
