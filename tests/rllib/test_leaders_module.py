@@ -144,7 +144,7 @@ def test_several_agents_are_not_batched_by_rllib():
 @pytest.mark.parametrize(
     ("model_config", "options", "message"),
     [
-        ({"hiden": (8,)}, {}, "did you mean 'hidden'"),
+        ({"hiddens": (8,)}, {}, "did you mean 'hidden'"),
         ({"activation": "gelu"}, {}, "'gelu' is no activation"),
         ({}, {"rudder_levels": 3}, "with continuous actions"),
     ],
