@@ -13,6 +13,8 @@ COMPARE_ARGS ?=
 THROUGHPUT_ARGS ?=
 TRAINING_PHYSICS_ARGS ?=
 SOAK_ARGS ?=
+# `make publish-check PUBLISH_ARGS=--allow-dirty`: with changes that are not committed.
+PUBLISH_ARGS ?=
 # `make instructions INSTRUCTIONS=--strict`: fails where there is no valgrind.
 INSTRUCTIONS ?=
 # Of each kind of hostile input in `make fuzz`.
@@ -47,7 +49,7 @@ TEST_EXTRAS := --extra train --extra plot --extra fit --extra render --extra swe
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .PHONY: help setup build compare test lint format test-rust test-bare test-python coverage test-js test-browser test-wheel test-oldest \
-        test-benchmarl test-rllib test-ray test-slurm validate docs wheel audit licenses tables replay-animation \
+        test-benchmarl test-rllib test-ray test-slurm validate docs wheel audit licenses tables replay-animation publish-check \
         instructions learning-check training-physics throughput soak fuzz speed-vs-error lint-benches clean
 
 help: ## list the commands
@@ -144,6 +146,14 @@ audit: $(STAMPS)/audit ## licenses, sources and known vulnerabilities of what th
 licenses: ## collect the notices of the crates that are compiled in, into LICENSES
 	cargo about --version || cargo install --locked cargo-about --features cli
 	cargo about generate --locked --all-features about.hbs --output-file LICENSES/crates.txt
+
+# Nothing is uploaded. Before the first release there is no tag to compare with.
+publish-check: ## the crate as it would be published: its files, built alone; and its API against the last release
+	cargo publish --dry-run --locked $(PUBLISH_ARGS)
+	@base="$${SEMVER_BASELINE:-$$(git describe --tags --abbrev=0 --match 'v*' 2> /dev/null)}"; \
+	if [ -z "$$base" ]; then echo "NOT RUN: cargo semver-checks, for want of a release; SEMVER_BASELINE=COMMIT names another."; else \
+	  { cargo semver-checks --version || cargo install --locked cargo-semver-checks; } && \
+	  cargo semver-checks --baseline-rev "$$base"; fi
 
 validate: $(STAMPS)/test $(STAMPS)/core ## the slow tests and the published curves
 	cargo test --locked --features clarabel,draw -- --ignored
