@@ -41,7 +41,7 @@ fn signed_order(seed: u64, law: Option<fn(f64, f64) -> f64>) -> Result<f64> {
     let parameters = FlockParameters {
         n_boats: 27,
         n_leaders: 3,
-        target: Target::Clockwise,
+        target: Target::Clockwise.into(),
         ..FlockParameters::preset(Preset::Simulation)
     };
     let mut flock = Flock::new(parameters, seed)?;
@@ -69,7 +69,7 @@ fn rudders(flock: &Flock, law: fn(f64, f64) -> f64) -> Vec<f64> {
                 .linear
                 .dot(&flock.hulls()[leader].axis);
             law(
-                misalignment(pose.position, pose.heading, parameters.target),
+                misalignment(pose.position, pose.heading, parameters.target.of(leader)),
                 forward,
             )
         })

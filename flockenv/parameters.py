@@ -33,7 +33,8 @@ class FlockParameters:
     """Parameters of a flock: frozen, checked once on construction, hashable, picklable.
 
     Fields that are not given have the values of the preset ``"simulation"``. They are stored as
-    plain Python numbers and strings, and a pool that equals a named one is stored as its name.
+    plain Python numbers and strings, a list of targets as a tuple, and a pool that equals a named
+    one as its name.
 
     Raises
     ------
@@ -62,7 +63,7 @@ class FlockParameters:
     bw_s: float = _declared("bw_s")
     nop2_s: float = _declared("nop2_s")
     leaders_reverse: bool = _declared("leaders_reverse")
-    target: str = _declared("target")
+    target: str | tuple[str, ...] = _declared("target")
     scheme: str = _declared("scheme")
     noise: str = _declared("noise")
     solver: str = _declared("solver")
@@ -158,6 +159,12 @@ class FlockParameters:
             )
         return bw_s
 
+    @property
+    def common_target(self) -> str | None:
+        """The direction that all leaders head for; None without leaders and if it is not one."""
+        targets = self.target if isinstance(self.target, tuple) else (self.target,)
+        return targets[0] if self.n_leaders and len(set(targets)) == 1 else None
+
     def replace(self, **changes: Any) -> Self:
         """Return these parameters with some fields changed; see the class for the errors.
 
@@ -167,7 +174,7 @@ class FlockParameters:
         return type(self)(**_changed(self.to_dict(), changes))
 
     def to_dict(self) -> dict[str, Any]:
-        """Every field by name: ints, floats, bools, strings, and a tuple for an unnamed pool."""
+        """Every field by name: numbers, bools, words, tuples for unnamed pools and targets."""
         return asdict(self)
 
     @classmethod

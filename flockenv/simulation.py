@@ -17,7 +17,8 @@ from flockenv.recording import PHASES, PRECISIONS, Recording
 __all__ = ["Change", "LeaderPolicy", "recorded", "simulate"]
 
 Change = tuple[float, str | FlockParameters]
-"""A time in s from the start of a run, and the target or the parameters from then on."""
+"""A time in s from the start of a run, and the target, or a list with one per leader, or the
+parameters from then on."""
 
 
 def simulate(
@@ -189,13 +190,14 @@ def _control(
     policy: LeaderPolicy, parameters: FlockParameters, control_hz: float | None
 ) -> dict[str, Any]:
     mirrored = bool(getattr(policy, "mirror_to_target", False))
-    sign = -1.0 if mirrored and parameters.target == "ccw" else 1.0
+    targets = parameters.target if isinstance(parameters.target, tuple) else (parameters.target,)
+    signs = np.array([-1.0 if mirrored and target == "ccw" else 1.0 for target in targets])
     state = None
 
     def steer(observation: NDArray[np.float32]) -> NDArray[np.float64]:
         nonlocal state
         actions, state = policy.predict(observation, state)
-        return sign * np.clip(np.asarray(actions, np.float64).reshape(-1), -1.0, 1.0)
+        return signs * np.clip(np.asarray(actions, np.float64).reshape(-1), -1.0, 1.0)
 
     return {
         "steer": steer,

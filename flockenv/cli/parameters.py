@@ -59,7 +59,7 @@ def read_parameters(
     file
         TOML file with any of the fields, and ``preset``.
     changes
-        ``field=value`` each, values as in TOML; words need no quotes.
+        ``field=value`` each, values as in TOML; words need no quotes, as in ``target=cw,cw,ccw``.
 
     Raises
     ------
@@ -118,7 +118,7 @@ def _file_fields(path: Path) -> dict[str, Any]:
 
 
 def changed_fields(changes: Sequence[str]) -> dict[str, Any]:
-    """Return what `--set` options give: values as in TOML, words also without quotes.
+    """Return what `--set` options give: values as in TOML, words and lists of words also bare.
 
     Raises
     ------
@@ -168,11 +168,12 @@ def refuse_fields_as_options(arguments: Sequence[str], known: Collection[str]) -
 
 
 def _value(text: str) -> Any:
-    """Return a value as TOML has it, also a pair in parentheses; what is none is a word."""
+    """Return a value as TOML has it, also a pair in parentheses; what is none is words."""
     if text.startswith("(") and text.endswith(")"):
         text = f"[{text[1:-1]}]"
     try:
         found = read_toml(f"value = {text}", text)
     except ParameterError:
-        return text
+        words = [word.strip() for word in text.split(",")]
+        return words if len(words) > 1 and all(map(str.isidentifier, words)) else text
     return found["value"] if found.keys() == {"value"} else text

@@ -184,7 +184,7 @@ def _mean(values: NDArray[np.float64]) -> float | None:
 def in_words(summary: dict[str, float | int | None], recording: Recording) -> str:
     """Return what the summary of a recording says, in one line: its quantities without a unit."""
     table = {each.name: each for each in _core.quantities()}
-    if recording.parameters.n_leaders == 0:  # Nobody heads for the target.
+    if recording.parameters.common_target is None:
         del table["signed_order"]
     found = {_word(table[name]): n for name, n in summary.items() if name in table}
     return ", ".join(

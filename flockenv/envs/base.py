@@ -1,6 +1,7 @@
 """What the environments with one flock have in common: everything but the form of their steps."""
 
 import copy
+from collections.abc import Callable, Mapping
 from typing import Any, Self
 
 import numpy as np
@@ -30,6 +31,12 @@ class SingleEnvironmentBase:
         self._render_mode = RenderMode(render_mode, render_size, fps)
         self.metadata = {**self.metadata, "render_fps": fps}
 
+    def _reset(self, seed: int | None, options: Any, new_seed: Callable[[], int]) -> None:
+        if isinstance(options, Mapping) and isinstance(options.get("target"), list):
+            # Of several flocks a list has one entry per flock; here it has one per leader.
+            options = {**options, "target": tuple(options["target"])}
+        self._batch.reset([seed], options, new_seed)
+
     def state(self) -> NDArray[np.float32]:
         """Return the global state for centralized critics, shape (state size,), float32."""
         return self._batch.state(0)
@@ -38,7 +45,8 @@ class SingleEnvironmentBase:
         """Return features of the flock, shape (features,), float32.
 
         They depend neither on the order of boats nor on absolute angles, and are in the frame of
-        the target; `envs.observation.flock_feature_entries` lists them.
+        the target, of several targets leader 0's; `envs.observation.flock_feature_entries` lists
+        them.
         """
         features: NDArray[np.float32] = self._batch.flock_features()[0]
         return features

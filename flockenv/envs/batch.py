@@ -14,7 +14,7 @@ from flockenv.envs.reward import TERMS
 from flockenv.errors import ParameterError, shown
 from flockenv.parameters import FlockParameters
 
-__all__ = ["LeaderBatch", "at_least_one", "drawn_seed", "seeds_from"]
+__all__ = ["LeaderBatch", "at_least_one", "drawn_seed", "leader_summary", "seeds_from"]
 
 _SEEDS = 2**64
 # More would fill the memory before anything is simulated.
@@ -96,9 +96,13 @@ class LeaderBatch:
         """Return the last global state of the episode that ended in the last step."""
         return self._core.final_state(flock)
 
-    def final_flock_features(self, flock: int) -> NDArray[np.float32]:
-        """Return the flock's features at the end of the episode that ended in the last step."""
-        return self._core.final_flock_features(flock)
+    def final_flock_features(self, flock: int, leader: int = 0) -> NDArray[np.float32]:
+        """Return the flock's features for a leader, as the last step ended an episode."""
+        return self._core.final_flock_features(flock, leader)
+
+    def leader_features(self) -> NDArray[np.float32]:
+        """Return the features of its flock for every leader, towards its own target."""
+        return self._core.leader_features()
 
     def flock_features(self) -> NDArray[np.float32]:
         """Return the features of every flock, a row each."""
@@ -160,6 +164,19 @@ class LeaderBatch:
     def reward_terms(self) -> dict[str, NDArray[np.float64]]:
         """Return each term of the last step's reward, one number per row."""
         return dict(zip(TERMS, self._core.reward_terms(), strict=True))
+
+
+def leader_summary(summary: Mapping[str, Any], leader: int) -> dict[str, Any]:
+    """Return a leader's part of the summary of an episode; empty where all have one target."""
+    if "leader_targets" not in summary:
+        return {}
+    names = {
+        "total_reward": "leader_total_rewards",
+        "signed_order": "leader_signed_orders",
+        "share_towards_target": "leader_shares_towards_target",
+    }
+    own = {name: float(summary[of][leader]) for name, of in names.items() if of in summary}
+    return {"target": "cw" if summary["leader_targets"][leader] > 0 else "ccw", **own}
 
 
 def drawn_seed(random: np.random.Generator) -> int:

@@ -41,6 +41,15 @@ law itself, bit for bit. Both laws read what the leader sees of itself. A step h
 `decision_period_s`; its reward is the sum over those control steps, or over fewer where the episode
 ends, and its `reward_terms` are means over them."""
 
+_GENERAL_SUM = """With `target` a list of "cw" and "ccw", one per leader, each leader has a target
+of its own: its observation, the reflection of `mirror_to_target`, what its actions stand for and
+all its reward terms are towards that one, as if it were everybody's. Leaders with opposite targets
+play a general-sum game: their `signed_order` sums to zero, the terms of a leader alone do not. What
+belongs to the whole flock refers to leader 0's target: the `signed_order` and
+`share_towards_target` of the `"episode_summary"`, the reflection of `state()`, and the flock
+features of an environment (those of a `LeaderVecEnv` are in the frame of each slot's target). The
+`target` of `state()` is the mean over the leaders."""
+
 _FRAME = """All entries are in the local-angle polar (LAP) frame of the leader's own position,
 outward and clockwise. They are scaled, and clipped at the bounds below; the share of clipped
 numbers is reported at the end of the episode. The entries of `neighbors` repeat for each of the
@@ -64,7 +73,9 @@ window after the first tenth of the episode ({_MEANS}) and `share_towards_target
 (part of that time with a signed order above 0.5); `ordering_time_s` and `ordering_time_wide_s`
 (eq. 7, with the angle π/20 as printed and with π/4); and `clip_rate`. An ordering time that never
 came is infinite. An episode that ends before its first analysis window has no means over it: those
-entries are left out."""
+entries are left out. Where each leader has a target of its own the summary also has arrays (k,):
+`leader_targets` (+1 clockwise, -1 counter-clockwise), `leader_total_rewards`,
+`leader_signed_orders` and `leader_shares_towards_target`, each towards the leader's own."""
 
 _HISTORY = f"- v0, observation version {OBSERVATION_VERSION}: initial version."
 
@@ -78,6 +89,7 @@ _SHARED = {
     "start": _FIRST,
     "rudder": _RUDDER,
     "frame": _FRAME,
+    "general_sum": _GENERAL_SUM,
     "observation_table": observation_table(observation_entries(_EVERY_BLOCK)),
     "state_table": observation_table(state_entries(1)),
     "flock_feature_table": feature_table(flock_feature_entries()),

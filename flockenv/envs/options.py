@@ -67,7 +67,11 @@ class EnvOptions:
         if isinstance(settings.get("action_mode"), str):
             refuse_unknown((settings["action_mode"],), _core.action_modes(), "action mode")
         target = settings.get("target")
-        if isinstance(target, str) and target in ("cw", "ccw"):
+        if isinstance(target, list | tuple):
+            # What is no direction is refused with the settings, where it could be expected.
+            if all(each in ("cw", "ccw") for each in target):
+                given["target"] = target
+        elif isinstance(target, str) and target in ("cw", "ccw"):
             given["target"] = target
         stepping = _physics(given)
         parameters = _parameters({**given, **stepping})

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from pettingzoo import ParallelEnv
 
 from flockenv.envs.base import SingleEnvironmentBase
-from flockenv.envs.batch import drawn_seed
+from flockenv.envs.batch import drawn_seed, leader_summary
 from flockenv.envs.docs import specified
 from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.render_mode import RENDER_MODES
@@ -55,9 +55,13 @@ class LeadersParallelEnv(
     {state_table}
 
     ## Rewards
-    Each agent gets the weighted sum of the terms below, its own where they are a leader's own;
-    `signed_order` with weight 1 unless `reward` says otherwise. Each step's infos have the agent's
-    `"reward_terms"`, the last ones the `"episode_summary"`; those of a reset are empty.
+    Each agent gets the weighted sum of the terms below, its own where they are a leader's own or
+    towards its own target; `signed_order` with weight 1 unless `reward` says otherwise. Each step's
+    infos have the agent's `"reward_terms"`, the last ones the `"episode_summary"`; those of a reset
+    are empty.
+
+    {general_sum} The last infos of an agent then have a `"leader_summary"` of its own: `target`,
+    `total_reward`, `signed_order` and `share_towards_target`.
 
     {reward_table}
 
@@ -127,7 +131,7 @@ class LeadersParallelEnv(
             By agent; observations have shape (observation size,), float32, infos are empty. What
             was drawn for the episode is in `episode`.
         """
-        self._batch.reset([seed], options, lambda: drawn_seed(self._random))
+        self._reset(seed, options, lambda: drawn_seed(self._random))
         self.agents = self.possible_agents[:]
         self._show()
         # Empty: TorchRL expects every later info to look like those of the reset.
@@ -196,8 +200,11 @@ class LeadersParallelEnv(
             for leader, agent in enumerate(self.agents)
         }
         if over:
-            for info in infos.values():
+            for leader, info in enumerate(infos.values()):
                 info.update(self._batch.end_info(0))
+                own = leader_summary(info.get("episode_summary", {}), leader)
+                if own:
+                    info["leader_summary"] = own
         return infos
 
     def _by_agent(self, rows: NDArray[np.float32]) -> Observations:

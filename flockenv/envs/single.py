@@ -49,6 +49,9 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
     `reward` says otherwise. Each step's info has the `"reward_terms"`, the last one the
     `"episode_summary"`.
 
+    {general_sum} The joint reward stays the mean over leaders, so that k1 leaders against k2 earn
+    (k1 - k2)/k of the signed order towards the k1 leaders' target.
+
     {reward_table}
 
     ## Starting state
@@ -92,10 +95,10 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
             Fixes this episode, and those that follow without a seed. None continues with the
             next one.
         options
-            For this episode: ``target`` ("cw", "ccw", "random", "alternate"), ``bw_s`` in s,
-            ``state`` (a dictionary with pose (n, 3) and, if need be, velocity (n, 3), time_s and
-            allow_overlap as in `Flock.set_state`) or ``snapshot`` (bytes of `Flock.snapshot` of a
-            flock with the same parameters, target and bw_s aside).
+            For this episode: ``target`` ("cw", "ccw", "random", "alternate" or one of "cw" and
+            "ccw" per leader), ``bw_s`` in s, ``state`` (a dictionary with pose (n, 3) and, if need
+            be, velocity (n, 3), time_s and allow_overlap as in `Flock.set_state`) or ``snapshot``
+            (bytes of `Flock.snapshot` of a flock with the same parameters, target and bw_s aside).
 
         Returns
         -------
@@ -104,7 +107,7 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
         info : dict
             Target, backward duration and seed of the episode.
         """
-        self._batch.reset([seed], options, lambda: drawn_seed(self.np_random))
+        self._reset(seed, options, lambda: drawn_seed(self.np_random))
         super().reset(seed=None if seed is None else int(seed))
         self._show()
         return self.observe(), self._batch.reset_info(0)

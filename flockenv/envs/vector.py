@@ -61,6 +61,9 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
     The weighted sum of the terms below, mean over a flock's leaders; `signed_order` with weight 1
     unless `reward` says otherwise. `reward_terms()` returns those of the last step.
 
+    {general_sum} In `reset` a tuple has one target per leader, since a list has one option per
+    flock.
+
     {reward_table}
 
     ## Starting state
@@ -138,8 +141,9 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
             One for flock 0, each following flock having the next; or one per flock; None continues
             with the next episode.
         options
-            ``target`` ("cw", "ccw", "random", "alternate"), ``bw_s`` (s), ``state`` (a dictionary
-            with pose, velocity, time_s and allow_overlap as in `Flock.set_state`) or ``snapshot``
+            ``target`` ("cw", "ccw", "random", "alternate" or a tuple of "cw" and "ccw", one per
+            leader; a list has an entry for each flock), ``bw_s`` (s), ``state`` (a dictionary with
+            pose, velocity, time_s and allow_overlap as in `Flock.set_state`) or ``snapshot``
             (bytes of `Flock.snapshot`), for the episodes that start; ``reset_mask`` (num_envs,)
             bool.
 
@@ -223,7 +227,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         """Return features of every flock, shape (num_envs, features), float32.
 
         They depend neither on the order of boats nor on absolute angles, and are in the frame of
-        the target.
+        the target, of several targets leader 0's.
         """
         return self._batch.flock_features()
 

@@ -1,5 +1,6 @@
 """Order parameters of a recording, which know their times."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -44,7 +45,9 @@ class RecordedOrder(OrderSeries):
         plain = OrderSeries(*(getattr(self, name) for name in ORDER))
         return type(self), (self.time_s, plain)
 
-    def plot(self, *names: str, target: str = "cw", ax: "Axes | None" = None) -> "Axes":
+    def plot(
+        self, *names: str, target: str | Sequence[str] = "cw", ax: "Axes | None" = None
+    ) -> "Axes":
         """Draw quantities against time (extra ``plot``).
 
         Parameters

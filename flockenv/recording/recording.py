@@ -262,7 +262,7 @@ class Recording:
         phase: ArrayLike | None = None,
         ids: Sequence[str] | None = None,
         leaders: Sequence[str] = (),
-        target: str = "cw",
+        target: str | Sequence[str] = "cw",
     ) -> Self:
         """Return tracks of real boats, or of anything else that heads somewhere, as a recording.
 

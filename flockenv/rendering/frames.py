@@ -27,7 +27,8 @@ def frame(
     It shows the pool (in open water the part where the boats are), the boats with a mark towards
     the bow, leaders in amber, and in the corners the time and phase, the target and bw,
     Ψ_o and the signed order towards the target; without leaders there is no target, and Ψ_o·sin φ_o
-    (positive clockwise) stands in its place. Several threads may draw at a time.
+    (positive clockwise) stands in its place, as it does where leaders have opposite targets. Then
+    those with a counter-clockwise one are purple. Several threads may draw at a time.
 
     Parameters
     ----------

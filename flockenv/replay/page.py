@@ -228,8 +228,8 @@ def _run(
         "parameters": {key: str(value) for key, value in parameters.to_dict().items()},
         "boats": parameters.n_boats,
         "leaders": parameters.n_leaders,
-        # Without leaders nobody heads for it.
-        "target": parameters.target if parameters.n_leaders else None,
+        "target": parameters.common_target,
+        **_opposed_targets(parameters),
         "bw_s": parameters.bw_s,
         "lengths": _lengths(parameters),
         # Of tracks the phases may be unknown.
@@ -239,6 +239,13 @@ def _run(
         "every": every,
         "data": _series(recording, every, quantities),
     }
+
+
+def _opposed_targets(parameters: FlockParameters) -> dict[str, list[str]]:
+    """Return each leader's target where they head against each other."""
+    if parameters.n_leaders == 0 or parameters.common_target is not None:
+        return {}
+    return {"targets": list(parameters.target)}
 
 
 def _lengths(parameters: FlockParameters) -> dict[str, float | None]:

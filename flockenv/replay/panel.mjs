@@ -12,6 +12,22 @@ const PHASES = {
 };
 
 /** A run's canvas with everything around it. */
+/** Where a leader heads, in words, if not all head there. */
+function targetWords(run, boat) {
+  return run.targets ? ` ${run.targets[boat] === "cw" ? "↻ cw" : "↺ ccw"}` : "";
+}
+
+/** Colors of the leaders: the role, how many have it, and where they head. */
+function leaderKey(run) {
+  if (!run.targets) {
+    return [["leader", run.leaders, ""]];
+  }
+  return ["cw", "ccw"].map((target) => {
+    const first = run.targets.indexOf(target);
+    return [run.roleOf(first), run.targets.filter((each) => each === target).length, targetWords(run, first)];
+  });
+}
+
 export class Panel {
   constructor(run, place, several) {
     this.run = run;
@@ -62,9 +78,11 @@ export class Panel {
       corner.append(backward);
     }
     if (run.leaders > 0) {
-      const leaders = element("div");
-      leaders.append(element("span", "swatch leader"), `${run.leaders} leader${run.leaders > 1 ? "s" : ""}`);
-      corner.append(leaders);
+      for (const [role, count, words] of leaderKey(run)) {
+        const leaders = element("div");
+        leaders.append(element("span", `swatch ${role}`), `${count} leader${count > 1 ? "s" : ""}${words}`);
+        corner.append(leaders);
+      }
     }
     this.forceKey = element("div", "force-key");
     this.forceKey.title = "Bars lie on the boat that is pushed, in proportion to the force; one that ends in an arrowhead would be longer";
@@ -138,7 +156,7 @@ export class Panel {
       return;
     }
     const head = element("div", "head", this.run.nameOf(boat));
-    head.append(element("span", "faint", boat < this.run.leaders ? " leader" : ""));
+    head.append(element("span", "faint", boat < this.run.leaders ? ` leader${targetWords(this.run, boat)}` : ""));
     const list = element("dl");
     for (const [name, value, unit, meaning] of boatNumbers(this.run, boat, sample)) {
       const answer = element("dd", "", value);

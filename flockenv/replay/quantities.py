@@ -59,11 +59,11 @@ class ShownQuantity:
 def shown_quantities(recordings: Sequence[Recording]) -> list[ShownQuantity]:
     """Return the quantities that recordings hold; their charts show the first one at first.
 
-    Order towards the target is among them where any of the recordings has leaders.
+    Order towards the target is among them where in any of the recordings leaders have one.
     """
     table = {each.name: each for each in _core.quantities() if each.kind != "structure"}
-    has_leaders = any(recording.parameters.n_leaders for recording in recordings)
-    first = ["signed_order", "rotation"] if has_leaders else ["rotation"]
+    has_target = any(each.parameters.common_target is not None for each in recordings)
+    first = ["signed_order", "rotation"] if has_target else ["rotation"]
     recorded = [each.name for each in table.values() if each.kind == "recorded"]
     return [_shown(table[name], recordings) for name in (*first, *recorded)]
 

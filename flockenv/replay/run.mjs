@@ -65,6 +65,14 @@ export class Run {
     return this.columns.get("present")?.at(sample, boat) !== 0;
   }
 
+  /** What a boat is drawn as; an opponent leads counter-clockwise where others lead clockwise. */
+  roleOf(boat) {
+    if (boat >= this.leaders) {
+      return "normal";
+    }
+    return this.targets?.[boat] === "ccw" ? "opponent" : "leader";
+  }
+
   /** What a boat is called. */
   nameOf(boat) {
     return this.ids?.[boat] ?? `boat ${boat}`;

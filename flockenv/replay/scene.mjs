@@ -9,7 +9,7 @@ const TRAIL_PIECES = 6;
 export function colors() {
   const style = getComputedStyle(document.documentElement);
   const names = ["ground", "wall", "water", "grid", "ink", "faint", "target", "normal", "mark",
-    "leader", "leader-mark", "outline", "force", "pin", "run-1", "run-2", "window", "track"];
+    "leader", "opponent", "leader-mark", "outline", "force", "pin", "run-1", "run-2", "window", "track"];
   return Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
 }
 
@@ -200,7 +200,7 @@ export class Scene {
     context.lineJoin = context.lineCap = "round";
     for (let boat = 0; boat < run.boats; boat += 1) {
       const isBold = boat === chosen;
-      context.strokeStyle = boat < run.leaders ? palette.leader : palette.normal;
+      context.strokeStyle = palette[run.roleOf(boat)];
       context.lineWidth = isBold ? 3 : 1.4;
       for (let piece = 0; piece < TRAIL_PIECES; piece += 1) {
         const from = first + Math.floor(((last - first) * piece) / TRAIL_PIECES);
@@ -232,7 +232,7 @@ export class Scene {
     context.arc(half, 0, radius - line / 2, -Math.PI / 2, Math.PI / 2);
     context.arc(-half, 0, radius - line / 2, Math.PI / 2, 1.5 * Math.PI);
     context.closePath();
-    context.fillStyle = isLeader ? palette.leader : palette.normal;
+    context.fillStyle = palette[run.roleOf(boat)];
     context.fill();
     context.lineWidth = line;
     context.strokeStyle = palette.outline;

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
-from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
+from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, leader_summary, seeds_from
 from flockenv.envs.docs import specified
 from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.options import EnvOptions
@@ -97,6 +97,9 @@ class LeaderVecEnv(VecEnv):
     Each slot gets the weighted sum of the terms below, its own where they are a leader's own;
     `signed_order` with weight 1 unless `reward` says otherwise. `reward_terms()` returns those of
     the last step.
+
+    {general_sum} Each slot's last info then has a `"leader_summary"` of its own: `target`,
+    `total_reward`, `signed_order` and `share_towards_target`.
 
     {reward_table}
 
@@ -238,7 +241,12 @@ class LeaderVecEnv(VecEnv):
                 infos[slot]["TimeLimit.truncated"] = True
                 infos[slot]["terminal_observation"] = row.copy()
                 infos[slot]["terminal_state"] = self._batch.final_state(flock)
-                infos[slot]["terminal_flock_features"] = self._batch.final_flock_features(flock)
+                infos[slot]["terminal_flock_features"] = self._batch.final_flock_features(
+                    flock, leader
+                )
+                own = leader_summary(infos[slot]["episode_summary"], leader)
+                if own:
+                    infos[slot]["leader_summary"] = own
                 if leader == 0:
                     infos[slot]["episode"] = self._monitored(infos[slot]["episode_summary"])
                 self.reset_infos[slot] = self._batch.reset_info(flock)
@@ -278,9 +286,9 @@ class LeaderVecEnv(VecEnv):
         """Return features of each slot's flock, shape (slots, features), float32.
 
         They depend neither on the order of boats nor on absolute angles, and are in the frame of
-        the target.
+        the slot's own target.
         """
-        return self._batch.flock_features()[self.flock_of_slot]
+        return self._batch.leader_features()
 
     def reward_terms(self) -> dict[str, NDArray[np.float64]]:
         """Return each term of the last step's reward, shape (slots,)."""

@@ -27,7 +27,7 @@ def recording_fields(
     phase: ArrayLike | None,
     ids: Sequence[str] | None,
     leaders: Sequence[str],
-    target: str,
+    target: str | Sequence[str],
 ) -> dict[str, Any]:
     """Return the fields of `Recording`, whose `from_tracks` documents parameters and errors."""
     times = _floats("time_s", time_s)
@@ -51,7 +51,7 @@ def recording_fields(
         pool=pool,
         boat_radius_cm=radius,
         boat_shape=shape,
-        target=target,
+        target=target if isinstance(target, str) else tuple(target),
     )
     _check_units(poses, motion, parameters)
     phases, analyzed = _phases(phase, times)

@@ -27,7 +27,7 @@ class TrackLayout:
         As for `Recording.from_tracks`.
     leaders : tuple of str
         Names of those that lead.
-    target : str
+    target : str or tuple of str
         As for `Recording.from_tracks`.
     frame : str
         Column of frame numbers, or of times in s where `fps` is None.
@@ -63,7 +63,7 @@ class TrackLayout:
     pool: Any
     hull: tuple[float, float] = (5.0, 0.5)
     leaders: tuple[str, ...] = ()
-    target: str = "cw"
+    target: str | tuple[str, ...] = "cw"
     frame: str = "frame"
     fps: float | None = None
     id: str = "id"

@@ -1,9 +1,10 @@
 //! The boats: hulls (segments swept by a disc) with a mark towards the bow.
 
-use super::palette::{INK, LEADER, LEADER_MARK, NORMAL, NORMAL_MARK, Rgb};
+use super::palette::{INK, LEADER, LEADER_MARK, NORMAL, NORMAL_MARK, OPPONENT, Rgb};
 use super::view::View;
 use crate::flock::Flock;
 use crate::geometry::{Hull, HullPose};
+use crate::parameters::{Target, Targets};
 use tiny_skia::{FillRule, PathBuilder, Pixmap, Point, Transform};
 
 /// Control points of a quarter circle, as a share of its radius.
@@ -20,17 +21,28 @@ pub(super) fn draw(canvas: &mut Pixmap, flock: &Flock, view: &View) {
     let hull = Hull::new(flock.parameters());
     let shape = Shape::new(&hull, view);
     let (leaders, normal) = flock.hulls().split_at(flock.parameters().n_leaders);
-    for (boats, body, mark) in [
-        (normal, NORMAL, NORMAL_MARK),
-        (leaders, LEADER, LEADER_MARK),
-    ] {
-        for boat in boats {
-            if view.shows(boat.center, hull.reach()) {
-                let mut layers = Layers::default();
-                shape.add(boat, view, &mut layers);
-                layers.fill(canvas, body, mark);
-            }
+    let mut draw = |boat: &HullPose, body: Rgb, mark: Rgb| {
+        if view.shows(boat.center, hull.reach()) {
+            let mut layers = Layers::default();
+            shape.add(boat, view, &mut layers);
+            layers.fill(canvas, body, mark);
         }
+    };
+    for boat in normal {
+        draw(boat, NORMAL, NORMAL_MARK);
+    }
+    let target = &flock.parameters().target;
+    for (leader, boat) in leaders.iter().enumerate() {
+        draw(boat, body_of(target, leader), LEADER_MARK);
+    }
+}
+
+/// The color of a leader's hull: one for all, unless they head against each other.
+fn body_of(targets: &Targets, leader: usize) -> Rgb {
+    if targets.are_opposed() && targets.of(leader) == Target::CounterClockwise {
+        OPPONENT
+    } else {
+        LEADER
     }
 }
 

@@ -1,6 +1,6 @@
 //! The legend in the frame's four corners, which a round pool leaves free.
 
-use super::palette::{AGAINST, FAINT, INK, LEADER, Rgb, TOWARDS, TRACK};
+use super::palette::{AGAINST, FAINT, INK, LEADER, OPPONENT, Rgb, TOWARDS, TRACK};
 use super::target_of;
 use super::text::Typeface;
 use crate::analysis::OrderParameters;
@@ -111,6 +111,7 @@ impl Sheet<'_> {
         let target = match target_of(flock) {
             Some(Target::Clockwise) => "target ↻ cw",
             Some(Target::CounterClockwise) => "target ↺ ccw",
+            None if parameters.n_leaders > 0 => "targets ↻ and ↺",
             None => {
                 self.write_to_right(&backward, self.top(0), INK);
                 return;
@@ -118,14 +119,28 @@ impl Sheet<'_> {
         };
         self.write_to_right(target, self.top(0), INK);
         self.write_to_right(&backward, self.top(1), INK);
-        let leaders = match parameters.n_leaders {
-            1 => "1 leader".to_owned(),
-            several => format!("{several} leaders"),
-        };
-        let baseline = self.top(2);
-        let x = self.write_to_right(&leaders, baseline, INK);
+        if target_of(flock).is_some() {
+            let leaders = match parameters.n_leaders {
+                1 => "1 leader".to_owned(),
+                several => format!("{several} leaders"),
+            };
+            self.write_with_swatch(&leaders, 2, LEADER);
+        } else {
+            let clockwise = (0..parameters.n_leaders)
+                .filter(|&leader| parameters.target.of(leader) == Target::Clockwise)
+                .count();
+            let others = parameters.n_leaders - clockwise;
+            self.write_with_swatch(&format!("{clockwise} cw"), 2, LEADER);
+            self.write_with_swatch(&format!("{others} ccw"), 3, OPPONENT);
+        }
+    }
+
+    /// A line at the right edge after a square of a color.
+    fn write_with_swatch(&mut self, text: &str, line: u8, color: Rgb) {
+        let baseline = self.top(line);
+        let x = self.write_to_right(text, baseline, INK);
         let swatch = 0.72 * self.em;
-        self.bar(x - 1.1 * self.em, baseline - swatch, swatch, swatch, LEADER);
+        self.bar(x - 1.1 * self.em, baseline - swatch, swatch, swatch, color);
     }
 
     /// Bottom left: Ψ_o.

@@ -32,10 +32,11 @@ struct Background {
     image: Pixmap,
 }
 
-/// Where leaders head; without leaders nobody does.
+/// Where all leaders head; `None` without leaders and where they head against each other.
 fn target_of(flock: &Flock) -> Option<Target> {
     let parameters = flock.parameters();
-    (parameters.n_leaders > 0).then_some(parameters.target)
+    (parameters.n_leaders > 0 && !parameters.target.are_opposed())
+        .then(|| parameters.target.reference())
 }
 
 impl FrameRenderer {

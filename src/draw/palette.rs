@@ -26,6 +26,8 @@ pub(super) const NORMAL: Rgb = Rgb(0x00, 0x72, 0xB2);
 pub(super) const NORMAL_MARK: Rgb = Rgb(0xFF, 0xFF, 0xFF);
 /// Leaders.
 pub(super) const LEADER: Rgb = Rgb(0xF0, 0xA2, 0x02);
+/// Leaders with a counter-clockwise target, where others have a clockwise one.
+pub(super) const OPPONENT: Rgb = Rgb(0xCC, 0x79, 0xA7);
 /// Direction marks of leaders.
 pub(super) const LEADER_MARK: Rgb = INK;
 /// Order towards the target.

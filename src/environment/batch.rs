@@ -3,7 +3,7 @@
 
 use super::averages::FirstAverages;
 use super::credit::{ContactCredit, NoCredit};
-use super::flock_env::StoredEnv;
+use super::flock_env::{StoredEnv, StoredLeaders};
 use super::options::NamedSettings;
 use super::reward::FirstTerms;
 use super::{Averages, EnvSettings, FlockEnv, ResetRequest, Terms};
@@ -12,14 +12,24 @@ use crate::error::{FlockError, Result};
 use crate::parallel;
 use crate::parameters::{FirstParameters, FlockParameters};
 use crate::sealed_bytes::{Magic, seal, unseal};
-use serde::de::DeserializeOwned;
 
 const MAGIC: Magic = Magic {
-    now: *b"flocken3",
-    earlier: &[FORMAT_2],
+    now: *b"flocken4",
+    earlier: &[FORMAT_3, FORMAT_2],
     first: &[*b"flocken1"],
 };
+/// Like format 4, but without the leaders' own sums.
+const FORMAT_3: [u8; 8] = *b"flocken3";
 const FORMAT_2: [u8; 8] = *b"flocken2";
+
+/// What is stored of a batch up to format 3; since then it comes first.
+type StoredBatch<
+    S = NamedSettings,
+    P = FlockParameters,
+    A = Averages,
+    T = Terms,
+    C = Option<ContactCredit>,
+> = (S, Vec<P>, Vec<StoredEnv<A, T, C>>);
 
 /// Where a step writes: one row per leader, flock after flock, and one flag per flock.
 #[derive(Debug)]
@@ -198,7 +208,9 @@ impl EnvBatch {
     pub fn to_bytes(&self) -> Vec<u8> {
         let members: Vec<_> = self.envs.iter().map(FlockEnv::parameters).collect();
         let states: Vec<_> = self.envs.iter().map(FlockEnv::stored).collect();
-        seal(&MAGIC, &(NamedSettings(self.settings), members, states))
+        let leaders: Vec<_> = self.envs.iter().map(FlockEnv::stored_leaders).collect();
+        let settings = NamedSettings(self.settings.clone());
+        seal(&MAGIC, &((settings, members, states), leaders))
     }
 
     /// A batch from its bytes.
@@ -207,30 +219,41 @@ impl EnvBatch {
     /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed batch.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         if bytes.starts_with(&MAGIC.now) {
-            type Credit = Option<ContactCredit>;
-            Self::read::<NamedSettings, FlockParameters, Averages, Terms, Credit>(bytes)
+            let (stored, leaders) = unseal::<(StoredBatch, Vec<StoredLeaders>)>(&MAGIC, bytes)?;
+            let mut batch = Self::of_stored(stored)?;
+            if leaders.len() != batch.envs.len() {
+                return Err(FlockError::Snapshot("the batch is not whole".to_owned()));
+            }
+            for (env, leaders) in batch.envs.iter_mut().zip(leaders) {
+                env.restore_leaders(leaders)?;
+            }
+            Ok(batch)
+        } else if bytes.starts_with(&FORMAT_3) {
+            Self::of_stored(unseal::<StoredBatch>(&MAGIC, bytes)?)
         } else if bytes.starts_with(&FORMAT_2) {
-            Self::read::<NamedSettings, FlockParameters, Averages, FirstTerms, NoCredit>(bytes)
+            type Stored =
+                StoredBatch<NamedSettings, FlockParameters, Averages, FirstTerms, NoCredit>;
+            Self::of_stored(unseal::<Stored>(&MAGIC, bytes)?)
         } else {
-            Self::read::<EnvSettings, FirstParameters, FirstAverages, FirstTerms, NoCredit>(bytes)
+            type Stored =
+                StoredBatch<EnvSettings, FirstParameters, FirstAverages, FirstTerms, NoCredit>;
+            Self::of_stored(unseal::<Stored>(&MAGIC, bytes)?)
         }
     }
 
-    fn read<S, P, A, T, C>(bytes: &[u8]) -> Result<Self>
+    fn of_stored<S, P, A, T, C>(
+        (settings, members, states): StoredBatch<S, P, A, T, C>,
+    ) -> Result<Self>
     where
-        S: DeserializeOwned + Into<EnvSettings>,
-        P: DeserializeOwned + Into<FlockParameters>,
-        A: DeserializeOwned,
-        T: DeserializeOwned,
-        C: DeserializeOwned + Into<Option<ContactCredit>>,
+        S: Into<EnvSettings>,
+        P: Into<FlockParameters>,
+        C: Into<Option<ContactCredit>>,
         Averages: From<A>,
         Terms: From<T>,
     {
-        type Stored<S, P, A, T, C> = (S, Vec<P>, Vec<StoredEnv<A, T, C>>);
-        let (settings, members, states) = unseal::<Stored<S, P, A, T, C>>(&MAGIC, bytes)?;
-        let settings = settings.into();
+        let settings: EnvSettings = settings.into();
         let members = members.into_iter().map(Into::into).collect();
-        let mut batch = Self::new(settings, members)?;
+        let mut batch = Self::new(settings.clone(), members)?;
         if states.len() != batch.envs.len() {
             return Err(FlockError::Snapshot("the batch is not whole".to_owned()));
         }

@@ -74,7 +74,7 @@ impl ContactCredit {
                 continue;
             }
             let frame = LapFrame::at(flock.poses[boat].position);
-            let towards = flock.parameters.target.sign();
+            let towards = flock.parameters.target.of(leader).sign();
             let push = frame.components(-contact.gap.normal * impulse).y;
             let spin = -contact.gap.arm_j * impulse * flock.inertia[boat].angular;
             // sin δ, where δ is how far counter-clockwise the boat has to turn.

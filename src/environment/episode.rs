@@ -5,7 +5,7 @@ use super::observation::{
     Camera, CameraState, FlockFeatures, FlockView, LeaderLaw, Observer, StateObserver,
 };
 use super::reset::flock_from;
-use super::statistics::EpisodeStatistics;
+use super::statistics::{EpisodeStatistics, LeaderSummary, LeaderSums};
 use super::{
     Averages, EnvSettings, EpisodeSchedule, EpisodeSummary, Reward, RewardTerms, Servo, TERMS,
     Terms,
@@ -16,7 +16,7 @@ use crate::clock::seconds;
 use crate::error::{FlockError, Result};
 use crate::flock::Flock;
 use crate::integrator::{Integrator, Steering};
-use crate::parameters::FlockParameters;
+use crate::parameters::{FlockParameters, Target, Targets};
 
 /// What observations and rewards are computed from.
 #[derive(Debug, Clone)]
@@ -38,7 +38,7 @@ impl EpisodeState {
             leaders: self.rudders.len(),
             phase: self.flock.phase(),
             bw_s: self.schedule.bw_s,
-            target: self.schedule.target(),
+            targets: &self.flock.parameters().target,
             rudders: &self.rudders,
             order: self.order.as_ref(),
         }
@@ -72,6 +72,8 @@ pub struct Episode {
     credit: Option<ContactCredit>,
     terms: Vec<RewardTerms>,
     statistics: EpisodeStatistics,
+    /// Where each leader has a target of its own, the sums of each.
+    leader_sums: Vec<LeaderSums>,
     ended: bool,
 }
 
@@ -104,6 +106,11 @@ impl Episode {
             camera,
             terms: vec![[0.0; TERMS]; leaders],
             statistics: EpisodeStatistics::default(),
+            leader_sums: if schedule.has_own_targets() {
+                vec![LeaderSums::default(); leaders]
+            } else {
+                Vec::new()
+            },
             ended: false,
             state: EpisodeState {
                 order: flock.order_parameters(false).ok(),
@@ -149,6 +156,23 @@ impl Episode {
         self.statistics.summary(&self.state.schedule)
     }
 
+    /// Statistics so far of each leader, where each has a target of its own; empty otherwise.
+    pub fn leader_summaries(&self) -> Vec<LeaderSummary> {
+        let targets = self.targets();
+        let leaders = self.leader_sums.iter().enumerate();
+        leaders
+            .map(|(leader, sums)| {
+                self.statistics
+                    .summary_of(sums, targets.of(leader), targets.reference())
+            })
+            .collect()
+    }
+
+    /// The leaders' targets of the control step that comes next.
+    pub fn targets(&self) -> &Targets {
+        &self.state.flock.parameters().target
+    }
+
     /// Writes what leaders see now; returns how many numbers were clipped.
     pub fn observe(&mut self, out: &mut [f32]) -> u32 {
         let view = seen_view(&self.state, self.camera.as_ref());
@@ -166,9 +190,15 @@ impl Episode {
         observer.observe(&self.state.view(), self.state.schedule.elapsed(), out);
     }
 
-    /// Writes the features of the flock, which no camera stands before.
-    pub(crate) fn observe_features(&self, features: &FlockFeatures, out: &mut [f32]) {
-        features.observe(&self.state.view(), self.state.schedule.elapsed(), out);
+    /// Writes the features of the flock in the frame of a target, which no camera stands before.
+    pub(crate) fn observe_features(
+        &self,
+        features: &FlockFeatures,
+        target: Target,
+        out: &mut [f32],
+    ) {
+        let elapsed = self.state.schedule.elapsed();
+        features.observe(&self.state.view(), target, elapsed, out);
     }
 
     /// Holds checked actions, one per leader, over the control steps until the next decision or the episode's end,
@@ -183,15 +213,17 @@ impl Episode {
         actions: &[f64],
         rewards: &mut [f64],
     ) -> Result<()> {
-        let target = self.state.schedule.target();
         // A rudder that was chosen in the mirrored view stays what it is when the target turns round.
-        let mirrored = settings.observation.mirror_to_target && target.sign() < 0.0;
+        let mirror_to = settings
+            .observation
+            .mirror_to_target
+            .then(|| self.targets().clone());
         let mut taken = 0;
         while taken == 0 || (taken < settings.period_steps() && !self.ended) {
-            self.command(settings, actions, mirrored);
+            self.command(settings, actions, mirror_to.as_ref());
             self.advance(settings, servo)?;
             self.compute_rewards(settings, rewards, taken == 0);
-            self.advance_schedule();
+            self.advance_schedule()?;
             taken += 1;
         }
         let taken = f64::from(taken);
@@ -200,12 +232,13 @@ impl Episode {
         Ok(())
     }
 
-    /// Works out the commands of a control step.
-    fn command(&mut self, settings: &EnvSettings, actions: &[f64], mirrored: bool) {
+    /// Works out the commands of a control step from actions that were chosen in views mirrored to targets, if any.
+    fn command(&mut self, settings: &EnvSettings, actions: &[f64], mirror_to: Option<&Targets>) {
         let mut commands = std::mem::take(&mut self.commands);
         let view = seen_view(&self.state, self.camera.as_ref());
         for (leader, (command, &action)) in commands.iter_mut().zip(actions).enumerate() {
             let value = settings.rudder.command(action);
+            let mirrored = mirror_to.is_some_and(|targets| targets.of(leader).sign() < 0.0);
             *command = match &self.law {
                 Some(law) => law.rudder(&view, leader, settings.action.angle(value)),
                 None if mirrored => -value,
@@ -256,11 +289,14 @@ impl Episode {
                 .as_ref()
                 .map_or_else(LeaderCredit::default, |each| {
                     let (flock, hz) = (&self.state.flock.integrator, settings.episode.control_hz);
-                    each.of(leader, flock, view.target, 1.0 / hz)
+                    each.of(leader, flock, view.targets.of(leader), 1.0 / hz)
                 });
             let terms = reward.terms(&view, leader, &credit);
             let paid = factor * settings.reward.total(&terms);
             self.statistics.add_reward(share, &terms, paid);
+            if let Some(own) = self.leader_sums.get_mut(leader) {
+                own.add_reward(paid);
+            }
             if is_first {
                 (*sums, *sum) = (terms, paid);
             } else {
@@ -283,21 +319,27 @@ impl Episode {
                     velocities: &view.velocities[leaders..],
                     order: *order,
                 };
-                self.statistics.add_window(&boats, view.target);
+                self.statistics.add_window(&boats, view.targets.reference());
+                for (leader, own) in self.leader_sums.iter_mut().enumerate() {
+                    own.add_window(order, view.targets.of(leader));
+                }
             }
         }
     }
 
     /// Moves the episode's clock on: targets change, the camera takes its picture.
-    fn advance_schedule(&mut self) {
+    fn advance_schedule(&mut self) -> Result<()> {
         let state = &mut self.state;
         state.schedule.step += 1;
         self.ended = state.schedule.is_over();
-        state.flock.set_target(state.schedule.target());
+        if state.schedule.alternates() {
+            state.flock.set_target(state.schedule.targets())?;
+        }
         if let Some(camera) = &mut self.camera {
             let (poses, velocities) = (state.flock.poses(), state.flock.velocities());
             camera.expose(state.rudders.len(), poses, velocities);
         }
+        Ok(())
     }
 
     /// The episode, to be stored.
@@ -312,6 +354,25 @@ impl Episode {
             ended: self.ended,
             credit: self.credit.clone(),
         }
+    }
+
+    /// What is stored of its leaders since format 4.
+    pub(crate) fn stored_leaders(&self) -> Vec<LeaderSums> {
+        self.leader_sums.clone()
+    }
+
+    /// Puts back what [`Self::stored_leaders`] gave.
+    ///
+    /// # Errors
+    /// [`FlockError::Snapshot`] if it is of another number of leaders.
+    pub(crate) fn restore_leaders(&mut self, stored: Vec<LeaderSums>) -> Result<()> {
+        if stored.len() != self.leader_sums.len() {
+            return Err(FlockError::Snapshot(
+                "the state holds sums of other leaders".to_owned(),
+            ));
+        }
+        self.leader_sums = stored;
+        Ok(())
     }
 
     /// The episode that was stored, in an environment with these settings and parameters.
@@ -336,6 +397,7 @@ impl Episode {
             && stored.terms.len() == leaders
             && stored.schedule.steps == settings.episode.steps()
             && stored.schedule.bw_s == flock.parameters().bw_s
+            && stored.schedule.targets() == flock.parameters().target
             && credit.is_some() == settings.reward.need_credit()
             && credit.as_ref().is_none_or(|each| each.fits(leaders, boats))
             && stored.camera.is_some() == settings.camera.is_active()

@@ -3,6 +3,7 @@
 use super::credit::ContactCredit;
 use super::episode::StoredEpisode;
 use super::observation::{FlockFeatures, StateObserver};
+use super::statistics::{LeaderSummary, LeaderSums};
 use super::{
     Autoreset, Averages, EnvSettings, Episode, EpisodeSeeds, EpisodeSummary, ResetRequest, Servo,
     Terms,
@@ -21,6 +22,9 @@ pub(crate) struct StoredEnv<A = Averages, T = Terms, C = Option<ContactCredit>> 
     final_state: Vec<f32>,
 }
 
+/// What is stored of an environment's leaders: sums of the episode under way, summaries of the last one.
+pub(crate) type StoredLeaders = (Vec<LeaderSums>, Vec<LeaderSummary>);
+
 /// A flock with its episodes.
 #[derive(Debug, Clone)]
 pub struct FlockEnv {
@@ -31,9 +35,10 @@ pub struct FlockEnv {
     seeds: Option<EpisodeSeeds>,
     episode: Option<Episode>,
     finished: Option<EpisodeSummary>,
+    finished_leaders: Vec<LeaderSummary>,
     final_observation: Vec<f32>,
     final_state: Vec<f32>,
-    /// Not stored: they are read in the step that ends an episode alone.
+    /// Of each leader. Not stored: they are read in the step that ends an episode alone.
     final_features: Vec<f32>,
 }
 
@@ -47,6 +52,7 @@ impl FlockEnv {
             seeds: None,
             episode: None,
             finished: None,
+            finished_leaders: Vec::new(),
             final_observation: Vec::new(),
             final_state: Vec::new(),
             final_features: Vec::new(),
@@ -74,6 +80,11 @@ impl FlockEnv {
         self.finished.as_ref()
     }
 
+    /// Each leader's summary of the same episode, where each had a target of its own; empty otherwise.
+    pub fn finished_leaders(&self) -> &[LeaderSummary] {
+        &self.finished_leaders
+    }
+
     /// The last observations of the last episode that ended under [`Autoreset::SameStep`].
     pub fn final_observation(&self) -> &[f32] {
         &self.final_observation
@@ -84,9 +95,10 @@ impl FlockEnv {
         &self.final_state
     }
 
-    /// The features of the flock at the end of that episode; empty after a restore.
-    pub fn final_features(&self) -> &[f32] {
-        &self.final_features
+    /// The features of the flock for a leader at the end of that episode; empty after a restore.
+    pub fn final_features(&self, leader: usize) -> &[f32] {
+        let mut rows = self.final_features.chunks_exact(FlockFeatures::SIZE);
+        rows.nth(leader).unwrap_or_default()
     }
 
     /// The next episode, not started yet.
@@ -156,6 +168,7 @@ impl FlockEnv {
             return Ok(false);
         }
         self.finished = Some(episode.summary());
+        self.finished_leaders = episode.leader_summaries();
         if settings.autoreset == Autoreset::SameStep {
             self.final_observation.clear();
             self.final_observation.extend_from_slice(observations);
@@ -171,7 +184,7 @@ impl FlockEnv {
         self.observe_state(&mut state);
         self.final_state = state;
         let mut features = std::mem::take(&mut self.final_features);
-        features.resize(FlockFeatures::SIZE, 0.0);
+        features.resize(self.parameters.n_leaders * FlockFeatures::SIZE, 0.0);
         self.observe_features(&mut features);
         self.final_features = features;
     }
@@ -212,11 +225,22 @@ impl FlockEnv {
         }
     }
 
-    /// Writes the features of the flock, zeros before the first reset.
+    /// Writes the features of the flock for leaders 0, 1, … one after another, each in the frame of its own target;
+    /// zeros before the first reset.
     pub fn observe_features(&self, out: &mut [f32]) {
-        match &self.episode {
-            Some(episode) => episode.observe_features(&self.features, out),
-            None => out.fill(0.0),
+        let Some(episode) = &self.episode else {
+            out.fill(0.0);
+            return;
+        };
+        let targets = episode.targets();
+        let (first, others) = out.split_at_mut(FlockFeatures::SIZE.min(out.len()));
+        episode.observe_features(&self.features, targets.reference(), first);
+        let rows = others.chunks_exact_mut(FlockFeatures::SIZE);
+        for (leader, row) in (1..).zip(rows) {
+            match targets.of(leader) {
+                target if target == targets.reference() => row.copy_from_slice(first),
+                target => episode.observe_features(&self.features, target, row),
+            }
         }
     }
 
@@ -229,6 +253,29 @@ impl FlockEnv {
             final_observation: self.final_observation.clone(),
             final_state: self.final_state.clone(),
         }
+    }
+
+    /// What is stored of its leaders since format 4.
+    pub(crate) fn stored_leaders(&self) -> StoredLeaders {
+        let episode = self.episode.as_ref().map(Episode::stored_leaders);
+        (episode.unwrap_or_default(), self.finished_leaders.clone())
+    }
+
+    /// Puts back what [`Self::stored_leaders`] gave.
+    ///
+    /// # Errors
+    /// [`FlockError::Snapshot`] if it does not belong to such an environment.
+    pub(crate) fn restore_leaders(&mut self, (sums, finished): StoredLeaders) -> Result<()> {
+        match &mut self.episode {
+            Some(episode) => episode.restore_leaders(sums)?,
+            None if sums.is_empty() => {}
+            None => {
+                let message = "the state holds sums of leaders without an episode";
+                return Err(FlockError::Snapshot(message.to_owned()));
+            }
+        }
+        self.finished_leaders = finished;
+        Ok(())
     }
 
     /// The environment as it was stored.

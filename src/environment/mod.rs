@@ -27,4 +27,4 @@ pub use reward::{Reward, RewardTerm, RewardTerms, RewardWeights, TERMS, Terms};
 pub use rudder::{RudderSettings, Servo};
 pub use schedule::{EpisodeSchedule, EpisodeSeeds, EpisodeSettings, TargetChoice};
 pub use settings::{Autoreset, EnvSettings};
-pub use statistics::{EpisodeSummary, ORDERED_WITHIN, TOWARDS_TARGET};
+pub use statistics::{EpisodeSummary, LeaderSummary, ORDERED_WITHIN, TOWARDS_TARGET};

@@ -28,6 +28,8 @@ pub enum OptionValue {
     Blocks(Vec<(Block, usize)>),
     /// Weights of the reward's terms; those left out weigh nothing.
     Weights(Vec<(RewardTerm, f64)>),
+    /// A name for each leader.
+    Names(Vec<String>),
 }
 
 /// What is declared of an option.
@@ -94,7 +96,28 @@ macro_rules! named_types {
     };
 }
 
-named_types!(TargetChoice, Autoreset, ActionMode);
+named_types!(Autoreset, ActionMode);
+
+impl OptionType for TargetChoice {
+    fn shown(&self) -> OptionValue {
+        match self {
+            Self::Each(targets) => {
+                let names = targets.iter().map(|target| target.name().to_owned());
+                OptionValue::Names(names.collect())
+            }
+            named => OptionValue::Name(named.name().unwrap_or_default().to_owned()),
+        }
+    }
+
+    fn read(&mut self, value: OptionValue) -> Result<()> {
+        *self = match value {
+            OptionValue::Name(name) => Self::named(&name)?,
+            OptionValue::Names(names) => Self::each(&names)?,
+            _ => return wrong_kind(),
+        };
+        Ok(())
+    }
+}
 
 impl OptionType for ObservationLayout {
     fn shown(&self) -> OptionValue {
@@ -156,7 +179,7 @@ macro_rules! declare_options {
 }
 
 declare_options! {
-    /// "cw", "ccw", "random" (drawn for each episode) or "alternate" (ccw, cw, ccw, cw, a quarter of the episode each)
+    /// "cw", "ccw", "random" (drawn for each episode) or "alternate" (ccw, cw, ccw, cw, a quarter of the episode each); or a list of "cw" and "ccw", one per leader
     target: episode.target;
     /// length of an episode in s, rounded to whole control steps; None: 480, and 960 where targets alternate
     episode_s: episode.episode_s;

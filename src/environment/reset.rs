@@ -43,10 +43,13 @@ impl ResetRequest {
         flock_seed: u64,
         keep_going: KeepGoing,
     ) -> Result<(EpisodeSchedule, Flock)> {
-        let mut plan = settings.episode;
+        let mut plan = settings.episode.clone();
         // The length belongs to the environment, whatever the target of this episode.
         plan.episode_s = Some(plan.duration_s());
-        plan.target = self.target.unwrap_or(plan.target);
+        if let Some(target) = &self.target {
+            target.check(parameters.n_leaders)?;
+            plan.target = target.clone();
+        }
         let mut schedule = EpisodeSchedule::new(&plan, flock_seed, parameters.bw_s);
         schedule.bw_s = self.bw_s.unwrap_or(schedule.bw_s);
         let own = FlockParameters {
@@ -63,7 +66,7 @@ impl ResetRequest {
             return Err(FlockError::parameter("time_s", flock.time_s(), accepted));
         }
         schedule.bw_s = flock.parameters().bw_s;
-        flock.set_target(schedule.target());
+        flock.set_target(schedule.targets())?;
         Ok((schedule, flock))
     }
 }
@@ -72,7 +75,7 @@ impl ResetRequest {
 pub(super) fn flock_from(bytes: &[u8], parameters: &FlockParameters) -> Result<Flock> {
     let flock = Flock::from_snapshot(bytes)?;
     let same = FlockParameters {
-        target: parameters.target,
+        target: parameters.target.clone(),
         bw_s: parameters.bw_s,
         ..flock.parameters().clone()
     };

@@ -5,7 +5,7 @@ use super::observation::{FlockView, speed_scale_cm_s};
 use crate::analysis::OrderParameters;
 use crate::error::{FlockError, Result};
 use crate::geometry::LapFrame;
-use crate::parameters::{FlockParameters, named_choice};
+use crate::parameters::{FlockParameters, Target, named_choice};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 named_choice! {
@@ -57,11 +57,11 @@ impl RewardTerm {
     pub fn description(self) -> &'static str {
         match self {
             Self::SignedOrder => {
-                "psi_o*cos(phi_o - phi_target) of the normal boats, in [-1, 1]; the same for all leaders"
+                "psi_o*cos(phi_o - phi_target) of the normal boats, in [-1, 1]; the same for all leaders with one target"
             }
             Self::TangentialVelocity => {
                 "mean tangential velocity of the normal boats towards the target over the preferred \
-                 speed; the same for all leaders"
+                 speed; the same for all leaders with one target"
             }
             Self::LeaderVelocity => {
                 "the leader's own tangential velocity towards the target over the preferred speed"
@@ -189,6 +189,7 @@ impl RewardWeights {
 /// The terms of one control step: those of the flock worked out once, those of a leader on request.
 #[derive(Debug, Clone, Copy)]
 pub struct Reward {
+    reference: Target,
     flock: RewardTerms,
     inverse_speed: f64,
 }
@@ -197,33 +198,44 @@ impl Reward {
     /// At the end of a control step; `order` is the true one, whatever leaders see.
     pub fn new(parameters: &FlockParameters, view: &FlockView) -> Self {
         let inverse_speed = 1.0 / speed_scale_cm_s(parameters);
-        let mut flock = RewardTerms::default();
-        if let Some(order) = view.order {
-            let towards = view.target.sign() * order.phi_v.sin();
-            flock[RewardTerm::SignedOrder as usize] = order.signed_order(view.target);
-            flock[RewardTerm::TangentialVelocity as usize] = order.psi_v * towards * inverse_speed;
-            flock[RewardTerm::Jam as usize] = -jam(order, inverse_speed);
-        }
+        let reference = view.targets.reference();
         Self {
-            flock,
+            reference,
+            flock: flock_terms(view, reference, inverse_speed),
             inverse_speed,
         }
     }
 
-    /// All terms for one leader.
+    /// All terms for one leader, towards its own target.
     pub fn terms(&self, view: &FlockView, leader: usize, credit: &LeaderCredit) -> RewardTerms {
         let clockwise = LapFrame::at(view.poses[leader].position)
             .components(view.velocities[leader].linear)
             .y;
-        let mut terms = self.flock;
-        terms[RewardTerm::LeaderVelocity as usize] =
-            view.target.sign() * clockwise * self.inverse_speed;
+        let target = view.targets.of(leader);
+        let mut terms = if target == self.reference {
+            self.flock
+        } else {
+            flock_terms(view, target, self.inverse_speed)
+        };
+        terms[RewardTerm::LeaderVelocity as usize] = target.sign() * clockwise * self.inverse_speed;
         terms[RewardTerm::RudderEffort as usize] = -view.rudders[leader].powi(2);
         terms[RewardTerm::ContactPush as usize] = credit.push;
         terms[RewardTerm::ContactAlignment as usize] = credit.alignment;
         terms[RewardTerm::TouchedOrder as usize] = credit.touched_order;
         terms
     }
+}
+
+/// The terms that are about the normal boats, towards a target.
+fn flock_terms(view: &FlockView, target: Target, inverse_speed: f64) -> RewardTerms {
+    let mut terms = RewardTerms::default();
+    if let Some(order) = view.order {
+        let towards = target.sign() * order.phi_v.sin();
+        terms[RewardTerm::SignedOrder as usize] = order.signed_order(target);
+        terms[RewardTerm::TangentialVelocity as usize] = order.psi_v * towards * inverse_speed;
+        terms[RewardTerm::Jam as usize] = -jam(order, inverse_speed);
+    }
+    terms
 }
 
 /// How jammed the flock is, in [0, 1]: aligned, at the outer wall, and standing.

@@ -2,28 +2,86 @@
 
 use crate::clock::{Ticks, ticks};
 use crate::error::{FlockError, Result};
-use crate::parameters::{Target, named_choice};
+use crate::parameters::{Target, Targets};
 use crate::random::Stream;
 use rand::RngExt;
 use rand_chacha::rand_core::Rng;
 
-named_choice! {
-    /// Which direction an episode's target is.
-    pub enum TargetChoice ("target") {
-        /// Clockwise throughout.
-        Clockwise = "cw",
-        /// Counter-clockwise throughout.
-        CounterClockwise = "ccw",
-        /// One of the two, drawn for the episode.
-        Random = "random",
-        /// Counter-clockwise, clockwise, counter-clockwise, clockwise, a quarter of the episode each
-        /// (figure 7).
-        Alternate = "alternate",
+/// Which direction an episode's target is. States of format 1 hold the variants' places.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum TargetChoice {
+    /// Clockwise throughout.
+    Clockwise,
+    /// Counter-clockwise throughout.
+    CounterClockwise,
+    /// One of the two, drawn for the episode.
+    Random,
+    /// Counter-clockwise, clockwise, counter-clockwise, clockwise, a quarter of the episode each
+    /// (figure 7).
+    Alternate,
+    /// One per leader, throughout.
+    Each(Vec<Target>),
+}
+
+impl TargetChoice {
+    /// The choices that have a name.
+    const NAMED: [(&'static str, Self); 4] = [
+        ("cw", Self::Clockwise),
+        ("ccw", Self::CounterClockwise),
+        ("random", Self::Random),
+        ("alternate", Self::Alternate),
+    ];
+
+    /// The choice of that name.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] lists the names there are.
+    pub fn named(name: &str) -> Result<Self> {
+        let found = Self::NAMED.into_iter().find(|(known, _)| *known == name);
+        found.map(|(_, choice)| choice).ok_or_else(|| {
+            let names = Self::NAMED.map(|(known, _)| format!("{known:?}"));
+            let accepted = format!(
+                "one of {}, or a list of \"cw\" and \"ccw\", one per leader",
+                names.join(", ")
+            );
+            FlockError::parameter("target", format!("{name:?}"), accepted)
+        })
+    }
+
+    /// The choice of one target per leader.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for what is no direction: what is drawn and what alternates is one for all leaders.
+    pub fn each(names: &[String]) -> Result<Self> {
+        let target = |name: &String| {
+            name.parse().map_err(|_| {
+                let accepted = "a list of \"cw\" and \"ccw\", one per leader; \"random\" and \"alternate\" hold for all leaders and stand alone";
+                FlockError::parameter("target", format!("{names:?}"), accepted)
+            })
+        };
+        Ok(Self::Each(names.iter().map(target).collect::<Result<_>>()?))
+    }
+
+    /// The public name; `None` for a list.
+    pub fn name(&self) -> Option<&'static str> {
+        let found = Self::NAMED.into_iter().find(|(_, known)| known == self);
+        found.map(|(name, _)| name)
+    }
+
+    /// Checks that a list has one target per leader.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`].
+    pub fn check(&self, n_leaders: usize) -> Result<()> {
+        match self {
+            Self::Each(targets) => Targets::Each(targets.clone()).check(n_leaders),
+            _ => Ok(()),
+        }
     }
 }
 
 /// How episodes are made.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct EpisodeSettings {
     /// Length in s; `None`: 480 s, and 960 s where targets alternate.
     pub episode_s: Option<f64>,
@@ -113,10 +171,11 @@ pub struct EpisodeSchedule {
 }
 
 /// The target of an episode as a function of its steps.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 enum EpisodeTarget {
     Constant(Target),
     Alternating,
+    Each(Vec<Target>),
 }
 
 impl EpisodeSchedule {
@@ -137,28 +196,46 @@ impl EpisodeSchedule {
             bw_s: settings
                 .bw_range_s
                 .map_or(own_bw_s, |(low, high)| low + share * (high - low)),
-            target: match settings.target {
+            target: match &settings.target {
                 TargetChoice::Clockwise => EpisodeTarget::Constant(Target::Clockwise),
                 TargetChoice::CounterClockwise => EpisodeTarget::Constant(Target::CounterClockwise),
                 TargetChoice::Random => EpisodeTarget::Constant(drawn),
                 TargetChoice::Alternate => EpisodeTarget::Alternating,
+                TargetChoice::Each(targets) => EpisodeTarget::Each(targets.clone()),
             },
         }
     }
 
-    /// The target of the control step that comes next; after the last one, that of the last.
-    pub fn target(&self) -> Target {
-        match self.target {
-            EpisodeTarget::Constant(target) => target,
+    /// The targets of the control step that comes next; after the last one, those of the last.
+    pub fn targets(&self) -> Targets {
+        match &self.target {
+            EpisodeTarget::Constant(target) => Targets::One(*target),
             EpisodeTarget::Alternating => {
                 let step = u64::from(self.step.min(self.steps.saturating_sub(1)));
-                if (4 * step / u64::from(self.steps.max(1))).is_multiple_of(2) {
+                let is_even = (4 * step / u64::from(self.steps.max(1))).is_multiple_of(2);
+                Targets::One(if is_even {
                     Target::CounterClockwise
                 } else {
                     Target::Clockwise
-                }
+                })
             }
+            EpisodeTarget::Each(targets) => Targets::Each(targets.clone()),
         }
+    }
+
+    /// The reference direction of the same control step: the target of all leaders, or leader 0's.
+    pub fn target(&self) -> Target {
+        self.targets().reference()
+    }
+
+    /// Whether each leader has a target of its own.
+    pub(crate) fn has_own_targets(&self) -> bool {
+        matches!(self.target, EpisodeTarget::Each(_))
+    }
+
+    /// Whether the targets change in the course of the episode.
+    pub(crate) fn alternates(&self) -> bool {
+        self.target == EpisodeTarget::Alternating
     }
 
     /// Part of the episode that is over, in [0, 1].

@@ -19,7 +19,7 @@ named_choice! {
 
 /// The settings of an environment. States of format 1 hold them in this order; what was added since is left out of
 /// it by `#[serde(skip)]`.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq, serde::Deserialize)]
 pub struct EnvSettings {
     /// Episodes.
     pub episode: EpisodeSettings,
@@ -70,6 +70,7 @@ impl EnvSettings {
             ));
         }
         self.episode.check()?;
+        self.episode.target.check(parameters.n_leaders)?;
         self.observation.check()?;
         self.camera.check()?;
         self.rudder.check()?;

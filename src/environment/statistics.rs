@@ -55,6 +55,26 @@ impl EpisodeStatistics {
         }
     }
 
+    /// The summary of a leader with these sums and this target, where the statistics are towards the reference
+    /// direction.
+    pub(super) fn summary_of(
+        &self,
+        sums: &LeaderSums,
+        target: Target,
+        reference: Target,
+    ) -> LeaderSummary {
+        let window = f64::from(self.window_steps);
+        let averages = self.averages.over(window);
+        let signed_order = averages.named().find(|(name, _)| *name == "signed_order");
+        let towards = target.sign() * reference.sign();
+        LeaderSummary {
+            target,
+            total_reward: sums.reward,
+            signed_order: towards * signed_order.map_or(f64::NAN, |(_, mean)| mean),
+            share_towards_target: f64::from(sums.steps_towards_target) / window,
+        }
+    }
+
     /// Adds a step inside the analysis window.
     pub(super) fn add_window(&mut self, boats: &Boats, target: Target) {
         self.window_steps += 1;
@@ -95,6 +115,38 @@ impl EpisodeStatistics {
             clip_rate: self.clipped as f64 / self.observed as f64,
         }
     }
+}
+
+/// What is summed up of one leader that has a target of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub(crate) struct LeaderSums {
+    reward: f64,
+    steps_towards_target: u32,
+}
+
+impl LeaderSums {
+    /// Adds the reward of a control step.
+    pub(super) fn add_reward(&mut self, reward: f64) {
+        self.reward += reward;
+    }
+
+    /// Adds a step inside the analysis window.
+    pub(super) fn add_window(&mut self, order: &OrderParameters, target: Target) {
+        self.steps_towards_target += u32::from(order.signed_order(target) > TOWARDS_TARGET);
+    }
+}
+
+/// One leader's summary of an episode in which each has a target of its own.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct LeaderSummary {
+    /// Its target.
+    pub target: Target,
+    /// Sum of its rewards.
+    pub total_reward: f64,
+    /// Signed order towards its target, a mean as those of [`EpisodeSummary::averages`].
+    pub signed_order: f64,
+    /// Part of the same steps in which that exceeds [`TOWARDS_TARGET`].
+    pub share_towards_target: f64,
 }
 
 /// The summary of an episode.

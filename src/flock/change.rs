@@ -3,13 +3,13 @@
 use super::flock::Flock;
 use crate::error::Result;
 use crate::geometry::Pose;
-use crate::parameters::{FlockParameters, Pool, Target};
+use crate::parameters::{FlockParameters, Pool, Targets};
 
 /// A change of a flock at some time.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Change {
-    /// The direction that leaders follow from now on.
-    Target(Target),
+    /// The direction that leaders follow from now on, or that of each.
+    Target(Targets),
     /// The parameters from now on. Boats keep their headings and velocities; where the pool changes, each boat keeps
     /// its angle about the center and its share of the way between the walls.
     Parameters(Box<FlockParameters>),
@@ -22,7 +22,7 @@ impl Flock {
     /// As for [`Flock::new`] and [`Flock::set_state`]; the flock is unchanged then.
     pub fn change(&mut self, change: &Change) -> Result<()> {
         match change {
-            Change::Target(target) => self.set_target(*target),
+            Change::Target(target) => self.set_target(target.clone())?,
             Change::Parameters(parameters) => {
                 let poses = moved(self.poses(), self.parameters().pool, parameters.pool);
                 let mut next = Self::new(FlockParameters::clone(parameters), self.seed())?;

@@ -11,7 +11,7 @@ use crate::integrator::{
     Checkpoint, Integrator, PhaseMoment, PhaseSchedule, Steering, StepOutcome, Substep,
 };
 use crate::parallel;
-use crate::parameters::{FlockParameters, Target};
+use crate::parameters::{FlockParameters, Targets};
 
 /// The latest time a flock may reach: 10⁹ s.
 pub(crate) const LATEST: Ticks = 1_000_000_000_000_000_000;
@@ -198,10 +198,16 @@ impl Flock {
         self.integrator.law(leader)
     }
 
-    /// Changes the direction that the steering law heads for.
-    pub fn set_target(&mut self, target: Target) {
+    /// Changes the direction that the steering law heads for, that of all leaders or that of each.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for another number of targets than leaders; the flock is unchanged then.
+    pub fn set_target(&mut self, target: impl Into<Targets>) -> Result<()> {
+        let target = target.into();
+        target.check(self.parameters.n_leaders)?;
+        self.integrator.set_target(target.clone());
         self.parameters.target = target;
-        self.integrator.set_target(target);
+        Ok(())
     }
 
     /// Advances by a duration. `rudder` holds one command in [−1, 1] a leader; `None` steers by the

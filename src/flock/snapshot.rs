@@ -109,7 +109,7 @@ impl Flock {
     pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
         let restored = Self::from_snapshot(bytes)?;
         let same = FlockParameters {
-            target: self.parameters.target,
+            target: self.parameters.target.clone(),
             ..restored.parameters.clone()
         };
         if same != self.parameters {

@@ -42,7 +42,7 @@ impl Integrator {
         steering_law(misalignment(
             pose.position,
             pose.heading,
-            self.parameters.target,
+            self.parameters.target.of(boat),
         ))
     }
 

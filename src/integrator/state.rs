@@ -5,7 +5,7 @@ use crate::boat::{Drive, FreeMotion};
 use crate::clock::ticks;
 use crate::contact::{ContactResolver, InverseInertia, Statistics};
 use crate::geometry::{HullPose, Pose, Velocity};
-use crate::parameters::{FlockParameters, Scheme, Target};
+use crate::parameters::{FlockParameters, Scheme, Targets};
 use crate::random::{BrownianPaths, Stream};
 use rand::RngExt;
 
@@ -80,8 +80,8 @@ impl Integrator {
         self.contacts.set_threads(threads);
     }
 
-    /// Changes the direction that leaders steer to.
-    pub(crate) fn set_target(&mut self, target: Target) {
+    /// Changes where leaders steer to.
+    pub(crate) fn set_target(&mut self, target: Targets) {
         self.parameters.target = target;
     }
 

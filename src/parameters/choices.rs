@@ -13,6 +13,15 @@ named_choice! {
 }
 
 impl Target {
+    /// The other direction.
+    #[must_use]
+    pub fn opposite(self) -> Self {
+        match self {
+            Self::Clockwise => Self::CounterClockwise,
+            Self::CounterClockwise => Self::Clockwise,
+        }
+    }
+
     /// +1 for clockwise, −1 for counter-clockwise: the sign of the LAP orientation.
     pub fn sign(self) -> f64 {
         match self {

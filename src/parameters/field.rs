@@ -1,6 +1,6 @@
 //! What is declared of a parameter: its kind, unit, range, source and meaning, and how its value looks outside.
 
-use super::{Noise, Pool, Scheme, Solver, Target};
+use super::{Noise, Pool, Scheme, Solver, Target, Targets};
 use crate::error::{FlockError, Result};
 use std::fmt;
 
@@ -34,6 +34,8 @@ pub enum Kind {
     Choice(fn() -> Vec<&'static str>),
     /// A pool's name, or its outer and inner radius.
     Pool,
+    /// One of these names, or a list with one of them per leader.
+    Choices(fn() -> Vec<&'static str>),
 }
 
 /// Which values of a field are accepted.
@@ -111,6 +113,8 @@ pub enum Value {
     Name(String),
     /// Outer and inner radius of a pool without a name, in cm.
     Radii(f64, f64),
+    /// Names, one per leader.
+    Names(Vec<String>),
 }
 
 impl fmt::Display for Value {
@@ -121,6 +125,7 @@ impl fmt::Display for Value {
             Self::Flag(flag) => flag.fmt(formatter),
             Self::Name(name) => name.fmt(formatter),
             Self::Radii(outer, inner) => write!(formatter, "({outer}, {inner})"),
+            Self::Names(names) => write!(formatter, "[{}]", names.join(", ")),
         }
     }
 }
@@ -230,4 +235,29 @@ macro_rules! choices {
     };
 }
 
-choices!(Target, Scheme, Noise, Solver);
+choices!(Scheme, Noise, Solver);
+
+impl FieldType for Targets {
+    const KIND: Kind = Kind::Choices(|| Target::ALL.iter().map(|target| target.name()).collect());
+
+    fn value(&self) -> Value {
+        match self {
+            Self::One(target) => Value::Name(target.name().to_owned()),
+            Self::Each(targets) => {
+                let names = targets.iter().map(|target| target.name().to_owned());
+                Value::Names(names.collect())
+            }
+        }
+    }
+
+    fn from_value(value: Value) -> Result<Self> {
+        match value {
+            Value::Name(name) => Ok(Self::One(name.parse()?)),
+            Value::Names(names) => {
+                let targets = names.iter().map(|name| name.parse());
+                Ok(Self::Each(targets.collect::<Result<_>>()?))
+            }
+            other => wrong_kind(&other),
+        }
+    }
+}

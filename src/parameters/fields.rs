@@ -2,7 +2,7 @@
 //! its check, the bindings and the documentation follow from this table.
 
 use super::field::{Field, FieldType, Range, Value};
-use super::{Noise, Pool, Scheme, Solver, Target};
+use super::{Noise, Pool, Scheme, Solver, Target, Targets};
 use crate::error::{FlockError, Result};
 
 macro_rules! declare_parameters {
@@ -91,8 +91,9 @@ declare_parameters! {
     nop2_s: f64 = 1.0, "s", Range::NonNegative, "Table 1";
     /// Whether leaders back up in the bw phase (in the experiment their motor ran in fw only).
     leaders_reverse: bool = true, "", Range::Any, "eq. (8), the same for all";
-    /// Direction that eq. (10) steers leaders to: "cw" (LAP orientation +π/2) or "ccw" (-π/2).
-    target: Target = Target::Clockwise, "", Range::Any, "chosen";
+    /// Direction that eq. (10) steers leaders to: "cw" (LAP orientation +π/2) or "ccw" (-π/2), or a list with one per
+    /// leader. Of a list, leader 0's is the reference direction of the flock's signed order.
+    target: Targets = Targets::One(Target::Clockwise), "", Range::Any, "chosen";
     /// How a time step is taken: "leapfrog" (second order), "moreau" (first order) or "paper" (the appendix taken
     /// literally).
     scheme: Scheme = Scheme::Leapfrog, "", Range::Any, "chosen";
@@ -143,7 +144,7 @@ impl FlockParameters {
 
     fn check_leaders(&self) -> Result<()> {
         if self.n_leaders <= self.n_boats {
-            return Ok(());
+            return self.target.check(self.n_leaders);
         }
         let accepted = format!("0 to n_boats = {}", self.n_boats);
         Err(FlockError::parameter("n_leaders", self.n_leaders, accepted))

@@ -7,6 +7,7 @@ mod named_choice;
 mod pools;
 mod presets;
 mod stored;
+mod targets;
 
 pub use choices::{Noise, Scheme, Solver, Target};
 pub use field::{Field, Kind, Range, Value};
@@ -15,3 +16,4 @@ pub(crate) use named_choice::named_choice;
 pub use pools::Pool;
 pub use presets::{Physics, Preset};
 pub(crate) use stored::FirstParameters;
+pub use targets::Targets;

@@ -88,7 +88,7 @@ fn first_value<'de, A: SeqAccess<'de>>(
         Kind::Count => values.next_element()?.map(Value::Count),
         Kind::Real => values.next_element()?.map(Value::Real),
         Kind::Flag => values.next_element()?.map(Value::Flag),
-        Kind::Choice(names) => values.next_element::<u32>()?.map(|place| {
+        Kind::Choice(names) | Kind::Choices(names) => values.next_element::<u32>()?.map(|place| {
             let name = names().get(place as usize).copied().unwrap_or_default();
             Value::Name(name.to_owned())
         }),

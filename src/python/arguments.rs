@@ -2,12 +2,13 @@
 //! out of range is a `ParameterError`, a value of the wrong type or dtype a `TypeError`.
 
 use crate::error::FlockError;
+use crate::parameters::Targets;
 use numpy::{
     PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods,
 };
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyFloat, PySequence, PyString};
+use pyo3::types::{PyBytes, PyFloat, PyList, PySequence, PyString, PyTuple};
 
 /// Arguments that know their name, for signatures.
 macro_rules! named_arguments {
@@ -84,6 +85,29 @@ pub(crate) fn truth(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<b
 pub(crate) fn text(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<String> {
     let given = object.extract::<String>();
     given.map_err(|_| wrong_type(object, name, "a string"))
+}
+
+/// A list or a tuple of strings; `None` for anything that is neither.
+pub(crate) fn texts(
+    object: &Bound<'_, PyAny>,
+    name: &'static str,
+) -> PyResult<Option<Vec<String>>> {
+    if !object.is_instance_of::<PyList>() && !object.is_instance_of::<PyTuple>() {
+        return Ok(None);
+    }
+    let items = object.try_iter()?.map(|item| text(&item?, name));
+    items.collect::<PyResult<_>>().map(Some)
+}
+
+/// A target, or a list with one per leader.
+pub(crate) fn targets(object: &Bound<'_, PyAny>) -> PyResult<Targets> {
+    Ok(match texts(object, "target")? {
+        None => Targets::One(text(object, "target")?.parse()?),
+        Some(names) => {
+            let targets = names.iter().map(|name| name.parse());
+            Targets::Each(targets.collect::<crate::error::Result<_>>()?)
+        }
+    })
 }
 
 /// What an argument may claim beyond its expected size before its dtype is checked.

@@ -6,12 +6,15 @@ use super::parameters::to_python;
 use super::settings::{settings_from, settings_to_dict, term_names};
 use super::state::request_from;
 use crate::environment::observation::FlockFeatures;
-use crate::environment::{BatchRows, EnvBatch, Episode, EpisodeSummary, FlockEnv, TERMS};
+use crate::environment::{
+    BatchRows, EnvBatch, Episode, EpisodeSummary, FlockEnv, LeaderSummary, TERMS,
+};
 use crate::error::{FlockError, Result};
-use crate::parameters::FlockParameters;
+use crate::parameters::{FlockParameters, Targets};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyType};
+use pyo3::types::{PyBytes, PyDict, PyTuple, PyType};
 
 /// What a step returns: observations (rows, size), rewards (rows,), truncated (flocks,).
 type Step<'py> = (
@@ -179,13 +182,33 @@ impl PyEnvBatch {
         self.numbers(py, flock, FlockEnv::final_state)
     }
 
-    /// Features of the flock at the end of the episode that ended in the last step.
+    /// Features of the flock for a leader at the end of the episode that ended in the last step.
+    #[pyo3(signature = (flock, leader=0))]
     fn final_flock_features<'py>(
         &self,
         py: Python<'py>,
         flock: usize,
+        leader: usize,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        self.numbers(py, flock, FlockEnv::final_features)
+        let batch = self.0.read()?;
+        let features = env_of(&batch, flock)?.final_features(leader);
+        Ok(PyArray1::from_slice(py, features))
+    }
+
+    /// Features of its flock for every leader, in the frame of its own target: (rows, features).
+    fn leader_features<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let batch = self.0.read()?;
+        let array = PyArray2::zeros(py, [batch.rows(), FlockFeatures::SIZE], false);
+        let mut numbers = array.readwrite();
+        let mut rest = numbers.as_slice_mut()?;
+        for env in batch.envs() {
+            env.episode().ok_or_else(never_reset)?;
+            let (own, others) = rest.split_at_mut(env.parameters().n_leaders * FlockFeatures::SIZE);
+            env.observe_features(own);
+            rest = others;
+        }
+        drop(numbers);
+        Ok(array)
     }
 
     fn state_size(&self, flock: usize) -> PyResult<usize> {
@@ -319,7 +342,7 @@ impl PyEnvBatch {
         let batch = self.0.read()?;
         let schedule = episode_of(&batch, flock)?.schedule();
         let dict = PyDict::new(py);
-        dict.set_item("target", schedule.target().name())?;
+        dict.set_item("target", targets_shown(py, &schedule.targets())?)?;
         dict.set_item("bw_s", schedule.bw_s)?;
         dict.set_item("flock_seed", schedule.flock_seed)?;
         dict.set_item("step", schedule.step)?;
@@ -329,14 +352,21 @@ impl PyEnvBatch {
     /// Summary of the episode under way.
     fn summary<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Bound<'py, PyDict>> {
         let batch = self.0.read()?;
-        summary_dict(py, &episode_of(&batch, flock)?.summary())
+        let episode = episode_of(&batch, flock)?;
+        let dict = summary_dict(py, &episode.summary())?;
+        add_leaders(&dict, &episode.leader_summaries())?;
+        Ok(dict)
     }
 
     /// Summary of the last episode that reached its end.
     fn finished<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Option<Bound<'py, PyDict>>> {
         let batch = self.0.read()?;
-        let summary = env_of(&batch, flock)?.finished();
-        summary.map(|summary| summary_dict(py, summary)).transpose()
+        let env = env_of(&batch, flock)?;
+        let dict = env.finished().map(|summary| summary_dict(py, summary));
+        if let Some(Ok(dict)) = &dict {
+            add_leaders(dict, env.finished_leaders())?;
+        }
+        dict.transpose()
     }
 
     fn to_bytes<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyBytes>> {
@@ -367,6 +397,41 @@ impl PyEnvBatch {
         let class = py.get_type::<Self>();
         Ok((class.getattr("from_bytes")?, (self.to_bytes(py)?,)))
     }
+}
+
+/// A target by name, or a tuple with one per leader.
+fn targets_shown<'py>(py: Python<'py>, targets: &Targets) -> PyResult<Bound<'py, PyAny>> {
+    match targets {
+        Targets::One(target) => target.name().into_bound_py_any(py),
+        Targets::Each(targets) => {
+            let names = targets.iter().map(|target| target.name());
+            Ok(PyTuple::new(py, names.collect::<Vec<_>>())?.into_any())
+        }
+    }
+}
+
+/// Adds what each leader with a target of its own has: arrays (k,).
+fn add_leaders(dict: &Bound<'_, PyDict>, leaders: &[LeaderSummary]) -> PyResult<()> {
+    if leaders.is_empty() {
+        return Ok(());
+    }
+    type Column = (&'static str, fn(&LeaderSummary) -> f64);
+    let columns: [Column; 4] = [
+        ("leader_targets", |leader| leader.target.sign()),
+        ("leader_total_rewards", |leader| leader.total_reward),
+        ("leader_signed_orders", |leader| leader.signed_order),
+        ("leader_shares_towards_target", |leader| {
+            leader.share_towards_target
+        }),
+    ];
+    for (name, value) in columns {
+        let values: Vec<f64> = leaders.iter().map(value).collect();
+        // As for the whole flock: infos hold no NaN.
+        if !values.iter().any(|value| value.is_nan()) {
+            dict.set_item(name, PyArray1::from_vec(dict.py(), values))?;
+        }
+    }
+    Ok(())
 }
 
 fn summary_dict<'py>(py: Python<'py>, summary: &EpisodeSummary) -> PyResult<Bound<'py, PyDict>> {

@@ -1,6 +1,6 @@
 //! `flockenv.Flock`.
 
-use super::arguments::{Seconds, Seed, Threads, TimeS, floats, text};
+use super::arguments::{Seconds, Seed, Threads, TimeS, floats, targets};
 use super::contacts::PyContacts;
 use super::exclusive::{Exclusive, interruptible};
 use super::order::PyOrderParameters;
@@ -226,15 +226,15 @@ impl PyFlock {
             .set_state(&poses, &velocities, time_s.0, allow_overlap)?)
     }
 
-    /// Change the direction that the steering law heads for, "cw" or "ccw".
+    /// Change the direction that the steering law heads for, "cw" or "ccw", or a list with one per leader.
     ///
     /// Raises
     /// ------
     /// ParameterError
-    ///     For another name.
+    ///     For another name, and a list of another length; the flock is unchanged then.
     fn set_target(&self, target: &Bound<'_, PyAny>) -> PyResult<()> {
-        let target = text(target, "target")?.parse()?;
-        self.0.write()?.set_target(target);
+        let target = targets(target)?;
+        self.0.write()?.set_target(target)?;
         Ok(())
     }
 

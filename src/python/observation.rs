@@ -140,7 +140,7 @@ pub(crate) fn observed<'py>(
         leaders,
         phase: flock.phase(),
         bw_s: parameters.bw_s,
-        target: parameters.target,
+        targets: &parameters.target,
         rudders,
         order: order.as_ref(),
     };

@@ -1,7 +1,7 @@
 //! `flockenv.OrderParameters` and `flockenv.OrderSeries`: the recorded quantities of the table, at one time
 //! and at many.
 
-use super::arguments::{real, same_length, text};
+use super::arguments::{real, same_length, targets};
 use super::result::{arrays_equal, repr_of};
 use super::structure::Samples;
 use crate::analysis::OrderParameters;
@@ -175,6 +175,11 @@ impl PyOrderSeries {
     }
 }
 
+/// The direction that the signed quantities of a flock with such targets count towards.
+fn reference(target: &Bound<'_, PyAny>) -> PyResult<Target> {
+    Ok(targets(target)?.reference())
+}
+
 #[pymethods]
 impl PyOrderSeries {
     #[new]
@@ -235,24 +240,25 @@ impl PyOrderSeries {
     /// ----------
     /// name : str
     ///     Its name in the table of quantities.
-    /// target : str
-    ///     Direction that signed quantities count towards, "cw" or "ccw".
+    /// target : str or sequence of str
+    ///     Direction that signed quantities count towards, "cw" or "ccw"; of a list the first.
     ///
     /// Raises
     /// ------
     /// ParameterError
     ///     For an unknown name or target.
-    #[pyo3(signature = (name, target="cw"))]
+    #[pyo3(signature = (name, target=None), text_signature = "($self, name, target='cw')")]
     fn series<'py>(
         &self,
         py: Python<'py>,
         name: &str,
-        target: &str,
+        target: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.derived(py, name, target.parse()?)
+        let target = target.map_or(Ok(Target::Clockwise), reference)?;
+        self.derived(py, name, target)
     }
 
-    /// Ψ_o·cos(φ_o - φ_target) in [-1, 1], shape (t,), for target "cw" or "ccw".
+    /// Ψ_o·cos(φ_o - φ_target) in [-1, 1], shape (t,), for target "cw" or "ccw"; of a list, for the first.
     ///
     /// Raises
     /// ------
@@ -263,7 +269,7 @@ impl PyOrderSeries {
         py: Python<'py>,
         target: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.derived(py, "signed_order", text(target, "target")?.parse()?)
+        self.derived(py, "signed_order", reference(target)?)
     }
 
     /// Ψ_o·sin φ_o in [-1, 1], shape (t,): ±1 for rotation in order, 0 for a jam.

@@ -1,14 +1,14 @@
 //! `flockenv.FlockParameters` to and from the core's: fields are read as attributes of the same name,
 //! so any object that has them will do. Which there are, and their range, is declared in the core.
 
-use super::arguments::{real, text, truth, wrong_type};
+use super::arguments::{real, text, texts, truth, wrong_type};
 use super::settings::count;
 use crate::geometry;
 use crate::parameters::{Field, FlockParameters, Kind, Physics, Pool, Preset, Value};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::{PyDict, PySequence, PyString};
+use pyo3::types::{PyDict, PySequence, PyString, PyTuple};
 
 impl<'py> FromPyObject<'_, 'py> for FlockParameters {
     type Error = PyErr;
@@ -30,6 +30,10 @@ fn read(value: &Bound<'_, PyAny>, field: &'static Field) -> PyResult<Value> {
         Kind::Real => Value::Real(real(value, name)?),
         Kind::Flag => Value::Flag(truth(value, name)?),
         Kind::Choice(_) => Value::Name(text(value, name)?),
+        Kind::Choices(_) => match texts(value, name)? {
+            Some(names) => Value::Names(names),
+            None => Value::Name(text(value, name)?),
+        },
         Kind::Pool => read_pool(value, name)?,
     })
 }
@@ -68,6 +72,7 @@ fn written<'py>(value: &Value, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         Value::Flag(flag) => flag.into_bound_py_any(py),
         Value::Name(name) => name.into_bound_py_any(py),
         Value::Radii(outer, inner) => (outer, inner).into_bound_py_any(py),
+        Value::Names(names) => Ok(PyTuple::new(py, names)?.into_any()),
     }
 }
 
@@ -108,15 +113,18 @@ fn kind_name(kind: Kind) -> &'static str {
         Kind::Flag => "bool",
         Kind::Choice(_) => "str",
         Kind::Pool => "str or (float, float)",
+        Kind::Choices(_) => "str or (str, ...)",
     }
 }
 
 fn accepted(field: &Field) -> String {
+    let listed = |names: fn() -> Vec<&'static str>| {
+        let names: Vec<_> = names().iter().map(|name| format!("{name:?}")).collect();
+        names.join(", ")
+    };
     match field.kind {
-        Kind::Choice(names) => {
-            let names: Vec<_> = names().iter().map(|name| format!("{name:?}")).collect();
-            names.join(", ")
-        }
+        Kind::Choice(names) => listed(names),
+        Kind::Choices(names) => format!("{}, or a list of them, one per leader", listed(names)),
         _ => field.range.accepted().to_owned(),
     }
 }

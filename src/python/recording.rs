@@ -1,6 +1,6 @@
 //! The loop of `flockenv.simulate`.
 
-use super::arguments::{DurationS, PeriodS, SampleHz, floats, real, same_length, text};
+use super::arguments::{DurationS, PeriodS, SampleHz, floats, real, same_length, targets};
 use super::contacts::PyContactSeries;
 use super::flock::{BOAT_SUBSTEPS_A_PIECE, PyFlock};
 use super::observation::observed;
@@ -12,7 +12,7 @@ use crate::flock::{Change, Flock, Pause, Real, Recorder, Recording, Sampling};
 use crate::integrator::Phase;
 use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString};
+use pyo3::types::{PyDict, PyList, PyString, PyTuple};
 
 /// The phases in the order of a cycle; samples hold their place in it.
 #[pyfunction]
@@ -97,8 +97,9 @@ pub(crate) fn record<'py>(
 }
 
 fn change_from(value: &Bound<'_, PyAny>) -> PyResult<Change> {
-    if value.is_instance_of::<PyString>() {
-        return Ok(Change::Target(text(value, "target")?.parse()?));
+    let is_list = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
+    if is_list || value.is_instance_of::<PyString>() {
+        return Ok(Change::Target(targets(value)?));
     }
     Ok(Change::Parameters(Box::new(value.extract()?)))
 }

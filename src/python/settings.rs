@@ -1,7 +1,7 @@
 //! Options of environments, as a dictionary of plain values, to and from the core's settings. Which there
 //! are is declared in the core.
 
-use super::arguments::{HoldS, real, text, truth, whole, wrong_type};
+use super::arguments::{HoldS, real, text, texts, truth, whole, wrong_type};
 use crate::clock::whole_steps;
 use crate::environment::observation::{Block, ObservationLayout};
 use crate::environment::{ActionMode, EnvOption, EnvSettings, OPTIONS, OptionValue, RewardTerm};
@@ -41,7 +41,10 @@ fn read(
             OptionValue::OptionalCount(optional(value, |v| count(v, name))?)
         }
         OptionValue::Flag(_) => OptionValue::Flag(truth(value, name)?),
-        OptionValue::Name(_) => OptionValue::Name(text(value, name)?),
+        OptionValue::Name(_) | OptionValue::Names(_) => match texts(value, name)? {
+            Some(names) => OptionValue::Names(names),
+            None => OptionValue::Name(text(value, name)?),
+        },
         OptionValue::Blocks(_) => OptionValue::Blocks(blocks_from(value)?),
         OptionValue::Weights(_) => OptionValue::Weights(weights_from(value)?),
     })
@@ -68,6 +71,7 @@ fn written(value: OptionValue, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
         OptionValue::OptionalCount(count) => count.into_bound_py_any(py),
         OptionValue::Flag(flag) => flag.into_bound_py_any(py),
         OptionValue::Name(name) => name.into_bound_py_any(py),
+        OptionValue::Names(names) => Ok(PyTuple::new(py, names)?.into_any()),
         OptionValue::Blocks(blocks) => {
             let dict = PyDict::new(py);
             for (block, repeats) in blocks {

@@ -1,7 +1,7 @@
 //! States of flocks as dictionaries and arrays, and requests of episodes that start in them.
 
-use super::arguments::{floats, real, text, truth, whole, wrong_type};
-use crate::environment::{ResetRequest, Start};
+use super::arguments::{floats, real, text, texts, truth, whole, wrong_type};
+use crate::environment::{ResetRequest, Start, TargetChoice};
 use crate::error::FlockError;
 use crate::flock::State;
 use crate::geometry::{Pose, Velocity};
@@ -68,7 +68,7 @@ pub(crate) fn request_from(options: &Bound<'_, PyDict>, boats: usize) -> PyResul
         match text(&name, "reset option")?.as_str() {
             "seed" if value.is_none() => request.seed = None,
             "seed" => request.seed = Some(whole(&value, "seed")?),
-            "target" => request.target = Some(text(&value, "target")?.parse()?),
+            "target" => request.target = Some(target_choice(&value)?),
             "bw_s" => request.bw_s = Some(real(&value, "bw_s")?),
             "state" => request.start = Start::State(state_from(&value, boats)?),
             "snapshot" => request.start = snapshot_from(&value)?,
@@ -86,6 +86,13 @@ pub(crate) fn request_from(options: &Bound<'_, PyDict>, boats: usize) -> PyResul
         return Err(FlockError::parameter("reset options", "snapshot and others", accepted).into());
     }
     Ok(request)
+}
+
+fn target_choice(value: &Bound<'_, PyAny>) -> PyResult<TargetChoice> {
+    Ok(match texts(value, "target")? {
+        Some(names) => TargetChoice::each(&names)?,
+        None => TargetChoice::named(&text(value, "target")?)?,
+    })
 }
 
 fn snapshot_from(value: &Bound<'_, PyAny>) -> PyResult<Start> {

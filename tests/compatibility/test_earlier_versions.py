@@ -119,7 +119,7 @@ def test_damage_shows_in_every_format_of_a_snapshot(place):
 def test_every_format_of_an_environments_state_goes_on_alike():
     env = gymnasium.make("flockenv/Leaders-v0", **SMALL).unwrapped
     rewards, summaries = [], []
-    for each in (1, 2):
+    for each in (1, 2, 3):
         content = (FIXTURES / f"environment_format_{each}.state").read_bytes()
         assert content[:8] == b"flocken%d" % each
         env.reset(seed=2)
@@ -130,10 +130,11 @@ def test_every_format_of_an_environments_state_goes_on_alike():
             own.append(reward)
         rewards.append(own)
         summaries.append(info["episode_summary"])
-    assert rewards[0] == rewards[1]
+    assert rewards[0] == rewards[1] == rewards[2]
     assert len(rewards[0]) == 50
     # Format 1 held the sums of two of the quantities: the others have no mean over the episode.
-    old, new = summaries
+    old, new, newer = summaries
+    assert new == newer
     assert old == {name: new[name] for name in old}
     assert {"psi_o", "signed_order"} <= old.keys()
     assert new.keys() - old.keys() >= {"milling", "nematic"}

@@ -2,6 +2,7 @@
 
 mod batches;
 mod episodes;
+mod leader_targets;
 mod observations;
 mod stored_states;
 mod support;

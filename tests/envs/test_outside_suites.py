@@ -24,6 +24,8 @@ VARIANTS = {
     "one leader": {"n_leaders": 1},
     "discrete": {"rudder_levels": 5},
     "mirrored": {"mirror_to_target": True, "target": "random"},
+    "opposed": {"target": ["cw", "ccw"]},
+    "opposed and mirrored": {"target": ["ccw", "cw"], "mirror_to_target": True},
     "camera": {"dropout_rate": 0.2, "delay_frames": 1},
     "servo": {"rudder_lag_s": 0.3, "rudder_rate_per_s": 2.0},
     "noise range": {"bw_s": (0.1, 0.6), "target": "random"},

@@ -20,6 +20,7 @@ VARIANTS = {
         "rudder_rate_per_s": 5.0,
         "mirror_to_target": True,
     },
+    "opposed": {"target": ["cw", "ccw", "ccw"], "mirror_to_target": True},
     "paper": {"preset": "paper"},
     "bias": {"speed_spread_cm_s": 3.0, "turning_bias": 0.1, "current_gain": 0.1},
 }

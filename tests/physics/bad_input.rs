@@ -155,10 +155,10 @@ fn corrupt_and_foreign_snapshots_change_nothing() {
     other.advance(0.3, None).expect("still usable");
     // Another target is no other scene.
     let mut turned = Flock::new(p, 3).expect("room");
-    turned.set_target(Target::CounterClockwise);
+    turned.set_target(Target::CounterClockwise).unwrap();
     turned.restore(&bytes).expect("the same scene");
     assert_eq!(bits(&turned), bits(&flock));
-    assert_eq!(turned.parameters().target, Target::Clockwise);
+    assert_eq!(turned.parameters().target, Target::Clockwise.into());
 }
 
 /// Constants so wild that an explicit step leaves the finite numbers.

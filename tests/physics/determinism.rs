@@ -87,7 +87,7 @@ fn a_snapshot_continues_with_the_same_bits() {
             // On a phase switch, on the grid, and neither: in the middle of a substep.
             for stop in [0.713, 0.987, 0.123_456_789] {
                 flock.advance(stop, None).expect("finite motion");
-                flock.set_target(Target::CounterClockwise);
+                flock.set_target(Target::CounterClockwise).unwrap();
                 let bytes = flock.snapshot();
                 let mut other = Flock::new(p.clone(), 99).expect("room");
                 other.advance(0.5, None).expect("finite motion");

@@ -65,7 +65,7 @@ fn with_the_simulation_preset_order_is_lost_between_a_quarter_and_nine_twentieth
 
 /// Ordered frames (Ψ_o > 0.8, φ_o within π/4 of ±π/2) on the leaders' side, and all of them.
 fn ordered_frames(parameters: &FlockParameters, seeds: u64) -> (usize, usize) {
-    let side = parameters.target.sign();
+    let side = parameters.target.reference().sign();
     let counts: Vec<(usize, usize)> = (1..=seeds)
         .collect::<Vec<u64>>()
         .par_iter()
@@ -95,7 +95,7 @@ fn leaders_give_the_direction() {
         for target in [Target::Clockwise, Target::CounterClockwise] {
             let p = FlockParameters {
                 n_leaders: 4,
-                target,
+                target: target.into(),
                 ..at_noise(preset, bw_s)
             };
             let (led, ordered) = ordered_frames(&p, 2);

@@ -202,7 +202,7 @@ fn without_a_command_a_leader_steers_by_the_law() {
         law.advance(1.0, None).expect("finite motion");
         held.advance(1.0, Some(&[-1.0])).expect("finite motion");
         assert_eq!(law.poses(), held.poses(), "{scheme:?}");
-        law.set_target(Target::CounterClockwise);
+        law.set_target(Target::CounterClockwise).unwrap();
         assert_eq!(law.steering_law(0), 1.0);
     }
 }

@@ -15,7 +15,7 @@ fn circling(pool: Pool, target: Target) -> Flock {
         n_boats: 4,
         n_leaders: 2,
         pool,
-        target,
+        target: target.into(),
         ..FlockParameters::preset(Preset::Simulation)
     };
     let mut flock = Flock::new(parameters, 1).unwrap();

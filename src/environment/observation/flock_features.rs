@@ -4,7 +4,7 @@
 use super::entry::{ANGULAR_VELOCITY_SCALE, CLOCK, Entry, GROUP, NEAR_LEADERS, PHASE, Scale};
 use super::view::{FlockView, Scaling, phase};
 use crate::geometry::{LapFrame, Vec2};
-use crate::parameters::FlockParameters;
+use crate::parameters::{FlockParameters, Target};
 
 /// Boats of the two groups: normal ones and leaders.
 const GROUPS: usize = 2;
@@ -64,10 +64,10 @@ impl FlockFeatures {
         }
     }
 
-    /// Writes the features; `elapsed` is the part of the episode that is over.
-    pub fn observe(&self, view: &FlockView, elapsed: f64, out: &mut [f32]) {
+    /// Writes the features in the frame of a target; `elapsed` is the part of the episode that is over.
+    pub fn observe(&self, view: &FlockView, target: Target, elapsed: f64, out: &mut [f32]) {
         let seen: Vec<_> = (0..view.poses.len())
-            .map(|boat| self.seen(view, boat))
+            .map(|boat| self.seen(view, target, boat))
             .collect();
         let (leaders, normal) = seen.split_at(view.leaders);
         let mut features = Vec::with_capacity(SIZE);
@@ -79,10 +79,10 @@ impl FlockFeatures {
         self.scaling.write(&features, false, out);
     }
 
-    fn seen(&self, view: &FlockView, boat: usize) -> Seen {
+    fn seen(&self, view: &FlockView, target: Target, boat: usize) -> Seen {
         let (pose, velocity, hull) = (&view.poses[boat], &view.velocities[boat], &view.hulls[boat]);
         let frame = LapFrame::at(pose.position);
-        let towards = view.target.sign();
+        let towards = target.sign();
         let orientation = frame.components(hull.axis);
         let lap_velocity = frame.components(velocity.linear) * self.speed;
         let spin = -velocity.angular / ANGULAR_VELOCITY_SCALE;

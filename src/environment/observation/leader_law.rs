@@ -43,7 +43,7 @@ impl LeaderLaw {
         let frame = LapFrame::at(view.poses[leader].position);
         let mut physical = [0.0; OWN.len() + TARGET.len()];
         physical[..OWN.len()].copy_from_slice(&own(view, leader, &frame));
-        physical[OWN.len()] = view.target.sign();
+        physical[OWN.len()] = view.targets.of(leader).sign();
         let mut observed = [0.0; OWN.len() + TARGET.len()];
         self.scaling.write(&physical, false, &mut observed);
         f64::from(self.law.rudder_about(&observed, outward) as f32)

@@ -45,12 +45,12 @@ impl Observer {
     /// Writes the leaders' observations one after another, `layout().size()` numbers each; returns how
     /// many numbers were clipped at their bounds.
     pub fn observe(&mut self, view: &FlockView, out: &mut [f32]) -> u32 {
-        let mirrored = self.layout.mirror_to_target && view.target.sign() < 0.0;
         let mut clipped = 0;
         let (phase, order) = (phase(view), order(view));
         for (leader, row) in out.chunks_exact_mut(self.scaling.len()).enumerate() {
             self.physical.clear();
             self.fill(view, leader, &phase, &order);
+            let mirrored = self.layout.mirror_to_target && view.targets.of(leader).sign() < 0.0;
             clipped += self.scaling.write(&self.physical, mirrored, row);
         }
         clipped
@@ -71,7 +71,7 @@ impl Observer {
             self.physical.extend_from_slice(phase);
         }
         if self.layout.target {
-            self.physical.push(view.target.sign());
+            self.physical.push(view.targets.of(leader).sign());
         }
         if self.layout.neighbors > 0 {
             self.fill_neighbors(view, leader, &frame);
@@ -130,7 +130,7 @@ pub(crate) struct StateObserver {
 }
 
 impl StateObserver {
-    /// For checked parameters; mirrored like the observations.
+    /// For checked parameters; mirrored like the observations of leader 0.
     pub(crate) fn new(parameters: &FlockParameters, mirror_to_target: bool) -> Self {
         let rest = state_entries(0).into_iter();
         Self {
@@ -148,13 +148,13 @@ impl StateObserver {
 
     /// Writes the state; `elapsed` is the part of the episode that is over.
     pub(crate) fn observe(&self, view: &FlockView, elapsed: f64, out: &mut [f32]) {
-        let mirrored = self.mirror_to_target && view.target.sign() < 0.0;
+        let mirrored = self.mirror_to_target && view.targets.reference().sign() < 0.0;
         let (boats, rest) = out.split_at_mut(self.boats * self.boat.len());
         for (boat, row) in boats.chunks_exact_mut(self.boat.len()).enumerate() {
             self.boat.write(&boat_state(view, boat), mirrored, row);
         }
         let mut physical = phase(view).to_vec();
-        physical.extend([view.target.sign(), elapsed]);
+        physical.extend([view.targets.mean_sign(view.leaders), elapsed]);
         self.rest.write(&physical, mirrored, rest);
     }
 }

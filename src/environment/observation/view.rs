@@ -6,7 +6,7 @@ use crate::boat::misalignment;
 use crate::clock::seconds;
 use crate::geometry::{HullPose, LapFrame, Pose, Velocity};
 use crate::integrator::PhaseMoment;
-use crate::parameters::{FlockParameters, Target};
+use crate::parameters::{FlockParameters, Targets};
 
 /// Everything that an observation depends on.
 #[derive(Debug, Clone, Copy)]
@@ -23,8 +23,8 @@ pub struct FlockView<'a> {
     pub phase: PhaseMoment,
     /// Length of the backward phase in s.
     pub bw_s: f64,
-    /// The direction to lead in.
-    pub target: Target,
+    /// The directions to lead in.
+    pub targets: &'a Targets,
     /// The leaders' rudders as they stand.
     pub rudders: &'a [f64],
     /// Order parameters of the normal boats; `None` where there is none.
@@ -105,12 +105,13 @@ pub(super) fn own(view: &FlockView, leader: usize, frame: &LapFrame) -> [f64; OW
 /// sign for whoever reads the observation.
 fn orientation(view: &FlockView, leader: usize, frame: &LapFrame) -> (f64, f64) {
     let orientation = frame.components(view.hulls[leader].axis);
-    let towards = view.target.sign();
+    let target = view.targets.of(leader);
+    let towards = target.sign();
     if orientation.x.abs() > 1e-9 || towards * orientation.y > 0.0 {
         return (orientation.x, orientation.y);
     }
     let pose = &view.poses[leader];
-    let (sin, cos) = misalignment(pose.position, pose.heading, view.target).sin_cos();
+    let (sin, cos) = misalignment(pose.position, pose.heading, target).sin_cos();
     (-towards * sin, towards * cos)
 }
 

@@ -1,0 +1,89 @@
+//! Where leaders steer to: all in one direction, or each in its own.
+
+use super::Target;
+use crate::error::{FlockError, Result};
+
+/// The targets of a flock's leaders.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Targets {
+    /// One for all leaders.
+    One(Target),
+    /// One per leader.
+    Each(Vec<Target>),
+}
+
+impl Targets {
+    /// The target of a leader; the reference direction for a boat that is none.
+    pub fn of(&self, leader: usize) -> Target {
+        match self {
+            Self::One(target) => *target,
+            Self::Each(targets) => targets
+                .get(leader)
+                .copied()
+                .unwrap_or_else(|| self.reference()),
+        }
+    }
+
+    /// The direction that what belongs to the whole flock refers to: leader 0's target.
+    pub fn reference(&self) -> Target {
+        match self {
+            Self::One(target) => *target,
+            Self::Each(targets) => targets.first().copied().unwrap_or(Target::Clockwise),
+        }
+    }
+
+    /// Mean sign of the targets of so many leaders: +1 where all are clockwise, −1 where all are counter-clockwise.
+    pub fn mean_sign(&self, leaders: usize) -> f64 {
+        match self {
+            Self::One(target) => target.sign(),
+            Self::Each(_) => {
+                let signs = (0..leaders).map(|leader| self.of(leader).sign());
+                signs.sum::<f64>() / leaders.max(1) as f64
+            }
+        }
+    }
+
+    /// Whether two leaders have opposite targets.
+    pub fn are_opposed(&self) -> bool {
+        match self {
+            Self::One(_) => false,
+            Self::Each(targets) => targets.iter().any(|target| *target != targets[0]),
+        }
+    }
+
+    /// Checks that a list has one target per leader.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`].
+    pub fn check(&self, n_leaders: usize) -> Result<()> {
+        match self {
+            Self::Each(targets) if targets.len() != n_leaders || n_leaders == 0 => {
+                let accepted = match n_leaders {
+                    0 => "a flock without leaders has no list of targets: \"cw\" or \"ccw\""
+                        .to_owned(),
+                    n => format!("as many targets as leaders: n_leaders = {n}"),
+                };
+                Err(FlockError::parameter("target", self, accepted))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl From<Target> for Targets {
+    fn from(target: Target) -> Self {
+        Self::One(target)
+    }
+}
+
+impl std::fmt::Display for Targets {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::One(target) => formatter.write_str(target.name()),
+            Self::Each(targets) => {
+                let names: Vec<_> = targets.iter().map(|target| target.name()).collect();
+                write!(formatter, "[{}]", names.join(", "))
+            }
+        }
+    }
+}

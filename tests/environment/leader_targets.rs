@@ -1,0 +1,268 @@
+//! With a target for each leader, a leader sees, earns and steers as if its target were everybody's.
+
+use crate::support::{Written, batch, parameters, seeded, settings, step};
+use flockenv::Flock;
+use flockenv::environment::RewardWeights;
+use flockenv::environment::observation::{CameraSettings, FlockFeatures};
+use flockenv::environment::{ActionMode, EnvBatch, EnvSettings, ResetRequest, TargetChoice};
+use flockenv::parameters::Target::{self, Clockwise, CounterClockwise};
+use flockenv::parameters::{FlockParameters, Targets};
+
+const MIXED: [Target; 3] = [Clockwise, CounterClockwise, Clockwise];
+
+fn each(targets: &[Target]) -> TargetChoice {
+    TargetChoice::Each(targets.to_vec())
+}
+
+/// Every reward term has a weight, those from contacts too.
+fn towards(steps: u32, target: TargetChoice) -> EnvSettings {
+    let mut own = settings(steps);
+    own.episode.target = target;
+    own.reward = RewardWeights(std::array::from_fn(|term| 1.0 + term as f64));
+    own
+}
+
+fn rows(written: &Written) -> Vec<(&[f32], f64)> {
+    let size = written.observations.len() / written.rewards.len();
+    let observed = written.observations.chunks_exact(size);
+    observed.zip(written.rewards.iter().copied()).collect()
+}
+
+/// Steps three batches whose targets are mixed, all clockwise and all counter-clockwise through the same motion, and
+/// compares each leader of the first with its own in the batch of its target.
+fn compare(change: impl Fn(&mut EnvSettings)) {
+    let choices = [
+        each(&MIXED),
+        TargetChoice::Clockwise,
+        TargetChoice::CounterClockwise,
+    ];
+    let mut batches = choices.map(|target| {
+        let mut own = towards(200, target);
+        change(&mut own);
+        batch(own, &[3], 5)
+    });
+    let mirrored = batches[0].settings().observation.mirror_to_target;
+    for time in 0..200 {
+        let rudders: Vec<f64> = (0..3).map(|k| f64::from(time + 7 * k).sin()).collect();
+        let written: Vec<Written> = batches
+            .iter_mut()
+            .map(|batch| {
+                let targets = batch.envs()[0].episode().unwrap().targets().clone();
+                let flipped = |leader: usize| mirrored && targets.of(leader) == CounterClockwise;
+                let chosen = rudders.iter().enumerate();
+                let actions: Vec<f64> = chosen
+                    .map(|(leader, &rudder)| if flipped(leader) { -rudder } else { rudder })
+                    .collect();
+                step(batch, &actions).unwrap()
+            })
+            .collect();
+        for (leader, target) in MIXED.iter().enumerate() {
+            let own = if *target == Clockwise { 1 } else { 2 };
+            assert_eq!(
+                rows(&written[0])[leader],
+                rows(&written[own])[leader],
+                "at {time}"
+            );
+        }
+        assert_eq!(batches[0].envs()[0].episode().unwrap().flock().poses(), {
+            batches[2].envs()[0].episode().unwrap().flock().poses()
+        });
+    }
+}
+
+#[test]
+fn a_leader_sees_and_earns_as_if_its_target_were_everybodys() {
+    compare(|_| ());
+    compare(|own| own.observation.mirror_to_target = true);
+    compare(|own| {
+        own.observation.law_rudder = true;
+        own.camera = CameraSettings {
+            dropout_rate: 0.3,
+            delay_frames: 1,
+        };
+    });
+}
+
+#[test]
+fn an_action_that_stands_for_a_heading_is_taken_from_the_leaders_own_target() {
+    for mode in [ActionMode::Heading, ActionMode::Lean] {
+        let rudders = [
+            each(&MIXED),
+            TargetChoice::Clockwise,
+            TargetChoice::CounterClockwise,
+        ]
+        .map(|target| {
+            let mut own = towards(5, target);
+            own.action.mode = mode;
+            let mut batch = batch(own, &[3], 5);
+            step(&mut batch, &[0.1, 0.1, 0.1]).unwrap();
+            batch.envs()[0].episode().unwrap().rudders().to_vec()
+        });
+        assert_eq!(rudders[0], [rudders[1][0], rudders[2][1], rudders[1][2]]);
+        assert_ne!(rudders[1][1], rudders[2][1]);
+    }
+}
+
+#[test]
+fn a_list_of_equal_targets_is_one_target() {
+    let mut one = batch(towards(60, TargetChoice::CounterClockwise), &[3], 1);
+    let mut list = batch(towards(60, each(&[CounterClockwise; 3])), &[3], 1);
+    for time in 0..60 {
+        let actions = [0.3, -1.0, f64::from(time).cos()];
+        assert_eq!(step(&mut one, &actions), step(&mut list, &actions));
+        let observed = [&one, &list].map(|batch| {
+            let env = &batch.envs()[0];
+            let (mut state, mut features) = (
+                vec![0.0; env.state_size()],
+                vec![0.0; 3 * FlockFeatures::SIZE],
+            );
+            env.observe_state(&mut state);
+            env.observe_features(&mut features);
+            (state, features, env.episode().unwrap().summary())
+        });
+        assert_eq!(observed[0].0, observed[1].0);
+        assert_eq!(observed[0].1, observed[1].1);
+        assert_eq!(
+            format!("{:?}", observed[0].2),
+            format!("{:?}", observed[1].2)
+        );
+    }
+}
+
+#[test]
+fn the_papers_law_steers_each_leader_to_its_own_target() {
+    let law = |target: Targets| {
+        let scene = FlockParameters {
+            target,
+            ..parameters(3)
+        };
+        let flock = Flock::new(scene, 9).unwrap();
+        [0, 1, 2].map(|leader| flock.steering_law(leader))
+    };
+    let (cw, ccw) = (law(Clockwise.into()), law(CounterClockwise.into()));
+    assert_eq!(law(Targets::Each(MIXED.to_vec())), [cw[0], ccw[1], cw[2]]);
+    assert!((0..3).all(|leader| cw[leader] != ccw[leader]));
+}
+
+#[test]
+fn summaries_are_each_leaders_own() {
+    let mut batch = batch(towards(300, each(&MIXED)), &[3], 2);
+    let mut totals = [0.0; 3];
+    for _ in 0..300 {
+        let written = step(&mut batch, &[0.2, -0.2, 0.5]).unwrap();
+        for (total, reward) in totals.iter_mut().zip(written.rewards) {
+            *total += reward;
+        }
+    }
+    let env = &batch.envs()[0];
+    let leaders = env.finished_leaders();
+    let whole = env.finished().unwrap();
+    let order = whole
+        .averages
+        .named()
+        .find(|(name, _)| *name == "signed_order");
+    for (leader, (own, target)) in leaders.iter().zip(MIXED).enumerate() {
+        assert_eq!(own.target, target);
+        assert_eq!(own.total_reward, totals[leader]);
+        assert_eq!(own.signed_order, target.sign() * order.unwrap().1);
+    }
+    assert_eq!(leaders[0].share_towards_target, whole.share_towards_target);
+    assert!(leaders[0].share_towards_target + leaders[1].share_towards_target <= 1.0);
+    assert!(leaders[0].signed_order != 0.0);
+    let mean: f64 = totals.iter().sum::<f64>() / 3.0;
+    assert!((whole.total_reward - mean).abs() < 1e-9 * mean.abs().max(1.0));
+}
+
+#[test]
+fn the_global_state_has_the_mean_of_the_targets() {
+    let state = |target| {
+        let batch = batch(towards(10, target), &[3], 2);
+        let mut state = vec![0.0; batch.envs()[0].state_size()];
+        batch.envs()[0].observe_state(&mut state);
+        state
+    };
+    let (mixed, cw) = (state(each(&MIXED)), state(TargetChoice::Clockwise));
+    let place = cw.len() - 2;
+    assert_eq!((mixed[place], cw[place]), (1.0 / 3.0, 1.0));
+    assert_eq!(mixed[..place], cw[..place]);
+}
+
+#[test]
+fn lists_of_another_length_are_refused_before_anything_changes() {
+    let wrong = towards(10, each(&MIXED));
+    for leaders in [2, 4] {
+        let message = EnvBatch::new(wrong.clone(), vec![parameters(leaders)])
+            .unwrap_err()
+            .to_string();
+        assert!(
+            message.contains(&format!("n_leaders = {leaders}")),
+            "{message}"
+        );
+    }
+    let mut own = batch(settings(10), &[3], 0);
+    let before = own.to_bytes();
+    let request = ResetRequest {
+        target: Some(each(&[Clockwise])),
+        ..seeded(3).unwrap()
+    };
+    assert!(own.reset(&[Some(request)]).is_err());
+    assert_eq!(own.to_bytes(), before);
+    let mut flock = Flock::new(parameters(3), 0).unwrap();
+    assert!(flock.set_target(Targets::Each(vec![Clockwise])).is_err());
+    assert_eq!(flock.parameters().target, Clockwise.into());
+    for leaders in [0, 1] {
+        let scene = FlockParameters {
+            target: Targets::Each(Vec::new()),
+            ..parameters(leaders)
+        };
+        assert!(scene.check().is_err());
+    }
+}
+
+#[test]
+fn what_is_drawn_or_alternates_stands_alone() {
+    for name in ["random", "alternate", "CW"] {
+        let names = ["cw".to_owned(), name.to_owned()];
+        let message = TargetChoice::each(&names).unwrap_err().to_string();
+        assert!(
+            message.contains(name) && message.contains("one per leader"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn restored_batches_go_on_bit_for_bit_with_the_leaders_sums() {
+    let mut own = towards(12, each(&MIXED));
+    own.observation.mirror_to_target = true;
+    let mut original = batch(own, &[3, 3], 0);
+    for time in 0..40 {
+        let mut copy = EnvBatch::from_bytes(&original.to_bytes()).unwrap();
+        assert_eq!(copy.to_bytes(), original.to_bytes());
+        let actions = [f64::from(time).sin(), 0.2, -0.7, 1.0, -1.0, 0.0];
+        assert_eq!(step(&mut original, &actions), step(&mut copy, &actions));
+        assert_eq!(
+            copy.envs()[1].finished_leaders(),
+            original.envs()[1].finished_leaders()
+        );
+        assert_eq!(copy.to_bytes(), original.to_bytes());
+    }
+    assert_eq!(original.envs()[1].finished_leaders().len(), 3);
+}
+
+#[test]
+fn targets_of_an_episode_may_be_requested() {
+    let mut own = batch(settings(10), &[3], 0);
+    let request = ResetRequest {
+        target: Some(each(&MIXED)),
+        ..seeded(3).unwrap()
+    };
+    own.reset(&[Some(request)]).unwrap();
+    let episode = own.envs()[0].episode().unwrap();
+    assert_eq!(*episode.targets(), Targets::Each(MIXED.to_vec()));
+    assert_eq!(episode.leader_summaries().len(), 3);
+    own.reset(&[seeded(3)]).unwrap();
+    let episode = own.envs()[0].episode().unwrap();
+    assert_eq!(*episode.targets(), Clockwise.into());
+    assert!(episode.leader_summaries().is_empty());
+}

@@ -1,0 +1,250 @@
+"""Law: with a target per leader, each leader's side of every interface is as if all had its own.
+
+The core's part of it is in tests/environment/leader_targets.rs.
+"""
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv import Flock, FlockParameters, ParameterError, Recording
+from flockenv.policies import DampedLaw, StraightAhead
+from flockenv.replay.page import write_replay
+
+SMALL = {"n_boats": 9, "n_leaders": 3, "episode_s": 6.0, "pool": "table-1"}
+MIXED = ("cw", "ccw", "cw")
+FLIP = np.array([1.0, -1.0, -1.0])
+
+
+def rollout(env, seed=3):
+    """Steps a parallel environment by fixed rudders: observations, rewards, infos by step."""
+    env.reset(seed=seed)
+    steps = []
+    while env.agents:
+        k = len(steps)
+        actions = {
+            agent: np.array([np.sin(0.1 * k + 2 * place)])
+            for place, agent in enumerate(env.possible_agents)
+        }
+        steps.append(env.step(actions))
+    return steps
+
+
+def test_each_agent_has_the_observations_and_rewards_of_its_own_target():
+    reward = {"signed_order": 1.0, "leader_velocity": 0.5, "tangential_velocity": 0.25}
+    options = {**SMALL, "reward": reward}
+    mixed = rollout(flockenv.parallel_env(**options, target=list(MIXED)))
+    alone = {word: rollout(flockenv.parallel_env(**options, target=word)) for word in set(MIXED)}
+    for step, (observations, rewards, *_, infos) in enumerate(mixed):
+        for leader, word in enumerate(MIXED):
+            agent = f"leader_{leader}"
+            own = alone[word][step]
+            np.testing.assert_array_equal(observations[agent], own[0][agent])
+            assert rewards[agent] == own[1][agent]
+            assert infos[agent]["reward_terms"] == own[4][agent]["reward_terms"]
+
+
+def test_the_last_infos_are_each_agents_own():
+    steps = rollout(flockenv.parallel_env(**SMALL, target=MIXED))
+    infos = steps[-1][4]
+    for leader, word in enumerate(MIXED):
+        own = infos[f"leader_{leader}"]["leader_summary"]
+        assert own["target"] == word
+        total = sum(step[1][f"leader_{leader}"] for step in steps)
+        assert own["total_reward"] == pytest.approx(total, rel=1e-12)
+    first, second = (infos[f"leader_{leader}"]["leader_summary"] for leader in (0, 1))
+    assert first["signed_order"] == -second["signed_order"] != 0.0
+    whole = infos["leader_1"]["episode_summary"]
+    assert whole["signed_order"] == first["signed_order"]
+    assert whole["leader_targets"].tolist() == [1.0, -1.0, 1.0]
+    single = rollout(flockenv.parallel_env(**SMALL))[-1][4]["leader_0"]
+    assert "leader_summary" not in single
+    assert not any(name.startswith("leader_") for name in single["episode_summary"])
+
+
+def test_the_joint_reward_is_the_mean_over_leaders():
+    env = flockenv.LeadersEnv(**SMALL, target=MIXED)
+    assert env.reset(seed=0)[1]["target"] == MIXED
+    _, reward, _, _, info = env.step(np.zeros(3))
+    order = env.flock.order_parameters()
+    signed = order.psi_o * np.sin(order.phi_o)
+    assert reward == pytest.approx(signed / 3, rel=1e-12)
+    assert info["reward_terms"]["signed_order"] == pytest.approx(reward, rel=1e-12)
+
+
+def test_vector_environment_and_slots_have_each_leaders_rewards():
+    from flockenv.sb3 import LeaderVecEnv
+
+    parallel = flockenv.parallel_env(**SMALL, target=MIXED)
+    venv = flockenv.LeadersVectorEnv(2, **SMALL, target=MIXED)
+    slots = LeaderVecEnv(2, **SMALL, target=MIXED)
+    parallel.reset(seed=4)
+    venv.reset(seed=4)
+    slots.seed(4)
+    slots.reset()
+    for _ in range(60):
+        observations, rewards, *_, infos = parallel.step(
+            {agent: np.array([0.3]) for agent in parallel.agents}
+        )
+        joint = venv.step(np.full((2, 3), 0.3))
+        slots.step_async(np.full((6, 1), 0.3))
+        _, paid, dones, slot_infos = slots.step_wait()
+        assert joint[1][0] == pytest.approx(np.mean(list(rewards.values())), rel=1e-12)
+        np.testing.assert_array_equal(paid[:3], np.float32(list(rewards.values())))
+    assert dones.all()
+    for slot, (agent, row) in enumerate(observations.items()):
+        np.testing.assert_array_equal(slot_infos[slot]["terminal_observation"], row)
+        assert slot_infos[slot]["leader_summary"] == infos[agent]["leader_summary"]
+    assert "leader_total_rewards" in joint[4]["episode_summary"]
+
+
+def test_flock_features_of_slots_are_towards_their_own_targets():
+    from flockenv.sb3 import LeaderVecEnv
+
+    def features(target):
+        venv = LeaderVecEnv(1, **SMALL, target=target)
+        venv.seed(1)
+        venv.reset()
+        for _ in range(60):
+            venv.step_async(np.full((3, 1), 0.5))
+            *_, infos = venv.step_wait()
+        return venv.flock_features(), [each["terminal_flock_features"] for each in infos]
+
+    now, last = features(MIXED)
+    for leader, word in enumerate(MIXED):
+        own_now, own_last = features(word)
+        np.testing.assert_array_equal(now[leader], own_now[leader])
+        np.testing.assert_array_equal(last[leader], own_last[leader])
+    assert (now[0] != now[1]).any()
+
+
+@pytest.mark.parametrize("mirror_to_target", [False, True])
+def test_the_mirror_image_with_opposite_targets_is_the_same_game(mirror_to_target):
+    options = {**SMALL, "c4": 0.0, "mirror_to_target": mirror_to_target}
+    own, other = (flockenv.parallel_env(**options) for _ in range(2))
+    own.reset(seed=6)
+    state = {"pose": own.flock.pose}
+    mirrored = {"pose": state["pose"] * FLIP}
+    own.reset(seed=0, options={"state": state, "target": list(MIXED)})
+    other.reset(seed=0, options={"state": mirrored, "target": ["ccw", "cw", "ccw"]})
+    sign = 1.0 if mirror_to_target else -1.0
+    for step in range(50):
+        rudder = np.sin(0.2 * step + np.arange(3))
+        ours = own.step({a: rudder[k : k + 1] for k, a in enumerate(own.agents)})
+        theirs = other.step({a: sign * rudder[k : k + 1] for k, a in enumerate(other.agents)})
+        for agent in own.agents:
+            assert ours[1][agent] == pytest.approx(theirs[1][agent], abs=1e-6)
+            if mirror_to_target:
+                np.testing.assert_allclose(ours[0][agent], theirs[0][agent], atol=2e-5)
+    np.testing.assert_allclose(own.flock.pose * FLIP, other.flock.pose, atol=1e-5)
+
+
+@pytest.mark.parametrize("mirror_to_target", [False, True])
+def test_policies_steer_each_leader_to_its_own_target(mirror_to_target):
+    def rudders(policy, target):
+        parameters = FlockParameters(n_boats=9, n_leaders=3, pool="table-1", target=target)
+        # The first decision is held when the second sample is taken.
+        run = flockenv.simulate(parameters, 5, 0.1, policy=policy, control_hz=1.0)
+        return run.rudder[1]
+
+    for policy in (
+        DampedLaw(mirror_to_target=mirror_to_target),
+        flockenv.policies.load("learned", pool="table-1"),
+        StraightAhead(mirror_to_target=mirror_to_target),
+    ):
+        cw, ccw, mixed = (rudders(policy, target) for target in ("cw", "ccw", MIXED))
+        np.testing.assert_array_equal(mixed, [cw[0], ccw[1], cw[2]])
+        if not isinstance(policy, StraightAhead):
+            assert cw[1] != ccw[1]
+
+
+@pytest.mark.parametrize(
+    ("target", "message"),
+    [
+        (["cw", "ccw"], "n_leaders = 3"),
+        (["cw"] * 4, "n_leaders = 3"),
+        ([], "n_leaders = 3"),
+        (["cw", "ccw", "clockwise"], "clockwise"),
+        (["cw", "ccw", "alternate"], "stand alone"),
+        (["random", "random", "random"], "stand alone"),
+    ],
+)
+def test_bad_lists_are_named_errors(target, message):
+    with pytest.raises(ParameterError, match=message):
+        flockenv.parallel_env(**SMALL, target=target)
+    env = flockenv.LeadersEnv(**SMALL)
+    env.reset(seed=0)
+    before = env.get_state()
+    with pytest.raises(ParameterError, match=message):
+        env.reset(seed=1, options={"target": target})
+    assert env.get_state() == before
+
+
+@pytest.mark.parametrize("target", [[1, 2, 3], ["cw", None, "cw"], [["cw"], "cw", "cw"]])
+def test_what_is_no_word_is_a_type_error(target):
+    with pytest.raises(TypeError, match="target"):
+        flockenv.LeadersEnv(**SMALL, target=target)
+    with pytest.raises(TypeError, match="target"):
+        FlockParameters(n_boats=9, n_leaders=3, target=target)
+
+
+@pytest.mark.parametrize("target", [[], ["cw"], ["cw", "ccw"]])
+def test_leaders_that_are_not_there_have_no_targets(target):
+    with pytest.raises(ParameterError, match="without leaders"):
+        FlockParameters(n_leaders=0, target=target)
+    with pytest.raises(ParameterError):
+        Flock(FlockParameters(n_leaders=0), 0).set_target(target)
+
+
+def test_parameters_are_stored_and_read_with_their_targets(tmp_path):
+    parameters = FlockParameters(n_boats=9, n_leaders=3, target=list(MIXED))
+    assert parameters.target == MIXED
+    assert FlockParameters.from_toml(parameters.to_toml()) == parameters
+    assert FlockParameters.from_dict(parameters.to_dict()) == parameters
+    assert hash(parameters) != hash(parameters.replace(target="cw"))
+    assert parameters.common_target is None
+    assert parameters.replace(target=["ccw"] * 3).common_target == "ccw"
+    recording = flockenv.simulate(parameters, seed=1, duration_s=2.0)
+    recording.save(tmp_path / "run.npz")
+    assert Recording.load(tmp_path / "run.npz").parameters == parameters
+    flock = Flock(parameters, 1)
+    flock.advance(2.0)
+    assert Flock.from_snapshot(flock.snapshot()).parameters.target == MIXED
+    # Signed quantities are towards leader 0's target.
+    series = recording.order
+    np.testing.assert_array_equal(series.signed_order(MIXED), series.signed_order("cw"))
+
+
+def test_targets_change_during_a_run():
+    flock = Flock(FlockParameters(n_boats=9, n_leaders=3), 2)
+    cw = flock.steering_law()
+    flock.set_target(["ccw", "cw", "cw"])
+    assert flock.parameters.target == ("ccw", "cw", "cw")
+    mixed = flock.steering_law()
+    assert (mixed[1:] == cw[1:]).all()
+    assert mixed[0] != cw[0]
+    with pytest.raises(ParameterError, match="n_leaders = 3"):
+        flock.set_target(["cw"])
+    np.testing.assert_array_equal(flock.steering_law(), mixed)
+
+
+def test_frames_and_pages_show_the_leaders_in_the_colors_of_their_targets(tmp_path):
+    def flock(target):
+        return Flock(FlockParameters(n_boats=9, n_leaders=3, pool="table-1", target=target), 1)
+
+    amber, purple = (240, 162, 2), (204, 121, 167)
+
+    def pixels(target, color):
+        frame = flockenv.rendering.frame(flock(target), 400, 400)
+        return int((frame == color).all(axis=-1).sum())
+
+    assert pixels("ccw", purple) == 0 < pixels("ccw", amber)
+    assert pixels(MIXED, purple) > 50
+    assert pixels(MIXED, amber) > pixels(MIXED, purple)
+    recording = flockenv.simulate(flock(MIXED).parameters, seed=1, duration_s=2.0)
+    write_replay(tmp_path / "run.html", recording)
+    page = (tmp_path / "run.html").read_text(encoding="utf-8")
+    assert '"targets":["cw","ccw","cw"]' in page
+    one = flockenv.simulate(flock("ccw").parameters, seed=1, duration_s=2.0)
+    write_replay(tmp_path / "one.html", one)
+    assert '"targets":[' not in (tmp_path / "one.html").read_text(encoding="utf-8")
