@@ -49,8 +49,8 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
     `reward` says otherwise. Each step's info has the `"reward_terms"`, the last one the
     `"episode_summary"`.
 
-    {general_sum} The joint reward stays the mean over leaders, so that k1 leaders against k2 earn
-    (k1 - k2)/k of the signed order towards the k1 leaders' target.
+    {general_sum} The joint reward stays the mean over leaders, so that k1 leaders against k2 are
+    rewarded with (k1 - k2)/k of the signed order towards the k1 leaders' target.
 
     {reward_table}
 

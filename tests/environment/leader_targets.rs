@@ -1,4 +1,4 @@
-//! With a target for each leader, a leader sees, earns and steers as if its target were everybody's.
+//! With a target for each leader, a leader sees, is rewarded and steers as if its target were everybody's.
 
 use crate::support::{Written, batch, parameters, seeded, settings, step};
 use flockenv::Flock;
@@ -71,7 +71,7 @@ fn compare(change: impl Fn(&mut EnvSettings)) {
 }
 
 #[test]
-fn a_leader_sees_and_earns_as_if_its_target_were_everybodys() {
+fn a_leader_sees_and_is_rewarded_as_if_its_target_were_everybodys() {
     compare(|_| ());
     compare(|own| own.observation.mirror_to_target = true);
     compare(|own| {
@@ -132,11 +132,11 @@ fn a_list_of_equal_targets_is_one_target() {
 #[test]
 fn the_papers_law_steers_each_leader_to_its_own_target() {
     let law = |target: Targets| {
-        let scene = FlockParameters {
+        let own = FlockParameters {
             target,
             ..parameters(3)
         };
-        let flock = Flock::new(scene, 9).unwrap();
+        let flock = Flock::new(own, 9).unwrap();
         [0, 1, 2].map(|leader| flock.steering_law(leader))
     };
     let (cw, ccw) = (law(Clockwise.into()), law(CounterClockwise.into()));
@@ -211,11 +211,11 @@ fn lists_of_another_length_are_refused_before_anything_changes() {
     assert!(flock.set_target(Targets::Each(vec![Clockwise])).is_err());
     assert_eq!(flock.parameters().target, Clockwise.into());
     for leaders in [0, 1] {
-        let scene = FlockParameters {
+        let own = FlockParameters {
             target: Targets::Each(Vec::new()),
             ..parameters(leaders)
         };
-        assert!(scene.check().is_err());
+        assert!(own.check().is_err());
     }
 }
 
