@@ -103,11 +103,18 @@ def run_sweep(
 
 def _point(sweep: SweepSpec, spec: RunSpec) -> dict[str, Any]:
     values = {name: getattr(spec.parameters, name) for name in sweep.axes}
-    # A pool is a name or a pair of radii: a column of both would be of no type.
     return {
-        name: "x".join(f"{radius:g}" for radius in value) if isinstance(value, tuple) else value
+        name: _one_word(value) if isinstance(value, tuple) else value
         for name, value in values.items()
     }
+
+
+def _one_word(value: tuple[Any, ...]) -> str:
+    # A pool is a name or a pair of radii, a target a word or several: a column of both would be of
+    # no type.
+    if all(isinstance(each, str) for each in value):
+        return ",".join(value)
+    return "x".join(f"{radius:g}" for radius in value)
 
 
 def _outcome(
@@ -142,8 +149,9 @@ def load_sweep(path: str | os.PathLike[str]) -> "pd.DataFrame":
     Returns
     -------
     pandas.DataFrame
-        One row per run: the varied fields (a pool of its own radii as "180x97"), ``seed``, the
-        columns of `summary`, and ``failure``: empty, or why there are no numbers.
+        One row per run: the varied fields (a pool of its own radii as "180x97", a list of targets
+        as "cw,cw,ccw"), ``seed``, the columns of `summary`, and ``failure``: empty, or why there
+        are no numbers.
 
     Raises
     ------
