@@ -1,9 +1,11 @@
 """Exploration that all leaders of a flock share and hold for a time."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import torch
+from numpy.typing import NDArray
 from stable_baselines3.common.distributions import DiagGaussianDistribution
 from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.vec_env import VecEnv
@@ -12,7 +14,7 @@ from flockenv import _core
 from flockenv.errors import ParameterError
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
 
-__all__ = ["SharedNoisePolicy", "shared_noise"]
+__all__ = ["SharedNoiseDistribution", "SharedNoisePolicy", "shared_noise"]
 
 
 def shared_noise(venv: VecEnv, hold_s: float) -> dict[str, Any]:
@@ -61,6 +63,29 @@ class SharedNoiseDistribution(DiagGaussianDistribution):
         self._steps_left = 0
         self._noise = torch.zeros(self._flocks, action_dim)
 
+    def get_state(self) -> dict[str, NDArray[Any]]:
+        """Return the noise, shape (flocks, actions), and for how many more decisions it is held."""
+        return {
+            "noise": self._noise.cpu().numpy().copy(),
+            "steps_left": np.array(self._steps_left),
+        }
+
+    def set_state(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Continue from `get_state`.
+
+        Raises
+        ------
+        ParameterError
+            For a number of decisions that no noise is held for.
+        """
+        steps_left = int(state["steps_left"])
+        if not 0 <= steps_left < self._hold_steps:
+            raise ParameterError(
+                f"steps_left = {steps_left} is not accepted: 0 to {self._hold_steps - 1}"
+            )
+        self._noise = torch.from_numpy(state["noise"].copy())
+        self._steps_left = steps_left
+
     def sample(self) -> torch.Tensor:
         """Return actions, shape (slots, actions)."""
         mean, deviation = self.distribution.mean, self.distribution.stddev
@@ -70,7 +95,8 @@ class SharedNoiseDistribution(DiagGaussianDistribution):
             self._noise = torch.randn(self._flocks, self.action_dim, device=mean.device)
             self._steps_left = self._hold_steps
         self._steps_left -= 1
-        return mean + deviation * self._noise[self._flock_of_slot.to(mean.device)]
+        noise = self._noise.to(mean.device)
+        return mean + deviation * noise[self._flock_of_slot.to(mean.device)]
 
 
 class SharedNoisePolicy(ActorCriticPolicy):

@@ -21,6 +21,7 @@ from flockenv._io.array_file import write_arrays
 from flockenv._io.npz_header import array_of, entry_of, read_headed
 from flockenv.envs.observation import OBSERVATION_VERSION
 from flockenv.errors import ParameterError
+from flockenv.sb3.shared_noise import SharedNoiseDistribution
 from flockenv.training.pools import PooledVecEnv
 from flockenv.training.settings import TrainingSettings
 from flockenv.training.validation import validation_names
@@ -68,6 +69,7 @@ def state_of(model: PPO, settings: TrainingSettings, progress: Progress) -> Stat
             arrays[f"optimizer:{place}:{name}"] = tensor.cpu().numpy().copy()
     for place, state in enumerate(env.get_state()):
         arrays[f"environment:{place}"] = np.frombuffer(state, np.uint8)
+    arrays |= _exploration(model)
     assert model._last_episode_starts is not None
     arrays["episode_starts"] = model._last_episode_starts.copy()
     return arrays | _random_states()
@@ -123,6 +125,9 @@ def restore(path: str | os.PathLike[str], model: PPO) -> Progress:
         }
         groups = optimizer.state_dict()["param_groups"]
         optimizer.load_state_dict({"state": slots, "param_groups": groups})
+        exploration = getattr(policy, "action_dist", None)
+        if isinstance(exploration, SharedNoiseDistribution):
+            exploration.set_state(_named(arrays, "exploration"))
         model.num_timesteps, model._n_updates = progress.samples, updates
         _restore_random_states(arrays)
     return progress
@@ -188,8 +193,17 @@ def _blank(model: PPO) -> State:
         shapes = {"step": (), "exp_avg": tensor.shape, "exp_avg_sq": tensor.shape}
         for name in _ADAM:
             blank[f"optimizer:{place}:{name}"] = np.zeros(shapes[name], np.float32)
+    blank |= _exploration(model)
     states = _random_states()
     return blank | {name: states[name] for name in ("numpy_keys", "numpy_rest", "torch_random")}
+
+
+def _exploration(model: PPO) -> State:
+    """Return what a noise that is held over the end of a rollout leaves to the next one."""
+    exploration = getattr(model.policy, "action_dist", None)
+    if not isinstance(exploration, SharedNoiseDistribution):
+        return {}
+    return {f"exploration:{name}": array for name, array in exploration.get_state().items()}
 
 
 def _trained(model: PPO) -> list[torch.Tensor]:

@@ -11,12 +11,25 @@ from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.policies import ActorCriticPolicy
 
 from flockenv.errors import ParameterError
-from flockenv.sb3 import FlockCriticPolicy
+from flockenv.sb3 import FlockCriticPolicy, SharedNoisePolicy
 from flockenv.training.actor import ACTIVATION_MODULES
 from flockenv.training.pools import PooledVecEnv
 from flockenv.training.settings import TrainingSettings
 
 __all__ = ["Watch", "actor_of", "learner"]
+
+
+class _SharedNoiseFlockCriticPolicy(FlockCriticPolicy, SharedNoisePolicy):
+    """One noise for all leaders of a flock, and a critic that sees the whole flock."""
+
+
+_POLICIES: dict[tuple[bool, bool], type[ActorCriticPolicy]] = {
+    (False, False): ActorCriticPolicy,
+    (True, False): FlockCriticPolicy,
+    (False, True): SharedNoisePolicy,
+    (True, True): _SharedNoiseFlockCriticPolicy,
+}
+"""By whether the critic sees the flock, and whether its leaders share a noise."""
 
 
 def learner(settings: TrainingSettings) -> PPO:
@@ -35,14 +48,16 @@ def learner(settings: TrainingSettings) -> PPO:
         "activation_fn": ACTIVATION_MODULES[settings.activation],
         "log_std_init": settings.log_std_init,
     }
-    sees_flock = settings.critic == "flock"
+    sees_flock, hold_steps = settings.critic == "flock", settings.held_decisions(env.decisions_hz)
     if sees_flock:
         policy["seen"] = env.seen
+    if hold_steps:
+        policy |= {"flock_of_slot": env.flock_of_slot.tolist(), "hold_steps": hold_steps}
     with warnings.catch_warnings():
         # Small networks are often faster on the CPU, which is the user's choice.
         warnings.filterwarnings("ignore", "You are trying to run PPO on the GPU")
         return PPO(
-            FlockCriticPolicy if sees_flock else "MlpPolicy",
+            _POLICIES[sees_flock, hold_steps > 0],
             env,
             learning_rate=settings.learning_rate,
             n_steps=settings.n_steps,

@@ -36,6 +36,12 @@ class PooledVecEnv(VecEnv):
             for pool in settings.pools
         ]
         of_flock = settings.critic == "flock"
+        #: Number of each slot's flock, over all pools.
+        self.flock_of_slot = np.concatenate(
+            [place * settings.num_flocks + each.flock_of_slot for place, each in enumerate(flocks)]
+        )
+        #: Decisions per second.
+        self.decisions_hz = flocks[0].decisions_hz
         self.parts = [WithFlockFeatures(part) if of_flock else part for part in flocks]
         #: Numbers of a row that are a leader's observation.
         (self.seen,) = flocks[0].observation_space.shape or ()

@@ -6,6 +6,7 @@ from typing import Any, Self
 
 import tomli_w
 
+from flockenv import _core
 from flockenv._io.toml import read_toml
 from flockenv.envs.batch import LeaderBatch
 from flockenv.envs.options import EnvOptions
@@ -62,6 +63,10 @@ class TrainingSettings:
     log_std_init, use_sde, sde_sample_freq
         Exploration: logarithm of the first standard deviation, whether it depends on the state
         (gSDE), and control steps after which it is drawn again.
+    shared_noise_s
+        Time in s for which all leaders of a flock deviate from the mean policy by one common noise,
+        a whole number of decisions (`flockenv.sb3.SharedNoisePolicy`); 0: each leader has a noise
+        of its own at every decision.
     seed
         Number of the training run; the flocks' seeds come from it (`runs.seeds.POLICY_SEEDS`).
     start
@@ -109,6 +114,7 @@ class TrainingSettings:
     log_std_init: float = -0.5
     use_sde: bool = False
     sde_sample_freq: int = 16
+    shared_noise_s: float = 0.0
     seed: int = 0
     start: str = ""
     checkpoint_every: int = 100_000
@@ -134,9 +140,18 @@ class TrainingSettings:
         for pool in self.pools:
             options = {**self.environment(pool), "n_leaders": max(self.n_leaders)}
             try:
-                LeaderBatch(EnvOptions.parse(options), self.n_leaders, "same_step")
+                batch = LeaderBatch(EnvOptions.parse(options), self.n_leaders, "same_step")
             except TypeError as error:
                 raise ParameterError(str(error)) from error
+            self._check_shared_noise(batch.decisions_hz)
+
+    def _check_shared_noise(self, decisions_hz: float) -> None:
+        if self.shared_noise_s and self.use_sde:
+            raise ParameterError("shared_noise_s is not accepted with use_sde: one or the other")
+        try:
+            self.held_decisions(decisions_hz)
+        except ParameterError as error:
+            raise ParameterError(f"shared_noise_s: {error}") from error
 
     @property
     def leaders(self) -> int:
@@ -173,6 +188,11 @@ class TrainingSettings:
             "action_mode": self.options.get("action_mode", "rudder"),
             "decision_period_s": self.options.get("decision_period_s"),
         }
+
+    def held_decisions(self, decisions_hz: float) -> int:
+        """Return for how many decisions leaders share a noise; 0: each has a noise of its own."""
+        held_s = self.shared_noise_s
+        return _core.held_decisions(held_s, decisions_hz) if held_s else 0
 
     def learning_rate_at(self, samples: int) -> float:
         """Return the learning rate after a number of samples."""
@@ -255,6 +275,7 @@ _RANGES: Mapping[str, tuple[float, float]] = {
     "net_arch": (1, 4096),
     "log_std_init": (-20.0, 5.0),
     "sde_sample_freq": (-1, 1_000_000),
+    "shared_noise_s": (0.0, 1e6),
     "seed": (0, (1 << 32) - 1),
     "checkpoint_every": (1, 1e15),
     "validate_every": (1, 1e15),

@@ -2,7 +2,9 @@
 
 import errno
 import math
+from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -54,21 +56,28 @@ def test_a_folder_takes_one_training_at_a_time(tiny: TrainingSettings, tmp_path:
 
 
 @pytest.mark.parametrize(
-    ("use_sde", "critic"), [(False, "observation"), (True, "observation"), (False, "flock")]
+    "kind",
+    [
+        {},
+        {"use_sde": True, "sde_sample_freq": 4},
+        {"critic": "flock"},
+        # Not a whole number of rollouts: a noise is held over the end of one.
+        {"shared_noise_s": 2.5},
+        {"shared_noise_s": 2.5, "critic": "flock"},
+    ],
+    ids=lambda kind: " and ".join(kind) or "own noise",
 )
 def test_resumed_is_uninterrupted(
-    tiny: TrainingSettings, tmp_path: Path, use_sde: bool, critic: str
+    tiny: TrainingSettings, tmp_path: Path, kind: dict[str, Any]
 ) -> None:
     # Checkpoints every other rollout, a kill after the third: one rollout is done again. Lost
     # frames make sure that the camera continues where it was, too.
     settings = tiny.replace(
         checkpoint_every=384,
         validate_every=768,
-        use_sde=use_sde,
-        critic=critic,
-        sde_sample_freq=4,
         final_learning_rate=1e-5,
         options={"dropout_rate": 0.2, "delay_frames": 1},
+        **kind,
     )
     training.train(settings, tmp_path / "whole", command="train")
     with pytest.raises(Killed):
@@ -80,6 +89,27 @@ def test_resumed_is_uninterrupted(
     for name in EVERY_FILE:
         whole, resumed = (tmp_path / run / name for run in ("whole", "killed"))
         assert whole.read_bytes() == resumed.read_bytes(), name
+
+
+def test_leaders_of_a_flock_explore_with_one_noise_in_every_pool(tiny: TrainingSettings) -> None:
+    settings = tiny.replace(pools=["500-boats", "table-1"], shared_noise_s=1.5)
+    model = learner(settings)
+    rows = torch.as_tensor(model.env.reset())
+    noises = []
+    for _ in range(6):
+        with torch.no_grad():
+            actions, _, _ = model.policy.forward(rows)
+            normal = model.policy.get_distribution(rows).distribution
+        noises.append(((actions - normal.mean) / normal.stddev)[:, 0])
+    flock = torch.as_tensor(model.env.flock_of_slot)
+    assert flock.tolist() == sorted(flock.tolist())
+    assert flock.max() == 2 * settings.num_flocks - 1
+    for noise in noises:
+        different = (noise[:, None] - noise[None, :]).abs() > 1e-4
+        assert torch.equal(different, flock[:, None] != flock[None, :])
+    # 1.5 s are three decisions.
+    same = [torch.allclose(one, other, atol=1e-4) for one, other in pairwise(noises)]
+    assert same == [True, True, False, True, True]
 
 
 def test_another_seed_is_another_run(tiny: TrainingSettings, tmp_path: Path) -> None:
