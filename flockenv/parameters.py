@@ -74,6 +74,8 @@ class FlockParameters:
     speed_spread_cm_s: float = _declared("speed_spread_cm_s")
     current_gain: float = _declared("current_gain")
     current_cap_cm_s: float = _declared("current_cap_cm_s")
+    discs: tuple[tuple[float, float, float], ...] = _declared("discs")
+    walls: tuple[tuple[float, float, float, float], ...] = _declared("walls")
 
     def __new__(cls, **values: Any) -> Self:
         """Refuse unknown fields and suggest the nearest name, which a dataclass does not."""

@@ -26,7 +26,7 @@ pub enum FlockError {
     /// The pool is too small for the flock: no placement without overlap was found.
     #[error(
         "n_boats = {requested} boats do not fit the pool: at most {placed} were placed without \
-         overlap; use fewer boats or a larger pool"
+         overlap; use fewer boats, a larger pool or fewer obstacles"
     )]
     Placement {
         /// Requested number of boats.

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from flockenv import _core
 from flockenv.errors import ParameterError
 from flockenv.flock import ContactSeries
+from flockenv.parameters import FlockParameters
 
 __all__ = [
     "CONTACTS",
@@ -64,8 +65,8 @@ def arrays_equal(a: NDArray[Any] | None, b: NDArray[Any] | None) -> bool:
     return np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
 
 
-def check_contacts(contacts: ContactSeries, samples: int, boats: int) -> None:
-    """Refuse contacts that are not those of so many samples and boats."""
+def check_contacts(contacts: ContactSeries, samples: int, parameters: FlockParameters) -> None:
+    """Refuse contacts that are not those of so many samples of a flock with these parameters."""
     c = len(contacts.i) if np.ndim(contacts.i) else 0
     shapes = {"count": (samples,), "normal": (c, 2), "point_cm": (c, 2)}
     dtypes = {"count": np.int64, "i": np.int32, "j": np.int32}
@@ -81,7 +82,8 @@ def check_contacts(contacts: ContactSeries, samples: int, boats: int) -> None:
     count = contacts.count
     if (count < 0).any() or (count > c).any() or count.sum() != c:
         raise ParameterError(f"contacts.count must add up to the {c} contacts there are")
-    if not (_within(contacts.i, 0, boats) and _within(contacts.j, -2, boats)):
+    boats, obstacles = parameters.n_boats, len(parameters.discs) + len(parameters.walls)
+    if not (_within(contacts.i, 0, boats) and _within(contacts.j, -2 - obstacles, boats)):
         raise ParameterError(f"contacts.i and contacts.j must be among {boats} boats")
     if not (contacts.force > 0).all():
         raise ParameterError("contacts.force must be positive")

@@ -142,7 +142,7 @@ class Recording:
             if (np.abs(self.rudder) > 1.0).any():
                 raise ParameterError("rudder must be within [-1, 1]")
         if self.contacts is not None:
-            check_contacts(self.contacts, len(self), self.parameters.n_boats)
+            check_contacts(self.contacts, len(self), self.parameters)
 
     def __len__(self) -> int:
         return len(self.time_s)

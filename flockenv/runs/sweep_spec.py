@@ -188,5 +188,5 @@ def _table(name: str, value: Any) -> Mapping[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    # A pool may be a list of two radii; points must be hashable.
-    return tuple(value) if isinstance(value, list) else value
+    # A pool may be a list of two radii, obstacles are lists of lists; points must be hashable.
+    return tuple(map(_plain, value)) if isinstance(value, list) else value

@@ -13,6 +13,8 @@ pub enum Partner {
     OuterWall,
     /// The inner wall.
     InnerWall,
+    /// An obstacle: the discs are numbered first, then the walls.
+    Obstacle(u32),
 }
 
 /// A contact or near-contact, as a constraint on the velocities of one or two boats.
@@ -22,8 +24,8 @@ pub struct Contact {
     pub boat: u32,
     /// The other side.
     pub partner: Partner,
-    /// Where on `boat`: 0 towards its stern, 1 towards its bow (at the inner wall always 0); 2 where
-    /// the cores of two hulls cross.
+    /// Where on `boat`: 0 towards its stern, 1 towards its bow (at the inner wall and at a disc always
+    /// 0); 2 where two cores cross.
     pub feature: u8,
     /// Gap, normal and lever arms at the pose where the contact was found.
     pub gap: Gap,
@@ -59,8 +61,14 @@ impl Contact {
     pub fn second(&self) -> Option<usize> {
         match self.partner {
             Partner::Boat(boat) => Some(boat as usize),
-            Partner::OuterWall | Partner::InnerWall => None,
+            Partner::OuterWall | Partner::InnerWall | Partner::Obstacle(_) => None,
         }
+    }
+
+    /// Whether the other side has ends: the contact may pass from one end of the boat to the other without moving.
+    #[inline]
+    pub(super) fn has_ends(&self) -> bool {
+        matches!(self.partner, Partner::Boat(_) | Partner::Obstacle(_))
     }
 
     /// Where the normal pushes the first hull: a point of its surface.

@@ -1,21 +1,23 @@
-//! Finds the contacts of a flock: candidate pairs from the neighbor list, walls, exact gaps.
+//! Finds the contacts of a flock: candidate pairs from the neighbor list, walls, obstacles, exact gaps.
 
+use super::near_obstacles::NearObstacles;
 use super::{Contact, Partner};
 use crate::geometry::{
-    Gap, Hull, HullPose, NeighborList, PairFeature, Velocity, inner_wall_gap, outer_wall_gap,
-    pair_gap, pair_gaps,
+    Gap, Hull, HullPose, NeighborList, Obstacle, PairFeature, Velocity, inner_wall_gap,
+    outer_wall_gap, pair_gap, pair_gaps,
 };
 use crate::parallel;
 use crate::parameters::{FlockParameters, Pool};
 use std::ops::{Range, RangeInclusive};
 
-/// Geometry of a flock: hulls, walls and the neighbor list.
+/// Geometry of a flock: hulls, walls, obstacles and the neighbor list.
 #[derive(Debug, Clone)]
 pub struct ContactDetector {
     hull: Hull,
     pool: Pool,
     /// Candidate pairs.
     pub(crate) neighbors: NeighborList,
+    obstacles: NearObstacles,
     skin: f64,
     threads: usize,
     /// Contacts found by other threads, part after part of the flock.
@@ -35,6 +37,7 @@ impl ContactDetector {
             hull,
             pool: parameters.pool,
             neighbors: NeighborList::default(),
+            obstacles: NearObstacles::new(Obstacle::all(parameters)),
             skin,
             threads: 1,
             parts: Vec::new(),
@@ -59,6 +62,12 @@ impl ContactDetector {
 
     /// Gaps that can close within `dt` at these velocities, with room for what contacts add to them.
     pub fn margin(&self, velocities: &[Velocity], dt: f64) -> f64 {
+        3.0 * self.fastest(velocities) * dt + 1e-3 * self.hull.radius
+    }
+
+    /// No point of a hull moves faster at these velocities.
+    #[inline]
+    fn fastest(&self, velocities: &[Velocity]) -> f64 {
         let h = self.hull.half_length;
         let mut fastest = 0.0;
         for velocity in velocities {
@@ -67,7 +76,7 @@ impl ContactDetector {
                 fastest = speed;
             }
         }
-        3.0 * fastest * dt + 1e-3 * self.hull.radius
+        fastest
     }
 
     /// Fills `contacts` with everything nearer than `margin`, ordered along the pool's polar angle.
@@ -76,6 +85,7 @@ impl ContactDetector {
         let distance = 2.0 * self.hull.reach() + margin;
         self.neighbors
             .update(boats.iter().map(|boat| boat.center), distance, self.skin);
+        self.obstacles.update(&self.neighbors);
         if self.threads == 1 {
             self.detect_among(0..boats.len(), boats, margin, contacts);
             return;
@@ -107,10 +117,14 @@ impl ContactDetector {
         // Of a boat and a wall only one moves.
         let wall_margin = 0.5 * margin;
         let open = self.open_water(wall_margin);
+        let has_obstacles = !self.obstacles.obstacles.is_empty();
         for (boat, partners) in self.neighbors.groups(places) {
             let pose = &boats[boat as usize];
             if !open.contains(&pose.center.norm_squared()) {
                 self.detect_walls(boat, pose, wall_margin, contacts);
+            }
+            if has_obstacles {
+                self.detect_obstacles(boat, pose, wall_margin, contacts);
             }
             for &partner in partners {
                 let (first, second) = (boat.min(partner), boat.max(partner));
@@ -120,6 +134,14 @@ impl ContactDetector {
                 });
             }
         }
+    }
+
+    /// Whether moving with these velocities for `dt` might take a boat through a wall that has no
+    /// thickness. A boat that moves by at most half its radius cannot; afterwards no gap would show on which
+    /// side it was.
+    pub(crate) fn may_pass_walls(&self, velocities: &[Velocity], dt: f64) -> bool {
+        let farthest = 0.5 * self.hull.radius;
+        self.obstacles.has_walls && self.fastest(velocities) * dt > farthest
     }
 
     /// Squared distances from the pool's center at which no wall is nearer than `margin`.
@@ -174,27 +196,48 @@ impl ContactDetector {
         }
     }
 
-    /// The gaps of the two ends of a pair's first hull at other poses, where they face the second.
-    /// Crossed cores count for both.
-    pub(crate) fn pair_gaps_at(
+    #[inline(never)]
+    fn detect_obstacles(
         &self,
-        first: u32,
-        second: usize,
-        boats: &[HullPose],
-    ) -> [Option<f64>; 2] {
+        boat: u32,
+        pose: &HullPose,
+        margin: f64,
+        contacts: &mut Vec<Contact>,
+    ) {
+        for &number in self.obstacles.of(boat) {
+            let obstacle = &self.obstacles.obstacles[number as usize];
+            obstacle.gaps(pose, self.hull, margin, &mut |feature, gap| {
+                contacts.push(Contact {
+                    boat,
+                    partner: Partner::Obstacle(number),
+                    feature: feature as u8,
+                    gap,
+                });
+            });
+        }
+    }
+
+    /// The gaps of the two ends of a contact's boat at other poses, where they face another boat or an
+    /// obstacle. Crossed cores count for both.
+    pub(crate) fn end_gaps_at(&self, contact: &Contact, boats: &[HullPose]) -> [Option<f64>; 2] {
         let mut gaps = [None; 2];
-        let (a, b) = (&boats[first as usize], &boats[second]);
-        pair_gaps(
-            a,
-            b,
-            self.hull,
-            2.0 * self.hull.reach(),
-            |feature, gap| match feature {
-                PairFeature::Stern => gaps[0] = Some(gap.gap),
-                PairFeature::Bow => gaps[1] = Some(gap.gap),
-                PairFeature::Crossed => gaps = [Some(gap.gap); 2],
-            },
-        );
+        let mut found = |feature, gap: Gap| match feature {
+            PairFeature::Stern => gaps[0] = Some(gap.gap),
+            PairFeature::Bow => gaps[1] = Some(gap.gap),
+            PairFeature::Crossed => gaps = [Some(gap.gap); 2],
+        };
+        let (hull, margin) = (self.hull, 2.0 * self.hull.reach());
+        let boat = &boats[contact.boat as usize];
+        match contact.partner {
+            Partner::Boat(second) => {
+                pair_gaps(boat, &boats[second as usize], hull, margin, found);
+            }
+            Partner::Obstacle(number) => {
+                let obstacle = &self.obstacles.obstacles[number as usize];
+                obstacle.gaps(boat, hull, margin, &mut found);
+            }
+            Partner::OuterWall | Partner::InnerWall => {}
+        }
         gaps
     }
 
@@ -215,6 +258,10 @@ impl ContactDetector {
                 &boats[second as usize],
                 self.hull,
             ),
+            Partner::Obstacle(number) => {
+                let feature = PairFeature::from_code(contact.feature);
+                self.obstacles.obstacles[number as usize].gap(feature, first, self.hull)
+            }
         }
     }
 }

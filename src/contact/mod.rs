@@ -11,6 +11,7 @@ mod contact;
 mod depenetration;
 mod detection;
 mod island;
+mod near_obstacles;
 mod passivity;
 mod problem;
 mod resolver;

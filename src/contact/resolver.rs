@@ -22,7 +22,8 @@ pub(crate) enum ContactOutcome {
     Untouched,
     /// The contacts have been solved.
     Solved,
-    /// Contacts turn too far within the substep, and a shorter one is possible.
+    /// Contacts turn too far within the substep, and a shorter one is possible; or a boat might pass
+    /// through a wall.
     TooLong,
 }
 
@@ -250,6 +251,9 @@ impl ContactResolver {
                 return ContactOutcome::TooLong;
             }
             self.solve(free, inertia, statistics);
+        }
+        if self.detector.may_pass_walls(&self.solver.velocities, dt) {
+            return ContactOutcome::TooLong;
         }
         let impulses = self.solver.impulses.iter().copied();
         self.warm_start_cache

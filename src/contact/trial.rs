@@ -29,21 +29,23 @@ impl Trial {
         contacts: &[Contact],
         allowed: f64,
     ) -> bool {
-        contacts.iter().any(|contact| match contact.second() {
-            Some(second) => {
-                let gaps = detector.pair_gaps_at(contact.boat, second, &self.hulls);
+        contacts.iter().any(|contact| {
+            if contact.has_ends() {
+                let gaps = detector.end_gaps_at(contact, &self.hulls);
                 gaps.into_iter().flatten().any(|gap| gap < -allowed)
+            } else {
+                detector.gap_at(contact, &self.hulls).gap < -allowed
             }
-            None => detector.gap_at(contact, &self.hulls).gap < -allowed,
         })
     }
 
-    /// The gap of contact k. Between two hulls the touch may have passed from one end to the other
-    /// without moving: a contact follows it, and the only contact of a pair stands for the whole pair.
+    /// The gap of contact k. Between two hulls, or a hull and an obstacle, the touch may have passed from
+    /// one end to the other without moving: a contact follows it, and the only contact of a pair stands
+    /// for the whole pair.
     pub(super) fn gap(&self, detector: &ContactDetector, contacts: &[Contact], k: usize) -> f64 {
         let contact = &contacts[k];
         let own = || detector.gap_at(contact, &self.hulls).gap;
-        let (Some(second), 0 | 1) = (contact.second(), contact.feature) else {
+        let (true, 0 | 1) = (contact.has_ends(), contact.feature) else {
             return own();
         };
         let is_twin = |other: Option<&Contact>| {
@@ -52,7 +54,7 @@ impl Trial {
         };
         let has_twin = is_twin(contacts.get(k + 1))
             || is_twin(k.checked_sub(1).and_then(|before| contacts.get(before)));
-        let gaps = detector.pair_gaps_at(contact.boat, second, &self.hulls);
+        let gaps = detector.end_gaps_at(contact, &self.hulls);
         let end = usize::from(contact.feature);
         match (gaps[end], gaps[1 - end]) {
             (Some(same), Some(other)) if !has_twin => same.min(other),

@@ -42,7 +42,7 @@ impl WarmStartCache {
 
     /// The impulse that each contact carried, 0 if it carried none, in a flock of so many boats. Where an end
     /// slides off the other hull's end onto its side, a contact changes its name and continues: it inherits the
-    /// impulse of a contact between the same boats that is there no more.
+    /// impulse of a contact of the same two that is there no more.
     ///
     /// Contacts mostly come in the order of the last substep, a few gone and a few new.
     pub(super) fn lookup(&mut self, boats: usize, contacts: &[Contact], impulses: &mut Vec<f64>) {
@@ -59,7 +59,7 @@ impl WarmStartCache {
             let impulse = if place < last {
                 next = place + 1;
                 let impulse = self.entries[place].1;
-                if impulse > 0.0 || contact.second().is_none() {
+                if impulse > 0.0 || !contact.has_ends() {
                     impulse.max(0.0)
                 } else {
                     self.inherited(contacts, k, place)
@@ -124,7 +124,7 @@ fn is_same(a: ContactKey, b: ContactKey) -> bool {
 /// Whether contact k continues with an entry's impulse under another name.
 fn is_heir(contacts: &[Contact], k: usize, &(known, impulse): &CachedImpulse) -> bool {
     let key = contacts[k].key();
-    if !(impulse > 0.0 && (known.0, known.1) == (key.0, key.1) && contacts[k].second().is_some()) {
+    if !(impulse > 0.0 && (known.0, known.1) == (key.0, key.1) && contacts[k].has_ends()) {
         return false;
     }
     // A pair has at most two contacts, which are found one after the other.

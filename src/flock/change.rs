@@ -11,7 +11,8 @@ pub enum Change {
     /// The direction that leaders follow from now on, or that of each.
     Target(Targets),
     /// The parameters from now on. Boats keep their headings and velocities; where the pool changes, each boat keeps
-    /// its angle about the center and its share of the way between the walls.
+    /// its angle about the center and its share of the way between the walls. Boats that obstacles then overlap are
+    /// an error.
     Parameters(Box<FlockParameters>),
 }
 
@@ -28,6 +29,13 @@ impl Flock {
                 let mut next = Self::new(FlockParameters::clone(parameters), self.seed())?;
                 // A smaller pool may let hulls overlap a little; the contact solver parts them.
                 next.set_state(&poses, self.velocities(), self.time_s(), true)?;
+                let is_same = |old: &FlockParameters| {
+                    (old.pool, &old.discs, &old.walls)
+                        == (parameters.pool, &parameters.discs, &parameters.walls)
+                };
+                if !is_same(self.parameters()) {
+                    next.refuse_overlapped_obstacles()?;
+                }
                 self.replace(next);
             }
         }

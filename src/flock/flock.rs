@@ -43,6 +43,10 @@ pub struct Flock {
 /// Flocks of fewer boats are moved by one thread: the others would wake up too late.
 const SHARED_BOATS: usize = 200;
 const MOST_THREADS: usize = 1024;
+/// Part of `dt_s` below which no substep is cut for the sake of walls without thickness.
+const SHORTEST_SHARE: Ticks = 1024;
+const TOO_FAST: &str = "a boat is so fast that it might pass through a wall: it would move by more than half \
+                        boat_radius_cm within dt_s / 1024; slower boats or a smaller dt_s help";
 
 impl Flock {
     /// A flock placed at random without overlap, at rest.
@@ -299,6 +303,7 @@ impl Flock {
         self.integrator.save(&mut self.before);
         let start = self.time;
         let dt = ticks(self.parameters.dt_s);
+        let shortest = (dt / SHORTEST_SHARE).max(1);
         let unsolved = self.integrator.statistics.unsolved;
         while self.time < end {
             let moment = self.schedule.at(self.time);
@@ -310,6 +315,10 @@ impl Flock {
                 steering,
             };
             while self.integrator.step(&substep) == StepOutcome::TooLong {
+                if substep.length <= shortest {
+                    self.return_to_start(start);
+                    return Err(FlockError::Solver(TOO_FAST.to_owned()));
+                }
                 substep.length = substep.length.div_ceil(2);
             }
             self.time += substep.length;
@@ -322,13 +331,18 @@ impl Flock {
         if self.integrator.is_in_range() {
             return Ok(());
         }
-        self.integrator.return_to(&self.before);
-        self.time = start;
+        self.return_to_start(start);
         Err(FlockError::Solver(
             "the motion left the range of 1e9 cm, cm/s, rad and rad/s; smaller dt_s or milder constants \
              may help"
                 .to_owned(),
         ))
+    }
+
+    /// Undoes the substeps of an advance.
+    fn return_to_start(&mut self, start: Ticks) {
+        self.integrator.return_to(&self.before);
+        self.time = start;
     }
 
     /// Advances towards a time, but no further than about so many substeps times boats, and returns

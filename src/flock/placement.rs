@@ -6,7 +6,9 @@
 
 use crate::contact::{ContactDetector, KeepGoing, push_apart};
 use crate::error::{FlockError, Result};
-use crate::geometry::{Hull, HullPose, Pose, inner_wall_gap, outer_wall_gap, pair_gaps};
+use crate::geometry::{
+    Hull, HullPose, Obstacle, Pose, Vec2, inner_wall_gap, outer_wall_gap, pair_gaps,
+};
 use crate::parameters::{FlockParameters, Pool};
 use crate::random::{Stream, StreamRng};
 use rand::RngExt;
@@ -26,6 +28,8 @@ const GROWTH: [f64; 8] = [0.5, 0.65, 0.78, 0.87, 0.93, 0.97, 0.99, 1.0];
 const CLEARANCE: f64 = 1e-3;
 /// Open water gets this many hull areas a boat, as dilute as 20 boats in the `500-boats` pool.
 const OPEN_WATER_AREAS: f64 = 25.0;
+/// Places that show how much of the water discs take up: good to about a percent.
+const SURVEYED: u32 = 1024;
 
 /// Places all boats of checked parameters.
 ///
@@ -50,7 +54,7 @@ pub(super) fn place(
     }
     // Hulls that cover nearly all of the water cannot be disjoint. Trying would only take time; how
     // many can be is worth one try for the error message.
-    let full = region.area() / region.hull.area();
+    let full = region.area / region.hull.area();
     let (boats, attempts) = if parameters.n_boats as f64 <= LARGEST_COVER * full {
         (parameters.n_boats, ATTEMPTS)
     } else {
@@ -78,9 +82,12 @@ pub(super) fn place(
 struct Region {
     hull: Hull,
     pool: Pool,
+    obstacles: Vec<Obstacle>,
     /// Radii between which centers are drawn.
     inner: f64,
     outer: f64,
+    /// In cm², without what obstacles take up.
+    area: f64,
 }
 
 impl Region {
@@ -96,23 +103,47 @@ impl Region {
             pool.outer_radius_cm - hull.radius
         } else {
             let area = OPEN_WATER_AREAS * hull.area() * parameters.n_boats as f64;
-            (area / PI + inner * inner).sqrt()
+            let discs = parameters.discs.iter().map(|disc| disc.radius_cm.powi(2));
+            (area / PI + inner * inner + discs.sum::<f64>()).sqrt()
         };
-        Self {
+        let mut region = Self {
             hull,
             pool,
+            obstacles: Obstacle::all(parameters),
             inner,
             outer,
-        }
+            area: 0.0,
+        };
+        region.area = region.free_area();
+        region
     }
 
     fn holds_a_boat(&self) -> bool {
         self.outer > self.inner
     }
 
-    fn area(&self) -> f64 {
+    fn free_area(&self) -> f64 {
         let (inner, outer) = (self.inner - self.hull.radius, self.outer + self.hull.radius);
-        PI * (outer * outer - inner.max(0.0).powi(2))
+        let (inner, outer) = (inner.max(0.0).powi(2), outer * outer);
+        PI * (outer - inner) * self.free_share(inner, outer)
+    }
+
+    /// Part of the water between two squared radii that no disc takes up, found at places spread
+    /// evenly along a spiral.
+    fn free_share(&self, inner: f64, outer: f64) -> f64 {
+        if self.obstacles.iter().all(|obstacle| !obstacle.is_disc()) {
+            return 1.0;
+        }
+        // The golden angle: every turn of the spiral falls between earlier ones.
+        let golden = PI * (3.0 - 5.0_f64.sqrt());
+        let free = (0..SURVEYED).filter(|&place| {
+            let share = (f64::from(place) + 0.5) / f64::from(SURVEYED);
+            let (sin, cos) = (golden * f64::from(place)).sin_cos();
+            let place = Vec2::new(cos, sin) * (inner + share * (outer - inner)).sqrt();
+            let mut obstacles = self.obstacles.iter();
+            obstacles.all(|obstacle| obstacle.distance(place) >= 0.0)
+        });
+        free.count() as f64 / f64::from(SURVEYED)
     }
 
     /// A uniform place with a uniform heading.
@@ -135,9 +166,15 @@ impl Region {
             || [-1.0, 1.0].iter().all(|&side| {
                 outer_wall_gap(boat, side, self.hull, outer_radius_cm).gap > clearance
             });
-        clear_of_outer
+        let clear_of_walls = clear_of_outer
             && (!self.pool.has_inner_wall()
-                || inner_wall_gap(boat, self.hull, inner_radius_cm).gap > clearance)
+                || inner_wall_gap(boat, self.hull, inner_radius_cm).gap > clearance);
+        clear_of_walls
+            && self.obstacles.iter().all(|obstacle| {
+                let mut clear = true;
+                obstacle.gaps(boat, self.hull, clearance, &mut |_, _| clear = false);
+                clear
+            })
     }
 
     fn is_clear(&self, boat: &HullPose, others: &[HullPose], clearance: f64) -> bool {
@@ -172,7 +209,7 @@ fn by_rejection(
 ) -> Option<Vec<Pose>> {
     // Random sequential addition of stadiums stalls near half the area; do not even start there. The
     // quadratic search would also be slow for very large flocks, which growing handles.
-    if boats as f64 * region.hull.area() > 0.4 * region.area() || boats > 4000 {
+    if boats as f64 * region.hull.area() > 0.4 * region.area || boats > 4000 {
         return None;
     }
     let poses = greedily(boats, region, rng, keep_going);

@@ -2,7 +2,7 @@
 
 use super::flock::{Flock, LATEST};
 use crate::clock::{Ticks, seconds, ticks};
-use crate::contact::Partner;
+use crate::contact::{Contact, Partner};
 use crate::error::{FlockError, Result};
 use crate::geometry::{Pose, Velocity};
 use crate::integrator::Integrator;
@@ -36,6 +36,14 @@ impl Flock {
             state.allow_overlap,
         )?;
         Ok(flock)
+    }
+
+    /// Refuses boats that overlap an obstacle by more than the contacts leave of themselves.
+    pub(super) fn refuse_overlapped_obstacles(&self) -> Result<()> {
+        let allowed = 0.01 * self.parameters.boat_radius_cm;
+        refuse_overlap(&mut self.integrator.clone(), allowed, |contact| {
+            matches!(contact.partner, Partner::Obstacle(_))
+        })
     }
 
     /// Puts the boats somewhere else.
@@ -76,7 +84,7 @@ impl Flock {
         let mut integrator = self.integrator.clone();
         integrator.place(poses, velocities);
         if !allow_overlap {
-            refuse_overlap(&mut integrator)?;
+            refuse_overlap(&mut integrator, ROUNDING, |_| true)?;
         }
         (self.integrator, self.time) = (integrator, time);
         Ok(())
@@ -97,7 +105,12 @@ fn time_from(time_s: f64) -> Result<Ticks> {
 /// Overlap in cm that a given state may have: rounding of poses that are meant to touch.
 const ROUNDING: f64 = 1e-9;
 
-fn refuse_overlap(integrator: &mut Integrator) -> Result<()> {
+/// Refuses contacts that overlap by more than `allowed`, of those that count.
+fn refuse_overlap(
+    integrator: &mut Integrator,
+    allowed: f64,
+    counts: impl Fn(&Contact) -> bool,
+) -> Result<()> {
     let mut contacts = Vec::new();
     integrator
         .contacts
@@ -106,13 +119,18 @@ fn refuse_overlap(integrator: &mut Integrator) -> Result<()> {
     integrator.contacts.forget();
     let deepest = contacts
         .iter()
+        .filter(|contact| counts(contact))
         .min_by(|a, b| a.gap.gap.total_cmp(&b.gap.gap));
     match deepest {
-        Some(contact) if contact.gap.gap < -ROUNDING => Err(FlockError::Overlap {
+        Some(contact) if contact.gap.gap < -allowed => Err(FlockError::Overlap {
             what: match contact.partner {
                 Partner::Boat(second) => format!("boats {} and {second}", contact.boat),
                 Partner::OuterWall => format!("boat {} and the outer wall", contact.boat),
                 Partner::InnerWall => format!("boat {} and the inner wall", contact.boat),
+                Partner::Obstacle(number) => {
+                    let obstacle = integrator.parameters.obstacle_name(number as usize);
+                    format!("boat {} and {obstacle}", contact.boat)
+                }
             },
             overlap_cm: -contact.gap.gap,
         }),

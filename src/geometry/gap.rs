@@ -53,11 +53,15 @@ impl PairFeature {
 /// Cores nearer than this (cm) have no usable normal and count as crossed.
 const TOUCHING_CORES: f64 = 1e-9;
 
+/// A hull with its pose.
+type Placed<'a> = (&'a HullPose, Hull);
+
 /// Two hulls and what their gaps share.
 struct Pair<'a> {
     a: &'a HullPose,
     b: &'a HullPose,
-    hull: Hull,
+    hull_a: Hull,
+    hull_b: Hull,
     /// From the first center to the second, and its components along both axes.
     apart: Vec2,
     apart_a: f64,
@@ -77,12 +81,14 @@ struct Touch {
 }
 
 impl<'a> Pair<'a> {
-    fn new(a: &'a HullPose, b: &'a HullPose, hull: Hull) -> Self {
+    #[inline]
+    fn new((a, hull_a): Placed<'a>, (b, hull_b): Placed<'a>) -> Self {
         let apart = b.center - a.center;
         Self {
             a,
             b,
-            hull,
+            hull_a,
+            hull_b,
             apart,
             apart_a: apart.dot(&a.axis),
             apart_b: apart.dot(&b.axis),
@@ -98,7 +104,7 @@ impl<'a> Pair<'a> {
         }
         let normal = touch.between * (1.0 / distance);
         Some(Gap {
-            gap: distance - 2.0 * self.hull.radius,
+            gap: distance - (self.hull_a.radius + self.hull_b.radius),
             normal,
             along: touch.along_a,
             arm_i: touch.along_a * cross(self.a.axis, normal),
@@ -119,10 +125,10 @@ impl<'a> Pair<'a> {
     /// Nearest points for an end of hull a. Where end meets end, both hulls' ends describe it: with
     /// `once`, only the first hull's does, and only if neither end could slide nearer.
     fn end_of_a(&self, side: f64, once: bool) -> Option<Touch> {
-        let h = self.hull.half_length;
+        let (h, other) = (self.hull_a.half_length, self.hull_b.half_length);
         let along_b = side * h * self.cosine - self.apart_b;
-        let nearest = along_b.clamp(-h, h);
-        if once && along_b.abs() > h && (self.apart_a + nearest * self.cosine) * side < h {
+        let nearest = along_b.clamp(-other, other);
+        if once && along_b.abs() > other && (self.apart_a + nearest * self.cosine) * side < h {
             return None;
         }
         Some(self.touch(side * h, nearest))
@@ -130,9 +136,9 @@ impl<'a> Pair<'a> {
 
     /// Nearest points for an end of hull b, if it faces the side of hull a.
     fn end_of_b(&self, side: f64) -> Option<Touch> {
-        let h = self.hull.half_length;
+        let h = self.hull_b.half_length;
         let along_a = self.apart_a + side * h * self.cosine;
-        (along_a.abs() <= h).then(|| self.touch(along_a, side * h))
+        (along_a.abs() <= self.hull_a.half_length).then(|| self.touch(along_a, side * h))
     }
 
     /// The nearest points of the group of ends on one side of hull a.
@@ -148,35 +154,48 @@ impl<'a> Pair<'a> {
     }
 
     fn cores_cross(&self) -> bool {
-        let h = self.hull.half_length;
+        let (h_a, h_b) = (self.hull_a.half_length, self.hull_b.half_length);
         let sine = cross(self.a.axis, self.b.axis);
         let s = cross(self.apart, self.b.axis);
         let t = cross(self.apart, self.a.axis);
         // a + s/sine·axis_a = b + t/sine·axis_b with both coordinates within the cores.
-        sine != 0.0 && s.abs() <= h * sine.abs() && t.abs() <= h * sine.abs()
+        sine != 0.0 && s.abs() <= h_a * sine.abs() && t.abs() <= h_b * sine.abs()
     }
 }
 
-/// The contacts of two hulls with a gap below `margin`: none, one or two, handed to `found`.
+/// The contacts of two hulls of one shape with a gap below `margin`: none, one or two, handed to `found`.
+#[inline]
 pub fn pair_gaps(
     a: &HullPose,
     b: &HullPose,
     hull: Hull,
     margin: f64,
+    found: impl FnMut(PairFeature, Gap),
+) {
+    capsule_gaps((a, hull), (b, hull), margin, found);
+}
+
+/// The contacts of any two hulls with a gap below `margin`, the second of any length above 0 or of the first's shape.
+#[inline]
+pub(crate) fn capsule_gaps(
+    first: Placed,
+    second: Placed,
+    margin: f64,
     mut found: impl FnMut(PairFeature, Gap),
 ) {
-    let reach = 2.0 * hull.reach() + margin;
+    let ((a, hull_a), (b, hull_b)) = (first, second);
+    let reach = hull_a.reach() + hull_b.reach() + margin;
     let distance_squared = (b.center - a.center).norm_squared();
     if distance_squared > reach * reach {
         return;
     }
-    let pair = Pair::new(a, b, hull);
-    let h = hull.half_length;
-    if distance_squared <= 4.0 * h * h && pair.cores_cross() {
-        found(PairFeature::Crossed, crossed_gap(a, b, hull));
+    let pair = Pair::new(first, second);
+    let lengths = hull_a.half_length + hull_b.half_length;
+    if distance_squared <= lengths * lengths && pair.cores_cross() {
+        found(PairFeature::Crossed, crossed_gap(first, second));
         return;
     }
-    let farthest = 2.0 * hull.radius + margin;
+    let farthest = hull_a.radius + hull_b.radius + margin;
     for (feature, side) in [(PairFeature::Stern, -1.0), (PairFeature::Bow, 1.0)] {
         let Some(touch) = pair.nearest_towards(side) else {
             continue;
@@ -187,23 +206,30 @@ pub fn pair_gaps(
         match pair.gap(&touch) {
             Some(gap) => found(feature, gap),
             None => {
-                found(PairFeature::Crossed, crossed_gap(a, b, hull));
+                found(PairFeature::Crossed, crossed_gap(first, second));
                 return;
             }
         }
-        if h == 0.0 {
+        if hull_a.half_length == 0.0 {
             return;
         }
     }
 }
 
-/// The gap of a known contact at other poses of its hulls.
+/// The gap of a known contact at other poses of its hulls, which have one shape.
+#[inline]
 pub fn pair_gap(feature: PairFeature, a: &HullPose, b: &HullPose, hull: Hull) -> Gap {
-    let pair = Pair::new(a, b, hull);
+    capsule_gap(feature, (a, hull), (b, hull))
+}
+
+/// The gap of a known contact at other poses of its hulls.
+#[inline]
+pub(super) fn capsule_gap(feature: PairFeature, first: Placed, second: Placed) -> Gap {
+    let pair = Pair::new(first, second);
     let side = match feature {
         PairFeature::Stern => -1.0,
         PairFeature::Bow => 1.0,
-        PairFeature::Crossed => return crossed_gap(a, b, hull),
+        PairFeature::Crossed => return crossed_gap(first, second),
     };
     // Where no end of the group faces the other hull any more, its own end still has a distance.
     let touch = pair
@@ -211,17 +237,17 @@ pub fn pair_gap(feature: PairFeature, a: &HullPose, b: &HullPose, hull: Hull) ->
         .or_else(|| pair.end_of_a(side, false));
     touch
         .and_then(|touch| pair.gap(&touch))
-        .unwrap_or_else(|| crossed_gap(a, b, hull))
+        .unwrap_or_else(|| crossed_gap(first, second))
 }
 
 /// The gap of crossed cores: the least distance by which one core's end must be moved across the
 /// other's line, and as much more as makes the hulls touch.
-pub(crate) fn crossed_gap(a: &HullPose, b: &HullPose, hull: Hull) -> Gap {
-    let h = hull.half_length;
+fn crossed_gap((a, hull_a): Placed, (b, hull_b): Placed) -> Gap {
+    let (h_a, h_b) = (hull_a.half_length, hull_b.half_length);
     let along = |distance: f64, normal, p: Vec2, q: Vec2| Gap {
-        gap: distance - 2.0 * hull.radius,
+        gap: distance - (hull_a.radius + hull_b.radius),
         normal,
-        along: (p - a.center).dot(&a.axis).clamp(-h, h),
+        along: (p - a.center).dot(&a.axis).clamp(-h_a, h_a),
         arm_i: cross(p - a.center, normal),
         arm_j: cross(q - b.center, normal),
         bend: 0.0,
@@ -229,13 +255,13 @@ pub(crate) fn crossed_gap(a: &HullPose, b: &HullPose, hull: Hull) -> Gap {
     let mut least: Option<(f64, Gap)> = None;
     for side in [-1.0, 1.0] {
         let across_b = turned_left(b.axis);
-        let p = a.end(side, h);
+        let p = a.end(side, h_a);
         let depth = across_b.dot(&(p - b.center));
         let q = p - across_b * depth;
         let candidate_a = (depth, across_b * -sign(depth), p, q);
 
         let across_a = turned_left(a.axis);
-        let q = b.end(side, h);
+        let q = b.end(side, h_b);
         let depth = across_a.dot(&(q - a.center));
         let p = q - across_a * depth;
         let candidate_b = (depth, across_a * sign(depth), p, q);

@@ -1,17 +1,20 @@
-//! Poses, hulls, walls and the distances between them.
+//! Poses, hulls, walls, obstacles and the distances between them.
 
 mod annulus;
 mod capsule;
 mod gap;
 pub mod lap_frame;
 mod neighbors;
+mod obstacle;
 mod pose;
 
 pub use annulus::{inner_wall_gap, outer_wall_gap};
 pub use capsule::{Hull, HullPose, resized_gyration_radius_cm};
+pub(crate) use gap::capsule_gaps;
 pub use gap::{Gap, PairFeature, pair_gap, pair_gaps};
 pub(crate) use lap_frame::LapFrame;
 pub(crate) use neighbors::NeighborList;
+pub use obstacle::Obstacle;
 pub use pose::{Pose, Velocity};
 
 /// A vector in the plane, in cm or cm/s.

@@ -23,6 +23,9 @@ impl Integrator {
             ..
         } = self;
         if !contacts.find(poses, boats, free, dt, statistics) {
+            if contacts.detector().may_pass_walls(free, dt) {
+                return ContactOutcome::TooLong;
+            }
             contacts.clear_warm_start();
             self.velocities.copy_from_slice(free);
             return ContactOutcome::Untouched;

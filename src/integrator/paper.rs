@@ -9,6 +9,7 @@ use super::moreau::explicit_velocities;
 use super::state::Integrator;
 use super::substep::{StepOutcome, Substep};
 use crate::clock::seconds;
+use crate::contact::ContactOutcome;
 
 /// Overlap (cm) that no tolerance distinguishes from touching: what a solver's residual of 1e-10 cm/s leaves in
 /// a substep, with room for a row of boats.
@@ -35,12 +36,18 @@ pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
     let near = contacts.find(poses, boats, velocities, dt, statistics);
     let allowed = parameters.overlap_tolerance_cm.max(ROUNDING);
     if near && contacts.overlaps_after(poses, velocities, dt, allowed) {
-        contacts.resolve(poses, velocities, inertia, dt, false, statistics);
+        let outcome = contacts.resolve(poses, velocities, inertia, dt, false, statistics);
+        if outcome == ContactOutcome::TooLong {
+            return StepOutcome::TooLong;
+        }
         flock
             .velocities
             .copy_from_slice(flock.contacts.velocities());
         flock.drift(dt);
         return StepOutcome::Taken;
+    }
+    if contacts.detector().may_pass_walls(velocities, dt) {
+        return StepOutcome::TooLong;
     }
     contacts.clear_warm_start();
     flock.drift(dt);

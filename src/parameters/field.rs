@@ -36,6 +36,8 @@ pub enum Kind {
     Pool,
     /// One of these names, or a list with one of them per leader.
     Choices(fn() -> Vec<&'static str>),
+    /// Rows of real numbers with these names.
+    Rows(&'static [&'static str]),
 }
 
 /// Which values of a field are accepted.
@@ -115,6 +117,8 @@ pub enum Value {
     Radii(f64, f64),
     /// Names, one per leader.
     Names(Vec<String>),
+    /// Rows of real numbers.
+    Rows(Vec<Vec<f64>>),
 }
 
 impl fmt::Display for Value {
@@ -126,6 +130,7 @@ impl fmt::Display for Value {
             Self::Name(name) => name.fmt(formatter),
             Self::Radii(outer, inner) => write!(formatter, "({outer}, {inner})"),
             Self::Names(names) => write!(formatter, "[{}]", names.join(", ")),
+            Self::Rows(rows) => write!(formatter, "{rows:?}"),
         }
     }
 }
@@ -140,7 +145,7 @@ pub(super) trait FieldType: Sized {
     fn from_value(value: Value) -> Result<Self>;
 }
 
-fn wrong_kind<T>(value: &Value) -> Result<T> {
+pub(super) fn wrong_kind<T>(value: &Value) -> Result<T> {
     Err(FlockError::parameter(
         "value",
         value,

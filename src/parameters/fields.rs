@@ -2,7 +2,7 @@
 //! its check, the bindings and the documentation follow from this table.
 
 use super::field::{Field, FieldType, Range, Value};
-use super::{Noise, Pool, Scheme, Solver, Target, Targets};
+use super::{Disc, Noise, Pool, Scheme, Solver, Target, Targets, Wall, obstacles};
 use crate::error::{FlockError, Result};
 
 macro_rules! declare_parameters {
@@ -117,6 +117,12 @@ declare_parameters! {
     current_gain: f64 = 0.0, "", Range::Within(0.0, 1.0, "0 (off) to 1"), "Section 4.5, off";
     /// Cap of that current's speed (Section 4.5).
     current_cap_cm_s: f64 = 5.0, "cm/s", Range::Positive, "Section 4.5 (3 to 5)";
+    /// Discs that stand in the water, a row (x_cm, y_cm, radius_cm) each; none: off. They may reach over the pool's
+    /// walls and overlap each other.
+    discs: Vec<Disc> = Vec::new(), "cm", Range::Dependent("up to 1000 rows (x_cm, y_cm, radius_cm) with a part in the water"), "chosen, off";
+    /// Straight walls without thickness in the water, a row (x0_cm, y0_cm, x1_cm, y1_cm) of their two ends each; none:
+    /// off. They may reach over the pool's walls and cross each other.
+    walls: Vec<Wall> = Vec::new(), "cm", Range::Dependent("up to 1000 rows (x0_cm, y0_cm, x1_cm, y1_cm) with a part in the water"), "chosen, off";
 }
 
 impl FlockParameters {
@@ -126,6 +132,14 @@ impl FlockParameters {
     /// Half-length of the hull's core segment, h = p·r, in cm.
     pub fn half_length_cm(&self) -> f64 {
         self.boat_shape * self.boat_radius_cm
+    }
+
+    /// What messages call an obstacle, the discs numbered first, then the walls.
+    pub(crate) fn obstacle_name(&self, number: usize) -> String {
+        match number.checked_sub(self.discs.len()) {
+            None => format!("disc {number}"),
+            Some(wall) => format!("wall {wall}"),
+        }
     }
 
     /// Checks every field; the one gate through which parameters enter a flock.
@@ -138,6 +152,8 @@ impl FlockParameters {
         }
         self.check_leaders()?;
         self.check_pool()?;
+        obstacles::check(&self.discs, self.pool)?;
+        obstacles::check(&self.walls, self.pool)?;
         self.check_spread()?;
         self.check_timing()
     }

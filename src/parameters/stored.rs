@@ -27,8 +27,16 @@ impl FlockParameters {
 
 impl Serialize for FlockParameters {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        let names = Self::FIELDS.iter().map(|field| field.name);
-        let named: Vec<_> = names.zip(self.values()).collect();
+        // Fields that were added since version 0.1.0 are stored where they differ from their defaults: states
+        // without them are the same bytes in every version.
+        let defaults = Self::simulation().values();
+        let each = Self::FIELDS.iter().zip(self.values()).zip(&defaults);
+        let stored = each.enumerate().filter(|(place, ((_, value), default))| {
+            *place < Self::FIRST_FIELDS || value != *default
+        });
+        let named: Vec<_> = stored
+            .map(|(_, ((field, value), _))| (field.name, value))
+            .collect();
         named.serialize(serializer)
     }
 }
@@ -95,5 +103,6 @@ fn first_value<'de, A: SeqAccess<'de>>(
         Kind::Pool => values
             .next_element()?
             .map(|(outer, inner)| Value::Radii(outer, inner)),
+        Kind::Rows(_) => values.next_element()?.map(Value::Rows),
     })
 }

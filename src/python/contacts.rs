@@ -67,7 +67,8 @@ columns! {
     /// i : int64 array, shape (c,)
     ///     The boat that the normal pushes.
     /// j : int64 array, shape (c,)
-    ///     The other boat, or -1 for the outer wall, -2 for the inner wall.
+    ///     The other boat, or -1 for the outer wall, -2 for the inner wall, and from -3 downwards the
+    ///     obstacles: the discs in their order, then the walls.
     /// gap_cm : float64 array, shape (c,)
     ///     Distance between the hulls now in cm, negative for overlap.
     /// normal : float64 array, shape (c, 2)
@@ -110,7 +111,8 @@ columns! {
     /// count : int64 array, shape (t,)
     ///     How many contacts each sample has; they follow one another in the other arrays.
     /// i, j : int32 array, shape (c,)
-    ///     The boats, as in `Contacts`: j is -1 for the outer wall, -2 for the inner wall.
+    ///     The boats, as in `Contacts`: j is -1 for the outer wall, -2 for the inner wall, -3 and below
+    ///     for obstacles.
     /// normal : float32 array, shape (c, 2)
     ///     Unit vector along which boat i is pushed, world axes.
     /// force : float32 array, shape (c,)
@@ -207,12 +209,13 @@ fn vectors_of(array: &PyReadonlyArray2<'_, f32>) -> PyResult<Vec<Vec2>> {
         .collect())
 }
 
-/// Walls are numbered −1 (outer) and −2 (inner).
+/// Walls are numbered −1 (outer) and −2 (inner), obstacles from −3 downwards.
 fn partner(contact: &ContactForce) -> i32 {
     match contact.contact.partner {
         Partner::Boat(boat) => boat as i32,
         Partner::OuterWall => -1,
         Partner::InnerWall => -2,
+        Partner::Obstacle(number) => -3 - number as i32,
     }
 }
 

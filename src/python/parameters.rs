@@ -1,10 +1,13 @@
 //! `flockenv.FlockParameters` to and from the core's: fields are read as attributes of the same name,
 //! so any object that has them will do. Which there are, and their range, is declared in the core.
 
-use super::arguments::{real, text, texts, truth, wrong_type};
+use super::arguments::{floats, real, text, texts, truth, wrong_type};
 use super::settings::count;
+use crate::error::FlockError;
 use crate::geometry;
-use crate::parameters::{Field, FlockParameters, Kind, Physics, Pool, Preset, Value};
+use crate::parameters::{
+    Field, FlockParameters, Kind, MOST_OBSTACLES, Physics, Pool, Preset, Value,
+};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -35,6 +38,7 @@ fn read(value: &Bound<'_, PyAny>, field: &'static Field) -> PyResult<Value> {
             None => Value::Name(text(value, name)?),
         },
         Kind::Pool => read_pool(value, name)?,
+        Kind::Rows(columns) => read_rows(value, name, columns)?,
     })
 }
 
@@ -55,6 +59,26 @@ fn read_pool(value: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Value> {
     ))
 }
 
+/// Rows of numbers: any sequence of sequences, or an array (rows, columns).
+fn read_rows(value: &Bound<'_, PyAny>, name: &'static str, columns: &[&str]) -> PyResult<Value> {
+    let accepted = format!("rows of ({})", columns.join(", "));
+    let is_text = value.cast::<PyString>().is_ok() || value.cast::<PyDict>().is_ok();
+    let rows = if is_text { None } else { value.len().ok() };
+    let rows = rows.ok_or_else(|| wrong_type(value, name, &accepted))?;
+    if rows == 0 {
+        return Ok(Value::Rows(Vec::new()));
+    }
+    // Before anything is copied.
+    if rows > MOST_OBSTACLES {
+        return Err(
+            FlockError::parameter(name, format!("{rows} rows"), "at most 1000 rows").into(),
+        );
+    }
+    let numbers = floats(value, name, &[rows, columns.len()])?;
+    let rows = numbers.chunks_exact(columns.len()).map(<[f64]>::to_vec);
+    Ok(Value::Rows(rows.collect()))
+}
+
 fn pool_from(value: &Bound<'_, PyAny>) -> PyResult<Pool> {
     Ok(match read_pool(value, "pool")? {
         Value::Radii(outer_radius_cm, inner_radius_cm) => Pool {
@@ -73,6 +97,11 @@ fn written<'py>(value: &Value, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         Value::Name(name) => name.into_bound_py_any(py),
         Value::Radii(outer, inner) => (outer, inner).into_bound_py_any(py),
         Value::Names(names) => Ok(PyTuple::new(py, names)?.into_any()),
+        Value::Rows(rows) => {
+            let rows = rows.iter().map(|row| PyTuple::new(py, row));
+            let rows = rows.collect::<PyResult<Vec<_>>>()?;
+            Ok(PyTuple::new(py, rows)?.into_any())
+        }
     }
 }
 
@@ -90,7 +119,7 @@ pub(crate) fn to_dict<'py>(
 
 /// What is declared of each field: (name, type, unit, accepted, meaning).
 #[pyfunction]
-pub(crate) fn parameter_table() -> Vec<(&'static str, &'static str, &'static str, String, String)> {
+pub(crate) fn parameter_table() -> Vec<(&'static str, String, &'static str, String, String)> {
     let fields = FlockParameters::FIELDS.iter();
     fields
         .map(|field| {
@@ -106,15 +135,19 @@ pub(crate) fn parameter_table() -> Vec<(&'static str, &'static str, &'static str
         .collect()
 }
 
-fn kind_name(kind: Kind) -> &'static str {
-    match kind {
+fn kind_name(kind: Kind) -> String {
+    let name = match kind {
         Kind::Count => "int",
         Kind::Real => "float",
         Kind::Flag => "bool",
         Kind::Choice(_) => "str",
         Kind::Pool => "str or (float, float)",
         Kind::Choices(_) => "str or (str, ...)",
-    }
+        Kind::Rows(columns) => {
+            return format!("tuple of ({})", vec!["float"; columns.len()].join(", "));
+        }
+    };
+    name.to_owned()
 }
 
 fn accepted(field: &Field) -> String {

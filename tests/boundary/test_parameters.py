@@ -18,7 +18,8 @@ NAMES = [field.name for field in dataclasses.fields(FlockParameters)]
 HUGE = pytest.param(10**5000, id="huge")  # has more digits than Python prints
 COUNTS = ["n_boats", "n_leaders", "relinearizations"]
 CHOICES = ["target", "scheme", "noise", "solver"]
-NUMBERS = [name for name in NAMES if name not in (*COUNTS, *CHOICES, "pool", "leaders_reverse")]
+OTHERS = ["pool", "leaders_reverse", "discs", "walls"]
+NUMBERS = [name for name in NAMES if name not in (*COUNTS, *CHOICES, *OTHERS)]
 
 
 def test_simulation_preset_is_table_3():

@@ -81,7 +81,7 @@ fn walls_balance_engines_and_drag() {
                 * match contact.partner {
                     Partner::OuterWall => outer_wall_gap(boat, side, hull, 90.0).normal,
                     Partner::InnerWall => inner_wall_gap(boat, hull, 48.5).normal,
-                    Partner::Boat(_) => continue,
+                    Partner::Boat(_) | Partner::Obstacle(_) => continue,
                 };
             carrying += usize::from(force > 0.0);
         }

@@ -14,6 +14,8 @@ mod hard_cases;
 mod impact;
 mod jam;
 mod noise;
+mod obstacle_hard_cases;
+mod obstacles;
 mod optional_effects;
 mod order_parameters;
 mod overlap;

@@ -32,7 +32,7 @@ fn forces(flock: &Flock, k: usize) -> Vec<f64> {
         match contact.contact.partner {
             Partner::OuterWall => forces[k - 1] += contact.force,
             Partner::Boat(behind) => forces[k - 1 - behind as usize] += contact.force,
-            Partner::InnerWall => panic!("there is none"),
+            Partner::InnerWall | Partner::Obstacle(_) => panic!("there is none"),
         }
     }
     forces

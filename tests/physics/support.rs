@@ -2,7 +2,7 @@
 
 use flockenv::flock::State;
 use flockenv::geometry::{Pose, Vec2, Velocity, cross};
-use flockenv::parameters::{Noise, Pool, Preset, Scheme};
+use flockenv::parameters::{Disc, Noise, Pool, Preset, Scheme, Wall};
 use flockenv::{Flock, FlockError, FlockParameters};
 use proptest::test_runner::{Config as ProptestConfig, RngSeed};
 
@@ -195,7 +195,11 @@ pub fn core_distance(a: &Pose, b: &Pose, half_length: f64) -> f64 {
         let axis = Vec2::new(p.heading.cos(), p.heading.sin()) * half_length;
         (p.position - axis, p.position + axis)
     };
-    let ((a0, a1), (b0, b1)) = (ends(a), ends(b));
+    segment_distance(ends(a), ends(b))
+}
+
+/// Distance between two segments, given by their ends.
+pub fn segment_distance((a0, a1): (Vec2, Vec2), (b0, b1): (Vec2, Vec2)) -> f64 {
     let side = |p: Vec2, q: Vec2, x: Vec2| cross(q - p, x - p);
     let crosses =
         side(a0, a1, b0) * side(a0, a1, b1) < 0.0 && side(b0, b1, a0) * side(b0, b1, a1) < 0.0;
@@ -241,8 +245,43 @@ pub fn deepest_overlap(flock: &Flock) -> f64 {
             let nearest = center(a).position + axis * t.clamp(-1.0, 1.0);
             least = least.min((point.position - nearest).norm() - r - p.pool.inner_radius_cm);
         }
+        let core = (a.position - axis, a.position + axis);
+        for disc in &p.discs {
+            let center = Vec2::new(disc.x_cm, disc.y_cm);
+            least = least.min(segment_distance(core, (center, center)) - r - disc.radius_cm);
+        }
+        for wall in &p.walls {
+            least = least.min(segment_distance(core, wall_ends(wall)) - r);
+        }
     }
     (-least).max(0.0)
+}
+
+/// The two ends of a wall.
+pub fn wall_ends(wall: &Wall) -> (Vec2, Vec2) {
+    (
+        Vec2::new(wall.x0_cm, wall.y0_cm),
+        Vec2::new(wall.x1_cm, wall.y1_cm),
+    )
+}
+
+/// A wall from one point to another.
+pub fn wall((x0_cm, y0_cm): (f64, f64), (x1_cm, y1_cm): (f64, f64)) -> Wall {
+    Wall {
+        x0_cm,
+        y0_cm,
+        x1_cm,
+        y1_cm,
+    }
+}
+
+/// A disc about a point.
+pub fn disc_at(x_cm: f64, y_cm: f64, radius_cm: f64) -> Disc {
+    Disc {
+        x_cm,
+        y_cm,
+        radius_cm,
+    }
 }
 
 /// Classical Runge–Kutta of order 4 over `steps` steps; `rate(state, time)`.

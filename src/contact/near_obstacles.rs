@@ -1,0 +1,59 @@
+//! Which obstacles each boat may touch soon: a list that is as good as the neighbor list, and made anew with it.
+
+use crate::geometry::{NeighborList, Obstacle, Vec2};
+
+/// The obstacles of a pool, and for each boat those near it.
+#[derive(Debug, Clone, Default)]
+pub(super) struct NearObstacles {
+    pub(super) obstacles: Vec<Obstacle>,
+    /// Whether some of them have no thickness.
+    pub(super) has_walls: bool,
+    /// Where the obstacles of each boat start in `near`.
+    starts: Vec<u32>,
+    near: Vec<u32>,
+    /// Which build of the neighbor list this one belongs to.
+    build: u64,
+}
+
+impl NearObstacles {
+    /// Of these obstacles.
+    pub(super) fn new(obstacles: Vec<Obstacle>) -> Self {
+        Self {
+            has_walls: obstacles.iter().any(|obstacle| !obstacle.is_disc()),
+            obstacles,
+            ..Self::default()
+        }
+    }
+
+    /// Follows a neighbor list: which is complete for centers up to its cutoff apart, so that half of that is how near
+    /// an obstacle, which does not move, must be to a center.
+    pub(super) fn update(&mut self, neighbors: &NeighborList) {
+        if self.obstacles.is_empty() || self.build == neighbors.builds() {
+            return;
+        }
+        self.build = neighbors.builds();
+        let reach = 0.5 * neighbors.cutoff();
+        self.starts.clear();
+        self.near.clear();
+        self.starts.push(0);
+        for &center in neighbors.reference() {
+            let obstacles = self.obstacles.iter().enumerate();
+            let near = obstacles.filter(|(_, obstacle)| is_within(obstacle, center, reach));
+            self.near.extend(near.map(|(number, _)| number as u32));
+            self.starts.push(self.near.len() as u32);
+        }
+    }
+
+    /// The obstacles near a boat, where there are any at all.
+    pub(super) fn of(&self, boat: u32) -> &[u32] {
+        let boat = boat as usize;
+        &self.near[self.starts[boat] as usize..self.starts[boat + 1] as usize]
+    }
+}
+
+/// Whether an obstacle is nearer than `reach` to a place; first by the circle about it.
+fn is_within(obstacle: &Obstacle, place: Vec2, reach: f64) -> bool {
+    let farthest = obstacle.shape.reach() + reach;
+    (place - obstacle.pose.center).norm_squared() <= farthest * farthest
+        && (obstacle.is_disc() || obstacle.distance(place) <= reach)
+}

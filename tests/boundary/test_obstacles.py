@@ -1,0 +1,181 @@
+"""Law: discs and walls are fields like others: checked once, and stored wherever parameters are."""
+
+import pickle
+
+import gymnasium
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv import Flock, FlockError, FlockParameters, ParameterError, Recording, simulate
+from flockenv.cli.parameters import read_parameters
+from flockenv.runs.spec import RunSpec
+from flockenv.runs.sweep_spec import read_sweep
+
+DISCS = ((30.0, 0.0, 8.0), (-30.0, 10.0, 3.5))
+WALLS = ((-60.0, 40.0, 0.0, 40.0),)
+
+
+@pytest.fixture
+def arena():
+    return FlockParameters(n_boats=9, n_leaders=2, pool=(90.0, 0.0), discs=DISCS, walls=WALLS)
+
+
+def test_any_rows_of_numbers_are_taken_and_stored_as_tuples(arena):
+    for discs, walls in (
+        ([list(each) for each in DISCS], [list(each) for each in WALLS]),
+        (np.array(DISCS), np.array(WALLS)),
+        (np.array(DISCS, np.float32), [np.array(WALLS[0], int)]),
+    ):
+        assert arena.replace(discs=discs, walls=walls) == arena
+    assert arena.discs == DISCS
+    assert type(arena.walls[0][0]) is float
+    assert arena.replace(discs=np.zeros((0, 3)), walls=[]).discs == ()
+    assert len({arena, arena.replace(), arena.replace(walls=())}) == 2
+
+
+def test_round_trips(arena, tmp_path):
+    assert FlockParameters.from_toml(arena.to_toml()) == arena
+    assert FlockParameters.from_dict(arena.to_dict()) == arena
+    assert pickle.loads(pickle.dumps(arena)) == arena
+    (tmp_path / "arena.toml").write_text(arena.to_toml())
+    assert read_parameters(file=tmp_path / "arena.toml") == arena
+    discs = f"discs={[list(each) for each in DISCS]}"
+    from_command = read_parameters(changes=["pool=(90, 0)", discs, "walls=[[-60, 40, 0, 40]]"])
+    assert (from_command.discs, from_command.walls) == (DISCS, WALLS)
+
+
+def test_snapshots_and_recordings_hold_them(arena, tmp_path):
+    flock = Flock(arena, seed=3)
+    flock.advance(2.0)
+    other = Flock.from_snapshot(flock.snapshot())
+    assert other.parameters == arena
+    flock.advance(2.0)
+    other.advance(2.0)
+    assert flock.snapshot() == other.snapshot()
+    run = simulate(arena, 3, 40.0, contacts=True)
+    assert run.contacts.j.min() <= -3
+    run.save(tmp_path / "run.npz")
+    loaded = Recording.load(tmp_path / "run.npz")
+    assert loaded == run
+    assert loaded.parameters == arena
+
+
+def test_a_flock_of_other_obstacles_takes_no_snapshot(arena):
+    flock = Flock(arena, seed=3)
+    before = flock.snapshot()
+    with pytest.raises(ParameterError, match="other parameters"):
+        flock.restore(Flock(arena.replace(walls=()), seed=3).snapshot())
+    assert flock.snapshot() == before
+
+
+def test_contacts_number_obstacles_after_the_walls_of_the_pool():
+    p = FlockParameters(
+        n_boats=2,
+        pool=(90.0, 0.0),
+        c4=0.0,
+        bw_s=0.0,
+        discs=[(40, 0, 10)],
+        walls=[(-40, -50, -40, 50)],
+    )
+    flock = Flock(p, seed=1)
+    flock.set_state([[22.5, 0, 0], [-32.5, 0, np.pi]], np.zeros((2, 3)))
+    flock.advance(1.0)
+    contacts = flock.contacts()
+    assert sorted(zip(contacts.i, contacts.j, strict=True)) == [(0, -3), (1, -4)]
+    assert contacts.force == pytest.approx(15.0, abs=1e-6)
+    assert contacts.point_cm == pytest.approx(np.array([[30.0, 0], [-40.0, 0]]), abs=1e-9)
+
+
+def test_recorded_contacts_of_other_obstacles_are_refused(arena):
+    run = simulate(arena, 3, 40.0, contacts=True)
+    fields = {name: getattr(run, name) for name in run.__dataclass_fields__}
+    with pytest.raises(ParameterError, match="contacts"):
+        Recording(**(fields | {"parameters": arena.replace(discs=(), walls=())}))
+
+
+def test_runs_without_them_keep_their_keys(arena):
+    spec = RunSpec(parameters=arena.replace(discs=(), walls=()), seed=1, duration_s=10.0)
+    assert "discs" not in spec.to_json()
+    with_walls = RunSpec(parameters=arena.replace(discs=()), seed=1, duration_s=10.0)
+    assert '"walls": [[-60.0, 40.0, 0.0, 40.0]]' in with_walls.to_json()
+    assert spec.key != with_walls.key
+
+
+def test_sweeps_vary_them(tmp_path):
+    (tmp_path / "sweep.toml").write_text(
+        "minutes = 1\nseeds = 2\n[fixed]\npool = [90, 0]\nn_boats = 5\n"
+        "[[grid]]\ndiscs = [[], [[30, 0, 8]], [[30, 0, 8], [-30, 0, 8]]]\n"
+    )
+    sweep = read_sweep(tmp_path / "sweep.toml")
+    assert [len(run.parameters.discs) for run in sweep.runs] == [0, 0, 1, 1, 2, 2]
+
+
+BAD = {
+    "negative radius": {"discs": [(30, 0, -1)]},
+    "no radius": {"discs": [(30, 0, 0)]},
+    "NaN": {"discs": [(np.nan, 0, 3)]},
+    "infinite": {"walls": [(0, 0, np.inf, 3)]},
+    "outside": {"discs": [(120, 0, 20)]},
+    "outside, a wall": {"walls": [(100, -50, 100, 50)]},
+    "a point": {"walls": [(10, 10, 10, 10)]},
+    "too many": {"discs": [(0, 0, 1)] * 1001},
+    "too many, a view": {"walls": np.broadcast_to(1.0, (10**12, 4))},
+    "wrong columns": {"discs": [(1, 2)]},
+    "ragged": {"walls": [(1, 2, 3, 4), (1,)]},
+}
+
+
+@pytest.mark.parametrize("changes", BAD.values(), ids=BAD)
+def test_bad_obstacles_are_refused_by_name(arena, changes):
+    with pytest.raises(ParameterError, match=next(iter(changes))):
+        arena.replace(**changes)
+
+
+@pytest.mark.parametrize("value", [None, 3.0, "(1, 2, 3)", {}, iter([]), True])
+@pytest.mark.parametrize("name", ["discs", "walls"])
+def test_what_are_no_rows_is_a_type_error(arena, name, value):
+    with pytest.raises(TypeError, match=name):
+        arena.replace(**{name: value})
+
+
+def test_no_room_is_an_error_before_anything_changes(arena):
+    with pytest.raises(FlockError, match=r"do not fit the pool.*fewer obstacles"):
+        Flock(arena.replace(discs=[(0, 0, 85)], walls=()), seed=1)
+    flock = Flock(arena, seed=1)
+    before = flock.snapshot()
+    with pytest.raises(FlockError, match="boat 0 and disc 0 overlap"):
+        flock.set_state([[30.0, 0.0, 0.0]] * 9, np.zeros((9, 3)))
+    assert flock.snapshot() == before
+
+
+def test_environments_have_them_and_store_them(arena):
+    fields = {"n_boats": 9, "pool": (90.0, 0.0), "discs": DISCS, "walls": WALLS}
+    env = flockenv.LeadersEnv(n_leaders=2, episode_s=12.0, **fields)
+    env.reset(seed=5)
+    assert env.parameters.discs == DISCS
+    state = env.get_state()
+    rewards = [env.step(np.array([0.3, -0.2], np.float32))[1] for _ in range(30)]
+    env.set_state(state)
+    assert [env.step(np.array([0.3, -0.2], np.float32))[1] for _ in range(30)] == rewards
+
+
+def test_any_batch_gives_the_same_flocks():
+    fields = {"n_boats": 9, "n_leaders": 2, "pool": (90.0, 0.0), "discs": DISCS, "walls": WALLS}
+    runs = []
+    for num_envs in (1, 3):
+        envs = gymnasium.make_vec("flockenv/Leaders-v0", num_envs=num_envs, **fields)
+        observation, _ = envs.reset(seed=4)
+        rows = [observation[0]]
+        for _ in range(50):
+            action = np.full((num_envs, 2), 0.4, np.float32)
+            rows.append(envs.step(action)[0][0])
+        runs.append(np.array(rows))
+    assert runs[0].tobytes() == runs[1].tobytes()
+
+
+def test_files_from_before_there_were_obstacles_have_none():
+    p = FlockParameters(n_boats=3)
+    lines = [line for line in p.to_toml().splitlines() if line not in ("discs = []", "walls = []")]
+    assert len(lines) == 29
+    assert FlockParameters.from_toml("\n".join(lines)) == p
