@@ -232,6 +232,8 @@ def _run(
         **_opposed_targets(parameters),
         "bw_s": parameters.bw_s,
         "lengths": _lengths(parameters),
+        "discs": parameters.discs,
+        "walls": parameters.walls,
         # Of tracks the phases may be unknown.
         "phases": PHASES.tolist() if _has_phases(recording) else [],
         "ids": None if recording.ids is None else recording.ids.tolist(),

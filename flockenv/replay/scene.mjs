@@ -128,22 +128,49 @@ export class Scene {
       context.fillRect(0, 0, width, height);
       this.#grid(width, height);
     } else {
-      this.#disc(outer * this.scale + wall, palette.wall);
-      this.#disc(outer * this.scale, palette.water);
+      this.#disc(0, 0, outer * this.scale + wall, palette.wall);
+      this.#disc(0, 0, outer * this.scale, palette.water);
     }
+    this.#obstacles(outer, wall);
     if (inner > 0) {
-      this.#disc(inner * this.scale, palette.wall);
-      this.#disc(inner * this.scale - wall, palette.ground);
+      this.#disc(0, 0, inner * this.scale, palette.wall);
+      this.#disc(0, 0, inner * this.scale - wall, palette.ground);
       if (run.target !== null && inner * this.scale >= 24) {
         this.#arrow(0.66 * inner * this.scale);
       }
     }
   }
 
-  #disc(radius, color) {
+  /** Discs and walls, those that meet as one, and nothing beyond the pool's outer wall. */
+  #obstacles(outer, wall) {
+    const { context, palette, run } = this;
+    context.save();
+    if (outer !== null) {
+      context.beginPath();
+      context.arc(...this.pixel(0, 0), outer * this.scale, 0, 2 * Math.PI);
+      context.clip();
+    }
+    context.strokeStyle = palette.wall;
+    context.lineWidth = wall;
+    context.lineCap = "round";
+    for (const [x0, y0, x1, y1] of run.walls) {
+      context.beginPath();
+      context.moveTo(...this.pixel(x0, y0));
+      context.lineTo(...this.pixel(x1, y1));
+      context.stroke();
+    }
+    for (const [inset, color] of [[0, palette.wall], [wall, palette.ground]]) {
+      for (const [x, y, radius] of run.discs) {
+        this.#disc(x, y, radius * this.scale - inset, color);
+      }
+    }
+    context.restore();
+  }
+
+  #disc(x, y, radius, color) {
     const { context } = this;
     context.beginPath();
-    context.arc(...this.pixel(0, 0), Math.max(radius, 0), 0, 2 * Math.PI);
+    context.arc(...this.pixel(x, y), Math.max(radius, 0), 0, 2 * Math.PI);
     context.fillStyle = color;
     context.fill();
   }

@@ -11,7 +11,7 @@ mod water;
 use crate::error::{FlockError, Result};
 use crate::flock::Flock;
 use crate::geometry::Hull;
-use crate::parameters::{Pool, Target};
+use crate::parameters::{Disc, Pool, Target, Wall};
 use legend::Legend;
 use tiny_skia::Pixmap;
 use view::View;
@@ -24,10 +24,12 @@ pub struct FrameRenderer {
     backgrounds: Vec<Background>,
 }
 
-/// Water and walls of a pool, as they look with a target.
+/// Water, walls and obstacles of a pool, as they look with a target.
 #[derive(Debug, Clone)]
 struct Background {
     pool: Pool,
+    discs: Vec<Disc>,
+    walls: Vec<Wall>,
     target: Option<Target>,
     image: Pixmap,
 }
@@ -124,22 +126,29 @@ impl FrameRenderer {
     }
 
     fn draw_background(&mut self, flock: &Flock, view: &View) {
-        let (pool, target) = (flock.parameters().pool, target_of(flock));
-        if !pool.has_outer_wall() {
-            water::draw(&mut self.canvas, &pool, target, view);
+        let (parameters, target) = (flock.parameters(), target_of(flock));
+        if !parameters.pool.has_outer_wall() {
+            water::draw(&mut self.canvas, parameters, target, view);
             return;
         }
-        let same = |each: &Background| each.pool == pool && each.target == target;
+        let same = |each: &Background| {
+            each.pool == parameters.pool
+                && each.target == target
+                && each.discs == parameters.discs
+                && each.walls == parameters.walls
+        };
         if let Some(found) = self.backgrounds.iter().find(|each| same(each)) {
             self.canvas.data_mut().copy_from_slice(found.image.data());
             return;
         }
-        water::draw(&mut self.canvas, &pool, target, view);
+        water::draw(&mut self.canvas, parameters, target, view);
         if self.backgrounds.len() == Self::MOST_BACKGROUNDS {
             self.backgrounds.remove(0);
         }
         self.backgrounds.push(Background {
-            pool,
+            pool: parameters.pool,
+            discs: parameters.discs.clone(),
+            walls: parameters.walls.clone(),
             target,
             image: self.canvas.clone(),
         });

@@ -1,9 +1,9 @@
-//! What lies under the boats: ground, walls and water, and the arrow that shows the target.
+//! What lies under the boats: ground, walls, obstacles and water, and the arrow that shows the target.
 
 use super::palette::{GRID, GROUND, Rgb, TARGET, WALL, WATER};
 use super::view::View;
 use crate::geometry::Vec2;
-use crate::parameters::{Pool, Target};
+use crate::parameters::{FlockParameters, Target};
 use std::f64::consts::PI;
 use tiny_skia::{FillRule, LineCap, Path, PathBuilder, Pixmap, Point, Rect, Stroke, Transform};
 
@@ -11,23 +11,33 @@ use tiny_skia::{FillRule, LineCap, Path, PathBuilder, Pixmap, Point, Rect, Strok
 const LEAST_SPACING: f64 = 60.0;
 /// The obstacle's radius from which on the arrow fits, in pixels.
 const LEAST_ISLAND: f32 = 24.0;
+/// Pixels beyond which nothing is drawn.
+const FARTHEST: f32 = 1e6;
 
 /// Draws all of it.
-pub(super) fn draw(canvas: &mut Pixmap, pool: &Pool, target: Option<Target>, view: &View) {
-    let wall = wall_width(canvas);
+pub(super) fn draw(
+    canvas: &mut Pixmap,
+    parameters: &FlockParameters,
+    target: Option<Target>,
+    view: &View,
+) {
+    let (pool, wall, middle) = (&parameters.pool, wall_width(canvas), Vec2::zeros());
     if pool.has_outer_wall() {
         canvas.fill(GROUND.color());
         let radius = view.length(pool.outer_radius_cm);
-        disc(canvas, view, radius + wall, WALL);
-        disc(canvas, view, radius, WATER);
+        disc(canvas, view, middle, radius + wall, WALL);
+        disc(canvas, view, middle, radius, WATER);
     } else {
         canvas.fill(WATER.color());
         grid(canvas, view);
     }
+    if !(parameters.discs.is_empty() && parameters.walls.is_empty()) {
+        obstacles(canvas, parameters, view);
+    }
     if pool.has_inner_wall() {
         let radius = view.length(pool.inner_radius_cm);
-        disc(canvas, view, radius, WALL);
-        disc(canvas, view, radius - wall, GROUND);
+        disc(canvas, view, middle, radius, WALL);
+        disc(canvas, view, middle, radius - wall, GROUND);
         if let Some(target) = target
             && radius >= LEAST_ISLAND
         {
@@ -43,10 +53,69 @@ fn wall_width(canvas: &Pixmap) -> f32 {
     (canvas.width().min(canvas.height()) as f32 / 200.0).max(1.0)
 }
 
-/// A disc about the world's origin.
-fn disc(canvas: &mut Pixmap, view: &View, radius: f32, color: Rgb) {
+/// Discs and walls, those that meet as one, and nothing beyond the pool's outer wall.
+fn obstacles(canvas: &mut Pixmap, parameters: &FlockParameters, view: &View) {
+    let wall = wall_width(canvas);
+    for each in &parameters.walls {
+        let ends = [(each.x0_cm, each.y0_cm), (each.x1_cm, each.y1_cm)];
+        let [start, end] = ends.map(|(x, y)| view.pixel(Vec2::new(x, y)));
+        let farthest = start
+            .x
+            .abs()
+            .max(start.y.abs())
+            .max(end.x.abs())
+            .max(end.y.abs());
+        if farthest < FARTHEST {
+            let mut path = PathBuilder::new();
+            path.move_to(start.x, start.y);
+            path.line_to(end.x, end.y);
+            stroke(canvas, path, wall, WALL);
+        }
+    }
+    for (inset, color) in [(0.0, WALL), (wall, GROUND)] {
+        for each in &parameters.discs {
+            let center = Vec2::new(each.x_cm, each.y_cm);
+            disc(
+                canvas,
+                view,
+                center,
+                view.length(each.radius_cm) - inset,
+                color,
+            );
+        }
+    }
+    if parameters.pool.has_outer_wall() {
+        shore(
+            canvas,
+            view,
+            view.length(parameters.pool.outer_radius_cm),
+            wall,
+        );
+    }
+}
+
+/// The ground around the pool and its outer wall, over what reaches beyond.
+fn shore(canvas: &mut Pixmap, view: &View, radius: f32, wall: f32) {
     let center = view.pixel(Vec2::zeros());
-    let in_reach = radius.is_finite() && center.x.abs().max(center.y.abs()) < 1e6 && radius < 1e6;
+    let (width, height) = (canvas.width() as f32, canvas.height() as f32);
+    for (outside, color) in [(radius, WALL), (radius + wall, GROUND)] {
+        let mut path = PathBuilder::new();
+        if let Some(frame) = Rect::from_xywh(0.0, 0.0, width, height) {
+            path.push_rect(frame);
+        }
+        path.push_circle(center.x, center.y, outside);
+        if let Some(path) = path.finish() {
+            let (paint, whole) = (color.paint(), Transform::identity());
+            canvas.fill_path(&path, &paint, FillRule::EvenOdd, whole, None);
+        }
+    }
+}
+
+/// A disc about a world point.
+fn disc(canvas: &mut Pixmap, view: &View, center: Vec2, radius: f32, color: Rgb) {
+    let center = view.pixel(center);
+    let in_reach =
+        radius.is_finite() && center.x.abs().max(center.y.abs()) < FARTHEST && radius < FARTHEST;
     if !in_reach {
         return;
     }

@@ -1,7 +1,7 @@
 //! Law: a frame is a function of the flock and the frame's size, byte for byte, whatever was drawn before.
 
 use flockenv::geometry::{Pose, Velocity};
-use flockenv::parameters::{FlockParameters, Pool, Preset, Target};
+use flockenv::parameters::{Disc, FlockParameters, Pool, Preset, Target, Wall};
 use flockenv::{Flock, FlockError, FrameRenderer};
 
 const OPEN_WATER: Pool = Pool {
@@ -244,4 +244,61 @@ fn extreme_scenes_are_drawn() {
         .set_state(&poses, &[Velocity::default(); 4], 1e9, true)
         .unwrap();
     drawn(&flock, 300, 300);
+}
+
+#[test]
+fn obstacles_are_where_they_are_and_end_at_the_pools_wall() {
+    let with = |pool: Pool, obstacles: bool| {
+        let mut flock = circling(pool, Target::Clockwise);
+        let mut parameters = flock.parameters().clone();
+        if obstacles {
+            parameters.discs = vec![
+                Disc {
+                    x_cm: 40.0,
+                    y_cm: 40.0,
+                    radius_cm: 12.0,
+                },
+                Disc {
+                    x_cm: -65.0,
+                    y_cm: -65.0,
+                    radius_cm: 10.0,
+                },
+            ];
+            parameters.walls = vec![Wall {
+                x0_cm: -120.0,
+                y0_cm: 35.0,
+                x1_cm: -20.0,
+                y1_cm: 35.0,
+            }];
+        }
+        let (poses, velocities) = (flock.poses().to_vec(), flock.velocities().to_vec());
+        flock = Flock::new(parameters, 1).unwrap();
+        flock.set_state(&poses, &velocities, 12.5, false).unwrap();
+        flock
+    };
+    let pool = Pool {
+        outer_radius_cm: 90.0,
+        inner_radius_cm: 0.0,
+    };
+    let (ground, wall, water) = ([0xF7, 0xF5, 0xF0], [0x7C, 0x86, 0x90], [0xDC, 0xEA, 0xF3]);
+    let frame = drawn(&with(pool, true), 300, 300);
+    assert_eq!(color_at(&frame, 40.0, 40.0), ground);
+    assert_eq!(color_at(&frame, 40.0 + 11.7, 40.0), wall);
+    assert_eq!(color_at(&frame, 40.0, 40.0 - 13.0), water);
+    assert_eq!(color_at(&frame, -50.0, 35.0), wall);
+    assert_eq!(color_at(&frame, -18.0, 35.0), water);
+    // Inside the disc over the rim, and beyond the rim.
+    assert_eq!(color_at(&frame, -61.0, -61.0), ground);
+    for (x, y) in [(-68.0, -68.0), (-88.0, 35.0)] {
+        assert_eq!(color_at(&frame, x, y), ground);
+    }
+    // One renderer draws pools that differ by their obstacles alone.
+    let mut renderer = FrameRenderer::new(300, 300).unwrap();
+    let plain = drawn(&with(pool, false), 300, 300);
+    for _ in 0..2 {
+        assert!(renderer.draw(&with(pool, true)) == frame);
+        assert!(renderer.draw(&with(pool, false)) == plain);
+    }
+    let open = drawn(&with(OPEN_WATER, true), 300, 300);
+    assert!(open != drawn(&with(OPEN_WATER, false), 300, 300));
 }
