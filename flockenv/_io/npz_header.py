@@ -52,10 +52,10 @@ def read_headed(
     except ParameterError as error:
         raise ParameterError(f"{path} is no whole {kind}: {error}") from error
     current = _core.observation_version()
-    if version != current:
+    if not 1 <= version <= current:
         raise ParameterError(
-            f"{path} was made for version {version} of the observation; this is version "
-            f"{current}: train it again"
+            f"{path} was made for version {version} of the observation; this package has versions "
+            f"up to {current}: train it again"
         )
     return header, arrays
 

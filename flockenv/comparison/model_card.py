@@ -6,7 +6,7 @@ from typing import Any
 
 from flockenv._core import __version__
 from flockenv.comparison.report import ComparisonReport
-from flockenv.envs.observation import OBSERVATION_VERSION
+from flockenv.envs.observation import observation_version
 from flockenv.policies import LeaningLaw, ModelPolicy, NetworkPolicy
 from flockenv.policies.model import as_policy
 from flockenv.policies.registry import EVERY_SUBSTEP
@@ -42,7 +42,8 @@ def model_card(
     policy = as_policy(policy)
     lines = [f"# {name}", ""]
     if isinstance(policy, NetworkPolicy | LeaningLaw | ModelPolicy):
-        takes = f"It takes version {OBSERVATION_VERSION} of the observation."
+        version = observation_version(policy.observation)
+        takes = f"It takes version {version} of the observation."
         lines += [f"The policy is `{policy!r}`. {takes}", ""]
         lines += ["| provenance | |", "| --- | --- |"]
         lines += [f"| {name} | `{text}` |" for name, text in policy.provenance.items()]

@@ -5,7 +5,6 @@ from typing import TypeVar
 
 from flockenv import _core
 from flockenv.envs.observation import (
-    OBSERVATION_VERSION,
     feature_table,
     flock_feature_entries,
     observation_entries,
@@ -53,7 +52,8 @@ features of an environment (those of a `LeaderVecEnv` are in the frame of each s
 _FRAME = """All entries are in the local-angle polar (LAP) frame of the leader's own position,
 outward and clockwise. They are scaled, and clipped at the bounds below; the share of clipped
 numbers is reported at the end of the episode. The entries of `neighbors` repeat for each of the
-nearest boats, nearest first. The block `law_rudder` is off unless `observation` switches it on."""
+nearest boats, nearest first, and those of `obstacles` for each of the nearest discs and walls. The
+blocks `law_rudder` and `obstacles` are off unless `observation` switches them on."""
 
 _START = """Boats start at rest at random positions with random headings, without overlap, in phase
 fw. The seed fixes the initial state, the noise (whatever the policy does), the target and the
@@ -77,7 +77,8 @@ entries are left out. Where each leader has a target of its own the summary also
 `leader_targets` (+1 clockwise, -1 counter-clockwise), `leader_total_rewards`,
 `leader_signed_orders` and `leader_shares_towards_target`, each towards the leader's own."""
 
-_HISTORY = f"- v0, observation version {OBSERVATION_VERSION}: initial version."
+_HISTORY = """- v0, observation version 1: initial version. Where the block `obstacles` is on, it is
+  added at the end, and the version of the observation is 2."""
 
 # Those that are off by default, too.
 _EVERY_BLOCK = {

@@ -21,16 +21,17 @@ __all__ = [
     "observation_entries",
     "observation_space",
     "observation_table",
+    "observation_version",
     "observe",
     "seen_space",
     "state_entries",
     "state_space",
 ]
 
-#: Version of the observation: of its entries, their order, scales and bounds.
+#: Newest version of the observation: of its entries, their order, scales and bounds.
 OBSERVATION_VERSION: int = _core.observation_version()
 
-#: The blocks with their defaults: on or off, and how many neighbors.
+#: The blocks with their defaults: on or off, and how many neighbors or obstacles.
 BLOCKS: dict[str, Any] = _core.env_defaults()["observation"]
 
 
@@ -57,6 +58,17 @@ def observation_entries(blocks: Mapping[str, Any] | None = None) -> list[Entry]:
         Blocks that differ from `BLOCKS`.
     """
     return [Entry(*row) for row in _core.observation_table(dict(blocks or {}))]
+
+
+def observation_version(blocks: Mapping[str, Any] | None = None) -> int:
+    """Return the version of the observation that has these blocks: 2 with obstacles, else 1.
+
+    Parameters
+    ----------
+    blocks
+        Blocks that differ from `BLOCKS`.
+    """
+    return _core.observation_version(dict(blocks or {}))
 
 
 def flock_feature_entries() -> list[Entry]:
@@ -199,7 +211,7 @@ def feature_table(entries: Iterable[Entry]) -> str:
 
 
 def observation_table(entries: Iterable[Entry]) -> str:
-    """Return entries as a Markdown table; those that repeat for each neighbor or boat once."""
+    """Return entries as a Markdown table; those of each neighbor, obstacle or boat once."""
     lines = ["| block | entry | unit | 1 stands for | bounds | meaning |", "| --- " * 6 + "|"]
     for entry in entries:
         if entry.place == 0:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from flockenv._io.array_file import write_arrays
 from flockenv._io.moved_modules import renamed_attribute
 from flockenv._io.npz_header import read_headed
-from flockenv.envs.observation import OBSERVATION_VERSION
+from flockenv.envs.observation import observation_version
 from flockenv.errors import ParameterError
 from flockenv.policies.base import RowPolicy
 
@@ -45,7 +45,8 @@ class StoredPolicy(RowPolicy):
             If the file cannot be written; what was there before is still there.
         """
         header, arrays = self._contents()
-        whole = {"format": FORMAT, "observation_version": OBSERVATION_VERSION, **header}
+        version = observation_version(header["observation"])
+        whole = {"format": FORMAT, "observation_version": version, **header}
         write_arrays(path, {"header": np.array(json.dumps(whole, sort_keys=True)), **arrays})
 
     @property

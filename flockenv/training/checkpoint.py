@@ -19,7 +19,7 @@ from stable_baselines3 import PPO
 
 from flockenv._io.array_file import write_arrays
 from flockenv._io.npz_header import array_of, entry_of, read_headed
-from flockenv.envs.observation import OBSERVATION_VERSION
+from flockenv.envs.observation import observation_version
 from flockenv.errors import ParameterError
 from flockenv.sb3.shared_noise import SharedNoiseDistribution
 from flockenv.training.pools import PooledVecEnv
@@ -56,7 +56,7 @@ def state_of(model: PPO, settings: TrainingSettings, progress: Progress) -> Stat
     assert isinstance(env, PooledVecEnv)
     header = {
         "format": FORMAT,
-        "observation_version": OBSERVATION_VERSION,
+        "observation_version": observation_version(settings.observation),
         "settings": settings.to_dict(),
         "progress": asdict(progress),
         "updates": model._n_updates,

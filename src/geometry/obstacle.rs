@@ -69,6 +69,13 @@ impl Obstacle {
         self.pose.center + self.pose.axis * along.clamp(-h, h)
     }
 
+    /// The point of its surface that is nearest to a place; the place itself at a disc's very center.
+    pub fn nearest(&self, place: Vec2) -> Vec2 {
+        let core = self.nearest_of_core(place);
+        let away = (place - core).try_normalize(0.0);
+        away.map_or(place, |away| core + away * self.shape.radius)
+    }
+
     /// Distance of its surface from a place in cm, negative inside a disc.
     pub fn distance(&self, place: Vec2) -> f64 {
         (place - self.nearest_of_core(place)).norm() - self.shape.radius

@@ -16,10 +16,14 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArra
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Version of the observation.
+/// Version of an observation with these blocks, the newest where none are given.
 #[pyfunction]
-pub(crate) fn observation_version() -> u32 {
-    OBSERVATION_VERSION
+#[pyo3(signature = (blocks=None))]
+pub(crate) fn observation_version(blocks: Option<&Bound<'_, PyAny>>) -> PyResult<u32> {
+    Ok(match blocks {
+        Some(blocks) => layout_from(blocks, false)?.version(),
+        None => OBSERVATION_VERSION,
+    })
 }
 
 /// (block, count in block, name, unit, scale, low, high, mirrored, meaning).

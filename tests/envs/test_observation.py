@@ -10,6 +10,7 @@ from flockenv.envs.observation import (
     OBSERVATION_VERSION,
     observation_entries,
     observation_space,
+    observation_version,
     observe,
     state_entries,
 )
@@ -41,7 +42,9 @@ def observed(flock, **blocks):
 
 
 def test_version():
-    assert OBSERVATION_VERSION == 1
+    assert OBSERVATION_VERSION == 2
+    assert observation_version() == observation_version({"law_rudder": True}) == 1
+    assert observation_version({"obstacles": 1}) == 2
 
 
 def test_a_boat_on_the_x_axis():

@@ -202,7 +202,7 @@ def changed(policy, tmp_path, **entries):
     ("entries", "message"),
     [
         ({"observation_version": OBSERVATION_VERSION + 1}, "version .* of the observation"),
-        ({"observation_version": str(OBSERVATION_VERSION)}, "observation_version = '1' is not"),
+        ({"observation_version": str(OBSERVATION_VERSION)}, "observation_version = '2' is not"),
         ({"kind": "foo"}, "kind = 'foo' is not accepted: one of network, leaning law"),
         ({"format": "something else"}, "no policy in the format"),
         ({"layers": 2}, "layer 1 has weights"),

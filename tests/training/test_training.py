@@ -185,7 +185,7 @@ def test_a_start_of_another_observation_version_is_refused(
 ) -> None:
     size = len(observation_entries())
     path = tmp_path / "old.npz"
-    monkeypatch.setattr("flockenv.policies.files.OBSERVATION_VERSION", 0)
+    monkeypatch.setattr("flockenv.policies.files.observation_version", lambda blocks: 0)
     NetworkPolicy([np.zeros((size, 1))], [[0.0]], mirror_to_target=True).save(path)
     monkeypatch.undo()
     with pytest.raises(flockenv.ParameterError, match="version 0 of the observation"):

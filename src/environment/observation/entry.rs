@@ -189,6 +189,15 @@ pub(super) const LAW_RUDDER: [Entry; 1] = [
     Entry::new("law_rudder", "", Scale::Plain, UNIT, "rudder of the pool's tuned damped law, which reads what the leader sees of itself").odd(),
 ];
 
+/// One obstacle; all zero where there are fewer than places.
+#[rustfmt::skip]
+pub(super) const OBSTACLE: [Entry; 4] = [
+    Entry::new("there", "", Scale::Plain, FLAG, "1 where there is such an obstacle"),
+    Entry::new("outward_distance", "cm", Scale::Length, (-4.0, 4.0), "its nearest point, seen from the leader's center along the leader's outward axis"),
+    Entry::new("clockwise_distance", "cm", Scale::Length, (-4.0, 4.0), "the same along the leader's clockwise axis").odd(),
+    Entry::new("gap", "cm", Scale::Length, (-1.0, 4.0), "distance between the leader's hull and the obstacle, negative for overlap"),
+];
+
 /// One boat of the global state.
 #[rustfmt::skip]
 pub const BOAT: [Entry; 10] = [

@@ -1,15 +1,16 @@
 //! The entries that a leader observes, in order.
 
-use super::entry::{BOAT, CLOCK, Entry, LAW_RUDDER, NEIGHBOR, ORDER, OWN, PHASE, TARGET};
+use super::entry::{BOAT, CLOCK, Entry, LAW_RUDDER, NEIGHBOR, OBSTACLE, ORDER, OWN, PHASE, TARGET};
 use crate::boat::Law;
 use crate::environment::tuned_law;
 use crate::error::{FlockError, Result};
 use crate::parameters::{FlockParameters, named_choice};
 
-/// Version of the observation: of the entries, their order, scales and bounds. A policy belongs to one.
-pub const OBSERVATION_VERSION: u32 = 1;
+/// Newest version of the observation: of the entries, their order, scales and bounds. A policy belongs to the one of
+/// its layout.
+pub const OBSERVATION_VERSION: u32 = 2;
 
-/// The most neighbors that a leader may observe.
+/// The most neighbors, and the most obstacles, that a leader may observe.
 pub(crate) const MOST_NEIGHBORS: usize = 64;
 
 named_choice! {
@@ -27,13 +28,15 @@ named_choice! {
         Order = "order",
         /// The rudder of the pool's tuned law.
         LawRudder = "law_rudder",
+        /// The nearest obstacles.
+        Obstacles = "obstacles",
     }
 }
 
 impl Block {
     /// Whether the block may occur more than once, as that of a neighbor does.
     pub fn is_counted(self) -> bool {
-        self == Self::Neighbors
+        matches!(self, Self::Neighbors | Self::Obstacles)
     }
 
     /// What messages call the choice of this block.
@@ -45,6 +48,7 @@ impl Block {
             Self::Neighbors => "observation neighbors",
             Self::Order => "observation order",
             Self::LawRudder => "observation law_rudder",
+            Self::Obstacles => "observation obstacles",
         }
     }
 }
@@ -68,6 +72,9 @@ pub struct ObservationLayout {
     /// The rudder of the pool's tuned law.
     #[serde(skip)]
     pub law_rudder: bool,
+    /// How many of the nearest obstacles; 0: off.
+    #[serde(skip)]
+    pub obstacles: usize,
 }
 
 impl Default for ObservationLayout {
@@ -80,6 +87,7 @@ impl Default for ObservationLayout {
             order: true,
             mirror_to_target: false,
             law_rudder: false,
+            obstacles: 0,
         }
     }
 }
@@ -88,24 +96,32 @@ impl ObservationLayout {
     /// Checks the layout.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] if nothing is observed, or too many neighbors.
+    /// [`FlockError::Parameter`] if nothing is observed, or too many neighbors or obstacles.
     pub fn check(&self) -> Result<()> {
-        if self.neighbors > MOST_NEIGHBORS {
-            let accepted = format!("0 (off) to {MOST_NEIGHBORS}");
-            return Err(FlockError::parameter(
-                "observation neighbors",
-                self.neighbors,
-                accepted,
-            ));
+        for block in [Block::Neighbors, Block::Obstacles] {
+            let repeats = self.repeats(block);
+            if repeats > MOST_NEIGHBORS {
+                let accepted = format!("0 (off) to {MOST_NEIGHBORS}");
+                return Err(FlockError::parameter(block.option(), repeats, accepted));
+            }
         }
         if self.size() == 0 {
             return Err(FlockError::parameter(
                 "observation",
                 "no block",
-                "at least one of own, phase, target, neighbors, order and law_rudder",
+                "at least one of own, phase, target, neighbors, order, law_rudder and obstacles",
             ));
         }
         Ok(())
+    }
+
+    /// The version of the observation that has this layout: 1 without obstacles.
+    pub fn version(&self) -> u32 {
+        if self.obstacles > 0 {
+            OBSERVATION_VERSION
+        } else {
+            1
+        }
     }
 
     /// The law whose rudder is observed, if it is.
@@ -118,7 +134,7 @@ impl ObservationLayout {
             .transpose()
     }
 
-    /// The entries of a block; those of `Neighbors` are one neighbor's.
+    /// The entries of a block; those of `Neighbors` are one neighbor's, those of `Obstacles` one obstacle's.
     pub(crate) fn entries_of(block: Block) -> &'static [Entry] {
         match block {
             Block::Own => &OWN,
@@ -127,10 +143,11 @@ impl ObservationLayout {
             Block::Neighbors => &NEIGHBOR,
             Block::Order => &ORDER,
             Block::LawRudder => &LAW_RUDDER,
+            Block::Obstacles => &OBSTACLE,
         }
     }
 
-    /// How often a block occurs: 0 or 1, or the number of neighbors.
+    /// How often a block occurs: 0 or 1, or the number of neighbors or obstacles.
     pub fn repeats(&self, block: Block) -> usize {
         match block {
             Block::Own => usize::from(self.own),
@@ -139,10 +156,11 @@ impl ObservationLayout {
             Block::Neighbors => self.neighbors,
             Block::Order => usize::from(self.order),
             Block::LawRudder => usize::from(self.law_rudder),
+            Block::Obstacles => self.obstacles,
         }
     }
 
-    /// Has a block occur so often: 0 or 1, or the number of neighbors.
+    /// Has a block occur so often: 0 or 1, or the number of neighbors or obstacles.
     pub fn repeat(&mut self, block: Block, repeats: usize) {
         match block {
             Block::Own => self.own = repeats > 0,
@@ -151,6 +169,7 @@ impl ObservationLayout {
             Block::Neighbors => self.neighbors = repeats,
             Block::Order => self.order = repeats > 0,
             Block::LawRudder => self.law_rudder = repeats > 0,
+            Block::Obstacles => self.obstacles = repeats,
         }
     }
 

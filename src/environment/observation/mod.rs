@@ -6,6 +6,7 @@ mod flock_features;
 mod layout;
 mod leader_law;
 mod nearest;
+mod nearest_obstacles;
 mod observed_law;
 mod observer;
 mod view;

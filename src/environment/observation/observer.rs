@@ -2,6 +2,7 @@
 
 use super::entry::{BOAT, NEIGHBOR, ORDER, PHASE};
 use super::nearest::Nearest;
+use super::nearest_obstacles::NearestObstacles;
 use super::view::{FlockView, Scaling, own, phase};
 use super::{LeaderLaw, ObservationLayout, state_entries};
 use crate::error::Result;
@@ -16,6 +17,7 @@ pub struct Observer {
     law: Option<LeaderLaw>,
     physical: Vec<f64>,
     nearest: Nearest,
+    obstacles: NearestObstacles,
 }
 
 impl Observer {
@@ -33,6 +35,7 @@ impl Observer {
             physical: Vec::with_capacity(scaling.len()),
             scaling,
             nearest: Nearest::default(),
+            obstacles: NearestObstacles::new(parameters),
             layout,
         })
     }
@@ -81,6 +84,11 @@ impl Observer {
         }
         if let Some(law) = &self.law {
             self.physical.push(law.rudder(view, leader, 0.0));
+        }
+        if self.layout.obstacles > 0 {
+            let (hull, wanted) = (&view.hulls[leader], self.layout.obstacles);
+            self.obstacles
+                .fill(hull, &frame, wanted, &mut self.physical);
         }
     }
 

@@ -1,0 +1,126 @@
+"""Law: the block `obstacles` is where the nearest points of discs and walls are, in LAP axes."""
+
+import math
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+import flockenv
+from flockenv.envs.observation import observation_entries, observe
+from flockenv.policies import NetworkPolicy
+
+ALONE = {"own": False, "phase": False, "target": False, "neighbors": 0, "order": False}
+#: An observed 1.0 is six boat radii.
+LENGTH = 30.0
+ARENA = {
+    "pool": (200.0, 0.0),
+    "discs": [(140.0, 0.0, 10.0), (-100.0, 0.0, 20.0)],
+    "walls": [(100.0, -30.0, 180.0, -30.0)],
+}
+
+
+def flock_at(*pose, **fields):
+    parameters = flockenv.FlockParameters(n_boats=1, n_leaders=1, **{**ARENA, **fields})
+    flock = flockenv.Flock(parameters, seed=0)
+    flock.set_state([pose], np.zeros((1, 3)))
+    return flock
+
+
+def rows(flock, count, **options):
+    row = observe(flock, {**ALONE, "obstacles": count}, **options)[0]
+    return row.reshape(count, 4) * [1.0, LENGTH, LENGTH, LENGTH]
+
+
+def test_entries():
+    entries = observation_entries({**ALONE, "obstacles": 2})
+    assert [entry.name for entry in entries[:4]] == [
+        "there",
+        "outward_distance",
+        "clockwise_distance",
+        "gap",
+    ]
+    assert [entry.place for entry in entries] == [0] * 4 + [1] * 4
+    assert [entry.mirrored for entry in entries[:4]] == [False, False, True, False]
+
+
+def test_nearest_first_and_zeros_where_there_are_none():
+    # At (100, 0) outward is x and clockwise is -y. The wall's end is 30 cm clockwise, the disc's
+    # surface 30 cm outward; the boat heads outward, so that its bow is 2.5 + 5 cm nearer to it.
+    found = rows(flock_at(100.5, 0.0, 0.0), 4)
+    assert found[0] == pytest.approx([1, 29.5, 0, 29.5 - 7.5], abs=1e-4)
+    assert found[1] == pytest.approx([1, 0, 30, 30 - 5], abs=1e-4)
+    assert found[2] == pytest.approx([1, -120, 0, 120], abs=1e-4)  # clipped at four lengths
+    assert not found[3].any()
+
+
+def test_the_wall_s_end_is_its_nearest_point_beyond_it():
+    found = rows(flock_at(91.0, -18.0, 0.0, discs=()), 1)[0]
+    outward = np.array([91.0, -18.0]) / math.hypot(91.0, 18.0)
+    clockwise = np.array([outward[1], -outward[0]])
+    to_end = np.array([9.0, -12.0])
+    # From the core's bow end, 2.5 cm ahead of the center.
+    gap = math.hypot(6.5, 12.0) - 5.0
+    assert found == pytest.approx([1, to_end @ outward, to_end @ clockwise, gap], abs=1e-4)
+
+
+def test_mirrored_where_the_target_is_counter_clockwise():
+    reflected = {
+        "discs": [(x, -y, r) for x, y, r in ARENA["discs"]],
+        "walls": [(x0, -y0, x1, -y1) for x0, y0, x1, y1 in ARENA["walls"]],
+    }
+    flock = flock_at(95.0, -7.0, 0.4)
+    other = flock_at(95.0, 7.0, -0.4, target="ccw", **reflected)
+    plain = rows(flock, 3, mirror_to_target=True)
+    assert rows(other, 3, mirror_to_target=True) == pytest.approx(plain, abs=1e-5)
+    assert rows(other, 3)[:, 2] == pytest.approx(-plain[:, 2], abs=1e-5)
+
+
+def test_without_obstacles_the_block_is_zero():
+    flock = flockenv.Flock(flockenv.FlockParameters(n_boats=5, n_leaders=2), seed=1)
+    assert not observe(flock, {**ALONE, "obstacles": 3}).any()
+
+
+def test_a_block_at_the_end_leaves_the_others_where_they_are():
+    flock = flockenv.Flock(flockenv.FlockParameters(n_boats=9, n_leaders=3, **ARENA), seed=4)
+    plain, longer = observe(flock), observe(flock, {"obstacles": 2})
+    assert longer[:, : plain.shape[1]].tobytes() == plain.tobytes()
+
+
+@pytest.mark.parametrize("count", [65, -1, 2.5, 10**30])
+def test_bad_counts_are_refused_by_name(count):
+    with pytest.raises(flockenv.ParameterError, match="observation obstacles"):
+        flockenv.LeadersEnv(observation={"obstacles": count})
+
+
+def test_the_environment_conforms():
+    env = gymnasium.make("flockenv/Leaders-v0", observation={"obstacles": 3}, **ARENA)
+    check_env(env.unwrapped, skip_render_check=True)
+    parallel = flockenv.parallel_env(observation={"obstacles": 3}, **ARENA)
+    observations, _ = parallel.reset(seed=1)
+    for agent, observation in observations.items():
+        assert parallel.observation_space(agent).contains(observation)
+
+
+def test_policies_of_both_versions(tmp_path):
+    size = len(observation_entries())
+    for blocks, width, version in (({}, size, 1), ({"obstacles": 2}, size + 8, 2)):
+        policy = NetworkPolicy([np.zeros((width, 1))], [[0.1]], observation=blocks)
+        policy.save(tmp_path / "policy.npz")
+        with np.load(tmp_path / "policy.npz") as file:
+            assert f'"observation_version": {version}' in str(file["header"])
+        loaded = flockenv.policies.load(tmp_path / "policy.npz")
+        run = flockenv.simulate(
+            flockenv.FlockParameters(n_boats=9, n_leaders=2, **ARENA), 1, 2.0, policy=loaded
+        )
+        assert np.isfinite(run.pose).all()
+
+
+def test_an_earlier_policy_steers_as_it_did():
+    parameters = flockenv.FlockParameters(n_boats=9, n_leaders=2)
+    policy = flockenv.policies.load("learned", pool="500-boats")
+    assert policy.observation.get("obstacles", 0) == 0
+    plain = flockenv.simulate(parameters, 1, 2.0, policy=policy)
+    among = flockenv.simulate(parameters.replace(discs=[(179, 0, 2)]), 1, 2.0, policy=policy)
+    assert plain.rudder.shape == among.rudder.shape
