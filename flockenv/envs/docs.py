@@ -82,7 +82,9 @@ _HISTORY = """- v0, observation version 1: initial version. Where the block `obs
 
 # Those that are off by default, too.
 _EVERY_BLOCK = {
-    block: True for block, repeats in _core.env_defaults()["observation"].items() if not repeats
+    block: type(repeats)(1)
+    for block, repeats in _core.env_defaults()["observation"].items()
+    if not repeats
 }
 
 _SHARED = {

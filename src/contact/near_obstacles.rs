@@ -1,4 +1,4 @@
-//! Which obstacles each boat may touch soon: a list that is as good as the neighbor list, and made anew with it.
+//! Which obstacles each boat may touch soon: a list that is as good as the neighbor list, and made again with it.
 
 use crate::geometry::{NeighborList, Obstacle, Vec2};
 

@@ -1,5 +1,5 @@
 //! Hard cases of contacts with discs and walls, each with its answer from a formula. Walls have no thickness: once a
-//! boat's core were through one, no gap would tell on which side it was.
+//! boat's core were through one, no gap would show on which side it was.
 //!
 //! On paper: a boat wedged between two contacts whose normals are at ±γ to its engine's push presses on each with
 //! c0·v0/(2·cos γ).
@@ -245,8 +245,8 @@ fn a_boat_wedged_in_a_corner_of_two_walls() {
                 ],
                 ..driven(scheme)
             };
-            let what = format!("{scheme:?} {beta}");
-            assert_wedged(&p, (-R / sin, 0.0), PUSH / (2.0 * sin), 2, &what);
+            let case = format!("{scheme:?} {beta}");
+            assert_wedged(&p, (-R / sin, 0.0), PUSH / (2.0 * sin), 2, &case);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 import base64
 import hashlib
+import json
 import re
 
 import numpy as np
@@ -95,3 +96,12 @@ def test_open_water_far_out_and_one_sample(tmp_path):
     assert (
         write_replay(tmp_path / "x.html", {"x": flockenv.simulate(parameters, 7, 0.0)}).every == 1
     )
+
+
+def test_a_page_holds_the_obstacles(tmp_path):
+    arena = PARAMETERS.replace(discs=[(140, 0, 10)], walls=[(0, 100, 0, 150)])
+    write_replay(tmp_path / "run.html", {"run": flockenv.simulate(arena, 7, 40.0, contacts=True)})
+    text = (tmp_path / "run.html").read_text("utf-8")
+    data = json.loads(re.search(r'id="data">(.*?)</script>', text, re.DOTALL)[1])
+    assert data["runs"][0]["discs"] == [[140.0, 0.0, 10.0]]
+    assert data["runs"][0]["walls"] == [[0.0, 100.0, 0.0, 150.0]]
