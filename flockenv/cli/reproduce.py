@@ -37,7 +37,7 @@ def reproduce(
         float | None, typer.Option(help="Length of each run. [the paper's own]")
     ] = None,
     budget: Annotated[
-        float, typer.Option(help="Core-minutes for each of transition-order, leader-fraction.")
+        float, typer.Option(help="Core-minutes for each name that is beyond the paper.")
     ] = 40.0,
     engine: EngineName = "local",
     workers: Workers = None,

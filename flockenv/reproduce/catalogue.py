@@ -28,6 +28,7 @@ _PAPER: Mapping[str, str] = {
 _BEYOND: Mapping[str, str] = {
     "transition-order": "flockenv.reproduce.transition.order",
     "leader-fraction": "flockenv.reproduce.leader_fraction.fraction",
+    "conflicting-targets": "flockenv.reproduce.conflicting_targets.conflict",
 }
 BUDGETED = tuple(_BEYOND)
 """Names beyond the paper, whose runs follow from a budget of computing time."""

@@ -20,6 +20,7 @@ from flockenv.policies.registry import POOL_POLICIES
 from flockenv.recording import RECORDED, RecordedOrder, Recording
 from flockenv.runs.protocols.hysteresis import LOOPS, simulate_loop, simulate_prepared
 from flockenv.runs.protocols.initial_state import STARTS
+from flockenv.runs.protocols.opponents import simulate_against_the_law
 from flockenv.runs.protocols.target_switching import simulate_alternating
 from flockenv.simulation import simulate
 
@@ -57,9 +58,16 @@ def _steered(policy: str, pool: str, spec: "RunSpec") -> Recording:
     )
 
 
-_STEERED = {
-    f"{policy} ({pool})": partial(_steered, policy, pool)
-    for policy, pool in product(POOL_POLICIES, TUNED_GAINS["damped law"])
+def _against_the_law(policy: str, pool: str, spec: "RunSpec") -> Recording:
+    return simulate_against_the_law(
+        spec.parameters, spec.seed, spec.duration_s, spec.sample_hz, POOL_POLICIES[policy](pool)
+    )
+
+
+_POLICIES = tuple(product(POOL_POLICIES, TUNED_GAINS["damped law"]))
+_STEERED = {f"{policy} ({pool})": partial(_steered, policy, pool) for policy, pool in _POLICIES} | {
+    f"{policy} ({pool}) against law": partial(_against_the_law, policy, pool)
+    for policy, pool in _POLICIES
 }
 
 PROTOCOLS: Mapping[str, Callable[["RunSpec"], Recording]] = {
@@ -91,7 +99,8 @@ class RunSpec:
         "alternating": by eq. (10), towards directions that alternate every 4 minutes; the same as
         "law" from the starts of `runs.protocols.initial_state`; the loops of
         `runs.protocols.hysteresis`; and policies tuned or trained for a named pool, whatever the
-        pool of the run, such as "learned (500-boats)".
+        pool of the run, such as "learned (500-boats)", also of the clockwise leaders alone:
+        "learned (500-boats) against law".
     keep : str
         What is stored of the run, one of `KEEP`.
 

@@ -148,6 +148,37 @@ def test_a_missing_or_foreign_table_is_named(tmp_path: Path) -> None:
         load_sweep(tmp_path)
 
 
+DOCS = Path(__file__).parents[2] / "docs"
+
+
 def test_the_example_of_the_docs_is_accepted() -> None:
-    sweep = read_sweep(Path(__file__).parents[2] / "docs" / "sweep-example.toml")
+    sweep = read_sweep(DOCS / "sweep-example.toml")
     assert len(sweep.runs) == 2 * 2 * 5 * 4
+
+
+def test_the_sweeps_beside_the_studies_are_accepted() -> None:
+    sides = read_sweep(DOCS / "sweep-conflicting-targets.toml")
+    assert len(sides.runs) == 8 * 12
+    assert sides.points[-1] == (6, ("cw",) * 3 + ("ccw",) * 3)
+    assert len(read_sweep(DOCS / "sweep-leader-fraction.toml").runs) == 3 * 6 * 12
+
+
+def test_targets_of_each_leader_are_an_axis(tmp_path: Path) -> None:
+    spec = tmp_path / "sides.toml"
+    text = """
+    minutes = 1
+    seeds = 1
+    [fixed]
+    n_boats = 20
+    pool = "table-1"
+    [[grid]]
+    n_leaders = [2]
+    target = ["cw", ["cw", "ccw"], ["ccw", "cw"]]
+    """
+    spec.write_text(text)
+    table = run_sweep(read_sweep(spec), tmp_path / "out")
+    assert table["target"].tolist() == ["cw", "cw,ccw", "ccw,cw"]
+    assert load_sweep(tmp_path / "out")["signed_order_mean"].nunique() == 3
+    spec.write_text(text.replace("[2]", "[3]"))
+    with pytest.raises(flockenv.ParameterError, match="n_leaders = 3"):
+        read_sweep(spec)
