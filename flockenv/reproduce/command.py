@@ -1,5 +1,6 @@
 """`reproduce`: runs what figures need, and writes figures, data, claims and the report."""
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -138,7 +139,8 @@ def mark_where_short(
     """Say so in a figure's pictures where its runs are shorter than the paper's."""
     if settings.minutes is None:
         return
-    own = figure.runs(replace(settings, minutes=None))
+    # A budget that suffices for short runs may not for those of full length.
+    own = figure.runs(replace(settings, minutes=None, budget_core_min=math.inf))
     given_s, own_s = (max((spec.duration_s for spec in each), default=0.0) for each in (specs, own))
     if given_s < own_s:
         for picture in outcome.pictures.values():

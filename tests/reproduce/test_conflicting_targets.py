@@ -46,12 +46,12 @@ Series = NDArray[np.float64]
 
 
 def test_a_side_has_the_flock_from_the_minute_that_lasts() -> None:
-    lasting = np.array([0.1, 0.6, -0.1, 0.5, 0.1, 0.2, 0.3, 0.2, 0.1, -0.4])
-    assert decision_min(lasting) == 3.0
-    assert decision_min(-lasting) == 10.0
+    series = np.array([0.1, 0.6, -0.1, 0.5, 0.1, 0.2, 0.3, 0.2, 0.1, -0.4])
+    assert decision_min(series) == 3.0
+    assert decision_min(-series) == 10.0
     # Five minutes have to follow.
-    assert decision_min(lasting[:8]) == 8.0
-    assert decision_min(lasting[:9]) == 3.0
+    assert decision_min(series[:8]) == 8.0
+    assert decision_min(series[:9]) == 3.0
 
 
 def of_minutes(*series: Series, signed: float = 0.0) -> Measured:

@@ -167,11 +167,11 @@ def _judge_alike(design: ConflictDesign, setup: Setup, found: Found) -> list[Che
         if match[0] == match[1]:
             tie, scope = found[setup, match], f"{setup.words}, {_versus(match)}"
             stalled = tie.means["still"] - alone.means["still"]
-            lasting = lifetime_min(tie) / lifetime_min(alone)
+            mean_life = lifetime_min(tie) / lifetime_min(alone)
             claims += [
                 _judged(CHOOSES, interval(cumulant(tie)), scope, design.runs),
                 _judged(STALLS, interval(stalled), scope, design.runs),
-                _judged(KEEPS, interval(lasting), scope, design.runs),
+                _judged(KEEPS, interval(mean_life), scope, design.runs),
             ]
     return claims
 
@@ -262,7 +262,7 @@ def _matches_table(found: Found) -> pd.DataFrame:
     rows = []
     for (setup, match), each in found.items():
         value, low, high = _order(each)
-        lasting = interval(lifetime_min(each))
+        mean_life = interval(lifetime_min(each))
         rows.append(
             {
                 "policy": setup.policy if match != LEADERLESS else "no leaders",
@@ -276,7 +276,7 @@ def _matches_table(found: Found) -> pd.DataFrame:
                 "after min": f"{each.means['decision_min'][0]:.1f}",
                 "stalled": f"{each.means['still'][0]:.2f}",
                 "cumulant": f"{cumulant(each)[0]:.2f}",
-                "a way lasts min": f"{lasting[0]:.1f}",
+                "a way lasts min": f"{mean_life[0]:.1f}",
             }
         )
     # Flocks without leaders are the same under every policy.

@@ -44,9 +44,9 @@ def minute_means(run: Recording) -> NDArray[np.float64]:
     """Return the rotation m, positive clockwise, as means over the whole minutes of a run."""
     places = block_places(run.time_s, MINUTE_S)
     whole = int(run.duration_s // MINUTE_S)
-    kept = places < whole
-    sums = np.bincount(places[kept], run.order.rotation()[kept], minlength=whole)
-    return np.asarray(sums / np.bincount(places[kept], minlength=whole))
+    counted = places < whole
+    sums = np.bincount(places[counted], run.order.rotation()[counted], minlength=whole)
+    return np.asarray(sums / np.bincount(places[counted], minlength=whole))
 
 
 def decision_min(minutes: NDArray[np.float64]) -> float:
