@@ -263,6 +263,8 @@ class Recording:
         ids: Sequence[str] | None = None,
         leaders: Sequence[str] = (),
         target: str | Sequence[str] = "cw",
+        discs: ArrayLike = (),
+        walls: ArrayLike = (),
     ) -> Self:
         """Return tracks of real boats, or of anything else that heads somewhere, as a recording.
 
@@ -292,6 +294,8 @@ class Recording:
             Those of the names that lead. They come first in the recording.
         target
             Where they lead, "cw" or "ccw"; the direction that signed order counts towards.
+        discs, walls
+            Obstacles in the pool, as in `FlockParameters`; replay pages show them.
 
         Raises
         ------
@@ -303,7 +307,7 @@ class Recording:
         # Tracks stand downstream of recordings, and nothing else here needs them.
         tracks: Any = importlib.import_module("flockenv.tracks.assemble")
         fields = tracks.recording_fields(
-            time_s, pose, pool, hull, velocity, phase, ids, leaders, target
+            time_s, pose, pool, hull, velocity, phase, ids, leaders, target, discs, walls
         )
         return cls(**fields)
 

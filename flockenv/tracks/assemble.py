@@ -28,6 +28,8 @@ def recording_fields(
     ids: Sequence[str] | None,
     leaders: Sequence[str],
     target: str | Sequence[str],
+    discs: Any,
+    walls: Any,
 ) -> dict[str, Any]:
     """Return the fields of `Recording`, whose `from_tracks` documents parameters and errors."""
     times = _floats("time_s", time_s)
@@ -52,6 +54,8 @@ def recording_fields(
         boat_radius_cm=radius,
         boat_shape=shape,
         target=target if isinstance(target, str) else tuple(target),
+        discs=discs,
+        walls=walls,
     )
     _check_units(poses, motion, parameters)
     phases, analyzed = _phases(phase, times)

@@ -102,6 +102,7 @@ def test_phases_that_are_known_have_their_analysis_window():
         ({"leaders": ["0", "0"]}, "more than once"),
         ({"hull": (-1.0, 0.5)}, "boat_radius_cm"),
         ({"target": "north"}, "north"),
+        ({"discs": [(0, 0, -1)]}, "discs"),
     ],
 )
 def test_mistakes_are_named(changes, words):
@@ -112,6 +113,16 @@ def test_mistakes_are_named(changes, words):
     }
     with pytest.raises(flockenv.ParameterError, match=re.escape(words)):
         Recording.from_tracks(**(given | changes))
+
+
+def test_tracks_may_have_obstacles_in_their_pool(tmp_path):
+    pose = np.full((3, 2, 3), 70.0) * [1, 0, 0]
+    recording = Recording.from_tracks(
+        np.arange(3.0), pose, pool="table-1", discs=[(0, 70, 5)], walls=np.array([[-60, 0, -80, 0]])
+    )
+    assert recording.parameters.discs == ((0.0, 70.0, 5.0),)
+    recording.save(tmp_path / "tracks.npz")
+    assert Recording.load(tmp_path / "tracks.npz") == recording
 
 
 def test_simulated_recordings_still_hold_no_gaps(seen):
