@@ -114,7 +114,9 @@ def _one_word(value: tuple[Any, ...]) -> str:
     # no type.
     if all(isinstance(each, str) for each in value):
         return ",".join(value)
-    return "x".join(f"{radius:g}" for radius in value)
+    if all(isinstance(each, float) for each in value):
+        return "x".join(f"{radius:g}" for radius in value)
+    return repr(value)
 
 
 def _outcome(

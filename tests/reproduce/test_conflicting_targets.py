@@ -36,6 +36,7 @@ from flockenv.reproduce.conflicting_targets.measured import (
     lifetime_min,
     minute_means,
     slope,
+    time_ratio,
 )
 from flockenv.reproduce.reproduction import Results, Settings
 from flockenv.runs.spec import RunSpec, execute
@@ -79,6 +80,16 @@ def test_the_slope_of_a_line() -> None:
     assert slope([0.0, 0.2, 1.0], found) == pytest.approx(0.5)
 
 
+def test_times_are_compared_where_both_sides_get_the_flock() -> None:
+    def after(*minutes: int) -> Measured:
+        runs = tuple(np.where(np.arange(40) >= first, 0.7, -0.1) for first in minutes)
+        return Measured.of_series(np.zeros(len(runs)), runs, 5)
+
+    assert time_ratio(after(5, 15), after(20, 20))[0] == pytest.approx(0.5)
+    assert time_ratio(after(5, 99), after(20, 20))[0] == pytest.approx(22.5 / 20)
+    assert np.isnan(time_ratio(after(5, 99, 99), after(20, 20, 20))).all()
+
+
 def test_minutes_are_means_over_whole_minutes() -> None:
     parameters = flockenv.FlockParameters(n_boats=6, n_leaders=2, target=["cw", "ccw"])
     spec = RunSpec(parameters=parameters, seed=1, duration_s=150.0, sample_hz=0.5, keep="order")
@@ -90,13 +101,13 @@ def test_minutes_are_means_over_whole_minutes() -> None:
 
 def judged(order: dict[int, float], tie: Series, alone: Series) -> dict[str, set[str]]:
     """Verdicts by claim, where flocks with k1 - k2 = d have the signed order `order[d]`."""
-    design = ConflictDesign(policies=("steering law",), sizes=(27,), runs=4, minutes=60.0)
+    design = ConflictDesign(runs={"steering law": 4}, sizes=(27,), minutes=60.0)
     found = {}
     for setup in design.setups():
         for match in (LEADERLESS, *design.matches(setup)):
             signed = np.full(4, order[match[0] - match[1]]) + 0.01 * np.arange(4)
             late = alone if match == LEADERLESS else tie if match[0] == match[1] else np.zeros(30)
-            early = np.full(30, 0.7) if match[0] - match[1] > 3 else np.zeros(30)
+            early = np.where(np.arange(30) < 40 - 10 * (match[0] - match[1]), 0.0, 0.7)
             minutes = tuple(np.concatenate([early, late]) for _ in range(4))
             found[setup, match] = Measured.of_series(signed, minutes, 3)
     verdicts: dict[str, set[str]] = {}
@@ -177,7 +188,7 @@ def test_opponents_follow_their_own_policies() -> None:
         rudders("against", "cw")
 
 
-SMALL = ConflictDesign(policies=tuple(POLICIES), sizes=(27,), runs=2, minutes=2.0)
+SMALL = ConflictDesign(runs=dict.fromkeys(POLICIES, 2), sizes=(27,), minutes=2.0)
 
 
 def test_a_small_design_from_runs_to_tables(tmp_path: Path) -> None:

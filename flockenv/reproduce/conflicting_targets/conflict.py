@@ -33,6 +33,7 @@ from flockenv.reproduce.conflicting_targets.measured import (
     cumulant,
     lifetime_min,
     slope,
+    time_ratio,
 )
 from flockenv.reproduce.conflicting_targets.pictures import histograms, picture
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings, designed
@@ -129,7 +130,7 @@ def judge(design: ConflictDesign, found: Found) -> list[CheckedClaim]:
                     BETTER,
                     _order(found[setup, match]),
                     f"{setup.words}, {_versus(match)}",
-                    design.runs,
+                    design.runs[setup.policy],
                 )
                 for match in design.matches(setup)
             ]
@@ -143,10 +144,13 @@ def _judge_alike(design: ConflictDesign, setup: Setup, found: Found) -> list[Che
     def order(k1: int, k2: int) -> NDArray[np.float64]:
         return of(k1, k2).means["signed_order"]
 
-    matches = design.matches(setup)
+    runs, matches = design.runs[setup.policy], design.matches(setup)
     claims = [
         _judged(
-            LARGER, _order(found[setup, match]), f"{setup.words}, {_versus(match)}", design.runs
+            LARGER,
+            _order(found[setup, match]),
+            f"{setup.words}, {_versus(match)}",
+            runs,
         )
         for match in matches
         if match[0] > match[1] > 0
@@ -154,14 +158,13 @@ def _judge_alike(design: ConflictDesign, setup: Setup, found: Found) -> list[Che
     most = [(3, 3), (4, 2), (5, 1), (6, 0)]
     shares = [(k1 - k2) / (k1 + k2) for k1, k2 in most]
     rising = slope(shares, [order(*match) for match in most])
-    times = of(5, 1).means["decision_min"] / of(4, 2).means["decision_min"]
     for claim, values in (
         (DIFFERENCE, rising),
         (PROPORTION, order(4, 2) - order(2, 1)),
         (NUMBER, order(3, 2) - order(1, 0)),
-        (SOONER, times),
+        (SOONER, time_ratio(of(5, 1), of(4, 2))),
     ):
-        claims.append(_judged(claim, interval(values), setup.words, design.runs))
+        claims.append(_judged(claim, interval(values), setup.words, runs))
     alone = found[setup, LEADERLESS]
     for match in matches:
         if match[0] == match[1]:
@@ -169,9 +172,9 @@ def _judge_alike(design: ConflictDesign, setup: Setup, found: Found) -> list[Che
             stalled = tie.means["still"] - alone.means["still"]
             mean_life = lifetime_min(tie) / lifetime_min(alone)
             claims += [
-                _judged(CHOOSES, interval(cumulant(tie)), scope, design.runs),
-                _judged(STALLS, interval(stalled), scope, design.runs),
-                _judged(KEEPS, interval(mean_life), scope, design.runs),
+                _judged(CHOOSES, interval(cumulant(tie)), scope, runs),
+                _judged(STALLS, interval(stalled), scope, runs),
+                _judged(KEEPS, interval(mean_life), scope, runs),
             ]
     return claims
 
@@ -228,6 +231,7 @@ def _analyze(design: ConflictDesign, settings: Settings, results: Results) -> Ou
 
 def _notes(design: ConflictDesign, settings: Settings) -> list[str]:
     minutes = settings.duration_s(design.minutes) / 60
+    seeds = ", ".join(f"{runs} ({policy})" for policy, runs in design.runs.items())
     small = [Setup(design.policies[0], pool, min(design.sizes)) for pool in POOLS]
     noise = [f"{each.parameters(LEADERLESS).bw_s:g} s in {each.pool}" for each in small]
     return [
@@ -242,7 +246,8 @@ def _notes(design: ConflictDesign, settings: Settings) -> list[str]:
         "The tuned and the learned policy are those of the pool; they were made for three leaders "
         "with one target among 27 boats.",
         f"A side has the flock from the first minute whose mean signed order is at least {WON:g} "
-        f"and which {HELD_MIN} minutes above zero follow. A flock goes one way in minutes with "
+        f"and which {HELD_MIN} minutes above zero follow; times are compared where both sides get "
+        "it in at least half of the runs. A flock goes one way in minutes with "
         f"|m| of at least {MOVING:g}, and stalls in the others, m = Ψ_o sin φ_o. Binder's cumulant "
         "1 - <m⁴>/(3 <m²>²) is 2/3 where m has one size and either sign, 0.4 where all m up to a "
         "size are as frequent, and 0 where m is normal about 0; a compromise between opposite "
@@ -251,7 +256,7 @@ def _notes(design: ConflictDesign, settings: Settings) -> list[str]:
         "about the proportion or the difference of the sides holds only if the whole interval lies "
         "within 0.1 of equal orders.",
         f"The compute budget is {settings.budget_core_min:g} minutes of one core. The design has "
-        f"{design.runs} seeds for each match, {minutes:g} minutes per run, and flocks of up to "
+        f"{seeds} seeds for each match, {minutes:g} minutes per run, and flocks of up to "
         f"{max(design.sizes)} boats. It is estimated to take "
         f"{design.core_minutes(settings):.0f} minutes, and the full design "
         f"{FULL.core_minutes(settings):.0f} (`--budget`).",

@@ -45,10 +45,10 @@ LEADERLESS: Match = (0, 0)
 _BOATS = 27
 _DT_S = 0.05
 _SAMPLE_HZ = 0.5
-_BOAT_HOUR_S = 0.013
+_BOAT_HOUR_S = 0.011
 """Seconds of one core that an hour of a boat takes."""
 
-_DECISIONS_S = {"steering law": 0.0, "tuned damped law": 0.6, "learned": 4.0, AGAINST: 4.6}
+_DECISIONS_S = {"steering law": 0.0, "tuned damped law": 0.55, "learned": 3.7, AGAINST: 4.3}
 """Seconds of one core that an hour of a flock takes besides, for what leaders decide."""
 
 
@@ -90,20 +90,23 @@ class ConflictDesign:
 
     Attributes
     ----------
-    policies : tuple of str
-        Of `POLICIES`, the paper's law first.
+    runs : mapping of int
+        Seeds for each match, by policy of `POLICIES`, the paper's law first. Flocks without leaders
+        have as many as those of the law, and policies that take longer have fewer.
     sizes : tuple of int
         Numbers of boats, increasing.
-    runs : int
-        Seeds for each match.
     minutes : float
         Length of a run, whose second half counts.
     """
 
-    policies: tuple[str, ...]
+    runs: Mapping[str, int]
     sizes: tuple[int, ...]
-    runs: int
     minutes: float
+
+    @property
+    def policies(self) -> tuple[str, ...]:
+        """Of `POLICIES`, the paper's law first."""
+        return tuple(self.runs)
 
     def setups(self) -> list[Setup]:
         """Return every policy in every pool and size."""
@@ -117,17 +120,17 @@ class ConflictDesign:
 
     def specs(self, settings: Settings, setup: Setup, match: Match) -> tuple[RunSpec, ...]:
         """Return the runs of a match; those without leaders are the same for all policies."""
-        protocol = "law" if match == LEADERLESS else POLICIES[setup.policy].format(pool=setup.pool)
+        policy = self.policies[0] if match == LEADERLESS else setup.policy
         return tuple(
             RunSpec(
                 parameters=setup.parameters(match),
                 seed=seed,
                 duration_s=settings.duration_s(self.minutes),
                 sample_hz=_SAMPLE_HZ,
-                protocol=protocol,
+                protocol=POLICIES[policy].format(pool=setup.pool),
                 keep="order",
             )
-            for seed in range(settings.seed, settings.seed + self.runs)
+            for seed in range(settings.seed, settings.seed + self.runs[policy])
         )
 
     def all_runs(self, settings: Settings) -> list[RunSpec]:
@@ -142,27 +145,31 @@ class ConflictDesign:
 
     def core_minutes(self, settings: Settings) -> float:
         """Return about how long one core takes for all runs, in minutes."""
-        hours = settings.duration_s(self.minutes) * self.runs / 3600
-        seconds = sum(
-            len(self.matches(setup)) * _DECISIONS_S[setup.policy] for setup in self.setups()
+        decisions = sum(
+            len(self.matches(setup)) * self.runs[setup.policy] * _DECISIONS_S[setup.policy]
+            for setup in self.setups()
         )
-        once = [spec for spec in self.all_runs(settings) if spec.seed == settings.seed]
-        boats = sum(spec.parameters.n_boats for spec in once)
-        return hours * (seconds + _BOAT_HOUR_S * boats) / 60
+        boats = sum(spec.parameters.n_boats for spec in self.all_runs(settings))
+        hours = settings.duration_s(self.minutes) / 3600
+        return hours * (decisions + _BOAT_HOUR_S * boats) / 60
 
 
 _ALIKE: tuple[Match, ...] = ((1, 0), (1, 1), (2, 1), (3, 2), (3, 3), (4, 2), (5, 1), (6, 0))
 _UNLIKE: tuple[Match, ...] = ((1, 1), (3, 3), (2, 4))
 
-_LAWS = ("steering law", "tuned damped law")
-_ALL = tuple(POLICIES)
+_LAW: Mapping[str, int] = {"steering law": 48}
+_LAWS: Mapping[str, int] = {**_LAW, "tuned damped law": 24}
+_ALL: Mapping[str, int] = {**_LAWS, "learned": 12, AGAINST: 12}
 
-FULL = ConflictDesign(policies=_ALL, sizes=(27, 100), runs=24, minutes=60.0)
+FULL = ConflictDesign(
+    runs={policy: 2 * runs for policy, runs in _ALL.items()}, sizes=(27, 100), minutes=60.0
+)
 DESIGNS = (
-    ConflictDesign(policies=_LAWS[:1], sizes=(27,), runs=12, minutes=60.0),
-    ConflictDesign(policies=_LAWS, sizes=(27,), runs=12, minutes=60.0),
-    ConflictDesign(policies=_ALL, sizes=(27,), runs=12, minutes=60.0),
-    ConflictDesign(policies=_ALL, sizes=(27, 100), runs=12, minutes=60.0),
+    ConflictDesign(runs={"steering law": 12}, sizes=(27,), minutes=60.0),
+    ConflictDesign(runs=_LAW, sizes=(27,), minutes=60.0),
+    ConflictDesign(runs=_LAWS, sizes=(27,), minutes=60.0),
+    ConflictDesign(runs=_ALL, sizes=(27,), minutes=60.0),
+    ConflictDesign(runs=_ALL, sizes=(27, 100), minutes=60.0),
     FULL,
 )
 """By the time they take; each contains the runs of the one before."""

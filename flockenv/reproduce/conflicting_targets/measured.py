@@ -23,6 +23,7 @@ __all__ = [
     "lifetime_min",
     "minute_means",
     "slope",
+    "time_ratio",
 ]
 
 MINUTE_S = 60.0
@@ -149,6 +150,17 @@ def lifetime_min(found: Measured) -> NDArray[np.float64]:
     """Return the mean minutes that a flock goes one way, with replicates; NaN if it never ends."""
     turns = found.means["turns"]
     return np.asarray(found.means["way_min"] / np.where(turns > 0.0, turns, math.nan))
+
+
+def time_ratio(first: Measured, second: Measured) -> NDArray[np.float64]:
+    """Return the mean minutes until the clockwise leaders have the flock over those of others.
+
+    NaN where in either match they get it in less than half of the runs: the length of the run,
+    which stands for a time that never came, would then decide.
+    """
+    ratio = first.means["decision_min"] / second.means["decision_min"]
+    often = min(each.means["won"][0] for each in (first, second)) >= 0.5
+    return np.asarray(ratio if often else np.full_like(ratio, math.nan))
 
 
 def slope(x: Sequence[float], found: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
