@@ -50,10 +50,11 @@ TEST_EXTRAS := --extra train --extra plot --extra fit --extra render --extra swe
 .NOTPARALLEL:
 .PHONY: help setup build compare test lint format test-rust test-bare test-python coverage test-js test-browser test-wheel test-oldest \
         test-benchmarl test-rllib test-ray test-slurm validate docs wheel audit licenses tables replay-animation publish-check \
-        instructions learning-check training-physics throughput soak fuzz speed-vs-error lint-benches clean
+        instructions learning-check training-physics throughput learners-throughput env-benchmarl env-rllib soak fuzz speed-vs-error \
+        lint-benches clean
 
 help: ## list the commands
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-18s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-19s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 compare: build ## set up, then print and plot the paper's leader-count curve
 	$(BIN)/flockenv compare $(COMPARE_ARGS)
@@ -175,20 +176,23 @@ learning-check: $(STAMPS)/test $(STAMPS)/core ## train 500 000 samples through e
 training-physics: $(STAMPS)/test $(STAMPS)/core ## compare training physics with the default, write docs/training_physics.md
 	$(BIN)/python baselines/training_physics.py $(TRAINING_PHYSICS_ARGS)
 
-# RLlib pins an older gymnasium, and the peers pin other things: environments of their own.
-test-rllib: $(STAMPS)/test ## RLlib on the vector environment and on the parallel one, in .venv-rllib
+# RLlib pins an older gymnasium, BenchMARL an older TorchRL, and the peers other things: environments of their own.
+env-rllib: $(STAMPS)/test
 	$(PYTHON) -m venv .venv-rllib
 	VIRTUAL_ENV="$(CURDIR)/.venv-rllib" $(BIN)/uv pip install -r pyproject.toml --extra ray hypothesis pytest \
 	  pytest-timeout "torch>=2.5" --excludes requirements-excluded.txt
 	VIRTUAL_ENV="$(CURDIR)/.venv-rllib" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
-	OMP_NUM_THREADS=1 .venv-rllib/bin/python -m pytest -m rllib tests/rllib
 
-# BenchMARL pins an older TorchRL.
-test-benchmarl: $(STAMPS)/test ## the tasks of BenchMARL and its learners, in .venv-benchmarl
+env-benchmarl: $(STAMPS)/test
 	$(PYTHON) -m venv .venv-benchmarl
 	VIRTUAL_ENV="$(CURDIR)/.venv-benchmarl" $(BIN)/uv pip install -r pyproject.toml --extra benchmarl hypothesis \
 	  pytest pytest-timeout --excludes requirements-excluded.txt
 	VIRTUAL_ENV="$(CURDIR)/.venv-benchmarl" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
+
+test-rllib: env-rllib ## RLlib on the vector environment and on the parallel one, in .venv-rllib
+	OMP_NUM_THREADS=1 .venv-rllib/bin/python -m pytest -m rllib tests/rllib $(PYTEST_ARGS)
+
+test-benchmarl: env-benchmarl ## the tasks of BenchMARL and its learners, in .venv-benchmarl
 	OMP_NUM_THREADS=1 .venv-benchmarl/bin/python -m pytest -m "benchmarl or not benchmarl" tests/benchmarl \
 	  tests/torchrl $(PYTEST_ARGS)
 
@@ -209,6 +213,10 @@ throughput: $(STAMPS)/test $(STAMPS)/core ## measure speed beside VMAS and MPE2,
 	VIRTUAL_ENV="$(CURDIR)/.venv-peers" $(BIN)/uv pip install vmas mpe2 "torch>=2.5" \
 	  --excludes requirements-excluded.txt
 	$(BIN)/python benches/throughput.py $(THROUGHPUT_ARGS)
+
+learners-throughput: $(STAMPS)/core env-rllib env-benchmarl ## measure the learners' interfaces beside the batch, into docs
+	$(BIN)/python benches/learners.py $(THROUGHPUT_ARGS)
+	$(BIN)/python docs/tables.py
 
 soak: $(STAMPS)/test $(STAMPS)/core ## ten million control steps with random rudders, write docs/soak.md (minutes)
 	$(BIN)/python benches/soak.py $(SOAK_ARGS)

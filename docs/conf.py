@@ -82,7 +82,12 @@ numpydoc_show_class_members = False
 numpydoc_xref_param_type = False
 
 
-ENVIRONMENTS = ("LeadersEnv", "LeadersVectorEnv", "LeadersParallelEnv", "LeaderVecEnv")
+ENVIRONMENTS = (
+    "flockenv.LeadersEnv",
+    "flockenv.LeadersVectorEnv",
+    "flockenv.LeadersParallelEnv",
+    "flockenv.sb3.LeaderVecEnv",
+)
 
 
 def setup(app: Sphinx) -> None:
@@ -96,7 +101,7 @@ def _link_environment_pages(
     app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: list[str]
 ) -> None:
     # Their docstrings are Markdown, and pages of their own.
-    if what == "class" and name.rpartition(".")[2] in ENVIRONMENTS:
+    if what == "class" and name in ENVIRONMENTS:
         lines[:] = [f"See :doc:`/environments/{obj.__name__}`."]
 
 
