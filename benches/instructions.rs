@@ -9,7 +9,7 @@ mod support;
 use flockenv::Flock;
 use flockenv::contact::Statistics;
 use flockenv::environment::{EnvBatch, Episode};
-use flockenv::parameters::{FlockParameters, Pool};
+use flockenv::parameters::{Disc, FlockParameters, Pool};
 use std::fmt::Write as _;
 use std::fs;
 use std::hint::black_box;
@@ -53,6 +53,7 @@ fn work(name: &str) -> Option<Work> {
         "jam of 27, 2 relinearizations" => flock(Scene::Jam, 27, 2),
         "cycle of 27" => flock(Scene::Cycle, 27, 0),
         "cycle of 27, 1 relinearization" => flock(Scene::Cycle, 27, 1),
+        "cycle of 27 with 300 posts" => Work::Flock(with_posts(Scene::Cycle.parameters(27))),
         "jam of 1000" => flock(Scene::Jam, 1000, 0),
         "control step in 500-boats" => {
             Work::Environment(environment(Pool::FIVE_HUNDRED_BOATS, 0.3))
@@ -62,12 +63,31 @@ fn work(name: &str) -> Option<Work> {
     })
 }
 
-const SCENES: [&str; 8] = [
+/// Discs of 2 cm along the outer wall, which are 1 cm in the water.
+fn with_posts(parameters: FlockParameters) -> FlockParameters {
+    let outer = parameters.pool.outer_radius_cm;
+    let posts = (0..300).map(|post| {
+        let (sin, cos) = (std::f64::consts::TAU * f64::from(post) / 300.0).sin_cos();
+        Disc {
+            x_cm: (outer + 1.0) * cos,
+            y_cm: (outer + 1.0) * sin,
+            radius_cm: 2.0,
+        }
+    });
+    FlockParameters {
+        dt_s: 0.01,
+        discs: posts.collect(),
+        ..parameters
+    }
+}
+
+const SCENES: [&str; 9] = [
     "jam of 27",
     "jam of 27, 1 relinearization",
     "jam of 27, 2 relinearizations",
     "cycle of 27",
     "cycle of 27, 1 relinearization",
+    "cycle of 27 with 300 posts",
     "jam of 1000",
     "control step in 500-boats",
     "control step in table-1",

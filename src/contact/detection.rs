@@ -221,22 +221,27 @@ impl ContactDetector {
     /// obstacle. Crossed cores count for both.
     pub(crate) fn end_gaps_at(&self, contact: &Contact, boats: &[HullPose]) -> [Option<f64>; 2] {
         let mut gaps = [None; 2];
-        let mut found = |feature, gap: Gap| match feature {
-            PairFeature::Stern => gaps[0] = Some(gap.gap),
-            PairFeature::Bow => gaps[1] = Some(gap.gap),
-            PairFeature::Crossed => gaps = [Some(gap.gap); 2],
-        };
         let (hull, margin) = (self.hull, 2.0 * self.hull.reach());
         let boat = &boats[contact.boat as usize];
-        match contact.partner {
-            Partner::Boat(second) => {
-                pair_gaps(boat, &boats[second as usize], hull, margin, found);
-            }
-            Partner::Obstacle(number) => {
-                let obstacle = &self.obstacles.obstacles[number as usize];
-                obstacle.gaps(boat, hull, margin, &mut found);
-            }
-            Partner::OuterWall | Partner::InnerWall => {}
+        if let Some(second) = contact.second() {
+            pair_gaps(boat, &boats[second], hull, margin, |feature, gap| {
+                note_end(&mut gaps, feature, &gap);
+            });
+            return gaps;
+        }
+        self.obstacle_end_gaps(contact, boat)
+    }
+
+    // Apart from boats, whose gaps then stay in registers.
+    #[inline(never)]
+    fn obstacle_end_gaps(&self, contact: &Contact, boat: &HullPose) -> [Option<f64>; 2] {
+        let mut gaps = [None; 2];
+        if let Partner::Obstacle(number) = contact.partner {
+            let (hull, margin) = (self.hull, 2.0 * self.hull.reach());
+            let obstacle = &self.obstacles.obstacles[number as usize];
+            obstacle.gaps(boat, hull, margin, &mut |feature, gap| {
+                note_end(&mut gaps, feature, &gap);
+            });
         }
         gaps
     }
@@ -263,6 +268,16 @@ impl ContactDetector {
                 self.obstacles.obstacles[number as usize].gap(feature, first, self.hull)
             }
         }
+    }
+}
+
+/// Notes a gap under the end of the boat that it is at; crossed cores count for both.
+#[inline]
+fn note_end(gaps: &mut [Option<f64>; 2], feature: PairFeature, gap: &Gap) {
+    match feature {
+        PairFeature::Stern => gaps[0] = Some(gap.gap),
+        PairFeature::Bow => gaps[1] = Some(gap.gap),
+        PairFeature::Crossed => *gaps = [Some(gap.gap); 2],
     }
 }
 
