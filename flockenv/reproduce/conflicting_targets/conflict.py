@@ -74,16 +74,16 @@ DIFFERENCE = Claim(
 PROPORTION = Claim(
     text="The proportion of the sides decides, not their number",
     section=_BEYOND,
-    quantity="mean signed order of 4 against 2, minus that of 2 against 1",
-    low=-0.1,
-    high=0.1,
+    quantity="mean signed order of 4 against 2, minus that of 2 against 1, over that of 6 alone",
+    low=-0.2,
+    high=0.2,
 )
 NUMBER = Claim(
     text="The difference of the sides decides, not their proportion",
     section=_BEYOND,
-    quantity="mean signed order of 3 against 2, minus that of 1 against none",
-    low=-0.1,
-    high=0.1,
+    quantity="mean signed order of 3 against 2, minus that of 1 alone, over that of 6 alone",
+    low=-0.2,
+    high=0.2,
 )
 SOONER = Claim(
     text="A larger majority has the flock sooner",
@@ -160,8 +160,8 @@ def _judge_alike(design: ConflictDesign, setup: Setup, found: Found) -> list[Che
     rising = slope(shares, [order(*match) for match in most])
     for claim, values in (
         (DIFFERENCE, rising),
-        (PROPORTION, order(4, 2) - order(2, 1)),
-        (NUMBER, order(3, 2) - order(1, 0)),
+        (PROPORTION, (order(4, 2) - order(2, 1)) / order(6, 0)),
+        (NUMBER, (order(3, 2) - order(1, 0)) / order(6, 0)),
         (SOONER, time_ratio(of(5, 1), of(4, 2))),
     ):
         claims.append(_judged(claim, interval(values), setup.words, runs))
@@ -253,8 +253,8 @@ def _notes(design: ConflictDesign, settings: Settings) -> list[str]:
         "size are as frequent, and 0 where m is normal about 0; a compromise between opposite "
         "directions is a stall.",
         "Intervals of means over runs are Student's, the others a bootstrap over runs. A claim "
-        "about the proportion or the difference of the sides holds only if the whole interval lies "
-        "within 0.1 of equal orders.",
+        "about the proportion or the difference of the sides holds only if both orders are equal "
+        "within a fifth of the order that six leaders reach alone, over the whole interval.",
         f"The compute budget is {settings.budget_core_min:g} minutes of one core. The design has "
         f"{seeds} seeds for each match, {minutes:g} minutes per run, and flocks of up to "
         f"{max(design.sizes)} boats. It is estimated to take "
