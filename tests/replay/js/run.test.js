@@ -80,3 +80,10 @@ test("a column is channel after channel, in quanta", () => {
   const each = column([1, 2, 3, 4], 0.5, 2);
   assert.deepEqual([each.at(0), each.at(1), each.at(0, 1), each.at(1, 1)], [0.5, 1, 1.5, 2]);
 });
+
+test("a counter-clockwise leader is an opponent where leaders head against each other", () => {
+  const [one, both] = [new Run({ boats: 3, leaders: 2 }, runOf().columns), runOf()];
+  assert.deepEqual([0, 1, 2].map((boat) => one.roleOf(boat)), ["leader", "leader", "normal"]);
+  Object.assign(both, { boats: 3, leaders: 2, targets: ["cw", "ccw"] });
+  assert.deepEqual([0, 1, 2].map((boat) => both.roleOf(boat)), ["leader", "opponent", "normal"]);
+});
