@@ -24,6 +24,7 @@ from flockenv.reproduce.leader_fraction.fraction import (
     BETTER,
     CONSTANT_NUMBER,
     SMALLER,
+    fractions_table,
     judge,
     leader_fraction,
 )
@@ -132,6 +133,26 @@ def series(signed_order: NDArray[np.float64]) -> flockenv.Recording:
         version=flockenv.__version__,
         duration_s=len(zeros) / 10,
     )
+
+
+@pytest.mark.parametrize(
+    ("orders", "fraction", "leaders"),
+    [
+        ([0.6, 0.7], "below 0.100", "below 1"),
+        ([0.1, 0.2], "above 0.500", "above 5"),
+        # The regression makes both 0.45, though one is above.
+        ([0.6, 0.3], "above 0.500", "above 5"),
+        ([0.4, 0.6], "0.224", "2.2"),
+    ],
+)
+def test_a_proportion_beyond_the_leaders_that_were_run_is_a_bound(
+    orders: list[float], fraction: str, leaders: str
+) -> None:
+    means = {1: np.full(3, orders[0]), 5: np.full(3, orders[1])}
+    replicates = np.full(RESAMPLES + 1, guiding_fraction(np.array([0.1, 0.5]), np.array(orders)))
+    curves = {("steering law", Growth("whole pool", 10)): Curve(10, means, replicates)}
+    (row,) = fractions_table(curves).to_dict("records")
+    assert (row["fraction"], row["leaders"]) == (fraction, leaders)
 
 
 def test_a_small_design_from_runs_to_tables(tmp_path: Path) -> None:

@@ -5,8 +5,10 @@ group, the smaller the proportion of informed individuals that guides it. There,
 towards each other; here, boats do nothing but collide.
 """
 
+import math
 from collections.abc import Mapping
 
+import numpy as np
 import pandas as pd
 
 from flockenv.reproduce.claim import CheckedClaim, Claim
@@ -22,7 +24,15 @@ from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Sett
 from flockenv.reproduce.transition.design import WAYS, Growth
 from flockenv.statistics.intervals import interval, student_interval
 
-__all__ = ["BETTER", "CONSTANT_NUMBER", "REPRODUCTIONS", "SMALLER", "judge", "leader_fraction"]
+__all__ = [
+    "BETTER",
+    "CONSTANT_NUMBER",
+    "REPRODUCTIONS",
+    "SMALLER",
+    "fractions_table",
+    "judge",
+    "leader_fraction",
+]
 
 _EXPONENT = (
     f"exponent a of the proportion of leaders at which the mean signed order reaches {GUIDED:g}, "
@@ -75,7 +85,7 @@ def _analyze(design: FractionDesign, settings: Settings, results: Results) -> Ou
         draws_seed = next(iter(specs.values()))[0].draws_seed
         curves[policy, growth] = Curve.of_runs(growth.n_boats, runs, draws_seed)
     return Outcome(
-        {"curves": _curves_table(curves), "fractions": _fractions_table(curves)},
+        {"curves": _curves_table(curves), "fractions": fractions_table(curves)},
         {"leader-fraction": picture(design, curves)},
         judge(design, curves),
         _notes(design, settings),
@@ -101,9 +111,10 @@ def _notes(design: FractionDesign, settings: Settings) -> list[str]:
         "three leaders among 27 boats, and were not searched for in larger flocks.",
         "The mean signed order over runs is made to grow with the number of leaders by isotonic "
         f"regression, and interpolated in the logarithm of the proportion to {GUIDED:g}. The "
-        " exponent is the slope of a straight line through the logarithms. Intervals are a "
+        "exponent is the slope of a straight line through the logarithms. Intervals are a "
         "bootstrap over runs. A proportion is undefined where the order is on one side of "
-        f"{GUIDED:g} at all numbers of leaders that were run. The first claim is wrong if the "
+        f"{GUIDED:g} at all numbers of leaders that were run, and the table has the bound that "
+        "follows. The first claim is wrong if the "
         "exponent is above 0: the proportion then grows with the flock.",
         f"The compute budget is {settings.budget_core_min:g} minutes of one core. The design has "
         f"{design.runs} seeds for each number of leaders, {minutes:g} minutes per run, and flocks "
@@ -126,21 +137,31 @@ def _curves_table(curves: Curves) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def _fractions_table(curves: Curves) -> pd.DataFrame:
+def fractions_table(curves: Curves) -> pd.DataFrame:
+    """Return the proportions of leaders, or bounds of them, as words."""
     rows = []
     for (policy, growth), curve in curves.items():
         value, low, high = interval(curve.replicates)
-        rows.append(
-            {
-                "policy": policy,
-                "way": growth.way,
-                "boats": growth.n_boats,
-                "fraction": f"{value:.3f}",
-                "interval": f"{low:.3f} to {high:.3f}",
-                "leaders": f"{value * growth.n_boats:.1f}",
-            }
-        )
+        row = {"policy": policy, "way": growth.way, "boats": str(growth.n_boats)}
+        if math.isnan(value):
+            side, leaders = _bound(curve)
+            row |= {"fraction": f"{side} {leaders / growth.n_boats:.3f}", "interval": "none"}
+            row["leaders"] = f"{side} {leaders}"
+        else:
+            row |= {"fraction": f"{value:.3f}", "interval": f"{low:.3f} to {high:.3f}"}
+            row["leaders"] = f"{value * growth.n_boats:.1f}"
+        rows.append(row)
     return pd.DataFrame(rows)
+
+
+def _bound(curve: Curve) -> tuple[str, int]:
+    """Return a bound of the number of leaders where the order is on one side of `GUIDED`.
+
+    The regression keeps the mean of the curve, which is therefore on that side too.
+    """
+    numbers = list(curve.signed_order)
+    mean = np.mean([values.mean() for values in curve.signed_order.values()])
+    return ("below", min(numbers)) if mean >= GUIDED else ("above", max(numbers))
 
 
 def leader_fraction(design: FractionDesign | None = None) -> Reproduction:
