@@ -59,7 +59,8 @@ def read_parameters(
     file
         TOML file with any of the fields, and ``preset``.
     changes
-        ``field=value`` each, values as in TOML; words need no quotes, as in ``target=cw,cw,ccw``.
+        ``field=value`` each, values as in TOML, also with parentheses for brackets; words need no
+        quotes, as in ``target=cw,cw,ccw``.
 
     Raises
     ------
@@ -168,12 +169,14 @@ def refuse_fields_as_options(arguments: Sequence[str], known: Collection[str]) -
 
 
 def _value(text: str) -> Any:
-    """Return a value as TOML has it, also a pair in parentheses; what is none is words."""
-    if text.startswith("(") and text.endswith(")"):
-        text = f"[{text[1:-1]}]"
+    """Return a value as TOML has it, also with parentheses for brackets; what is none is words."""
+    if text[0] in "([" and text[-1] in ")]":
+        text = text.replace("(", "[").replace(")", "]")
     try:
         found = read_toml(f"value = {text}", text)
     except ParameterError:
-        words = [word.strip() for word in text.split(",")]
-        return words if len(words) > 1 and all(map(str.isidentifier, words)) else text
+        is_list = text.startswith("[") and text.endswith("]")
+        words = [word.strip() for word in (text[1:-1] if is_list else text).split(",")]
+        is_words = all(map(str.isidentifier, words)) and (is_list or len(words) > 1)
+        return words if is_words else text
     return found["value"] if found.keys() == {"value"} else text

@@ -46,7 +46,7 @@ def compared_flocks(
     ------
     ParameterError
         As for `read_parameters`; for a pool or a backward duration given twice; for changes of the
-        number of leaders; for pools whose critical noise is not known.
+        number of leaders and lists of targets; for pools whose critical noise is not known.
     """
     for change in changes or ():
         if change.partition("=")[0].strip() == "n_leaders":
@@ -58,6 +58,11 @@ def compared_flocks(
         raise ParameterError(f"--pool {pool.value} contradicts pool = {fields['pool']!r}")
     if noise_levels and "bw_s" in fields:
         raise ParameterError(f"--bw-s contradicts bw_s = {fields['bw_s']!r}")
+    if isinstance(fields.get("target"), list):
+        raise ParameterError(
+            f"target = {fields['target']!r} is not accepted: the command sets the number of "
+            "leaders itself, and they have one target: cw or ccw"
+        )
     base = parameters_of({"n_boats": _BOATS, **fields})
     pools: list[Any] = [fields["pool"]] if "pool" in fields else _pools(pool or PoolChoice.BOTH)
     found = []

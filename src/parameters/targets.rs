@@ -3,6 +3,9 @@
 use super::Target;
 use crate::error::{FlockError, Result};
 
+/// How many targets of a list a message shows.
+const MOST_SHOWN: usize = 16;
+
 /// The targets of a flock's leaders.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Targets {
@@ -82,7 +85,17 @@ impl std::fmt::Display for Targets {
             Self::One(target) => formatter.write_str(target.name()),
             Self::Each(targets) => {
                 let names: Vec<_> = targets.iter().map(|target| target.name()).collect();
-                write!(formatter, "[{}]", names.join(", "))
+                match names.get(..MOST_SHOWN) {
+                    Some(first) if names.len() > MOST_SHOWN => {
+                        write!(
+                            formatter,
+                            "[{}, … {} in all]",
+                            first.join(", "),
+                            names.len()
+                        )
+                    }
+                    _ => write!(formatter, "[{}]", names.join(", ")),
+                }
             }
         }
     }

@@ -99,10 +99,20 @@ pub(crate) fn texts(
     items.collect::<PyResult<_>>().map(Some)
 }
 
+/// A string of its own, where a list of strings could have been given.
+pub(crate) fn lone_text(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<String> {
+    let given = object.extract::<String>();
+    given.map_err(|_| wrong_type(object, name, "a string or a list of strings"))
+}
+
 /// A target, or a list with one per leader.
 pub(crate) fn targets(object: &Bound<'_, PyAny>) -> PyResult<Targets> {
     Ok(match texts(object, "target")? {
-        None => Targets::One(text(object, "target")?.parse()?),
+        None => Targets::One(lone_text(object, "target")?.parse()?),
+        Some(names) if names.is_empty() => {
+            let accepted = "\"cw\", \"ccw\", or a list with one of them per leader";
+            return Err(FlockError::parameter("target", "[]", accepted).into());
+        }
         Some(names) => {
             let targets = names.iter().map(|name| name.parse());
             Targets::Each(targets.collect::<crate::error::Result<_>>()?)

@@ -1,7 +1,7 @@
 //! `flockenv.FlockParameters` to and from the core's: fields are read as attributes of the same name,
 //! so any object that has them will do. Which there are, and their range, is declared in the core.
 
-use super::arguments::{floats, real, text, texts, truth, wrong_type};
+use super::arguments::{floats, lone_text, real, shown, text, texts, truth, wrong_type};
 use super::settings::count;
 use crate::error::FlockError;
 use crate::geometry;
@@ -35,7 +35,7 @@ fn read(value: &Bound<'_, PyAny>, field: &'static Field) -> PyResult<Value> {
         Kind::Choice(_) => Value::Name(text(value, name)?),
         Kind::Choices(_) => match texts(value, name)? {
             Some(names) => Value::Names(names),
-            None => Value::Name(text(value, name)?),
+            None => Value::Name(lone_text(value, name)?),
         },
         Kind::Pool => read_pool(value, name)?,
         Kind::Rows(columns) => read_rows(value, name, columns)?,
@@ -73,6 +73,10 @@ fn read_rows(value: &Bound<'_, PyAny>, name: &'static str, columns: &[&str]) -> 
         return Err(
             FlockError::parameter(name, format!("{rows} rows"), "at most 1000 rows").into(),
         );
+    }
+    let first = value.get_item(0);
+    if first.is_ok_and(|first| first.extract::<f64>().is_ok()) {
+        return Err(FlockError::parameter(name, shown(value), accepted).into());
     }
     let numbers = floats(value, name, &[rows, columns.len()])?;
     let rows = numbers.chunks_exact(columns.len()).map(<[f64]>::to_vec);

@@ -132,6 +132,21 @@ def test_bad_obstacles_are_refused_by_name(arena, changes):
         arena.replace(**changes)
 
 
+@pytest.mark.parametrize(
+    ("name", "flat", "columns"),
+    [
+        ("discs", (30, 0, 8), "x_cm, y_cm, radius_cm"),
+        ("walls", [-9, 0, 9, 0], "x0_cm, y0_cm, x1_cm, y1_cm"),
+        ("walls", np.arange(4.0), "x0_cm, y0_cm, x1_cm, y1_cm"),
+    ],
+)
+def test_one_row_that_is_in_no_list_is_refused_with_what_rows_have(arena, name, flat, columns):
+    with pytest.raises(
+        ParameterError, match=rf"{name} = .* is not accepted: rows of \({columns}\)"
+    ):
+        arena.replace(**{name: flat})
+
+
 @pytest.mark.parametrize("value", [None, 3.0, "(1, 2, 3)", {}, iter([]), True])
 @pytest.mark.parametrize("name", ["discs", "walls"])
 def test_what_are_no_rows_is_a_type_error(arena, name, value):

@@ -45,6 +45,7 @@ def test_errors_are_one_line_with_exit_code_2(cli, tmp_path: Path) -> None:
         (["--set", "n_boats=2000"], "do not fit"),
         (["--preset", "simulaton"], "simulation"),
         (["--set", "target=left"], "ccw"),
+        (["--set", "target=cw,ccw"], "one target"),
         (["--set", "bw_s=-1"], "bw_s"),
     ):
         done = cli("compare", *BRIEF, *arguments, "--out", str(tmp_path))

@@ -25,6 +25,8 @@ def test_nothing_asked_for_is_the_preset_simulation():
         ("pool=(300,100)", "pool", (300.0, 100.0)),
         ("pool=[inf, 0]", "pool", (float("inf"), 0.0)),
         ("target=ccw", "target", "ccw"),
+        ("walls=[(100, 0, 150, 0)]", "walls", ((100.0, 0.0, 150.0, 0.0),)),
+        ("discs=((100, 0, 5), (-130, 0, 8),)", "discs", ((100.0, 0.0, 5.0), (-130.0, 0.0, 8.0))),
         ("leaders_reverse=false", "leaders_reverse", False),
     ],
 )
@@ -48,6 +50,11 @@ def test_what_is_saved_is_read(tmp_path):
     assert read_parameters(file=tmp_path / "flock.toml") == parameters
 
 
+@pytest.mark.parametrize("change", ["cw, ccw", "[cw, ccw]", "(cw,ccw)", '["cw", "ccw"]'])
+def test_lists_of_words_need_no_quotes(change):
+    assert read_parameters(changes=["n_leaders=2", f"target={change}"]).target == ("cw", "ccw")
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
@@ -61,6 +68,9 @@ def test_what_is_saved_is_read(tmp_path):
         (["bw_s=nan"], "bw_s"),
         (["bw_s=1\nn_boats=2"], "bw_s"),
         (["pool=bath"], "500-boats"),
+        (["pool=[bath]"], "pool"),
+        (["walls=[(1, 2, 3]"], "rows of"),
+        (["walls=(1, 2, 3, 4)"], "rows of"),
     ],
 )
 def test_bad_changes_are_named(changes, words):

@@ -188,6 +188,18 @@ def test_what_is_no_word_is_a_type_error(target):
         FlockParameters(n_boats=9, n_leaders=3, target=target)
 
 
+def test_a_long_list_is_named_in_a_short_message():
+    with pytest.raises(ParameterError, match=r"… 100000 in all\].*n_leaders = 3") as error:
+        FlockParameters(n_boats=9, n_leaders=3, target=["cw"] * 100_000)
+    assert len(str(error.value)) < 300
+
+
+def test_a_signed_order_towards_no_target_is_an_error():
+    order = flockenv.simulate(FlockParameters(n_boats=5, n_leaders=1), 1, 2.0).order
+    with pytest.raises(ParameterError, match=r"target = \[\] is not accepted"):
+        order.signed_order([])
+
+
 @pytest.mark.parametrize("target", [[], ["cw"], ["cw", "ccw"]])
 def test_leaders_that_are_not_there_have_no_targets(target):
     with pytest.raises(ParameterError, match="without leaders"):
