@@ -53,7 +53,7 @@ nitpick_ignore_regex = [
     (
         r"py:.*",
         r"(ArrayLike|DTypeLike|NDArray|np|numpy|pd|pandas|gymnasium|pettingzoo|collections|typing|"
-        r"os|pathlib|xarray|stable_baselines3|matplotlib|Axes|Path|PathLike|Any|Self|Mapping|"
+        r"os|pathlib|threading|xarray|stable_baselines3|matplotlib|Axes|Path|PathLike|Any|Self|Mapping|"
         r"Sequence|Callable|Iterator|Iterable|Generator)(\..*)?",
     ),
     # What DTypeLike is short for.
