@@ -54,15 +54,7 @@ def polarization(pose: ArrayLike) -> NDArray[np.float64]:
     headings are independent: the polarization of flocks in open space (Vicsek et al. 1995). Unlike
     Ψ_o, whose orientations are relative to the pool, it is small where boats go around the pool.
 
-    Parameters
-    ----------
-    pose
-        Shape (t, n, 3), as in a `Recording`.
-
-    Raises
-    ------
-    ParameterError
-        For another shape, and numbers that are not finite.
+    `pose` and errors are those of `largest_cluster`.
     """
     return _core.polarization(_poses(pose))
 
