@@ -102,13 +102,16 @@ def write_replay(
     Raises
     ------
     ParameterError
-        For no recording or more than two, for one without samples or poses, and for one too large
-        to be shown at all.
+        For recordings without names, for none or more than two, for one without samples or poses,
+        and for one too large to be shown at all.
     OSError
         If the file cannot be written; the file from before remains then.
     """
     if isinstance(recordings, Recording):
         recordings = {Path(path).stem: recordings}
+    if not isinstance(recordings, Mapping):
+        kind = type(recordings).__name__
+        raise ParameterError(f"a {kind} is not accepted: a recording, or recordings by their names")
     if not 1 <= len(recordings) <= _MOST_RUNS:
         raise ParameterError(f"{len(recordings)} recordings are not accepted: 1 or {_MOST_RUNS}")
     page, every = replay_page(recordings, MOST_BYTES)

@@ -46,6 +46,13 @@ def test_what_does_not_fit_is_thinned(hour, tmp_path, monkeypatch):
     assert not (tmp_path / "none.html").exists()
 
 
+def test_recordings_without_names_are_refused(tmp_path):
+    run = flockenv.simulate(PARAMETERS, 7, 1.0)
+    with pytest.raises(flockenv.ParameterError, match="a list is not accepted: a recording, or"):
+        write_replay(tmp_path / "list.html", [run])
+    assert not (tmp_path / "list.html").exists()
+
+
 def test_nothing_is_loaded_and_only_its_own_script_runs(tmp_path):
     write_replay(tmp_path / "run.html", {"run": flockenv.simulate(PARAMETERS, 7, 1.0)})
     text = (tmp_path / "run.html").read_text("utf-8")
