@@ -109,8 +109,9 @@ def write_replay(
     """
     if isinstance(recordings, Recording):
         recordings = {Path(path).stem: recordings}
-    if not isinstance(recordings, Mapping):
-        kind = type(recordings).__name__
+    given: object = recordings
+    if not isinstance(given, Mapping):
+        kind = type(given).__name__
         raise ParameterError(f"a {kind} is not accepted: a recording, or recordings by their names")
     if not 1 <= len(recordings) <= _MOST_RUNS:
         raise ParameterError(f"{len(recordings)} recordings are not accepted: 1 or {_MOST_RUNS}")
