@@ -4,9 +4,9 @@ use super::placement;
 use crate::analysis::OrderParameters;
 use crate::analysis::quantities::{self, Recorded};
 use crate::clock::{Ticks, seconds, ticks};
-use crate::contact::{Contact, KeepGoing, Statistics};
+use crate::contact::{KeepGoing, Statistics};
 use crate::error::{FlockError, Result};
-use crate::geometry::{HullPose, Pose, Vec2, Velocity};
+use crate::geometry::{HullPose, Pose, Velocity};
 use crate::integrator::{
     Checkpoint, Integrator, PhaseMoment, PhaseSchedule, Steering, StepOutcome, Substep,
 };
@@ -15,17 +15,6 @@ use crate::parameters::{FlockParameters, Targets};
 
 /// The latest time a flock may reach: 10⁹ s.
 pub(crate) const LATEST: Ticks = 1_000_000_000_000_000_000;
-
-/// A contact with the force it carried.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ContactForce {
-    /// The contact, its gap taken at the current poses.
-    pub contact: Contact,
-    /// Where the force acts on the hull of `contact.boat`, at the current poses.
-    pub point: Vec2,
-    /// Mean force over the last substep in cm/s² (mass 1), along the normal on `contact.boat`.
-    pub force: f64,
-}
 
 /// A flock of boats in a pool.
 #[derive(Debug, Clone)]
@@ -385,31 +374,5 @@ impl Flock {
         let leaders = self.parameters.n_leaders;
         let first = if include_leaders { 0 } else { leaders };
         (&self.hulls()[first..], &self.velocities()[first..])
-    }
-
-    /// Contacts and near-contacts of the last substep: gaps now, forces as means over the last change of velocity.
-    pub fn contacts(&self) -> Vec<ContactForce> {
-        let resolver = &self.integrator.contacts;
-        let detector = resolver.detector();
-        let hull = detector.hull();
-        resolver
-            .contacts()
-            .iter()
-            .zip(resolver.impulses())
-            .map(|(contact, &impulse)| {
-                let gap = detector.gap_at(contact, &self.integrator.boats);
-                let force = if impulse > 0.0 {
-                    impulse / self.integrator.step_length_s
-                } else {
-                    0.0
-                };
-                let contact = Contact { gap, ..*contact };
-                ContactForce {
-                    point: contact.point(&self.hulls()[contact.boat as usize], hull),
-                    contact,
-                    force,
-                }
-            })
-            .collect()
     }
 }

@@ -1,6 +1,7 @@
 //! A flock that is placed, advanced, recorded, stored and brought back.
 
 mod change;
+mod contact_force;
 #[allow(
     clippy::module_inception,
     reason = "the file is named after the noun it owns"
@@ -12,7 +13,8 @@ mod snapshot;
 mod state;
 
 pub use change::Change;
+pub use contact_force::ContactForce;
+pub use flock::Flock;
 pub(crate) use flock::LATEST;
-pub use flock::{ContactForce, Flock};
 pub use recorder::{ContactSamples, Pause, Real, Recorder, Recording, Sampling};
 pub use state::State;

@@ -1,7 +1,8 @@
 //! A run sampled at a fixed rate: what sweeps and figures are made of.
 
 use super::change::Change;
-use super::flock::{ContactForce, Flock};
+use super::contact_force::ContactForce;
+use super::flock::Flock;
 use crate::analysis::quantities::{RECORDED, Recorded};
 use crate::clock::{Ticks, seconds, ticks};
 use crate::error::{FlockError, Result};

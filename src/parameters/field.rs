@@ -242,17 +242,23 @@ macro_rules! choices {
 
 choices!(Scheme, Noise, Solver);
 
+impl From<&Targets> for Value {
+    fn from(targets: &Targets) -> Self {
+        match targets {
+            Targets::One(target) => Self::Name(target.name().to_owned()),
+            Targets::Each(targets) => {
+                let names = targets.iter().map(|target| target.name().to_owned());
+                Self::Names(names.collect())
+            }
+        }
+    }
+}
+
 impl FieldType for Targets {
     const KIND: Kind = Kind::Choices(|| Target::ALL.iter().map(|target| target.name()).collect());
 
     fn value(&self) -> Value {
-        match self {
-            Self::One(target) => Value::Name(target.name().to_owned()),
-            Self::Each(targets) => {
-                let names = targets.iter().map(|target| target.name().to_owned());
-                Value::Names(names.collect())
-            }
-        }
+        self.into()
     }
 
     fn from_value(value: Value) -> Result<Self> {

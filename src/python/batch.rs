@@ -2,19 +2,17 @@
 
 use super::exclusive::{Exclusive, interruptible};
 use super::flock::PyFlock;
-use super::parameters::to_python;
-use super::settings::{settings_from, settings_to_dict, term_names};
+use super::parameters::{to_python, written};
+use super::settings::{settings_from, settings_to_dict};
 use super::state::request_from;
+use super::summary::{add_leaders, summary_dict};
 use crate::environment::observation::FlockFeatures;
-use crate::environment::{
-    BatchRows, EnvBatch, Episode, EpisodeSummary, FlockEnv, LeaderSummary, TERMS,
-};
+use crate::environment::{BatchRows, EnvBatch, Episode, FlockEnv, TERMS};
 use crate::error::{FlockError, Result};
-use crate::parameters::{FlockParameters, Targets};
+use crate::parameters::{FlockParameters, Value};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
-use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyTuple, PyType};
+use pyo3::types::{PyBytes, PyDict, PyType};
 
 /// What a step returns: observations (rows, size), rewards (rows,), truncated (flocks,).
 type Step<'py> = (
@@ -342,7 +340,7 @@ impl PyEnvBatch {
         let batch = self.0.read()?;
         let schedule = episode_of(&batch, flock)?.schedule();
         let dict = PyDict::new(py);
-        dict.set_item("target", targets_shown(py, &schedule.targets())?)?;
+        dict.set_item("target", written(&Value::from(&schedule.targets()), py)?)?;
         dict.set_item("bw_s", schedule.bw_s)?;
         dict.set_item("flock_seed", schedule.flock_seed)?;
         dict.set_item("step", schedule.step)?;
@@ -397,64 +395,4 @@ impl PyEnvBatch {
         let class = py.get_type::<Self>();
         Ok((class.getattr("from_bytes")?, (self.to_bytes(py)?,)))
     }
-}
-
-/// A target by name, or a tuple with one per leader.
-fn targets_shown<'py>(py: Python<'py>, targets: &Targets) -> PyResult<Bound<'py, PyAny>> {
-    match targets {
-        Targets::One(target) => target.name().into_bound_py_any(py),
-        Targets::Each(targets) => {
-            let names = targets.iter().map(|target| target.name());
-            Ok(PyTuple::new(py, names.collect::<Vec<_>>())?.into_any())
-        }
-    }
-}
-
-/// Adds what each leader with a target of its own has: arrays (k,).
-fn add_leaders(dict: &Bound<'_, PyDict>, leaders: &[LeaderSummary]) -> PyResult<()> {
-    if leaders.is_empty() {
-        return Ok(());
-    }
-    type Column = (&'static str, fn(&LeaderSummary) -> f64);
-    let columns: [Column; 4] = [
-        ("leader_targets", |leader| leader.target.sign()),
-        ("leader_total_rewards", |leader| leader.total_reward),
-        ("leader_signed_orders", |leader| leader.signed_order),
-        ("leader_shares_towards_target", |leader| {
-            leader.share_towards_target
-        }),
-    ];
-    for (name, value) in columns {
-        let values: Vec<f64> = leaders.iter().map(value).collect();
-        // As for the whole flock: infos hold no NaN.
-        if !values.iter().any(|value| value.is_nan()) {
-            dict.set_item(name, PyArray1::from_vec(dict.py(), values))?;
-        }
-    }
-    Ok(())
-}
-
-fn summary_dict<'py>(py: Python<'py>, summary: &EpisodeSummary) -> PyResult<Bound<'py, PyDict>> {
-    let terms = PyDict::new(py);
-    for (name, mean) in term_names(py).iter().zip(summary.terms.0) {
-        terms.set_item(name, mean)?;
-    }
-    let dict = PyDict::new(py);
-    dict.set_item("flock_seed", summary.flock_seed)?;
-    dict.set_item("bw_s", summary.bw_s)?;
-    dict.set_item("steps", summary.steps)?;
-    dict.set_item("total_reward", summary.total_reward)?;
-    dict.set_item("reward_terms", terms)?;
-    let share = ("share_towards_target", summary.share_towards_target);
-    for (name, mean) in summary.averages.named().chain([share]) {
-        // A mean over an analysis window that the episode did not reach: infos hold no NaN.
-        if !mean.is_nan() {
-            dict.set_item(name, mean)?;
-        }
-    }
-    let [printed, wide] = summary.ordering_times_s;
-    dict.set_item("ordering_time_s", printed)?;
-    dict.set_item("ordering_time_wide_s", wide)?;
-    dict.set_item("clip_rate", summary.clip_rate)?;
-    Ok(dict)
 }

@@ -17,6 +17,7 @@ pub(crate) mod settings;
 pub(crate) mod state;
 pub(crate) mod statistics;
 pub(crate) mod structure;
+mod summary;
 
 use pyo3::prelude::*;
 

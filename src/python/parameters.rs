@@ -93,7 +93,8 @@ fn pool_from(value: &Bound<'_, PyAny>) -> PyResult<Pool> {
     })
 }
 
-fn written<'py>(value: &Value, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+/// What Python code gets for a value.
+pub(super) fn written<'py>(value: &Value, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
     match value {
         Value::Count(count) => count.into_bound_py_any(py),
         Value::Real(real) => real.into_bound_py_any(py),

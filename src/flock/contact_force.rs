@@ -1,0 +1,44 @@
+//! The contacts of a flock, with the forces that they carried.
+
+use super::flock::Flock;
+use crate::contact::Contact;
+use crate::geometry::Vec2;
+
+/// A contact with the force it carried.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactForce {
+    /// The contact, its gap taken at the current poses.
+    pub contact: Contact,
+    /// Where the force acts on the hull of `contact.boat`, at the current poses.
+    pub point: Vec2,
+    /// Mean force over the last substep in cm/s² (mass 1), along the normal on `contact.boat`.
+    pub force: f64,
+}
+
+impl Flock {
+    /// Contacts and near-contacts of the last substep: gaps now, forces as means over the last change of velocity.
+    pub fn contacts(&self) -> Vec<ContactForce> {
+        let resolver = &self.integrator.contacts;
+        let detector = resolver.detector();
+        let hull = detector.hull();
+        resolver
+            .contacts()
+            .iter()
+            .zip(resolver.impulses())
+            .map(|(contact, &impulse)| {
+                let gap = detector.gap_at(contact, &self.integrator.boats);
+                let force = if impulse > 0.0 {
+                    impulse / self.integrator.step_length_s
+                } else {
+                    0.0
+                };
+                let contact = Contact { gap, ..*contact };
+                ContactForce {
+                    point: contact.point(&self.hulls()[contact.boat as usize], hull),
+                    contact,
+                    force,
+                }
+            })
+            .collect()
+    }
+}
