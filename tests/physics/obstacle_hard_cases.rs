@@ -15,7 +15,7 @@ use flockenv::parameters::{Noise, Pool, Scheme};
 use flockenv::{Flock, FlockError, FlockParameters};
 
 /// c0·v0 of Table 3.
-const PUSH: f64 = 15.0;
+pub const PUSH: f64 = 15.0;
 
 /// Forces of obstacles, largest first.
 fn obstacle_forces(flock: &Flock) -> Vec<f64> {
@@ -51,14 +51,14 @@ fn nearest_core_to_a_wall(flock: &Flock) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-fn assert_solved(flock: &Flock) {
+pub fn assert_solved(flock: &Flock) {
     let statistics = flock.statistics();
     assert!(statistics.worst_residual_cm_s <= 1e-10, "{statistics:?}");
     assert_eq!(statistics.unsolved, 0);
 }
 
 /// Rests for 50 substeps with these forces of the obstacles.
-fn assert_wedged(p: &FlockParameters, bow: (f64, f64), each: f64, count: usize, what: &str) {
+pub fn assert_wedged(p: &FlockParameters, bow: (f64, f64), each: f64, count: usize, what: &str) {
     let start = bow_at(bow.0, bow.1);
     let mut flock = crowded(p, &[start]);
     for _ in 0..50 {
@@ -248,107 +248,6 @@ fn a_boat_wedged_in_a_corner_of_two_walls() {
             let case = format!("{scheme:?} {beta}");
             assert_wedged(&p, (-R / sin, 0.0), PUSH / (2.0 * sin), 2, &case);
         }
-    }
-}
-
-#[test]
-fn a_boat_before_a_gate_that_is_too_narrow() {
-    // Two walls' ends, or two discs of radius d, leave 2·g < 2·r between them: the bow's disc rests where its center
-    // is r + d from both.
-    for scheme in VELOCITY_SCHEMES {
-        for (g, d) in [
-            (4.5_f64, 0.0),
-            (1.0, 0.0),
-            (4.5, 7.0),
-            (0.0, 7.0),
-            (4.9, 0.01),
-        ] {
-            let (side, reach) = (g + d, R + d);
-            let before = (reach * reach - side * side).sqrt();
-            let p = if d == 0.0 {
-                FlockParameters {
-                    walls: vec![wall((0.0, g), (0.0, 60.0)), wall((0.0, -60.0), (0.0, -g))],
-                    ..driven(scheme)
-                }
-            } else {
-                FlockParameters {
-                    discs: vec![disc_at(0.0, side, d), disc_at(0.0, -side, d)],
-                    ..driven(scheme)
-                }
-            };
-            let each = PUSH * reach / (2.0 * before);
-            assert_wedged(&p, (-before, 0.0), each, 2, &format!("{scheme:?} {g} {d}"));
-        }
-    }
-}
-
-#[test]
-fn a_gate_wider_than_the_boat_is_no_hindrance() {
-    // Half a millimeter on each side.
-    for scheme in SCHEMES {
-        let (half, depth) = (R + 0.05, 8.0);
-        let gates = [
-            FlockParameters {
-                walls: vec![
-                    wall((0.0, half), (0.0, 60.0)),
-                    wall((0.0, -half), (0.0, -60.0)),
-                ],
-                ..driven(scheme)
-            },
-            FlockParameters {
-                discs: [1.0, -1.0]
-                    .map(|s| disc_at(0.0, s * (half + depth), depth))
-                    .to_vec(),
-                ..driven(scheme)
-            },
-        ];
-        for p in gates {
-            let start = [([-40.0, 0.0, 0.0], [15.0, 0.0, 0.0])];
-            let (mut through, mut free) = (crowded(&p, &start), crowded(&driven(scheme), &start));
-            through.advance(6.0, None).expect("finite motion");
-            free.advance(6.0, None).expect("finite motion");
-            let [found, expected] = [&through, &free].map(|flock| flock.poses()[0].position.x);
-            assert!(
-                (found - expected).abs() < 1e-9 && found > 40.0,
-                "{scheme:?} {found}"
-            );
-        }
-    }
-}
-
-#[test]
-fn a_channel_exactly_as_wide_as_the_hull_lets_it_slide() {
-    // Four contacts and no room: the boat speeds up as in open water, and nothing turns it.
-    for scheme in VELOCITY_SCHEMES {
-        let p = FlockParameters {
-            walls: vec![
-                wall((-100.0, R), (100.0, R)),
-                wall((100.0, -R), (-100.0, -R)),
-            ],
-            c4: 0.1,
-            ..driven(scheme)
-        };
-        let start = [([-60.0, 0.0, 0.0], [0.0; 3])];
-        let mut inside = crowded(&p, &start);
-        let mut free = crowded(
-            &FlockParameters {
-                c4: 0.0,
-                ..driven(scheme)
-            },
-            &start,
-        );
-        inside.advance(5.0, None).expect("finite motion");
-        free.advance(5.0, None).expect("finite motion");
-        let (found, expected) = (inside.poses()[0], free.poses()[0]);
-        assert!(
-            (found.position.x - expected.position.x).abs() < 1e-4,
-            "{found:?} {expected:?}"
-        );
-        assert!(
-            found.position.y.abs() < 1e-9 && found.heading.abs() < 1e-9,
-            "{found:?}"
-        );
-        assert_solved(&inside);
     }
 }
 

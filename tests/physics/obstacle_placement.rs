@@ -1,0 +1,198 @@
+//! Boats start beside obstacles, and what would put one into the other is a named error.
+
+use crate::obstacles::arena;
+use crate::support::{
+    OPEN_WATER, deepest_overlap, disc_at, flock_of, inert, refused_field, table_3, wall,
+};
+use flockenv::flock::{Change, State};
+use flockenv::geometry::Pose;
+use flockenv::parameters::{Disc, Noise, Pool, Scheme, Wall};
+use flockenv::{Flock, FlockError, FlockParameters};
+
+#[test]
+fn boats_never_start_inside() {
+    for seed in 0..40 {
+        let flock = Flock::new(arena(Scheme::Leapfrog, Noise::White), seed).expect("room");
+        assert!(deepest_overlap(&flock) == 0.0, "{seed}");
+    }
+    // So many that they are grown into their places.
+    let p = FlockParameters {
+        n_boats: 130,
+        n_leaders: 0,
+        ..arena(Scheme::Leapfrog, Noise::White)
+    };
+    for seed in 0..3 {
+        let flock = Flock::new(p.clone(), seed).expect("room");
+        assert!(deepest_overlap(&flock) == 0.0, "{seed}");
+    }
+}
+
+#[test]
+fn boats_start_around_a_disc_in_open_water() {
+    let p = FlockParameters {
+        pool: OPEN_WATER,
+        n_boats: 12,
+        discs: vec![disc_at(0.0, 0.0, 500.0)],
+        ..table_3()
+    };
+    let flock = Flock::new(p, 1).expect("room");
+    assert!(deepest_overlap(&flock) == 0.0);
+}
+
+#[test]
+fn no_room_is_a_named_error() {
+    let crowd = |n_boats, discs, walls| FlockParameters {
+        n_boats,
+        discs,
+        walls,
+        pool: Pool {
+            outer_radius_cm: 60.0,
+            inner_radius_cm: 0.0,
+        },
+        ..table_3()
+    };
+    // A disc over the whole pool, or one that leaves a ring narrower than a boat.
+    for radius in [100.0, 51.0] {
+        let p = crowd(1, vec![disc_at(0.0, 0.0, radius)], vec![]);
+        let error = Flock::new(p, 1).err();
+        assert!(
+            matches!(
+                error,
+                Some(FlockError::Placement {
+                    requested: 1,
+                    placed: 0
+                })
+            ),
+            "{radius}: {error:?}"
+        );
+    }
+    // Walls 9 cm apart leave no place for a boat of 10 cm.
+    let grid = (-7..=7).flat_map(|i| {
+        let at = 9.0 * f64::from(i);
+        [wall((at, -70.0), (at, 70.0)), wall((-70.0, at), (70.0, at))]
+    });
+    let grid: Vec<Wall> = grid
+        .filter(|w| w.x0_cm.abs() < 60.0 || w.y0_cm.abs() < 60.0)
+        .collect();
+    let grid: Vec<Wall> = grid
+        .into_iter()
+        .filter(|w| w.x0_cm.abs().min(w.y0_cm.abs()) < 60.0)
+        .collect();
+    let error = Flock::new(crowd(2, vec![], grid), 1).err();
+    assert!(
+        matches!(error, Some(FlockError::Placement { .. })),
+        "{error:?}"
+    );
+    // Without the discs there is room for 50 boats, with them there is not.
+    assert!(Flock::new(crowd(50, vec![], vec![]), 1).is_ok());
+    let posts = [-30.0, 30.0].map(|x| disc_at(x, 0.0, 28.0)).to_vec();
+    let error = Flock::new(crowd(50, posts, vec![]), 1).err();
+    assert!(matches!(
+        error,
+        Some(FlockError::Placement { requested: 50, .. })
+    ));
+}
+
+#[test]
+fn a_state_inside_an_obstacle_is_refused() {
+    let p = FlockParameters {
+        n_boats: 1,
+        discs: vec![disc_at(30.0, 0.0, 10.0)],
+        walls: vec![wall((-30.0, -20.0), (-30.0, 20.0))],
+        ..inert(Scheme::Leapfrog)
+    };
+    for (x, obstacle) in [(30.0, "disc 0"), (-30.0, "wall 0"), (-35.0, "wall 0")] {
+        let state = State {
+            poses: vec![Pose::new(x, 0.0, 0.0)],
+            velocities: vec![Default::default()],
+            time_s: 0.0,
+            allow_overlap: false,
+        };
+        match Flock::from_state(p.clone(), 1, &state) {
+            Err(FlockError::Overlap { what, .. }) => {
+                assert_eq!(what, format!("boat 0 and {obstacle}"));
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+}
+
+#[test]
+fn an_obstacle_that_appears_on_a_boat_is_refused() {
+    let mut flock = flock_of(
+        &inert(Scheme::Leapfrog),
+        &[([5.0, 0.0, 0.0], [1.0, 0.0, 0.0])],
+    );
+    let before = flock.snapshot();
+    let with = |discs| {
+        let p = flock.parameters().clone();
+        Change::Parameters(Box::new(FlockParameters { discs, ..p }))
+    };
+    let (on_it, beside) = (
+        with(vec![disc_at(0.0, 0.0, 9.0)]),
+        with(vec![disc_at(0.0, 40.0, 9.0)]),
+    );
+    assert!(matches!(
+        flock.change(&on_it),
+        Err(FlockError::Overlap { .. })
+    ));
+    assert_eq!(flock.snapshot(), before);
+    flock.change(&beside).expect("no overlap");
+    assert_eq!(flock.parameters().discs.len(), 1);
+}
+
+#[test]
+fn bad_obstacles_are_named() {
+    let with = |discs: Vec<Disc>, walls: Vec<Wall>| {
+        FlockParameters {
+            discs,
+            walls,
+            ..table_3()
+        }
+        .check()
+    };
+    // The pool's radii are 180 and 97 cm.
+    for bad in [
+        disc_at(f64::NAN, 0.0, 5.0),
+        disc_at(0.0, f64::INFINITY, 5.0),
+        disc_at(140.0, 0.0, -1.0),
+        disc_at(140.0, 0.0, 0.0),
+        disc_at(140.0, 0.0, f64::NAN),
+        disc_at(140.0, 0.0, 2e6),
+        disc_at(186.0, 0.0, 5.0),
+        disc_at(0.0, 10.0, 50.0),
+    ] {
+        let field = refused_field(with(vec![disc_at(140.0, 0.0, 5.0), bad], vec![]));
+        assert_eq!(field, "discs", "{bad:?}");
+    }
+    for bad in [
+        wall((f64::NAN, 0.0), (140.0, 0.0)),
+        wall((0.0, 0.0), (f64::NEG_INFINITY, 0.0)),
+        wall((140.0, 1.0), (140.0, 1.0)),
+        wall((140.0, 1.0), (140.0, 1.0001)),
+        wall((200.0, -50.0), (200.0, 50.0)),
+        wall((-40.0, 0.0), (40.0, 0.0)),
+    ] {
+        assert_eq!(refused_field(with(vec![], vec![bad])), "walls", "{bad:?}");
+    }
+    assert_eq!(
+        refused_field(with(vec![disc_at(140.0, 0.0, 1.0); 1001], vec![])),
+        "discs"
+    );
+    assert_eq!(
+        refused_field(with(vec![], vec![wall((100.0, 0.0), (140.0, 0.0)); 1001])),
+        "walls"
+    );
+    // Reaching over the rim, the inner wall and each other is no mistake.
+    let over = vec![
+        wall((0.0, 0.0), (200.0, 0.0)),
+        wall((140.0, -9.0), (140.0, 9.0)),
+    ];
+    assert!(
+        with(
+            vec![disc_at(181.0, 0.0, 5.0), disc_at(0.0, 95.0, 5.0)],
+            over
+        )
+        .is_ok()
+    );
+}
