@@ -1,7 +1,6 @@
 //! Discs and walls in the water: a disc is an inner wall anywhere, a wall a hull without a radius that does not move.
 //!
-//! On paper: impulses λ = −v_n/(1 + l²/ρ²); a disc in the middle of the
-//! pool is its inner wall, bit for bit.
+//! On paper: impulses λ = −v_n/(1 + l²/ρ²); a disc in the middle of the pool is its inner wall, bit for bit.
 
 use crate::support::{
     H, NOISES, R, RHO, SCHEMES, bits, busy, crowded, disc_at, driven, flock_of, inert, table_3,
