@@ -52,8 +52,9 @@ features of an environment (those of a `LeaderVecEnv` are in the frame of each s
 _FRAME = """All entries are in the local-angle polar (LAP) frame of the leader's own position,
 outward and clockwise. They are scaled, and clipped at the bounds below; the share of clipped
 numbers is reported at the end of the episode. The entries of `neighbors` repeat for each of the
-nearest boats, nearest first, and those of `obstacles` for each of the nearest discs and walls. The
-blocks `law_rudder` and `obstacles` are off unless `observation` switches them on."""
+nearest boats, nearest first, those of `obstacles` for each of the nearest discs and walls, and those
+of `fellow_leaders` for each of the nearest other leaders, however far they are. The blocks
+`law_rudder`, `obstacles` and `fellow_leaders` are off unless `observation` switches them on."""
 
 _START = """Boats start at rest at random positions with random headings, without overlap, in phase
 fw. The seed fixes the initial state, the noise (whatever the policy does), the target and the
@@ -77,8 +78,8 @@ entries are left out. Where each leader has a target of its own the summary also
 `leader_targets` (+1 clockwise, -1 counter-clockwise), `leader_total_rewards`,
 `leader_signed_orders` and `leader_shares_towards_target`, each towards the leader's own."""
 
-_HISTORY = """- v0, observation version 1: initial version. Where the block `obstacles` is on, it is
-  added at the end, and the version of the observation is 2."""
+_HISTORY = """- v0, observation version 1: initial version. Where the block `obstacles` or
+  `fellow_leaders` is on, it is added at the end, and the version of the observation is 2."""
 
 # Those that are off by default, too.
 _EVERY_BLOCK = {

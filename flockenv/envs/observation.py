@@ -31,7 +31,7 @@ __all__ = [
 #: Newest version of the observation: of its entries, their order, scales and bounds.
 OBSERVATION_VERSION: int = _core.observation_version()
 
-#: The blocks with their defaults: on or off, and how many neighbors or obstacles.
+#: The blocks with their defaults: on or off, and how many neighbors, obstacles or fellow leaders.
 BLOCKS: dict[str, Any] = _core.env_defaults()["observation"]
 
 
@@ -61,7 +61,9 @@ def observation_entries(blocks: Mapping[str, Any] | None = None) -> list[Entry]:
 
 
 def observation_version(blocks: Mapping[str, Any] | None = None) -> int:
-    """Return the version of the observation that has these blocks: 2 with obstacles, else 1.
+    """Return the version of the observation that has these blocks.
+
+    It is 2 with obstacles or fellow leaders, else 1.
 
     Parameters
     ----------

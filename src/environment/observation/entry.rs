@@ -198,6 +198,17 @@ pub(super) const OBSTACLE: [Entry; 4] = [
     Entry::new("gap", "cm", Scale::Length, (-1.0, 4.0), "distance between the leader's hull and the obstacle, negative for overlap"),
 ];
 
+/// One fellow leader; all zero where there are fewer than places.
+#[rustfmt::skip]
+pub(super) const FELLOW_LEADER: [Entry; 6] = [
+    Entry::new("fellow", "", Scale::Plain, FLAG, "1 where there is such a leader"),
+    Entry::new("cos_angle", "", Scale::Plain, UNIT, "cosine of the angle along the ring, at the pool's center, from the observing leader to it"),
+    Entry::new("sin_angle", "", Scale::Plain, UNIT, "its sine: positive where it is clockwise").odd(),
+    Entry::new("radial_distance", "cm", Scale::Length, (-4.0, 4.0), "how much farther than the observing leader it is from the pool's center"),
+    Entry::new("cos_orientation", "", Scale::Plain, UNIT, "cosine of its LAP orientation, in its own LAP frame"),
+    Entry::new("sin_orientation", "", Scale::Plain, UNIT, "its sine: 1 heads clockwise").odd(),
+];
+
 /// One boat of the global state.
 #[rustfmt::skip]
 pub const BOAT: [Entry; 10] = [

@@ -1,6 +1,8 @@
 //! The entries that a leader observes, in order.
 
-use super::entry::{BOAT, CLOCK, Entry, LAW_RUDDER, NEIGHBOR, OBSTACLE, ORDER, OWN, PHASE, TARGET};
+use super::entry::{
+    BOAT, CLOCK, Entry, FELLOW_LEADER, LAW_RUDDER, NEIGHBOR, OBSTACLE, ORDER, OWN, PHASE, TARGET,
+};
 use crate::boat::Law;
 use crate::environment::tuned_law;
 use crate::error::{FlockError, Result};
@@ -10,7 +12,7 @@ use crate::parameters::{FlockParameters, named_choice};
 /// its layout.
 pub const OBSERVATION_VERSION: u32 = 2;
 
-/// The most neighbors, and the most obstacles, that a leader may observe.
+/// The most neighbors, the most obstacles and the most fellow leaders that a leader may observe.
 pub(crate) const MOST_NEIGHBORS: usize = 64;
 
 named_choice! {
@@ -30,13 +32,18 @@ named_choice! {
         LawRudder = "law_rudder",
         /// The nearest obstacles.
         Obstacles = "obstacles",
+        /// The nearest fellow leaders, at any distance.
+        FellowLeaders = "fellow_leaders",
     }
 }
 
 impl Block {
     /// Whether the block may occur more than once, as that of a neighbor does.
     pub fn is_counted(self) -> bool {
-        matches!(self, Self::Neighbors | Self::Obstacles)
+        matches!(
+            self,
+            Self::Neighbors | Self::Obstacles | Self::FellowLeaders
+        )
     }
 
     /// What messages call the choice of this block.
@@ -49,6 +56,7 @@ impl Block {
             Self::Order => "observation order",
             Self::LawRudder => "observation law_rudder",
             Self::Obstacles => "observation obstacles",
+            Self::FellowLeaders => "observation fellow_leaders",
         }
     }
 }
@@ -75,6 +83,9 @@ pub struct ObservationLayout {
     /// How many of the nearest obstacles; 0: off.
     #[serde(skip)]
     pub obstacles: usize,
+    /// How many of the nearest fellow leaders; 0: off.
+    #[serde(skip)]
+    pub fellow_leaders: usize,
 }
 
 impl Default for ObservationLayout {
@@ -88,6 +99,7 @@ impl Default for ObservationLayout {
             mirror_to_target: false,
             law_rudder: false,
             obstacles: 0,
+            fellow_leaders: 0,
         }
     }
 }
@@ -96,9 +108,9 @@ impl ObservationLayout {
     /// Checks the layout.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] if nothing is observed, or too many neighbors or obstacles.
+    /// [`FlockError::Parameter`] if nothing is observed, or too many neighbors, obstacles or fellow leaders.
     pub fn check(&self) -> Result<()> {
-        for block in [Block::Neighbors, Block::Obstacles] {
+        for &block in Block::ALL {
             let repeats = self.repeats(block);
             if repeats > MOST_NEIGHBORS {
                 let accepted = format!("0 (off) to {MOST_NEIGHBORS}");
@@ -109,15 +121,15 @@ impl ObservationLayout {
             return Err(FlockError::parameter(
                 "observation",
                 "no block",
-                "at least one of own, phase, target, neighbors, order, law_rudder and obstacles",
+                "at least one of own, phase, target, neighbors, order, law_rudder, obstacles and fellow_leaders",
             ));
         }
         Ok(())
     }
 
-    /// The version of the observation that has this layout: 1 without obstacles.
+    /// The version of the observation that has this layout: 1 without obstacles and fellow leaders.
     pub fn version(&self) -> u32 {
-        if self.obstacles > 0 {
+        if self.obstacles > 0 || self.fellow_leaders > 0 {
             OBSERVATION_VERSION
         } else {
             1
@@ -134,7 +146,7 @@ impl ObservationLayout {
             .transpose()
     }
 
-    /// The entries of a block; those of `Neighbors` are one neighbor's, those of `Obstacles` one obstacle's.
+    /// The entries of a block; those of a counted block are one neighbor's, obstacle's or leader's.
     pub(crate) fn entries_of(block: Block) -> &'static [Entry] {
         match block {
             Block::Own => &OWN,
@@ -144,10 +156,11 @@ impl ObservationLayout {
             Block::Order => &ORDER,
             Block::LawRudder => &LAW_RUDDER,
             Block::Obstacles => &OBSTACLE,
+            Block::FellowLeaders => &FELLOW_LEADER,
         }
     }
 
-    /// How often a block occurs: 0 or 1, or the number of neighbors or obstacles.
+    /// How often a block occurs: 0 or 1, or the number of neighbors, obstacles or fellow leaders.
     pub fn repeats(&self, block: Block) -> usize {
         match block {
             Block::Own => usize::from(self.own),
@@ -157,10 +170,11 @@ impl ObservationLayout {
             Block::Order => usize::from(self.order),
             Block::LawRudder => usize::from(self.law_rudder),
             Block::Obstacles => self.obstacles,
+            Block::FellowLeaders => self.fellow_leaders,
         }
     }
 
-    /// Has a block occur so often: 0 or 1, or the number of neighbors or obstacles.
+    /// Has a block occur so often: 0 or 1, or the number of neighbors, obstacles or fellow leaders.
     pub fn repeat(&mut self, block: Block, repeats: usize) {
         match block {
             Block::Own => self.own = repeats > 0,
@@ -170,6 +184,7 @@ impl ObservationLayout {
             Block::Order => self.order = repeats > 0,
             Block::LawRudder => self.law_rudder = repeats > 0,
             Block::Obstacles => self.obstacles = repeats,
+            Block::FellowLeaders => self.fellow_leaders = repeats,
         }
     }
 

@@ -2,6 +2,7 @@
 
 mod camera;
 mod entry;
+mod fellow_leaders;
 mod flock_features;
 mod layout;
 mod leader_law;

@@ -1,6 +1,7 @@
 //! From a flock to the numbers that leaders and critics get.
 
 use super::entry::{BOAT, NEIGHBOR, ORDER, PHASE};
+use super::fellow_leaders::FellowLeaders;
 use super::nearest::Nearest;
 use super::nearest_obstacles::NearestObstacles;
 use super::view::{FlockView, Scaling, own, phase};
@@ -18,6 +19,7 @@ pub struct Observer {
     physical: Vec<f64>,
     nearest: Nearest,
     obstacles: NearestObstacles,
+    fellows: FellowLeaders,
 }
 
 impl Observer {
@@ -36,6 +38,7 @@ impl Observer {
             scaling,
             nearest: Nearest::default(),
             obstacles: NearestObstacles::new(parameters),
+            fellows: FellowLeaders::default(),
             layout,
         })
     }
@@ -89,6 +92,10 @@ impl Observer {
             let (hull, wanted) = (&view.hulls[leader], self.layout.obstacles);
             self.obstacles
                 .fill(hull, &frame, wanted, &mut self.physical);
+        }
+        if self.layout.fellow_leaders > 0 {
+            let wanted = self.layout.fellow_leaders;
+            self.fellows.fill(view, leader, wanted, &mut self.physical);
         }
     }
 

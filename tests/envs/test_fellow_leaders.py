@@ -1,0 +1,108 @@
+"""Law: the block `fellow_leaders` is where the other leaders are along the ring, however far."""
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+import flockenv
+from flockenv.envs.observation import observation_entries, observation_version, observe
+from flockenv.policies import NetworkPolicy
+
+ALONE = {"own": False, "phase": False, "target": False, "neighbors": 0, "order": False}
+#: An observed 1.0 is six boat radii.
+LENGTH = 30.0
+#: Distance from the center, polar angle and LAP orientation (0 outward, growing clockwise).
+LEADERS = [(140.0, 0.3, 1.2), (160.0, 0.9, 0.4), (120.0, -2.0, -2.2), (150.0, -0.5, 3.0)]
+NORMAL = [(130.0, 0.6, 0.0), (150.0, 2.5, 1.0)]
+
+
+def flock_of(leaders, sign=1.0, **fields):
+    boats = [*leaders, *NORMAL]
+    poses = [
+        (radius * np.cos(angle), sign * radius * np.sin(angle), sign * (angle - orientation))
+        for radius, angle, orientation in boats
+    ]
+    parameters = flockenv.FlockParameters(n_boats=len(boats), n_leaders=len(leaders), **fields)
+    flock = flockenv.Flock(parameters, seed=0)
+    flock.set_state(poses, np.zeros((len(boats), 3)))
+    return flock
+
+
+def rows(flock, count, **options):
+    seen = observe(flock, {**ALONE, "fellow_leaders": count}, **options)
+    return seen.reshape(len(seen), count, 6)
+
+
+def test_entries():
+    entries = observation_entries({**ALONE, "fellow_leaders": 2})
+    names = ["fellow", "cos_angle", "sin_angle", "radial_distance"]
+    assert [entry.name for entry in entries[:6]] == [*names, "cos_orientation", "sin_orientation"]
+    assert [entry.place for entry in entries] == [0] * 6 + [1] * 6
+    assert [entry.mirrored for entry in entries[:6]] == [False, False, True, False, False, True]
+
+
+def test_the_nearest_come_first_at_any_distance_and_zeros_where_there_are_none():
+    found = rows(flock_of(LEADERS), 4)[0]
+    own_radius, own_angle, _ = LEADERS[0]
+    # By center distance: the second leader, the fourth, and the third across the pool.
+    for place, (radius, angle, orientation) in zip(
+        found, (LEADERS[1], LEADERS[3], LEADERS[2]), strict=False
+    ):
+        clockwise = own_angle - angle
+        expected = [
+            1.0,
+            np.cos(clockwise),
+            np.sin(clockwise),
+            (radius - own_radius) / LENGTH,
+            np.cos(orientation),
+            np.sin(orientation),
+        ]
+        assert place == pytest.approx(expected, abs=1e-5)
+    assert not found[3].any()
+
+
+def test_mirrored_where_the_target_is_counter_clockwise():
+    plain = rows(flock_of(LEADERS), 3, mirror_to_target=True)
+    reflected = flock_of(LEADERS, -1.0, target="ccw")
+    assert rows(reflected, 3, mirror_to_target=True) == pytest.approx(plain, abs=1e-6)
+    odd = [1, 1, -1, 1, 1, -1]
+    assert rows(reflected, 3) == pytest.approx(plain * odd, abs=1e-6)
+
+
+def test_the_order_of_boats_and_normal_boats_do_not_matter():
+    plain = rows(flock_of(LEADERS), 3)
+    other = rows(flock_of([LEADERS[0], LEADERS[2], LEADERS[3], LEADERS[1]]), 3)
+    assert other[[0, 3, 1, 2]] == pytest.approx(plain, abs=1e-6)
+    few = rows(flock_of(LEADERS[:1]), 3)
+    assert not few.any()
+
+
+def test_a_block_at_the_end_leaves_the_others_where_they_are():
+    flock = flockenv.Flock(flockenv.FlockParameters(n_boats=9, n_leaders=3), seed=4)
+    plain, longer = observe(flock), observe(flock, {"fellow_leaders": 2})
+    assert longer[:, : plain.shape[1]].tobytes() == plain.tobytes()
+
+
+@pytest.mark.parametrize("count", [65, -1, 2.5, 10**30])
+def test_bad_counts_are_refused_by_name(count):
+    with pytest.raises(flockenv.ParameterError, match="observation fellow_leaders"):
+        flockenv.LeadersEnv(observation={"fellow_leaders": count})
+
+
+def test_the_environment_conforms():
+    env = gymnasium.make("flockenv/Leaders-v0", n_leaders=3, observation={"fellow_leaders": 3})
+    check_env(env.unwrapped, skip_render_check=True)
+
+
+def test_its_version_is_the_second_and_its_policies_steer(tmp_path):
+    assert observation_version({"fellow_leaders": 1}) == 2
+    blocks = {"fellow_leaders": 2}
+    size = len(observation_entries(blocks))
+    policy = NetworkPolicy([np.full((size, 1), 0.1)], [[0.1]], observation=blocks)
+    policy.save(tmp_path / "policy.npz")
+    loaded = flockenv.policies.load(tmp_path / "policy.npz")
+    parameters = flockenv.FlockParameters(n_boats=9, n_leaders=3)
+    runs = [flockenv.simulate(parameters, 1, 2.0, policy=each) for each in (policy, loaded)]
+    assert runs[0].rudder.tobytes() == runs[1].rudder.tobytes()
+    assert np.ptp(runs[0].rudder) > 0.0
