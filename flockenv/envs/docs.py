@@ -52,8 +52,8 @@ features of an environment (those of a `LeaderVecEnv` are in the frame of each s
 _FRAME = """All entries are in the local-angle polar (LAP) frame of the leader's own position,
 outward and clockwise. They are scaled, and clipped at the bounds below; the share of clipped
 numbers is reported at the end of the episode. The entries of `neighbors` repeat for each of the
-nearest boats, nearest first, those of `obstacles` for each of the nearest discs and walls, and those
-of `fellow_leaders` for each of the nearest other leaders, however far they are. The blocks
+nearest boats, nearest first, those of `obstacles` for each of the nearest discs and walls, and
+those of `fellow_leaders` for each of the nearest other leaders, however far they are. The blocks
 `law_rudder`, `obstacles` and `fellow_leaders` are off unless `observation` switches them on."""
 
 _START = """Boats start at rest at random positions with random headings, without overlap, in phase
