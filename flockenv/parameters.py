@@ -76,6 +76,7 @@ class FlockParameters:
     current_cap_cm_s: float = _declared("current_cap_cm_s")
     discs: tuple[tuple[float, float, float], ...] = _declared("discs")
     walls: tuple[tuple[float, float, float, float], ...] = _declared("walls")
+    leader_speed_factor: float = _declared("leader_speed_factor")
 
     def __new__(cls, **values: Any) -> Self:
         """Refuse unknown fields and suggest the nearest name, which a dataclass does not."""

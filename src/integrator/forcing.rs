@@ -10,10 +10,15 @@ impl Integrator {
     /// Preferred speed in a phase, in cm/s, before the spread between boats.
     fn phase_speed(&self, is_leader: bool, phase: Phase) -> f64 {
         let p = &self.parameters;
-        match phase {
+        let speed = match phase {
             Phase::Forward => p.speed_cm_s,
             Phase::Backward if !is_leader || p.leaders_reverse => -p.reverse_speed_cm_s,
             Phase::Backward | Phase::DriftAfterForward | Phase::DriftAfterBackward => 0.0,
+        };
+        if is_leader {
+            speed * p.leader_speed_factor
+        } else {
+            speed
         }
     }
 

@@ -123,6 +123,9 @@ declare_parameters! {
     /// Straight walls without thickness in the water, a row (x0_cm, y0_cm, x1_cm, y1_cm) of their two ends each; none:
     /// off. They may reach over the pool's walls and cross each other.
     walls: Vec<Wall> = Vec::new(), "cm", Range::Dependent("up to 1000 rows (x0_cm, y0_cm, x1_cm, y1_cm) with a part in the water"), "chosen, off";
+    /// Leaders' preferred speeds over those of the normal boats (Section 2.6: "similar"). The strength of their rudder is
+    /// c2, which no boat without a rudder has.
+    leader_speed_factor: f64 = 1.0, "", Range::Within(0.0, 10.0, "0 to 10"), "Section 2.6 (similar speed and power)";
 }
 
 impl FlockParameters {

@@ -13,6 +13,7 @@ mod geometry;
 mod hard_cases;
 mod impact;
 mod jam;
+mod leader_speed;
 mod noise;
 mod obstacle_gaps;
 mod obstacle_gates;

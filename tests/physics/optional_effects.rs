@@ -13,6 +13,7 @@ fn all_on(scheme: Scheme, noise: Noise) -> FlockParameters {
         speed_spread_cm_s: 4.0,
         current_gain: 0.4,
         current_cap_cm_s: 3.0,
+        leader_speed_factor: 1.2,
         ..busy(scheme, noise)
     }
 }
