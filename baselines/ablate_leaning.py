@@ -127,6 +127,10 @@ def main(arguments: list[str] | None = None) -> None:
         law = load(options.law)
         if not isinstance(law, LeaningLaw):
             raise flockenv.ParameterError(f"{options.law} is a {law!r}, not a leaning law")
+        if law.hidden or law.features != FEATURES or law.observation:
+            raise flockenv.ParameterError(
+                f"{options.law} is a {law!r}, whose features are not those of the groups alone"
+            )
         with Progress(disable=options.quiet) as progress:
             table, lean = ablated(
                 law, parameters, options.episodes, options.minutes * 60.0, options.seed, progress

@@ -24,7 +24,7 @@ import flockenv
 from flockenv._io.provenance import provenance_of
 from flockenv.comparison import run_episodes
 from flockenv.policies import LeaningLaw, load
-from flockenv.policies.leaning_law import FEATURES, GAINS
+from flockenv.policies.leaning_law import GAINS
 from flockenv.policies.pretrained import tuned_law
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.statistics.intervals import mean_interval
@@ -43,8 +43,11 @@ def average(laws: list[LeaningLaw], command: str) -> LeaningLaw:
     first = laws[0]
     if any(law.observation != first.observation for law in laws):
         raise flockenv.ParameterError("the laws have different observations")
+    if any(law.hidden for law in laws):
+        raise flockenv.ParameterError("laws with hidden units have no mean: theirs have no order")
+    names = tuple(dict.fromkeys(name for law in laws for name in law.features))
     logs = np.log([[law.gains[name] for name in GAINS] for law in laws])
-    weights = np.mean([[law.weights.get(name, 0.0) for name in FEATURES] for law in laws], axis=0)
+    weights = np.mean([[law.weights.get(name, 0.0) for name in names] for law in laws], axis=0)
     parts = {
         f"part {number}: {name}": law.provenance.get(name, "unknown")
         for number, law in enumerate(laws)
@@ -57,7 +60,7 @@ def average(laws: list[LeaningLaw], command: str) -> LeaningLaw:
     return LeaningLaw(
         dict(zip(GAINS, np.exp(logs.mean(axis=0)).tolist(), strict=True)),
         float(np.mean([law.bias for law in laws])),
-        dict(zip(FEATURES, weights.tolist(), strict=True)),
+        dict(zip(names, weights.tolist(), strict=True)),
         observation=first.observation,
         provenance={**provenance, **parts},
     )

@@ -1,116 +1,99 @@
 """`LeaningLaw`: the damped law about a heading that leans outward by the observation."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from flockenv._io.moved_modules import renamed_argument
 from flockenv._io.npz_header import array_of, entry_of
 from flockenv.envs.observation import observation_entries
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, refuse_unknown
 from flockenv.policies.files import PROVENANCE, StoredPolicy
 from flockenv.policies.laws import DampedLaw
+from flockenv.policies.lean_features import (
+    FEATURES,
+    FURTHER_FEATURES,
+    block_of,
+    features,
+    observed_features,
+)
 
-__all__ = ["FEATURES", "GAINS", "LeaningLaw", "features", "leaned"]
+__all__ = [
+    "FEATURES",
+    "FURTHER_FEATURES",
+    "GAINS",
+    "HiddenUnits",
+    "LeaningLaw",
+    "features",
+    "leaned",
+    "observed_features",
+]
 
 GAINS = ("gain", "backward_gain", "damping")
 """As of `DampedLaw`."""
 
-_OWN = ("radial_position", "outward_velocity", "clockwise_velocity", "forward_velocity")
-_ORDER = (
-    "mean_cos_orientation",
-    "mean_sin_orientation",
-    "mean_outward_velocity",
-    "mean_clockwise_velocity",
-)
-
-FEATURES = (
-    *_OWN,
-    "near_outer_wall",
-    *_ORDER,
-    "near",
-    "near_outward",
-    "near_ahead",
-    "near_opposed",
-    "near_turned",
-    "near_outward_velocity",
-    "near_clockwise_velocity",
-    "opposed_outward",
-    "opposed_ahead",
-    "turned_outward",
-    "turned_ahead",
-    "leaders",
-    "leaders_outward",
-    "leaders_ahead",
-)
-"""The features of a leaning leader's lean.
-
-They are entries of the observation by their names there; ``near_outer_wall``, how much the radial
-position exceeds 0.6; and sums over the observed neighbors. Normal boats count with exp(-d²/2),
-leaders (``leaders…``) with exp(-d²/8), where d is their distance in the observation's unit of 6
-boat radii. The sums are of 1, the positions (``outward``, ``ahead``: clockwise), the velocities,
-how far they head against the leader (``opposed``: (1 - cos of the relative heading)/2, ``turned``:
-its sine) and products.
-"""
-
 _LARGEST_LEAN = 1.2
-_WALL = 0.6
 
 
-def features(rows: NDArray[Any], names: list[str]) -> NDArray[np.float64]:
-    """Return the `FEATURES` of mirrored observations.
+@dataclass(frozen=True, slots=True, eq=False)
+class HiddenUnits:
+    """Units that make a lean nonlinear: Σ output·tanh(bias + Σ weight·feature) in rad.
 
-    Parameters
+    Attributes
     ----------
-    rows
-        Shape (..., observation size).
-    names
-        The names of an observation's entries, in order.
+    weights : Mapping
+        One number per unit, by the feature's name; 0 for features left out.
+    biases, outputs : numpy.ndarray
+        Shape (units,); outputs in rad.
 
-    Returns
-    -------
-    numpy.ndarray
-        Shape (..., number of features).
+    Raises
+    ------
+    ParameterError
+        For unknown features, lengths that differ, and numbers that are not finite.
     """
-    rows = np.asarray(rows, np.float64)
-    first, width = names.index("present"), 8
-    # Own entries come first, those of the order block last: some names stand in both.
-    own = {name: rows[..., names.index(name)] for name in _OWN}
-    order = [rows[..., names.index(name)] for name in _ORDER]
-    neighbors = rows[..., first : first + width * names.count("present")]
-    neighbors = neighbors.reshape(*rows.shape[:-1], -1, width)
-    present, outward, ahead, cos, sin, outward_velocity, velocity, leads = np.moveaxis(
-        neighbors, -1, 0
-    )
-    squared = outward**2 + ahead**2
-    near = present * (1.0 - leads) * np.exp(-squared / 2.0)
-    leaders = present * leads * np.exp(-squared / 8.0)
-    opposed = (1.0 - cos) / 2.0
-    sums = [
-        near,
-        near * outward,
-        near * ahead,
-        near * opposed,
-        near * sin,
-        near * outward_velocity,
-        near * velocity,
-        near * opposed * outward,
-        near * opposed * ahead,
-        near * sin * outward,
-        near * sin * ahead,
-        leaders,
-        leaders * outward,
-        leaders * ahead,
-    ]
-    wall = np.maximum(own["radial_position"] - _WALL, 0.0)
-    columns = [*own.values(), wall, *order, *(each.sum(axis=-1) for each in sums)]
-    return np.stack(columns, axis=-1)
+
+    weights: Mapping[str, ArrayLike]
+    biases: ArrayLike
+    outputs: ArrayLike
+
+    def __post_init__(self) -> None:
+        refuse_unknown(self.weights, (*FEATURES, *FURTHER_FEATURES), "feature")
+        biases = np.array(self.biases, np.float64)
+        vectors = {"biases": biases, "outputs": np.array(self.outputs, np.float64)}
+        weights: Mapping[str, NDArray[Any]] = {
+            name: np.array(each, np.float64) for name, each in self.weights.items()
+        }
+        for name, each in {**vectors, **weights}.items():
+            if each.ndim != 1 or each.size == 0 or each.shape != biases.shape:
+                raise ParameterError(
+                    f"{name} of hidden units with shape {each.shape} is not accepted: one number "
+                    f"per unit, as in biases {biases.shape}"
+                )
+            if not np.isfinite(each).all():
+                raise ParameterError(f"{name} of hidden units holds numbers that are not finite")
+        for name, given in {"weights": weights, **vectors}.items():
+            object.__setattr__(self, name, given)
+
+    def __len__(self) -> int:
+        return len(np.asarray(self.biases))
+
+    def arrays(self, names: Sequence[str]) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+        """Return weights, shape (features, units), of the named features; biases; outputs."""
+        zeros = np.zeros(len(self))
+        rows = np.array([self.weights.get(name, zeros) for name in names])
+        return rows, np.asarray(self.biases), np.asarray(self.outputs)
 
 
 def leaned(
-    rows: NDArray[np.float32], bias: NDArray[Any], weights: NDArray[Any], names: list[str]
+    rows: NDArray[np.float32],
+    bias: NDArray[Any],
+    weights: NDArray[Any],
+    names: list[str],
+    wanted: Sequence[str] = FEATURES,
+    hidden: tuple[NDArray[Any], NDArray[Any], NDArray[Any]] | None = None,
 ) -> NDArray[np.float32]:
     """Return mirrored observations as if leaders headed further inward than they do, by their lean.
 
@@ -124,13 +107,23 @@ def leaned(
         Shapes (...) and (..., number of features): one law, or one a stack of rows.
     names
         The names of an observation's entries, in order.
+    wanted
+        The features of the weights.
+    hidden
+        Weights, biases and outputs of hidden units, shapes (..., number of features, units),
+        (..., units) and (..., units).
 
     Returns
     -------
     numpy.ndarray
         Shape (..., leaders, observation size), float32.
     """
-    lean = np.asarray(bias)[..., None] + (features(rows, names) @ weights[..., None])[..., 0]
+    seen = features(rows, names, wanted)
+    lean = np.asarray(bias)[..., None] + (seen @ weights[..., None])[..., 0]
+    if hidden is not None:
+        inner, biases, outputs = hidden
+        units = np.tanh(seen @ inner + biases[..., None, :])
+        lean = lean + (units @ outputs[..., None])[..., 0]
     lean = _LARGEST_LEAN * np.tanh(lean / _LARGEST_LEAN)
     cos, sin = names.index("cos_orientation"), names.index("sin_orientation")
     # The target is clockwise, and so is a growing orientation; 0 is outward.
@@ -144,7 +137,8 @@ class LeaningLaw(StoredPolicy):
     """The damped law about a heading that leans outward by a linear function of what is seen.
 
     The desired heading is the target's tangent, turned outward by 1.2·tanh(lean/1.2) rad with
-    lean = bias + Σ weight·feature (`FEATURES`). About it the leader steers as with `DampedLaw`.
+    lean = bias + Σ weight·feature (`FEATURES`), and with hidden units Σ output·tanh(…) more
+    (`HiddenUnits`). About it the leader steers as with `DampedLaw`.
     Observations have to be mirrored to the target, which the environments' option of that name
     does.
 
@@ -155,7 +149,9 @@ class LeaningLaw(StoredPolicy):
     bias
         Outward lean in rad where every feature is 0.
     weights
-        Rad a feature, by its name; 0 for those left out.
+        Rad a feature, by its name in `FEATURES` or `FURTHER_FEATURES`; 0 for those left out.
+    hidden
+        Hidden units; without them the lean is linear in the features.
     observation
         Blocks of the observation that differ from the default layout.
     provenance
@@ -166,6 +162,11 @@ class LeaningLaw(StoredPolicy):
     ParameterError
         For unknown names, numbers that are not finite, and layouts without the blocks of the
         features.
+
+    Attributes
+    ----------
+    features : tuple of str
+        `FEATURES`, and those of `FURTHER_FEATURES` that weights or hidden units name.
     """
 
     @renamed_argument("made", "provenance")
@@ -175,6 +176,7 @@ class LeaningLaw(StoredPolicy):
         bias: float,
         weights: Mapping[str, float],
         *,
+        hidden: HiddenUnits | None = None,
         observation: Mapping[str, Any] | None = None,
         provenance: Mapping[str, str] | None = None,
     ) -> None:
@@ -182,29 +184,40 @@ class LeaningLaw(StoredPolicy):
         self.gains = _checked(gains, GAINS)
         if len(self.gains) < len(GAINS):
             raise ParameterError(f"gains = {dict(gains)!r} are not accepted: {', '.join(GAINS)}")
-        self.weights = _checked(weights, FEATURES)
+        self.weights = _checked(weights, (*FEATURES, *FURTHER_FEATURES))
+        self.hidden = hidden
         self.bias = _checked({"bias": bias}, ("bias",))["bias"]
         self.provenance = {str(name): str(text) for name, text in (provenance or {}).items()}
         self._names = [entry.name for entry in observation_entries(self.observation)]
-        for name in (*_OWN, *_ORDER, "present"):
-            if name not in self._names:
+        if not observed_features(self._names):
+            raise ParameterError(
+                f"observation = {self.observation!r} is not accepted: a leaning leader needs "
+                "the blocks own, neighbors and order"
+            )
+        named = {*self.weights, *(hidden.weights if hidden else ())}
+        self.features = (*FEATURES, *(name for name in FURTHER_FEATURES if name in named))
+        for name in self.features:
+            if name not in observed_features(self._names):
                 raise ParameterError(
-                    f"observation = {self.observation!r} is not accepted: a leaning leader needs "
-                    "the blocks own, neighbors and order"
+                    f"observation = {self.observation!r} is not accepted with the feature {name}: "
+                    f"switch the block {block_of(name)} on"
                 )
         self._damped = DampedLaw(**self.gains, observation=observation, mirror_to_target=True)
-        self._weights = np.array([self.weights.get(name, 0.0) for name in FEATURES])
+        self._weights = np.array([self.weights.get(name, 0.0) for name in self.features])
+        self._hidden = hidden.arrays(self.features) if hidden else None
 
     def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
-        turned = leaned(rows, np.asarray(self.bias), self._weights, self._names)
+        bias = np.asarray(self.bias)
+        turned = leaned(rows, bias, self._weights, self._names, self.features, self._hidden)
         rudders: NDArray[np.float32] = self._damped.predict(turned)[0][:, 0]
         return rudders
 
     def _contents(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         header = {
-            "kind": "leaning law",
+            # Versions without hidden units would read their laws as linear ones.
+            "kind": "leaning law" if self._hidden is None else "nonlinear leaning law",
             "observation": self.observation,
-            "features": FEATURES,
+            "features": self.features,
             PROVENANCE: self.provenance,
         }
         arrays = {
@@ -212,6 +225,8 @@ class LeaningLaw(StoredPolicy):
             "bias": np.array(self.bias),
             "weights": self._weights,
         }
+        if self._hidden is not None:
+            arrays |= dict(zip(_HIDDEN, self._hidden, strict=True))
         return header, arrays
 
     @classmethod
@@ -228,17 +243,30 @@ class LeaningLaw(StoredPolicy):
             raise ParameterError(f"features = {names!r} is not accepted: a list of names")
         gains = array_of(arrays, "gains", (len(GAINS),)).tolist()
         weights = array_of(arrays, "weights", (len(names),)).tolist()
+        hidden = None
+        if header.get("kind") == "nonlinear leaning law":
+            units = array_of(arrays, _HIDDEN[1]).shape
+            shapes = ((len(names), *units), units, units)
+            inner, *rest = (array_of(arrays, *each) for each in zip(_HIDDEN, shapes, strict=True))
+            hidden = HiddenUnits(dict(zip(names, inner, strict=True)), *rest)
         return cls(
             dict(zip(GAINS, gains, strict=True)),
             array_of(arrays, "bias", ()).item(),
             dict(zip(names, weights, strict=True)),
+            hidden=hidden,
             observation=entry_of(header, "observation", dict),
             provenance=entry_of(header, PROVENANCE, dict),
         )
 
     def __repr__(self) -> str:
         gains = ", ".join(f"{name}={value:.3g}" for name, value in self.gains.items())
-        return f"{type(self).__name__}({gains}, bias={self.bias:.3g}, {len(self.weights)} weights)"
+        units = f", {len(self.hidden)} hidden units" if self.hidden else ""
+        numbers = f"bias={self.bias:.3g}, {len(self.weights)} weights{units}"
+        return f"{type(self).__name__}({gains}, {numbers})"
+
+
+#: The arrays of hidden units in a file.
+_HIDDEN = ("hidden_weights", "hidden_biases", "hidden_outputs")
 
 
 def _checked(values: Mapping[str, float], known: tuple[str, ...]) -> dict[str, float]:

@@ -21,6 +21,7 @@ LEARNED = "learned"
 _KINDS: dict[str, type[NetworkPolicy] | type[LeaningLaw]] = {
     "network": NetworkPolicy,
     "leaning law": LeaningLaw,
+    "nonlinear leaning law": LeaningLaw,
 }
 
 

@@ -57,3 +57,6 @@ def test_a_short_run(script, tmp_path: Path, capsys) -> None:
     NetworkPolicy([np.zeros((67, 1))], [[0.0]]).save(tmp_path / "net.npz")
     with pytest.raises(SystemExit, match="not a leaning law"):
         script.main([str(tmp_path / "net.npz"), *arguments, *out])
+    LeaningLaw(GAINS, 0.1, {"fw": 0.2}).save(tmp_path / "further.npz")
+    with pytest.raises(SystemExit, match="not those of the groups"):
+        script.main([str(tmp_path / "further.npz"), *arguments, *out])

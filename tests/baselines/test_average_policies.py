@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from flockenv.policies import LeaningLaw, NetworkPolicy, load
+from flockenv.policies import HiddenUnits, LeaningLaw, NetworkPolicy, load
 
 
 def law(gain: float, bias: float, weights: dict[str, float], seed: int) -> LeaningLaw:
@@ -55,6 +55,10 @@ def test_only_leaning_laws_have_a_mean(script, tmp_path: Path) -> None:
     law(1.0, 0.1, {}, 0).save(tmp_path / "law.npz")
     with pytest.raises(SystemExit, match="not a leaning law"):
         script.main([str(tmp_path / "law.npz"), str(tmp_path / "net.npz")])
+    hidden = HiddenUnits({"near": [0.2]}, [0.0], [0.1])
+    LeaningLaw(law(1.0, 0.1, {}, 0).gains, 0.0, {}, hidden=hidden).save(tmp_path / "units.npz")
+    with pytest.raises(SystemExit, match="hidden units have no mean"):
+        script.main([str(tmp_path / "units.npz"), str(tmp_path / "units.npz")])
     with pytest.raises(SystemExit, match=r"none\.npz"):
         script.main([str(tmp_path / "none.npz"), "--out", str(tmp_path / "mean.npz")])
     assert not (tmp_path / "mean.npz").exists()
