@@ -30,8 +30,11 @@ def commit() -> str:
         return "unknown"
 
 
-def provenance_of(command: str, *, seed: int, samples: int, wall_s: float) -> dict[str, str]:
+def provenance_of(
+    command: str, *, seed: int, samples: int, wall_s: float, flock_hours: float | None = None
+) -> dict[str, str]:
     """Return the provenance of a policy's file as short texts."""
+    hours = {} if flock_hours is None else {"flock_hours": f"{flock_hours:.6g}"}
     return {
         "command": command,
         "flockenv": _core.__version__,
@@ -40,5 +43,6 @@ def provenance_of(command: str, *, seed: int, samples: int, wall_s: float) -> di
         "python": platform.python_version(),
         "seed": str(seed),
         "samples": str(samples),
+        **hours,
         "wall_s": f"{wall_s:.0f}",
     }

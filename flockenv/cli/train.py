@@ -27,6 +27,9 @@ def train(
     samples: Annotated[
         int | None, typer.Option(min=1, help="When to stop: leaders' control steps.")
     ] = None,
+    flock_hours: Annotated[
+        float | None, typer.Option(help="When to stop: hours of all flocks together.")
+    ] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="Number of the training run.")] = None,
     trust: TrustOption = False,
     out: Annotated[Path, typer.Option(help="Folder for the policy and the run.")] = Path(
@@ -50,18 +53,19 @@ def train(
 
     if resume and (settings or change or seed is not None):
         raise ParameterError(
-            "--resume takes settings from the checkpoint; only --samples may differ"
+            "--resume takes settings from the checkpoint; only --samples or --flock-hours may "
+            "differ"
         )
     if resume:
-        wanted = training.stored_settings(out, samples)
+        wanted = training.stored_settings(out, samples, flock_hours)
     else:
-        wanted = _settings(settings, change or [], samples, seed)
+        wanted = _settings(settings, change or [], samples, flock_hours, seed)
         check_folder(out)
         refuse_overwriting(settings, "--settings", [out / "settings.toml"])
         policies = [out / f"{name}.npz" for name in ("best", "last", "start")]
         refuse_overwriting(wanted.start, "start", policies)
     with interruptible(lambda: _last_checkpoint(out)), progress_bar(quiet or as_json) as bar:
-        task = bar.add_task("start", total=wanted.samples)
+        task = bar.add_task("start", total=wanted.total_samples)
 
         def report(progress: training.Progress) -> None:
             words = f"{progress.samples} samples"
@@ -70,35 +74,44 @@ def train(
             bar.update(task, description=words, completed=progress.samples)
 
         if resume:
-            result = training.resume(out, samples=samples, report=report)
+            result = training.resume(out, samples=samples, flock_hours=flock_hours, report=report)
         else:
             command = printable(shlex.join(["flockenv", *sys.argv[1:]]))
             result = training.train(wanted, out, command=command, report=report, trust=trust)
-    progress = result.progress
+    progress, trained = result.progress, result.settings
+    hours = round(trained.flock_hours_at(progress.samples), 3)
     if as_json:
-        last = {"samples": progress.samples, "wall_s": round(progress.wall_s, 1)}
-        best = {"best": progress.best_score, "validations": progress.validations}
+        wall_s = round(progress.wall_s, 1)
+        last = {"samples": progress.samples, "flock_hours": hours, "wall_s": wall_s}
+        rows = training.with_flock_hours(progress.validations, trained)
+        best = {"best": progress.best_score, "validations": rows}
         print_json({**last, **best, "policy": str(out / "best.npz")})
         return
-    for name, value in progress.validations[-1].items():
+    for name, value in training.with_flock_hours(progress.validations, trained)[-1].items():
         say(f"{name}: {value:g}")
     say(f"Best mean signed order {progress.best_score:.3f}: {out / 'best.npz'}")
 
 
-def _settings(path: Path | None, change: list[str], samples: int | None, seed: int | None) -> Any:
+def _settings(
+    path: Path | None,
+    change: list[str],
+    samples: int | None,
+    flock_hours: float | None,
+    seed: int | None,
+) -> Any:
     from flockenv.training import TrainingSettings
 
-    values: dict[str, Any] = {}
-    if path is not None:
-        values = read_toml_file(path, f"--settings {path}")
-        try:
-            values = TrainingSettings.from_dict(values).to_dict()
-        except ParameterError as error:
-            raise ParameterError(f"--settings {path}: {error}") from error
-    values |= changed_fields(change)
-    given = {"samples": samples, "seed": seed}
-    values |= {name: value for name, value in given.items() if value is not None}
-    return TrainingSettings.from_dict(values)
+    given = {"samples": samples, "flock_hours": flock_hours, "seed": seed}
+    changes = {name: value for name, value in given.items() if value is not None}
+    changes = {**changed_fields(change), **changes}
+    if path is None:
+        return TrainingSettings.from_dict(changes)
+    values = read_toml_file(path, f"--settings {path}")
+    try:
+        stored = TrainingSettings.from_dict(values)
+    except ParameterError as error:
+        raise ParameterError(f"--settings {path}: {error}") from error
+    return stored.replace(**changes)
 
 
 def _last_checkpoint(out: Path) -> str:

@@ -18,6 +18,7 @@ __all__ = [
     "feature_table",
     "flock_feature_entries",
     "flock_feature_space",
+    "neighbor_places",
     "observation_entries",
     "observation_space",
     "observation_table",
@@ -58,6 +59,26 @@ def observation_entries(blocks: Mapping[str, Any] | None = None) -> list[Entry]:
         Blocks that differ from `BLOCKS`.
     """
     return [Entry(*row) for row in _core.observation_table(dict(blocks or {}))]
+
+
+def neighbor_places(blocks: Mapping[str, Any] | None = None) -> NDArray[np.intp]:
+    """Return where the numbers of each observed neighbor stand in an observation.
+
+    Parameters
+    ----------
+    blocks
+        Blocks that differ from `BLOCKS`.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (neighbors, numbers of one neighbor); the first number is whether there is one.
+    """
+    rows: dict[int, list[int]] = {}
+    for place, entry in enumerate(observation_entries(blocks)):
+        if entry.block == "neighbors":
+            rows.setdefault(entry.place, []).append(place)
+    return np.array(list(rows.values()), np.intp).reshape(len(rows), -1 if rows else 0)
 
 
 def observation_version(blocks: Mapping[str, Any] | None = None) -> int:
@@ -151,9 +172,21 @@ def seen_space(model: Any) -> Any:
     return space.observed if isinstance(space, FlockRowSpace) else space
 
 
-def observation_space(blocks: Mapping[str, Any], leaders: int = 1) -> ObservationSpace:
-    """Return the space of one leader's observation, or of several one after another."""
-    return ObservationSpace({**_core.env_defaults(), "observation": blocks}, leaders)
+def observation_space(
+    blocks: Mapping[str, Any], leaders: int = 1, **options: Any
+) -> ObservationSpace:
+    """Return the space of one leader's observation, or of several one after another.
+
+    Parameters
+    ----------
+    blocks
+        Blocks that differ from `BLOCKS`.
+    leaders
+        Number of leaders.
+    options
+        Others of `ObservationSpace.options`, where they are not the defaults.
+    """
+    return ObservationSpace({**_core.env_defaults(), **options, "observation": blocks}, leaders)
 
 
 def state_space(n_boats: int) -> _Box:

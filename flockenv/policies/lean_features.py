@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flockenv.envs.observation import observation_entries
 
@@ -88,8 +87,8 @@ def observed_features(names: Sequence[str]) -> tuple[str, ...]:
 
 
 def features(
-    rows: NDArray[Any], names: list[str], wanted: Sequence[str] = FEATURES
-) -> NDArray[np.float64]:
+    rows: Any, names: list[str], wanted: Sequence[str] = FEATURES, arrays: Any = np
+) -> Any:
     """Return features of mirrored observations.
 
     Parameters
@@ -100,40 +99,43 @@ def features(
         The names of an observation's entries, in order.
     wanted
         Names of `FEATURES` and `FURTHER_FEATURES`.
+    arrays
+        The module of the rows: NumPy, which computes in float64, or torch.
 
     Returns
     -------
-    numpy.ndarray
+    numpy.ndarray or torch.Tensor
         Shape (..., number of wanted features).
     """
-    rows = np.asarray(rows, np.float64)
+    if arrays is np:
+        rows = np.asarray(rows, np.float64)
     # Own entries come first, those of the order block after the neighbors': some names stand in
     # both, and in the block of fellow leaders.
     own = {name: rows[..., names.index(name)] for name in _OWN}
     order = [rows[..., names.index(name)] for name in _ORDER]
-    outer = np.maximum(own["radial_position"] - _WALL, 0.0)
-    columns = [*own.values(), outer, *order, *_neighbor_sums(rows, names)]
+    outer = (own["radial_position"] - _WALL).clip(min=0.0)
+    columns = [*own.values(), outer, *order, *_neighbor_sums(rows, names, arrays)]
     found = dict(zip(FEATURES, columns, strict=True))
     found |= {name: rows[..., names.index(name)] for name in _FURTHER_ENTRIES if name in wanted}
     if any(name in _FELLOWS for name in wanted):
-        found |= dict(zip(_FELLOWS, _fellow_gaps(rows, names), strict=True))
-    return np.stack([found[name] for name in wanted], axis=-1)
+        found |= dict(zip(_FELLOWS, _fellow_gaps(rows, names, arrays), strict=True))
+    return arrays.stack([found[name] for name in wanted], -1)
 
 
-def _repeated(rows: NDArray[Any], names: list[str], entry: str, width: int) -> NDArray[Any]:
+def _repeated(rows: Any, names: list[str], entry: str, width: int, arrays: Any) -> Any:
     """Return the entries of a repeated block, shape (width, ..., repeats)."""
     first = names.index(entry)
     block = rows[..., first : first + width * names.count(entry)]
-    return np.moveaxis(block.reshape(*rows.shape[:-1], -1, width), -1, 0)
+    return arrays.moveaxis(block.reshape(*rows.shape[:-1], -1, width), -1, 0)
 
 
-def _neighbor_sums(rows: NDArray[Any], names: list[str]) -> list[NDArray[Any]]:
+def _neighbor_sums(rows: Any, names: list[str], arrays: Any) -> list[Any]:
     present, outward, ahead, cos, sin, outward_velocity, velocity, leads = _repeated(
-        rows, names, "present", 8
+        rows, names, "present", 8, arrays
     )
     squared = outward**2 + ahead**2
-    near = present * (1.0 - leads) * np.exp(-squared / 2.0)
-    leaders = present * leads * np.exp(-squared / 8.0)
+    near = present * (1.0 - leads) * arrays.exp(-squared / 2.0)
+    leaders = present * leads * arrays.exp(-squared / 8.0)
     opposed = (1.0 - cos) / 2.0
     sums = [
         near,
@@ -151,15 +153,17 @@ def _neighbor_sums(rows: NDArray[Any], names: list[str]) -> list[NDArray[Any]]:
         leaders * outward,
         leaders * ahead,
     ]
-    return [each.sum(axis=-1) for each in sums]
+    return [each.sum(-1) for each in sums]
 
 
-def _fellow_gaps(rows: NDArray[Any], names: list[str]) -> list[NDArray[Any]]:
-    fellow, cos, sin, *_ = _repeated(rows, names, "fellow", 6)
+def _fellow_gaps(rows: Any, names: list[str], arrays: Any) -> list[Any]:
+    fellow, cos, sin, *_ = _repeated(rows, names, "fellow", 6, arrays)
     turn = 2.0 * np.pi
-    clockwise = np.arctan2(sin, cos) % turn
+    clockwise = arrays.arctan2(sin, cos) % turn
     # Where there is none, the next leader is this one, a whole turn away.
     gaps = [
-        np.where(fellow > 0.0, each, turn).min(axis=-1) for each in (clockwise, -clockwise % turn)
+        arrays.amin(arrays.where(fellow > 0.0, each, turn), -1)
+        for each in (clockwise, -clockwise % turn)
     ]
-    return [fellow.sum(axis=-1), *(wave(gap) for gap in gaps for wave in (np.cos, np.sin))]
+    waves = arrays.cos, arrays.sin
+    return [fellow.sum(-1), *(wave(gap) for gap in gaps for wave in waves)]

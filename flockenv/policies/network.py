@@ -1,7 +1,7 @@
 """Learned policies: small networks in an ``.npz`` file, evaluated with NumPy alone."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Self
 
 import gymnasium
@@ -13,20 +13,16 @@ from flockenv._io.moved_modules import renamed_argument
 from flockenv._io.npz_header import array_of, entry_of
 from flockenv.envs.observation import BLOCKS, ObservationSpace
 from flockenv.errors import ParameterError, refuse_unknown, shown
+from flockenv.policies.encoders import (
+    ACTIVATIONS,
+    ENCODERS,
+    Encoder,
+    checked_activation,
+    checked_layers,
+)
 from flockenv.policies.files import PROVENANCE, StoredPolicy
 
 __all__ = ["ACTIVATIONS", "NetworkPolicy"]
-
-
-def _relu(values: NDArray[np.float32]) -> NDArray[np.float32]:
-    return np.maximum(values, np.float32(0.0))
-
-
-ACTIVATIONS: Mapping[str, Callable[[NDArray[np.float32]], NDArray[np.float32]]] = {
-    "tanh": np.tanh,
-    "relu": _relu,
-}
-"""What may stand between two layers."""
 
 
 class NetworkPolicy(StoredPolicy):
@@ -46,6 +42,12 @@ class NetworkPolicy(StoredPolicy):
     action_mode, decision_period_s
         What the output stands for, and for how long it is held: the environments' options of those
         names.
+    encoder
+        What the first layer takes in place of the observation; None: the observation itself. Its
+        layout has to be the policy's.
+    squashed
+        Whether the last layer's output goes through a hyperbolic tangent, where it is clipped
+        otherwise.
     provenance
         Where it comes from: any short texts by name, such as the command, the seed and the samples.
 
@@ -67,6 +69,8 @@ class NetworkPolicy(StoredPolicy):
         mirror_to_target: bool = False,
         action_mode: str = "rudder",
         decision_period_s: float | None = None,
+        encoder: Encoder | None = None,
+        squashed: bool = False,
         provenance: Mapping[str, str] | None = None,
     ) -> None:
         super().__init__(observation, mirror_to_target)
@@ -79,11 +83,14 @@ class NetworkPolicy(StoredPolicy):
         self.decision_period_s = None if decision_period_s is None else float(decision_period_s)
         self.activation = activation
         self.provenance = {str(name): str(text) for name, text in (provenance or {}).items()}
-        self._layers = _checked_layers(weights, biases, self._size)
-        if activation not in ACTIVATIONS:
-            raise ParameterError(
-                f"activation = {activation!r} is not accepted: one of {', '.join(ACTIVATIONS)}"
-            )
+        self.squashed = bool(squashed)
+        self._encoder = encoder
+        size = self._size
+        if encoder is not None:
+            encoder.check(self.observation, self.mirror_to_target)
+            size = encoder.size
+        self._layers = checked_layers(weights, biases, size, "layer", outputs=1)
+        checked_activation(activation)
 
     @classmethod
     def from_module(
@@ -146,6 +153,11 @@ class NetworkPolicy(StoredPolicy):
         )
 
     @property
+    def encoder(self) -> Encoder | None:
+        """What the first layer takes in place of the observation."""
+        return self._encoder
+
+    @property
     def weights(self) -> list[NDArray[np.float32]]:
         """Copies of the layers' matrices, shape (inputs, outputs)."""
         return [weight.copy() for weight, _ in self._layers]
@@ -157,12 +169,15 @@ class NetworkPolicy(StoredPolicy):
 
     def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
         between = ACTIVATIONS[self.activation]
-        values = rows
+        values = rows if self._encoder is None else self._encoder(rows)
         for weight, bias in self._layers[:-1]:
             values = between(values @ weight + bias)
         weight, bias = self._layers[-1]
-        rudders: NDArray[np.float32] = np.clip(values @ weight + bias, -1.0, 1.0)[:, 0]
-        return rudders
+        outputs = values @ weight + bias
+        rudders: NDArray[np.float32] = (
+            np.tanh(outputs) if self.squashed else np.clip(outputs, -1.0, 1.0)
+        )
+        return rudders[:, 0]
 
     def _contents(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         header = {
@@ -177,7 +192,13 @@ class NetworkPolicy(StoredPolicy):
             header["action_mode"] = self.action_mode
         if self.decision_period_s is not None:
             header["decision_period_s"] = self.decision_period_s
+        if self.squashed:
+            header["squashed"] = True
         arrays: dict[str, NDArray[Any]] = {}
+        if self._encoder is not None:
+            header["encoder"] = self._encoder.kind
+            encoder_header, arrays = self._encoder.contents()
+            header |= encoder_header
         for place, (weight, bias) in enumerate(self._layers):
             arrays |= {f"weight_{place}": weight, f"bias_{place}": bias}
         return header, arrays
@@ -198,18 +219,29 @@ class NetworkPolicy(StoredPolicy):
             entry_of(header, "activation", str),
             observation=entry_of(header, "observation", dict),
             mirror_to_target=entry_of(header, "mirror_to_target", bool),
+            encoder=_encoder_of(header, arrays),
             provenance=entry_of(header, PROVENANCE, dict),
             **_action_of(header),
         )
 
     def __repr__(self) -> str:
-        sizes = [self._size, *(len(bias) for _, bias in self._layers)]
+        first = [] if self._encoder is None else [f"{self._encoder.kind} {self._encoder.size}"]
+        sizes = [self._size, *first, *(len(bias) for _, bias in self._layers)]
         return f"{type(self).__name__}({'-'.join(map(str, sizes))}, {self.activation})"
 
 
 def _action_of(header: Mapping[str, Any]) -> dict[str, Any]:
-    kinds = {"action_mode": str, "decision_period_s": float}
+    kinds = {"action_mode": str, "decision_period_s": float, "squashed": bool}
     return {name: entry_of(header, name, kind) for name, kind in kinds.items() if name in header}
+
+
+def _encoder_of(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Encoder | None:
+    if "encoder" not in header:
+        return None
+    kind = entry_of(header, "encoder", str)
+    if kind not in ENCODERS:
+        raise ParameterError(f"encoder = {kind!r} is not accepted: one of {', '.join(ENCODERS)}")
+    return ENCODERS[kind].from_contents(header, arrays, entry_of(header, "observation", dict))
 
 
 #: Names of torch's activations, and of layers that leave the mean as it is.
@@ -243,27 +275,3 @@ def _module_layers(
             "accepted: one and the same activation between each two layers"
         )
     return layers, between[0] if between else "tanh"
-
-
-def _checked_layers(
-    weights: Sequence[ArrayLike], biases: Sequence[ArrayLike], size: int
-) -> list[tuple[NDArray[np.float32], NDArray[np.float32]]]:
-    if len(weights) != len(biases) or len(weights) == 0:
-        raise ParameterError(
-            f"{len(weights)} weights and {len(biases)} biases are not accepted: one of each a layer"
-        )
-    layers, inputs = [], size
-    for place, (weight, bias) in enumerate(zip(weights, biases, strict=True)):
-        with np.errstate(over="ignore"):  # what is too large is refused below
-            matrix, vector = np.array(weight, np.float32), np.array(bias, np.float32)
-        outputs = 1 if place == len(weights) - 1 else vector.size
-        if matrix.shape != (inputs, outputs) or vector.shape != (outputs,):
-            raise ParameterError(
-                f"layer {place} has weights {matrix.shape} and biases {vector.shape}, which is not "
-                f"accepted: ({inputs}, {outputs}) and ({outputs},)"
-            )
-        if not (np.isfinite(matrix).all() and np.isfinite(vector).all()):
-            raise ParameterError(f"layer {place} holds numbers that are not finite")
-        layers.append((matrix, vector))
-        inputs = outputs
-    return layers

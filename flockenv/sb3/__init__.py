@@ -8,6 +8,7 @@ from flockenv._io.extras import require
 require("stable_baselines3", "train")
 
 # ruff: noqa: E402 - after the check above
+from flockenv.sb3.encoders import LeaningExtractor, NeighborSetExtractor, usual_features
 from flockenv.sb3.evaluation import FlockEvalCallback, PerFlock, evaluate_flocks
 from flockenv.sb3.flock_critic import FlockCriticPolicy, WithFlockFeatures
 from flockenv.sb3.leader_vec_env import LeaderSlot, LeaderVecEnv
@@ -20,9 +21,12 @@ __all__ = [
     "FlockMonitor",
     "LeaderSlot",
     "LeaderVecEnv",
+    "LeaningExtractor",
+    "NeighborSetExtractor",
     "PerFlock",
     "SharedNoisePolicy",
     "WithFlockFeatures",
     "evaluate_flocks",
     "shared_noise",
+    "usual_features",
 ]

@@ -4,9 +4,14 @@ from typing import Any
 
 import numpy as np
 import torch
+from gymnasium.spaces import Box
 from numpy.typing import NDArray
 from stable_baselines3.common.policies import ActorCriticPolicy
-from stable_baselines3.common.torch_layers import MlpExtractor
+from stable_baselines3.common.torch_layers import (
+    BaseFeaturesExtractor,
+    FlattenExtractor,
+    MlpExtractor,
+)
 from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
 
 from flockenv.envs.observation import FlockRowSpace, ObservationSpace
@@ -73,9 +78,16 @@ class WithFlockFeatures(VecEnvWrapper):
 class _TwoViews(torch.nn.Module):
     """Hidden layers of the actor on the first numbers of a row, of the critic on the whole row."""
 
-    def __init__(self, seen: int, actor: MlpExtractor, critic: MlpExtractor) -> None:
+    def __init__(
+        self,
+        seen: int,
+        encoder: BaseFeaturesExtractor | None,
+        actor: MlpExtractor,
+        critic: MlpExtractor,
+    ) -> None:
         super().__init__()
         self._seen = seen
+        self.encoder = encoder
         self.policy_net, self.value_net = actor.policy_net, critic.value_net
         self.latent_dim_pi, self.latent_dim_vf = actor.latent_dim_pi, critic.latent_dim_vf
 
@@ -83,7 +95,8 @@ class _TwoViews(torch.nn.Module):
         return self.forward_actor(rows), self.forward_critic(rows)
 
     def forward_actor(self, rows: torch.Tensor) -> torch.Tensor:
-        latent: torch.Tensor = self.policy_net(rows[..., : self._seen])
+        seen = rows[..., : self._seen]
+        latent: torch.Tensor = self.policy_net(seen if self.encoder is None else self.encoder(seen))
         return latent
 
     def forward_critic(self, rows: torch.Tensor) -> torch.Tensor:
@@ -105,6 +118,8 @@ class FlockCriticPolicy(ActorCriticPolicy):
         both.
     seen
         Numbers of a row that the actor sees.
+    features_extractor_class, features_extractor_kwargs
+        Feature extractor of the actor alone, from what it sees; the critic takes rows as they are.
 
     Raises
     ------
@@ -119,12 +134,16 @@ class FlockCriticPolicy(ActorCriticPolicy):
         lr_schedule: Any,
         *,
         seen: int,
+        features_extractor_class: type[BaseFeaturesExtractor] = FlattenExtractor,
+        features_extractor_kwargs: dict[str, Any] | None = None,
         **options: Any,
     ) -> None:
         size = observation_space.shape[0]
         if not 1 <= seen <= size:
             raise ParameterError(f"seen = {seen!r} is not accepted: from 1 to {size}")
         self._seen = seen
+        self._encoder_class = features_extractor_class
+        self._encoder_kwargs = features_extractor_kwargs or {}
         super().__init__(observation_space, action_space, lr_schedule, **options)
 
     def predict(
@@ -142,11 +161,29 @@ class FlockCriticPolicy(ActorCriticPolicy):
         return super().predict(rows, state, episode_start, deterministic)
 
     def _build_mlp_extractor(self) -> None:
+        encoder, inputs = None, self._seen
+        if self._encoder_class is not FlattenExtractor:
+            encoder = self._encoder_class(self._seen_space(), **self._encoder_kwargs)
+            inputs = encoder.features_dim
         actor, critic = (
             MlpExtractor(size, self.net_arch, self.activation_fn, self.device)
-            for size in (self._seen, self.features_dim)
+            for size in (inputs, self.features_dim)
         )
-        self.mlp_extractor = _TwoViews(self._seen, actor, critic)  # type: ignore[assignment]
+        views = _TwoViews(self._seen, encoder, actor, critic)
+        self.mlp_extractor = views  # type: ignore[assignment]
+
+    def _seen_space(self) -> Box:
+        space = self.observation_space
+        if isinstance(space, FlockRowSpace):
+            return space.observed
+        assert isinstance(space, Box)
+        if self._seen == space.shape[0]:
+            return space
+        return Box(space.low[: self._seen], space.high[: self._seen])
 
     def _get_constructor_parameters(self) -> dict[str, Any]:
-        return {**super()._get_constructor_parameters(), "seen": self._seen}
+        encoder = {
+            "features_extractor_class": self._encoder_class,
+            "features_extractor_kwargs": self._encoder_kwargs,
+        }
+        return {**super()._get_constructor_parameters(), "seen": self._seen, **encoder}

@@ -9,6 +9,7 @@ from flockenv.policies.laws import LAWS
 from flockenv.training.checkpoint import Progress
 from flockenv.training.cloning import clone_law
 from flockenv.training.ppo import TrainingResult, resume, stored_settings, train
+from flockenv.training.rollback_point import with_flock_hours
 from flockenv.training.settings import TrainingError, TrainingSettings
 
 __all__ = [
@@ -21,4 +22,5 @@ __all__ = [
     "resume",
     "stored_settings",
     "train",
+    "with_flock_hours",
 ]

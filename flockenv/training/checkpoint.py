@@ -15,13 +15,13 @@ from typing import Any
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from stable_baselines3 import PPO
 
 from flockenv._io.array_file import write_arrays
 from flockenv._io.npz_header import array_of, entry_of, read_headed
 from flockenv.envs.observation import observation_version
 from flockenv.errors import ParameterError
 from flockenv.sb3.shared_noise import SharedNoiseDistribution
+from flockenv.training.learner import Learner
 from flockenv.training.pools import PooledVecEnv
 from flockenv.training.settings import TrainingSettings
 from flockenv.training.validation import validation_names
@@ -50,7 +50,7 @@ class Progress:
     validations: list[dict[str, float]] = field(default_factory=list)
 
 
-def state_of(model: PPO, settings: TrainingSettings, progress: Progress) -> State:
+def state_of(model: Learner, settings: TrainingSettings, progress: Progress) -> State:
     """Return the contents of a checkpoint; later training does not change them."""
     env = model.env
     assert isinstance(env, PooledVecEnv)
@@ -69,7 +69,7 @@ def state_of(model: PPO, settings: TrainingSettings, progress: Progress) -> Stat
             arrays[f"optimizer:{place}:{name}"] = tensor.cpu().numpy().copy()
     for place, state in enumerate(env.get_state()):
         arrays[f"environment:{place}"] = np.frombuffer(state, np.uint8)
-    arrays |= _exploration(model)
+    arrays |= _exploration(model) | _average(model)
     assert model._last_episode_starts is not None
     arrays["episode_starts"] = model._last_episode_starts.copy()
     return arrays | _random_states()
@@ -93,7 +93,7 @@ def read_settings(path: str | os.PathLike[str]) -> TrainingSettings:
         return _settings(header)
 
 
-def restore(path: str | os.PathLike[str], model: PPO) -> Progress:
+def restore(path: str | os.PathLike[str], model: Learner) -> Progress:
     """Put a model, its environment and the sources of chance where a checkpoint left them.
 
     Raises
@@ -121,10 +121,13 @@ def restore(path: str | os.PathLike[str], model: PPO) -> Progress:
         policy.load_state_dict(parameters)
         slots = {
             place: {name: torch.from_numpy(arrays[f"optimizer:{place}:{name}"]) for name in _ADAM}
-            for place in range(len(_trained(model)))
+            for place in _trained(model)
         }
         groups = optimizer.state_dict()["param_groups"]
         optimizer.load_state_dict({"state": slots, "param_groups": groups})
+        if model.averaged is not None:
+            averaged = _named(arrays, "average")
+            model.averaged.load_state_dict({n: torch.from_numpy(a) for n, a in averaged.items()})
         exploration = getattr(policy, "action_dist", None)
         if isinstance(exploration, SharedNoiseDistribution):
             exploration.set_state(_named(arrays, "exploration"))
@@ -184,21 +187,21 @@ def _is_row(row: Any, wanted: Sequence[str]) -> bool:
     )
 
 
-def _blank(model: PPO) -> State:
+def _blank(model: Learner) -> State:
     """Arrays of the shapes and types that a checkpoint of this model has, but for its flocks."""
     blank: State = {"episode_starts": np.zeros(model.n_envs, np.bool_)}
     for name, tensor in model.policy.state_dict().items():
         blank[f"parameter:{name}"] = tensor.cpu().numpy()
-    for place, tensor in enumerate(_trained(model)):
+    for place, tensor in _trained(model).items():
         shapes = {"step": (), "exp_avg": tensor.shape, "exp_avg_sq": tensor.shape}
         for name in _ADAM:
             blank[f"optimizer:{place}:{name}"] = np.zeros(shapes[name], np.float32)
-    blank |= _exploration(model)
+    blank |= _exploration(model) | _average(model)
     states = _random_states()
     return blank | {name: states[name] for name in ("numpy_keys", "numpy_rest", "torch_random")}
 
 
-def _exploration(model: PPO) -> State:
+def _exploration(model: Learner) -> State:
     """Return what a noise that is held over the end of a rollout leaves to the next one."""
     exploration = getattr(model.policy, "action_dist", None)
     if not isinstance(exploration, SharedNoiseDistribution):
@@ -206,8 +209,19 @@ def _exploration(model: PPO) -> State:
     return {f"exploration:{name}": array for name, array in exploration.get_state().items()}
 
 
-def _trained(model: PPO) -> list[torch.Tensor]:
-    return [each for group in model.policy.optimizer.param_groups for each in group["params"]]
+def _average(model: Learner) -> State:
+    """Return the moving average of the actor's weights, if there is one."""
+    if model.averaged is None:
+        return {}
+    averaged = model.averaged.state_dict()
+    return {f"average:{name}": each.cpu().numpy().copy() for name, each in averaged.items()}
+
+
+def _trained(model: Learner) -> dict[int, torch.Tensor]:
+    """Return what is learned, by its place in the optimizer."""
+    groups = model.policy.optimizer.param_groups
+    every = (each for group in groups for each in group["params"])
+    return {place: each for place, each in enumerate(every) if each.requires_grad}
 
 
 def _check(array: NDArray[Any], name: str, like: NDArray[Any]) -> None:

@@ -8,12 +8,13 @@ import torch
 from numpy.typing import NDArray
 
 from flockenv._io.provenance import provenance_of
-from flockenv.envs.observation import BLOCKS
+from flockenv.envs.observation import BLOCKS, observation_space
 from flockenv.errors import ParameterError
 from flockenv.policies import ModelPolicy, NetworkPolicy, load
 from flockenv.policies.base import RowPolicy, check_action_mode
 from flockenv.policies.laws import LAWS
-from flockenv.training.actor import ACTIVATION_MODULES, one_thread
+from flockenv.sb3.encoders import ACTIVATION_MODULES
+from flockenv.training.actor import encoder_module, network_policy, one_thread
 from flockenv.training.pools import PooledVecEnv
 from flockenv.training.settings import TrainingError, TrainingSettings
 
@@ -99,21 +100,12 @@ def clone_law(
     with one_thread():
         with torch.random.fork_rng(devices=[]):
             torch.manual_seed(settings.seed)
-            network = _network(rows.shape[1], settings)
+            network = _network(settings)
         _fit(network, rows[seen], rudders[seen], epochs, generator)
-    layers = [layer for layer in network if isinstance(layer, torch.nn.Linear)]
     provenance = provenance_of(
         command, seed=settings.seed, samples=len(rows), wall_s=time.perf_counter() - start
     )
-    policy = NetworkPolicy(
-        [layer.weight.detach().numpy().T for layer in layers],
-        [layer.bias.detach().numpy() for layer in layers],
-        settings.activation,
-        observation=settings.observation,
-        mirror_to_target=settings.mirror_to_target,
-        provenance={**provenance, "cloned": repr(law)},
-        **settings.decisions,
-    )
+    policy = network_policy(network, settings, {**provenance, "cloned": repr(law)})
     error = policy.predict(rows[held_out])[0][:, 0] - rudders[held_out]
     policy.provenance["clone_rms"] = f"{np.sqrt(np.mean(error**2)):.4f}"
     return policy
@@ -122,7 +114,7 @@ def clone_law(
 def _visited(
     law: RowPolicy | ModelPolicy, settings: TrainingSettings, samples: int
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    env = PooledVecEnv(settings.replace(critic="observation"))
+    env = PooledVecEnv(settings.replace(critic="observation", squash=False))
     random = np.random.default_rng(settings.seed)
     observations: Any = env.reset()
     rows, rudders = [], []
@@ -137,12 +129,18 @@ def _visited(
     return np.concatenate(rows), np.concatenate(rudders)
 
 
-def _network(inputs: int, settings: TrainingSettings) -> torch.nn.Sequential:
-    modules: list[torch.nn.Module] = []
+def _network(settings: TrainingSettings) -> torch.nn.Sequential:
+    space = observation_space(settings.observation, mirror_to_target=settings.mirror_to_target)
+    encoder = encoder_module(settings, space)
+    modules: list[torch.nn.Module] = [] if encoder is None else [encoder]
+    inputs = space.shape[0] if encoder is None else encoder.features_dim
     for outputs in settings.net_arch:
         modules += [torch.nn.Linear(inputs, outputs), ACTIVATION_MODULES[settings.activation]()]
         inputs = outputs
-    return torch.nn.Sequential(*modules, torch.nn.Linear(inputs, 1))
+    modules.append(torch.nn.Linear(inputs, 1))
+    if settings.squash:
+        modules.append(torch.nn.Tanh())
+    return torch.nn.Sequential(*modules)
 
 
 def _fit(

@@ -9,14 +9,16 @@ import torch
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.policies import ActorCriticPolicy
+from torch.optim.swa_utils import AveragedModel, get_ema_avg_fn
 
 from flockenv.errors import ParameterError
 from flockenv.sb3 import FlockCriticPolicy, SharedNoisePolicy
-from flockenv.training.actor import ACTIVATION_MODULES
+from flockenv.sb3.encoders import ACTIVATION_MODULES, EXTRACTORS
+from flockenv.training.actor import actor_module, encoder_options
 from flockenv.training.pools import PooledVecEnv
 from flockenv.training.settings import TrainingSettings
 
-__all__ = ["Watch", "actor_of", "learner"]
+__all__ = ["Learner", "Watch", "actor_of", "learner"]
 
 
 class _SharedNoiseFlockCriticPolicy(FlockCriticPolicy, SharedNoisePolicy):
@@ -29,10 +31,25 @@ _POLICIES: dict[tuple[bool, bool], type[ActorCriticPolicy]] = {
     (False, True): SharedNoisePolicy,
     (True, True): _SharedNoiseFlockCriticPolicy,
 }
-"""By whether the critic sees the flock, and whether its leaders share a noise."""
+"""By whether actor and critic see different things, and whether a flock's leaders share a noise."""
 
 
-def learner(settings: TrainingSettings) -> PPO:
+class Learner(PPO):
+    """PPO with the moving average of its actor's weights, None where that is the last weights."""
+
+    averaged: AveragedModel | None = None
+
+    def update_average(self) -> None:
+        """Take the present weights into the average."""
+        if self.averaged is not None:
+            self.averaged.update_parameters(actor_module(actor_of(self)))
+
+    def mean_actor(self) -> torch.nn.Module:
+        """Return the actor that is validated and stored."""
+        return actor_of(self) if self.averaged is None else self.averaged
+
+
+def learner(settings: TrainingSettings) -> Learner:
     """Return the learner of a run, before its first sample.
 
     Raises
@@ -43,21 +60,26 @@ def learner(settings: TrainingSettings) -> PPO:
     if settings.device == "cuda" and not torch.cuda.is_available():
         raise ParameterError("device = 'cuda' is not accepted: torch finds no GPU")
     env, layers = PooledVecEnv(settings), list(settings.net_arch)
+    critic = layers if settings.critic_arch is None else list(settings.critic_arch)
     policy: dict[str, Any] = {
-        "net_arch": {"pi": layers, "vf": layers},
+        "net_arch": {"pi": layers, "vf": critic},
         "activation_fn": ACTIVATION_MODULES[settings.activation],
         "log_std_init": settings.log_std_init,
     }
-    sees_flock, hold_steps = settings.critic == "flock", settings.held_decisions(env.decisions_hz)
-    if sees_flock:
+    encoded, hold_steps = settings.encoder != "none", settings.held_decisions(env.decisions_hz)
+    two_views = settings.critic == "flock" or encoded
+    if two_views:
         policy["seen"] = env.seen
+    if encoded:
+        policy["features_extractor_class"] = EXTRACTORS[settings.encoder]
+        policy["features_extractor_kwargs"] = encoder_options(settings)
     if hold_steps:
         policy |= {"flock_of_slot": env.flock_of_slot.tolist(), "hold_steps": hold_steps}
     with warnings.catch_warnings():
         # Small networks are often faster on the CPU, which is the user's choice.
         warnings.filterwarnings("ignore", "You are trying to run PPO on the GPU")
-        return PPO(
-            _POLICIES[sees_flock, hold_steps > 0],
+        model = Learner(
+            _POLICIES[two_views, hold_steps > 0],
             env,
             learning_rate=settings.learning_rate,
             n_steps=settings.n_steps,
@@ -76,6 +98,12 @@ def learner(settings: TrainingSettings) -> PPO:
             seed=settings.seed,
             device=settings.device,
         )
+    actor = actor_of(model)
+    actor.log_std.requires_grad_(settings.learn_log_std)
+    if settings.average < 1.0:
+        ema = get_ema_avg_fn(1.0 - settings.average)  # type: ignore[no-untyped-call]
+        model.averaged = AveragedModel(actor_module(actor), avg_fn=ema)
+    return model
 
 
 def actor_of(model: PPO) -> ActorCriticPolicy:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from gymnasium.spaces import Box
 from numpy.typing import NDArray
 
 from flockenv.errors import ParameterError
@@ -49,7 +50,10 @@ class PooledVecEnv(VecEnv):
         self._ends = np.cumsum([part.num_envs for part in self.parts])
         every = len(self.parts) * settings.num_flocks
         self._first_seeds = POLICY_SEEDS["training"].seeds(every, settings.seed)
-        super().__init__(int(self._ends[-1]), first.observation_space, first.action_space)
+        self._squash = settings.squash
+        # Float32 has no number between the hyperbolic tangent of 9 and 1.
+        actions = Box(-9.0, 9.0, (1,), np.float32) if self._squash else first.action_space
+        super().__init__(int(self._ends[-1]), first.observation_space, actions)
 
     def reset(self) -> NDArray[np.float32]:
         """Start again with the run's training seeds."""
@@ -59,6 +63,8 @@ class PooledVecEnv(VecEnv):
 
     def step_async(self, actions: NDArray[Any]) -> None:
         """Take note of rudders, shape (slots, 1)."""
+        if self._squash:
+            actions = np.tanh(actions)
         for part, rows in zip(self.parts, np.split(actions, self._ends[:-1]), strict=True):
             part.step_async(rows)
 

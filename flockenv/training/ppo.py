@@ -9,7 +9,6 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import torch
-from stable_baselines3 import PPO
 from stable_baselines3.common.logger import KVWriter, Logger, TensorBoardOutputFormat
 from stable_baselines3.common.utils import FloatSchedule
 
@@ -20,10 +19,16 @@ from flockenv._io.provenance import provenance_of
 from flockenv.errors import ParameterError
 from flockenv.policies import NetworkPolicy, load
 from flockenv.training import checkpoint
-from flockenv.training.actor import copy_into_actor, network_policy, one_thread
+from flockenv.training.actor import (
+    actor_module,
+    copy_into_actor,
+    measure_features,
+    network_policy,
+    one_thread,
+)
 from flockenv.training.checkpoint import LEARNED, Progress
 from flockenv.training.cloning import initial_policy
-from flockenv.training.learner import Watch, actor_of, learner
+from flockenv.training.learner import Learner, Watch, actor_of, learner
 from flockenv.training.rollback_point import RollbackPoint
 from flockenv.training.settings import TrainingError, TrainingSettings
 from flockenv.training.validation import validation_scores
@@ -100,7 +105,9 @@ def train(
     with one_thread():
         model = learner(settings)
         start = initial_policy(settings, command, trust)
-        if start is not None:
+        if start is None:
+            measure_features(actor_module(actor_of(model))[0], settings)
+        else:
             copy_into_actor(start, actor_of(model), settings)
         with _alone_in(folder):
             _refuse_another_run(folder)
@@ -130,6 +137,7 @@ def resume(
     folder: Path,
     *,
     samples: int | None = None,
+    flock_hours: float | None = None,
     report: Report = lambda progress: None,
 ) -> TrainingResult:
     """Continue from a run's last checkpoint, exactly as if it had never stopped.
@@ -138,8 +146,8 @@ def resume(
     ----------
     folder
         What was given to `train`. Loading its checkpoint executes nothing.
-    samples
-        When to stop, if not as in the settings.
+    samples, flock_hours
+        When to stop, if not as in the settings: one or the other.
     report
         As for `train`.
 
@@ -153,21 +161,25 @@ def resume(
         As for `train`.
     """
     folder = Path(folder)
-    stored_settings(folder, samples)
+    stored_settings(folder, samples, flock_hours)
     with _alone_in(folder), one_thread():
-        settings = stored_settings(folder, samples)
+        settings = stored_settings(folder, samples, flock_hours)
         model = learner(settings)
         progress = checkpoint.restore(folder / "checkpoint.npz", model)
         return _Run(model, settings, folder, progress, report).advance()
 
 
-def stored_settings(folder: Path, samples: int | None = None) -> TrainingSettings:
+def stored_settings(
+    folder: Path, samples: int | None = None, flock_hours: float | None = None
+) -> TrainingSettings:
     """Return what `resume` continues with; see there."""
     path = Path(folder) / "checkpoint.npz"
     if not path.exists():
         raise ParameterError(f"{folder} holds no checkpoint to resume")
     settings = checkpoint.read_settings(path)
-    return settings if samples is None else settings.replace(samples=samples)
+    given = {"samples": samples, "flock_hours": flock_hours}
+    limits = {name: value for name, value in given.items() if value is not None}
+    return settings.replace(**limits) if limits else settings
 
 
 class _Run:
@@ -175,7 +187,7 @@ class _Run:
 
     def __init__(
         self,
-        model: PPO,
+        model: Learner,
         settings: TrainingSettings,
         folder: Path,
         progress: Progress,
@@ -196,7 +208,7 @@ class _Run:
         self.model.set_logger(self.log)
         self.report(self.progress)
         try:
-            while self.progress.samples < self.settings.samples:
+            while self.progress.samples < self.settings.total_samples:
                 self._iterate()
             if self.progress.best_score is None:  # resumed, to stop before any validation
                 self._validate()
@@ -219,12 +231,13 @@ class _Run:
         progress.wall_s = time.perf_counter() - self.started_s
         progress.curve.append({"samples": progress.samples, **row})
         self._log()
-        ends = progress.samples >= settings.samples
+        ends = progress.samples >= settings.total_samples
+        late = progress.samples >= settings.validate_from * settings.total_samples
 
         def due(every: int) -> bool:
             return ends or progress.samples // every > before // every
 
-        if due(settings.validate_every):
+        if ends or (late and due(settings.validate_every)):
             self._validate()
         # An interrupt in the middle of the next rollout goes back to here.
         self.rollback_point = RollbackPoint.of(self.model, settings, progress, self._policy({}))
@@ -248,6 +261,7 @@ class _Run:
         loss = float(self.log.name_to_value["train/loss"])
         if not (math.isfinite(loss) and self._finite()):
             raise self._broken(loss)
+        model.update_average()
         for name, value in watch.means().items():
             self.log.record(f"rollout/{name}", value)
         learned = {name: float(self.log.name_to_value[f"train/{name}"]) for name in LEARNED}
@@ -287,7 +301,7 @@ class _Run:
                 raise
 
     def _policy(self, provenance: dict[str, str]) -> NetworkPolicy:
-        return network_policy(actor_of(self.model), self.settings, provenance)
+        return network_policy(self.model.mean_actor(), self.settings, provenance)
 
     def _provenance(self, progress: Progress) -> dict[str, str]:
         return provenance_of(
@@ -295,6 +309,7 @@ class _Run:
             seed=self.settings.seed,
             samples=progress.samples,
             wall_s=progress.wall_s,
+            flock_hours=self.settings.flock_hours_at(progress.samples),
         )
 
     def _write_rollback_point(self) -> None:

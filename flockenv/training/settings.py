@@ -1,5 +1,6 @@
 """`TrainingSettings`: everything that a training run depends on."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any, Self
@@ -12,7 +13,7 @@ from flockenv.envs.batch import LeaderBatch
 from flockenv.envs.options import EnvOptions
 from flockenv.errors import FlockError, ParameterError, refuse_unknown, shown
 from flockenv.parameters import FlockParameters
-from flockenv.policies.network import ACTIVATIONS
+from flockenv.policies.encoders import ACTIVATIONS, ENCODERS
 
 __all__ = ["TrainingError", "TrainingSettings"]
 
@@ -25,7 +26,7 @@ class TrainingError(FlockError, RuntimeError):
 class TrainingSettings:
     """Settings of PPO with one policy shared by all leaders; checked once, to and from TOML.
 
-    A sample is one leader's control step. Raises `ParameterError` for values out of range.
+    A sample is one leader's decision. Raises `ParameterError` for values out of range.
 
     Attributes
     ----------
@@ -46,8 +47,10 @@ class TrainingSettings:
         The environments' options of those names.
     options
         Further options of the environments, such as ``delay_frames``.
-    samples
-        When to stop: the run ends with the rollout that reaches it.
+    samples, flock_hours
+        When to stop: the run ends with the rollout that reaches it. Either the samples or the time
+        that all flocks together are simulated for, in hours; 2,000,000 samples where neither is
+        given. The one that is not given is None.
     num_flocks, n_steps, batch_size, n_epochs
         Flocks in each pool; control steps of a rollout; samples of a minibatch, which must divide a
         rollout; passes through a rollout.
@@ -56,13 +59,28 @@ class TrainingSettings:
     gamma, gae_lambda, clip_range, ent_coef, vf_coef, max_grad_norm, target_kl
         As in stable-baselines3's PPO; `target_kl` 0: no limit.
     net_arch, activation
-        Hidden layers of the actor and, apart, of the critic, and what stands between layers.
+        Hidden layers of the actor, and what stands between layers. In action mode "lean" an actor
+        without a start starts close to the tuned law, which is the lean of 0.
+    encoder, encoder_arch
+        What stands between the observation and the actor's layers: ``"none"``; ``"deepsets"``, a
+        mean embedding of the observed neighbors by a network with the layers `encoder_arch`; or
+        ``"leaning"``, the features of a leaning law, standardized under the tuned law
+        (`flockenv.policies.encoders`).
+    critic_arch
+        Hidden layers of the critic; None: those of the actor.
+    squash
+        Whether actions go through a hyperbolic tangent, where they are clipped otherwise.
+    average
+        Share of each rollout in the moving average of the actor's weights, in (0, 1], which is what
+        is validated and stored as policies; 1: the last weights.
     critic
         What the critic sees: ``"observation"``, as the actor does, or ``"flock"``, the features of
         the whole flock, too (`LeaderVecEnv.flock_features`).
     log_std_init, use_sde, sde_sample_freq
         Exploration: logarithm of the first standard deviation, whether it depends on the state
         (gSDE), and control steps after which it is drawn again.
+    learn_log_std
+        Whether the standard deviation of the exploration is learned, or stays as it is.
     shared_noise_s
         Time in s for which all leaders of a flock deviate from the mean policy by one common noise,
         a whole number of decisions (`flockenv.sb3.SharedNoisePolicy`); 0: each leader has a noise
@@ -78,6 +96,8 @@ class TrainingSettings:
     validate_every, validation_episodes, validation_s, validation_hz
         Samples between validations of the mean policy at the critical noise, episodes for each
         pool and number of leaders, their length in s and control steps per second.
+    validate_from
+        Share of the samples before which nothing is validated, in [0, 1]; 1: the end alone is.
     device
         ``"auto"`` (a GPU if there is one), ``"cpu"`` or ``"cuda"``.
     """
@@ -94,7 +114,8 @@ class TrainingSettings:
     observation: Mapping[str, Any] = field(default_factory=dict)
     reward: Mapping[str, float] = field(default_factory=lambda: {"signed_order": 1.0})
     options: Mapping[str, Any] = field(default_factory=dict)
-    samples: int = 2_000_000
+    samples: int | None = None
+    flock_hours: float | None = None
     num_flocks: int = 16
     n_steps: int = 128
     batch_size: int = 512
@@ -110,8 +131,14 @@ class TrainingSettings:
     target_kl: float = 0.0
     net_arch: tuple[int, ...] = (64, 64)
     activation: str = "tanh"
+    encoder: str = "none"
+    encoder_arch: tuple[int, ...] = (32, 32)
     critic: str = "observation"
+    critic_arch: tuple[int, ...] | None = None
+    squash: bool = False
+    average: float = 1.0
     log_std_init: float = -0.5
+    learn_log_std: bool = True
     use_sde: bool = False
     sde_sample_freq: int = 16
     shared_noise_s: float = 0.0
@@ -119,6 +146,7 @@ class TrainingSettings:
     start: str = ""
     checkpoint_every: int = 100_000
     validate_every: int = 500_000
+    validate_from: float = 0.0
     validation_episodes: int = 8
     validation_s: float = 240.0
     validation_hz: float = 10.0
@@ -127,6 +155,13 @@ class TrainingSettings:
     def __post_init__(self) -> None:
         for each in fields(self):
             object.__setattr__(self, each.name, _checked(each.name, getattr(self, each.name)))
+        if self.samples is not None and self.flock_hours is not None:
+            raise ParameterError(
+                f"flock_hours = {self.flock_hours!r} is not accepted with samples = "
+                f"{self.samples!r}: one or the other"
+            )
+        if self.samples is None and self.flock_hours is None:
+            object.__setattr__(self, "samples", _SAMPLES)
         if self.noise[0] > self.noise[1]:
             raise ParameterError(f"noise = {self.noise!r} is not accepted: (lowest, highest)")
         if self.rollout_samples % self.batch_size:
@@ -144,6 +179,9 @@ class TrainingSettings:
             except TypeError as error:
                 raise ParameterError(str(error)) from error
             self._check_shared_noise(batch.decisions_hz)
+        if self.encoder != "none":
+            ENCODERS[self.encoder].check(self.observation, self.mirror_to_target)
+        object.__setattr__(self, "_decisions_hz", batch.decisions_hz)
 
     def _check_shared_noise(self, decisions_hz: float) -> None:
         if self.shared_noise_s and self.use_sde:
@@ -194,18 +232,45 @@ class TrainingSettings:
         held_s = self.shared_noise_s
         return _core.held_decisions(held_s, decisions_hz) if held_s else 0
 
+    @property
+    def decisions_hz(self) -> float:
+        """Decisions of a leader per second."""
+        hz: float = self.__dict__["_decisions_hz"]
+        return hz
+
+    @property
+    def total_samples(self) -> int:
+        """Samples to stop at, whichever of `samples` and `flock_hours` is given."""
+        if self.samples is not None:
+            return self.samples
+        assert self.flock_hours is not None
+        # Without the last digits, 0.1 flock-hours may not take a decision more.
+        decisions = round(self.flock_hours / self._flock_hours_a_decision, 6)
+        return math.ceil(decisions) * self.leaders
+
+    @property
+    def _flock_hours_a_decision(self) -> float:
+        return len(self.pools) * self.num_flocks / self.decisions_hz / 3600.0
+
+    def flock_hours_at(self, samples: int) -> float:
+        """Return for how many hours all flocks together are simulated in a number of samples."""
+        return samples / self.leaders * self._flock_hours_a_decision
+
     def learning_rate_at(self, samples: int) -> float:
         """Return the learning rate after a number of samples."""
-        done = min(1.0, samples / self.samples)
+        done = min(1.0, samples / self.total_samples)
         return self.learning_rate + done * (self.final_learning_rate - self.learning_rate)
 
     def replace(self, **changes: Any) -> Self:
-        """Return these settings with some fields changed."""
-        return type(self).from_dict({**self.to_dict(), **changes})
+        """Return these settings with some fields changed; a new limit replaces the other one."""
+        own = self.to_dict()
+        if _LIMITS & changes.keys():
+            own = {name: value for name, value in own.items() if name not in _LIMITS}
+        return type(self).from_dict({**own, **changes})
 
     def to_dict(self) -> dict[str, Any]:
-        """Return every field by name."""
-        return asdict(self)
+        """Return every field by name, but for those that are None."""
+        return {name: value for name, value in asdict(self).items() if value is not None}
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> Self:
@@ -236,6 +301,10 @@ class TrainingSettings:
         return cls.from_dict(read_toml(text, "the text of settings"))
 
 
+_SAMPLES = 2_000_000
+_LIMITS = {"samples", "flock_hours"}
+_MAY_BE_EMPTY = ("net_arch", "critic_arch")
+_OPTIONAL = {*_LIMITS, "critic_arch"}
 #: Settings of their own, and what the network's output does not fit.
 _NOT_OPTIONS = (
     *(each.name for each in fields(TrainingSettings)),
@@ -249,6 +318,7 @@ _CHOICES: Mapping[str, tuple[str, ...]] = {
     "target": ("random", "cw", "ccw", "alternate"),
     "activation": tuple(ACTIVATIONS),
     "critic": ("observation", "flock"),
+    "encoder": ("none", *ENCODERS),
     "device": ("auto", "cpu", "cuda"),
 }
 #: Lowest and highest number; numbers of a list each.
@@ -259,6 +329,7 @@ _RANGES: Mapping[str, tuple[float, float]] = {
     "episode_s": (0.1, 1e6),
     "control_hz": (0.1, 1000.0),
     "samples": (1, 1e15),
+    "flock_hours": (1e-6, 1e9),
     "num_flocks": (1, 1_000_000),
     "n_steps": (2, 1_000_000),
     "batch_size": (2, 1e9),
@@ -273,20 +344,31 @@ _RANGES: Mapping[str, tuple[float, float]] = {
     "max_grad_norm": (1e-9, 1e9),
     "target_kl": (0.0, 100.0),
     "net_arch": (1, 4096),
+    "critic_arch": (1, 4096),
+    "encoder_arch": (1, 4096),
+    "average": (1e-6, 1.0),
     "log_std_init": (-20.0, 5.0),
     "sde_sample_freq": (-1, 1_000_000),
     "shared_noise_s": (0.0, 1e6),
     "seed": (0, (1 << 32) - 1),
     "checkpoint_every": (1, 1e15),
     "validate_every": (1, 1e15),
+    "validate_from": (0.0, 1.0),
     "validation_episodes": (2, 100_000),
     "validation_s": (1.0, 1e6),
     "validation_hz": (0.1, 1000.0),
 }
 
 
+_DEFAULTS = {each.name: each.default for each in fields(TrainingSettings)}
+#: Values of settings whose default is None.
+_EXAMPLES: Mapping[str, Any] = {"samples": _SAMPLES, "flock_hours": 1.0, "critic_arch": (64, 64)}
+
+
 def _checked(name: str, value: Any) -> Any:
-    default = {each.name: each.default for each in fields(TrainingSettings)}[name]
+    if name in _OPTIONAL and value is None:
+        return None
+    default = _EXAMPLES.get(name) or _DEFAULTS[name]
     if isinstance(default, tuple):
         return _checked_list(name, value, default)
     if name in _RANGES:
@@ -307,7 +389,7 @@ def _checked(name: str, value: Any) -> Any:
 
 
 def _checked_list(name: str, value: Any, default: tuple[Any, ...]) -> tuple[Any, ...]:
-    if not isinstance(value, list | tuple) or (not value and name != "net_arch"):
+    if not isinstance(value, list | tuple) or (not value and name not in _MAY_BE_EMPTY):
         raise ParameterError(f"{name} = {shown(value)} is not accepted: a list")
     if name == "noise" and len(value) != 2:
         raise ParameterError(f"noise = {shown(value)} is not accepted: (lowest, highest)")

@@ -39,6 +39,20 @@ def test_a_run_starts_from_a_clone_of_a_leaning_law(tiny: TrainingSettings, tmp_
     assert [matrix.shape[1] for matrix in start.weights] == [8, 1]
 
 
+@pytest.mark.parametrize("encoder", ["deepsets", "leaning"])
+@pytest.mark.usefixtures("_quick_clones")
+def test_a_clone_has_the_encoder_of_the_settings(
+    tiny: TrainingSettings, tmp_path: Path, encoder: str
+) -> None:
+    settings = tiny.replace(start="damped law", samples=192, encoder=encoder, squash=True)
+    train(settings, tmp_path)
+    start = load(tmp_path / "start.npz")
+    assert start.encoder.kind == encoder
+    assert start.squashed
+    # The measured means, not the zeros that an extractor starts with.
+    assert encoder != "leaning" or start.encoder.mean.any()
+
+
 @pytest.mark.usefixtures("_quick_clones")
 def test_a_run_starts_from_a_trusted_model(tiny: TrainingSettings, tmp_path: Path) -> None:
     path = tmp_path / "model.zip"

@@ -14,7 +14,7 @@ def press() -> None:
     signal.raise_signal(signal.SIGINT)
 
 
-@pytest.mark.parametrize(("owner", "name"), [(ppo.PPO, "train"), (ppo.Logger, "dump")])
+@pytest.mark.parametrize(("owner", "name"), [(ppo.Learner, "train"), (ppo.Logger, "dump")])
 def test_training_finishes_what_must_not_stop_halfway(
     tiny: TrainingSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, owner: type, name: str
 ) -> None:

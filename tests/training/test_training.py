@@ -12,13 +12,19 @@ import torch
 
 import flockenv
 from flockenv import InUseError, ParameterError, training
+from flockenv._io.array_file import read_arrays
 from flockenv._io.atomic_write import atomic_write
 from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy, load
 from flockenv.runs.seeds import FIRST_TRAINING_SEED
 from flockenv.training import TrainingError, TrainingSettings, checkpoint, ppo, validation
-from flockenv.training.actor import copy_into_actor, network_policy
-from flockenv.training.learner import learner
+from flockenv.training.actor import (
+    actor_module,
+    copy_into_actor,
+    measure_features,
+    network_policy,
+)
+from flockenv.training.learner import Learner, learner
 
 EVERY_FILE = ("best.npz", "last.npz", "checkpoint.npz", "curve.csv", "validations.csv")
 
@@ -64,6 +70,8 @@ def test_a_folder_takes_one_training_at_a_time(tiny: TrainingSettings, tmp_path:
         # Not a whole number of rollouts: a noise is held over the end of one.
         {"shared_noise_s": 2.5},
         {"shared_noise_s": 2.5, "critic": "flock"},
+        {"encoder": "deepsets", "average": 0.3, "learn_log_std": False},
+        {"encoder": "leaning", "average": 0.5, "critic": "flock", "squash": True},
     ],
     ids=lambda kind: " and ".join(kind) or "own noise",
 )
@@ -126,29 +134,40 @@ def test_learning_goes_on_past_the_end(tiny: TrainingSettings, tmp_path: Path) -
 
 
 @pytest.mark.parametrize(
-    ("net_arch", "activation", "critic"),
+    "changes",
     [
-        ([], "tanh", "observation"),
-        ([16], "relu", "observation"),
-        ([32, 16], "tanh", "observation"),
-        ([32, 16], "tanh", "flock"),
+        {"net_arch": [], "activation": "tanh"},
+        {"net_arch": [16], "activation": "relu"},
+        {"net_arch": [32, 16]},
+        {"net_arch": [32, 16], "critic": "flock"},
+        {"squash": True},
+        {"encoder": "deepsets"},
+        {"encoder": "deepsets", "critic": "flock", "activation": "relu", "encoder_arch": [16]},
+        {"encoder": "deepsets", "observation": {"neighbors": 3, "law_rudder": True}},
+        {"encoder": "leaning", "net_arch": []},
+        {"encoder": "leaning", "critic": "flock", "squash": True},
     ],
+    ids=lambda changes: " ".join(f"{name}={value}" for name, value in changes.items()),
 )
 def test_the_exported_mean_is_torchs(
-    tiny: TrainingSettings, net_arch: list[int], activation: str, critic: str
+    tiny: TrainingSettings, changes: dict[str, Any], tmp_path: Path
 ) -> None:
-    settings = tiny.replace(net_arch=net_arch, activation=activation, critic=critic)
+    settings = tiny.replace(**changes)
     model = learner(settings)
+    measure_features(actor_module(model.policy)[0], settings)
     with torch.no_grad():
         # Larger than SB3 starts with, so that the ends of the range are met.
         model.policy.action_net.weight.mul_(300.0)
-    policy = network_policy(model.policy, settings, {})
+    network_policy(model.policy, settings, {}).save(tmp_path / "policy.npz")
+    policy = load(tmp_path / "policy.npz")
     low, high = model.observation_space.low, model.observation_space.high
     rows = low + np.random.default_rng(0).random((500, len(low)), np.float32) * (high - low)
     expected, _ = model.predict(rows, deterministic=True)
-    rows = rows[:, : policy.weights[0].shape[0]]
-    assert (abs(expected) == 1.0).any()
-    assert (abs(expected) < 1.0).any()
+    if settings.squash:
+        expected = np.tanh(expected)
+    rows = rows[:, : model.env.seen]
+    assert (abs(expected) > 0.999).any()
+    assert (abs(expected) < 0.9).any()
     np.testing.assert_allclose(policy.predict(rows)[0], expected, atol=2e-6, rtol=0)
 
 
@@ -166,6 +185,97 @@ def test_start_from_a_policy(tiny: TrainingSettings, tmp_path: Path) -> None:
     untrained = training.train(unchanging, tmp_path / "still").policy
     for own, other in zip(untrained.weights, start.weights, strict=True):
         np.testing.assert_array_equal(own, other)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"encoder": "deepsets"}, {"encoder": "leaning", "net_arch": [], "squash": True}],
+    ids=lambda changes: changes["encoder"],
+)
+def test_start_from_an_encoded_policy(
+    tiny: TrainingSettings, tmp_path: Path, changes: dict[str, Any]
+) -> None:
+    settings = tiny.replace(samples=192, **changes)
+    start = training.train(settings.replace(seed=3), tmp_path / "start").policy
+    unchanging = settings.replace(
+        start=str(tmp_path / "start" / "best.npz"),
+        learning_rate=0.0,
+        final_learning_rate=0.0,
+        average=0.5,
+    )
+    assert training.train(unchanging, tmp_path / "unchanging").policy.digest == start.digest
+    with pytest.raises(ParameterError, match=r"encoder = 'none' is not accepted: .* has '(de|le)"):
+        training.train(unchanging.replace(encoder="none", squash=False), tmp_path / "none")
+
+
+def test_an_untrained_lean_is_nearly_the_tuned_law(tiny: TrainingSettings) -> None:
+    for encoder in ("none", "deepsets", "leaning"):
+        settings = tiny.replace(encoder=encoder, options={"action_mode": "lean"})
+        model = learner(settings)
+        measure_features(actor_module(model.policy)[0], settings)
+        policy = network_policy(model.policy, settings, {})
+        # Of 1, which is 1.2 rad.
+        assert 0.0 < abs(policy.predict(model.env.reset())[0]).max() < 0.05
+
+
+def test_the_average_is_what_is_stored(tiny: TrainingSettings, tmp_path: Path) -> None:
+    last, averaged = [], []
+    update_average = Learner.update_average
+
+    def watched(model: Learner) -> None:
+        update_average(model)
+        last.append(network_policy(model.policy, settings, {}).weights)
+        averaged.append(network_policy(model.mean_actor(), settings, {}).weights)
+
+    settings = tiny.replace(average=0.25, learn_log_std=False, validate_from=1.0)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Learner, "update_average", watched)
+        result = training.train(settings, tmp_path)
+    assert len(last) == 4
+    expected = last[0]
+    for weights in last[1:]:
+        expected = [0.75 * old + 0.25 * new for old, new in zip(expected, weights, strict=True)]
+    stored = load(tmp_path / "last.npz")
+    for own, other, latest in zip(stored.weights, expected, last[-1], strict=True):
+        np.testing.assert_allclose(own, other, atol=1e-6)
+        assert abs(own - latest).max() > 1e-5
+    # One validation at the end alone, so that nothing is chosen by it.
+    assert [row["samples"] for row in result.progress.validations] == [768]
+    assert load(tmp_path / "best.npz").digest == stored.digest
+
+
+def test_an_exploration_that_is_not_learned_stays(tiny: TrainingSettings, tmp_path: Path) -> None:
+    for learned in (True, False):
+        folder = tmp_path / str(learned)
+        training.train(tiny.replace(samples=192, learn_log_std=learned), folder)
+        arrays = read_arrays(folder / "checkpoint.npz")
+        assert (arrays["parameter:log_std"] == np.float32(tiny.log_std_init)).all() != learned
+
+
+def test_a_budget_in_flock_hours(tiny: TrainingSettings, tmp_path: Path) -> None:
+    # A rollout is 16 s of four flocks.
+    settings = tiny.replace(flock_hours=4 * 16 / 3600)
+    result = training.train(settings, tmp_path)
+    assert result.progress.samples == 192
+    assert result.policy.provenance["flock_hours"] == "0.0177778"
+    for name in ("curve.csv", "validations.csv"):
+        header, row = (tmp_path / name).read_text().splitlines()
+        assert header.startswith("samples,flock_hours,")
+        assert row.startswith("192,0.0177778,")
+    result = training.resume(tmp_path, flock_hours=8 * 16 / 3600)
+    assert result.progress.samples == 384
+    assert training.resume(tmp_path, samples=576).progress.samples == 576
+    with pytest.raises(ParameterError, match="one or the other"):
+        training.resume(tmp_path, samples=768, flock_hours=1.0)
+
+
+def test_flocks_restart_together(tiny: TrainingSettings) -> None:
+    model = learner(tiny.replace(pools=["500-boats", "table-1"]))
+    model.env.reset()
+    ended = [model.env.step(np.zeros((6, 1)))[2] for _ in range(30)]
+    # Episodes of 5 s with two decisions per second.
+    assert [step for step, dones in enumerate(ended, 1) if dones.all()] == [10, 20, 30]
+    assert not any(dones.any() for step, dones in enumerate(ended, 1) if step % 10)
 
 
 def test_a_start_that_does_not_fit_is_refused(tiny: TrainingSettings, tmp_path: Path) -> None:

@@ -11,7 +11,12 @@ from flockenv.training.pools import PooledVecEnv
 
 
 def test_toml_round_trip(tiny: TrainingSettings) -> None:
-    for settings in (TrainingSettings(), tiny, tiny.replace(observation={"order": False})):
+    for settings in (
+        TrainingSettings(),
+        tiny,
+        tiny.replace(observation={"order": False}),
+        tiny.replace(flock_hours=0.5, critic_arch=[], encoder="deepsets"),
+    ):
         assert TrainingSettings.from_toml(settings.to_toml()) == settings
 
 
@@ -46,6 +51,21 @@ def test_toml_round_trip(tiny: TrainingSettings) -> None:
         ({"start": 3}, "a text"),
         ({"batch_size": 77}, "samples of a rollout"),
         ({"device": "tpu"}, "auto"),
+        (
+            {"encoder": "attention"},
+            "not accepted: none, deepsets, leaning",
+        ),
+        ({"encoder": "deepsets", "observation": {"neighbors": 0}}, "needs the block neighbors"),
+        ({"encoder": "leaning", "observation": {"neighbors": 0}}, "blocks own, neighbors and"),
+        ({"encoder": "leaning", "mirror_to_target": False}, "without mirror_to_target"),
+        ({"encoder_arch": []}, "encoder_arch = [] is not accepted"),
+        ({"average": 0.0}, "average = 0.0"),
+        ({"average": 1.5}, "average = 1.5"),
+        ({"flock_hours": 0.0}, "flock_hours = 0.0"),
+        ({"flock_hours": -1.0}, "flock_hours = -1.0"),
+        ({"flock_hours": 1.0, "samples": 100}, "flock_hours = 1.0 is not accepted with samples"),
+        ({"validate_from": 1.5}, "validate_from = 1.5"),
+        ({"learn_log_std": 0}, "true or false"),
     ],
 )
 def test_nonsense_is_refused(tiny: TrainingSettings, change: dict, words: str) -> None:
@@ -64,6 +84,19 @@ def test_the_learning_rate_falls_with_the_samples(tiny: TrainingSettings) -> Non
     assert settings.learning_rate_at(0) == 0.3
     assert settings.learning_rate_at(50) == pytest.approx(0.2)
     assert settings.learning_rate_at(500) == pytest.approx(0.1)
+
+
+def test_flock_hours_are_the_time_that_all_flocks_take(tiny: TrainingSettings) -> None:
+    # Four flocks with six leaders decide twice a second: 24 samples in 0.5 s of each flock.
+    assert tiny.flock_hours_at(6 * 7200) == pytest.approx(4.0)
+    settings = tiny.replace(flock_hours=4.0)
+    assert settings.samples is None
+    assert settings.total_samples == 6 * 7200
+    assert settings.learning_rate_at(3 * 7200) == settings.learning_rate
+    assert settings.replace(samples=100).total_samples == 100
+    held = tiny.replace(flock_hours=4.0, options={"decision_period_s": 2.0})
+    assert held.total_samples == 6 * 1800
+    assert TrainingSettings().total_samples == 2_000_000
 
 
 def test_seeds_are_training_seeds_and_differ(tiny: TrainingSettings) -> None:
