@@ -13,6 +13,7 @@ NAMES = [entry.name for entry in observation_entries()]
 SIZE = len(NAMES)
 FEATURES = observed_features(NAMES)
 COUNT = len(FEATURES)
+USUAL = LeaningEncoder(np.zeros(COUNT), np.ones(COUNT))
 
 
 def rows(count: int = 50) -> np.ndarray:
@@ -90,7 +91,7 @@ def test_a_linear_network_of_features_leans_as_a_leaning_law():
 
 @pytest.mark.parametrize(
     "encoder",
-    [deep_set(), deep_set(activation="relu"), LeaningEncoder(np.zeros(COUNT), np.ones(COUNT))],
+    [deep_set(), deep_set(activation="relu"), USUAL],
     ids=["deepsets", "relu", "leaning"],
 )
 def test_files(encoder, tmp_path):
@@ -122,7 +123,7 @@ def test_files(encoder, tmp_path):
             lambda: NetworkPolicy(
                 [np.ones((COUNT, 1))],
                 [[0.0]],
-                encoder=LeaningEncoder(np.zeros(COUNT), np.ones(COUNT)),
+                encoder=USUAL,
             ),
             "without mirror_to_target",
         ),

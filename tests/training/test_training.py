@@ -146,6 +146,7 @@ def test_learning_goes_on_past_the_end(tiny: TrainingSettings, tmp_path: Path) -
         {"encoder": "deepsets", "observation": {"neighbors": 3, "law_rudder": True}},
         {"encoder": "leaning", "net_arch": []},
         {"encoder": "leaning", "critic": "flock", "squash": True},
+        {"encoder": "leaning", "observation": {"fellow_leaders": 2, "phase": False}},
     ],
     ids=lambda changes: " ".join(f"{name}={value}" for name, value in changes.items()),
 )
