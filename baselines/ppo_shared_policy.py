@@ -34,7 +34,7 @@ SETTINGS = TrainingSettings(
     batch_size=512,
     net_arch=(64, 64),
     activation="tanh",
-    # From here on as the best of ten runs had it: search_ppo.py, docs/leaders/ppo_search.csv.
+    # From here on as the best of ten runs had it: docs/leaders/ppo_search.csv.
     # At ten decisions per second, exploring rudders cancel out before a boat has turned.
     control_hz=2.5,
     n_steps=128,

@@ -1,8 +1,9 @@
 """How good a policy is while it is trained: the same seeded episodes each time."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flockenv.comparison.episodes import run_episodes
 from flockenv.parameters import FlockParameters
@@ -10,7 +11,7 @@ from flockenv.policies.base import LeaderPolicy
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.training.settings import TrainingSettings
 
-__all__ = ["validation_names", "validation_scores"]
+__all__ = ["validation_episodes", "validation_names", "validation_scores"]
 
 
 def validation_scores(policy: LeaderPolicy, settings: TrainingSettings) -> dict[str, float]:
@@ -21,13 +22,36 @@ def validation_scores(policy: LeaderPolicy, settings: TrainingSettings) -> dict[
     dict
         One number for each pool, number of leaders and, without mirroring, direction.
     """
+    episodes = validation_episodes(lambda pool: policy, settings)
+    return {name: float(np.mean(orders)) for name, orders in episodes.items()}
+
+
+def validation_episodes(
+    policy_of: Callable[[str], LeaderPolicy], settings: TrainingSettings
+) -> dict[str, NDArray[np.float64]]:
+    """Return the signed order of each episode of a validation, in the order of its seeds.
+
+    Parameters
+    ----------
+    policy_of
+        The policy in each pool, by the pool's name. What its actions stand for is its own.
+    settings
+        Where and how long, and how many episodes.
+
+    Returns
+    -------
+    dict
+        Shape (episodes,) by the names of `validation_scores`.
+    """
     seeds = POLICY_SEEDS["validation"].seeds(settings.validation_episodes)
     options = {**settings.options, "control_hz": settings.validation_hz}
-    scores = {}
+    options = {name: each for name, each in options.items() if name not in settings.decisions}
+    episodes = {}
     for name, parameters in _flocks(settings):
-        found = run_episodes(parameters, policy, seeds, settings.validation_s, options=options)
-        scores[name] = float(np.mean(found["signed_order"]))
-    return scores
+        policy, duration_s = policy_of(str(parameters.pool)), settings.validation_s
+        found = run_episodes(parameters, policy, seeds, duration_s, options=options)
+        episodes[name] = found["signed_order"]
+    return episodes
 
 
 def validation_names(settings: TrainingSettings) -> list[str]:

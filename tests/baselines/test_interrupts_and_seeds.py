@@ -20,7 +20,7 @@ AT_WORK = {
     "critical_noise": ("order_of_run", ["--seeds", "1", "--pool", "table-1"]),
     "evolution_strategy": ("scores", ["--quiet"]),
     "learning_check": ("train", []),
-    "search_ppo": ("validation_scores", ["--quiet"]),
+    "search_ppo": ("settings_of", ["--quiet"]),
     "tune_laws": ("run_episodes", ["--quiet"]),
     "understand_leaders": ("watch", ["--quiet"]),
 }
