@@ -7,7 +7,14 @@ import numpy as np
 
 from flockenv.envs.observation import observation_entries
 
-__all__ = ["FEATURES", "FURTHER_FEATURES", "block_of", "features", "observed_features"]
+__all__ = [
+    "FEATURES",
+    "FELLOW_FEATURES",
+    "FURTHER_FEATURES",
+    "block_of",
+    "features",
+    "observed_features",
+]
 
 _OWN = ("radial_position", "outward_velocity", "clockwise_velocity", "forward_velocity")
 _ORDER = (
@@ -54,15 +61,15 @@ _FURTHER_ENTRIES = (
     "bw",
     "bw_duration",
 )
-_FELLOWS = ("fellows", "gap_ahead_cos", "gap_ahead_sin", "gap_behind_cos", "gap_behind_sin")
+FELLOW_FEATURES = ("fellows", "gap_ahead_cos", "gap_ahead_sin", "gap_behind_cos", "gap_behind_sin")
 
-FURTHER_FEATURES = (*_FURTHER_ENTRIES, *_FELLOWS)
+FURTHER_FEATURES = (*_FURTHER_ENTRIES, *FELLOW_FEATURES)
 """Features that a lean may have besides `FEATURES`, where the observation has their blocks.
 
 The first are entries of the blocks ``own`` and ``phase`` by their names there. The others are of
 the block ``fellow_leaders``: how many fellow leaders are observed, and cosine and sine of the
 angles along the ring to the next one ahead (clockwise) and behind, which are whole turns for a
-leader alone.
+leader alone (``FELLOW_FEATURES``).
 """
 
 _WALL = 0.6
@@ -70,7 +77,7 @@ _WALL = 0.6
 
 def block_of(feature: str) -> str:
     """Return the block of the observation that one of `FURTHER_FEATURES` needs."""
-    if feature in _FELLOWS:
+    if feature in FELLOW_FEATURES:
         return "fellow_leaders"
     return next(entry.block for entry in observation_entries() if entry.name == feature)
 
@@ -82,7 +89,7 @@ def observed_features(names: Sequence[str]) -> tuple[str, ...]:
     """
     if not {*_OWN, *_ORDER, "present"} <= {*names}:
         return ()
-    needed = {name: "fellow" if name in _FELLOWS else name for name in FURTHER_FEATURES}
+    needed = {name: "fellow" if name in FELLOW_FEATURES else name for name in FURTHER_FEATURES}
     return (*FEATURES, *(name for name, entry in needed.items() if entry in names))
 
 
@@ -117,8 +124,8 @@ def features(
     columns = [*own.values(), outer, *order, *_neighbor_sums(rows, names, arrays)]
     found = dict(zip(FEATURES, columns, strict=True))
     found |= {name: rows[..., names.index(name)] for name in _FURTHER_ENTRIES if name in wanted}
-    if any(name in _FELLOWS for name in wanted):
-        found |= dict(zip(_FELLOWS, _fellow_gaps(rows, names, arrays), strict=True))
+    if any(name in FELLOW_FEATURES for name in wanted):
+        found |= dict(zip(FELLOW_FEATURES, _fellow_gaps(rows, names, arrays), strict=True))
     return arrays.stack([found[name] for name in wanted], -1)
 
 

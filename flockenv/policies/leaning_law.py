@@ -15,6 +15,7 @@ from flockenv.policies.files import PROVENANCE, StoredPolicy
 from flockenv.policies.laws import DampedLaw
 from flockenv.policies.lean_features import (
     FEATURES,
+    FELLOW_FEATURES,
     FURTHER_FEATURES,
     block_of,
     features,
@@ -23,6 +24,7 @@ from flockenv.policies.lean_features import (
 
 __all__ = [
     "FEATURES",
+    "FELLOW_FEATURES",
     "FURTHER_FEATURES",
     "GAINS",
     "HiddenUnits",

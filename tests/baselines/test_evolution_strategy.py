@@ -11,7 +11,7 @@ import pytest
 import flockenv
 from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv.envs.observation import observation_entries
-from flockenv.policies import load
+from flockenv.policies import HiddenUnits, LeaningLaw, NetworkPolicy, load
 from flockenv.policies.pretrained import tuned_law
 
 TINY = [
@@ -28,17 +28,29 @@ TINY = [
 
 
 @pytest.mark.parametrize(
-    "hidden", [[], ["--hidden", "4"], ["--form", "leaning", "--sigma", "1", "--average", "0.3"]]
+    "hidden",
+    [
+        [],
+        ["--hidden", "4"],
+        ["--form", "leaning", "--sigma", "1", "--average", "0.3"],
+        ["--form", "nonlinear", "--hidden", "2", "--sigma", "1", "--fellow-leaders", "1"],
+    ],
 )
-def test_resumed_is_uninterrupted(script, tmp_path: Path, hidden: list[str]) -> None:
+@pytest.mark.parametrize("method", ["evolution-strategy", "lra-cma-es", "sep-cma-es"])
+def test_resumed_is_uninterrupted(script, tmp_path: Path, hidden: list[str], method: str) -> None:
     whole, parts = tmp_path / "whole", tmp_path / "parts"
+    hidden = [*hidden, "--method", method]
     script.main([*TINY, *hidden, "--generations", "3", "--out", str(whole)])
     script.main([*TINY, *hidden, "--generations", "1", "--out", str(parts)])
     script.main([*TINY, *hidden, "--generations", "3", "--out", str(parts)])
     one, other = load(whole / "policy.npz"), load(parts / "policy.npz")
-    size = len(observation_entries())
+    size = len(observation_entries(one.observation))
     rows = np.random.default_rng(0).uniform(-1, 1, (20, size)).astype(np.float32)
     np.testing.assert_array_equal(one.predict(rows)[0], other.predict(rows)[0])
+    assert one.digest == other.digest
+    states = [{**read_arrays(out / "state.npz")} for out in (whole, parts)]
+    for name in set(states[0]) - {"wall_s"}:
+        np.testing.assert_array_equal(states[0][name], states[1][name])
     # 3 generations, 6 candidates, one flock with 2 leaders, 10 steps.
     assert one.provenance["samples"] == str(3 * 6 * 2 * 10)
     assert one.provenance["command"].startswith("python baselines/evolution_strategy.py")
@@ -59,22 +71,34 @@ def test_candidates_steer_as_their_policies_do(script) -> None:
             np.testing.assert_allclose(rudders[candidate], expected, atol=2e-6)
 
 
-def test_leaning_candidates_steer_as_their_policies_do(script, tmp_path: Path) -> None:
-    options = ["--leaders", "2", "--control-hz", "2"]
+def options_of(script, **changes):
+    """Options as the command has them."""
+    given = {
+        "leaders": [2], "control_hz": 2.0, "seed": 0, "pool": "table-1", "boats": 8, "noise": 1.0,
+        "episode_s": 60.0, "reward": "signed_order", "liberal_steps": False, "set": [],
+        "tuned": True, "start": None, "scenario": [], "target": "random", "form": "leaning",
+        "hidden": [], "fellow_leaders": 0,
+    }  # fmt: skip
+    return script.argparse.Namespace(**{**given, **changes})
+
+
+@pytest.mark.parametrize(
+    ("changes", "size"),
+    [
+        ({}, 3 + 1 + 23),
+        ({"fellow_leaders": 2}, 3 + 1 + 28),
+        ({"form": "nonlinear", "hidden": [3]}, 3 + 1 + 29 + 3 * 31),
+        ({"form": "nonlinear", "hidden": [2], "fellow_leaders": 2}, 3 + 1 + 34 + 2 * 36),
+        ({"scenario": ["pool=500-boats", "target=alternate,leaders=3"]}, 3 + 1 + 23),
+    ],
+)
+def test_leaning_candidates_steer_as_their_policies_do(script, changes, size: int) -> None:
     random, seen = np.random.default_rng(0), []
-    script.main(
-        [*TINY, *options, "--form", "leaning", "--generations", "1", "--out", str(tmp_path)]
-    )
-    assert isinstance(load(tmp_path / "policy.npz"), flockenv.policies.LeaningLaw)
-    shape = script.leaning_shape(
-        script.argparse.Namespace(
-            leaders=[2], control_hz=2.0, seed=0, pool="table-1", boats=8, noise=1.0,
-            episode_s=60.0, reward="signed_order", liberal_steps=False, set=[],
-            tuned=True,
-        )
-    )  # fmt: skip
+    shape = script.form_of(options_of(script, **changes))
+    assert shape.size == size
     flat = random.standard_normal((4, shape.size))
-    rows = random.uniform(-1, 1, (4, 7, len(script.NAMES))).astype(np.float32)
+    width = len(observation_entries(shape.blocks))
+    rows = random.uniform(-1, 1, (4, 7, width)).astype(np.float32)
     rudders = shape.steering(flat)(rows)
     for candidate in range(4):
         policy = shape.policy(flat[candidate], {})
@@ -88,20 +112,66 @@ def test_leaning_candidates_steer_as_their_policies_do(script, tmp_path: Path) -
         initial.predict(rows)[0][..., 0], shape.initial.predict(rows)[0][..., 0], atol=1e-5
     )
     assert np.ptp(seen, axis=0).max() > 0.1
+    # Every number of the vector changes something, once hidden units have outputs.
+    many = random.uniform(-1, 1, (1, 200, width)).astype(np.float32)
+    # Slow enough that the damping of the spin does not exceed a full rudder.
+    many[..., [entry.name for entry in observation_entries()].index("clockwise_spin")] *= 0.02
+    base = shape.steering(np.full((1, shape.size), 0.3))(many)
+    for place in range(shape.size):
+        moved = np.full((1, shape.size), 0.3)
+        moved[0, place] = 1.0
+        assert not np.array_equal(shape.steering(moved)(many), base), place
 
 
-def test_it_climbs(script, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_search_starts_from_a_stored_law(script, tmp_path: Path) -> None:
+    random = np.random.default_rng(0)
+    weights = {"near": 0.3, "mean_sin_orientation": -0.4}
+    hidden = HiddenUnits({"near": [0.5, -0.3]}, [0.1, 0.2], [0.4, -0.3])
+    gains = {"gain": 0.6, "backward_gain": 1.5, "damping": 9.0}
+    path = tmp_path / "law.npz"
+    for units, changes in ((None, {}), (hidden, {"form": "nonlinear", "hidden": [3]})):
+        law = LeaningLaw(gains, 0.2, weights, hidden=units)
+        law.save(path)
+        for fellow_leaders in (0, 2):
+            more = {"tuned": False, "start": str(path), "fellow_leaders": fellow_leaders}
+            shape = script.form_of(options_of(script, **changes, **more))
+            found = shape.policy(shape.first(random), {})
+            width, size = len(observation_entries(shape.blocks)), len(observation_entries())
+            rows = random.uniform(-1, 1, (20, width)).astype(np.float32)
+            expected = law.predict(rows[:, :size])[0]
+            np.testing.assert_allclose(found.predict(rows)[0], expected, atol=1e-5)
+    with pytest.raises(flockenv.ParameterError, match="--form nonlinear --hidden 2"):
+        script.form_of(options_of(script, tuned=False, start=str(path)))
+    NetworkPolicy([np.zeros((67, 1))], [[0.0]]).save(path)
+    with pytest.raises(flockenv.ParameterError, match="not a leaning law"):
+        script.form_of(options_of(script, tuned=False, start=str(path)))
+
+
+def test_a_search_from_another_law_is_another_search(script, tmp_path: Path) -> None:
+    path = tmp_path / "law.npz"
+    arguments = [*TINY, "--form", "leaning", "--start", str(path), "--out", str(tmp_path / "out")]
+    gains = {"gain": 0.6, "backward_gain": 1.5, "damping": 9.0}
+    LeaningLaw(gains, 0.2, {}).save(path)
+    script.main([*arguments, "--generations", "1"])
+    script.main([*arguments, "--generations", "2"])
+    LeaningLaw(gains, 0.3, {}).save(path)
+    with pytest.raises(SystemExit, match="other options"):
+        script.main([*arguments, "--generations", "3"])
+
+
+@pytest.mark.parametrize("method", ["evolution-strategy", "lra-cma-es", "sep-cma-es"])
+def test_it_climbs(script, monkeypatch: pytest.MonkeyPatch, method: str) -> None:
     """On rewards that are known, -|w - 1|², instead of the flock's."""
     shape = script.Shape(3, [])
-    monkeypatch.setattr(script, "scores", lambda env, shape, w, seeds: -((w - 1) ** 2).sum(axis=1))
+    monkeypatch.setattr(script, "scores", lambda env, shape, w, *_: -((w - 1) ** 2).sum(axis=1))
     rates = {"sigma": 0.1, "rate": 0.1, "average": 1.0}
     parser = {"pairs": 8, "flocks": 1, "seed": 0, "engine": None, **rates}
     options = script.argparse.Namespace(**parser)
     zeros = np.zeros(shape.size)
-    state = script.State(0, zeros, zeros, zeros, zeros, 0.0, np.empty(0))
+    state = script.State(0, script.METHODS[method](zeros, options), zeros, 0.0, np.empty(0))
     for _ in range(60):
         state = script.next_generation(state, None, shape, options)
-    np.testing.assert_allclose(state.weights, 1.0, atol=0.25)
+    np.testing.assert_allclose(state.average, 1.0, atol=0.25)
 
 
 def test_the_flock_can_be_changed(script, tmp_path: Path, capsys) -> None:
@@ -152,6 +222,18 @@ def test_what_something_else_rules_is_not_set(
     [
         (["--form", "leaning", "--hidden", "8"], "--hidden is for --form network"),
         (["--tuned"], "--tuned is for --form leaning"),
+        (["--start", "law.npz"], "--start is for --form leaning"),
+        (
+            ["--form", "leaning", "--tuned", "--start", "law.npz"],
+            "--tuned and --start exclude each other",
+        ),
+        (["--form", "nonlinear", "--hidden", "4", "4"], "has one hidden layer"),
+        (["--form", "nonlinear", "--hidden", "0"], "are at least 1"),
+        (["--fellow-leaders", "65"], "--fellow-leaders is from 0 to 64"),
+        (["--flock-hours", "0"], "--flock-hours is positive"),
+        (["--noise", "1..0.5"], "invalid noise value: '1..0.5'"),
+        (["--target", "cw"], "invalid choice: 'cw'"),
+        (["--method", "cma"], "invalid choice: 'cma'"),
         (["--seed", "-1"], "--seed: -1 is not accepted: from 0 to 4294967295"),
         (["--seed", str(2**32)], "is not accepted: from 0 to 4294967295"),
     ],
