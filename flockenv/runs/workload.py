@@ -2,19 +2,18 @@
 
 import re
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from flockenv.errors import FlockError, ParameterError
-from flockenv.runs.spec import RunSpec
+from flockenv.runs.spec import RunSpec, execute
 from flockenv.runs.store import RunStore
-from flockenv.simulation import simulate
 
 __all__ = ["Shard", "Workload", "measure_workload"]
 
-_TRIALS = 6
+_TRIALS = 4
 _TRIAL_S = 60.0
 
 
@@ -94,7 +93,7 @@ class Workload:
 
 
 def measure_workload(specs: Iterable[RunSpec], store: RunStore) -> Workload:
-    """Return how much there is to be done, measured by trial runs of a few of the flocks.
+    """Return how much there is to be done, measured by trial runs of some of them.
 
     Parameters
     ----------
@@ -120,21 +119,35 @@ def measure_workload(specs: Iterable[RunSpec], store: RunStore) -> Workload:
 
 
 def _core_seconds(specs: Sequence[RunSpec]) -> float | None:
-    """Return the processor time of runs, at the rate of the trial whose flock is nearest in size.
+    """Return the processor time of runs; None if none of them could be tried.
 
-    Each rate is the processor time in s per unit of `RunSpec.cost`.
+    A run takes the rate of the trial with its protocol whose flock is nearest in size; without one,
+    the rate of the nearest trial of any protocol. Each rate is the processor time in s per unit of
+    `RunSpec.cost`.
     """
     if not specs:
         return 0.0
-    by_size = sorted(specs, key=_size)
-    places = np.linspace(0, len(by_size) - 1, _TRIALS).round().astype(int)
-    tried = {_size(spec): spec for spec in (by_size[place] for place in places)}
-    rates = {size: _rate(spec) for size, spec in tried.items()}
-    known = np.array([size for size, rate in rates.items() if rate is not None])
-    if not len(known):
+    tried = {(spec.protocol, _size(spec)): spec for spec in _trials(specs)}
+    found = {place: _rate(spec) for place, spec in tried.items()}
+    rates = {place: rate for place, rate in found.items() if rate is not None}
+    if not rates:
         return None
-    nearest = (known[abs(known - _size(spec)).argmin()] for spec in specs)
-    return sum(spec.cost * (rates[size] or 0.0) for spec, size in zip(specs, nearest, strict=True))
+
+    def rate(spec: RunSpec) -> float:
+        def distance(place: tuple[str, float]) -> tuple[bool, float]:
+            return place[0] != spec.protocol, abs(place[1] - _size(spec))
+
+        return rates[min(rates, key=distance)]
+
+    return sum(spec.cost * rate(spec) for spec in specs)
+
+
+def _trials(specs: Sequence[RunSpec]) -> Iterator[RunSpec]:
+    """Yield some runs of each protocol, from its smallest flock to its largest."""
+    for protocol in dict.fromkeys(spec.protocol for spec in specs):
+        by_size = sorted((spec for spec in specs if spec.protocol == protocol), key=_size)
+        places = np.linspace(0, len(by_size) - 1, _TRIALS).round().astype(int)
+        yield from (by_size[place] for place in places)
 
 
 def _size(spec: RunSpec) -> float:
@@ -145,7 +158,7 @@ def _rate(spec: RunSpec) -> float | None:
     trial = replace(spec, duration_s=min(_TRIAL_S, spec.duration_s))
     start = time.process_time()
     try:
-        simulate(trial.parameters, trial.seed, trial.duration_s, trial.sample_hz)
+        execute(trial)
     except FlockError:
         return None
     return (time.process_time() - start) / trial.cost

@@ -88,6 +88,17 @@ def test_each_run_takes_the_rate_of_the_trial_nearest_in_size(tmp_path, monkeypa
     assert work.core_hours * 3600 == pytest.approx(10 * 1.0 + 10 * 4.0)
 
 
+def test_each_run_takes_the_rate_of_a_trial_with_its_protocol(tmp_path, monkeypatch):
+    clock = iter([0.0, 1.0, 10.0, 14.0])
+    monkeypatch.setattr("time.process_time", lambda: next(clock))
+    specs = [
+        RunSpec(parameters=PARAMETERS, seed=0, duration_s=600.0, protocol=protocol)
+        for protocol in ("law", "learned (table-1)")
+    ]
+    work = measure_workload(specs, RunStore(tmp_path))
+    assert work.core_hours * 3600 == pytest.approx(10 * 1.0 + 10 * 4.0)
+
+
 def test_flocks_that_cannot_be_made_have_no_time(tmp_path):
     crowded = PARAMETERS.replace(n_boats=300, pool="table-1")
     work = measure_workload(
