@@ -7,6 +7,7 @@ from typing import Any, Protocol, Self
 import numpy as np
 
 from flockenv._io.extras import require
+from flockenv.errors import ParameterError
 
 DECAY_1, DECAY_2 = 0.9, 0.99
 
@@ -84,7 +85,7 @@ class EvolutionStrategy:
 
 
 class CovarianceAdaptation:
-    """CMA-ES of the package cmaes (extra `fit`). Its state is the scores that it was given.
+    """CMA-ES of the package cmaes (extra `fit`). A stored search is resumed from its scores.
 
     With `adapts_rates` its learning rates follow the signal-to-noise ratio (LRA-CMA-ES, Nomura,
     Akimoto and Ono, 2023). Without, the covariance is diagonal (sep-CMA-ES, Ros and Hansen, 2008),
@@ -113,6 +114,11 @@ class CovarianceAdaptation:
         found = cls(first, options)
         for scores in arrays["scores"]:
             found.learn(found.candidates(), scores)
+        if not np.allclose(found.mean, arrays["weights"], rtol=1e-6, atol=1e-9):
+            raise ParameterError(
+                "the stored scores do not lead to the stored mean: the search was stored with "
+                "another version of cmaes or NumPy, or another number of threads"
+            )
         return found
 
     def candidates(self) -> np.ndarray:
@@ -125,7 +131,8 @@ class CovarianceAdaptation:
         self.scores.append(np.asarray(scores))
 
     def arrays(self) -> dict[str, np.ndarray]:
-        return {"scores": np.array(self.scores).reshape(-1, self._optimizer.population_size)}
+        scores = np.array(self.scores).reshape(-1, self._optimizer.population_size)
+        return {"scores": scores, "weights": self.mean}
 
 
 class DiagonalCovarianceAdaptation(CovarianceAdaptation):

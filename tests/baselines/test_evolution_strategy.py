@@ -250,6 +250,15 @@ def test_the_last_seed(script, tmp_path: Path) -> None:
     script.main([*arguments, "--out", str(tmp_path)])
 
 
+def test_scores_that_lead_elsewhere_are_refused(script, tmp_path: Path) -> None:
+    arguments = [*TINY, "--method", "lra-cma-es", "--out", str(tmp_path), "--generations"]
+    script.main([*arguments, "1"])
+    arrays = {**read_arrays(tmp_path / "state.npz")}
+    write_arrays(tmp_path / "state.npz", {**arrays, "scores": -arrays["scores"]})
+    with pytest.raises(SystemExit, match="do not lead to the stored mean"):
+        script.main([*arguments, "2"])
+
+
 def test_how_many_are_held_out_is_no_other_search(script, tmp_path: Path) -> None:
     arguments = [*TINY, "--generations", "1", "--out", str(tmp_path)]
     script.main(arguments)
