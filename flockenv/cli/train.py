@@ -31,6 +31,17 @@ def train(
         float | None, typer.Option(help="When to stop: hours of all flocks together.")
     ] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="Number of the training run.")] = None,
+    seeds: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            help="Train with this many seeds in turn and compare them with the laws on held-out "
+            "seeds; the same command resumes.",
+        ),
+    ] = None,
+    episodes: Annotated[
+        int | None, typer.Option(min=2, help="With --seeds: held-out episodes per case. [512]")
+    ] = None,
     trust: TrustOption = False,
     out: Annotated[Path, typer.Option(help="Folder for the policy and the run.")] = Path(
         "results/train"
@@ -45,7 +56,8 @@ def train(
 
     Writes `best.npz`, the best policy by validation, which `flockenv compare --policy` takes,
     `last.npz`, `curve.csv`, `validations.csv`, `settings.toml`, a checkpoint and logs for
-    tensorboard. `docs/train.md` describes the TOML file.
+    tensorboard. `docs/train.md` describes the TOML file. With `--seeds N` it trains N times in
+    folders `seed-0` and so on, and writes `learning_curves.csv` and `.png` and `evaluation.csv`.
 
     Example: `flockenv train --set 'pools=["table-1"]' --set 'start=damped law' --samples 500000`
     """
@@ -56,14 +68,23 @@ def train(
             "--resume takes settings from the checkpoint; only --samples or --flock-hours may "
             "differ"
         )
+    if episodes is not None and seeds is None:
+        raise ParameterError("--episodes is not accepted without --seeds")
+    if seeds is not None and resume:
+        raise ParameterError("--resume is not accepted with --seeds: the same command resumes")
     if resume:
         wanted = training.stored_settings(out, samples, flock_hours)
     else:
         wanted = _settings(settings, change or [], samples, flock_hours, seed)
         check_folder(out)
-        refuse_overwriting(settings, "--settings", [out / "settings.toml"])
-        policies = [out / f"{name}.npz" for name in ("best", "last", "start")]
+        folders = [out / f"seed-{wanted.seed + each}" for each in range(seeds or 0)] or [out]
+        refuse_overwriting(settings, "--settings", [each / "settings.toml" for each in folders])
+        names = ("best.npz", "last.npz", "start.npz")
+        policies = [folder / name for folder in folders for name in names]
         refuse_overwriting(wanted.start, "start", policies)
+    if seeds is not None:
+        _train_seeds(wanted, out, seeds, episodes or 512, trust, as_json, quiet)
+        return
     with interruptible(lambda: _last_checkpoint(out)), progress_bar(quiet or as_json) as bar:
         task = bar.add_task("start", total=wanted.total_samples)
 
@@ -90,6 +111,38 @@ def train(
     for name, value in training.with_flock_hours(progress.validations, trained)[-1].items():
         say(f"{name}: {value:g}")
     say(f"Best mean signed order {progress.best_score:.3f}: {out / 'best.npz'}")
+
+
+def _train_seeds(
+    wanted: Any, out: Path, seeds: int, episodes: int, trust: bool, as_json: bool, quiet: bool
+) -> None:
+    from flockenv import training
+
+    command = printable(shlex.join(["flockenv", *sys.argv[1:]]))
+    resumes = f"What is finished is stored: the same command resumes from {out}"
+    with interruptible(lambda: resumes), progress_bar(quiet or as_json) as bar:
+        task = bar.add_task("start", total=1.0)
+        result = training.train_seeds(
+            wanted,
+            out,
+            seeds,
+            episodes=episodes,
+            command=command,
+            report=lambda words, done: bar.update(task, description=words, completed=done),
+            trust=trust,
+        )
+    last = result.trainings[-1]
+    hours = round(last.settings.flock_hours_at(last.progress.samples), 3)
+    if as_json:
+        rows = result.evaluation.to_dict("records")
+        print_json({"seeds": seeds, "flock_hours": hours, "evaluation": rows, "folder": str(out)})
+        return
+    say(f"{seeds} trainings of {hours:g} flock-hours, {episodes} held-out episodes per case")
+    for row in result.evaluation.to_dict("records"):
+        minus = f" minus {row['minus']}" if row["minus"] else ""
+        ends = f"{row['signed_order']:+.3f} [{row['low']:+.3f}, {row['high']:+.3f}]"
+        say(f"{row['case']}: {row['policy']}{minus}: {ends}")
+    say(f"Written to {out}")
 
 
 def _settings(

@@ -1,8 +1,8 @@
 """Intervals: of means of independent runs, of time averages, and of a straight line.
 
 Independent values have a BCa bootstrap (`mean_interval`, `paired_difference`), a percentile
-bootstrap (`mean_replicates`, `grouped_replicates`, then `interval`), or, where they are few,
-Student's interval.
+bootstrap (`mean_replicates`, `grouped_replicates`, `crossed_replicates`, then `interval`), or,
+where they are few, Student's interval.
 
 Samples of one run are correlated over seconds to minutes, and a run may stay in one state for all
 of its length while another run stays in another. So time averages have both resampled: runs out of
@@ -31,6 +31,7 @@ __all__ = [
     "block_places",
     "block_sums",
     "block_sums_resampled",
+    "crossed_replicates",
     "fit_line",
     "grouped_replicates",
     "interval",
@@ -277,6 +278,32 @@ def grouped_replicates(
     for _ in range(RESAMPLES):
         values.append(statistic(np.concatenate([rng.choice(rows, len(rows)) for rows in groups])))
     return np.array(values)
+
+
+def crossed_replicates(values: NDArray[np.float64], seed: int = 0) -> NDArray[np.float64]:
+    """Return the mean of a table as it is, then with rows and columns resampled.
+
+    Rows may be trainings with different seeds and columns the flocks that all of them are judged
+    by: rows are drawn out of the rows, and apart from them columns out of the columns, since a
+    flock that is hard is so for all rows. With few rows the interval is too narrow.
+
+    Parameters
+    ----------
+    values
+        Shape (rows, columns).
+    seed
+        Of the draws.
+
+    Returns
+    -------
+    float64 array, shape (RESAMPLES + 1,)
+        As `interval` takes it.
+    """
+    rng, shares = np.random.default_rng(seed), []
+    for count in values.shape:
+        shares.append(rng.multinomial(count, np.full(count, 1 / count), RESAMPLES) / count)
+    rows, columns = shares
+    return np.append(values.mean(), ((rows @ values) * columns).sum(axis=1))
 
 
 def student_interval(values: NDArray[np.float64]) -> tuple[float, float, float]:

@@ -10,11 +10,13 @@ from flockenv.training.checkpoint import Progress
 from flockenv.training.cloning import clone_law
 from flockenv.training.ppo import TrainingResult, resume, stored_settings, train
 from flockenv.training.rollback_point import with_flock_hours
+from flockenv.training.seeds import SeedsResult, train_seeds
 from flockenv.training.settings import TrainingError, TrainingSettings
 
 __all__ = [
     "LAWS",
     "Progress",
+    "SeedsResult",
     "TrainingError",
     "TrainingResult",
     "TrainingSettings",
@@ -22,5 +24,6 @@ __all__ = [
     "resume",
     "stored_settings",
     "train",
+    "train_seeds",
     "with_flock_hours",
 ]

@@ -11,7 +11,7 @@ from flockenv.policies.base import LeaderPolicy
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.training.settings import TrainingSettings
 
-__all__ = ["validation_episodes", "validation_names", "validation_scores"]
+__all__ = ["validation_episodes", "validation_flocks", "validation_names", "validation_scores"]
 
 
 def validation_scores(policy: LeaderPolicy, settings: TrainingSettings) -> dict[str, float]:
@@ -47,7 +47,7 @@ def validation_episodes(
     options = {**settings.options, "control_hz": settings.validation_hz}
     options = {name: each for name, each in options.items() if name not in settings.decisions}
     episodes = {}
-    for name, parameters in _flocks(settings):
+    for name, parameters in validation_flocks(settings):
         policy, duration_s = policy_of(str(parameters.pool)), settings.validation_s
         found = run_episodes(parameters, policy, seeds, duration_s, options=options)
         episodes[name] = found["signed_order"]
@@ -56,10 +56,11 @@ def validation_episodes(
 
 def validation_names(settings: TrainingSettings) -> list[str]:
     """Return the names of the scores, in order."""
-    return [name for name, _ in _flocks(settings)]
+    return [name for name, _ in validation_flocks(settings)]
 
 
-def _flocks(settings: TrainingSettings) -> Iterator[tuple[str, FlockParameters]]:
+def validation_flocks(settings: TrainingSettings) -> Iterator[tuple[str, FlockParameters]]:
+    """Yield the name and the parameters of each flock that policies are judged in."""
     preset = FlockParameters.preset(settings.preset).replace(n_boats=settings.n_boats)
     # Mirrored, both directions are one task.
     targets = ("cw",) if settings.mirror_to_target else ("cw", "ccw")

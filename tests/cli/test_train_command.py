@@ -55,6 +55,36 @@ def test_it_trains_and_resumes(cli, tiny: str, tmp_path: Path) -> None:
     assert "best.npz" in more.stdout
 
 
+def test_several_seeds_and_a_budget_in_flock_hours(
+    cli, tiny: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("flockenv.training.seeds._EPISODE_S", 5.0)
+    out = tmp_path / "runs"
+    # Two flocks for 16 s.
+    hours = str(2 * 16 / 3600)
+    arguments = ["--settings", tiny, "--flock-hours", hours, "--seeds", "2", "--episodes", "2"]
+    done = cli("train", *arguments, "--out", str(out), "--json")
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert found["flock_hours"] == round(2 * 16 / 3600, 3)
+    policies = {row["policy"] for row in found["evaluation"]}
+    assert {"seed 0", "seed 1", "all seeds", "tuned damped law"} < policies
+    assert load(out / "seed-1" / "best.npz").provenance["seed"] == "1"
+    again = cli("train", *arguments, "--out", str(out), "--quiet")
+    assert again.returncode == 0, again.stderr
+    assert "500-boats k=2: all seeds minus tuned damped law: " in again.stdout
+    for wrong, words in (
+        (["--seeds", "2", "--resume"], "the same command resumes"),
+        (["--episodes", "4"], "--episodes is not accepted without --seeds"),
+        (["--settings", tiny, "--flock-hours", "1", "--samples", "9"], "one or the other"),
+        (["--settings", tiny, "--flock-hours", "0"], "flock_hours = 0.0 is not accepted"),
+    ):
+        refused = cli("train", *wrong, "--out", str(tmp_path / "wrong"))
+        assert refused.returncode == 2
+        assert words in refused.stderr
+    assert not (tmp_path / "wrong").exists()
+
+
 def test_errors_are_one_line_with_exit_code_2(cli, tiny: str, tmp_path: Path) -> None:
     (tmp_path / "torn.toml").write_text("samples = ")
     (tmp_path / "misspelt.toml").write_text("sample = 3")

@@ -7,7 +7,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from flockenv.statistics.intervals import fit_line, mean_interval, paired_difference, summarize
+from flockenv.statistics.intervals import (
+    crossed_replicates,
+    fit_line,
+    interval,
+    mean_interval,
+    paired_difference,
+    summarize,
+)
 
 
 def test_a_line_through_three_points() -> None:
@@ -94,3 +101,21 @@ def test_ratios_stand_where_what_divides_is_above_zero() -> None:
     assert (same.ratio, same.ratio_low, same.ratio_high) == (1.0, 1.0, 1.0)
     assert np.isnan(paired_difference(ours, theirs - 0.4).ratio)
     assert np.isnan(paired_difference([1.0], [1.0]).ratio)
+
+
+def test_crossed_intervals_hold_where_rows_and_columns_vary() -> None:
+    rng = np.random.default_rng(2)
+    covered = 0
+    for _ in range(100):
+        table = 2.0 + rng.normal(size=(20, 1)) + rng.normal(size=30) + rng.normal(size=(20, 30))
+        mean, low, high = interval(crossed_replicates(table))
+        assert mean == pytest.approx(table.mean())
+        covered += low <= 2.0 <= high
+    # Binomial with n = 100 and 0.95: 86 or fewer has a chance of about 5e-4.
+    assert covered >= 87
+    # Equal rows leave the columns' spread alone, and the other way round.
+    columns = rng.normal(size=200)
+    replicates = crossed_replicates(np.tile(columns, (3, 1)))
+    assert replicates[1:].std() == pytest.approx(columns.std() / 200**0.5, rel=0.15)
+    replicates = crossed_replicates(np.tile(columns[:, None], (1, 7)))
+    assert replicates[1:].std() == pytest.approx(columns.std() / 200**0.5, rel=0.15)
