@@ -174,15 +174,19 @@ def load_state(path: Path, options: argparse.Namespace, first: np.ndarray) -> St
     arrays = read_arrays(path)
     try:
         stored = identity(json.loads(str(arrays["identity"])))
+        numbers = {name: arrays[name] for name in ("generation", "average", "wall_s", "curve")}
     except (KeyError, TypeError, ValueError) as error:
         raise flockenv.ParameterError(f"{path} is no state of a search") from error
     if stored != reported(options):
         raise flockenv.ParameterError(
             f"{path} is of a search with other options: name another folder with --out"
         )
-    method = METHODS[options.method].resumed(first, options, arrays)
-    wall_s, curve = float(arrays["wall_s"]), arrays["curve"]
-    return State(int(arrays["generation"]), method, arrays["average"], wall_s, curve)
+    try:
+        method = METHODS[options.method].resumed(first, options, arrays)
+    except KeyError as error:
+        raise flockenv.ParameterError(f"{path} is no state of a search: no {error}") from error
+    generation, wall_s = int(numbers["generation"]), float(numbers["wall_s"])
+    return State(generation, method, numbers["average"], wall_s, numbers["curve"])
 
 
 def save_state(path: Path, state: State, options: argparse.Namespace, turns: Turns) -> None:

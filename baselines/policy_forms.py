@@ -9,6 +9,7 @@ import numpy as np
 import flockenv
 from flockenv.envs.observation import observation_entries
 from flockenv.policies import DampedLaw, HiddenUnits, LeaningLaw, NetworkPolicy
+from flockenv.policies.laws import stacked_rudders
 from flockenv.policies.leaning_law import (
     FEATURES,
     FELLOW_FEATURES,
@@ -195,8 +196,7 @@ class LeaningShape:
 
         def steer(rows: np.ndarray) -> np.ndarray:
             turned = leaned(rows, bias, weights, self.names, self.wanted, units)
-            pairs = zip(laws, turned, strict=True)
-            return np.stack([law.predict(each)[0][:, 0] for law, each in pairs])
+            return stacked_rudders(laws, turned)
 
         return steer
 

@@ -1,7 +1,7 @@
 """Policies that need no learning. Their formulas live in the Rust core."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,14 @@ from numpy.typing import NDArray
 from flockenv import _core
 from flockenv.policies.base import RowPolicy
 
-__all__ = ["LAWS", "DampedLaw", "ObservedPolicy", "SignCorrectedLaw", "SteeringLaw"]
+__all__ = [
+    "LAWS",
+    "DampedLaw",
+    "ObservedPolicy",
+    "SignCorrectedLaw",
+    "SteeringLaw",
+    "stacked_rudders",
+]
 
 
 class ObservedPolicy(RowPolicy):
@@ -134,6 +141,29 @@ class DampedLaw(ObservedPolicy):
     ) -> None:
         gains = {"gain": gain, "backward_gain": backward_gain, "damping": damping}
         super().__init__(gains, observation, mirror_to_target)
+
+
+def stacked_rudders(
+    laws: Sequence[ObservedPolicy], rows: NDArray[np.float32]
+) -> NDArray[np.float32]:
+    """Return the rudders of several laws, each for observations of its own.
+
+    Parameters
+    ----------
+    laws
+        The laws.
+    rows
+        Shape (laws, leaders, observation size), float32.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (laws, leaders), float32: what `predict` of each law returns.
+    """
+    rudders = np.empty(rows.shape[:2], np.float32)
+    for place, (law, each) in enumerate(zip(laws, rows, strict=True)):
+        rudders[place] = law._core.rudders(each)
+    return rudders
 
 
 LAWS: Mapping[str, Callable[..., ObservedPolicy]] = {

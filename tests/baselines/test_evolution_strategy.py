@@ -254,9 +254,15 @@ def test_scores_that_lead_elsewhere_are_refused(script, tmp_path: Path) -> None:
     arguments = [*TINY, "--method", "lra-cma-es", "--out", str(tmp_path), "--generations"]
     script.main([*arguments, "1"])
     arrays = {**read_arrays(tmp_path / "state.npz")}
-    write_arrays(tmp_path / "state.npz", {**arrays, "scores": -arrays["scores"]})
-    with pytest.raises(SystemExit, match="do not lead to the stored mean"):
-        script.main([*arguments, "2"])
+    for change, words in (
+        ({"scores": -arrays["scores"]}, "do not lead to the stored mean"),
+        ({"scores": None}, "is no state of a search: no 'scores'"),
+        ({"curve": None}, "is no state of a search"),
+    ):
+        found = {name: each for name, each in {**arrays, **change}.items() if each is not None}
+        write_arrays(tmp_path / "state.npz", found)
+        with pytest.raises(SystemExit, match=words):
+            script.main([*arguments, "2"])
 
 
 def test_how_many_are_held_out_is_no_other_search(script, tmp_path: Path) -> None:
