@@ -53,8 +53,8 @@ nitpick_ignore_regex = [
     (
         r"py:.*",
         r"(ArrayLike|DTypeLike|NDArray|np|numpy|pd|pandas|gymnasium|pettingzoo|collections|typing|"
-        r"os|pathlib|threading|xarray|stable_baselines3|matplotlib|Axes|Path|PathLike|Any|Self|Mapping|"
-        r"Sequence|Callable|Iterator|Iterable|Generator)(\..*)?",
+        r"os|pathlib|threading|torch|xarray|stable_baselines3|matplotlib|Axes|Path|PathLike|Any|"
+        r"Self|Mapping|Sequence|Callable|Iterator|Iterable|Generator)(\..*)?",
     ),
     # What DTypeLike is short for.
     (r"py:.*", r"type\[.*"),
