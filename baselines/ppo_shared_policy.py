@@ -80,7 +80,8 @@ def main(arguments: list[str] | None = None) -> None:
             given = sys.argv[1:] if arguments is None else arguments
             command = shlex.join(["python", "baselines/ppo_shared_policy.py", *given])
             result = training.train(settings, options.out, command=command, report=report)
-    for name, value in result.progress.validations[-1].items():
+    rows = training.with_flock_hours(result.progress.validations, result.settings)
+    for name, value in rows[-1].items():
         print(f"\n{name}: {value:g}", end="")
     print(f"\nwritten to {options.out / 'best.npz'}")
 
