@@ -233,9 +233,13 @@ def search(options: argparse.Namespace, command: str) -> NetworkPolicy | Leaning
             write_curve(options.out / "curve.csv", state.curve, turns)
             words = f"mean reward of the candidates {state.curve[-1]:.3f}"
             progress.update(task, description=words, completed=state.generation)
-    samples = turns.samples(state.generation)
-    provenance = provenance_of(command, seed=options.seed, samples=samples, wall_s=state.wall_s)
-    provenance["flock_hours"] = f"{turns.flock_hours(state.generation):.1f}"
+    provenance = provenance_of(
+        command,
+        seed=options.seed,
+        samples=turns.samples(state.generation),
+        wall_s=state.wall_s,
+        flock_hours=turns.flock_hours(state.generation),
+    )
     policy = shape.policy(state.average, provenance)
     policy.save(options.out / "policy.npz")
     return policy

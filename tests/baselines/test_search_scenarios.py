@@ -116,7 +116,7 @@ def test_a_mixed_search_ends_with_its_flock_hours(search, tmp_path: Path, capsys
     assert table["pool"].tolist() == ["table-1", "500-boats"]
     assert table["target"].tolist() == ["random", "alternate"]
     assert table["flock_hours"].tolist() == pytest.approx([16 / 3600, 48 / 3600], abs=1e-4)
-    assert load(tmp_path / "policy.npz").provenance["flock_hours"] == "0.0"
+    assert load(tmp_path / "policy.npz").provenance["flock_hours"] == f"{expected:.6g}"
     printed = capsys.readouterr().out
     assert "pool=500-boats,boats=6,leaders=1,noise=0.3,target=alternate,episode-s=8" in printed
     # More flock-hours continue it, here by a generation with one leader.
