@@ -58,7 +58,7 @@ def test_a_table_of_trials_with_the_best_ones_settings(script, tmp_path: Path) -
 
 def test_pools_that_are_not_accepted_leave_nothing(script, tmp_path: Path) -> None:
     for wrong in (["--pools", "bath"], ["--leaders", "9"], ["--flock-hours", "0"]):
-        with pytest.raises(SystemExit, match="^Error: .* is not accepted"):
+        with pytest.raises(SystemExit, match=r"^Error: .* is not accepted"):
             script.main([*QUICK, *wrong, "--out", str(tmp_path / "search")])
     assert not (tmp_path / "search").exists()
 
