@@ -1,31 +1,91 @@
-"""The report of `flockenv fit`: search, finals, residuals on held-out seeds, files."""
+"""The report of `flockenv fit`: search, front, finalists, residuals on held-out seeds, files."""
 
+import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
 import tomli_w
 from rich.table import Table
 
 from flockenv import _core
-from flockenv._io.atomic_write import write_csv, write_text
+from flockenv._io.atomic_write import atomic_write, write_csv, write_text
 from flockenv._io.extras import require
 from flockenv._io.locks import held
-from flockenv.calibration.search import Fit, Trial, residuals, run_flocks
-from flockenv.calibration.targets import NOISE_S, TARGETS
+from flockenv.calibration.figure import save_front
+from flockenv.calibration.flock_runs import (
+    JUDGED,
+    QUANTITIES,
+    SEARCHED,
+    FlockRuns,
+    run_flocks,
+    single_boat,
+)
+from flockenv.calibration.search import Fit, Trial
+from flockenv.calibration.targets import GROUPS, MISFITS, TARGETS, measure, misfits
+from flockenv.calibration.tradeoffs import (
+    Landscape,
+    finalists,
+    front_table,
+    landscape,
+    pair_table,
+)
+from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.runs.seeds import MODEL_SEEDS
+from flockenv.statistics.intervals import percentile_ends
 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["FitReport", "check", "report", "work"]
+__all__ = ["Effort", "FitReport", "check", "check_hours", "report", "residuals"]
 
-VERIFIED_DT_S = 0.02
-"""Substep of the runs on held-out seeds."""
+JUDGED_DT_S = 0.02
+"""Substep of the runs on held-out seeds, without relinearizations: that of the presets."""
 
-_SHOWN = ("target", "source", "paper", "fitted", "95 %", "in range", "best seen")
+_RESAMPLES = 200
+_FIRST_FINAL = 10_000
+"""Where the finalists' seeds start in the range "calibration", beyond those of trials."""
+
+_SHOWN = ("target", "source", "paper", "fitted", "95 %", "in range")
+
+Progress = Callable[[str, float], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """What follows the search.
+
+    Attributes
+    ----------
+    repetitions : int
+        Runs of each cell of `JUDGED` by a finalist.
+    judged : int
+        Finalists that are measured on held-out seeds.
+    held_out : int
+        Runs of each cell on held-out seeds, by each of them and by the parameters that the fit
+        started from.
+    """
+
+    repetitions: int = 8
+    judged: int = 3
+    held_out: int = 24
+
+    def __post_init__(self) -> None:
+        for name, value in asdict(self).items():
+            if value < 1:
+                raise ParameterError(f"{name} = {value} is not accepted: at least 1")
+
+    def flock_hours(self, fit: Fit) -> dict[str, float]:
+        """Return the largest simulated time of each part of a fit, in hours."""
+        finals = len(fit.pools) * (4 + len(GROUPS)) * self.repetitions
+        return {
+            "search": fit.trials * SEARCHED.flock_hours,
+            "finalists": finals * JUDGED.flock_hours,
+            "held-out seeds": (self.judged + 1) * check_hours(self.held_out),
+        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,11 +95,9 @@ class FitReport:
     Attributes
     ----------
     parameters : FlockParameters
-        The fitted parameters.
+        The best finalist's: the most targets in range on held-out seeds, then the least misfit.
     residuals : pandas.DataFrame
-        One row per target, of held-out seeds; see `calibration.search.residuals`. ``best_seen``
-        is the value of the trial nearest to this one target, on that trial's own few seeds; no
-        trial is that near to all targets together.
+        Its targets on held-out seeds, a row each; see `residuals`.
     """
 
     parameters: FlockParameters
@@ -49,120 +107,255 @@ class FitReport:
         """Return the residuals as a table for the terminal."""
         table = Table(*_SHOWN, title_justify="left")
         for row in self.residuals.to_dict("records"):
-            low, high = row["value_low"], row["value_high"]
-            best = row.get("best_seen")
             table.add_row(
                 row["target"],
                 row["source"],
                 f"{row['target_low']:.3g} to {row['target_high']:.3g}",
                 f"{row['value']:.3g}",
-                f"{low:.3g} to {high:.3g}",
+                f"{row['value_low']:.3g} to {row['value_high']:.3g}",
                 "yes" if row["in_range"] else "[bold]no[/]",
-                "" if best is None else f"{best:.3g}",
             )
         return table
 
 
-def work(fit: Fit, held_out: int) -> int:
-    """Return the number of steps that `report` reports: trials and finalists."""
-    return fit.trials + fit.finalists + 1 + held_out
+def report(fit: Fit, effort: Effort, folder: Path, progress: Progress) -> FitReport:
+    """Fit, run the finalists again, measure the best on held-out seeds, and write the files.
 
-
-def report(
-    fit: Fit, held_out: int, folder: Path, progress: Callable[[str, float], None]
-) -> FitReport:
-    """Fit, measure the chosen constants on held-out seeds, and write the files.
-
-    Writes ``fit.toml`` (the options), ``trials.csv`` (during the search; an interrupted fit resumes
-    from it), ``parameters.toml`` (the fitted ones) and ``residuals.csv``.
+    Writes ``fit.toml`` (the options), ``trials.csv`` (what the runs of each trial measured),
+    ``targets.csv`` (each trial's targets and misfits), ``front.csv`` and ``front.png`` (the Pareto
+    front), ``pairs.csv`` (targets in pairs), ``finalists.csv``, ``judged.csv`` (targets of the best
+    finalists and of the parameters that the fit started from, on held-out seeds),
+    ``residuals.csv`` and ``parameters.toml`` (the best one's). Runs of finalists are kept in
+    ``runs``. A killed fit resumes with the same options and makes the same files.
 
     Parameters
     ----------
-    fit
-        The search.
-    held_out
-        Seeds, of the range ``"calibration check"`` of `flockenv.runs.seeds.MODEL_SEEDS`.
+    fit, effort
+        The search, and what follows it. Held-out seeds are of the range ``"calibration check"`` of
+        `flockenv.runs.seeds.MODEL_SEEDS`.
     folder
         Where to write.
     progress
-        Called with the work that was done, in words, and its steps of `work`.
+        Called with the work that is done, in words, and the flock-hours since the last call.
 
     Raises
     ------
     ParameterError
-        If the folder holds another fit's log.
+        If the folder holds another fit's options or log.
     MissingExtraError
         Without the extra ``fit``; nothing is written then.
     InUseError
         If another fit is at work in the folder.
     """
-    # Both are required before hours of trials.
-    for package in ("cmaes", "pandas"):
+    # All are required before hours of trials.
+    for package in ("matplotlib", "pandas", "scipy", "sklearn"):
         require(package, "fit")
     folder.mkdir(parents=True, exist_ok=True)
     with held(folder / ".lock", str(folder)):
-        return _reported(fit, held_out, folder, progress)
+        return _reported(fit, effort, folder, progress)
 
 
-def _reported(
-    fit: Fit, held_out: int, folder: Path, progress: Callable[[str, float], None]
-) -> FitReport:
-    options = asdict(fit) | {"parameters": fit.parameters.to_dict(), "held_out": held_out}
-    header = f"# flockenv {_core.__version__}\n"
-    write_text(folder / "fit.toml", header + tomli_w.dumps(options))
+def _reported(fit: Fit, effort: Effort, folder: Path, progress: Progress) -> FitReport:
+    _store_options(fit, effort, folder / "fit.toml")
     trials = []
-    best = float("inf")
     for trial in fit.search(folder / "trials.csv"):
         trials.append(trial)
-        best = min(best, trial.loss)
-        progress(f"trial {len(trials)}, least loss {best:.2f}", 1)
-    finals = fit.finals(trials, lambda: progress("finalists", 1))
-    parameters = fit.parameters.replace(**_rounded(finals[0])).replace(dt_s=VERIFIED_DT_S)
-    seeds = MODEL_SEEDS["calibration check"].seeds(held_out)
-    table = _residuals(parameters, seeds, fit.jobs, progress)
-    table["best_seen"] = _best_seen(fit, trials)
-    write_text(folder / "parameters.toml", header + parameters.to_toml())
+        progress(f"trial {len(trials)}", SEARCHED.flock_hours)
+    write_csv(folder / "targets.csv", _target_table(fit, trials))
+    views = [landscape(fit, trials, pool) for pool in fit.pools]
+    front = front_table(fit, views)
+    write_csv(folder / "front.csv", front.round(4))
+    write_csv(folder / "pairs.csv", pair_table(views).round(4))
+    finals = _finals(fit, effort, views, folder / "runs", progress)
+    write_csv(folder / "finalists.csv", finals.round(4))
+    with atomic_write(folder / "front.png") as file:
+        save_front(file, views, finals)
+    judged = _judged(fit, effort, finals, folder / "runs", progress)
+    write_csv(folder / "judged.csv", judged.round(4))
+    # The parameters that the fit started from are the last ones.
+    named = judged[judged["name"] != "start"]
+    ranking = named.groupby("name").agg(met=("in_range", "sum"), misfit=("penalty", "mean"))
+    best = str(ranking.sort_values(["met", "misfit"], ascending=[False, True]).index[0])
+    place = int(best.removeprefix("finalist "))
+    parameters = _final_parameters(fit, finals, place)
+    parameters = parameters.replace(dt_s=JUDGED_DT_S, relinearizations=0)
+    table = named[named["name"] == best].drop(columns=["name", "penalty"]).reset_index(drop=True)
+    write_text(
+        folder / "parameters.toml", f"# flockenv {_core.__version__}\n" + parameters.to_toml()
+    )
     write_csv(folder / "residuals.csv", table.round(4))
     return FitReport(parameters, table)
 
 
-def check(
-    parameters: FlockParameters, held_out: int, jobs: int, progress: Callable[[str, float], None]
-) -> FitReport:
-    """Measure every target of a flock on held-out seeds, without a fit: `held_out` steps of work.
+def _store_options(fit: Fit, effort: Effort, path: Path) -> None:
+    options = asdict(fit) | {"parameters": fit.parameters.to_dict()} | asdict(effort)
+    # How many runs are made at a time changes nothing.
+    del options["jobs"]
+    text = f"# flockenv {_core.__version__}\n" + tomli_w.dumps(options)
+    if path.exists() and path.read_text(encoding="utf-8") != text:
+        raise ParameterError(
+            f"{path} has other options or another version: repeat those, or name another --out"
+        )
+    write_text(path, text)
+
+
+def _target_table(fit: Fit, trials: Sequence[Trial]) -> "pd.DataFrame":
+    pandas = require("pandas", "fit")
+    rows = []
+    for trial in trials:
+        values = trial.values
+        numbers = {name: float(f"{value:.4g}") for name, value in values.items()}
+        constants = fit.constants_at(trial.places)
+        rows.append({"draw": trial.draw, "pool": trial.pool, **constants, **numbers})
+    frame: pd.DataFrame = pandas.DataFrame(rows)
+    return frame
+
+
+def _finals(
+    fit: Fit, effort: Effort, views: Sequence[Landscape], folder: Path, progress: Progress
+) -> "pd.DataFrame":
+    """Run the finalists of each pool again, on other seeds than the trials.
+
+    Columns: ``pool``, ``reason``, the places and constants, the targets, their misfits by group and
+    how many are in range.
+    """
+    pandas = require("pandas", "fit")
+    count = effort.repetitions * len(JUDGED.cells)
+    seeds = MODEL_SEEDS["calibration"].seeds(count, start=_FIRST_FINAL)
+    rows = []
+    for view in views:
+        for reason, places in finalists(fit, view):
+            parameters = fit.parameters_at(places).replace(pool=view.pool)
+            runs = _stored(parameters, seeds, fit.jobs, folder, "finalists", progress)
+            values = measure(single_boat(parameters), runs)
+            rows.append(
+                {
+                    "pool": view.pool,
+                    "reason": reason,
+                    **{f"at_{name}": at for name, at in zip(fit.free, places, strict=True)},
+                    **fit.constants_at(places),
+                    **values,
+                    **dict(zip(MISFITS, misfits(values).tolist(), strict=True)),
+                    "met": sum(target.is_in_range(values[target.key]) for target in TARGETS),
+                }
+            )
+    frame: pd.DataFrame = pandas.DataFrame(rows)
+    return frame
+
+
+def _final_parameters(fit: Fit, finals: "pd.DataFrame", place: int) -> FlockParameters:
+    row = finals.iloc[place]
+    places = [float(row[f"at_{name}"]) for name in fit.free]
+    return fit.parameters_at(places).replace(pool=str(row["pool"]))
+
+
+def _judged(
+    fit: Fit, effort: Effort, finals: "pd.DataFrame", folder: Path, progress: Progress
+) -> "pd.DataFrame":
+    """Measure the best finalists, and where the fit started from, on held-out seeds."""
+    pandas = require("pandas", "fit")
+    ranked = finals.assign(total=finals[list(MISFITS)].sum(axis=1))
+    ranked = ranked.sort_values(["met", "total"], ascending=[False, True]).head(effort.judged)
+    sets = {f"finalist {place}": _final_parameters(fit, finals, place) for place in ranked.index}
+    sets["start"] = fit.parameters
+    tables = []
+    for name, parameters in sets.items():
+        table = _residuals_of(parameters, effort.held_out, fit.jobs, folder, progress)
+        tables.append(table.assign(name=name))
+    frame: pd.DataFrame = pandas.concat(tables, ignore_index=True)
+    return frame
+
+
+def _residuals_of(
+    parameters: FlockParameters, held_out: int, jobs: int, folder: Path | None, progress: Progress
+) -> "pd.DataFrame":
+    parameters = parameters.replace(dt_s=JUDGED_DT_S, relinearizations=0)
+    seeds = MODEL_SEEDS["calibration check"].seeds(held_out * len(JUDGED.cells))
+    runs = _stored(parameters, seeds, jobs, folder, "held-out seeds", progress)
+    return residuals(parameters, runs)
+
+
+def check_hours(held_out: int) -> float:
+    """Return the simulated time of `check` in hours."""
+    return held_out * JUDGED.flock_hours
+
+
+def check(parameters: FlockParameters, held_out: int, jobs: int, progress: Progress) -> FitReport:
+    """Measure every target of a flock on held-out seeds, without a fit.
 
     Raises
     ------
     MissingExtraError
-        Without pandas, of the extra ``fit``; nothing is run then.
+        Without pandas and SciPy, of the extra ``fit``; nothing is run then.
     """
-    require("pandas", "fit")
-    seeds = MODEL_SEEDS["calibration check"].seeds(held_out)
-    return FitReport(parameters, _residuals(parameters, seeds, jobs, progress))
+    for package in ("pandas", "scipy"):
+        require(package, "fit")
+    table = _residuals_of(parameters, held_out, jobs, None, progress)
+    return FitReport(parameters, table.drop(columns="penalty"))
 
 
-def _residuals(
+def _stored(
     parameters: FlockParameters,
     seeds: Sequence[int],
     jobs: int,
-    progress: Callable[[str, float], None],
-) -> "pd.DataFrame":
-    a_run = 1 / sum(map(len, NOISE_S.values()))
-    runs = run_flocks(parameters, seeds, NOISE_S, jobs, lambda: progress("held-out seeds", a_run))
-    return residuals(parameters, runs)
+    folder: Path | None,
+    words: str,
+    progress: Progress,
+) -> FlockRuns:
+    """Run the design `JUDGED`, or read it from the folder if it has been run."""
+    shape = (len(JUDGED.cells), len(JUDGED.seeds(seeds)), len(QUANTITIES))
+    hours = JUDGED.flock_hours * shape[1]
+    of = f"{parameters.to_toml()}{seeds} {JUDGED} {QUANTITIES}"
+    path = folder and folder / f"{hashlib.sha256(of.encode()).hexdigest()[:16]}.npy"
+    if path and path.exists():
+        values = np.load(path, allow_pickle=False)
+        if values.shape != shape:
+            raise ParameterError(f"{path} holds no runs of this fit: remove it")
+        progress(words, hours)
+        return FlockRuns(JUDGED, values)
+    a_run = hours / (shape[0] * shape[1])
+    runs = run_flocks(parameters, JUDGED, seeds, jobs, lambda: progress(words, a_run))
+    if path:
+        path.parent.mkdir(exist_ok=True)
+        with atomic_write(path) as file:
+            np.save(file, runs.values, allow_pickle=False)
+    return runs
 
 
-def _best_seen(fit: Fit, trials: Sequence[Trial]) -> list[float]:
-    """Return for each target the value of the trial nearest to it."""
-    with_flocks = [trial for trial in trials if trial.loss < fit.HOPELESS]
-    if not with_flocks:
-        return [float("nan")] * len(TARGETS)
-    return [
-        min((trial.values[target.key] for trial in with_flocks), key=target.residual)
-        for target in TARGETS
+def residuals(parameters: FlockParameters, runs: FlockRuns) -> "pd.DataFrame":
+    """Return each target with its range, its value and interval, and whether it is in range.
+
+    Intervals are percentiles of a bootstrap over repetitions, at 95 %. A target is in range if its
+    value lies in its range, whatever its interval.
+    """
+    pandas = require("pandas", "fit")
+    boat = single_boat(parameters)
+    values = measure(boat, runs)
+    rng = np.random.default_rng(0)
+    drawn = [
+        measure(boat, runs.resampled(rng.integers(runs.repetitions, size=runs.repetitions)))
+        for _ in range(_RESAMPLES)
     ]
-
-
-def _rounded(trial: Trial) -> dict[str, float]:
-    """Return the constants with three digits, because more are not determined."""
-    return {name: float(f"{value:.3g}") for name, value in trial.constants.items()}
+    rows = []
+    for target in TARGETS:
+        sample = np.array([each[target.key] for each in drawn])
+        defined = sample[np.isfinite(sample)]
+        low, high = percentile_ends(defined) if len(defined) else (np.nan, np.nan)
+        value = values[target.key]
+        rows.append(
+            {
+                "key": target.key,
+                "target": target.name,
+                "source": target.source,
+                "target_low": target.low,
+                "target_high": target.high,
+                "value": value,
+                "value_low": low,
+                "value_high": high,
+                "in_range": target.is_in_range(value),
+                "penalty": float(target.penalty(value)),
+                "statement": target.statement,
+            }
+        )
+    frame: pd.DataFrame = pandas.DataFrame(rows)
+    return frame

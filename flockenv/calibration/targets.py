@@ -10,139 +10,35 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from flockenv.parameters import FlockParameters
-from flockenv.simulation import simulate
+from flockenv._io.extras import require
+from flockenv.calibration.flock_runs import GUIDED_S, FlockRuns
 
 __all__ = [
-    "NOISE_S",
-    "QUANTITIES",
+    "BOAT_TARGETS",
+    "GROUPS",
+    "MISFITS",
+    "SEARCHED_TARGETS",
     "TARGETS",
-    "FlockRuns",
     "Target",
-    "loss",
     "measure",
-    "run_flock",
-    "single_boat",
+    "misfits",
 ]
 
-NOISE_S: Mapping[int, tuple[float, ...]] = {
-    0: (0.6, 1.0, 1.2, 1.4, 1.6, 1.8, 2.2),
-    3: (0.6, 1.0, 1.4, 1.8, 2.0, 2.2, 2.6),
-}
-"""Backward durations bw in s by number of leaders; the experiment went from 0.4 to 2.8 s."""
+GROUPS = ("no leaders", "leaders", "jamming")
+"""Groups of targets whose misfits are weighed against each other."""
 
-DURATION_S = 480.0
-"""Length of a measurement in the experiment."""
+MISFITS = tuple(f"misfit_{group.replace(' ', '_')}" for group in GROUPS)
+"""Columns of tables with those misfits."""
 
-_SAMPLE_HZ = 5.0
-_MIDDLE = 0.56
-"""Ψ_o in the middle between 27 boats in order (0.95) and in disorder (0.886/√27 = 0.17)."""
+_MOVING = 10.0
+"""C_v in cm²/s² above which a flock moves together: of 15² where all boats do."""
 
-QUANTITIES = ("psi_o", "rotation", "ordered", "jammed", "off_tangent", "along_target")
-"""Measured quantities of a run; see `FlockRuns`."""
+_SETS = 1000
+_SET_RUNS = 4
 
-
-@dataclass(frozen=True, slots=True)
-class FlockRuns:
-    """Quantities of many runs of 27 boats.
-
-    Attributes
-    ----------
-    noise_s : mapping of tuples of float
-        Backward durations bw in s, by number of leaders.
-    values : mapping of float64 arrays, shape (backward durations, seeds, 6)
-        By number of leaders: mean Ψ_o, mean |Ψ_o sin φ_o|, and the parts of the frames that are in
-        ordered motion and jammed; over the ordered frames, the sum of ||φ_o| - π/2| and the number
-        of those that go in the leaders' direction, both over the number of all frames.
-    """
-
-    noise_s: Mapping[int, tuple[float, ...]]
-    values: Mapping[int, NDArray[np.float64]]
-
-    def resampled(self, seeds: NDArray[np.int64]) -> "FlockRuns":
-        """Return the runs of these seeds, which may repeat."""
-        return FlockRuns(self.noise_s, {k: array[:, seeds] for k, array in self.values.items()})
-
-    def mean(self, leaders: int, quantity: str, at_s: Sequence[float] = ()) -> NDArray[np.float64]:
-        """Return means over seeds: at all backward durations, or at some."""
-        levels = [self.noise_s[leaders].index(bw_s) for bw_s in at_s or self.noise_s[leaders]]
-        row = self.values[leaders][levels, :, QUANTITIES.index(quantity)]
-        means: NDArray[np.float64] = row.mean(axis=1)
-        return means
-
-    def critical_bw_s(self, leaders: int) -> float:
-        """Return where mean Ψ_o falls below 0.56 for good, interpolated between backward durations.
-
-        A curve that never exceeds the middle gets the lowest bw minus its distance from the
-        middle, and a curve that always does the highest bw plus its distance, so that both can
-        still be compared.
-        """
-        psi_o, noise_s = self.mean(leaders, "psi_o"), self.noise_s[leaders]
-        above = np.flatnonzero(psi_o >= _MIDDLE)
-        if len(above) == 0:
-            return noise_s[0] - float(_MIDDLE - psi_o.max())
-        last = int(above[-1])
-        if last + 1 == len(psi_o):
-            return noise_s[-1] + float(psi_o[-1] - _MIDDLE)
-        pair = slice(last, last + 2)
-        return float(np.interp(-_MIDDLE, -psi_o[pair], noise_s[pair]))
-
-    def of_ordered_frames(self, leaders: int, quantity: str, at_s: Sequence[float]) -> float:
-        """Return a mean over the ordered frames at some backward durations; NaN without any."""
-        ordered = self.mean(leaders, "ordered", at_s).sum()
-        if ordered == 0.0:
-            return math.nan
-        return float(self.mean(leaders, quantity, at_s).sum() / ordered)
-
-
-def run_flock(parameters: FlockParameters, seed: int) -> list[float]:
-    """Run one flock for 8 minutes and measure it, in the order of `FlockRuns.values`.
-
-    Frames are those in the analysis window after the first tenth of the run.
-    """
-    run = simulate(parameters, seed, DURATION_S, _SAMPLE_HZ, dtype=np.float32)
-    order = run.analyzed().order
-    states = order.states(parameters.speed_cm_s)
-    ordered = np.char.startswith(states, "ordered")
-    values = (
-        order.psi_o,
-        abs(order.rotation()),
-        ordered,
-        states == "jamming",
-        np.where(ordered, order.off_tangent(), 0.0),
-        states == f"ordered {parameters.target}",
-    )
-    return [float(np.mean(value)) for value in values]
-
-
-def single_boat(parameters: FlockParameters, seed: int = 0) -> dict[str, float]:
-    """Measure one boat in open water.
-
-    Returns
-    -------
-    dict of float
-        ``forward_cm_s``: speed after 20 s forward. ``backing_turn_rad_s``: mean |turning rate|
-        in the last 20 s of 40 s backward. ``backing_over_forward``: the largest speed in the bw
-        phases over that in the fw phases, at bw = 1.4 s.
-    """
-    alone = parameters.replace(n_boats=1, n_leaders=0, pool=(math.inf, 0.0), current_gain=0.0)
-    only = {"fw_s": 0.0, "nop1_s": 0.0, "bw_s": 0.0, "nop2_s": 0.0}
-    forward = simulate(alone.replace(**{**only, "fw_s": 1.0}), seed, 20.0)
-    backward = simulate(alone.replace(**{**only, "bw_s": 1.0}), seed, 40.0)
-    cycles = simulate(alone.replace(bw_s=1.4), seed, 54.0)
-    speed = np.hypot(cycles.velocity[:, 0, 0], cycles.velocity[:, 0, 1])
-    # A sample on a switch shows the velocity at the end of the phase before.
-    fastest = {phase: speed[cycles.phase == phase].max() for phase in ("nop1", "nop2")}
-    return {
-        "forward_cm_s": float(np.hypot(*forward.velocity[-1, 0, :2])),
-        "backing_turn_rad_s": float(abs(backward.velocity[200:, 0, 2]).mean()),
-        "backing_over_forward": float(fastest["nop2"] / fastest["nop1"]),
-    }
-
-
-Value = Callable[[Mapping[str, float], FlockRuns], float]
+Value = Callable[[FlockRuns], float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,126 +49,178 @@ class Target:
     ----------
     key, name, source, statement : str
         Short name, full name, place in the paper, and reading of the paper's words.
+    group : str
+        "boat", for a boat alone, or one of `GROUPS`.
     low, high : float
         The accepted range.
     aim : float
         The value with residual 0.
     tolerance : float
         Unit of the residual.
-    weight : float
-        Weight of the squared residual in a fit's loss; 0: reported only.
     value : callable
-        Computes the value from a single boat's numbers and from flock runs.
+        Computes the value from flock runs; None where it is a number of a single boat.
+    is_searched : bool
+        Whether the runs of a trial determine it.
     """
 
     key: str
     name: str
     source: str
     statement: str
+    group: str
     low: float
     high: float
     aim: float
     tolerance: float
-    weight: float
-    value: Value
+    value: Value | None
+    is_searched: bool = True
 
-    def residual(self, value: float) -> float:
-        """Return the distance from the aim in tolerances; 3 for an undefined value.
+    def residual(self, values: ArrayLike) -> NDArray[np.float64]:
+        """Return distances from the aim in tolerances; 3 for an undefined value.
 
         The residual of a one-sided target (whose aim is an end of its range) is 0 in its range.
         """
-        if math.isnan(value):
-            return 3.0
+        values = np.asarray(values, np.float64)
         if self.aim in (self.low, self.high):
-            return max(self.low - value, value - self.high, 0.0) / self.tolerance
-        return abs(value - self.aim) / self.tolerance
+            away = np.maximum(np.maximum(self.low - values, values - self.high), 0.0)
+        else:
+            away = abs(values - self.aim)
+        return np.where(np.isnan(values), 3.0, away / self.tolerance)
+
+    def penalty(self, values: ArrayLike) -> NDArray[np.float64]:
+        """Return ρ(residual): r² up to 2 tolerances and 4r - 4 beyond.
+
+        One distant target then does not dominate a misfit.
+        """
+        away = self.residual(values)
+        return np.where(away < 2.0, away**2, 4.0 * away - 4.0)
 
     def is_in_range(self, value: float) -> bool:
-        """Return whether a value lies in the range."""
-        return self.low <= value <= self.high
-
-
-def _single(name: str) -> Value:
-    return lambda boat, runs: boat[name]
+        """Return whether a value lies in the range; an undefined one does not."""
+        return bool(self.low <= value <= self.high)
 
 
 def _level(leaders: int, quantity: str, *at_s: float) -> Value:
-    return lambda boat, runs: float(runs.mean(leaders, quantity, at_s).mean())
+    return lambda runs: _mean(runs.mean(leaders, quantity, at_s))
 
 
 def _critical(leaders: int) -> Value:
-    return lambda boat, runs: runs.critical_bw_s(leaders)
+    return lambda runs: runs.critical_bw_s(leaders)
 
 
 def _ordered(leaders: int, quantity: str, *at_s: float) -> Value:
-    return lambda boat, runs: runs.of_ordered_frames(leaders, quantity, at_s)
+    return lambda runs: runs.of_ordered_frames(leaders, quantity, at_s)
 
 
-def _gained(at_s: float) -> Value:
-    return lambda boat, runs: float(
-        (runs.mean(3, "psi_o", [at_s]) - runs.mean(0, "psi_o", [at_s]))[0]
-    )
+def _ordering_slope(leaders: int) -> Value:
+    return lambda runs: runs.ordering_slope(leaders)
+
+
+def _gained(runs: FlockRuns) -> float:
+    at_s = [GUIDED_S]
+    return _mean(runs.mean(3, "psi_o", at_s)) - _mean(runs.mean(0, "psi_o", at_s))
+
+
+def _dip(runs: FlockRuns) -> float:
+    c_v = runs.mean(0, "c_v")
+    return float(c_v[0] / c_v.max()) if c_v.max() > _MOVING else math.nan
+
+
+def _mean(values: NDArray[np.float64]) -> float:
+    return float(values.mean()) if len(values) else math.nan
+
+
+def _passed(runs: FlockRuns) -> float:
+    """Return the share of sets of 20 runs whose line rises with p ≤ 0.01; NaN without 0 to 4."""
+    leaders, psi_o = runs.guided_psi_o()
+    counts = np.unique(leaders)
+    if len(counts) < 5:
+        return math.nan
+    rng = np.random.default_rng(0)
+    drawn = np.hstack([rng.choice(psi_o[leaders == k], (_SETS, _SET_RUNS)) for k in counts])
+    x = np.repeat(counts, _SET_RUNS)
+    stats = require("scipy.stats", "fit")
+    correlation = stats.pearsonr(np.broadcast_to(x, drawn.shape), drawn, axis=1)
+    passed = (correlation.pvalue <= 0.01) & (correlation.statistic > 0.0)
+    return float(passed.mean())
 
 
 def _targets() -> Iterator[Target]:
     inf = math.inf
     yield Target(
-        "forward_speed",
+        "forward_cm_s",
         "forward speed [cm/s]",
         "Table 1",
         "a boat in open water, motor forward: 15 ± 5",
-        *(10.0, 20.0, 15.0, 5.0, 1.0),
-        _single("forward_cm_s"),
+        "boat",
+        *(10.0, 20.0, 15.0, 5.0),
+        None,
     )
     yield Target(
-        "backing_turn",
+        "forward_turn_rad_s",
+        "forward turn [rad/s]",
+        "Section 4.5",
+        "a slight bias, counter-clockwise: a boat in open water, motor forward, turns at most in a "
+        "circle of 150 cm at 15 cm/s",
+        "boat",
+        *(-0.1, 0.1, 0.0, 0.1),
+        None,
+    )
+    yield Target(
+        "backing_turn_rad_s",
         "backing turn [rad/s]",
         "Table 1",
         "mean |turning rate| of a boat in open water, motor backward: 1 ± 0.2",
-        *(0.8, 1.2, 1.0, 0.2, 1.0),
-        _single("backing_turn_rad_s"),
+        "boat",
+        *(0.8, 1.2, 1.0, 0.2),
+        None,
     )
     yield Target(
-        "backing_speed",
+        "backing_over_forward",
         "backing speed / forward speed",
         "Section 3.2",
         "«much smaller» velocities in bw, read as at most a half (peaks, bw = 1.4 s)",
-        *(0.0, 0.5, 0.5, 0.1, 1.0),
-        _single("backing_over_forward"),
+        "boat",
+        *(0.0, 0.5, 0.5, 0.1),
+        None,
     )
-    for leaders, aim in ((0, 1.4), (3, 2.0)):
+    for leaders, aim, group in ((0, 1.4, "no leaders"), (3, 2.0, "leaders")):
         yield Target(
             f"critical_bw_{leaders}",
             f"critical bw, {leaders} leaders [s]",
             "Figure 9",
             f"mean Ψ_o falls through 0.56 near {aim} s, read as ± 0.1",
-            *(aim - 0.1, aim + 0.1, aim, 0.1, 1.0),
+            group,
+            *(aim - 0.1, aim + 0.1, aim, 0.1),
             _critical(leaders),
         )
-    for leaders in NOISE_S:
         yield Target(
             f"low_noise_{leaders}",
             f"Ψ_o at low noise, {leaders} leaders",
             "Figure 10",
             "«Ψ_o ≈ 1», read as mean Ψ_o ≥ 0.9 at bw = 0.6 and 1.0 s",
-            *(0.9, 1.0, 0.9, 0.1, 1.0),
+            group,
+            *(0.9, 1.0, 0.9, 0.1),
             _level(leaders, "psi_o", 0.6, 1.0),
         )
-    for leaders, bw_s in ((0, 2.2), (3, 2.6)):
+    for leaders, bw_s, group in ((0, 2.2, "no leaders"), (3, 2.6, "leaders")):
         yield Target(
             f"high_noise_{leaders}",
             f"Ψ_o at high noise, {leaders} leaders",
             "Figure 10, Section 4.3",
             f"disorder above 2 s, Ψ_o < 0.3: mean Ψ_o at bw = {bw_s} s",
-            *(0.0, 0.3, 0.3, 0.1, 1.0),
+            group,
+            *(0.0, 0.3, 0.3, 0.1),
             _level(leaders, "psi_o", bw_s),
+            is_searched=leaders == 0,
         )
     yield Target(
         "off_tangent",
         "φ_o off the tangent when ordered [rad]",
         "Eq. (7), figure 9",
         "mean ||φ_o| - π/2| ≤ π/20 over the ordered frames at bw = 0.6 to 1.4 s, no leaders",
-        *(0.0, math.pi / 20, math.pi / 20, math.pi / 40, 1.0),
+        "no leaders",
+        *(0.0, math.pi / 20, math.pi / 20, math.pi / 40),
         _ordered(0, "off_tangent", 0.6, 1.0, 1.2, 1.4),
     )
     yield Target(
@@ -280,23 +228,45 @@ def _targets() -> Iterator[Target]:
         "ordered motion regular, no leaders",
         "Table 2",
         "«regular» at low to middle noise: ordered in at least half of the frames at 1.0 and 1.2 s",
-        *(0.5, 1.0, 0.5, 0.1, 1.0),
+        "no leaders",
+        *(0.5, 1.0, 0.5, 0.1),
         _level(0, "ordered", 1.0, 1.2),
     )
     yield Target(
         "jamming",
         "jamming, no leaders",
         "Table 2, figure 9",
-        "occasional at low noise: a part of the frames at bw = 0.6 s, read as 0.5 % to 30 %",
-        *(0.005, 0.3, 0.3, 0.1, 0.0),
-        _level(0, "jammed", 0.6),
+        "occasional at low noise: of the frames at bw = 0.4 and 0.6 s, read as 0.5 % to 30 %",
+        "jamming",
+        *(0.005, 0.3, 0.1, 0.1),
+        _level(0, "jammed", 0.4, 0.6),
     )
+    yield Target(
+        "velocity_dip",
+        "C_v at bw = 0.4 s over its maximum, no leaders",
+        "Figure 11",
+        "low velocity correlation at very low noise, read as at most half of the maximum",
+        "jamming",
+        *(0.0, 0.5, 0.5, 0.1),
+        _dip,
+    )
+    for leaders in (0, 3):
+        yield Target(
+            f"ordering_slope_{leaders}",
+            f"slope of the ordering time, {leaders} leaders [s/s]",
+            "Figure 8",
+            "the ordering time of eq. (7) falls with bw",
+            "jamming",
+            *(-inf, 0.0, 0.0, 50.0),
+            _ordering_slope(leaders),
+        )
     yield Target(
         "leaders_direction",
         "ordered in the leaders' direction",
         "Section 4.2, figure 9",
         "«only CW in the CW-guided experiments»: ≥ 0.95 of the ordered frames at 1.4 and 1.8 s",
-        *(0.95, 1.0, 0.95, 0.1, 1.0),
+        "leaders",
+        *(0.95, 1.0, 0.95, 0.1),
         _ordered(3, "along_target", 1.4, 1.8),
     )
     yield Target(
@@ -304,28 +274,67 @@ def _targets() -> Iterator[Target]:
         "gain of Ψ_o by 3 leaders at 1.8 s",
         "Figure 12",
         "more leaders, more order: mean Ψ_o with three leaders minus that without, above 0",
-        *(0.0, inf, 0.0, 0.1, 0.0),
-        _gained(1.8),
+        "leaders",
+        *(0.0, inf, 0.0, 0.1),
+        _gained,
+    )
+    yield Target(
+        "following",
+        "signed order with alternating leaders",
+        "Figure 7",
+        "«with high efficiency»: mean Ψ_o cos(φ_o − φ_target) ≥ 0.5 in the second halves of the "
+        "stretches, 3 leaders, bw = 1.8 s",
+        "leaders",
+        *(0.5, 1.0, 0.5, 0.1),
+        lambda runs: _mean(runs.alternating("following").ravel()),
+    )
+    yield Target(
+        "leaders_slope",
+        "Ψ_o per leader at 1.8 s",
+        "Figure 12",
+        "F = 13.5 over 20 runs is a slope of 0.58 standard deviations of a run's Ψ_o; read with "
+        "0.12 as that deviation: at least 0.07 per leader",
+        "leaders",
+        *(0.07, inf, 0.07, 0.03),
+        lambda runs: runs.leaders_slope(),
+    )
+    yield Target(
+        "leaders_test",
+        "sets of 20 runs with p ≤ 0.01",
+        "Figure 12",
+        "p = 0.002 in the paper: the line of Ψ_o against 0 to 4 leaders rises with p ≤ 0.01 in at "
+        "least 80 % of sets of 20 eight-minute runs, four per number of leaders, at 1.8 s",
+        "leaders",
+        *(0.8, 1.0, 0.8, 0.2),
+        _passed,
+        is_searched=False,
     )
 
 
 TARGETS = tuple(_targets())
 """All calibration targets."""
 
+BOAT_TARGETS = tuple(target for target in TARGETS if target.value is None)
+"""Those of a boat alone."""
+
+SEARCHED_TARGETS = tuple(target for target in TARGETS if target.value and target.is_searched)
+"""Those that the flocks of a trial determine."""
+
 
 def measure(boat: Mapping[str, float], runs: FlockRuns) -> dict[str, float]:
     """Return the value of every target by its key."""
-    return {target.key: target.value(boat, runs) for target in TARGETS}
+    return {
+        target.key: boat[target.key] if target.value is None else target.value(runs)
+        for target in TARGETS
+    }
 
 
-def loss(values: Mapping[str, float], only: Sequence[str] = ()) -> float:
-    """Return Σ weight·ρ(residual) over all targets, or over some.
-
-    ρ(r) is r² up to 2 tolerances and 4r - 4 beyond, so that one distant target does not dominate.
-    """
-    targets = [target for target in TARGETS if not only or target.key in only]
-    distances = [target.residual(values[target.key]) for target in targets]
-    return sum(
-        (1.0 if only else target.weight) * (each**2 if each < 2.0 else 4.0 * each - 4.0)
-        for target, each in zip(targets, distances, strict=True)
-    )
+def misfits(
+    values: Mapping[str, ArrayLike], targets: Sequence[Target] = TARGETS
+) -> NDArray[np.float64]:
+    """Return the mean penalty of each of `GROUPS`, of values or of arrays of them: last axis 3."""
+    means = []
+    for group in GROUPS:
+        own = [each.penalty(values[each.key]) for each in targets if each.group == group]
+        means.append(np.mean(own, axis=0))
+    return np.stack(means, axis=-1)

@@ -6,31 +6,31 @@ from typing import Annotated
 
 import typer
 
-from flockenv.calibration.search import BOUNDS, MODEL_CONSTANTS
+from flockenv.calibration.constants import CONSTANTS, POOLS
 from flockenv.cli.console import console, interruptible, print_json, progress_bar, say
 from flockenv.cli.output import check_folder
 from flockenv.parameters import FlockParameters
 
 __all__ = ["fit"]
 
-_FREE = f"Constants to fit, by commas, of {', '.join(BOUNDS)}."
+_FREE = f"Constants to free, by commas, of {', '.join(CONSTANTS)}."
 
 
 def fit(
-    free: Annotated[str, typer.Option(help=_FREE)] = ",".join(MODEL_CONSTANTS),
-    only: Annotated[
-        str, typer.Option(help="Keys of the calibration targets, by commas. [all]")
-    ] = "",
-    trials: Annotated[int, typer.Option(help="Trials of the search.")] = 110,
-    seeds: Annotated[int, typer.Option(help="Flock seeds in each trial.")] = 4,
-    finalists: Annotated[int, typer.Option(help="Trials run again on more seeds.")] = 3,
-    held_out: Annotated[int, typer.Option(min=2, help="Seeds of the residuals.")] = 24,
+    free: Annotated[str, typer.Option(help=_FREE)] = ",".join(CONSTANTS),
+    pools: Annotated[str, typer.Option(help="Readings of the pool, by commas.")] = ",".join(POOLS),
+    flock_hours: Annotated[
+        float, typer.Option(help="Simulated time of all trials together, in hours.")
+    ] = 4096.0,
+    batch: Annotated[int, typer.Option(help="Proposals per pool between two fits.")] = 64,
+    repetitions: Annotated[int, typer.Option(help="Runs of a kind by each finalist.")] = 8,
+    judged: Annotated[int, typer.Option(help="Finalists measured on held-out seeds.")] = 3,
+    held_out: Annotated[int, typer.Option(min=2, help="Runs of a kind on held-out seeds.")] = 24,
     check: Annotated[
         str | None, typer.Option(help="Search nothing: measure every target of this preset.")
     ] = None,
     scheme: Annotated[str | None, typer.Option(help="Scheme of the runs.")] = None,
     noise: Annotated[str | None, typer.Option(help="Noise of the runs.")] = None,
-    dt_s: Annotated[float | None, typer.Option(help="Substep in s. [0.05 in a search]")] = None,
     jobs: Annotated[int, typer.Option(help="Runs at a time.", min=1)] = 1,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the search.")] = 0,
     out: Annotated[Path, typer.Option(help="Folder for the log and the results.")] = Path(
@@ -41,45 +41,50 @@ def fit(
 ) -> None:
     """Fit the model's constants to the experiment (Table 1, Section 4) and report the residuals.
 
-    Searches with CMA-ES, runs the best trials again on other seeds, and measures every target with
-    the best constants on seeds that the search has not used. Writes `trials.csv`, `parameters.toml`
-    and `residuals.csv`. An interrupted fit resumes with the same command.
+    Half of the trials fill the space of constants, and Gaussian processes over the targets propose
+    the others, near the Pareto front between targets without leaders, with leaders, and of jamming.
+    Finalists run again on other seeds, and the best of them on seeds that the search has not used.
+    An interrupted fit resumes with the same command.
 
-    Example: `flockenv fit --trials 60 --jobs 2`
+    Example: `flockenv fit --flock-hours 1024 --jobs 2`
     """
     from flockenv.calibration import report as fit_report
-    from flockenv.calibration.search import Fit, experiment_parameters
+    from flockenv.calibration.search import Fit
 
-    given = {"scheme": scheme, "noise": noise, "dt_s": dt_s}
+    given = {"scheme": scheme, "noise": noise}
     changes = {name: value for name, value in given.items() if value is not None}
+    parameters = FlockParameters.preset(check or "experiment").replace(**changes)
+    effort = fit_report.Effort(repetitions, judged, held_out)
     if check is not None:
-        parameters = FlockParameters.preset(check).replace(**changes)
+        hours = fit_report.check_hours(held_out)
         with interruptible("Nothing was written."), progress_bar(quiet or as_json) as progress:
-            task = progress.add_task("held-out seeds", total=held_out)
+            task = progress.add_task("held-out seeds", total=hours)
             result = fit_report.check(
                 parameters, held_out, jobs, lambda words, steps: progress.advance(task, steps)
             )
     else:
-        parameters = experiment_parameters().replace(**{"dt_s": 0.05, **changes})
         search = Fit(
             free=_words(free),
-            only=_words(only),
+            pools=_words(pools),
             parameters=parameters,
-            trials=trials,
-            seeds=seeds,
-            finalists=finalists,
+            flock_hours=flock_hours,
+            batch=batch,
             seed=seed,
             jobs=jobs,
         )
         check_folder(out)
+        parts = effort.flock_hours(search)
+        if not as_json:
+            each = ", ".join(f"{name} {hours:.0f}" for name, hours in parts.items())
+            say(f"{search.trials} trials; flock-hours: {each}")
         stored = f"Finished trials are stored in {out}: the same command resumes from them."
         with interruptible(stored), progress_bar(quiet or as_json) as progress:
-            task = progress.add_task("trials", total=fit_report.work(search, held_out))
+            task = progress.add_task("trials", total=sum(parts.values()))
             result = fit_report.report(
                 search,
-                held_out,
+                effort,
                 out,
-                lambda words, steps: progress.update(task, description=words, advance=steps),
+                lambda words, hours: progress.update(task, description=words, advance=hours),
             )
     if as_json:
         rows = json.loads(result.residuals.to_json(orient="records"))
@@ -89,7 +94,7 @@ def fit(
     if check is None:
         constants = {name: getattr(result.parameters, name) for name in _words(free)}
         fitted = ", ".join(f"{name} = {value:g}" for name, value in constants.items())
-        say(fitted)
+        say(f"pool = {result.parameters.pool}, {fitted}")
         say(f"Written to {out}")
 
 
