@@ -189,8 +189,8 @@ def _reported(fit: Fit, effort: Effort, folder: Path, progress: Progress) -> Fit
 
 def _store_options(fit: Fit, effort: Effort, path: Path) -> None:
     options = asdict(fit) | {"parameters": fit.parameters.to_dict()} | asdict(effort)
-    # How many runs are made at a time changes nothing.
-    del options["jobs"]
+    # How many runs are made at a time changes nothing, and more trials go on from those there are.
+    del options["jobs"], options["flock_hours"]
     text = f"# flockenv {_core.__version__}\n" + tomli_w.dumps(options)
     if path.exists() and path.read_text(encoding="utf-8") != text:
         raise ParameterError(

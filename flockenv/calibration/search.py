@@ -85,7 +85,10 @@ class Fit:
     parameters : FlockParameters
         Everything else, but the substep.
     flock_hours : float
-        Simulated time of all trials together; half of them fill the space.
+        Simulated time of all trials together. A search with more of them begins with the same
+        trials.
+    filling_hours : float
+        Simulated time of those trials that fill the space.
     batch : int
         Proposals per pool between two fits of the surrogate.
     seed : int
@@ -106,6 +109,7 @@ class Fit:
         default_factory=lambda: FlockParameters.preset("experiment")
     )
     flock_hours: float = 4096.0
+    filling_hours: float = 2048.0
     batch: int = 64
     seed: int = 0
     jobs: int = 1
@@ -122,24 +126,31 @@ class Fit:
                 raise ParameterError(f"{name} = {getattr(self, name)} is not accepted: at least 1")
         if not 0 <= self.seed < 2**32:
             raise ParameterError(f"seed = {self.seed} is not accepted: from 0 to 2^32 - 1")
-        least = 2 * _FEWEST * len(self.free) * len(self.pools) * SEARCHED.flock_hours
-        if not least <= self.flock_hours < math.inf:
+        least = _FEWEST * len(self.free) * len(self.pools) * SEARCHED.flock_hours
+        if not least <= self.filling_hours < math.inf:
+            raise ParameterError(
+                f"filling_hours = {self.filling_hours:g} is not accepted: inconclusive: needs at "
+                f"least {least:g}, which is {_FEWEST} trials for each constant and pool"
+            )
+        if not self.filling_hours <= self.flock_hours < math.inf:
             raise ParameterError(
                 f"flock_hours = {self.flock_hours:g} is not accepted: inconclusive: needs at least "
-                f"{least:g}, which is {_FEWEST} space-filling trials for each constant and pool"
+                f"filling_hours = {self.filling_hours:g}"
             )
 
     @property
     def trials(self) -> int:
         """Trials of the whole search, the same number in each pool."""
+        return self._trials_in(self.flock_hours)
+
+    def _trials_in(self, hours: float) -> int:
         pools = len(self.pools)
-        return int(self.flock_hours / SEARCHED.flock_hours) // pools * pools
+        return int(hours / SEARCHED.flock_hours) // pools * pools
 
     @property
     def space_filling(self) -> int:
-        """Trials that fill the space: half."""
-        pools = len(self.pools)
-        return self.trials // (2 * pools) * pools
+        """Trials that fill the space."""
+        return self._trials_in(self.filling_hours)
 
     def search(self, log: Path) -> Iterator[Trial]:
         """Yield the trials, reading from the log what it has of them and adding the rest.
@@ -215,25 +226,24 @@ class Fit:
     def _next_proposals(
         self, done: Sequence[Trial], kernels: dict[str, Kernels]
     ) -> Iterator[tuple[int, str, tuple[float, ...], Mapping[str, float]]]:
-        """Yield what is left of the batch that the surrogate proposes, pool by pool."""
-        wide = self.batch * len(self.pools)
+        """Yield what is left of the batch that the surrogate proposes, the pools by turns."""
+        pools = len(self.pools)
         proposed = len(done) - self.space_filling
-        known = done[: self.space_filling + proposed // wide * wide]
-        left = min(wide, self.trials - len(known))
-        each = left // len(self.pools)
+        begun = proposed % (self.batch * pools)
+        known = done[: len(done) - begun]
+        batches = []
         for number, pool in enumerate(self.pools):
-            begun = min(max(proposed % wide - number * each, 0), each)
-            if begun == each:
-                continue
             own = [trial for trial in known if trial.pool == pool]
-            rng = np.random.default_rng([self.seed, len(known), number])
             if pool not in kernels:
                 kernels[pool] = self.kernels(own)
             at, values = table(own)
             surrogate = Surrogate.of(kernels[pool], at, values)
-            batch = propose(surrogate, at, each, rng, lambda at: self.boat(_rounded(at)))
-            for places, boat in batch[begun:]:
-                yield -1, pool, _rounded(places), boat
+            rng = np.random.default_rng([self.seed, len(known), number])
+            batch = propose(surrogate, at, self.batch, rng, lambda at: self.boat(_rounded(at)))
+            batches.append(batch)
+        for turn in range(begun, min(self.batch * pools, begun + self.trials - len(done))):
+            places, boat = batches[turn % pools][turn // pools]
+            yield -1, self.pools[turn % pools], _rounded(places), boat
 
     def kernels(self, trials: Sequence[Trial]) -> Kernels:
         """Learn the kernels of the surrogate from the space-filling ones among trials of a pool."""

@@ -17,10 +17,10 @@ from flockenv.calibration.targets import SEARCHED_TARGETS, misfits
 
 __all__ = ["Kernels", "Surrogate", "candidates", "front_ranks", "learn", "propose"]
 
-_LEARNED_FROM = 300
+_LEARNED_FROM = 200
 """Trials that kernels are learned from; processes are conditioned on all trials."""
 
-_FEWEST = 30
+_FEWEST = 20
 _CANDIDATES = 1500
 _SPREADS = (0.05, 0.15)
 """Standard deviations of steps away from the front, as parts of the ranges of constants."""
@@ -46,7 +46,7 @@ def learn(places: Places, values: Values) -> Kernels:
     -------
     mapping
         By target, kernels of scikit-learn: a constant times a Gaussian with a length scale per
-        constant, plus white noise. Targets that fewer than 30 trials define have none.
+        constant, plus white noise. Targets that fewer than 20 trials define have none.
 
     Raises
     ------
@@ -150,7 +150,7 @@ def front_ranks(costs: NDArray[np.float64], enough: int) -> NDArray[np.int64]:
 
 
 def candidates(
-    surrogate: Surrogate, places: Places, rng: np.random.Generator, count: int = _CANDIDATES
+    surrogate: Surrogate, places: Places, rng: np.random.Generator, count: int
 ) -> Places:
     """Draw places about the front of all trials as the surrogate has it, and a quarter anywhere."""
     means, _ = surrogate.predict(places)
@@ -192,7 +192,7 @@ def propose(
     """
     accepted: list[tuple[Places, dict[str, float]]] = []
     while len(accepted) < count:
-        drawn = candidates(surrogate, places, rng)
+        drawn = candidates(surrogate, places, rng, _CANDIDATES)
         means, deviations = surrogate.predict(drawn)
         sample = {
             key: mean + deviations[key] * rng.standard_normal(len(mean))

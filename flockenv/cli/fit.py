@@ -22,6 +22,9 @@ def fit(
     flock_hours: Annotated[
         float, typer.Option(help="Simulated time of all trials together, in hours.")
     ] = 4096.0,
+    filling_hours: Annotated[
+        float, typer.Option(help="Simulated time of the trials that fill the space, in hours.")
+    ] = 2048.0,
     batch: Annotated[int, typer.Option(help="Proposals per pool between two fits.")] = 64,
     repetitions: Annotated[int, typer.Option(help="Runs of a kind by each finalist.")] = 8,
     judged: Annotated[int, typer.Option(help="Finalists measured on held-out seeds.")] = 3,
@@ -41,12 +44,12 @@ def fit(
 ) -> None:
     """Fit the model's constants to the experiment (Table 1, Section 4) and report the residuals.
 
-    Half of the trials fill the space of constants, and Gaussian processes over the targets propose
+    The first trials fill the space of constants, and Gaussian processes over the targets propose
     the others, near the Pareto front between targets without leaders, with leaders, and of jamming.
     Finalists run again on other seeds, and the best of them on seeds that the search has not used.
-    An interrupted fit resumes with the same command.
+    An interrupted fit resumes with the same command, and more flock-hours continue a finished one.
 
-    Example: `flockenv fit --flock-hours 1024 --jobs 2`
+    Example: `flockenv fit --filling-hours 512 --flock-hours 1024 --jobs 2`
     """
     from flockenv.calibration import report as fit_report
     from flockenv.calibration.search import Fit
@@ -68,6 +71,7 @@ def fit(
             pools=_words(pools),
             parameters=parameters,
             flock_hours=flock_hours,
+            filling_hours=filling_hours,
             batch=batch,
             seed=seed,
             jobs=jobs,

@@ -2,131 +2,109 @@
 
 import itertools
 
-import numpy as np
 import pytest
 
 import flockenv
-from flockenv.calibration import report as fit_report
-from flockenv.calibration import search as experiment_fit
-from flockenv.calibration.search import BOUNDS, Fit, Trial, surface_minimum
-from flockenv.calibration.targets import NOISE_S, TARGETS
+from flockenv.calibration import search as fit_search
+from flockenv.calibration.constants import CONSTANTS, POOLS
+from flockenv.calibration.flock_runs import SEARCHED
+from flockenv.calibration.search import Fit
+from flockenv.calibration.targets import BOAT_TARGETS
 
-
-@pytest.fixture
-def quick(monkeypatch):
-    """Replace 8-minute runs by a formula; count them."""
-    calls = itertools.count()
-
-    def run_flock(parameters, seed):
-        next(calls)
-        noise = np.random.default_rng(seed).normal(0, 0.01)
-        middle = 1.4 + 0.2 * parameters.n_leaders + np.log(parameters.c3 / 0.13)
-        psi_o = 0.95 if parameters.bw_s < middle else 0.2
-        return [psi_o + noise, psi_o, 0.7, 0.0, 0.05, 0.7]
-
-    monkeypatch.setattr(experiment_fit, "run_flock", run_flock)
-    return calls
+#: 80 trials, of which the surrogate proposes 40 in batches of 14, 14 and 12.
+SMALL = {"free": ("c3", "c4"), "flock_hours": 107.0, "batch": 7}
+#: 40 trials, of which the surrogate proposes 20 in batches of 14 and 6.
+ONE_POOL = {"free": ("c3", "c4"), "pools": ("table-1",), "flock_hours": 54.0, "batch": 14}
 
 
 def test_the_same_options_give_the_same_log_byte_for_byte(quick, tmp_path):
-    fit = Fit(trials=25, seeds=2)
-    logs = [tmp_path / name for name in ("a.csv", "b.csv")]
-    for log in logs:
-        assert len(list(fit.search(log))) >= 25
-    assert logs[0].read_bytes() == logs[1].read_bytes()
-    other = tmp_path / "other.csv"
-    list(Fit(trials=25, seeds=2, seed=1).search(other))
-    assert other.read_bytes() != logs[0].read_bytes()
+    logs = [tmp_path / name for name in ("a.csv", "b.csv", "other.csv")]
+    for log, seed in zip(logs, (0, 0, 1), strict=True):
+        assert len(list(Fit(**ONE_POOL, seed=seed).search(log))) == 40
+    assert logs[0].read_bytes() == logs[1].read_bytes() != logs[2].read_bytes()
 
 
-def test_an_interrupted_search_goes_on_from_its_log(quick, tmp_path):
-    fit = Fit(trials=25, seeds=2)
+@pytest.mark.parametrize("share", [0.0002, 0.51, 0.62, 0.98])
+def test_a_killed_search_goes_on_from_any_byte_of_its_log(quick, share, tmp_path):
     whole, cut = tmp_path / "whole.csv", tmp_path / "cut.csv"
-    uninterrupted = list(fit.search(whole))
-    list(itertools.islice(fit.search(cut), 7))
+    uninterrupted = list(Fit(**SMALL).search(whole))
+    raw = whole.read_bytes()
+    header = raw.index(b"\n") + 1
+    left = raw[: header + int(share * (len(raw) - header))]
+    cut.write_bytes(left)
     before = next(quick)
-    resumed = list(fit.search(cut))
-    assert cut.read_bytes() == whole.read_bytes()
-    # NaN, of trials without flocks, equals itself in words only.
-    assert repr(resumed) == repr(uninterrupted)
+    resumed = list(Fit(**SMALL).search(cut))
+    assert cut.read_bytes() == raw
+    assert [trial.values.keys() for trial in resumed] == [
+        trial.values.keys() for trial in uninterrupted
+    ]
+    # NaN equals itself in words only.
+    assert [repr(trial.values) for trial in resumed] == [
+        repr(trial.values) for trial in uninterrupted
+    ]
     # Nothing that the log holds is run again.
-    list(fit.search(cut))
-    ran = next(quick) - before
-    most = (len(resumed) - 7) * 2 * sum(map(len, NOISE_S.values()))
-    assert 0 < ran <= most + 2
+    assert next(quick) - before - 1 == 80 - (left.count(b"\n") - 1)
+
+
+def test_every_reading_of_the_pool_gets_the_same_trials(quick, tmp_path):
+    fit = Fit(**SMALL)
+    trials = list(fit.search(tmp_path / "trials.csv"))
+    filling = trials[: fit.space_filling]
+    by_pool = {pool: [t.places for t in filling if t.pool == pool] for pool in POOLS}
+    assert by_pool["table-1"] == by_pool["500-boats"]
+    assert all(trial.draw >= 0 for trial in filling)
+    proposed = [trial for trial in trials[fit.space_filling :] if trial.pool == "table-1"]
+    assert len(proposed) == 20
+    assert all(trial.draw == -1 for trial in proposed)
+    assert fit.trials * SEARCHED.flock_hours <= fit.flock_hours
+
+
+def test_trials_stay_within_the_bounds_and_have_boats_of_table_1(quick, tmp_path):
+    fit = Fit(**SMALL)
+    for trial in fit.search(tmp_path / "trials.csv"):
+        for name, value in fit.constants_at(trial.places).items():
+            assert CONSTANTS[name].low <= value <= CONSTANTS[name].high
+        assert all(target.is_in_range(trial.boat[target.key]) for target in BOAT_TARGETS)
+
+
+def test_the_surrogate_proposes_what_the_formula_rewards(quick, tmp_path):
+    """Order of the quick runs is lost at 1.4 s for c3 = 0.13 alone."""
+    fit = Fit(free=("c3", "c4"), pools=("table-1",), flock_hours=160.0, batch=10)
+    trials = list(fit.search(tmp_path / "trials.csv"))
+
+    def distance(some):
+        return sum(abs(trial.values["critical_bw_0"] - 1.4) for trial in some) / len(some)
+
+    filling, proposed = trials[: fit.space_filling], trials[fit.space_filling :]
+    assert distance(proposed) < 0.7 * distance(filling)
 
 
 def test_a_log_of_another_fit_is_refused_and_left_alone(quick, tmp_path):
     log = tmp_path / "trials.csv"
-    list(Fit(trials=11, seeds=1).search(log))
+    list(itertools.islice(Fit(**SMALL).search(log), 5))
     before = log.read_bytes()
-    for other in (Fit(trials=11, seeds=1, seed=3), Fit(free=("c1", "c2"), trials=11, seeds=1)):
-        with pytest.raises(flockenv.ParameterError, match=str(log)):
-            list(other.search(log))
+    other = Fit(free=("c1", "c3"), flock_hours=107.0)
+    with pytest.raises(flockenv.ParameterError, match=r"trials\.csv is the log of another fit"):
+        list(other.search(log))
     assert log.read_bytes() == before
-    log.write_bytes(before[: len(before) - 40])
-    with pytest.raises(flockenv.ParameterError, match="line 12"):
-        list(Fit(trials=11, seeds=1).search(log))
+    # A line in the middle is not what a killed search leaves.
+    lines = before.splitlines(keepends=True)
+    log.write_bytes(b"".join([*lines[:2], lines[2][:-40] + b"\n", *lines[3:]]))
+    with pytest.raises(flockenv.ParameterError, match="line 3"):
+        list(Fit(**SMALL).search(log))
+    # As versions before the surrogate wrote them.
+    log.write_text("c1,c2,forward_speed,loss\n0.1,0.2,15.0,3.0\n")
+    with pytest.raises(flockenv.ParameterError, match="another fit or version"):
+        list(Fit(**SMALL).search(log))
 
 
-def test_trials_stay_within_the_bounds(quick, tmp_path):
-    for trial in Fit(trials=40, seeds=1).search(tmp_path / "trials.csv"):
-        for name, value in trial.constants.items():
-            low, high = BOUNDS[name]
-            assert low <= value <= high
-
-
-def test_flocks_of_hopeless_boats_are_not_run(quick):
-    before = next(quick)
-    constants = {"c1": 5.0, "c2": 0.5, "c3": 0.03, "c4": 0.01, "reverse_speed_cm_s": 2.0}
-    trial = Fit().trial(constants, range(2))
-    assert trial.loss > Fit.HOPELESS
-    assert next(quick) == before + 1
-
-
-def test_a_response_surface_finds_what_lucky_trials_hide():
-    rng = np.random.default_rng(3)
-    trials = []
-    for _ in range(60):
-        c3, c1 = np.exp(rng.normal(np.log(0.1), 0.5)), np.exp(rng.normal(np.log(0.3), 0.5))
-        values = dict.fromkeys((target.key for target in TARGETS), 0.95)
-        values |= {"forward_speed": 15.0, "backing_turn": 1.0, "critical_bw_3": 2.0}
-        values |= {"high_noise_0": 0.2, "high_noise_3": 0.2, "off_tangent": 0.1}
-        values |= {"backing_speed": 0.2}
-        values["critical_bw_0"] = 1.4 + np.log(c3 / 0.15) + rng.normal(0, 0.2)
-        trials.append(Trial({"c1": c1, "c3": c3}, values, 0.0))
-    (found,) = surface_minimum(trials)
-    assert found["c3"] == pytest.approx(0.15, rel=0.15)
-    assert surface_minimum(trials[:10]) == []
-
-
-def test_a_fit_is_written_and_reported(quick, tmp_path):
-    steps = []
-    fit = Fit(trials=22, seeds=1, finalists=2)
-    result = fit_report.report(fit, 4, tmp_path, lambda words, count: steps.append(count))
-    # The response surface needs more trials with flocks than there may be here.
-    assert fit_report.work(fit, 4) - 1 <= sum(steps) <= fit_report.work(fit, 4)
-    names = {"fit.toml", "trials.csv", "parameters.toml", "residuals.csv"}
-    assert {path.name for path in tmp_path.iterdir()} == names
-    text = (tmp_path / "parameters.toml").read_text(encoding="utf-8")
-    assert flockenv.FlockParameters.from_toml(text) == result.parameters
-    assert result.residuals["best_seen"].notna().all()
-    assert result.table().row_count == len(result.residuals)
-
-
-def test_a_folder_takes_one_fit_at_a_time(quick, tmp_path):
-    refused = []
-
-    def meanwhile(words, count):
-        with pytest.raises(flockenv.InUseError, match="is in use by another process"):
-            fit_report.report(fit, 4, tmp_path, lambda words, count: None)
-        refused.append(words)
-
-    fit = Fit(trials=2, seeds=1, finalists=1)
-    fit_report.report(fit, 4, tmp_path, meanwhile)
-    assert refused
-    names = {"fit.toml", "trials.csv", "parameters.toml", "residuals.csv"}
-    assert {path.name for path in tmp_path.iterdir()} == names
+def test_a_boat_that_never_backs_as_table_1_has_it_is_named(quick, monkeypatch, tmp_path):
+    monkeypatch.setattr(fit_search, "_MOST_DRAWS", 5)
+    # Table 3's boat backs as fast as it goes forward.
+    parameters = flockenv.FlockParameters.preset("simulation")
+    fit = Fit(free=("c4",), flock_hours=60.0, parameters=parameters)
+    with pytest.raises(flockenv.ParameterError, match="no boat alone backs and turns as Table 1"):
+        list(fit.search(tmp_path / "trials.csv"))
 
 
 @pytest.mark.parametrize(
@@ -134,18 +112,26 @@ def test_a_folder_takes_one_fit_at_a_time(quick, tmp_path):
     [
         {"free": ("c9",)},
         {"free": ()},
-        {"only": ("beauty",)},
-        {"trials": 0},
-        {"seeds": 0},
-        {"finalists": 0},
+        {"free": ("c1", "c1")},
+        {"pools": ("pond",)},
+        {"batch": 0},
         {"jobs": 0},
         {"seed": -1},
         {"seed": 2**32},
+        {"flock_hours": 0.0},
+        {"flock_hours": float("nan")},
+        {"flock_hours": float("inf")},
     ],
 )
 def test_options_out_of_range_are_refused_by_name(options):
     with pytest.raises(flockenv.ParameterError, match=next(iter(options))):
         Fit(**options)
+
+
+def test_a_budget_that_says_nothing_is_named_with_what_it_needs():
+    with pytest.raises(flockenv.ParameterError, match="inconclusive: needs at least 106"):
+        Fit(free=("c3", "c4"), flock_hours=106.0)
+    assert Fit(free=("c3", "c4"), flock_hours=107.0).trials == 80
 
 
 def test_an_unknown_constant_is_refused_with_the_nearest() -> None:
