@@ -11,7 +11,13 @@ from flockenv.calibration.search import Fit
 from flockenv.calibration.surrogate import front_ranks
 from flockenv.calibration.targets import MISFITS, SEARCHED_TARGETS, TARGETS
 
-OPTIONS = {"free": ("c3", "c4"), "pools": ("table-1",), "flock_hours": 54.0, "batch": 12}
+OPTIONS = {
+    "free": ("c3", "c4"),
+    "pools": ("table-1",),
+    "filling_hours": 27.0,
+    "flock_hours": 54.0,
+    "batch": 12,
+}
 SMALL = Fit(**OPTIONS)
 EFFORT = Effort(repetitions=2, judged=1, held_out=3)
 

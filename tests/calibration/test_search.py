@@ -12,9 +12,15 @@ from flockenv.calibration.search import Fit
 from flockenv.calibration.targets import BOAT_TARGETS
 
 #: 80 trials, of which the surrogate proposes 40 in batches of 14, 14 and 12.
-SMALL = {"free": ("c3", "c4"), "flock_hours": 107.0, "batch": 7}
+SMALL = {"free": ("c3", "c4"), "filling_hours": 54.0, "flock_hours": 107.0, "batch": 7}
 #: 40 trials, of which the surrogate proposes 20 in batches of 14 and 6.
-ONE_POOL = {"free": ("c3", "c4"), "pools": ("table-1",), "flock_hours": 54.0, "batch": 14}
+ONE_POOL = {
+    "free": ("c3", "c4"),
+    "pools": ("table-1",),
+    "filling_hours": 27.0,
+    "flock_hours": 54.0,
+    "batch": 14,
+}
 
 
 def test_the_same_options_give_the_same_log_byte_for_byte(quick, tmp_path):
@@ -69,7 +75,9 @@ def test_trials_stay_within_the_bounds_and_have_boats_of_table_1(quick, tmp_path
 
 def test_the_surrogate_proposes_what_the_formula_rewards(quick, tmp_path):
     """Order of the quick runs is lost at 1.4 s for c3 = 0.13 alone."""
-    fit = Fit(free=("c3", "c4"), pools=("table-1",), flock_hours=160.0, batch=10)
+    fit = Fit(
+        free=("c3", "c4"), pools=("table-1",), filling_hours=80.0, flock_hours=160.0, batch=10
+    )
     trials = list(fit.search(tmp_path / "trials.csv"))
 
     def distance(some):
@@ -83,7 +91,7 @@ def test_a_log_of_another_fit_is_refused_and_left_alone(quick, tmp_path):
     log = tmp_path / "trials.csv"
     list(itertools.islice(Fit(**SMALL).search(log), 5))
     before = log.read_bytes()
-    other = Fit(free=("c1", "c3"), flock_hours=107.0)
+    other = Fit(free=("c1", "c3"), filling_hours=54.0, flock_hours=107.0)
     with pytest.raises(flockenv.ParameterError, match=r"trials\.csv is the log of another fit"):
         list(other.search(log))
     assert log.read_bytes() == before
@@ -102,7 +110,7 @@ def test_a_boat_that_never_backs_as_table_1_has_it_is_named(quick, monkeypatch, 
     monkeypatch.setattr(fit_search, "_MOST_DRAWS", 5)
     # Table 3's boat backs as fast as it goes forward.
     parameters = flockenv.FlockParameters.preset("simulation")
-    fit = Fit(free=("c4",), flock_hours=60.0, parameters=parameters)
+    fit = Fit(free=("c4",), filling_hours=30.0, flock_hours=60.0, parameters=parameters)
     with pytest.raises(flockenv.ParameterError, match="no boat alone backs and turns as Table 1"):
         list(fit.search(tmp_path / "trials.csv"))
 
@@ -121,6 +129,8 @@ def test_a_boat_that_never_backs_as_table_1_has_it_is_named(quick, monkeypatch, 
         {"flock_hours": 0.0},
         {"flock_hours": float("nan")},
         {"flock_hours": float("inf")},
+        {"filling_hours": 1.0},
+        {"filling_hours": float("nan")},
     ],
 )
 def test_options_out_of_range_are_refused_by_name(options):
@@ -129,9 +139,23 @@ def test_options_out_of_range_are_refused_by_name(options):
 
 
 def test_a_budget_that_says_nothing_is_named_with_what_it_needs():
-    with pytest.raises(flockenv.ParameterError, match="inconclusive: needs at least 106"):
-        Fit(free=("c3", "c4"), flock_hours=106.0)
-    assert Fit(free=("c3", "c4"), flock_hours=107.0).trials == 80
+    with pytest.raises(flockenv.ParameterError, match="inconclusive: needs at least 53"):
+        Fit(free=("c3", "c4"), filling_hours=53.0)
+    with pytest.raises(flockenv.ParameterError, match="inconclusive: needs at least filling_hours"):
+        Fit(free=("c3", "c4"), filling_hours=54.0, flock_hours=53.0)
+    assert Fit(free=("c3", "c4"), filling_hours=54.0, flock_hours=107.0).trials == 80
+
+
+def test_more_flock_hours_go_on_from_the_trials_of_fewer(quick, tmp_path):
+    short, whole = tmp_path / "short.csv", tmp_path / "whole.csv"
+    list(Fit(**SMALL).search(whole))
+    # Ends within the second batch.
+    list(Fit(**{**SMALL, "flock_hours": 83.0}).search(short))
+    assert whole.read_bytes().startswith(short.read_bytes())
+    list(Fit(**SMALL).search(short))
+    assert short.read_bytes() == whole.read_bytes()
+    # And a log of more is read as far as asked.
+    assert len(list(Fit(**{**SMALL, "flock_hours": 83.0}).search(whole))) == 62
 
 
 def test_an_unknown_constant_is_refused_with_the_nearest() -> None:

@@ -210,7 +210,7 @@ def test_a_sweep_keeps_what_was_asked_beside_its_table(cli, tmp_path):
 LONG = {
     "compare": (["--minutes", "900", "--episodes", "8", "--pool", "table-1"], "Nothing was"),
     "evaluate": (["straight ahead", "--minutes", "900", "--episodes", "8"], "Nothing was"),
-    "fit": (["--trials", "5000"], "Finished trials are stored in "),
+    "fit": (["--flock-hours", "5000"], "Finished trials are stored in "),
     "reproduce": (["fig14", "--minutes", "10"], "Finished runs are stored in "),
     "sweep": (["{}/spec.toml"], "Finished runs are stored in "),
 }
@@ -313,8 +313,7 @@ def test_a_command_that_ends_leaves_ctrl_c_alone():
     [
         *((each, "plot", ["reproduce", "fig14"]) for each in ("pandas", "matplotlib", "scipy")),
         ("pyarrow", "plot", ["reproduce", "fig14"]),
-        ("pandas", "fit", ["fit"]),
-        ("cmaes", "fit", ["fit"]),
+        *((each, "fit", ["fit"]) for each in ("pandas", "matplotlib", "scipy", "sklearn")),
         ("pandas", "fit", ["fit", "--check", "experiment"]),
     ],
 )
