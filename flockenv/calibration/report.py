@@ -1,7 +1,7 @@
 """The report of `flockenv fit`: search, front, finalists, residuals on held-out seeds, files."""
 
 import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -49,6 +49,9 @@ _RESAMPLES = 200
 _FIRST_FINAL = 10_000
 """Where the finalists' seeds start in the range "calibration", beyond those of trials."""
 
+_START = "start"
+"""Name of the parameters that the fit started from, among those on held-out seeds."""
+
 _SHOWN = ("target", "source", "paper", "fitted", "95 %", "in range")
 
 Progress = Callable[[str, float], None]
@@ -69,8 +72,8 @@ class Effort:
         started from.
     """
 
-    repetitions: int = 8
-    judged: int = 3
+    repetitions: int = 4
+    judged: int = 2
     held_out: int = 24
 
     def __post_init__(self) -> None:
@@ -125,8 +128,9 @@ def report(fit: Fit, effort: Effort, folder: Path, progress: Progress) -> FitRep
     ``targets.csv`` (each trial's targets and misfits), ``front.csv`` and ``front.png`` (the Pareto
     front), ``pairs.csv`` (targets in pairs), ``finalists.csv``, ``judged.csv`` (targets of the best
     finalists and of the parameters that the fit started from, on held-out seeds),
-    ``residuals.csv`` and ``parameters.toml`` (the best one's). Runs of finalists are kept in
-    ``runs``. A killed fit resumes with the same options and makes the same files.
+    ``comparison.csv`` (their misfits), ``residuals.csv`` and ``parameters.toml`` (the best one's).
+    ``runs`` stores what the finalists' runs measured. A killed fit resumes with the same options
+    and makes the same files.
 
     Parameters
     ----------
@@ -170,26 +174,30 @@ def _reported(fit: Fit, effort: Effort, folder: Path, progress: Progress) -> Fit
     write_csv(folder / "finalists.csv", finals.round(4))
     with atomic_write(folder / "front.png") as file:
         save_front(file, views, finals)
-    judged = _judged(fit, effort, finals, folder / "runs", progress)
-    write_csv(folder / "judged.csv", judged.round(4))
-    # The parameters that the fit started from are the last ones.
-    named = judged[judged["name"] != "start"]
-    ranking = named.groupby("name").agg(met=("in_range", "sum"), misfit=("penalty", "mean"))
-    best = str(ranking.sort_values(["met", "misfit"], ascending=[False, True]).index[0])
-    place = int(best.removeprefix("finalist "))
-    parameters = _final_parameters(fit, finals, place)
-    parameters = parameters.replace(dt_s=JUDGED_DT_S, relinearizations=0)
-    table = named[named["name"] == best].drop(columns=["name", "penalty"]).reset_index(drop=True)
-    write_text(
-        folder / "parameters.toml", f"# flockenv {_core.__version__}\n" + parameters.to_toml()
+    sets = _best(fit, effort, finals)
+    runs = {
+        name: _held_out(each, effort.held_out, fit.jobs, folder / "runs", progress)
+        for name, each in sets.items()
+    }
+    tables = {name: residuals(each, runs[name]) for name, each in sets.items()}
+    judged = require("pandas", "fit").concat(
+        [table.assign(name=name) for name, table in tables.items()], ignore_index=True
     )
-    write_csv(folder / "residuals.csv", table.round(4))
-    return FitReport(parameters, table)
+    write_csv(folder / "judged.csv", judged.round(4))
+    comparison = _compared(sets, runs)
+    write_csv(folder / "comparison.csv", comparison.round(4))
+    finalists_alone = comparison[comparison["name"] != _START]
+    best = finalists_alone.sort_values(["met", "total"], ascending=[False, True])["name"].iloc[0]
+    parameters = sets[best]
+    header = f"# flockenv {_core.__version__}\n"
+    write_text(folder / "parameters.toml", header + parameters.to_toml())
+    write_csv(folder / "residuals.csv", tables[best].round(4))
+    return FitReport(parameters, tables[best])
 
 
 def _store_options(fit: Fit, effort: Effort, path: Path) -> None:
     options = asdict(fit) | {"parameters": fit.parameters.to_dict()} | asdict(effort)
-    # How many runs are made at a time changes nothing, and more trials go on from those there are.
+    # How many runs are made at a time changes nothing, and more trials continue those there are.
     del options["jobs"], options["flock_hours"]
     text = f"# flockenv {_core.__version__}\n" + tomli_w.dumps(options)
     if path.exists() and path.read_text(encoding="utf-8") != text:
@@ -249,30 +257,61 @@ def _final_parameters(fit: Fit, finals: "pd.DataFrame", place: int) -> FlockPara
     return fit.parameters_at(places).replace(pool=str(row["pool"]))
 
 
-def _judged(
-    fit: Fit, effort: Effort, finals: "pd.DataFrame", folder: Path, progress: Progress
-) -> "pd.DataFrame":
-    """Measure the best finalists, and where the fit started from, on held-out seeds."""
-    pandas = require("pandas", "fit")
+def _best(fit: Fit, effort: Effort, finals: "pd.DataFrame") -> dict[str, FlockParameters]:
+    """Return the parameters to measure on held-out seeds by name: the fit's start is the last."""
     ranked = finals.assign(total=finals[list(MISFITS)].sum(axis=1))
     ranked = ranked.sort_values(["met", "total"], ascending=[False, True]).head(effort.judged)
     sets = {f"finalist {place}": _final_parameters(fit, finals, place) for place in ranked.index}
-    sets["start"] = fit.parameters
-    tables = []
-    for name, parameters in sets.items():
-        table = _residuals_of(parameters, effort.held_out, fit.jobs, folder, progress)
-        tables.append(table.assign(name=name))
-    frame: pd.DataFrame = pandas.concat(tables, ignore_index=True)
-    return frame
+    sets[_START] = fit.parameters
+    return {name: _judged_stepping(each) for name, each in sets.items()}
 
 
-def _residuals_of(
+def _judged_stepping(parameters: FlockParameters) -> FlockParameters:
+    return parameters.replace(dt_s=JUDGED_DT_S, relinearizations=0)
+
+
+def _held_out(
     parameters: FlockParameters, held_out: int, jobs: int, folder: Path | None, progress: Progress
-) -> "pd.DataFrame":
-    parameters = parameters.replace(dt_s=JUDGED_DT_S, relinearizations=0)
+) -> FlockRuns:
     seeds = MODEL_SEEDS["calibration check"].seeds(held_out * len(JUDGED.cells))
-    runs = _stored(parameters, seeds, jobs, folder, "held-out seeds", progress)
-    return residuals(parameters, runs)
+    return _stored(parameters, seeds, jobs, folder, "held-out seeds", progress)
+
+
+def _compared(sets: Mapping[str, FlockParameters], runs: Mapping[str, FlockRuns]) -> "pd.DataFrame":
+    """Compare sets of parameters with the fit's start, on the same seeds.
+
+    Columns: ``name``, ``pool``, how many targets are in range, the misfit of each group and their
+    sum ``total``, and ``difference``, the sum less that of the start, with the ends of its 95 %
+    interval by a bootstrap over repetitions, which are drawn for both together.
+    """
+    pandas = require("pandas", "fit")
+    rng = np.random.default_rng(0)
+    count = runs[_START].repetitions
+    draws = [np.arange(count), *rng.integers(count, size=(_RESAMPLES, count))]
+    boats = {name: single_boat(each) for name, each in sets.items()}
+    totals = {
+        name: np.array([misfits(measure(boats[name], each.resampled(d))).sum() for d in draws])
+        for name, each in runs.items()
+    }
+    rows = []
+    for name, each in runs.items():
+        values = measure(boats[name], each)
+        differences = totals[name] - totals[_START]
+        low, high = percentile_ends(differences[1:])
+        rows.append(
+            {
+                "name": name,
+                "pool": sets[name].pool,
+                "met": sum(target.is_in_range(values[target.key]) for target in TARGETS),
+                **dict(zip(MISFITS, misfits(values).tolist(), strict=True)),
+                "total": totals[name][0],
+                "difference": differences[0],
+                "difference_low": low,
+                "difference_high": high,
+            }
+        )
+    frame: pd.DataFrame = pandas.DataFrame(rows)
+    return frame
 
 
 def check_hours(held_out: int) -> float:
@@ -290,8 +329,9 @@ def check(parameters: FlockParameters, held_out: int, jobs: int, progress: Progr
     """
     for package in ("pandas", "scipy"):
         require(package, "fit")
-    table = _residuals_of(parameters, held_out, jobs, None, progress)
-    return FitReport(parameters, table.drop(columns="penalty"))
+    parameters = _judged_stepping(parameters)
+    runs = _held_out(parameters, held_out, jobs, None, progress)
+    return FitReport(parameters, residuals(parameters, runs))
 
 
 def _stored(
@@ -353,7 +393,6 @@ def residuals(parameters: FlockParameters, runs: FlockRuns) -> "pd.DataFrame":
                 "value_low": low,
                 "value_high": high,
                 "in_range": target.is_in_range(value),
-                "penalty": float(target.penalty(value)),
                 "statement": target.statement,
             }
         )

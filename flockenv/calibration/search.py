@@ -85,8 +85,8 @@ class Fit:
     parameters : FlockParameters
         Everything else, but the substep.
     flock_hours : float
-        Simulated time of all trials together. A search with more of them begins with the same
-        trials.
+        Simulated time of all trials together. A search with more of them has the same
+        first trials.
     filling_hours : float
         Simulated time of those trials that fill the space.
     batch : int
@@ -108,7 +108,7 @@ class Fit:
     parameters: FlockParameters = field(
         default_factory=lambda: FlockParameters.preset("experiment")
     )
-    flock_hours: float = 4096.0
+    flock_hours: float = 4000.0
     filling_hours: float = 2048.0
     batch: int = 64
     seed: int = 0
@@ -229,8 +229,8 @@ class Fit:
         """Yield what is left of the batch that the surrogate proposes, the pools by turns."""
         pools = len(self.pools)
         proposed = len(done) - self.space_filling
-        begun = proposed % (self.batch * pools)
-        known = done[: len(done) - begun]
+        started = proposed % (self.batch * pools)
+        known = done[: len(done) - started]
         batches = []
         for number, pool in enumerate(self.pools):
             own = [trial for trial in known if trial.pool == pool]
@@ -241,7 +241,7 @@ class Fit:
             rng = np.random.default_rng([self.seed, len(known), number])
             batch = propose(surrogate, at, self.batch, rng, lambda at: self.boat(_rounded(at)))
             batches.append(batch)
-        for turn in range(begun, min(self.batch * pools, begun + self.trials - len(done))):
+        for turn in range(started, min(self.batch * pools, started + self.trials - len(done))):
             places, boat = batches[turn % pools][turn // pools]
             yield -1, self.pools[turn % pools], _rounded(places), boat
 
@@ -255,7 +255,7 @@ class Fit:
         parameters = self.parameters_at(places).replace(pool=pool)
         seeds = MODEL_SEEDS["calibration"].seeds(len(SEARCHED.cells))
         runs = run_flocks(parameters, SEARCHED, seeds, self.jobs)
-        # As the log has them, so that a resumed search goes on with the same numbers.
+        # As the log has them, so that a resumed search continues with the same numbers.
         values = np.array([float(f"{value:.6g}") for value in runs.values.ravel()])
         runs = FlockRuns(SEARCHED, values.reshape(runs.values.shape))
         return Trial(draw, pool, places, boat, runs)

@@ -21,13 +21,13 @@ def fit(
     pools: Annotated[str, typer.Option(help="Readings of the pool, by commas.")] = ",".join(POOLS),
     flock_hours: Annotated[
         float, typer.Option(help="Simulated time of all trials together, in hours.")
-    ] = 4096.0,
+    ] = 4000.0,
     filling_hours: Annotated[
         float, typer.Option(help="Simulated time of the trials that fill the space, in hours.")
     ] = 2048.0,
     batch: Annotated[int, typer.Option(help="Proposals per pool between two fits.")] = 64,
-    repetitions: Annotated[int, typer.Option(help="Runs of a kind by each finalist.")] = 8,
-    judged: Annotated[int, typer.Option(help="Finalists measured on held-out seeds.")] = 3,
+    repetitions: Annotated[int, typer.Option(help="Runs of a kind by each finalist.")] = 4,
+    judged: Annotated[int, typer.Option(help="Finalists measured on held-out seeds.")] = 2,
     held_out: Annotated[int, typer.Option(min=2, help="Runs of a kind on held-out seeds.")] = 24,
     check: Annotated[
         str | None, typer.Option(help="Search nothing: measure every target of this preset.")

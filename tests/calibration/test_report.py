@@ -43,7 +43,8 @@ def test_a_fit_is_written_and_reported(finished):
     names = {path.name for path in folder.iterdir()}
     assert names == {
         *("fit.toml", "trials.csv", "targets.csv", "front.csv", "front.png", "pairs.csv"),
-        *("finalists.csv", "judged.csv", "residuals.csv", "parameters.toml", "runs"),
+        *("finalists.csv", "judged.csv", "comparison.csv", "residuals.csv", "parameters.toml"),
+        "runs",
     }
     text = (folder / "parameters.toml").read_text(encoding="utf-8")
     assert flockenv.FlockParameters.from_toml(text) == result.parameters
@@ -84,6 +85,19 @@ def test_the_front_holds_no_trial_that_another_beats(finished):
     for _, own in front.groupby("pool"):
         assert (front_ranks(own[list(MISFITS)].to_numpy(), len(own)) <= 1).all()
     assert len(pd.read_csv(folder / "targets.csv")) == SMALL.trials
+
+
+def test_a_finalist_is_compared_with_the_start_on_the_same_seeds(finished):
+    folder, result, _ = finished
+    compared = pd.read_csv(folder / "comparison.csv").set_index("name")
+    start = compared.loc["start"]
+    assert start[["difference", "difference_low", "difference_high"]].tolist() == [0.0, 0.0, 0.0]
+    best = compared.drop("start").iloc[0]
+    assert best["difference"] == pytest.approx(best["total"] - start["total"], abs=1e-3)
+    assert best["difference_low"] <= best["difference_high"]
+    assert best["met"] == result.residuals["in_range"].sum()
+    judged = pd.read_csv(folder / "judged.csv")
+    assert judged[judged["name"] == "start"]["in_range"].sum() == start["met"]
 
 
 def test_pairs_are_symmetric_shares_and_correlations(finished):

@@ -154,7 +154,7 @@ def test_more_flock_hours_go_on_from_the_trials_of_fewer(quick, tmp_path):
     assert whole.read_bytes().startswith(short.read_bytes())
     list(Fit(**SMALL).search(short))
     assert short.read_bytes() == whole.read_bytes()
-    # And a log of more is read as far as asked.
+    # And a log of more is read as far as its options say.
     assert len(list(Fit(**{**SMALL, "flock_hours": 83.0}).search(whole))) == 62
 
 

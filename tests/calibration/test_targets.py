@@ -154,8 +154,8 @@ def test_the_line_of_figure_12_passes_as_often_as_its_noncentral_f_says():
 
 
 def test_a_flock_that_never_moves_has_no_dip_and_no_line_of_one_level():
-    still = runs_with(ideal, c_v=lambda k, bw_s: 5.0)
-    assert math.isnan(BY_KEY["velocity_dip"].value(still))
+    stationary = runs_with(ideal, c_v=lambda k, bw_s: 5.0)
+    assert math.isnan(BY_KEY["velocity_dip"].value(stationary))
     rare = runs_with(ideal, ordering_s=lambda k, bw_s: 100.0 if bw_s == 1.0 else math.nan)
     assert math.isnan(rare.ordering_slope(0))
     none = runs_with(ideal, ordered=lambda k, bw_s: 0.0)
