@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from flockenv._io.atomic_write import write_text
 from flockenv._io.extras import require
+from flockenv._io.interrupts import held_interrupts
 from flockenv.calibration.constants import CONSTANTS, POOLS
 from flockenv.calibration.flock_runs import (
     QUANTITIES,
@@ -37,7 +38,8 @@ DT_S = 0.1
 """Substep of trials, with one relinearization: see docs/speed_vs_error.md."""
 
 _BOAT = tuple(target.key for target in BOAT_TARGETS)
-_MOST_DRAWS = 2000
+_MOST_DRAWS = 2048
+_DRAWN_AT_ONCE = 32
 _FEWEST = 10
 """Space-filling trials per constant and pool from which a surrogate says something."""
 
@@ -207,21 +209,29 @@ class Fit:
             for pool in self.pools[started:]:
                 yield last.draw, pool, last.places, last.boat
             return
-        sequence = require("scipy.stats.qmc", "fit").Sobol(len(self.free), rng=self.seed)
-        draw = done[-1].draw + 1 if done else 0
-        if draw:
-            sequence.fast_forward(draw)
-        for place in range(draw, draw + _MOST_DRAWS):
-            places = _rounded(sequence.random(1)[0])
-            boat = self.boat(places)
-            if boat is not None:
-                for pool in self.pools:
-                    yield place, pool, places, boat
-                return
+        first = done[-1].draw + 1 if done else 0
+        for start in range(first, first + _MOST_DRAWS, _DRAWN_AT_ONCE):
+            for draw, point in enumerate(self._points(start), start):
+                places = _rounded(point)
+                boat = self.boat(places)
+                if boat is not None:
+                    for pool in self.pools:
+                        yield draw, pool, places, boat
+                    return
         raise ParameterError(
             f"free = {self.free} is not accepted: of {_MOST_DRAWS} points no boat alone backs and "
             "turns as Table 1 has it"
         )
+
+    def _points(self, first: int) -> NDArray[np.float64]:
+        """Return the Sobol points from the `first`-th on."""
+        sobol = require("scipy.stats.qmc", "fit").Sobol
+        # SciPy does not pass a Ctrl-C on that arrives here, and continues with other points.
+        with held_interrupts():
+            sequence = sobol(len(self.free), rng=self.seed)
+            if first:
+                sequence.fast_forward(first)
+            return np.asarray(sequence.random(_DRAWN_AT_ONCE))
 
     def _next_proposals(
         self, done: Sequence[Trial], kernels: dict[str, Kernels]
