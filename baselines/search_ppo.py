@@ -234,6 +234,7 @@ class Search:
         table = pd.DataFrame(rows)
         write_csv(self.options.out / "search.csv", table, float_format="%.5g")
         best = settings_of(self.study.best_trial.params, self.options)
+        best = best.replace(validation_episodes=512)
         write_text(self.options.out / "best.toml", best.to_toml())
         return table
 
