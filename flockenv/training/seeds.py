@@ -33,6 +33,11 @@ EVERY_SEED = "all seeds"
 
 _EPISODE_S = 480.0
 
+_KINDS = _TRAINING, _VALIDATION = "training", "validation"
+
+#: Rollouts in a mean of the drawn curve.
+_SMOOTHED = 5
+
 Report = Callable[[str, float], None]
 
 
@@ -45,7 +50,8 @@ class SeedsResult:
     trainings
         One for each seed.
     curves
-        Validations of each seed against flock-hours, and those of the `RIVALS` in the same flocks.
+        Mean signed order of each seed against flock-hours: that of each rollout's flocks, in which
+        leaders explore, and validations; and that of the `RIVALS` in the flocks of validations.
     evaluation
         Mean signed order of each policy in held-out flocks, and its differences from the `RIVALS`
         in the same flocks, with intervals. Those of ``all seeds`` are over seeds and flocks
@@ -148,23 +154,29 @@ def _curves(
     trainings: list[TrainingResult],
     policies: Mapping[str, Callable[[str], Any]],
 ) -> "pd.DataFrame":
-    """Return validations by policy and flock-hours; the rivals' have no hours."""
+    """Return mean orders by policy and flock-hours; the rivals' have no hours."""
     rows: list[dict[str, Any]] = []
     for each in trainings:
+        labels = {"policy": f"seed {each.settings.seed}", "flocks": _TRAINING}
+        for row in with_flock_hours(each.progress.curve, each.settings):
+            hours = {name: row[name] for name in ("samples", "flock_hours")}
+            rows.append({**labels, **hours, "mean": row["signed_order"]})
+        labels["flocks"] = _VALIDATION
         found = with_flock_hours(each.progress.validations, each.settings)
-        rows += [{"policy": f"seed {each.settings.seed}", **row} for row in found]
+        rows += [{**labels, **row} for row in found]
     for name in RIVALS:
         scores = {
             case: float(orders.mean())
             for case, orders in validation_episodes(policies[name], settings).items()
         }
-        rows.append({"policy": name, "mean": float(np.mean(list(scores.values()))), **scores})
+        mean = float(np.mean(list(scores.values())))
+        rows.append({"policy": name, "flocks": _VALIDATION, "mean": mean, **scores})
     curves: pd.DataFrame = require("pandas", "plot").DataFrame(rows)
     return curves
 
 
 def _draw(curves: "pd.DataFrame", path: Path) -> None:
-    """Draw the validations of each seed against flock-hours, and the rivals as lines."""
+    """Draw the orders of each seed against flock-hours, and the rivals as lines."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(6.0, 3.6), layout="constrained")
@@ -174,9 +186,12 @@ def _draw(curves: "pd.DataFrame", path: Path) -> None:
             style = ("--", "-", ":")[RIVALS.index(str(name))]
             axes.axhline(rows["mean"].iloc[0], ls=style, lw=1, color="0.4", label=str(name))
         else:
-            axes.plot(rows["flock_hours"], rows["mean"], ".-", lw=1.2, label=str(name))
+            exploring, validated = (rows[rows["flocks"] == kind] for kind in _KINDS)
+            smooth = exploring["mean"].rolling(_SMOOTHED, min_periods=1).mean()
+            (line,) = axes.plot(exploring["flock_hours"], smooth, lw=1.2, label=str(name))
+            axes.plot(validated["flock_hours"], validated["mean"], "o", color=line.get_color())
     axes.set_xlabel("simulated time of all flocks (hours)")
-    axes.set_ylabel("mean signed order of validations")
+    axes.set_ylabel("mean signed order")
     axes.legend(frameon=False, fontsize=8)
     axes.spines[["top", "right"]].set_visible(False)
     with atomic_write(path) as file:

@@ -48,7 +48,13 @@ def test_the_tables(short: TrainingSettings, tmp_path: Path) -> None:
     assert every["signed_order"] == pytest.approx(both.mean())
     assert every["low"] < both.mean() < every["high"]
     curves = result.curves
-    assert list(curves[curves["policy"] == "seed 1"]["samples"]) == [128, 256]
+    own_curves = dict(list(curves[curves["policy"] == "seed 1"].groupby("flocks")))
+    assert list(own_curves["validation"]["samples"]) == [128, 256]
+    stored = pd.read_csv(tmp_path / "seed-1" / "curve.csv")
+    assert list(own_curves["training"]["samples"]) == list(stored["samples"])
+    assert own_curves["training"]["mean"].tolist() == pytest.approx(
+        stored["signed_order"].tolist(), nan_ok=True
+    )
     hours = short.flock_hours_at(256)
     assert curves["flock_hours"].max() == pytest.approx(hours, rel=1e-5)
     assert curves[curves["policy"] == "damped law"]["flock_hours"].isna().all()
