@@ -13,7 +13,13 @@ from pathlib import Path
 from committed_data import Row, difference, interval, markdown, one, order, ratio, rows
 from learners_table import learners
 from suite_tables import suite_scores, suite_tasks
-from training_tables import first_training, ppo_comparison, ppo_search, signals
+from training_tables import (
+    first_training,
+    lean_signals,
+    ppo_comparison,
+    ppo_search,
+    signals,
+)
 
 from flockenv import FlockParameters
 
@@ -302,6 +308,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "ppo-comparison": ppo_comparison,
     "ppo-search": ppo_search,
     "signals": signals,
+    "lean-signals": lean_signals,
     "suite-tasks": suite_tasks,
     "suite-scores": suite_scores,
     "fit-targets": fit_targets,

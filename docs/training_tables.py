@@ -1,6 +1,8 @@
 """The tables of docs/train.md: what trainings, their searches and signals of rewards gave."""
 
-from committed_data import difference, markdown, one, order, rows
+from collections.abc import Mapping
+
+from committed_data import difference, interval, markdown, one, order, rows
 
 MEANS = "leaders/means.csv"
 DIFFERENCES = "leaders/differences.csv"
@@ -35,17 +37,59 @@ def first_training() -> str:
 
 
 def signals() -> str:
-    """Return what `flockenv signal` measured: z per million samples of each reward and horizon."""
-    file = "results/signals.csv"
-    found = rows(file)
-    horizons = list(dict.fromkeys(row["horizon_s"] for row in found))
+    """Return z per million samples of each reward and horizon, for rudders."""
+    return _signals({"": "results/signals.csv"})
+
+
+def lean_signals() -> str:
+    """Return z per million samples of each reward and horizon, for leans."""
+    noises = ("own", "shared")
+    return _signals({f"{noise} noise, ": f"results/signals_lean_{noise}.csv" for noise in noises})
+
+
+def _signals(files: Mapping[str, str]) -> str:
+    """Return what `flockenv signal` measured; files stand by how their titles start."""
+    every = {title: rows(file) for title, file in files.items()}
+    (first, *_) = every.values()
+    horizons = list(dict.fromkeys(row["horizon_s"] for row in first))
     body = []
-    for pool, reward_name in dict.fromkeys((row["pool"], row["reward"]) for row in found):
-        each = (one(file, pool=pool, reward=reward_name, horizon_s=horizon) for horizon in horizons)
+    for pool, reward_name in dict.fromkeys((row["pool"], row["reward"]) for row in first):
+        each = (
+            one(file, pool=pool, reward=reward_name, horizon_s=horizon)
+            for file in files.values()
+            for horizon in horizons
+        )
         cells = (f"{float(row['z_per_million']):+.1f} ± {float(row['error']):.1f}" for row in each)
         body.append([f"`{pool}`", f"`{reward_name}`", *cells])
-    titles = (f"horizon {float(horizon):g} s" for horizon in horizons)
+    titles = [f"{title}horizon {float(each):g} s" for title in files for each in horizons]
     return markdown(["pool", "reward", *titles], body)
+
+
+def trained_500_boats() -> str:
+    """Return what PPO from random weights reached in 500-boats, by seed."""
+    return _trained("500-boats")
+
+
+def trained_table_1() -> str:
+    """Return what PPO from random weights reached in table-1, by seed."""
+    return _trained("table-1")
+
+
+def _trained(pool: str) -> str:
+    """Return the held-out orders of `flockenv train --seeds`."""
+    file = f"training/{pool}/evaluation.csv"
+    laws = ("damped law", "tuned damped law", "learned")
+    body = []
+    for policy in dict.fromkeys(row["policy"] for row in rows(file)):
+        found = [one(file, policy=policy, minus="")]
+        found += [] if policy in laws else [one(file, policy=policy, minus=law) for law in laws]
+        forms = (".3f", *["+.3f"] * len(laws))
+        cells = [
+            interval(row, "signed_order", "low", "high", form)
+            for row, form in zip(found, forms, strict=False)
+        ]
+        body.append([policy, *cells, *[""] * (len(forms) - len(cells))])
+    return markdown(["policy", "signed order", *(f"minus {law}" for law in laws)], body)
 
 
 def ppo_search() -> str:
