@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Landscape", "finalists", "front_table", "landscape", "pair_table"]
 
-_CLOUD = 6000
+_CLOUD = 2000
 _NEAR = 10
 """Near the front is the tenth of the trials with the least total misfit by the surrogate."""
 
