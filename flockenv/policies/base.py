@@ -20,6 +20,7 @@ __all__ = [
     "control_rate",
     "decision_rate",
     "leaders_observed",
+    "numbers",
 ]
 
 
@@ -89,6 +90,21 @@ def check_action_mode(policy: Any, mode: str, where: str) -> None:
             f"{shown(policy)} gives actions of action_mode {own!r}, which is not accepted "
             f"{where}: it takes those of action_mode {mode!r}"
         )
+
+
+def numbers(name: str, values: ArrayLike, kind: type[Any] = np.float64) -> NDArray[Any]:
+    """Return a new array of real numbers; those that are too large for its kind are infinite.
+
+    Raises
+    ------
+    ParameterError
+        For anything else, by its name.
+    """
+    try:
+        with np.errstate(over="ignore"):
+            return np.array(values, kind)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ParameterError(f"{name} = {shown(values)} is not accepted: numbers") from error
 
 
 def leaders_observed(observation: NDArray[Any], size: int) -> int:

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from flockenv._io.npz_header import array_of, entry_of
 from flockenv.envs.observation import neighbor_places, observation_entries
-from flockenv.errors import ParameterError, refuse_unknown
+from flockenv.errors import ParameterError, refuse_unknown, shown
+from flockenv.policies.base import numbers
 from flockenv.policies.lean_features import features, observed_features
 
 __all__ = [
@@ -57,10 +58,13 @@ class Encoder(ABC):
         Its name in `ENCODERS`, in settings and in files.
     size : int
         Numbers of an encoded row.
+    names : list of str
+        The entries of the observations that it reads, in order.
     """
 
     kind: ClassVar[str]
     size: int
+    names: list[str]
 
     @abstractmethod
     def __call__(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -129,8 +133,8 @@ class NeighborSetEncoder(Encoder):
         self._places = neighbor_places(observation)
         self._layers = checked_layers(weights, biases, self._places.shape[1], "the encoder's layer")
         self.activation = checked_activation(activation)
-        every = len(observation_entries(observation))
-        self._others = np.setdiff1d(np.arange(every), self._places)
+        self.names = [entry.name for entry in observation_entries(observation)]
+        self._others = np.setdiff1d(np.arange(len(self.names)), self._places)
         self.size = len(self._others) + len(self._layers[-1][1])
 
     def __call__(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -217,11 +221,16 @@ class LeaningEncoder(Encoder):
         observation: Mapping[str, Any] | None = None,
     ) -> None:
         self.check(observation or {}, True)
-        self._names = [entry.name for entry in observation_entries(observation)]
-        observed = observed_features(self._names)
+        self.names = [entry.name for entry in observation_entries(observation)]
+        observed = observed_features(self.names)
         self.features = observed if features is None else tuple(features)
         refuse_unknown(self.features, observed, "feature of this observation")
-        self.mean, self.deviation = np.array(mean, np.float32), np.array(deviation, np.float32)
+        if not self.features or len({*self.features}) < len(self.features):
+            raise ParameterError(
+                f"features = {shown(features)} are not accepted: at least one, none of them twice"
+            )
+        self.mean = numbers("mean", mean, np.float32)
+        self.deviation = numbers("deviation", deviation, np.float32)
         self.size = len(self.features)
         for name, values in (("mean", self.mean), ("deviation", self.deviation)):
             if values.shape != (self.size,) or not np.isfinite(values).all():
@@ -233,7 +242,7 @@ class LeaningEncoder(Encoder):
 
     def __call__(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
         """Return encoded rows; see `Encoder`."""
-        standardized = (features(rows, self._names, self.features) - self.mean) / self.deviation
+        standardized = (features(rows, self.names, self.features) - self.mean) / self.deviation
         encoded: NDArray[np.float32] = np.clip(
             standardized, -LARGEST_FEATURE, LARGEST_FEATURE
         ).astype(np.float32)
@@ -323,8 +332,8 @@ def checked_layers(
         )
     layers, inputs = [], size
     for place, (weight, bias) in enumerate(zip(weights, biases, strict=True)):
-        with np.errstate(over="ignore"):  # what is too large is refused below
-            matrix, vector = np.array(weight, np.float32), np.array(bias, np.float32)
+        matrix = numbers(f"weights of {noun} {place}", weight, np.float32)
+        vector = numbers(f"biases of {noun} {place}", bias, np.float32)
         last = place == len(weights) - 1
         wanted = outputs if last and outputs is not None else vector.size
         if matrix.shape != (inputs, wanted) or vector.shape != (wanted,) or wanted == 0:

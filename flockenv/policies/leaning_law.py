@@ -11,6 +11,7 @@ from flockenv._io.moved_modules import renamed_argument
 from flockenv._io.npz_header import array_of, entry_of
 from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError, refuse_unknown
+from flockenv.policies.base import numbers
 from flockenv.policies.files import PROVENANCE, StoredPolicy
 from flockenv.policies.laws import DampedLaw
 from flockenv.policies.lean_features import (
@@ -63,10 +64,10 @@ class HiddenUnits:
 
     def __post_init__(self) -> None:
         refuse_unknown(self.weights, (*FEATURES, *FURTHER_FEATURES), "feature")
-        biases = np.array(self.biases, np.float64)
-        vectors = {"biases": biases, "outputs": np.array(self.outputs, np.float64)}
+        biases = numbers("biases of hidden units", self.biases)
+        vectors = {"biases": biases, "outputs": numbers("outputs of hidden units", self.outputs)}
         weights: Mapping[str, NDArray[Any]] = {
-            name: np.array(each, np.float64) for name, each in self.weights.items()
+            name: numbers(f"{name} of hidden units", each) for name, each in self.weights.items()
         }
         for name, each in {**vectors, **weights}.items():
             if each.ndim != 1 or each.size == 0 or each.shape != biases.shape:

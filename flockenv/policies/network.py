@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv import _core
 from flockenv._io.moved_modules import renamed_argument
 from flockenv._io.npz_header import array_of, entry_of
-from flockenv.envs.observation import BLOCKS, ObservationSpace
+from flockenv.envs.observation import BLOCKS, ObservationSpace, observation_entries
 from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.policies.encoders import (
     ACTIVATIONS,
@@ -87,7 +87,14 @@ class NetworkPolicy(StoredPolicy):
         self._encoder = encoder
         size = self._size
         if encoder is not None:
+            if not isinstance(encoder, Encoder):
+                raise ParameterError(f"encoder = {shown(encoder)} is not accepted: an Encoder")
             encoder.check(self.observation, self.mirror_to_target)
+            if encoder.names != [each.name for each in observation_entries(self.observation)]:
+                raise ParameterError(
+                    f"encoder is not accepted with observation = {self.observation!r}: it reads "
+                    f"another layout, of {len(encoder.names)} numbers"
+                )
             size = encoder.size
         self._layers = checked_layers(weights, biases, size, "layer", outputs=1)
         checked_activation(activation)

@@ -131,6 +131,37 @@ def test_files(encoder, tmp_path):
             lambda: NetworkPolicy([np.ones((SIZE, 1))], [[0.0]], encoder=deep_set()),
             "layer 0 has weights",
         ),
+        (
+            lambda: NetworkPolicy(
+                [np.ones((deep_set().size, 1))],
+                [[0.0]],
+                encoder=deep_set(),
+                observation={"neighbors": 3},
+            ),
+            f"it reads another layout, of {SIZE} numbers",
+        ),
+        (
+            lambda: NetworkPolicy(
+                [np.ones((COUNT, 1))],
+                [[0.0]],
+                encoder=USUAL,
+                observation={"fellow_leaders": 2},
+                mirror_to_target=True,
+            ),
+            "it reads another layout",
+        ),
+        (
+            lambda: NetworkPolicy([np.ones((SIZE, 1))], [[0.0]], encoder="deepsets"),
+            "encoder = 'deepsets' is not accepted: an Encoder",
+        ),
+        (
+            lambda: NeighborSetEncoder([["many"]], [[0.0]]),
+            "weights of the encoder's layer 0 = .* is not accepted: numbers",
+        ),
+        (lambda: LeaningEncoder(np.full(COUNT, 1e300), np.ones(COUNT)), "finite numbers"),
+        (lambda: LeaningEncoder("many", np.ones(COUNT)), "mean = 'many' is not accepted: numbers"),
+        (lambda: LeaningEncoder([], [], features=[]), "at least one, none of them twice"),
+        (lambda: LeaningEncoder([0, 0], [1, 1], features=["near"] * 2), "none of them twice"),
     ],
 )
 def test_nonsense_is_refused(make, words):
