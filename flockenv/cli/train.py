@@ -35,6 +35,7 @@ def train(
         int | None,
         typer.Option(
             min=1,
+            max=1000,
             help="Train with this many seeds in turn and compare them with the laws on held-out "
             "seeds; the same command resumes.",
         ),

@@ -110,9 +110,11 @@ def train_seeds(
     require("pandas", "plot")
     require("matplotlib", "plot")
     folder = Path(folder)
+    every = [settings.replace(seed=settings.seed + place) for place in range(count)]
+    for own in every:
+        _is_begun(own, folder / f"seed-{own.seed}")
     trainings = []
-    for place in range(count):
-        own = settings.replace(seed=settings.seed + place)
+    for place, own in enumerate(every):
 
         def shared(progress: Progress, place: int = place, own: TrainingSettings = own) -> None:
             done = min(1.0, progress.samples / own.total_samples)
@@ -141,12 +143,18 @@ def _trained(
     report: Callable[[Progress], None],
     trust: bool,
 ) -> TrainingResult:
-    if not (folder / "checkpoint.npz").exists():
+    if not _is_begun(settings, folder):
         return train(settings, folder, command=command, report=report, trust=trust)
-    samples, hours = settings.samples, settings.flock_hours
-    if stored_settings(folder, samples, hours) != settings:
+    return resume(folder, samples=settings.samples, flock_hours=settings.flock_hours, report=report)
+
+
+def _is_begun(settings: TrainingSettings, folder: Path) -> bool:
+    """Return whether a folder holds a run of these settings, and refuse those of others."""
+    if not (folder / "checkpoint.npz").exists():
+        return False
+    if stored_settings(folder, settings.samples, settings.flock_hours) != settings:
         raise ParameterError(f"{folder} holds a run of other settings: name another folder")
-    return resume(folder, samples=samples, flock_hours=hours, report=report)
+    return True
 
 
 def _curves(

@@ -101,6 +101,11 @@ def test_what_is_refused(short: TrainingSettings, tmp_path: Path) -> None:
         train_seeds(short, tmp_path, 0)
     with pytest.raises(ParameterError, match="episodes = 1 is not accepted: at least 2"):
         train_seeds(short, tmp_path, 1, episodes=1)
-    train_seeds(short.replace(samples=64), tmp_path, 1, episodes=2)
-    with pytest.raises(ParameterError, match="seed-0 holds a run of other settings"):
-        train_seeds(short.replace(gamma=0.5), tmp_path, 1, episodes=2)
+    with pytest.raises(ParameterError, match="seed = 4294967296 is not accepted"):
+        train_seeds(short.replace(seed=2**32 - 1), tmp_path, 2)
+    assert not any(tmp_path.iterdir())
+    last = short.replace(samples=64, seed=1)
+    train_seeds(last, tmp_path, 1, episodes=2)
+    with pytest.raises(ParameterError, match="seed-1 holds a run of other settings"):
+        train_seeds(last.replace(gamma=0.5, seed=0), tmp_path, 2, episodes=2)
+    assert not (tmp_path / "seed-0").exists()
