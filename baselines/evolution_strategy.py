@@ -343,6 +343,12 @@ def main(arguments: list[str] | None = None) -> None:
     counts = (options.pairs, generations, options.flocks)
     if min(*counts, *options.hidden, *options.leaders) < 1:
         parser.error("pairs, generations, flocks, hidden layers and leaders are at least 1")
+    if options.episodes < 2:
+        parser.error("--episodes is at least 2")
+    if not (0.0 < options.sigma < np.inf and 0.0 < options.rate < np.inf):
+        parser.error("--sigma and --learning-rate are positive")
+    if not 0.0 < options.average <= 1.0:
+        parser.error("--moving-average is above 0 and at most 1")
     if options.workers is not None and options.workers < 1:
         parser.error("--workers is at least 1")
     if options.flock_hours is not None and not 0.0 < options.flock_hours < np.inf:
