@@ -51,6 +51,7 @@ from search_scenarios import (
 import flockenv
 from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv._io.atomic_write import write_text
+from flockenv._io.npz_header import array_of
 from flockenv._io.provenance import provenance_of
 from flockenv.envs.observation import observation_entries, observation_version
 from flockenv.envs.reward import TERMS
@@ -181,12 +182,26 @@ def load_state(path: Path, options: argparse.Namespace, first: np.ndarray) -> St
         raise flockenv.ParameterError(
             f"{path} is of a search with other options: name another folder with --out"
         )
-    try:
-        method = METHODS[options.method].resumed(first, options, arrays)
-    except KeyError as error:
-        raise flockenv.ParameterError(f"{path} is no state of a search: no {error}") from error
-    generation, wall_s = int(numbers["generation"]), float(numbers["wall_s"])
-    return State(generation, method, numbers["average"], wall_s, numbers["curve"])
+    generation = numbers["generation"]
+    if generation.shape != () or generation.dtype.kind != "i" or generation < 0:
+        raise flockenv.ParameterError(f"{path} is no state of a search: generation")
+    number = int(generation)
+    kind = METHODS[options.method]
+    # What a method stores of every generation is empty before the first one.
+    stored_by_method = {
+        name: (number, *each.shape[1:]) if len(each) == 0 else each.shape
+        for name, each in kind(first, options).arrays().items()
+    }
+    shapes = {"average": first.shape, "curve": (number,), "wall_s": (), **stored_by_method}
+    for name, shape in shapes.items():
+        try:
+            whole = np.isfinite(array_of(arrays, name, shape)).all()
+        except flockenv.ParameterError as error:
+            raise flockenv.ParameterError(f"{path} is no state of a search: {error}") from error
+        if not whole:
+            raise flockenv.ParameterError(f"{path} is no state of a search: {name} is not finite")
+    method = kind.resumed(first, options, arrays)
+    return State(number, method, numbers["average"], float(numbers["wall_s"]), numbers["curve"])
 
 
 def save_state(path: Path, state: State, options: argparse.Namespace, turns: Turns) -> None:

@@ -261,7 +261,7 @@ def test_scores_that_lead_elsewhere_are_refused(script, tmp_path: Path) -> None:
     arrays = {**read_arrays(tmp_path / "state.npz")}
     for change, words in (
         ({"scores": -arrays["scores"]}, "do not lead to the stored mean"),
-        ({"scores": None}, "is no state of a search: no 'scores'"),
+        ({"scores": None}, "is no state of a search: the array scores is missing"),
         ({"curve": None}, "is no state of a search"),
     ):
         found = {name: each for name, each in {**arrays, **change}.items() if each is not None}
@@ -285,6 +285,18 @@ def test_a_foreign_state_is_refused(script, tmp_path: Path) -> None:
         write_arrays(tmp_path / "state.npz", {"identity": np.array(identity)})
         with pytest.raises(SystemExit, match=r"state\.npz is no state of a search"):
             script.main([*TINY, "--out", str(tmp_path)])
+
+
+@pytest.mark.parametrize("method", ["evolution-strategy", "sep-cma-es"])
+@pytest.mark.parametrize("name", ["weights", "average", "curve", "generation", "wall_s"])
+@pytest.mark.parametrize("damage", [np.zeros((2, 2)), np.array("many"), np.array(np.nan)])
+def test_a_damaged_state_is_refused(script, tmp_path: Path, method, name: str, damage) -> None:
+    arguments = [*TINY, "--method", method, "--out", str(tmp_path), "--generations"]
+    script.main([*arguments, "1"])
+    state = tmp_path / "state.npz"
+    write_arrays(state, {**read_arrays(state), name: damage})
+    with pytest.raises(SystemExit, match="is no state of a search: "):
+        script.main([*arguments, "2"])
 
 
 @pytest.mark.parametrize(
