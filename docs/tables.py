@@ -19,6 +19,7 @@ from training_tables import (
     ppo_comparison,
     ppo_search,
     signals,
+    trained_500_boats,
 )
 
 from flockenv import FlockParameters
@@ -414,6 +415,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "ppo-search": ppo_search,
     "signals": signals,
     "lean-signals": lean_signals,
+    "trained-500-boats": trained_500_boats,
     "suite-tasks": suite_tasks,
     "suite-scores": suite_scores,
     "fit-targets": fit_targets,

@@ -1,0 +1,21 @@
+"""Law: the settings of trainings that stand beside the scripts are accepted and start from nothing."""
+
+from pathlib import Path
+
+import pytest
+
+from flockenv.training import TrainingSettings
+
+FILES = sorted((Path(__file__).parents[2] / "baselines").glob("ppo_*.toml"))
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_settings_are_accepted(path: Path) -> None:
+    settings = TrainingSettings.from_toml(path.read_text(encoding="utf-8"))
+    assert settings.start == ""
+    assert settings.flock_hours is not None
+
+
+def test_there_is_one_for_each_pool() -> None:
+    pools = [TrainingSettings.from_toml(path.read_text(encoding="utf-8")).pools for path in FILES]
+    assert pools == [("500-boats",), ("table-1",)]
