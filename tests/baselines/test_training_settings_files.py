@@ -1,4 +1,4 @@
-"""Law: the settings of trainings that stand beside the scripts are accepted and start from nothing."""
+"""Law: settings beside the scripts are accepted, start from nothing and count flock-hours."""
 
 from pathlib import Path
 
