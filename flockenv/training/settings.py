@@ -11,9 +11,10 @@ from flockenv import _core
 from flockenv._io.toml import read_toml
 from flockenv.envs.batch import LeaderBatch
 from flockenv.envs.options import EnvOptions
-from flockenv.errors import FlockError, ParameterError, refuse_unknown, shown
+from flockenv.errors import FlockError, ParameterError, refuse_unknown
 from flockenv.parameters import FlockParameters
-from flockenv.policies.encoders import ACTIVATIONS, ENCODERS
+from flockenv.policies.encoders import ENCODERS
+from flockenv.training.accepted import accepted
 
 __all__ = ["TrainingError", "TrainingSettings"]
 
@@ -154,7 +155,10 @@ class TrainingSettings:
 
     def __post_init__(self) -> None:
         for each in fields(self):
-            object.__setattr__(self, each.name, _checked(each.name, getattr(self, each.name)))
+            value = getattr(self, each.name)
+            if each.name not in _OPTIONAL or value is not None:
+                example = _EXAMPLES.get(each.name, each.default)
+                object.__setattr__(self, each.name, accepted(each.name, value, example))
         if self.samples is not None and self.flock_hours is not None:
             raise ParameterError(
                 f"flock_hours = {self.flock_hours!r} is not accepted with samples = "
@@ -303,8 +307,9 @@ class TrainingSettings:
 
 _SAMPLES = 2_000_000
 _LIMITS = {"samples", "flock_hours"}
-_MAY_BE_EMPTY = ("net_arch", "critic_arch")
 _OPTIONAL = {*_LIMITS, "critic_arch"}
+#: Values of settings whose default is None.
+_EXAMPLES: Mapping[str, Any] = {"samples": _SAMPLES, "flock_hours": 1.0, "critic_arch": (64, 64)}
 #: Settings of their own, and what the network's output does not fit.
 _NOT_OPTIONS = (
     *(each.name for each in fields(TrainingSettings)),
@@ -314,96 +319,3 @@ _NOT_OPTIONS = (
     "rudder_levels",
     "render_mode",
 )
-_CHOICES: Mapping[str, tuple[str, ...]] = {
-    "target": ("random", "cw", "ccw", "alternate"),
-    "activation": tuple(ACTIVATIONS),
-    "critic": ("observation", "flock"),
-    "encoder": ("none", *ENCODERS),
-    "device": ("auto", "cpu", "cuda"),
-}
-#: Lowest and highest number; numbers of a list each.
-_RANGES: Mapping[str, tuple[float, float]] = {
-    "n_boats": (2, 10_000),
-    "n_leaders": (1, 10_000),
-    "noise": (0.0, 100.0),
-    "episode_s": (0.1, 1e6),
-    "control_hz": (0.1, 1000.0),
-    "samples": (1, 1e15),
-    "flock_hours": (1e-6, 1e9),
-    "num_flocks": (1, 1_000_000),
-    "n_steps": (2, 1_000_000),
-    "batch_size": (2, 1e9),
-    "n_epochs": (1, 10_000),
-    "learning_rate": (0.0, 1.0),
-    "final_learning_rate": (0.0, 1.0),
-    "gamma": (0.0, 1.0),
-    "gae_lambda": (0.0, 1.0),
-    "clip_range": (1e-6, 10.0),
-    "ent_coef": (-1.0, 10.0),
-    "vf_coef": (0.0, 100.0),
-    "max_grad_norm": (1e-9, 1e9),
-    "target_kl": (0.0, 100.0),
-    "net_arch": (1, 4096),
-    "critic_arch": (1, 4096),
-    "encoder_arch": (1, 4096),
-    "average": (1e-6, 1.0),
-    "log_std_init": (-20.0, 5.0),
-    "sde_sample_freq": (-1, 1_000_000),
-    "shared_noise_s": (0.0, 1e6),
-    "seed": (0, (1 << 32) - 1),
-    "checkpoint_every": (1, 1e15),
-    "validate_every": (1, 1e15),
-    "validate_from": (0.0, 1.0),
-    "validation_episodes": (2, 100_000),
-    "validation_s": (1.0, 1e6),
-    "validation_hz": (0.1, 1000.0),
-}
-
-
-_DEFAULTS = {each.name: each.default for each in fields(TrainingSettings)}
-#: Values of settings whose default is None.
-_EXAMPLES: Mapping[str, Any] = {"samples": _SAMPLES, "flock_hours": 1.0, "critic_arch": (64, 64)}
-
-
-def _checked(name: str, value: Any) -> Any:
-    if name in _OPTIONAL and value is None:
-        return None
-    default = _EXAMPLES.get(name) or _DEFAULTS[name]
-    if isinstance(default, tuple):
-        return _checked_list(name, value, default)
-    if name in _RANGES:
-        return _checked_number(name, value, whole=isinstance(default, int))
-    if isinstance(default, bool) and not isinstance(value, bool):
-        raise ParameterError(f"{name} = {shown(value)} is not accepted: true or false")
-    if isinstance(default, str) and not isinstance(value, str):
-        raise ParameterError(f"{name} = {shown(value)} is not accepted: a text")
-    if name in _CHOICES and value not in _CHOICES[name]:
-        raise ParameterError(
-            f"{name} = {shown(value)} is not accepted: {', '.join(_CHOICES[name])}"
-        )
-    if name in ("observation", "reward", "options"):
-        if not isinstance(value, Mapping):
-            raise ParameterError(f"{name} = {shown(value)} is not accepted: a table")
-        return dict(value)
-    return value
-
-
-def _checked_list(name: str, value: Any, default: tuple[Any, ...]) -> tuple[Any, ...]:
-    if not isinstance(value, list | tuple) or (not value and name not in _MAY_BE_EMPTY):
-        raise ParameterError(f"{name} = {shown(value)} is not accepted: a list")
-    if name == "noise" and len(value) != 2:
-        raise ParameterError(f"noise = {shown(value)} is not accepted: (lowest, highest)")
-    if name == "pools":
-        return tuple(str(pool) for pool in value)
-    return tuple(_checked_number(name, each, whole=isinstance(default[0], int)) for each in value)
-
-
-def _checked_number(name: str, value: Any, whole: bool) -> Any:
-    low, high = _RANGES[name]
-    kinds = int if whole else int | float
-    if isinstance(value, bool) or not isinstance(value, kinds) or not low <= value <= high:
-        kind = "a whole number" if whole else "a number"
-        raise ParameterError(
-            f"{name} = {shown(value)} is not accepted: {kind} in [{low:g}, {high:g}]"
-        )
-    return value if whole else float(value)
