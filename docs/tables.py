@@ -20,6 +20,7 @@ from training_tables import (
     ppo_search,
     signals,
     trained_500_boats,
+    trained_table_1,
 )
 
 from flockenv import FlockParameters
@@ -416,6 +417,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "signals": signals,
     "lean-signals": lean_signals,
     "trained-500-boats": trained_500_boats,
+    "trained-table-1": trained_table_1,
     "suite-tasks": suite_tasks,
     "suite-scores": suite_scores,
     "fit-targets": fit_targets,

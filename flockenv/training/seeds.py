@@ -187,7 +187,7 @@ def _draw(curves: "pd.DataFrame", path: Path) -> None:
     """Draw the orders of each seed against flock-hours, and the rivals as lines."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(6.0, 3.6), layout="constrained")
+    figure = Figure(figsize=(7.0, 3.6), layout="constrained")
     axes = figure.subplots()
     for name, rows in curves.groupby("policy", sort=False):
         if name in RIVALS:
@@ -200,7 +200,7 @@ def _draw(curves: "pd.DataFrame", path: Path) -> None:
             axes.plot(validated["flock_hours"], validated["mean"], "o", color=line.get_color())
     axes.set_xlabel("simulated time of all flocks (hours)")
     axes.set_ylabel("mean signed order")
-    axes.legend(frameon=False, fontsize=8)
+    figure.legend(frameon=False, fontsize=8, loc="outside right upper")
     axes.spines[["top", "right"]].set_visible(False)
     with atomic_write(path) as file:
         figure.savefig(file, dpi=200, format="png")
