@@ -208,7 +208,7 @@ def leader_motion() -> str:
 
 
 def fit_targets() -> str:
-    """Return what the preset `experiment` was fitted to and what it reaches."""
+    """Return what the preset `experiment-2026` was fitted to and what it reaches."""
     body = []
     for row in rows("results/experiment_fit.csv"):
         low, high = (f"{float(row[f'target_{end}']):.3g}" for end in ("low", "high"))
@@ -230,7 +230,7 @@ def fit_constants() -> str:
     """Return what may be freed: bounds, reasons, the preset's values and those of the finalists."""
     finals = {f"finalist {place}": row for place, row in enumerate(rows(f"{FIT}/finalists.csv"))}
     judged = [row["name"] for row in rows(f"{FIT}/comparison.csv") if row["name"] != "start"]
-    preset = FlockParameters.preset("experiment")
+    preset = FlockParameters.preset("experiment-2026")
     body = []
     for name, constant in CONSTANTS.items():
         scale = "by its logarithm" if constant.is_log else "by itself"
@@ -246,7 +246,7 @@ def fit_constants() -> str:
             *(finals[n]["pool"] for n in judged),
         ]
     )
-    return markdown(["constant", "bounds", "source", "`experiment`", *judged], body)
+    return markdown(["constant", "bounds", "source", "`experiment-2026`", *judged], body)
 
 
 def fit_judged() -> str:
@@ -278,7 +278,7 @@ def _judged(row: Row) -> str:
 
 
 def _name(name: str) -> str:
-    return "`experiment`" if name == "start" else name
+    return "`experiment-2026`" if name == "start" else name
 
 
 def fit_comparison() -> str:
@@ -290,7 +290,7 @@ def fit_comparison() -> str:
         met = f"{row['met']} of {len(TARGETS)}"
         body.append([_name(row["name"]), f"`{row['pool']}`", met, *groups, change])
     header = ["parameters", "pool", "in range", *(f"misfit, {group}" for group in GROUPS)]
-    return markdown([*header, "sum of misfits, less that of `experiment`"], body)
+    return markdown([*header, "sum of misfits, less that of `experiment-2026`"], body)
 
 
 def fit_finalists() -> str:

@@ -108,7 +108,7 @@ class Fit:
     free: tuple[str, ...] = tuple(CONSTANTS)
     pools: tuple[str, ...] = POOLS
     parameters: FlockParameters = field(
-        default_factory=lambda: FlockParameters.preset("experiment")
+        default_factory=lambda: FlockParameters.preset("experiment-2026")
     )
     flock_hours: float = 4000.0
     filling_hours: float = 2048.0

@@ -56,7 +56,7 @@ def fit(
 
     given = {"scheme": scheme, "noise": noise}
     changes = {name: value for name, value in given.items() if value is not None}
-    parameters = FlockParameters.preset(check or "experiment").replace(**changes)
+    parameters = FlockParameters.preset(check or "experiment-2026").replace(**changes)
     effort = fit_report.Effort(repetitions, judged, held_out)
     if check is not None:
         hours = fit_report.check_hours(held_out)

@@ -19,7 +19,7 @@ from flockenv.calibration.flock_runs import (
 from flockenv.calibration.targets import GROUPS, SEARCHED_TARGETS, TARGETS, measure, misfits
 from flockenv.runs.protocols.target_switching import PERIOD_S
 
-EXPERIMENT = FlockParameters.preset("experiment").replace(dt_s=0.1, relinearizations=1)
+EXPERIMENT = FlockParameters.preset("experiment-2026").replace(dt_s=0.1, relinearizations=1)
 BY_KEY = {target.key: target for target in TARGETS}
 BOAT = {
     "forward_cm_s": 15.0,
