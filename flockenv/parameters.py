@@ -146,7 +146,7 @@ class FlockParameters:
         The length of the backward phase, in s, at which mean Ψ_o of leaderless runs falls through
         the middle between its ordered and its disordered level; measured by
         ``baselines/critical_noise.py`` for Table 3's presets in both named pools, for
-        ``"experiment-2026"`` in ``"table-1"``.
+        ``"experiment"`` and ``"experiment-2026"`` in ``"table-1"``.
 
         Raises
         ------

@@ -56,13 +56,14 @@ impl Preset {
     ///
     /// Source: `baselines/critical_noise.py` (8 seeds of 30 minutes every 0.05 s; runs in
     /// `docs/results/critical_noise.csv`; of the experiment every 0.2 s, in
-    /// `docs/results/critical_noise_experiment.csv`), rounded to 0.01 s.
+    /// `docs/results/critical_noise_experiment.csv` and `critical_noise_experiment_2026.csv`), rounded to 0.01 s.
     pub fn critical_bw_s(self, pool: &Pool) -> Option<f64> {
         match (self, pool.name()?) {
             (Self::Simulation, "500-boats") => Some(0.31),
             (Self::Simulation, "table-1") => Some(0.45),
             (Self::Paper, "500-boats") => Some(0.57),
             (Self::Paper, "table-1") => Some(0.64),
+            (Self::Experiment, "table-1") => Some(1.49),
             (Self::Experiment2026, "table-1") => Some(1.80),
             _ => None,
         }
