@@ -57,11 +57,13 @@ def presets(
     for heading in ("field", "meaning"):
         meanings.add_column(heading, no_wrap=heading == "field")
     for field, metadata in declared.items():
-        numbers.add_row(field, *(str(each[field]) for each in values.values()))
+        first, *others = (str(each[field]) for each in values.values())
+        # Four whole columns would not fit into 80.
+        numbers.add_row(field, first, *("" if each == first else each for each in others))
         unit = f"Unit: {metadata['unit']}. " if metadata["unit"] else ""
         source = _merged({name: each[field] for name, each in sources.items()})
         meanings.add_row(field, f"{metadata['doc']}\n{unit}Source: {source}")
-    say("")
+    say(f"\nWhere a column is empty, the value is that of {names[0]}.\n")
     console.print(numbers)
     say("\nWhat the fields mean, and where the values come from\n")
     console.print(meanings, highlight=False)

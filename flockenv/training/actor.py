@@ -9,7 +9,6 @@ from flockenv.errors import ParameterError
 from flockenv.policies import NetworkPolicy
 from flockenv.policies.base import check_action_mode
 from flockenv.policies.encoders import LeaningEncoder
-from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.training.settings import TrainingSettings
 
 require("torch", "train")
@@ -80,7 +79,7 @@ def measure_features(encoder: torch.nn.Module | None, settings: TrainingSettings
         options = {**settings.environment(pool), "action_mode": "lean"}
         flocks = min(settings.num_flocks, _MEASURED_FLOCKS)
         venvs.append(LeaderVecEnv(flocks, n_leaders=list(settings.n_leaders), **options))
-        venvs[-1].seed(POLICY_SEEDS["training"].seeds(1, settings.seed)[0])
+        venvs[-1].seed(settings.flock_seeds(1)[0])
     usual = usual_features(*venvs)
     found = LeaningEncoder(usual["mean"], usual["deviation"], observation=settings.observation)
     encoder.copy_from(found)

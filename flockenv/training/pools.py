@@ -8,7 +8,6 @@ from gymnasium.spaces import Box
 from numpy.typing import NDArray
 
 from flockenv.errors import ParameterError
-from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import LeaderVecEnv, WithFlockFeatures
 from flockenv.training.settings import TrainingSettings
 
@@ -49,7 +48,7 @@ class PooledVecEnv(VecEnv):
         first = self.parts[0]
         self._ends = np.cumsum([part.num_envs for part in self.parts])
         every = len(self.parts) * settings.num_flocks
-        self._first_seeds = POLICY_SEEDS["training"].seeds(every, settings.seed)
+        self._first_seeds = settings.flock_seeds(every)
         self._squash = settings.squash
         # Float32 has no number between the hyperbolic tangent of 9 and 1.
         actions = Box(-9.0, 9.0, (1,), np.float32) if self._squash else first.action_space

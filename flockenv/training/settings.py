@@ -14,6 +14,7 @@ from flockenv.envs.options import EnvOptions
 from flockenv.errors import FlockError, ParameterError, refuse_unknown
 from flockenv.parameters import FlockParameters
 from flockenv.policies.encoders import ENCODERS
+from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.training.accepted import accepted
 
 __all__ = ["TrainingError", "TrainingSettings"]
@@ -194,6 +195,10 @@ class TrainingSettings:
             self.held_decisions(decisions_hz)
         except ParameterError as error:
             raise ParameterError(f"shared_noise_s: {error}") from error
+
+    def flock_seeds(self, count: int) -> range:
+        """Return seeds of the run's flocks (`runs.seeds.POLICY_SEEDS`)."""
+        return POLICY_SEEDS["training"].seeds(count, self.seed)
 
     @property
     def leaders(self) -> int:

@@ -43,7 +43,7 @@ def test_each_use_that_makes_policies_has_one_script():
         for use in re.findall(r'POLICY_SEEDS\["([^"]+)"\]', path.read_text()):
             scripts[use].add(path.name)
     # Those that train policies draw from one range, and judge none of each other's.
-    trainers = {"pools.py", "ppo_single_file.py", "tasks.py"}
+    trainers = {"settings.py", "ppo_single_file.py", "tasks.py"}
     assert scripts.pop("training") == trainers
     assert all(len(found) == 1 for use, found in scripts.items() if use != "evaluation"), scripts
 
