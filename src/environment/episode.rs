@@ -66,7 +66,7 @@ impl Episode {
     /// An episode that starts with this flock.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] where the flock's pool has no law that the settings need.
+    /// [`crate::FlockError::Parameter`] where the flock's pool has no law that the settings need.
     pub fn new(settings: &EnvSettings, schedule: EpisodeSchedule, flock: Flock) -> Result<Self> {
         let parameters = flock.parameters();
         let (leaders, boats) = (parameters.n_leaders, parameters.n_boats);
@@ -190,7 +190,7 @@ impl Episode {
     /// and writes the rewards, sums over them.
     ///
     /// # Errors
-    /// [`FlockError::Solver`]; the flock stays where it was in that control step, and the episode is over.
+    /// [`crate::FlockError::Solver`]; the flock stays where it was in that control step, and the episode is over.
     pub fn step(
         &mut self,
         settings: &EnvSettings,
