@@ -119,7 +119,8 @@ class FlockCriticPolicy(ActorCriticPolicy):
     seen
         Numbers of a row that the actor sees.
     features_extractor_class, features_extractor_kwargs
-        Feature extractor of the actor alone, from what it sees; the critic takes rows as they are.
+        Feature extractor of the actor alone, from what it sees; None: rows as they are, which the
+        critic takes in any case.
 
     Raises
     ------
@@ -134,7 +135,7 @@ class FlockCriticPolicy(ActorCriticPolicy):
         lr_schedule: Any,
         *,
         seen: int,
-        features_extractor_class: type[BaseFeaturesExtractor] = FlattenExtractor,
+        features_extractor_class: type[BaseFeaturesExtractor] | None = None,
         features_extractor_kwargs: dict[str, Any] | None = None,
         **options: Any,
     ) -> None:
@@ -142,7 +143,7 @@ class FlockCriticPolicy(ActorCriticPolicy):
         if not 1 <= seen <= size:
             raise ParameterError(f"seen = {seen!r} is not accepted: from 1 to {size}")
         self._seen = seen
-        self._encoder_class = features_extractor_class
+        self._encoder_class = features_extractor_class or FlattenExtractor
         self._encoder_kwargs = features_extractor_kwargs or {}
         super().__init__(observation_space, action_space, lr_schedule, **options)
 
