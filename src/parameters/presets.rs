@@ -115,11 +115,11 @@ impl Preset {
                 n_leaders = 0, "Table 1 (0 to 4)";
                 pool = Pool::TABLE_1, "Table 1";
                 speed_cm_s = 15.0, "Table 1 (15 ± 5)";
-                reverse_speed_cm_s = 4.94, "flockenv fit of 2026";
-                c1 = 0.265, "flockenv fit of 2026";
-                c2 = 0.973, "flockenv fit of 2026";
-                c3 = 0.123, "flockenv fit of 2026";
-                c4 = 0.00584, "flockenv fit of 2026";
+                reverse_speed_cm_s = 4.94, "an earlier flockenv fit";
+                c1 = 0.265, "an earlier flockenv fit";
+                c2 = 0.973, "an earlier flockenv fit";
+                c3 = 0.123, "an earlier flockenv fit";
+                c4 = 0.00584, "an earlier flockenv fit";
                 bw_s = 1.4, "Section 4.2 (figure 5)";
                 leaders_reverse = false, "Section 2.6 (motor on in fw only)";
             },
