@@ -6,6 +6,11 @@ from pathlib import Path
 
 DOCS = Path(__file__).parent
 
+# What policies reached in comparisons, and their paired differences.
+MEANS = "leaders/means.csv"
+DIFFERENCES = "leaders/differences.csv"
+POOLS = ("500-boats", "table-1")
+
 Row = dict[str, str]
 
 

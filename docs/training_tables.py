@@ -1,12 +1,19 @@
 """The tables of docs/train.md: what trainings, their searches and signals of rewards gave."""
 
 from collections.abc import Mapping
+from functools import partial
 
-from committed_data import difference, interval, markdown, one, order, rows
-
-MEANS = "leaders/means.csv"
-DIFFERENCES = "leaders/differences.csv"
-POOLS = ("500-boats", "table-1")
+from committed_data import (
+    DIFFERENCES,
+    MEANS,
+    POOLS,
+    difference,
+    interval,
+    markdown,
+    one,
+    order,
+    rows,
+)
 
 
 def ppo_comparison() -> str:
@@ -65,17 +72,7 @@ def _signals(files: Mapping[str, str]) -> str:
     return markdown(["pool", "reward", *titles], body)
 
 
-def trained_500_boats() -> str:
-    """Return what PPO from random weights reached in 500-boats, by seed."""
-    return _trained("500-boats")
-
-
-def trained_table_1() -> str:
-    """Return what PPO from random weights reached in table-1, by seed."""
-    return _trained("table-1")
-
-
-def _trained(pool: str) -> str:
+def trained(pool: str) -> str:
     """Return the held-out orders of `flockenv train --seeds`."""
     file = f"training/{pool}/evaluation.csv"
     laws = ("damped law", "tuned damped law", "learned")
@@ -111,3 +108,15 @@ def ppo_search() -> str:
         )
     header = ["", "learning rate", "`log_std_init`", "gSDE", "decisions per second", "signed order"]
     return markdown(header, body)
+
+
+TRAINING_TABLES = {
+    "first-training": first_training,
+    "ppo-comparison": ppo_comparison,
+    "ppo-search": ppo_search,
+    "signals": signals,
+    "lean-signals": lean_signals,
+    "trained-500-boats": partial(trained, "500-boats"),
+    "trained-table-1": partial(trained, "table-1"),
+}
+"""How each table is made."""

@@ -16,7 +16,7 @@ MOVED = {
     "alternation": "runs.protocols.target_switching",
     "analysis": "statistics.intervals",
     "arrangement": "statistics.structure",
-    "block_bootstrap": "statistics.intervals",
+    "block_bootstrap": "statistics.block_bootstrap",
     "comparison_report": "comparison.report",
     "contacts": "flock",
     "dwelling": "statistics.dwell_times",

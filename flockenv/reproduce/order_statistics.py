@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from flockenv.recording import Recording
 from flockenv.reproduce.reproduction import Results
 from flockenv.runs.spec import RunSpec
-from flockenv.statistics.intervals import block_places, block_sums, block_sums_resampled
+from flockenv.statistics.block_bootstrap import block_places, block_sums, block_sums_resampled
 
 __all__ = [
     "PHI_EDGES",

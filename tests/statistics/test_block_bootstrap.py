@@ -9,7 +9,8 @@ import pytest
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from flockenv.statistics.intervals import block_sums, block_sums_resampled, interval
+from flockenv.statistics.block_bootstrap import block_sums, block_sums_resampled
+from flockenv.statistics.intervals import interval
 
 A = 0.9
 SAMPLES = 4000

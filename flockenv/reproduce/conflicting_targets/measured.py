@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv.recording import Recording
+from flockenv.statistics.block_bootstrap import block_places
 from flockenv.statistics.dwell_times import dwell_times
-from flockenv.statistics.intervals import block_places, mean_replicates
+from flockenv.statistics.intervals import mean_replicates
 
 __all__ = [
     "COUNTS",

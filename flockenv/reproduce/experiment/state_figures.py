@@ -16,10 +16,10 @@ from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Sett
 from flockenv.reproduce.style import COLORS, column_figure, paper_style
 from flockenv.runs.spec import RunSpec
 from flockenv.statistics import structure
+from flockenv.statistics.block_bootstrap import block_sums_resampled
 from flockenv.statistics.dwell_times import DwellTimes, dwell_times
 from flockenv.statistics.intervals import (
     CONFIDENCE,
-    block_sums_resampled,
     interval,
     mean_replicates,
 )

@@ -11,11 +11,10 @@ from flockenv.reproduce.order_statistics import block_length_s
 from flockenv.reproduce.transition.design import Growth, TransitionDesign
 from flockenv.runs.protocols.hysteresis import loop_position
 from flockenv.runs.protocols.initial_state import STARTS
+from flockenv.statistics.block_bootstrap import block_sums, block_sums_resampled
 from flockenv.statistics.dwell_times import DwellTimes, dwell_times
 from flockenv.statistics.intervals import (
     RESAMPLES,
-    block_sums,
-    block_sums_resampled,
     student_interval,
 )
 
