@@ -221,7 +221,13 @@ class Search:
             raise optuna.TrialPruned
 
     def write(self) -> pd.DataFrame:
-        """Write the table, and the settings of the best trial."""
+        """Write the table, and the settings of the best trial.
+
+        Raises
+        ------
+        TrainingError
+            If no trial was trained to its end; the table is written.
+        """
         rows = []
         for trial in self.study.get_trials(deepcopy=False):
             row = {"trial": trial.number, "state": trial.state.name.lower(), **trial.params}
@@ -233,6 +239,11 @@ class Search:
             rows.append(row)
         table = pd.DataFrame(rows)
         write_csv(self.options.out / "search.csv", table, float_format="%.5g")
+        if not any(row["state"] == "complete" for row in rows):
+            raise training.TrainingError(
+                f"none of {len(rows)} trials was trained to its end, since the loss of each became "
+                f"infinite or NaN: ask for more with --trials ({self.options.out / 'search.csv'})"
+            )
         best = settings_of(self.study.best_trial.params, self.options)
         best = best.replace(validation_episodes=512)
         write_text(self.options.out / "best.toml", best.to_toml())

@@ -35,6 +35,7 @@ from flockenv.calibration.tradeoffs import (
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.runs.seeds import MODEL_SEEDS
+from flockenv.runs.store import RESULTS_VERSION
 from flockenv.statistics.intervals import percentile_ends
 
 if TYPE_CHECKING:
@@ -199,7 +200,8 @@ def _store_options(fit: Fit, effort: Effort, path: Path) -> None:
     options = asdict(fit) | {"parameters": fit.parameters.to_dict()} | asdict(effort)
     # How many runs are made at a time changes nothing, and more trials continue those there are.
     del options["jobs"], options["flock_hours"]
-    text = f"# flockenv {_core.__version__}\n" + tomli_w.dumps(options)
+    versions = f"# flockenv {_core.__version__}, results version {RESULTS_VERSION}\n"
+    text = versions + tomli_w.dumps(options)
     if path.exists() and path.read_text(encoding="utf-8") != text:
         raise ParameterError(
             f"{path} has other options or another version: repeat those, or name another --out"

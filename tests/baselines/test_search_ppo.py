@@ -63,6 +63,19 @@ def test_pools_that_are_not_accepted_leave_nothing(script, tmp_path: Path) -> No
     assert not (tmp_path / "search").exists()
 
 
+def test_trials_that_all_diverge_leave_the_table_and_no_settings(
+    script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def diverges(*arguments, **options):
+        raise script.training.TrainingError("the loss is nan")
+
+    monkeypatch.setattr(script.training, "train", diverges)
+    with pytest.raises(SystemExit, match=r"^Error: none of 2 trials was trained to its end"):
+        script.main([*QUICK, "--trials", "2", "--out", str(tmp_path)])
+    assert list(pd.read_csv(tmp_path / "search.csv")["state"]) == ["fail", "fail"]
+    assert not (tmp_path / "best.toml").exists()
+
+
 class Killed(BaseException):
     """Stands for a kill: nothing catches it."""
 

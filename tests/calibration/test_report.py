@@ -112,7 +112,7 @@ def test_pairs_are_symmetric_shares_and_correlations(finished):
     assert np.isfinite(pairs["both"]).all()
 
 
-def test_other_options_are_refused_and_leave_the_folder_alone(finished):
+def test_other_options_are_refused_and_leave_the_folder_alone(finished, monkeypatch):
     folder, _, _ = finished
     before = contents(folder)
     for fit, effort in (
@@ -121,6 +121,12 @@ def test_other_options_are_refused_and_leave_the_folder_alone(finished):
     ):
         with pytest.raises(flockenv.ParameterError, match="has other options or another version"):
             fit_report.report(fit, effort, folder, ignored)
+    assert contents(folder) == before
+    # Trials of a core whose runs have other numbers are no part of this fit.
+    with monkeypatch.context() as patch:
+        patch.setattr(fit_report, "RESULTS_VERSION", fit_report.RESULTS_VERSION + 1)
+        with pytest.raises(flockenv.ParameterError, match="has other options or another version"):
+            fit_report.report(SMALL, EFFORT, folder, ignored)
     assert contents(folder) == before
     # How many runs are made at a time is no other fit.
     fit = Fit(**OPTIONS, jobs=2)
