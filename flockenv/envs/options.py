@@ -24,6 +24,7 @@ _NAMES = (
     "preset",
     "params",
     "physics",
+    "decision_period_cycles",
     *_FIELDS,
     *(name for name in _SETTINGS if name not in _FIELDS),
 )
@@ -74,7 +75,10 @@ class EnvOptions:
         elif isinstance(target, str) and target in ("cw", "ccw"):
             given["target"] = target
         stepping = _physics(given)
+        cycles = given.pop("decision_period_cycles", None)
         parameters = _parameters({**given, **stepping})
+        if cycles is not None:
+            settings["decision_period_s"] = _period_of_cycles(cycles, settings, parameters)
         settings.setdefault("target", parameters.target)
         return cls(parameters, settings)
 
@@ -87,6 +91,24 @@ def _physics(given: dict[str, Any]) -> dict[str, Any]:
         if field in given:
             raise ParameterError(f"physics = {name!r} and {field} are both given: one of them")
     return chosen
+
+
+def _period_of_cycles(
+    cycles: float, settings: Mapping[str, Any], parameters: FlockParameters
+) -> float:
+    """Return the decision period in s nearest to a number of motor cycles."""
+    low, high = settings.get("bw_range_s") or (parameters.bw_s,) * 2
+    for given, other in (
+        (settings.get("decision_period_s") is not None, "decision_period_s"),
+        (low != high, "a drawn bw_s"),
+    ):
+        if given:
+            raise ParameterError(
+                f"decision_period_cycles = {cycles!r} is not accepted with {other}: one of them"
+            )
+    parameters = parameters.replace(bw_s=low)
+    control_hz = settings.get("control_hz", _core.env_defaults()["control_hz"])
+    return _core.decision_period_of_cycles(cycles, parameters, control_hz)
 
 
 def _parameters(given: dict[str, Any]) -> FlockParameters:
@@ -132,6 +154,8 @@ def arguments_table() -> str:
         "n_leaders": declared["n_leaders"],
         "bw_s": f"{declared['bw_s']} In s; a pair (low, high) draws it uniformly for each episode.",
         **{name: text for name, text in _core.env_meanings().items() if name in _SETTINGS},
+        "decision_period_cycles": "decision_period_s as a number of motor cycles, rounded to whole "
+        "control steps; not where bw_s is drawn",
         "render_mode": 'None, "rgb_array" (`render` returns a frame) or, for environments with one '
         'flock, "human" (a window, extra `render`)',
         "render_size": "width and height of a frame in pixels, 64 to 4096",

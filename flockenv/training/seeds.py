@@ -216,7 +216,7 @@ def _orders(
     """Return the signed order of each policy in each held-out flock; stored ones are not run."""
     pandas = require("pandas", "plot")
     seeds = POLICY_SEEDS["evaluation"].seeds(episodes)
-    left_out = (*settings.decisions, "physics")
+    left_out = (*settings.decisions, "decision_period_cycles", "physics")
     options = {name: each for name, each in settings.options.items() if name not in left_out}
     options["control_hz"] = settings.validation_hz
     stored: dict[Any, pd.DataFrame] = {}

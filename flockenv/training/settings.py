@@ -177,6 +177,7 @@ class TrainingSettings:
         for name in self.options:
             if name in _NOT_OPTIONS:
                 raise ParameterError(f"options: {name!r} is not accepted: another setting rules it")
+        rates: dict[str, float] = {}
         for pool in self.pools:
             options = {**self.environment(pool), "n_leaders": max(self.n_leaders)}
             try:
@@ -184,9 +185,17 @@ class TrainingSettings:
             except TypeError as error:
                 raise ParameterError(str(error)) from error
             self._check_shared_noise(batch.decisions_hz)
+            rates[pool] = batch.decisions_hz
+        if len(set(rates.values())) > 1:
+            raise ParameterError(
+                f"options: decision_period_cycles = {self.options['decision_period_cycles']!r} is "
+                f"not accepted, since motor cycles differ between pools: decision_period_s holds "
+                "in all of them"
+            )
         if self.encoder != "none":
             ENCODERS[self.encoder].check(self.observation, self.mirror_to_target)
         object.__setattr__(self, "_decisions_hz", batch.decisions_hz)
+        object.__setattr__(self, "_decision_period_s", batch.settings["decision_period_s"])
 
     def _check_shared_noise(self, decisions_hz: float) -> None:
         if self.shared_noise_s and self.use_sde:
@@ -233,7 +242,7 @@ class TrainingSettings:
         """What actions stand for and how long they are held, as `options` say."""
         return {
             "action_mode": self.options.get("action_mode", "rudder"),
-            "decision_period_s": self.options.get("decision_period_s"),
+            "decision_period_s": self.__dict__["_decision_period_s"],
         }
 
     def held_decisions(self, decisions_hz: float) -> int:

@@ -1,8 +1,9 @@
 //! What an action stands for: a rudder, or a heading that a steering law steers to; and how long it is held.
 
 use crate::boat::{DAMPED_LAW, Law};
-use crate::clock::whole_steps;
+use crate::clock::{seconds, whole_steps};
 use crate::error::{FlockError, Result};
+use crate::integrator::PhaseSchedule;
 use crate::parameters::{FlockParameters, named_choice};
 use std::f64::consts::PI;
 
@@ -53,6 +54,28 @@ impl ActionSettings {
             }
             None => Ok(()),
         }
+    }
+
+    /// The decision period in s that is nearest to a number of motor cycles: a whole number of control steps, at
+    /// least one.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for numbers that are not positive, and periods of more than 1e9 control steps.
+    pub fn period_of_cycles(
+        cycles: f64,
+        parameters: &FlockParameters,
+        control_hz: f64,
+    ) -> Result<f64> {
+        let steps = cycles * seconds(PhaseSchedule::new(parameters).cycle()) * control_hz;
+        if !(cycles > 0.0 && steps <= 1e9) {
+            let accepted = "a positive number of motor cycles, at most 1e9 control steps long";
+            return Err(FlockError::parameter(
+                "decision_period_cycles",
+                cycles,
+                accepted,
+            ));
+        }
+        Ok(steps.round().max(1.0) / control_hz)
     }
 
     /// Control steps from one decision to the next.

@@ -43,6 +43,10 @@ named_arguments! {
     PeriodS(f64) = real("period_s");
     /// How long a deviation from a policy is held, in s.
     HoldS(f64) = real("hold_s");
+    /// Motor cycles from one decision to the next.
+    DecisionPeriodCycles(f64) = real("decision_period_cycles");
+    /// Control steps per second.
+    ControlHz(f64) = real("control_hz");
 }
 
 /// A whole number that fits 64 bits, from anything with `__index__` but a bool.

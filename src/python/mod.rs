@@ -53,7 +53,10 @@ mod _core {
     #[pymodule_export]
     use super::recording::{phase_names, record, sampled_analysis_window, samples_in};
     #[pymodule_export]
-    use super::settings::{action_modes, env_defaults, env_meanings, held_decisions, reward_terms};
+    use super::settings::{
+        action_modes, decision_period_of_cycles, env_defaults, env_meanings, held_decisions,
+        reward_terms,
+    };
     #[pymodule_export]
     use super::statistics::PyStatistics;
     #[pymodule_export]

@@ -1,11 +1,16 @@
 //! Options of environments, as a dictionary of plain values, to and from the core's settings. Which there
 //! are is declared in the core.
 
-use super::arguments::{HoldS, real, text, texts, truth, whole, wrong_type};
+use super::arguments::{
+    ControlHz, DecisionPeriodCycles, HoldS, real, text, texts, truth, whole, wrong_type,
+};
 use crate::clock::whole_steps;
 use crate::environment::observation::{Block, ObservationLayout};
-use crate::environment::{ActionMode, EnvOption, EnvSettings, OPTIONS, OptionValue, RewardTerm};
+use crate::environment::{
+    ActionMode, ActionSettings, EnvOption, EnvSettings, OPTIONS, OptionValue, RewardTerm,
+};
 use crate::error::{FlockError, Result};
+use crate::parameters::FlockParameters;
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
@@ -186,6 +191,16 @@ pub(crate) fn env_meanings(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
 #[pyfunction]
 pub(crate) fn held_decisions(hold_s: HoldS, decisions_hz: f64) -> Result<u32> {
     whole_steps("hold_s", hold_s.0, decisions_hz, "decisions")
+}
+
+/// The decision period in s nearest to a number of motor cycles.
+#[pyfunction]
+pub(crate) fn decision_period_of_cycles(
+    cycles: DecisionPeriodCycles,
+    parameters: FlockParameters,
+    control_hz: ControlHz,
+) -> Result<f64> {
+    ActionSettings::period_of_cycles(cycles.0, &parameters, control_hz.0)
 }
 
 /// What an action may stand for.

@@ -99,6 +99,18 @@ def test_flock_hours_are_the_time_that_all_flocks_take(tiny: TrainingSettings) -
     assert TrainingSettings().total_samples == 2_000_000
 
 
+def test_decisions_once_a_motor_cycle(tiny: TrainingSettings) -> None:
+    # 2 s forward, 0.31 s backward and 1 s of drift after each, at two control steps per second.
+    options = {"decision_period_cycles": 1.0}
+    cycled = tiny.replace(pools=["500-boats"], noise=[1.0, 1.0], batch_size=32, options=options)
+    assert cycled.decisions["decision_period_s"] == 4.5
+    assert cycled.decisions_hz == pytest.approx(1 / 4.5)
+    with pytest.raises(ParameterError, match="not accepted with a drawn bw_s"):
+        tiny.replace(options=options)
+    with pytest.raises(ParameterError, match="motor cycles differ between pools"):
+        tiny.replace(noise=[1.0, 1.0], control_hz=10.0, validation_hz=10.0, options=options)
+
+
 def test_seeds_are_training_seeds_and_differ(tiny: TrainingSettings) -> None:
     seeds: list[int] = []
     for number in range(3):
