@@ -126,13 +126,13 @@ def next_generation(
     env: flockenv.LeadersVectorEnv,
     shape: Form,
     options: argparse.Namespace,
-    scenario: Scenario | None = None,
+    scenario: Scenario,
 ) -> State:
     method, number = state.method, state.generation
     candidates = method.candidates()
     seeds = list(SEEDS.seeds(options.flocks, options.seed, number * options.flocks))
     if options.engine is None:
-        unscored = unscored_steps(options, scenario) if scenario else 0
+        unscored = unscored_steps(options, scenario)
         found = scores(env, shape, candidates, seeds, unscored)
     else:
         found = scores_on_engine(Part(options, scenario, shape, candidates, seeds))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from flockenv.parameters import FlockParameters
 from flockenv.recording import Recording
 from flockenv.runs.executors import in_order
-from flockenv.runs.protocols.target_switching import PERIOD_S, simulate_alternating, target_at
+from flockenv.runs.protocols.target_switching import PERIOD_S, second_halves, simulate_alternating
 from flockenv.simulation import simulate
 
 __all__ = [
@@ -243,9 +243,8 @@ def run_flock(parameters: FlockParameters, cell: Cell, seed: int) -> list[float]
 
 def _following(run: Recording) -> float:
     used = run.analyzed(0.0)
-    late = used.time_s % PERIOD_S >= PERIOD_S / 2
-    sign = np.array([1.0 if target_at(time) == "cw" else -1.0 for time in used.time_s[late]])
-    return float((used.order.rotation()[late] * sign).mean())
+    late, signs = second_halves(used.time_s)
+    return float((used.order.rotation()[late] * signs[late]).mean())
 
 
 def run_flocks(

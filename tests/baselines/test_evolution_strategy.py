@@ -167,10 +167,11 @@ def test_it_climbs(script, monkeypatch: pytest.MonkeyPatch, method: str) -> None
     rates = {"sigma": 0.1, "rate": 0.1, "average": 1.0}
     parser = {"pairs": 8, "flocks": 1, "seed": 0, "engine": None, **rates}
     options = script.argparse.Namespace(**parser)
+    scenario = script.Scenario("500-boats", 6, 2, 1.0, "random", 60.0)
     zeros = np.zeros(shape.size)
     state = script.State(0, script.METHODS[method](zeros, options), zeros, 0.0, np.empty(0))
     for _ in range(60):
-        state = script.next_generation(state, None, shape, options)
+        state = script.next_generation(state, None, shape, options, scenario)
     np.testing.assert_allclose(state.average, 1.0, atol=0.25)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv.runs.protocols.target_switching import simulate_alternating, target_at
+from flockenv.runs.protocols.target_switching import second_halves, simulate_alternating, target_at
 
 PARAMETERS = flockenv.FlockParameters.preset("experiment").replace(n_boats=9, n_leaders=9, bw_s=0.4)
 
@@ -43,3 +43,10 @@ def test_the_same_arguments_give_the_same_run():
 def test_periods_between_samples_are_refused(period_s):
     with pytest.raises(flockenv.ParameterError, match="period_s"):
         simulate_alternating(PARAMETERS, 1, 5.0, period_s=period_s)
+
+
+def test_second_halves_and_their_directions():
+    times = np.array([0.0, 119.9, 120.0, 239.9, 240.0, 359.9, 360.0, 480.0, 719.9])
+    late, signs = second_halves(times)
+    assert late.tolist() == [False, False, True, True, False, False, True, False, True]
+    assert signs.tolist() == [-1.0, -1.0, -1.0, -1.0, 1.0, 1.0, 1.0, -1.0, -1.0]

@@ -11,7 +11,7 @@ from flockenv.reproduce.claim import CheckedClaim, Claim
 from flockenv.reproduce.experiment.design import GUIDED_S, flock_parameters
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
 from flockenv.reproduce.style import COLORS, column_figure, paper_style
-from flockenv.runs.protocols.target_switching import PERIOD_S, TARGETS, target_at
+from flockenv.runs.protocols.target_switching import PERIOD_S, TARGETS, second_halves, target_at
 from flockenv.runs.spec import RunSpec
 from flockenv.statistics.intervals import CONFIDENCE, interval, mean_replicates
 
@@ -187,9 +187,7 @@ def _figure7(settings: Settings, results: Results) -> Outcome:
     follow, reached = [], []
     for run in runs:
         cycles = _cycles(run)
-        sign = {"cw": 1.0, "ccw": -1.0}
-        target = np.array([sign[target_at(time)] for time in cycles["time_s"]])
-        late = cycles["time_s"] % PERIOD_S >= PERIOD_S / 2
+        late, target = second_halves(cycles["time_s"].to_numpy())
         follow.append(float((cycles["rotation"] * target)[late].mean()))
         stretch = (cycles["time_s"] // PERIOD_S)[late]
         ends = (cycles["rotation"] * target)[late].groupby(stretch).mean()

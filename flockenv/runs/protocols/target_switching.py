@@ -3,12 +3,15 @@
 import math
 from collections.abc import Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
 from flockenv import _core
 from flockenv.parameters import FlockParameters
 from flockenv.recording import Recording
 from flockenv.simulation import recorded
 
-__all__ = ["PERIOD_S", "TARGETS", "simulate_alternating", "target_at"]
+__all__ = ["PERIOD_S", "TARGETS", "second_halves", "simulate_alternating", "target_at"]
 
 PERIOD_S = 240.0
 """Length of a stretch in one direction in s (Section 2.6)."""
@@ -20,6 +23,17 @@ TARGETS = ("ccw", "cw")
 def target_at(time_s: float, period_s: float = PERIOD_S, targets: Sequence[str] = TARGETS) -> str:
     """Return the direction that holds from a time on."""
     return targets[int(time_s // period_s) % len(targets)]
+
+
+def second_halves(
+    time_s: NDArray[np.float64],
+) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
+    """Return which times are in the second half of their stretch, and the direction at each.
+
+    The direction is +1 clockwise and -1 counter-clockwise, as a rotation's sign is.
+    """
+    signs = np.array([1.0 if target_at(time) == "cw" else -1.0 for time in time_s])
+    return time_s % PERIOD_S >= PERIOD_S / 2, signs
 
 
 def simulate_alternating(
