@@ -61,29 +61,56 @@ impl Depenetration {
         most_passes: u32,
         keep_going: KeepGoing,
     ) -> f64 {
-        let margin = 0.5 * detector.hull().radius;
+        let margin = wide_margin(detector);
         for _ in 0..most_passes {
             detector.detect(boats, margin, &mut self.contacts);
-            let smallest = self.smallest_gap();
+            let smallest = smallest_gap(&self.contacts);
             if smallest >= -allowed || !keep_going() {
                 return smallest;
             }
-            self.passes += 1;
-            self.displace(poses);
-            HullPose::replace_all(boats, poses);
+            self.displace(detector, poses, boats);
         }
         detector.detect(boats, margin, &mut self.contacts);
-        self.smallest_gap()
+        smallest_gap(&self.contacts)
     }
 
-    fn smallest_gap(&self) -> f64 {
-        self.contacts
-            .iter()
-            .map(|contact| contact.gap.gap)
-            .fold(f64::INFINITY, f64::min)
+    /// As [`Self::run`] where an overlap is known to exceed `allowed`, and fills `found` with what is nearer than
+    /// `margin` afterwards. That also tells whether another pass is needed: overlaps are found with any margin.
+    pub(super) fn settle(
+        &mut self,
+        detector: &mut ContactDetector,
+        poses: &mut [Pose],
+        boats: &mut Vec<HullPose>,
+        allowed: f64,
+        most_passes: u32,
+        margin: f64,
+        found: &mut Vec<Contact>,
+    ) {
+        let wide = wide_margin(detector);
+        for _ in 0..most_passes {
+            detector.detect(boats, wide, &mut self.contacts);
+            self.displace(detector, poses, boats);
+            // The neighbor list is always one for the wide margin here, so that it does not depend on the passes.
+            detector.update(boats, wide);
+            detector.detect(boats, margin.min(wide), found);
+            if smallest_gap(found) >= -allowed {
+                break;
+            }
+        }
+        if margin > wide {
+            detector.detect(boats, margin, found);
+        }
     }
 
-    fn displace(&mut self, poses: &mut [Pose]) {
+    /// One pass, for the contacts at hand.
+    fn displace(
+        &mut self,
+        detector: &ContactDetector,
+        poses: &mut [Pose],
+        boats: &mut Vec<HullPose>,
+    ) {
+        self.passes += 1;
+        self.solver.set_threads(detector.threads());
         self.biases.clear();
         self.biases.extend(
             self.contacts
@@ -110,7 +137,18 @@ impl Depenetration {
                 *pose = pose.moved(step, 1.0 / steps.max(1.0));
             }
         }
+        HullPose::replace_all(boats, poses);
     }
+}
+
+/// How near hulls must be to be kept from being pushed into each other, in cm.
+fn wide_margin(detector: &ContactDetector) -> f64 {
+    0.5 * detector.hull().radius
+}
+
+fn smallest_gap(contacts: &[Contact]) -> f64 {
+    let gaps = contacts.iter().map(|contact| contact.gap.gap);
+    gaps.fold(f64::INFINITY, f64::min)
 }
 
 /// Moves hulls apart until none overlaps, for placement; returns the smallest gap reached.

@@ -55,6 +55,11 @@ impl ContactDetector {
         self.parts.resize_with(others, Vec::new);
     }
 
+    /// How many threads seek contacts.
+    pub(super) fn threads(&self) -> usize {
+        self.threads
+    }
+
     /// The hull that all boats share.
     pub fn hull(&self) -> Hull {
         self.hull
@@ -82,10 +87,7 @@ impl ContactDetector {
     /// Fills `contacts` with everything nearer than `margin`, ordered along the pool's polar angle.
     pub fn detect(&mut self, boats: &[HullPose], margin: f64, contacts: &mut Vec<Contact>) {
         contacts.clear();
-        let distance = 2.0 * self.hull.reach() + margin;
-        self.neighbors
-            .update(boats.iter().map(|boat| boat.center), distance, self.skin);
-        self.obstacles.update(&self.neighbors);
+        self.update(boats, margin);
         if self.threads == 1 {
             self.detect_among(0..boats.len(), boats, margin, contacts);
             return;
@@ -104,6 +106,14 @@ impl ContactDetector {
             contacts.extend_from_slice(part);
         }
         self.parts = parts;
+    }
+
+    /// Has the neighbor list hold everything nearer than `margin`.
+    pub(super) fn update(&mut self, boats: &[HullPose], margin: f64) {
+        let distance = 2.0 * self.hull.reach() + margin;
+        self.neighbors
+            .update(boats.iter().map(|boat| boat.center), distance, self.skin);
+        self.obstacles.update(&self.neighbors);
     }
 
     /// Adds the contacts of the boats at some places of the neighbor list.

@@ -156,8 +156,7 @@ impl ContactResolver {
         }
         statistics.worst_overlap_cm = statistics.worst_overlap_cm.max(-smallest);
         if smallest < -self.penetration_slop {
-            self.depenetrate(poses, boats, velocities, statistics);
-            self.detector.detect(boats, margin, &mut self.contacts);
+            self.depenetrate(poses, boats, velocities, margin, statistics);
         }
         statistics.contacts += self.contacts.len() as u64;
         statistics.neighbor_builds += self.detector.neighbors.builds() - builds_before;
@@ -165,11 +164,13 @@ impl ContactResolver {
         !self.contacts.is_empty()
     }
 
+    /// Undoes deep overlaps, and finds the contacts nearer than `margin` again.
     fn depenetrate(
         &mut self,
         poses: &mut [Pose],
         boats: &mut Vec<HullPose>,
         velocities: &[Velocity],
+        margin: f64,
         statistics: &mut Statistics,
     ) {
         let (radius, gyration_radius) = (self.boat_radius, self.gyration_radius);
@@ -178,13 +179,14 @@ impl ContactResolver {
         });
         let passes = depenetration.passes;
         let angular_momentum = orbital_angular_momentum(poses, velocities);
-        depenetration.run(
+        depenetration.settle(
             &mut self.detector,
             poses,
             boats,
             0.1 * self.penetration_slop,
             8,
-            &|| true,
+            margin,
+            &mut self.contacts,
         );
         statistics.depenetration_passes += depenetration.passes - passes;
         statistics.displaced_angular_momentum_cm2_s +=
