@@ -202,7 +202,8 @@ impl Factor {
             b = if b == column { above } else { b };
         }
         // Rounding may eat a pivot that only regularization keeps positive.
-        nodes[k].inverse_pivot = 1.0 / pivot.max(0.5 * regularization * rows[k].diagonal);
+        let least = 0.5 * regularization * rows[k].diagonal;
+        nodes[k].inverse_pivot = 1.0 / if pivot > least { pivot } else { least };
         self.finish(k, count);
     }
 
