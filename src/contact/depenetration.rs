@@ -15,6 +15,9 @@ pub(super) const PENETRATION_SLOP: f64 = 0.002;
 /// linearization means little. A boat turns by 1 rad at most.
 const LARGEST_STEP: f64 = 0.2;
 
+/// Passes after which a substep accepts the overlaps that are left.
+const MOST_PASSES: u32 = 8;
+
 /// Called now and then in long work: whether to continue.
 pub type KeepGoing<'a> = &'a (dyn Fn() -> bool + Sync);
 
@@ -75,22 +78,22 @@ impl Depenetration {
     }
 
     /// As [`Self::run`] where an overlap is known to exceed `allowed`, and fills `found` with what is nearer than
-    /// `margin` afterwards. That also tells whether another pass is needed: overlaps are found with any margin.
-    pub(super) fn settle(
+    /// `margin` afterwards. That also shows whether another pass is needed: overlaps are found with any margin.
+    pub(super) fn open_overlaps(
         &mut self,
         detector: &mut ContactDetector,
         poses: &mut [Pose],
         boats: &mut Vec<HullPose>,
         allowed: f64,
-        most_passes: u32,
         margin: f64,
         found: &mut Vec<Contact>,
     ) {
         let wide = wide_margin(detector);
-        for _ in 0..most_passes {
+        for _ in 0..MOST_PASSES {
             detector.detect(boats, wide, &mut self.contacts);
             self.displace(detector, poses, boats);
-            // The neighbor list is always one for the wide margin here, so that it does not depend on the passes.
+            // The list is rebuilt where the wide margin asks for it, whether or not another pass comes: contacts come
+            // in its order, and results made before rest on that.
             detector.update(boats, wide);
             detector.detect(boats, margin.min(wide), found);
             if smallest_gap(found) >= -allowed {

@@ -179,12 +179,11 @@ impl ContactResolver {
         });
         let passes = depenetration.passes;
         let angular_momentum = orbital_angular_momentum(poses, velocities);
-        depenetration.settle(
+        depenetration.open_overlaps(
             &mut self.detector,
             poses,
             boats,
             0.1 * self.penetration_slop,
-            8,
             margin,
             &mut self.contacts,
         );
