@@ -110,6 +110,30 @@ def other_scenes() -> str:
     return markdown(header, body)
 
 
+def one_policy() -> str:
+    """Return the order with one policy for both pools beside that of each pool's own."""
+    body = []
+    for row in rows(DIFFERENCES, policy="both-pools", reference="learned"):
+        known = {name: row[name] for name in ("comparison", "scene", "leaders")}
+        own, mean = (one(MEANS, policy=name, **known) for name in ("learned", "both-pools"))
+        pool, _, noise = row["scene"].partition("-bw-")
+        cells = [order(own), order(mean), ratio(row)]
+        body.append([f"`{pool}`", f"{noise} s", row["leaders"], *cells])
+    header = ["pool", "bw", "leaders", "the pool's own", "one for both", "ratio"]
+    return markdown(header, body)
+
+
+def strong_500_boats() -> str:
+    """Return the order in 500-boats with more than the boats' rudder, for the same policies."""
+    policies = ("tuned damped law", "learned")
+    body = []
+    for times, comparison in ((1, "500-boats"), (2, "rudder-2"), (10, "rudder-10")):
+        known = {"comparison": comparison, "scene": "500-boats-bw-0.31", "leaders": "3"}
+        cells = [order(one(MEANS, policy=name, **known)) for name in policies]
+        body.append([f"{times}", *cells])
+    return markdown(["times the rudder", *policies], body)
+
+
 def strong_rudders() -> str:
     """Return the order in table-1 with ten times the rudder."""
     file = "leaders/strong_rudders.csv"
@@ -268,7 +292,9 @@ TABLES: dict[str, Callable[[], str]] = {
     ),
     "leader-motion": leader_motion,
     "ablation": ablation,
+    "one-policy": one_policy,
     "strong-rudders": strong_rudders,
+    "strong-500-boats": strong_500_boats,
     "other-scenes": other_scenes,
     "other-policies": other_policies,
     "suite-tasks": suite_tasks,

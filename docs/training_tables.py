@@ -15,6 +15,8 @@ from committed_data import (
     rows,
 )
 
+LEANS = "training/trials_of_leans.csv"
+
 
 def ppo_comparison() -> str:
     """Return the order with PPO's best policy and three leaders."""
@@ -72,6 +74,38 @@ def _signals(files: Mapping[str, str]) -> str:
     return markdown(["pool", "reward", *titles], body)
 
 
+def rudders() -> str:
+    """Return what PPO of rudders from random weights reached in table-1."""
+    observed = {"default": "default_observation", "default and `law_rudder`": "law_rudder"}
+    body = []
+    for title, name in observed.items():
+        known = {"comparison": "ppo-rudders", "policy": name}
+        gains = [
+            one(DIFFERENCES, reference=law, **known) for law in ("damped law", "tuned damped law")
+        ]
+        body.append([title, order(one(MEANS, **known)), *(difference(row) for row in gains)])
+    header = ["observation", "PPO", "minus the damped law", "minus the tuned damped law"]
+    return markdown(header, body)
+
+
+def level_searches() -> str:
+    """Return what searches reached that gained nothing over the pretrained leaders."""
+    hours = {row["comparison"]: row["flock_hours"] for row in rows("training/searches.csv")}
+    titles = {
+        "search-alternating": "`500-boats`, target alternates",
+        "search-nonlinear": "`table-1`, nonlinear lean with the gaps to fellow leaders",
+    }
+    body = []
+    for comparison, title in titles.items():
+        known = {"comparison": comparison, "policy": "searched"}
+        references = ("tuned damped law", "learned")
+        gains = [one(DIFFERENCES, reference=each, **known) for each in references]
+        cells = [order(one(MEANS, **known)), *(difference(row) for row in gains)]
+        body.append([title, hours[comparison], *cells])
+    header = ["search", "flock-hours", "searched", "minus the tuned damped law", "minus learned"]
+    return markdown(header, body)
+
+
 def trained(pool: str) -> str:
     """Return the held-out orders of `flockenv train --seeds`."""
     file = f"training/{pool}/evaluation.csv"
@@ -110,12 +144,43 @@ def ppo_search() -> str:
     return markdown(header, body)
 
 
+def terms_of_leans() -> str:
+    """Return the effects of further terms of the lean, in both designs."""
+    designs = ("factorial of 14", "factorial of 7")
+    every = [row for design in designs for row in rows(LEANS, how=design)]
+    body = []
+    for trial in dict.fromkeys(row["trial"] for row in every):
+        cells = [trial]
+        for design in designs:
+            own = [row for row in every if row["trial"] == trial and row["how"] == design]
+            cells += [own[0]["change"], _with_error(own[0])] if own else ["", ""]
+        body.append(cells)
+    return markdown(["term", "change", "effect", "change, second design", "effect"], body)
+
+
+def trials_of_leans() -> str:
+    """Return the paired differences of changed leans from the pretrained leaders."""
+    body = [
+        [row["trial"], row["episodes"], row["flock_hours"], _with_error(row)]
+        for row in rows(LEANS, how="paired")
+    ]
+    return markdown(["change", "pairs of episodes", "flock-hours", "difference"], body)
+
+
+def _with_error(row: Mapping[str, str]) -> str:
+    return f"{float(row['difference']):+.3f} ± {float(row['error']):.3f}"
+
+
 TRAINING_TABLES = {
     "first-training": first_training,
     "ppo-comparison": ppo_comparison,
     "ppo-search": ppo_search,
     "signals": signals,
     "lean-signals": lean_signals,
+    "rudders": rudders,
+    "level-searches": level_searches,
+    "terms-of-leans": terms_of_leans,
+    "trials-of-leans": trials_of_leans,
     "trained-500-boats": partial(trained, "500-boats"),
     "trained-table-1": partial(trained, "table-1"),
 }

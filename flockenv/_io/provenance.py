@@ -39,7 +39,6 @@ def provenance_of(
         "command": command,
         "flockenv": _core.__version__,
         "commit": commit(),
-        "observation_version": str(_core.observation_version()),
         "python": platform.python_version(),
         "seed": str(seed),
         "samples": str(samples),

@@ -6,10 +6,12 @@ import pytest
 
 from flockenv.training import TrainingSettings
 
-FILES = sorted((Path(__file__).parents[2] / "baselines").glob("ppo_*.toml"))
+ROOT = Path(__file__).parents[2]
+FILES = sorted((ROOT / "baselines").glob("ppo_*.toml"))
+OF_PAGES = sorted((ROOT / "docs" / "training" / "rudders").glob("*.toml"))
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", [*FILES, *OF_PAGES], ids=lambda path: path.stem)
 def test_settings_are_accepted(path: Path) -> None:
     settings = TrainingSettings.from_toml(path.read_text(encoding="utf-8"))
     assert settings.start == ""
