@@ -1,14 +1,11 @@
 """The report of `flockenv fit`: search, front, finalists, residuals on held-out seeds, files."""
 
-import hashlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
 import tomli_w
-from rich.table import Table
 
 from flockenv import _core
 from flockenv._io.atomic_write import atomic_write, write_csv, write_text
@@ -17,11 +14,19 @@ from flockenv._io.locks import held
 from flockenv.calibration.figure import save_front
 from flockenv.calibration.flock_runs import (
     JUDGED,
-    QUANTITIES,
     SEARCHED,
-    FlockRuns,
-    run_flocks,
     single_boat,
+)
+from flockenv.calibration.held_out import (
+    START,
+    FitReport,
+    Progress,
+    check_hours,
+    compared,
+    held_out_runs,
+    judged_stepping,
+    residuals,
+    stored_runs,
 )
 from flockenv.calibration.search import Fit, Trial
 from flockenv.calibration.targets import GROUPS, MISFITS, TARGETS, measure, misfits
@@ -36,26 +41,14 @@ from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.runs.seeds import MODEL_SEEDS
 from flockenv.runs.store import RESULTS_VERSION
-from flockenv.statistics.intervals import percentile_ends
 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Effort", "FitReport", "check", "check_hours", "report", "residuals"]
+__all__ = ["Effort", "report"]
 
-JUDGED_DT_S = 0.02
-"""Substep of the runs on held-out seeds, without relinearizations: that of the presets."""
-
-_RESAMPLES = 200
 _FIRST_FINAL = 10_000
 """Where the finalists' seeds start in the range "calibration", beyond those of trials."""
-
-_START = "start"
-"""Name of the parameters that the fit started from, among those on held-out seeds."""
-
-_SHOWN = ("target", "source", "paper", "fitted", "95 %", "in range")
-
-Progress = Callable[[str, float], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,36 +83,6 @@ class Effort:
             "finalists": finals * JUDGED.flock_hours,
             "held-out seeds": (self.judged + 1) * check_hours(self.held_out),
         }
-
-
-@dataclass(frozen=True, slots=True)
-class FitReport:
-    """The result of a fit.
-
-    Attributes
-    ----------
-    parameters : FlockParameters
-        The best finalist's: the most targets in range on held-out seeds, then the least misfit.
-    residuals : pandas.DataFrame
-        Its targets on held-out seeds, a row each; see `residuals`.
-    """
-
-    parameters: FlockParameters
-    residuals: "pd.DataFrame"
-
-    def table(self) -> Table:
-        """Return the residuals as a table for the terminal."""
-        table = Table(*_SHOWN, title_justify="left")
-        for row in self.residuals.to_dict("records"):
-            table.add_row(
-                row["target"],
-                row["source"],
-                f"{row['target_low']:.3g} to {row['target_high']:.3g}",
-                f"{row['value']:.3g}",
-                f"{row['value_low']:.3g} to {row['value_high']:.3g}",
-                "yes" if row["in_range"] else "[bold]no[/]",
-            )
-        return table
 
 
 def report(fit: Fit, effort: Effort, folder: Path, progress: Progress) -> FitReport:
@@ -177,7 +140,7 @@ def _reported(fit: Fit, effort: Effort, folder: Path, progress: Progress) -> Fit
         save_front(file, views, finals)
     sets = _best(fit, effort, finals)
     runs = {
-        name: _held_out(each, effort.held_out, fit.jobs, folder / "runs", progress)
+        name: held_out_runs(each, effort.held_out, fit.jobs, folder / "runs", progress)
         for name, each in sets.items()
     }
     tables = {name: residuals(each, runs[name]) for name, each in sets.items()}
@@ -185,9 +148,9 @@ def _reported(fit: Fit, effort: Effort, folder: Path, progress: Progress) -> Fit
         [table.assign(name=name) for name, table in tables.items()], ignore_index=True
     )
     write_csv(folder / "judged.csv", judged.round(4))
-    comparison = _compared(sets, runs)
+    comparison = compared(sets, runs)
     write_csv(folder / "comparison.csv", comparison.round(4))
-    finalists_alone = comparison[comparison["name"] != _START]
+    finalists_alone = comparison[comparison["name"] != START]
     best = finalists_alone.sort_values(["met", "total"], ascending=[False, True])["name"].iloc[0]
     parameters = sets[best]
     header = f"# flockenv {_core.__version__}\n"
@@ -236,7 +199,7 @@ def _finals(
     for view in views:
         for reason, places in finalists(fit, view):
             parameters = fit.parameters_at(places).replace(pool=view.pool)
-            runs = _stored(parameters, seeds, fit.jobs, folder, "finalists", progress)
+            runs = stored_runs(parameters, seeds, fit.jobs, folder, "finalists", progress)
             values = measure(single_boat(parameters), runs)
             rows.append(
                 {
@@ -264,139 +227,5 @@ def _best(fit: Fit, effort: Effort, finals: "pd.DataFrame") -> dict[str, FlockPa
     ranked = finals.assign(total=finals[list(MISFITS)].sum(axis=1))
     ranked = ranked.sort_values(["met", "total"], ascending=[False, True]).head(effort.judged)
     sets = {f"finalist {place}": _final_parameters(fit, finals, place) for place in ranked.index}
-    sets[_START] = fit.parameters
-    return {name: _judged_stepping(each) for name, each in sets.items()}
-
-
-def _judged_stepping(parameters: FlockParameters) -> FlockParameters:
-    return parameters.replace(dt_s=JUDGED_DT_S, relinearizations=0)
-
-
-def _held_out(
-    parameters: FlockParameters, held_out: int, jobs: int, folder: Path | None, progress: Progress
-) -> FlockRuns:
-    seeds = MODEL_SEEDS["calibration check"].seeds(held_out * len(JUDGED.cells))
-    return _stored(parameters, seeds, jobs, folder, "held-out seeds", progress)
-
-
-def _compared(sets: Mapping[str, FlockParameters], runs: Mapping[str, FlockRuns]) -> "pd.DataFrame":
-    """Compare sets of parameters with the fit's start, on the same seeds.
-
-    Columns: ``name``, ``pool``, how many targets are in range, the misfit of each group and their
-    sum ``total``, and ``difference``, the sum less that of the start, with the ends of its 95 %
-    interval by a bootstrap over repetitions, which are drawn for both together.
-    """
-    pandas = require("pandas", "fit")
-    rng = np.random.default_rng(0)
-    count = runs[_START].repetitions
-    draws = [np.arange(count), *rng.integers(count, size=(_RESAMPLES, count))]
-    boats = {name: single_boat(each) for name, each in sets.items()}
-    totals = {
-        name: np.array([misfits(measure(boats[name], each.resampled(d))).sum() for d in draws])
-        for name, each in runs.items()
-    }
-    rows = []
-    for name, each in runs.items():
-        values = measure(boats[name], each)
-        differences = totals[name] - totals[_START]
-        low, high = percentile_ends(differences[1:])
-        rows.append(
-            {
-                "name": name,
-                "pool": sets[name].pool,
-                "met": sum(target.is_in_range(values[target.key]) for target in TARGETS),
-                **dict(zip(MISFITS, misfits(values).tolist(), strict=True)),
-                "total": totals[name][0],
-                "difference": differences[0],
-                "difference_low": low,
-                "difference_high": high,
-            }
-        )
-    frame: pd.DataFrame = pandas.DataFrame(rows)
-    return frame
-
-
-def check_hours(held_out: int) -> float:
-    """Return the simulated time of `check` in hours."""
-    return held_out * JUDGED.flock_hours
-
-
-def check(parameters: FlockParameters, held_out: int, jobs: int, progress: Progress) -> FitReport:
-    """Measure every target of a flock on held-out seeds, without a fit.
-
-    Raises
-    ------
-    MissingExtraError
-        Without pandas and SciPy, of the extra ``fit``; nothing is run then.
-    """
-    for package in ("pandas", "scipy"):
-        require(package, "fit")
-    parameters = _judged_stepping(parameters)
-    runs = _held_out(parameters, held_out, jobs, None, progress)
-    return FitReport(parameters, residuals(parameters, runs))
-
-
-def _stored(
-    parameters: FlockParameters,
-    seeds: Sequence[int],
-    jobs: int,
-    folder: Path | None,
-    words: str,
-    progress: Progress,
-) -> FlockRuns:
-    """Run the design `JUDGED`, or read it from the folder if it has been run."""
-    shape = (len(JUDGED.cells), len(JUDGED.seeds(seeds)), len(QUANTITIES))
-    hours = JUDGED.flock_hours * shape[1]
-    of = f"{parameters.to_toml()}{seeds} {JUDGED} {QUANTITIES}"
-    path = folder and folder / f"{hashlib.sha256(of.encode()).hexdigest()[:16]}.npy"
-    if path and path.exists():
-        values = np.load(path, allow_pickle=False)
-        if values.shape != shape:
-            raise ParameterError(f"{path} holds no runs of this fit: remove it")
-        progress(words, hours)
-        return FlockRuns(JUDGED, values)
-    a_run = hours / (shape[0] * shape[1])
-    runs = run_flocks(parameters, JUDGED, seeds, jobs, lambda: progress(words, a_run))
-    if path:
-        path.parent.mkdir(exist_ok=True)
-        with atomic_write(path) as file:
-            np.save(file, runs.values, allow_pickle=False)
-    return runs
-
-
-def residuals(parameters: FlockParameters, runs: FlockRuns) -> "pd.DataFrame":
-    """Return each target with its range, its value and interval, and whether it is in range.
-
-    Intervals are percentiles of a bootstrap over repetitions, at 95 %. A target is in range if its
-    value lies in its range, whatever its interval.
-    """
-    pandas = require("pandas", "fit")
-    boat = single_boat(parameters)
-    values = measure(boat, runs)
-    rng = np.random.default_rng(0)
-    drawn = [
-        measure(boat, runs.resampled(rng.integers(runs.repetitions, size=runs.repetitions)))
-        for _ in range(_RESAMPLES)
-    ]
-    rows = []
-    for target in TARGETS:
-        sample = np.array([each[target.key] for each in drawn])
-        defined = sample[np.isfinite(sample)]
-        low, high = percentile_ends(defined) if len(defined) else (np.nan, np.nan)
-        value = values[target.key]
-        rows.append(
-            {
-                "key": target.key,
-                "target": target.name,
-                "source": target.source,
-                "target_low": target.low,
-                "target_high": target.high,
-                "value": value,
-                "value_low": low,
-                "value_high": high,
-                "in_range": target.is_in_range(value),
-                "statement": target.statement,
-            }
-        )
-    frame: pd.DataFrame = pandas.DataFrame(rows)
-    return frame
+    sets[START] = fit.parameters
+    return {name: judged_stepping(each) for name, each in sets.items()}

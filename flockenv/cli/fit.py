@@ -51,6 +51,7 @@ def fit(
 
     Example: `flockenv fit --filling-hours 512 --flock-hours 1024 --jobs 2`
     """
+    from flockenv.calibration import held_out as unsearched_seeds
     from flockenv.calibration import report as fit_report
     from flockenv.calibration.search import Fit
 
@@ -59,10 +60,10 @@ def fit(
     parameters = FlockParameters.preset(check or "experiment-2026").replace(**changes)
     effort = fit_report.Effort(repetitions, judged, held_out)
     if check is not None:
-        hours = fit_report.check_hours(held_out)
+        hours = unsearched_seeds.check_hours(held_out)
         with interruptible("Nothing was written."), progress_bar(quiet or as_json) as progress:
             task = progress.add_task("held-out seeds", total=hours)
-            result = fit_report.check(
+            result = unsearched_seeds.check(
                 parameters, held_out, jobs, lambda words, steps: progress.advance(task, steps)
             )
     else:

@@ -3,9 +3,8 @@ import itertools
 import numpy as np
 import pytest
 
-from flockenv.calibration import report as fit_report
+from flockenv.calibration import held_out, surrogate, targets, tradeoffs
 from flockenv.calibration import search as fit_search
-from flockenv.calibration import surrogate, targets, tradeoffs
 from flockenv.calibration.flock_runs import QUANTITIES, FlockRuns
 
 
@@ -35,12 +34,12 @@ def quick(monkeypatch):
 
     for module, name, value in (
         (fit_search, "run_flocks", run_flocks),
-        (fit_report, "run_flocks", run_flocks),
+        (held_out, "run_flocks", run_flocks),
         # Few places and draws are enough for laws that hold of any number.
         (surrogate, "_CANDIDATES", 100),
         (tradeoffs, "_CLOUD", 100),
         (targets, "_SETS", 50),
-        (fit_report, "_RESAMPLES", 10),
+        (held_out, "_RESAMPLES", 10),
     ):
         monkeypatch.setattr(module, name, value)
     return calls

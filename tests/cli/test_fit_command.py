@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv.calibration import report as fit_report
+from flockenv.calibration import held_out, surrogate, tradeoffs
 from flockenv.calibration import search as fit_search
-from flockenv.calibration import surrogate, tradeoffs
 from flockenv.calibration.flock_runs import QUANTITIES, FlockRuns
 
 SMALL = [
@@ -27,8 +26,8 @@ def quick(monkeypatch):
         return FlockRuns(design, values)
 
     monkeypatch.setattr(fit_search, "run_flocks", run_flocks)
-    monkeypatch.setattr(fit_report, "run_flocks", run_flocks)
-    monkeypatch.setattr(fit_report, "_RESAMPLES", 5)
+    monkeypatch.setattr(held_out, "run_flocks", run_flocks)
+    monkeypatch.setattr(held_out, "_RESAMPLES", 5)
     monkeypatch.setattr(surrogate, "_CANDIDATES", 60)
     monkeypatch.setattr(tradeoffs, "_CLOUD", 60)
 
