@@ -97,16 +97,17 @@ def _period_of_cycles(
     cycles: float, settings: Mapping[str, Any], parameters: FlockParameters
 ) -> float:
     """Return the decision period in s nearest to a number of motor cycles."""
-    low, high = settings.get("bw_range_s") or (parameters.bw_s,) * 2
+    # What is no range is refused with the settings.
+    ends = settings.get("bw_range_s") or (parameters.bw_s,)
     for given, other in (
         (settings.get("decision_period_s") is not None, "decision_period_s"),
-        (low != high, "a drawn bw_s"),
+        (any(each != ends[0] for each in ends), "a drawn bw_s"),
     ):
         if given:
             raise ParameterError(
                 f"decision_period_cycles = {cycles!r} is not accepted with {other}: one of them"
             )
-    parameters = parameters.replace(bw_s=low)
+    parameters = parameters.replace(bw_s=ends[0])
     control_hz = settings.get("control_hz", _core.env_defaults()["control_hz"])
     return _core.decision_period_of_cycles(cycles, parameters, control_hz)
 

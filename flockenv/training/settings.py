@@ -177,7 +177,7 @@ class TrainingSettings:
         for name in self.options:
             if name in _NOT_OPTIONS:
                 raise ParameterError(f"options: {name!r} is not accepted: another setting rules it")
-        rates: dict[str, float] = {}
+        rates = set()
         for pool in self.pools:
             options = {**self.environment(pool), "n_leaders": max(self.n_leaders)}
             try:
@@ -185,11 +185,11 @@ class TrainingSettings:
             except TypeError as error:
                 raise ParameterError(str(error)) from error
             self._check_shared_noise(batch.decisions_hz)
-            rates[pool] = batch.decisions_hz
-        if len(set(rates.values())) > 1:
+            rates.add(batch.decisions_hz)
+        if len(rates) > 1:
             raise ParameterError(
                 f"options: decision_period_cycles = {self.options['decision_period_cycles']!r} is "
-                f"not accepted, since motor cycles differ between pools: decision_period_s holds "
+                "not accepted, since motor cycles differ between pools: decision_period_s holds "
                 "in all of them"
             )
         if self.encoder != "none":

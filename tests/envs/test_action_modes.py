@@ -170,6 +170,8 @@ def test_motor_cycles_are_rounded_to_control_steps(cycles: float, period_s: floa
         ({"decision_period_cycles": float("nan")}, "a positive number of motor cycles"),
         ({"decision_period_cycles": 1e12}, "at most 1e9 control steps"),
         ({"decision_period_cycles": 1.0, "bw_s": (0.3, 0.4)}, "not accepted with a drawn bw_s"),
+        ({"decision_period_cycles": 1.0, "bw_s": (0.3,)}, "bw_s"),
+        ({"decision_period_cycles": 1.0, "control_hz": 0.0}, "control_hz"),
         (
             {"decision_period_cycles": 1.0, "decision_period_s": 1.0},
             "not accepted with decision_period_s: one of them",
