@@ -5,6 +5,7 @@ in the middle of the logarithms, at 0.02; and proportions of 0.2, 0.1 and 0.05 i
 and 160 boats have the exponent -1/2.
 """
 
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -60,27 +61,35 @@ def test_a_curve_on_one_side_has_no_fraction(curve: tuple[float, ...]) -> None:
 def curve(n_boats: int, fraction: float, spread: float = 0.0) -> Curve:
     noise = np.random.default_rng(n_boats).normal(0.0, spread, RESAMPLES) if spread else 0.0
     replicates = np.append(fraction, fraction * np.exp(np.zeros(RESAMPLES) + noise))
-    return Curve(n_boats, {1: np.zeros(2)}, replicates)
+    return Curve(n_boats, {1: np.zeros(2)}, replicates, np.zeros(2))
 
 
 def test_the_exponent() -> None:
     falling = [curve(10, 0.2), curve(40, 0.1), curve(160, 0.05)]
     assert exponent(falling) == pytest.approx(-0.5)
     assert np.isnan(exponent([*falling, curve(640, np.nan)])).all()
-    assert np.isnan(exponent(falling[:1])).all()
+    assert np.isnan(exponent(falling[:2])).all()
 
 
 def judged(exponents: tuple[float, float], spread: float = 0.01) -> list[tuple[str, str, str]]:
-    design = FractionDesign(
-        policies=("steering law", "learned"), leaders={10: (1,), 100: (1,)}, runs=2, minutes=1.0
-    )
     curves = {
         (policy, Growth(way, n)): curve(n, level * n**power, spread)
-        for policy, level, power in zip(design.policies, (0.5, 0.3), exponents, strict=True)
+        for policy, level, power in zip(_TWO, (0.5, 0.3), exponents, strict=True)
         for way in WAYS
-        for n in design.leaders
+        for n in _SIZES
     }
-    return [(c.claim.text, c.scope, c.verdict) for c in judge(design, curves)]
+    return [(c.claim.text, c.scope, c.verdict) for c in judge(_designed(_TWO, (1,)), curves)]
+
+
+_TWO = ("steering law", "learned")
+_SIZES = (10, 30, 100)
+
+
+def _designed(policies: tuple[str, ...], numbers: tuple[int, ...]) -> FractionDesign:
+    """Two runs of a minute of every policy, size and number of leaders."""
+    every = product(policies, WAYS, _SIZES)
+    leaders = {(policy, Growth(way, n)): numbers for policy, way, n in every}
+    return FractionDesign(leaders, dict.fromkeys(_SIZES, 2), minutes=1.0)
 
 
 def test_claims_follow_their_rule() -> None:
@@ -95,6 +104,20 @@ def test_claims_follow_their_rule() -> None:
     assert {verdict for text, _, verdict in wide if text != BETTER.text} == {"inconclusive"}
 
 
+def test_the_exponent_is_that_of_the_sizes_with_a_proportion() -> None:
+    design = _designed(_TWO[:1], (1,))
+    missing = ("circumference", 10)
+    curves = {
+        (_TWO[0], Growth(way, n)): curve(n, np.nan if (way, n) == missing else n**-0.5)
+        for way in WAYS
+        for n in _SIZES
+    }
+    notes = {claim.scope: (claim.verdict, claim.note) for claim in judge(design, curves)}
+    assert notes["steering law, whole pool"] == ("does not hold", "")
+    # Two sizes are left, and a line through two says nothing.
+    assert notes["steering law, circumference"] == ("inconclusive", "of 30, 100 boats")
+
+
 def test_replicates_come_from_the_runs() -> None:
     runs = {1: recorded(-0.5, 0.5), 4: recorded(1.0, 1.0)}
     found = Curve.of_runs(10, runs, 3)
@@ -107,6 +130,9 @@ def test_replicates_come_from_the_runs() -> None:
     whole = drawn[np.isfinite(drawn)]
     assert {round(float(each), 9) for each in whole} == {round(each, 9) for each in known}
     assert np.isnan(drawn).any()
+    assert found.drift == pytest.approx([0.0] * 4)
+    rising = Curve.of_runs(10, {1: [series(np.where(np.arange(100) >= 75, 0.75, 0.5))] * 2}, 3)
+    assert rising.drift == pytest.approx([0.25] * 2)
 
 
 def recorded(*signed_order: float) -> list[flockenv.Recording]:
@@ -150,29 +176,27 @@ def test_a_proportion_beyond_the_leaders_that_were_run_is_a_bound(
 ) -> None:
     means = {1: np.full(3, orders[0]), 5: np.full(3, orders[1])}
     replicates = np.full(RESAMPLES + 1, guiding_fraction(np.array([0.1, 0.5]), np.array(orders)))
-    curves = {("steering law", Growth("whole pool", 10)): Curve(10, means, replicates)}
+    curves = {("steering law", Growth("whole pool", 10)): Curve(10, means, replicates, np.zeros(6))}
     (row,) = fractions_table(curves).to_dict("records")
     assert (row["fraction"], row["leaders"]) == (fraction, leaders)
 
 
 def test_a_small_design_from_runs_to_tables(tmp_path: Path) -> None:
-    design = FractionDesign(
-        policies=tuple(POLICIES), leaders={10: (1, 5), 20: (1, 9)}, runs=2, minutes=1.0
-    )
+    design = _designed(tuple(POLICIES), (1, 5))
     settings = Settings()
     reproduction = leader_fraction(design)
     specs = reproduction.runs(settings)
-    assert len(specs) == len(set(specs)) == 3 * 2 * 2 * 2 * 2
+    assert len(specs) == len(set(specs)) == 3 * 2 * 3 * 2 * 2
     store = RunStore(tmp_path)
     assert run_missing(specs, store) == {}
     outcome = reproduction.analyze(settings, Results(store, specs))
     table = outcome.tables["curves"]
-    assert len(table) == 3 * 2 * 2 * 2
+    assert len(table) == 3 * 2 * 3 * 2
     # Three policies steer three ways, from the same random starts.
     means = table.groupby("policy")["signed_order"].mean()
     assert means.nunique() == 3
     assert set(outcome.pictures) == {"leader-fraction"}
-    assert len(outcome.claims) == 3 * 2 * 2 + 2 * 2 * 2
+    assert len(outcome.claims) == 3 * 2 * 2 + 2 * 2 * 3
 
 
 def test_the_budget_chooses_the_design() -> None:

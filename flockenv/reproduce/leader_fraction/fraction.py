@@ -16,6 +16,7 @@ from flockenv.reproduce.leader_fraction.design import (
     DENSITY,
     FULL,
     FractionDesign,
+    Setup,
     within,
 )
 from flockenv.reproduce.leader_fraction.measured import GUIDED, Curve, exponent
@@ -57,7 +58,7 @@ BETTER = Claim(
     high=1.0,
 )
 
-Curves = Mapping[tuple[str, Growth], Curve]
+Curves = Mapping[Setup, Curve]
 
 
 def judge(design: FractionDesign, curves: Curves) -> list[CheckedClaim]:
@@ -65,11 +66,15 @@ def judge(design: FractionDesign, curves: Curves) -> list[CheckedClaim]:
     claims = []
     for policy in design.policies:
         for way in WAYS:
-            ends = interval(exponent([curves[policy, Growth(way, n)] for n in design.leaders]))
+            every = [curves[policy, Growth(way, n)] for n in design.sizes]
+            known = [curve for curve in every if not math.isnan(curve.replicates[0])]
+            ends = interval(exponent(known))
+            sizes = ", ".join(str(curve.n_boats) for curve in known) or "no"
+            note = "" if len(known) == len(every) else f"of {sizes} boats"
             scope = f"{policy}, {way}"
-            claims += [claim.check(*ends, scope) for claim in (SMALLER, CONSTANT_NUMBER)]
+            claims += [claim.check(*ends, scope, note) for claim in (SMALLER, CONSTANT_NUMBER)]
     law, *others = design.policies
-    for policy, growth in design.curves():
+    for policy, growth in design.leaders:
         if policy in others:
             ratio = curves[policy, growth].replicates / curves[law, growth].replicates
             scope = f"{policy}, {growth.n_boats} boats, {growth.way}"
@@ -79,7 +84,7 @@ def judge(design: FractionDesign, curves: Curves) -> list[CheckedClaim]:
 
 def _analyze(design: FractionDesign, settings: Settings, results: Results) -> Outcome:
     curves = {}
-    for policy, growth in design.curves():
+    for policy, growth in design.leaders:
         specs = design.curve(settings, policy, growth)
         runs = {k: [results[spec] for spec in each] for k, each in specs.items()}
         draws_seed = next(iter(specs.values()))[0].draws_seed
@@ -88,7 +93,7 @@ def _analyze(design: FractionDesign, settings: Settings, results: Results) -> Ou
         {"curves": _curves_table(curves), "fractions": fractions_table(curves)},
         {"leader-fraction": picture(design, curves)},
         judge(design, curves),
-        _notes(design, settings),
+        [_drift_note(design, curves), *_notes(design, settings)],
         shown=["fractions"],
         captions={
             "leader-fraction": "Above: mean signed order under the paper's law against the "
@@ -98,8 +103,23 @@ def _analyze(design: FractionDesign, settings: Settings, results: Results) -> Ou
     )
 
 
+def _drift_note(design: FractionDesign, curves: Curves) -> str:
+    largest = design.sizes[-1]
+    drifts = []
+    for way in WAYS:
+        of_way = [curves[policy, Growth(way, largest)].drift for policy in design.policies]
+        value, low, high = student_interval(np.concatenate(of_way))
+        drifts.append(f"{value:.3f} ({low:.3f} to {high:.3f}) where the {way} grows")
+    return (
+        f"Flocks of {largest} may not have come to rest after half a run: over all policies and "
+        "numbers of leaders their mean signed order in the last quarter exceeds that in the third "
+        f"by {' and by '.join(drifts)}."
+    )
+
+
 def _notes(design: FractionDesign, settings: Settings) -> list[str]:
     minutes = settings.duration_s(design.minutes) / 60
+    runs = ", ".join(f"{runs} with {n} boats" for n, runs in design.runs.items())
     return [
         "Each run starts at random and at rest, and its second half counts. A large flock orders "
         "without leaders too, in a direction of its own, and keeps this direction: its signed "
@@ -111,15 +131,15 @@ def _notes(design: FractionDesign, settings: Settings) -> list[str]:
         "three leaders among 27 boats, and were not searched for in larger flocks.",
         "The mean signed order over runs is made to grow with the number of leaders by isotonic "
         f"regression, and interpolated in the logarithm of the proportion to {GUIDED:g}. The "
-        "exponent is the slope of a straight line through the logarithms. Intervals are a "
-        "bootstrap over runs. A proportion is undefined where the order is on one side of "
-        f"{GUIDED:g} at all numbers of leaders that were run, and the table has the bound that "
-        "follows. The first claim is wrong if the "
-        "exponent is above 0: the proportion then grows with the flock.",
+        "exponent is the slope of a straight line through the logarithms, at three sizes or more. "
+        "Intervals are a bootstrap over runs. A proportion is undefined where the order is on one "
+        f"side of {GUIDED:g} at all numbers of leaders that were run. The table has the bound that "
+        "follows, the exponent is that of the other sizes, and draws of the bootstrap without a "
+        "proportion are left out. The first claim is wrong if the exponent is above 0: the "
+        "proportion then grows with the flock.",
         f"The compute budget is {settings.budget_core_min:g} minutes of one core. The design has "
-        f"{design.runs} seeds for each number of leaders, {minutes:g} minutes per run, and flocks "
-        f"of up to {max(design.leaders)} boats. It is estimated to take "
-        f"{design.core_minutes(settings):.0f} minutes, and the full design "
+        f"{minutes:g} minutes per run, and for each number of leaders these seeds: {runs}. It is "
+        f"estimated to take {design.core_minutes(settings):.0f} minutes, and the full design "
         f"{FULL.core_minutes(settings):.0f} (`--budget`).",
     ]
 

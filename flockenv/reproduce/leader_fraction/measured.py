@@ -57,24 +57,34 @@ class Curve:
         By number of leaders: mean signed order over the second half of each run.
     replicates : float64 array, shape (RESAMPLES + 1,)
         `guiding_fraction` as measured, and of runs resampled for each number of leaders.
+    drift : float64 array, shape (runs of all numbers of leaders,)
+        Mean signed order over the last quarter of each run, minus that over the third.
     """
 
     n_boats: int
     signed_order: Mapping[int, NDArray[np.float64]]
     replicates: NDArray[np.float64]
+    drift: NDArray[np.float64]
 
     @classmethod
     def of_runs(
         cls, n_boats: int, runs: Mapping[int, Sequence[Recording]], draws_seed: int
     ) -> "Curve":
         """Return the curve of recorded runs, by number of leaders."""
-        means = {k: np.array([_second_half(run) for run in each]) for k, each in runs.items()}
-        return cls(n_boats, means, _replicates(n_boats, means, draws_seed))
+        late = {k: np.array([_second_half(run) for run in each]) for k, each in runs.items()}
+        means = {k: each[:, 0] for k, each in late.items()}
+        drift = np.concatenate([each[:, 1] for each in late.values()])
+        return cls(n_boats, means, _replicates(n_boats, means, draws_seed), drift)
 
 
-def _second_half(run: Recording) -> float:
-    order = run.analyzed(after=0.5).order
-    return float(order.signed_order(run.parameters.target).mean())
+def _second_half(run: Recording) -> tuple[float, float]:
+    """Return the mean signed order, and by how much the last quarter's exceeds the third's."""
+    used = run.analyzed(after=0.5)
+    signed_order = used.order.signed_order(run.parameters.target)
+    is_last = used.time_s >= 0.75 * used.duration_s
+    quarters = [signed_order[part] for part in (is_last, ~is_last)]
+    drift = quarters[0].mean() - quarters[1].mean() if min(map(len, quarters)) else math.nan
+    return float(signed_order.mean()), float(drift)
 
 
 def _replicates(
@@ -96,9 +106,10 @@ def exponent(curves: Sequence[Curve]) -> NDArray[np.float64]:
     Returns
     -------
     float64 array, shape (RESAMPLES + 1,)
-        NaN where the guiding fraction of any of the sizes is undefined, and for a single size.
+        NaN where the guiding fraction of any of the sizes is undefined, and for less than three
+        sizes, which no line can miss.
     """
-    if len(curves) < 2:
+    if len(curves) < 3:
         return np.full(RESAMPLES + 1, math.nan)
     x = np.log([curve.n_boats for curve in curves])
     x -= x.mean()

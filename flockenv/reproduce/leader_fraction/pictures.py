@@ -24,17 +24,17 @@ def picture(design: FractionDesign, curves: Mapping[tuple[str, Growth], Curve]) 
         for column, way in enumerate(WAYS):
             above, below = panels[:, column]
             above.set_title(f"{way} grows")
-            for place, n in enumerate(design.leaders):
+            for place, n in enumerate(design.sizes):
                 _draw_curve(above, curves[design.policies[0], Growth(way, n)], COLORS[place])
             above.axhline(GUIDED, color="0.6", lw=0.6, zorder=0)
             above.set_xscale("log")
             above.set_xlabel("proportion of leaders")
             for policy, color in policy_colors(design.policies).items():
-                found = [curves[policy, Growth(way, n)] for n in design.leaders]
+                found = [curves[policy, Growth(way, n)] for n in design.sizes]
                 _draw_fractions(below, found, policy, color)
             below.set_xscale("log")
             below.set_yscale("log")
-            below.set_xticks(list(design.leaders), [str(n) for n in design.leaders])
+            below.set_xticks(list(design.sizes), [str(n) for n in design.sizes])
             below.set_xticks([], minor=True)
             below.set_xlabel("boats")
         panels[0, 0].set_ylabel("mean signed order")
