@@ -11,6 +11,7 @@ from flockenv.parameters import FlockParameters
 
 __all__ = [
     "heading_correlation",
+    "jam_sizes",
     "largest_cluster",
     "mean_square_displacement",
     "on_outer_wall",
@@ -37,6 +38,17 @@ def largest_cluster(parameters: FlockParameters, pose: ArrayLike) -> NDArray[np.
         For another shape, and numbers that are not finite.
     """
     return _core.largest_cluster(parameters, _poses(pose))
+
+
+def jam_sizes(parameters: FlockParameters, pose: ArrayLike) -> list[NDArray[np.int64]]:
+    """Return how many boats each jam holds, an array of ascending numbers for each time.
+
+    A jam has at least three boats with gaps below 0.5 cm that face outward within 60°.
+
+    Parameters and errors are those of `largest_cluster`.
+    """
+    found = _core.jam_sizes(parameters, _poses(pose))
+    return [np.sort(np.array(sizes, np.int64)) for sizes in found]
 
 
 def on_outer_wall(parameters: FlockParameters, pose: ArrayLike) -> NDArray[np.float64]:

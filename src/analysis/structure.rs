@@ -1,5 +1,6 @@
 //! Where boats are relative to each other, to the wall and to where they were.
 
+use crate::geometry::lap_frame::orientation;
 use crate::geometry::{Hull, HullPose, Pose, Vec2, outer_wall_gap, pair_gaps};
 use crate::parameters::FlockParameters;
 use std::f64::consts::PI;
@@ -7,8 +8,30 @@ use std::f64::consts::PI;
 /// Hulls with a smaller gap than this (cm) count as in touch.
 pub const IN_TOUCH_CM: f64 = 0.5;
 
+/// The fewest boats of a jam.
+pub const JAM_BOATS: usize = 3;
+
+/// How far a boat's heading in a jam is from the way outward, at most (rad).
+pub const JAM_ANGLE: f64 = PI / 3.0;
+
 /// Part of the boats that the largest cluster holds: boats joined by gaps below [`IN_TOUCH_CM`]; NaN of none.
 pub fn largest_cluster(poses: &[Pose], parameters: &FlockParameters) -> f64 {
+    let largest = cluster_sizes(poses, parameters).into_iter().max();
+    largest.unwrap_or(0) as f64 / poses.len() as f64
+}
+
+/// How many boats each jam holds, in no particular order. A jam has at least [`JAM_BOATS`], which face outward
+/// within [`JAM_ANGLE`] and are joined by gaps below [`IN_TOUCH_CM`].
+pub fn jam_sizes(poses: &[Pose], parameters: &FlockParameters) -> Vec<usize> {
+    let outward = |pose: &&Pose| orientation(pose).abs() <= JAM_ANGLE;
+    let facing: Vec<Pose> = poses.iter().filter(outward).copied().collect();
+    let mut sizes = cluster_sizes(&facing, parameters);
+    sizes.retain(|&size| size >= JAM_BOATS);
+    sizes
+}
+
+/// Sizes of the clusters of boats joined by gaps below [`IN_TOUCH_CM`], single boats included.
+fn cluster_sizes(poses: &[Pose], parameters: &FlockParameters) -> Vec<usize> {
     let hull = Hull::new(parameters);
     let hulls: Vec<HullPose> = poses.iter().map(HullPose::new).collect();
     let mut clusters = Clusters::new(hulls.len());
@@ -17,7 +40,7 @@ pub fn largest_cluster(poses: &[Pose], parameters: &FlockParameters) -> f64 {
             pair_gaps(a, b, hull, IN_TOUCH_CM, |_, _| clusters.join(i, j));
         }
     }
-    clusters.largest() as f64 / hulls.len() as f64
+    clusters.sizes()
 }
 
 /// Part of the boats within [`IN_TOUCH_CM`] of the outer wall; NaN of none.
@@ -148,11 +171,12 @@ impl Clusters {
         self.0[a.max(b)] = a.min(b);
     }
 
-    fn largest(&mut self) -> usize {
+    fn sizes(&mut self) -> Vec<usize> {
         let mut sizes = vec![0; self.0.len()];
         for boat in 0..self.0.len() {
             sizes[self.root(boat)] += 1;
         }
-        sizes.into_iter().max().unwrap_or(0)
+        sizes.retain(|&size| size > 0);
+        sizes
     }
 }

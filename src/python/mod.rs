@@ -61,7 +61,8 @@ mod _core {
     use super::statistics::PyStatistics;
     #[pymodule_export]
     use super::structure::{
-        lagged_motion, lap_orientation, largest_cluster, on_outer_wall, pair_counts, polarization,
+        jam_sizes, lagged_motion, lap_orientation, largest_cluster, on_outer_wall, pair_counts,
+        polarization,
     };
 
     #[pymodule_init]

@@ -24,6 +24,18 @@ pub(crate) fn largest_cluster<'py>(
     Ok(PyArray1::from_vec(py, shares))
 }
 
+/// How many boats each jam holds, at each time.
+#[pyfunction]
+pub(crate) fn jam_sizes(
+    py: Python<'_>,
+    parameters: FlockParameters,
+    pose: PyReadonlyArray3<'_, f64>,
+) -> PyResult<Vec<Vec<usize>>> {
+    let samples = Samples::read(&pose, "pose")?;
+    let sizes = |poses: Vec<Pose>| structure::jam_sizes(&poses, &parameters);
+    Ok(py.detach(|| samples.present().map(sizes).collect()))
+}
+
 /// Part of the boats on the outer wall, at each time.
 #[pyfunction]
 pub(crate) fn on_outer_wall<'py>(

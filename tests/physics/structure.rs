@@ -5,8 +5,8 @@
 
 use approx::assert_abs_diff_eq;
 use flockenv::analysis::structure::{
-    PairCounts, heading_correlation, largest_cluster, mean_square_displacement, on_outer_wall,
-    polarization,
+    PairCounts, heading_correlation, jam_sizes, largest_cluster, mean_square_displacement,
+    on_outer_wall, polarization,
 };
 use flockenv::geometry::Pose;
 use flockenv::parameters::{Pool, Preset};
@@ -42,6 +42,33 @@ fn a_cluster_is_what_gaps_below_half_a_centimeter_join() {
     assert_eq!(largest_cluster(&tandem, &p), 1.0);
     let apart = [tandem[0], Pose::new(15.4, 0.0, FRAC_PI_2)];
     assert_eq!(largest_cluster(&apart, &p), 0.5);
+}
+
+#[test]
+fn a_jam_is_three_boats_in_touch_that_face_outward() {
+    let p = table_1();
+    // Far from the center in two directions, 10.4 cm apart: the gap of hulls 10 cm wide is 0.4 cm.
+    let row = |side: f64, count: i32, turned: f64| -> Vec<Pose> {
+        let outward = if side > 0.0 {
+            0.0
+        } else {
+            std::f64::consts::PI
+        };
+        let place = |boat| Pose::new(1e4 * side, 10.4 * f64::from(boat), outward + turned);
+        (0..count).map(place).collect()
+    };
+    let sizes = |rows: &[Vec<Pose>]| {
+        let mut sizes = jam_sizes(&rows.concat(), &p);
+        sizes.sort_unstable();
+        sizes
+    };
+    assert_eq!(sizes(&[row(1.0, 5, 0.0), row(-1.0, 3, 0.3)]), [3, 5]);
+    assert_eq!(sizes(&[row(1.0, 2, 0.0), row(-1.0, 3, 1.1)]), [0; 0]);
+    // A boat that faces along the wall parts a jam.
+    let mut parted = row(1.0, 7, 0.0);
+    parted[3].heading = FRAC_PI_2;
+    assert_eq!(sizes(&[parted]), [3, 3]);
+    assert_eq!(sizes(&[]), [0; 0]);
 }
 
 #[test]

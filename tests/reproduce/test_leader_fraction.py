@@ -89,7 +89,8 @@ def _designed(policies: tuple[str, ...], numbers: tuple[int, ...]) -> FractionDe
     """Two runs of a minute of every policy, size and number of leaders."""
     every = product(policies, WAYS, _SIZES)
     leaders = {(policy, Growth(way, n)): numbers for policy, way, n in every}
-    return FractionDesign(leaders, dict.fromkeys(_SIZES, 2), minutes=1.0)
+    runs = {growth: 2 for _, growth in leaders}
+    return FractionDesign(leaders, runs, minutes=1.0)
 
 
 def test_claims_follow_their_rule() -> None:

@@ -4,6 +4,8 @@ On paper: with a share p of |m| = 1 and the rest 0, Binder's cumulant is 1 - 1/(
 p < 1/3. It is 2/3 in one ordered state and 0 for a Gaussian m.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -13,12 +15,18 @@ from flockenv.reproduce.reproduction import Results, Settings
 from flockenv.reproduce.transition.design import (
     DESIGNS,
     FULL,
+    LOOPS,
+    STARTS,
     Growth,
     TransitionDesign,
     within,
 )
+from flockenv.reproduce.transition.jam_map import JamMap
 from flockenv.reproduce.transition.measured import (
     M_EDGES,
+    MANY_BOATS,
+    STATES,
+    Jams,
     Loops,
     Measured,
     Stationary,
@@ -28,15 +36,14 @@ from flockenv.reproduce.transition.measured import (
     states,
 )
 from flockenv.reproduce.transition.order import (
-    BISTABILITY,
-    HYSTERESIS,
-    NO_LAG,
+    FORGOTTEN,
+    ONE_PHASE,
+    OWN_SIZE,
     conclusion,
     judge,
+    judge_jams,
     transition_order,
 )
-from flockenv.runs.protocols.hysteresis import LOOPS
-from flockenv.runs.protocols.initial_state import STARTS
 from flockenv.runs.spec import ORDER_NAMES
 from flockenv.runs.store import RunStore, run_missing
 from flockenv.statistics.dwell_times import DwellTimes
@@ -52,6 +59,17 @@ def test_binder() -> None:
     assert np.isnan(binder(np.zeros(1), np.zeros(1))).all()
 
 
+def _boats(angles: NDArray[np.float64], turned: object = np.pi / 2) -> NDArray[np.float64]:
+    """Poses at polar angles, 160 cm from the center, turned from the way outward."""
+    return np.stack([160 * np.cos(angles), 160 * np.sin(angles), angles + turned], axis=1)
+
+
+def with_poses(poses: NDArray[np.float64]) -> flockenv.Recording:
+    run = recorded(np.zeros(1000), np.zeros(1000))
+    parameters = run.parameters.replace(n_boats=poses.shape[1])
+    return replace(run, pose=poses, velocity=np.zeros_like(poses), parameters=parameters)
+
+
 def recorded(outward: NDArray[np.float64], m: NDArray[np.float64]) -> flockenv.Recording:
     """A run of 1000 samples whose Ψ_o cos φ_o and m are these."""
     parameters = flockenv.FlockParameters.preset("simulation")
@@ -64,8 +82,8 @@ def recorded(outward: NDArray[np.float64], m: NDArray[np.float64]) -> flockenv.R
         time_s=np.arange(samples) / 10,
         phase=np.full(samples, "fw", "<U4"),
         in_analysis_window=np.ones(samples, np.bool_),
-        pose=np.zeros((samples, 0, 3)),
-        velocity=np.zeros((samples, 0, 3)),
+        pose=np.tile(_boats(np.linspace(0.0, 6.0, parameters.n_boats)), (samples, 1, 1)),
+        velocity=np.zeros((samples, parameters.n_boats, 3)),
         order=flockenv.OrderSeries(**orders),
         parameters=parameters,
         seed=0,
@@ -117,7 +135,7 @@ def test_states_change_at_two_thresholds() -> None:
 
 def dwell(times: tuple[float, float], changes: tuple[int, int]) -> DwellTimes:
     out, back = changes
-    return DwellTimes(STARTS, np.array(times), np.ones(2, int), np.array([[0, out], [back, 0]]))
+    return DwellTimes(STATES, np.array(times), np.ones(2, int), np.array([[0, out], [back, 0]]))
 
 
 def test_the_lifetime_at_coexistence() -> None:
@@ -153,47 +171,108 @@ def test_growing_keeps_the_density() -> None:
     assert areas["whole pool"][0] / 50 == pytest.approx(np.pi * (180**2 - 97**2) / np.pi / 32)
 
 
-def test_the_conclusion_follows_its_rule() -> None:
-    first = [
-        BISTABILITY.check(0.5, 0.4, 0.6, "a"),
-        HYSTERESIS.check(0.3, 0.2, 0.4, "a"),
-        NO_LAG.check(0.1, 0.05, 0.2, "a"),
-    ]
-    assert conclusion(first).startswith("first order")
-    nothing = float("nan")
-    smooth = [
-        BISTABILITY.check(0.05, 0.0, 0.1, "a"),
-        HYSTERESIS.check(0.02, 0.01, 0.03, "a"),
-        NO_LAG.check(nothing, nothing, nothing, "a"),
-    ]
-    assert conclusion(smooth).startswith("not first order")
-    # What differs by its start, but closes when run more slowly, is not shown to be of first order.
-    lagging = conclusion([*first[:2], NO_LAG.check(-0.1, -0.2, -0.05, "a")])
-    assert lagging.startswith("inconclusive. a: both states persist (holds: 0.5, 0.4 to 0.6)")
-    assert "slower loops do not close (does not hold: -0.1, -0.2 to -0.05)" in lagging
-    assert conclusion([first[0], *smooth[1:]]).startswith("inconclusive")
+def jams(*mean_sizes: float) -> Jams:
+    found = object.__new__(Jams)
+    found.mean_size = np.array(mean_sizes)
+    found.share = found.largest = np.full(len(mean_sizes), 0.5)
+    return found
+
+
+_SIZES = (100, 200, 400, 800)
+
+
+def grown(power: float, kept: float = 1.0) -> Measured:
+    """Jams of 20 n^power boats, `kept` times as many from one jam, at one density."""
+    design = TransitionDesign(
+        sizes=_SIZES,
+        densities={"whole pool": (8,), "circumference": (8,)},
+        largest_loop=0,
+        runs=2,
+        stationary_minutes=1.0,
+        loop_minutes=1.0,
+    )
+    stationary = {}
+    for growth, density, start in design.points():
+        # Without room for several jams, small flocks do not count.
+        size = 20.0 * growth.n_boats**power if growth.n_boats >= 200 else 7.0
+        size *= kept if start == "one-jam" else 1.0
+        point = object.__new__(Stationary)
+        point.jams = jams(0.99 * size, 1.01 * size)
+        stationary[growth, density, start] = point
+    return Measured(design, stationary, {}, {})
+
+
+@pytest.mark.parametrize(
+    ("power", "kept", "found"),
+    [
+        (1.0, 1.0, "of first order"),
+        (1.0, 3.0, "of first order"),
+        (0.0, 1.0, "not of first order"),
+        (0.0, 3.0, "inconclusive. flocks forget"),
+        (0.5, 1.0, "inconclusive. jams have a size of their own (density 8, whole pool): does not"),
+    ],
+)
+def test_the_size_of_jams_decides(power: float, kept: float, found: str) -> None:
+    growth, forgotten = judge_jams(grown(power, kept), "whole pool")
+    assert [claim.claim for claim in growth] == [ONE_PHASE, OWN_SIZE]
+    assert [claim.claim for claim in forgotten] == [FORGOTTEN]
+    assert growth[0].measured == pytest.approx(power)
+    assert forgotten[0].measured == pytest.approx(kept)
+    assert conclusion(growth, forgotten).startswith(found)
+
+
+def test_jams_of_runs() -> None:
+    apart = _boats(np.arange(6) * 2.0 * np.pi / 6)
+    six = _boats(np.arange(6) * 10.3 / 160.0, 0.0)
+    four = _boats(np.arange(6) * 10.3 / 160.0, np.array([0.0] * 4 + [np.pi] * 2))
+    frames = np.array([apart, apart, four, six])
+    found = Jams([with_poses(frames[np.repeat([0, 1, 2, 3], 250)])])
+    # The second half counts, but for the sample at its very start.
+    assert found.share == pytest.approx(5 / 6, abs=1e-3)
+    # On paper: half of the frames hold 4² + 6² over 4 + 6.
+    assert found.mean_size == pytest.approx(5.2, abs=0.01)
+    assert found.largest == pytest.approx(5.0, abs=0.01)
+
+
+def test_a_map_of_jams() -> None:
+    # Two boats at 1° facing outward, one at 181° facing along the wall.
+    pose = _boats(np.radians([1.0, 1.0, 181.0]), np.array([0.0, 0.5, np.pi / 2]))
+    found = JamMap([with_poses(np.tile(pose, (1000, 1, 1)))])
+    assert found.share.shape == (1000, 180)
+    assert (found.n_boats, found.minutes) == (3, pytest.approx(100 / 60))
+    assert found.share[7, 0] == pytest.approx(2 * 180 / 3)
+    assert found.share[7, 1:].max() == 0.0
 
 
 def test_a_small_design_from_runs_to_tables(tmp_path: object) -> None:
     densities = {"whole pool": (5, 10), "circumference": (5, 10)}
     design = TransitionDesign(
-        sizes=(20, 40), densities=densities, runs=2, stationary_minutes=1.0, loop_minutes=1.0
+        sizes=(20, 40),
+        densities=densities,
+        largest_loop=20,
+        runs=2,
+        stationary_minutes=1.0,
+        loop_minutes=1.0,
     )
     settings = Settings(minutes=1.0)
     reproduction = transition_order(design)
     specs = reproduction.runs(settings)
-    # For each of two sizes in two ways: two densities from two starts, and three kinds of loops.
-    assert len(specs) == 2 * 2 * (2 * 2 + 3) * 2
+    # In two ways: two sizes at two densities and one at the fine substep, from two starts each, and
+    # one size in each kind of loop.
+    assert len(specs) == len(set(specs)) == 2 * ((2 * 2 + 1) * 2 + len(LOOPS)) * 2
+    minutes = {kind: design.loop(settings, Growth("whole pool", 20), kind)[0] for kind in LOOPS}
+    assert [spec.duration_s / 60 for spec in minutes.values()] == [1.0, 3.0, 9.0, 1.0]
     store = RunStore(tmp_path)  # type: ignore[arg-type]
     assert run_missing(specs, store) == {}
     outcome = reproduction.analyze(settings, Results(store, specs))
-    assert len(outcome.tables["transition"]) == 2 * 2 * 2 * 2
-    assert len(outcome.claims) == 2 * (2 * 3 + 1)
+    assert len(outcome.tables["transition"]) == len(outcome.tables["jams"]) == 2 * 2 * 2 * 2
+    assert len(outcome.tables["substeps"]) == 2 * 2 * 2
+    # In each way: three claims at each density, one for each size, two for the loops, lifetimes.
+    assert len(outcome.claims) == 2 * (2 * 3 + 2 + 2 + 1)
     lifetimes = outcome.tables["lifetimes"]
-    minutes = lifetimes["rotating, min"].astype(float) + lifetimes["jammed, min"].astype(float)
-    # Two runs of a minute from each of two starts; the last analysis window ends within the last
-    # motor cycle of some 6 s, and the first one starts within the second.
-    assert minutes.between(4 * 0.7, 4 * 1.0).all()
+    minutes_in = lifetimes["rotating, min"].astype(float) + lifetimes["jammed, min"].astype(float)
+    # Two runs of a minute from each of two starts, of samples 10 s apart.
+    assert minutes_in.between(4 * 0.9, 4 * 1.2).all()
     assert outcome.tables["loops"]["there"].between(-1, 1).any()
     histograms = outcome.tables["histograms"]
     m = histograms[histograms["quantity"] == "m"]
@@ -201,13 +280,15 @@ def test_a_small_design_from_runs_to_tables(tmp_path: object) -> None:
     total = (m["probability_density"] * width).sum()
     assert total == pytest.approx(16)
     assert set(outcome.pictures) == {
+        "jams",
+        "jam-maps",
         "transition-order",
         "loops",
         "cumulants",
         "histograms_m",
         "histograms_c_v",
     }
-    verdicts = [note for note in outcome.notes if note.startswith("The result where the ")]
+    verdicts = [note for note in outcome.notes if note.startswith("Where the ")]
     assert all("conclus" in note or "first order" in note for note in verdicts)
     assert len(verdicts) == 2
 
@@ -218,7 +299,7 @@ def test_the_budget_chooses_the_design() -> None:
     for design, cost in zip(DESIGNS, costs, strict=True):
         assert within(Settings(budget_core_min=cost + 0.1)) is design
     assert within(Settings(budget_core_min=1e6)) is FULL
-    assert within(Settings(minutes=1.0, budget_core_min=4.0)) is FULL
+    assert within(Settings(minutes=1.0, budget_core_min=8.0)) is FULL
     with pytest.raises(flockenv.ParameterError, match="budget = 1 core-minutes is not enough"):
         within(Settings(budget_core_min=1.0))
     with pytest.raises(flockenv.ParameterError, match="budget = nan"):
@@ -226,10 +307,11 @@ def test_the_budget_chooses_the_design() -> None:
 
 
 @pytest.mark.parametrize("design", DESIGNS)
-def test_every_design_reaches_1600_boats(design: TransitionDesign) -> None:
+def test_every_design_has_three_sizes_with_room_for_jams(design: TransitionDesign) -> None:
     specs = transition_order(design).runs(Settings())
-    assert max(spec.parameters.n_boats for spec in specs) == 1600
-    assert {spec.protocol for spec in specs} == {*STARTS, *LOOPS}
+    assert sum(size >= MANY_BOATS for size in design.sizes) >= 3
+    loops = {spec.protocol for spec in specs} - {*STARTS}
+    assert loops == {"rotating-density-loop", "rotating-length-loop", "rotating-noise-loop"}
 
 
 @pytest.mark.parametrize(
@@ -241,6 +323,7 @@ def test_a_loop_that_never_jams_is_no_closed_loop(back: float, verdict: str, not
     design = TransitionDesign(
         sizes=(400,),
         densities={growth.way: (20,)},
+        largest_loop=400,
         runs=2,
         stationary_minutes=1.0,
         loop_minutes=1.0,
@@ -252,7 +335,8 @@ def test_a_loop_that_never_jams_is_no_closed_loop(back: float, verdict: str, not
     measured = Measured(
         design,
         {(growth, 20, start): stationary for start in STARTS},
-        {(growth, kind): loop for kind in ("density", "slow density")},
+        {(growth, kind): loop for kind in LOOPS},
+        {},
     )
     _, hysteresis_claim, lag = judge(measured, growth)
     assert (hysteresis_claim.verdict, hysteresis_claim.note) == (verdict, note)

@@ -6,6 +6,7 @@ import pytest
 import flockenv
 from flockenv.runs.protocols.hysteresis import simulate_prepared
 from flockenv.runs.protocols.initial_state import STARTS, initial_flock
+from flockenv.statistics.structure import jam_sizes
 
 PARAMETERS = flockenv.FlockParameters.preset("simulation").replace(
     n_boats=20, n_leaders=0, bw_s=0.0
@@ -13,11 +14,13 @@ PARAMETERS = flockenv.FlockParameters.preset("simulation").replace(
 
 
 def test_the_states() -> None:
-    rotating, jammed = (initial_flock(PARAMETERS, 2, start) for start in STARTS)
+    rotating, jammed, one_jam = (initial_flock(PARAMETERS, 2, start) for start in STARTS)
     order = rotating.order_parameters()
     assert (order.psi_o, order.phi_o) == pytest.approx((1.0, np.pi / 2))
     assert (order.psi_v, order.phi_v) == pytest.approx((PARAMETERS.speed_cm_s, np.pi / 2))
     order = jammed.order_parameters()
+    assert (order.psi_o, order.phi_o, order.psi_v) == pytest.approx((1.0, 0.0, 0.0))
+    order = one_jam.order_parameters()
     assert (order.psi_o, order.phi_o, order.psi_v) == pytest.approx((1.0, 0.0, 0.0))
     random = flockenv.Flock(PARAMETERS, 2)
     assert (jammed.pose[:, :2] == random.pose[:, :2]).all()
@@ -34,6 +37,27 @@ def test_runs_are_seeded_and_come_apart(start: str) -> None:
     assert min(flock.contacts().gap_cm, default=0.0) > -0.1
 
 
+@pytest.mark.parametrize("n_boats", [20, 60])
+def test_one_jam_is_one_jam_without_overlap(n_boats: int) -> None:
+    # On paper: the wall of table-1 is 2π·90 cm long, of which hulls 10 cm wide take three quarters
+    # when some 40 boats stand side by side; 60 stand in two rows.
+    parameters = PARAMETERS.replace(n_boats=n_boats, pool="table-1")
+    flock = initial_flock(parameters, 2, "one-jam")
+    assert min(flock.contacts().gap_cm, default=0.0) > -1e-9
+    (sizes,) = jam_sizes(parameters, flock.pose[None])
+    assert sizes.tolist() == [n_boats]
+    distance = np.unique(np.hypot(flock.pose[:, 0], flock.pose[:, 1]).round(6))
+    assert len(distance) == (1 if n_boats == 20 else 2)
+    other = initial_flock(parameters, 3, "one-jam")
+    assert (other.pose != flock.pose).any()
+
+
+def test_too_many_boats_for_one_jam_are_refused() -> None:
+    parameters = PARAMETERS.replace(n_boats=100, pool=(200.0, 170.0))
+    with pytest.raises(flockenv.ParameterError, match="100 boats are too many for one jam"):
+        initial_flock(parameters, 0, "one-jam")
+
+
 def test_an_unknown_start_is_refused() -> None:
-    with pytest.raises(flockenv.ParameterError, match="rotating, jammed"):
+    with pytest.raises(flockenv.ParameterError, match="rotating, jammed, one-jam"):
         initial_flock(PARAMETERS, 0, "asleep")

@@ -18,6 +18,17 @@ def test_clusters_and_the_wall_are_shares_of_the_boats():
     assert structure.on_outer_wall(PARAMETERS, POSE) == pytest.approx([1 / 3] * 4)
 
 
+def test_jams_are_boats_in_touch_that_face_outward():
+    around = np.arange(8) * 10.3 / 80.0
+    jam = np.stack([80 * np.cos(around), 80 * np.sin(around), around], axis=1)
+    parted, none = jam.copy(), jam.copy()
+    parted[3, 2] += np.pi / 2
+    none[:, 2] += np.pi
+    parameters = PARAMETERS.replace(n_boats=8)
+    found = structure.jam_sizes(parameters, np.array([jam, parted, none]))
+    assert [sizes.tolist() for sizes in found] == [[8], [3, 4], []]
+
+
 def test_polarization_is_the_length_of_the_mean_heading():
     # Two boats head along x and one against it.
     assert structure.polarization(POSE) == pytest.approx([1 / 3] * 4)

@@ -7,11 +7,10 @@ direction that its leaders may or may not have decided.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import product
 
 from flockenv.parameters import FlockParameters
 from flockenv.reproduce.reproduction import Settings, within_budget
-from flockenv.reproduce.transition.design import WAYS, Growth
+from flockenv.reproduce.transition.design import Growth
 from flockenv.runs.spec import RunSpec
 
 __all__ = ["DENSITY", "DESIGNS", "FULL", "POLICIES", "FractionDesign", "Setup", "within"]
@@ -26,7 +25,7 @@ POLICIES: Mapping[str, str] = {
 }
 """The protocol of runs by policy; the tuned and the learned policy are those of `500-boats`."""
 
-_CORE_S = {"whole pool": 0.010, "circumference": 0.014}
+_CORE_S = {"whole pool": 0.012, "circumference": 0.05}
 """Seconds of one core that an hour of a boat takes, by way of growing."""
 
 _SAMPLE_HZ = 0.5
@@ -46,13 +45,14 @@ class FractionDesign:
         By policy of `POLICIES`, the paper's law first, and growth, by increasing size: the numbers
         of leaders, increasing.
     runs : mapping of int
-        Seeds for each number of leaders, by number of boats.
+        Seeds for each number of leaders, by growth, by increasing size. A long pool of many boats
+        is like several pools in a row, and needs fewer.
     minutes : float
         Length of a run, whose second half counts.
     """
 
     leaders: Mapping[Setup, tuple[int, ...]]
-    runs: Mapping[int, int]
+    runs: Mapping[Growth, int]
     minutes: float
 
     @property
@@ -63,7 +63,7 @@ class FractionDesign:
     @property
     def sizes(self) -> tuple[int, ...]:
         """Numbers of boats, increasing."""
-        return tuple(self.runs)
+        return tuple(dict.fromkeys(growth.n_boats for growth in self.runs))
 
     def curve(
         self, settings: Settings, policy: str, growth: Growth
@@ -81,7 +81,7 @@ class FractionDesign:
                     protocol=POLICIES[policy],
                     keep="order",
                 )
-                for seed in range(settings.seed, settings.seed + self.runs[growth.n_boats])
+                for seed in range(settings.seed, settings.seed + self.runs[growth])
             )
             for k in self.leaders[policy, growth]
         }
@@ -101,38 +101,46 @@ class FractionDesign:
         hours = settings.duration_s(self.minutes) / 3600
         # Flocks of 27, which are made once for both ways, hardly take any of it.
         seconds = sum(
-            _CORE_S[growth.way] * growth.n_boats * self.runs[growth.n_boats] * len(numbers)
+            _CORE_S[growth.way] * growth.n_boats * self.runs[growth] * len(numbers)
             for (_, growth), numbers in self.leaders.items()
         )
         return hours * seconds / 60
 
 
-_FEWEST: Mapping[str, Mapping[int, tuple[int, int, int]]] = {
-    "whole pool": {27: (1, 1, 1), 100: (1, 1, 1), 400: (4, 2, 1), 1600: (8, 8, 4)},
-    "circumference": {27: (1, 1, 1), 100: (1, 1, 1), 400: (16, 16, 8), 1600: (64, 64, 64)},
-}
-"""The fewest leaders, by way of growing, number of boats and policy. Runs of up to 400 boats, of
-other seeds, put them below the proportion that was measured."""
+@dataclass(frozen=True, slots=True)
+class _Curves:
+    """What is run in flocks of one size in one way of growing.
 
-_NUMBERS: Mapping[str, Mapping[int, int]] = {
-    "whole pool": {27: 4, 100: 5, 400: 5, 1600: 5},
-    "circumference": {27: 4, 100: 5, 400: 4, 1600: 4},
-}
-"""How many numbers of leaders, each twice the one before."""
+    The fewest leaders are those of each policy, and every other number is twice the one before.
+    Runs of up to 400 boats, of other seeds, put the fewest below the proportion that was measured.
+    """
 
-_RUNS = {27: 24, 100: 24, 400: 12, 1600: 8}
+    runs: int
+    numbers: int
+    fewest: tuple[int, int, int]
+
+
+_CURVES: Mapping[Growth, _Curves] = {
+    Growth("whole pool", 27): _Curves(24, 4, (1, 1, 1)),
+    Growth("whole pool", 100): _Curves(16, 5, (1, 1, 1)),
+    Growth("whole pool", 400): _Curves(12, 5, (4, 2, 1)),
+    Growth("whole pool", 1600): _Curves(8, 5, (8, 8, 4)),
+    Growth("circumference", 27): _Curves(24, 4, (1, 1, 1)),
+    Growth("circumference", 100): _Curves(16, 5, (1, 1, 1)),
+    Growth("circumference", 400): _Curves(8, 4, (16, 16, 8)),
+    Growth("circumference", 1600): _Curves(4, 4, (64, 64, 64)),
+}
 
 
 def _design(policies: int, largest: int) -> FractionDesign:
-    sizes = [n for n in _RUNS if n <= largest]
+    chosen = {growth: each for growth, each in _CURVES.items() if growth.n_boats <= largest}
     leaders = {
-        (policy, Growth(way, n)): tuple(
-            _FEWEST[way][n][place] * 2**power for power in range(_NUMBERS[way][n])
-        )
+        (policy, growth): tuple(each.fewest[place] * 2**power for power in range(each.numbers))
         for place, policy in enumerate(tuple(POLICIES)[:policies])
-        for way, n in product(WAYS, sizes)
+        for growth, each in chosen.items()
     }
-    return FractionDesign(leaders, {n: _RUNS[n] for n in sizes}, minutes=60.0)
+    runs = {growth: each.runs for growth, each in chosen.items()}
+    return FractionDesign(leaders, runs, minutes=60.0)
 
 
 FULL = _design(len(POLICIES), 1600)

@@ -119,7 +119,7 @@ def _drift_note(design: FractionDesign, curves: Curves) -> str:
 
 def _notes(design: FractionDesign, settings: Settings) -> list[str]:
     minutes = settings.duration_s(design.minutes) / 60
-    runs = ", ".join(f"{runs} with {n} boats" for n, runs in design.runs.items())
+    runs = ", ".join(f"{runs} ({each.n_boats}, {each.way})" for each, runs in design.runs.items())
     return [
         "Each run starts at random and at rest, and its second half counts. A large flock orders "
         "without leaders too, in a direction of its own, and keeps this direction: its signed "
@@ -138,9 +138,9 @@ def _notes(design: FractionDesign, settings: Settings) -> list[str]:
         "proportion are left out. The first claim is wrong if the exponent is above 0: the "
         "proportion then grows with the flock.",
         f"The compute budget is {settings.budget_core_min:g} minutes of one core. The design has "
-        f"{minutes:g} minutes per run, and for each number of leaders these seeds: {runs}. It is "
-        f"estimated to take {design.core_minutes(settings):.0f} minutes, and the full design "
-        f"{FULL.core_minutes(settings):.0f} (`--budget`).",
+        f"{minutes:g} minutes per run, and for each number of leaders these seeds, by boats and "
+        f"way: {runs}. It is estimated to take {design.core_minutes(settings):.0f} minutes, and "
+        f"the full design {FULL.core_minutes(settings):.0f} (`--budget`).",
     ]
 
 

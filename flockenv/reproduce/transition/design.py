@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from flockenv.parameters import FlockParameters
 from flockenv.reproduce.reproduction import Settings, within_budget
 from flockenv.runs.protocols.hysteresis import resized
-from flockenv.runs.protocols.initial_state import STARTS
 from flockenv.runs.spec import RunSpec
 
 __all__ = [
@@ -19,6 +18,7 @@ __all__ = [
     "LOOPS",
     "LOOP_BW_S",
     "SLOWER",
+    "STARTS",
     "WAYS",
     "Growth",
     "TransitionDesign",
@@ -28,21 +28,30 @@ __all__ = [
 WAYS = {"whole pool": False, "circumference": True}
 """Ways of growing: whether the channel keeps its width."""
 
-LOOPS = ("density", "slow density", "noise")
-"""Kinds of loops; a slow one takes `SLOWER` times as long."""
+STARTS = ("rotating", "one-jam")
+"""The two ends that runs at one density start from, of `runs.protocols.initial_state.STARTS`."""
 
 SLOWER = 3.0
-"""How many times as long a slow loop takes."""
+LOOPS: Mapping[str, float] = {
+    "density": 1.0,
+    "slow density": SLOWER,
+    "slowest density": SLOWER**2,
+    "noise": 1.0,
+}
+"""Kinds of loops, and how many times as long as the fastest they take."""
 
-_CORE_S = 0.035
-"""Seconds of one core that an hour of a boat takes: 0.01 in rotation to 0.13 in a dense jam."""
+_CORE_S = 0.02
+"""Seconds of one core that an hour of a boat takes: 0.01 in rotation to 0.04 in a dense jam."""
 
 _POOL = "500-boats"
-_DT_S = 0.05
-"""Of the leapfrog, whose statistics with white noise are the same from 0.005 to 0.1 s."""
+_DT_S = 0.1
+FINE_DT_S = 0.02
+"""Substep of the few runs that show what the longer one of all others does."""
 
-# Poses are not stored, but pass through memory: 1600 boats at 10 Hz would take 1.4 GB per run.
-_SAMPLE_HZ = 1.0
+_LOOP_HZ = 1.0
+_POSES_HZ = 0.1
+"""Samples per second of loops, and of runs at one density, which store all poses."""
+
 LOOP_BW_S = 0.6
 """Highest noise of loops in noise."""
 
@@ -54,10 +63,10 @@ class Growth:
     way: str
     n_boats: int
 
-    def parameters(self, density: float, bw_s: float = 0.0) -> FlockParameters:
+    def parameters(self, density: float, bw_s: float = 0.0, dt_s: float = _DT_S) -> FlockParameters:
         """Return them; `density` counts boats for each free area of the pool `500-boats`."""
         pool = resized(_POOL, self.n_boats / density, WAYS[self.way])
-        base = FlockParameters.preset("simulation").replace(dt_s=_DT_S)
+        base = FlockParameters.preset("simulation").replace(dt_s=dt_s)
         return base.replace(n_boats=self.n_boats, n_leaders=0, bw_s=bw_s, pool=pool)
 
 
@@ -72,14 +81,17 @@ class TransitionDesign:
     densities : mapping of tuples of int
         By way of growing: boats for each free area of the pool `500-boats`, increasing. Pilot runs
         of other seeds put them where rotation gives way to the jam.
+    largest_loop : int
+        Number of boats up to which loops are run.
     runs : int
         Seeds for each point and loop.
     stationary_minutes, loop_minutes : float
-        Length of a run at one density, and of a loop that is not slow.
+        Length of a run at one density, and of the fastest loop.
     """
 
     sizes: tuple[int, ...]
     densities: Mapping[str, tuple[int, ...]]
+    largest_loop: int
     runs: int
     stationary_minutes: float
     loop_minutes: float
@@ -88,8 +100,15 @@ class TransitionDesign:
         self, settings: Settings, growth: Growth, density: int, start: str
     ) -> tuple[RunSpec, ...]:
         """Return the runs at one density without noise, from one of `STARTS`."""
-        length = settings.duration_s(self.stationary_minutes)
-        return self._seeded(length, settings.seed, growth.parameters(density), start, "window")
+        return self._standing(settings, growth.parameters(density), start)
+
+    def fine(
+        self, settings: Settings, way: str, density: int, start: str
+    ) -> tuple[Growth, tuple[RunSpec, ...]]:
+        """Return runs of flocks of a middling size as `stationary` does, at `FINE_DT_S`."""
+        growth = Growth(way, self.sizes[(len(self.sizes) - 1) // 2])
+        parameters = growth.parameters(density, dt_s=FINE_DT_S)
+        return growth, self._standing(settings, parameters, start)
 
     def loop(self, settings: Settings, growth: Growth, kind: str) -> tuple[RunSpec, ...]:
         """Return the loops of a kind in `LOOPS`.
@@ -97,27 +116,45 @@ class TransitionDesign:
         They go from the lowest density to `protocols.hysteresis.DENSITY_RATIO` times that and back,
         or from no noise to bw = 0.6 s and back at the lowest density.
         """
-        length = settings.duration_s(self.loop_minutes)
         lowest = self.densities[growth.way][0]
         if kind == "noise":
             parameters, protocol = growth.parameters(lowest, LOOP_BW_S), "rotating-noise-loop"
         else:
             parameters = growth.parameters(lowest)
             protocol = f"rotating-{'length' if WAYS[growth.way] else 'density'}-loop"
-            length *= SLOWER if kind == "slow density" else 1.0
-        return self._seeded(length, settings.seed, parameters, protocol, "order")
+        length = settings.duration_s(self.loop_minutes) * LOOPS[kind]
+        return self._seeded(settings.seed, parameters, protocol, length, _LOOP_HZ, "order")
 
     def growths(self) -> list[Growth]:
         """Return all sizes in all ways."""
         return [Growth(way, n) for way in WAYS for n in self.sizes]
 
+    def looped(self) -> list[Growth]:
+        """Return the sizes that go through loops, in all ways."""
+        return [growth for growth in self.growths() if growth.n_boats <= self.largest_loop]
+
+    def points(self) -> list[tuple[Growth, int, str]]:
+        """Return every size, density and start."""
+        return [
+            (growth, density, start)
+            for growth in self.growths()
+            for density in self.densities[growth.way]
+            for start in STARTS
+        ]
+
+    def fine_points(self) -> list[tuple[str, int, str]]:
+        """Return way, density and start of the runs at `FINE_DT_S`: the middle density."""
+        middle = {way: each[len(each) // 2] for way, each in self.densities.items()}
+        return [(way, middle[way], start) for way in WAYS for start in STARTS]
+
     def all_runs(self, settings: Settings) -> list[RunSpec]:
         """Return every run."""
         specs: list[RunSpec] = []
-        for growth in self.growths():
-            for density in self.densities[growth.way]:
-                for start in STARTS:
-                    specs += self.stationary(settings, growth, density, start)
+        for growth, density, start in self.points():
+            specs += self.stationary(settings, growth, density, start)
+        for way, density, start in self.fine_points():
+            specs += self.fine(settings, way, density, start)[1]
+        for growth in self.looped():
             for kind in LOOPS:
                 specs += self.loop(settings, growth, kind)
         return specs
@@ -127,15 +164,27 @@ class TransitionDesign:
         hours = sum(s.parameters.n_boats * s.duration_s / 3600 for s in self.all_runs(settings))
         return _CORE_S * hours / 60
 
+    def _standing(
+        self, settings: Settings, parameters: FlockParameters, start: str
+    ) -> tuple[RunSpec, ...]:
+        length = settings.duration_s(self.stationary_minutes)
+        return self._seeded(settings.seed, parameters, start, length, _POSES_HZ, "poses")
+
     def _seeded(
-        self, length_s: float, first: int, parameters: FlockParameters, protocol: str, keep: str
+        self,
+        first: int,
+        parameters: FlockParameters,
+        protocol: str,
+        length_s: float,
+        sample_hz: float,
+        keep: str,
     ) -> tuple[RunSpec, ...]:
         return tuple(
             RunSpec(
                 parameters=parameters,
                 seed=seed,
                 duration_s=length_s,
-                sample_hz=_SAMPLE_HZ,
+                sample_hz=sample_hz,
                 protocol=protocol,
                 keep=keep,
             )
@@ -143,34 +192,37 @@ class TransitionDesign:
         )
 
 
-_DENSITIES = {"whole pool": (6, 12, 24), "circumference": (20, 40, 80)}
+_DENSITIES = {"whole pool": (6, 10, 16), "circumference": (24, 36, 54)}
 
 FULL = TransitionDesign(
     sizes=(50, 100, 200, 400, 800, 1600),
-    densities={"whole pool": (4, 6, 10, 16, 24), "circumference": (16, 24, 36, 54, 80)},
-    runs=4,
-    stationary_minutes=30.0,
-    loop_minutes=20.0,
+    densities=_DENSITIES,
+    largest_loop=800,
+    runs=8,
+    stationary_minutes=40.0,
+    loop_minutes=10.0,
 )
 
 DESIGNS = (
     TransitionDesign(
-        sizes=(100, 400, 1600),
+        sizes=(50, 200, 400, 800),
         densities=_DENSITIES,
-        runs=3,
-        stationary_minutes=6.0,
-        loop_minutes=4.0,
+        largest_loop=200,
+        runs=4,
+        stationary_minutes=20.0,
+        loop_minutes=3.0,
     ),
     TransitionDesign(
-        sizes=(100, 400, 1600),
+        sizes=(50, 100, 200, 400, 800),
         densities=_DENSITIES,
-        runs=3,
-        stationary_minutes=12.0,
-        loop_minutes=9.0,
+        largest_loop=400,
+        runs=8,
+        stationary_minutes=40.0,
+        loop_minutes=10.0,
     ),
     FULL,
 )
-"""By the time they take: some 7, 14 and 98 minutes of one core."""
+"""By the time they take."""
 
 
 def within(settings: Settings) -> TransitionDesign:

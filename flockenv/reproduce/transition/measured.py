@@ -1,5 +1,6 @@
 """What `transition-order` measures: runs at one density from two starts, and loops."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -8,22 +9,23 @@ from numpy.typing import NDArray
 
 from flockenv.recording import Recording
 from flockenv.reproduce.order_statistics import block_length_s
-from flockenv.reproduce.transition.design import Growth, TransitionDesign
+from flockenv.reproduce.transition.design import STARTS, Growth, TransitionDesign
 from flockenv.runs.protocols.hysteresis import loop_position
-from flockenv.runs.protocols.initial_state import STARTS
 from flockenv.statistics.block_bootstrap import block_sums, block_sums_resampled
 from flockenv.statistics.dwell_times import DwellTimes, dwell_times
-from flockenv.statistics.intervals import (
-    RESAMPLES,
-    student_interval,
-)
+from flockenv.statistics.intervals import RESAMPLES, mean_replicates, student_interval
+from flockenv.statistics.structure import jam_sizes
 
 __all__ = [
     "CENTERS",
     "C_V_EDGES",
+    "FEWEST_CHANGES",
     "JAMMED_ABOVE",
+    "MANY_BOATS",
     "M_EDGES",
     "ROTATING_BELOW",
+    "STATES",
+    "Jams",
     "Lifetime",
     "Loops",
     "Measured",
@@ -48,14 +50,20 @@ CENTERS = (np.arange(_LOOP_BINS) + 0.5) / _LOOP_BINS
 """Positions in a loop at which its branches are averaged."""
 
 
+STATES = ("rotating", "jammed")
+"""States of a whole flock."""
+
 JAMMED_ABOVE, ROTATING_BELOW = 0.6, 0.3
 """Ψ_o cos φ_o of a flock that has jammed and of one that has left the jam, averaged over 30 s."""
 
 _SMOOTHED_S = 30.0
 
+FEWEST_CHANGES = 3
+"""Changes out of each state from which a lifetime counts."""
+
 
 def states(time_s: NDArray[np.float64], outward: NDArray[np.float64]) -> NDArray[np.str_]:
-    """Return the state of each sample, one of `STARTS`.
+    """Return the state of each sample, one of `STATES`.
 
     A flock jams when Ψ_o cos φ_o, averaged over the last 30 s, exceeds `JAMMED_ABOVE`, and rotates
     again when it is below `ROTATING_BELOW`. The first state is the one that is nearer.
@@ -68,13 +76,43 @@ def states(time_s: NDArray[np.float64], outward: NDArray[np.float64]) -> NDArray
     if jams[0] < 0:
         jams[0] = smooth[0] > (JAMMED_ABOVE + ROTATING_BELOW) / 2
     known = np.maximum.accumulate(np.where(jams >= 0, np.arange(len(jams)), 0))
-    return np.array(STARTS)[jams[known]]
+    return np.array(STATES)[jams[known]]
 
 
 def binder(m2: NDArray[np.float64], m4: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return Binder's cumulant 1 - <m⁴>/(3<m²>²); NaN where <m²> is 0."""
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.asarray(1.0 - m4 / (3.0 * m2**2))
+
+
+MANY_BOATS = 200
+"""Boats from which a flock has room for several jams, at the densities of the study."""
+
+
+class Jams:
+    """Jams in the second half of runs at one density, see `statistics.structure.jam_sizes`.
+
+    Attributes
+    ----------
+    share : float64 array, shape (runs,)
+        Part of the boats in jams.
+    mean_size : float64 array, shape (runs,)
+        Boats of the jam that a boat in a jam is in, on average; 0 without jams.
+    largest : float64 array, shape (runs,)
+        Boats of the largest jam of a frame, on average.
+    """
+
+    def __init__(self, runs: Sequence[Recording]) -> None:
+        rows = []
+        for run in runs:
+            used = run.analyzed(after=0.5)
+            frames = jam_sizes(used.parameters, used.pose)
+            boats = sum(int(sizes.sum()) for sizes in frames)
+            pairs = sum(int((sizes**2).sum()) for sizes in frames)
+            largest = np.mean([sizes.max(initial=0) for sizes in frames])
+            share = boats / (len(frames) * used.parameters.n_boats)
+            rows.append((share, pairs / max(boats, 1), largest))
+        self.share, self.mean_size, self.largest = np.array(rows, np.float64).T
 
 
 class Stationary:
@@ -90,14 +128,16 @@ class Stationary:
         Histograms over `M_EDGES` and `C_V_EDGES`.
     dwell : DwellTimes
         Stays in `states`, over all samples and not the second halves alone.
+    jams : Jams
+        Jams of the runs.
     """
 
     def __init__(self, runs: Sequence[Recording], draws_seed: int) -> None:
         outward, blocks, ms, c_vs = [], [], [], []
         series = [states(run.time_s, run.order.outward()) for run in runs]
-        # Samples outside the analysis window of each motor cycle are left out.
         times = runs[0].time_s
-        self.dwell = dwell_times(series, STARTS, float((times[-1] - times[0]) / (len(times) - 1)))
+        self.dwell = dwell_times(series, STATES, float((times[-1] - times[0]) / (len(times) - 1)))
+        self.jams = Jams(runs)
         for run in runs:
             used = run.analyzed(after=0.5)
             m, c_v = used.order.rotation(), used.order.c_v
@@ -225,11 +265,14 @@ class Measured:
         By size, density and start.
     loops : dict of Loops
         By size and kind.
+    fine : dict of Jams
+        Of the runs at `FINE_DT_S`, by size, density and start.
     """
 
     design: TransitionDesign
     stationary: dict[tuple[Growth, int, str], Stationary]
     loops: dict[tuple[Growth, str], Loops]
+    fine: dict[tuple[Growth, int, str], Jams]
 
     def gap(self, growth: Growth, density: int) -> Ends:
         """Return the difference of Ψ_o cos φ_o between the two starts, seed by seed."""
@@ -244,15 +287,68 @@ class Measured:
             dwells[density] = first + second
         return lifetime(dwells, growth.n_boats)
 
-    def lifetime_growth(self, way: str) -> NDArray[np.float64]:
+    def lifetime_growth(self, way: str) -> tuple[NDArray[np.float64], list[int]]:
         """Return by how much the logarithm of the lifetime grows per doubling of the flock.
 
         Returns
         -------
-        float64 array, shape (RESAMPLES + 1,)
-            Slope of a straight line over all sizes, with its replicates.
+        slope : float64 array, shape (RESAMPLES + 1,)
+            Of a straight line, with its replicates; NaN for less than three sizes.
+        sizes : list of int
+            Those with at least `FEWEST_CHANGES` out of each state, which the line is through.
         """
-        x = np.log2(self.design.sizes)
-        x = x - x.mean()
-        y = [self.lifetime(Growth(way, n)).log_s for n in self.design.sizes]
-        return np.asarray(x @ np.array(y) / (x @ x))
+        found = {n: self.lifetime(Growth(way, n)) for n in self.design.sizes}
+        known = {
+            n: each
+            for n, each in found.items()
+            if each.dwell.changes.sum(axis=1).min() >= FEWEST_CHANGES
+        }
+        return _slope(np.log2(list(known)), [each.log_s for each in known.values()]), list(known)
+
+    def jam_growth(self, way: str, density: int) -> NDArray[np.float64]:
+        """Return the exponent b of the mean size of jams, proportional to n^b.
+
+        Returns
+        -------
+        float64 array, shape (RESAMPLES + 1,)
+            Slope of a straight line through the logarithms at sizes of at least `MANY_BOATS`, of
+            the mean over both starts, with its replicates over runs; NaN for less than three sizes.
+        """
+        sizes = [n for n in self.design.sizes if n >= MANY_BOATS]
+        logs = []
+        for n in sizes:
+            starts = [
+                mean_replicates(
+                    self.stationary[Growth(way, n), density, start].jams.mean_size, n + place
+                )
+                for place, start in enumerate(STARTS)
+            ]
+            means = np.mean(starts, axis=0)
+            logs.append(np.log(np.where(means > 0.0, means, math.nan)))
+        return _slope(np.log(sizes), logs)
+
+    def memory(self, growth: Growth, density: int) -> NDArray[np.float64]:
+        """Return the mean size of jams from one jam over that from rotation.
+
+        Returns
+        -------
+        float64 array, shape (RESAMPLES + 1,)
+            With its replicates over runs.
+        """
+        rotating, one_jam = (
+            mean_replicates(
+                self.stationary[growth, density, start].jams.mean_size, growth.n_boats + place
+            )
+            for place, start in enumerate(STARTS)
+        )
+        return one_jam / np.where(rotating > 0.0, rotating, math.nan)
+
+
+def _slope(
+    x: NDArray[np.float64], replicates: Sequence[NDArray[np.float64]]
+) -> NDArray[np.float64]:
+    """Return the slopes of straight lines through at least three points."""
+    if len(x) < 3:
+        return np.full(RESAMPLES + 1, math.nan)
+    x = x - x.mean()
+    return np.asarray(x @ np.array(replicates) / (x @ x))

@@ -2,50 +2,64 @@
 
 Two numbers distinguish a jam from rotation. The rotation m = Ψ_o sin φ_o is 0 in a jam and ±1 in
 rotation one way, but also 0 where streams in both directions share a long pool. Ψ_o cos φ_o, the
-mean of cos φ over boats, is near 1 in a jam and near 0 in rotation in any direction. The second
-number shows three signs of first order: both states persist at one density, each from its own
-initial state; hysteresis loops in density stay open; and slower loops stay as open, which lag does
-not. Binder's cumulant 1 - <m⁴>/(3<m²>²) and that of C_v are shown with these: they are negative
-where few of the frames rotate, which means coexistence only where runs forget their initial state.
+mean of cos φ over boats, is near 1 in a jam and near 0 in rotation in any direction.
+
+The number of boats is fixed, so that a transition of first order is coexistence in space in a large
+flock: one jam that holds a part of the boats, next to rotation, whose size grows in proportion to
+the flock. Jams of a size of their own, however large the flock, are a gradual passage instead; what
+looks like two states of a small flock is then a single jam that forms and dissolves. The size of
+jams decides, from two starts that must come to the same. Persistence of both states, hysteresis
+loops at three rates, lifetimes, and Binder's cumulants 1 - <m⁴>/(3<m²>²) stand beside it.
 """
 
 import math
 from collections.abc import Sequence
 from itertools import product
 
+import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
-from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, CheckedClaim, Claim, number
+from flockenv.reproduce.claim import HOLDS, CheckedClaim, Claim, number
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings, designed
 from flockenv.reproduce.transition.design import (
+    FINE_DT_S,
     FULL,
     LOOPS,
     SLOWER,
+    STARTS,
     WAYS,
     Growth,
     TransitionDesign,
     within,
 )
+from flockenv.reproduce.transition.jam_map import JamMap, mapped
 from flockenv.reproduce.transition.measured import (
     C_V_EDGES,
     CENTERS,
+    FEWEST_CHANGES,
     JAMMED_ABOVE,
     M_EDGES,
+    MANY_BOATS,
     ROTATING_BELOW,
+    STATES,
+    Jams,
     Loops,
     Measured,
     Stationary,
 )
 from flockenv.reproduce.transition.pictures import pictures
 from flockenv.runs.protocols.hysteresis import DENSITY_RATIO
-from flockenv.runs.protocols.initial_state import STARTS
 from flockenv.statistics.intervals import interval, student_interval
 
 __all__ = [
     "BISTABILITY",
+    "FORGOTTEN",
     "HYSTERESIS",
     "LIFETIMES",
     "NO_LAG",
+    "ONE_PHASE",
+    "OWN_SIZE",
     "REPRODUCTIONS",
     "conclusion",
     "judge",
@@ -62,13 +76,13 @@ BISTABILITY = Claim(
 HYSTERESIS = Claim(
     text="Loops in density stay open",
     section="5.2, left open",
-    quantity="mean Ψ_o cos φ_o as density falls minus that as it rises, over a slow loop",
+    quantity="mean Ψ_o cos φ_o as density falls minus that as it rises, over the slowest loops",
     low=0.1,
 )
 NO_LAG = Claim(
     text="Loops in density do not close when run more slowly",
     section="5.2, left open",
-    quantity=f"opening of loops run {SLOWER:g} times as slowly minus 0.7 of the faster ones'",
+    quantity=f"opening of the slowest loops minus 0.7 of that of {SLOWER:g} times as fast ones",
     low=0.0,
 )
 
@@ -80,91 +94,125 @@ LIFETIMES = Claim(
     low=0.0,
 )
 
-_SIGNS = {
-    BISTABILITY: "both states persist",
-    HYSTERESIS: "loops stay open",
-    NO_LAG: "slower loops do not close",
-}
+_GROWTH = (
+    f"exponent b of the mean size of jams, proportional to n^b, from {MANY_BOATS} boats on, both "
+    "starts"
+)
+ONE_PHASE = Claim(
+    text="Jams grow with the flock",
+    section="5.2, left open",
+    quantity=_GROWTH,
+    low=0.75,
+)
+OWN_SIZE = Claim(
+    text="Jams have a size of their own",
+    section="5.2, left open",
+    quantity=_GROWTH,
+    high=0.25,
+)
+FORGOTTEN = Claim(
+    text="Flocks forget whether they started in one jam",
+    section="5.2, left open",
+    quantity="mean size of jams of runs started in one jam, over that of runs started rotating",
+    low=0.75,
+    high=1.33,
+)
 
 _JAMMED = 0.3
 """Mean Ψ_o cos φ_o from which a loop has reached the jam at its highest density."""
 
 _CAPTIONS = {
-    "transition-order": "Jam (Ψ_o cos φ_o) of runs started rotating or jammed, against density; "
-    "opening of loops, against the number of boats",
-    "loops": "Loops in density, run slowly, and in noise; dashed: on the way back; shaded: "
+    "jams": "Above: mean size of the jam that a boat in a jam is in, against the number of boats, "
+    "by density; a jam that grows with the flock would follow the gray line. Below: part of the "
+    "boats in jams; dashed: started in one jam",
+    "jam-maps": "Where boats face outward, around the pool and in time, in one run each: jams "
+    "form, grow, shrink and merge",
+    "transition-order": "Jam (Ψ_o cos φ_o) of runs started rotating or in one jam, against "
+    "density; opening of loops, against the number of boats",
+    "loops": "Loops in density, run most slowly, and in noise; dashed: on the way back; shaded: "
     "lowest to highest of the runs",
     "cumulants": "Binder cumulants of m and C_v against the number of boats, cut off below -1 and "
-    "-2; dashed: started jammed",
-    "histograms_m": "Probability density of m; dashed: started jammed",
-    "histograms_c_v": "Probability density of C_v; dashed: started jammed; rotation has two "
+    "-2; dashed: started in one jam",
+    "histograms_m": "Probability density of m; dashed: started in one jam",
+    "histograms_c_v": "Probability density of C_v; dashed: started in one jam; rotation has two "
     "peaks, the boats' speeds at the end of fw and in nop",
 }
 
 
-def conclusion(claims: Sequence[CheckedClaim]) -> str:
-    """Return what the claims for the larger sizes say, by a rule fixed before the runs.
+def conclusion(growth: Sequence[CheckedClaim], forgotten: Sequence[CheckedClaim]) -> str:
+    """Return what the claims about jams say, by a rule fixed before the runs.
 
     Parameters
     ----------
-    claims
-        `BISTABILITY`, `HYSTERESIS` and `NO_LAG` for the larger half of the sizes.
+    growth
+        `ONE_PHASE` and `OWN_SIZE` at each density.
+    forgotten
+        `FORGOTTEN` at each density, in the largest flocks.
     """
-    if all(claim.verdict == HOLDS for claim in claims):
-        return "first order: both states persist and loops stay open at all of the larger sizes"
-    states = [claim for claim in claims if claim.claim is not NO_LAG]
-    if all(claim.verdict == DOES_NOT_HOLD for claim in states):
-        return "not first order: one state outlasts the other and loops close at the larger sizes"
-    verdicts = "; ".join(
-        f"{scope}: "
-        + ", ".join(
-            f"{_SIGNS[claim.claim]} ({claim.verdict}: {_measured(claim)})"
-            for claim in claims
-            if claim.scope == scope
+    sizes = {
+        claim: [each for each in growth if each.claim is claim] for claim in (ONE_PHASE, OWN_SIZE)
+    }
+    if any(each.verdict == HOLDS for each in sizes[ONE_PHASE]):
+        return "of first order: jams grow in proportion to the flock"
+    open_questions = [each for each in (*sizes[OWN_SIZE], *forgotten) if each.verdict != HOLDS]
+    if not open_questions:
+        return (
+            "not of first order: jams have a size of their own in flocks of any size, whether they "
+            "started rotating or in one jam"
         )
-        for scope in dict.fromkeys(claim.scope for claim in claims)
+    listed = "; ".join(
+        f"{each.claim.text.lower()} ({each.scope}): {each.verdict}, {_measured(each)}"
+        for each in open_questions
     )
-    return (
-        f"inconclusive. {verdicts}. A conclusion needs runs so long that flocks forget their "
-        "initial state, loops so slow that slower ones open as far, and more seeds where an "
-        "interval is too wide"
-    )
+    return f"inconclusive. {listed}"
 
 
 def _measured(claim: CheckedClaim) -> str:
-    return claim.note if claim.ends == "none" else f"{number(claim.measured)}, {claim.ends}"
+    return f"{number(claim.measured)}, {claim.ends}"
 
 
 def _analyze(design: TransitionDesign, settings: Settings, results: Results) -> Outcome:
     stationary = {}
-    for growth in design.growths():
-        for density, start in product(design.densities[growth.way], STARTS):
-            specs = design.stationary(settings, growth, density, start)
-            runs = results.derive(Stationary, specs, specs[0].draws_seed)
-            stationary[growth, density, start] = runs
+    for point in design.points():
+        specs = design.stationary(settings, *point)
+        stationary[point] = results.derive(Stationary, specs, specs[0].draws_seed)
+    fine = {}
+    for way, density, start in design.fine_points():
+        growth, specs = design.fine(settings, way, density, start)
+        fine[growth, density, start] = results.derive(Jams, specs)
     loops = {
         (growth, kind): results.derive(Loops, design.loop(settings, growth, kind))
-        for growth in design.growths()
+        for growth in design.looped()
         for kind in LOOPS
     }
-    measured = Measured(design, stationary, loops)
+    measured = Measured(design, stationary, loops, fine)
     notes, claims = [], []
     for way in WAYS:
-        judged = [judge(measured, Growth(way, n)) for n in design.sizes]
-        larger = judged[len(judged) // 2 :]
-        found = conclusion([claim for triple in larger for claim in triple])
-        notes.append(f"The result where the {way} grows with the flock is {found}.")
-        claims += [claim for triple in judged for claim in triple]
-        claims.append(LIFETIMES.check(*interval(measured.lifetime_growth(way)), way))
+        growth_claims, forgotten = judge_jams(measured, way)
+        found = conclusion(growth_claims, forgotten)
+        notes.append(f"Where the {way} grows with the flock, the transition is {found}.")
+        claims += [*growth_claims, *forgotten]
+        for n in design.sizes:
+            claims += judge(measured, Growth(way, n))
+        slope, sizes = measured.lifetime_growth(way)
+        note = f"of {', '.join(map(str, sizes)) or 'no'} boats"
+        claims.append(LIFETIMES.check(*interval(slope), way, note))
     notes += [_cumulants_note(measured), *_method_notes(design, settings)]
     tables = {
+        "jams": _jams_table(measured),
+        "substeps": _substeps_table(measured),
         "transition": _points_table(measured),
         "loops": _loops_table(measured),
         "histograms": _histograms(measured),
         "lifetimes": _lifetimes_table(measured),
     }
-    shown = ["lifetimes"]
-    return Outcome(tables, pictures(measured), claims, notes, shown, _CAPTIONS)
+    shown = ["jams", "substeps", "lifetimes"]
+    maps = {
+        (way, start): results.derive(JamMap, design.stationary(settings, *point)[:1])
+        for way, start in product(WAYS, STARTS)
+        for point in [mapped(design, way, start)]
+    }
+    return Outcome(tables, pictures(measured, maps), claims, notes, shown, _CAPTIONS)
 
 
 def _cumulants_note(measured: Measured) -> str:
@@ -192,43 +240,71 @@ def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
     stationary, loop = (
         settings.duration_s(m) / 60 for m in (design.stationary_minutes, design.loop_minutes)
     )
+    paces = ", ".join(f"{loop * pace:g}" for pace in dict.fromkeys(LOOPS.values()))
     return [
+        "A jam is a cluster of at least three boats with gaps below 0.5 cm that face outward "
+        "within 60°. Its mean size is that of the jam which a boat in a jam is in: the sum of "
+        "squared sizes over the sum of sizes, over all frames of a run's second half. By the rule, "
+        "which was fixed before the runs, the transition is of first order if the exponent is at "
+        f"least {ONE_PHASE.low:g} at some density with its whole interval. It is not of first "
+        f"order if the exponent is at most {OWN_SIZE.high:g} at every density with its whole "
+        "interval, and the largest flocks have forgotten their start at every density. Anything "
+        "else is inconclusive. Runs of up to 800 boats, of other seeds, suggested that the size of "
+        "jams decides.",
         "The density is the number of boats per area of water as large as that of the pool "
         "500-boats. Runs at one density never back up (bw = 0), so that the angular noise c4 is "
-        "their only noise, and their second half counts. Loops in density go from the lowest "
+        "their only noise. They start with all boats rotating, or standing side by side in one "
+        "stretch of the outer wall. Loops in density go from the lowest "
         f"density to {DENSITY_RATIO:g} times that and back. Loops in noise go from bw = 0 "
         "to 0.6 s and back at the lowest density. All loops start from rotation. The preset is "
-        "simulation with dt = 0.05 s. Intervals are Student's t intervals over seeds. Those of "
-        "cumulants are a bootstrap over runs and blocks within them, and are too narrow with so "
-        "few runs. Shorter runs of seeds 0 to 2 and 1000 fixed the densities and the criteria.",
-        "A flock counts as jammed from where Ψ_o cos φ_o, averaged over 30 s, exceeds "
+        "simulation with dt = 0.1 s; the table of substeps shows what a finer one changes. "
+        "Intervals of loops and of persistence are Student's t intervals over seeds, those of jams "
+        "a bootstrap over runs, and those of cumulants one over runs and blocks within them.",
+        "A flock as a whole counts as jammed from where Ψ_o cos φ_o, averaged over 30 s, exceeds "
         f"{JAMMED_ABOVE:g} to where it falls below {ROTATING_BELOW:g}. The lifetime is the "
         "geometric mean of the mean dwell times in both states, at the density where flocks leave "
         "both most alike; half a change is added to each count. Its interval follows from "
-        "Poisson's counts. Lifetimes that grow are expected at both kinds of transition: as a "
-        "power of the size at a continuous one, and exponentially at one of first order.",
+        f"Poisson's counts. Sizes with fewer than {FEWEST_CHANGES} changes out of either state are "
+        "left out of the claim.",
         f"The compute budget is {settings.budget_core_min:g} minutes of one core. The design has "
-        f"{design.runs} seeds, {stationary:g} minutes per run, {loop:g} minutes per loop and "
-        f"{SLOWER * loop:g} per slow loop, and {len(design.sizes)} sizes up to {max(design.sizes)} "
-        f"boats. It is estimated to take {design.core_minutes(settings):.0f} minutes, and the full "
-        f"design {FULL.core_minutes(settings):.0f} (`--budget`).",
+        f"{design.runs} seeds, {len(design.sizes)} sizes up to {max(design.sizes)} boats, "
+        f"{stationary:g} minutes per run, whose second half counts, and loops of {paces} minutes "
+        f"with up to {design.largest_loop} boats. It is estimated to take "
+        f"{design.core_minutes(settings):.0f} minutes, and the full design "
+        f"{FULL.core_minutes(settings):.0f} (`--budget`).",
     ]
 
 
+def judge_jams(measured: Measured, way: str) -> tuple[list[CheckedClaim], list[CheckedClaim]]:
+    """Judge the size of jams at each density, and whether the largest flocks forget their start."""
+    largest = Growth(way, measured.design.sizes[-1])
+    growth, forgotten = [], []
+    for density in measured.design.densities[way]:
+        scope = f"density {density}, {way}"
+        ends = interval(measured.jam_growth(way, density))
+        growth += [claim.check(*ends, scope) for claim in (ONE_PHASE, OWN_SIZE)]
+        kept = interval(measured.memory(largest, density))
+        forgotten.append(FORGOTTEN.check(*kept, f"{largest.n_boats} boats, {scope}"))
+    return growth, forgotten
+
+
 def judge(measured: Measured, growth: Growth) -> tuple[CheckedClaim, ...]:
-    """Judge all three claims for one size in one way of growing."""
+    """Judge the states of whole flocks, and the loops that were run, for one size in one way."""
     scope = f"{growth.n_boats} boats, {growth.way}"
     # The density is chosen once, by the data as measured.
     densities = measured.design.densities[growth.way]
     gap, density = max((measured.gap(growth, density), density) for density in densities)
-    slow, fast = (measured.loops[growth, kind] for kind in ("slow density", "density"))
+    states = BISTABILITY.check(*gap, scope, f"at density {density}")
+    if growth not in measured.design.looped():
+        return (states,)
+    fast, slow = (measured.loops[growth, f"{pace} density"] for pace in ("slow", "slowest"))
     nothing = (float("nan"),) * 3
     # A loop on which nothing jammed is closed whatever the transition, and one that never opened
     # cannot close.
     jammed = bool(slow.at_turn.mean() >= _JAMMED)
     opened = jammed and student_interval(fast.openings)[0] >= HYSTERESIS.low
     return (
-        BISTABILITY.check(*gap, scope, f"at density {density}"),
+        states,
         HYSTERESIS.check(
             *(student_interval(slow.openings) if jammed else nothing),
             scope,
@@ -240,6 +316,44 @@ def judge(measured: Measured, growth: Growth) -> tuple[CheckedClaim, ...]:
             "" if opened else "the faster loop did not open",
         ),
     )
+
+
+def _jams_table(measured: Measured) -> pd.DataFrame:
+    rows = []
+    for (growth, density, start), stationary in measured.stationary.items():
+        rows.append(
+            {
+                "way": growth.way,
+                "density": density,
+                "boats": growth.n_boats,
+                "start": start,
+                **_jam_columns(stationary.jams),
+            }
+        )
+    return pd.DataFrame(rows).sort_values(
+        ["way", "density"], kind="stable", ascending=[False, True]
+    )
+
+
+def _jam_columns(jams: Jams) -> dict[str, str]:
+    named = {"in jams": jams.share, "mean size": jams.mean_size, "largest": jams.largest}
+    return {name: _with_error(values) for name, values in named.items()}
+
+
+def _with_error(values: NDArray[np.float64]) -> str:
+    error = values.std(ddof=1) / len(values) ** 0.5
+    return f"{number(values.mean())} ± {error:.2g}"
+
+
+def _substeps_table(measured: Measured) -> pd.DataFrame:
+    rows = []
+    for (growth, density, start), fine in measured.fine.items():
+        point = {"way": growth.way, "density": density, "boats": growth.n_boats, "start": start}
+        usual = measured.stationary[growth, density, start].jams
+        dt_s = growth.parameters(density).dt_s
+        for step_s, jams in ((FINE_DT_S, fine), (dt_s, usual)):
+            rows.append(point | {"substep, s": f"{step_s:g}"} | _jam_columns(jams))
+    return pd.DataFrame(rows)
 
 
 def _points_table(measured: Measured) -> pd.DataFrame:
@@ -277,7 +391,7 @@ def _lifetimes_table(measured: Measured) -> pd.DataFrame:
         row |= {"density": found.density, "lifetime, min": number(value)}
         row["interval"] = f"{number(low)} to {number(high)}"
         for state, time_s, changes in zip(
-            STARTS, found.dwell.time_s, found.dwell.changes.sum(axis=1), strict=True
+            STATES, found.dwell.time_s, found.dwell.changes.sum(axis=1), strict=True
         ):
             row |= {f"{state}, min": number(time_s / 60), f"changes from {state}": int(changes)}
         rows.append(row)

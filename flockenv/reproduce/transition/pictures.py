@@ -1,6 +1,6 @@
 """The pictures of `transition-order`: color is the size or the density, the line the start."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,22 +10,31 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from flockenv.reproduce.style import COLORS, column_figure, paper_style
-from flockenv.reproduce.transition.design import LOOP_BW_S, LOOPS, WAYS, Growth, TransitionDesign
+from flockenv.reproduce.transition.design import (
+    LOOP_BW_S,
+    LOOPS,
+    STARTS,
+    WAYS,
+    Growth,
+    TransitionDesign,
+)
+from flockenv.reproduce.transition.jam_map import JamMap
 from flockenv.reproduce.transition.measured import (
     C_V_EDGES,
     CENTERS,
     M_EDGES,
+    MANY_BOATS,
     Loops,
     Measured,
     Stationary,
 )
 from flockenv.runs.protocols.hysteresis import DENSITY_RATIO
-from flockenv.runs.protocols.initial_state import STARTS
 from flockenv.statistics.intervals import interval, student_interval
 
 __all__ = ["pictures"]
 
 _LINES = dict(zip(STARTS, ("-", "--"), strict=True))
+_STARTED = {"rotating": "started rotating", "one-jam": "started in one jam"}
 _MARKS = ("o", "s", "^", "D", "v", "P")
 _TIGHT: dict[str, Any] = {"columnspacing": 0.8, "handlelength": 1.2, "handletextpad": 0.4}
 _OUTWARD = r"mean $\Psi_o\,\cos\varphi_o$"
@@ -35,15 +44,80 @@ _QUANTITIES = {
 }
 
 
-def pictures(measured: Measured) -> dict[str, Figure]:
-    """Return the pictures: states and openings, loops, cumulants against size, and histograms."""
+def pictures(measured: Measured, maps: Mapping[tuple[str, str], JamMap]) -> dict[str, Figure]:
+    """Return the pictures: jams, states, loops, cumulants against size, and histograms.
+
+    `maps` are those of a run in each way of growing from each start.
+    """
     with paper_style():
         return {
+            "jams": _jams(measured),
+            "jam-maps": _jam_maps(maps),
             "transition-order": _states_and_openings(measured),
             "loops": _loops(measured),
             "cumulants": _cumulants(measured),
             **{f"histograms_{name}": _histograms(measured, name) for name in _QUANTITIES},
         }
+
+
+def _jams(measured: Measured) -> Figure:
+    design = measured.design
+    picture = column_figure(10.0)
+    panels = picture.subplots(2, len(WAYS), sharey="row", sharex=True)
+    sizes = np.array(design.sizes)
+    for column, way in enumerate(WAYS):
+        panels[0, column].set_title(f"{way} grows")
+        for place, density in enumerate(design.densities[way]):
+            for start in STARTS:
+                found = [measured.stationary[Growth(way, n), density, start].jams for n in sizes]
+                for axes, name in zip(panels[:, column], ("mean_size", "share"), strict=True):
+                    ends = np.array([student_interval(getattr(each, name)) for each in found])
+                    bars = [ends[:, 0] - ends[:, 1], ends[:, 2] - ends[:, 0]]
+                    line = f"{_MARKS[place]}{_LINES[start]}"
+                    label = str(density) if start == STARTS[0] else None
+                    color = COLORS[place]
+                    x = sizes * 1.05 ** (place - 1)
+                    axes.errorbar(
+                        x, ends[:, 0], bars, fmt=line, color=color, elinewidth=0.6, label=label
+                    )
+        many = sizes[sizes >= MANY_BOATS]
+        if len(many):
+            panels[0, column].plot(many, 40.0 * many / many[0], color="0.6", lw=0.8, zorder=0)
+        panels[0, column].set_yscale("log")
+        panels[0, column].set_xscale("log")
+        _name_ticks(panels[0, column], design.sizes)
+        panels[0, column].legend(title="density", ncols=3, title_fontsize=6.5, **_TIGHT)
+        panels[1, column].set_xlabel("boats")
+    panels[0, 0].set_ylabel("mean size of jams (boats)")
+    panels[1, 0].set_ylabel("part of the boats in jams")
+    handles = _styles({_STARTED[start]: _LINES[start] for start in STARTS})
+    picture.legend(handles=handles, loc="outside upper center", ncols=2)
+    return picture
+
+
+def _jam_maps(maps: Mapping[tuple[str, str], JamMap]) -> Figure:
+    picture = column_figure(11.0)
+    panels = picture.subplots(len(STARTS), len(WAYS), sharex=True, sharey=True)
+    for row, start in enumerate(STARTS):
+        for column, way in enumerate(WAYS):
+            axes, found = panels[row, column], maps[way, start]
+            axes.imshow(
+                found.share,
+                origin="lower",
+                aspect="auto",
+                extent=(0.0, 360.0, 0.0, found.minutes),
+                cmap="Greys",
+                vmin=0.0,
+                vmax=2.0,
+                interpolation="nearest",
+            )
+            axes.set_title(f"{found.n_boats} boats, {way}\n{_STARTED[start]}")
+    for axes in panels[-1]:
+        axes.set_xticks([0, 120, 240, 360])
+        axes.set_xlabel("polar angle (°)")
+    for axes in panels[:, 0]:
+        axes.set_ylabel("time (min)")
+    return picture
 
 
 def _states_and_openings(measured: Measured) -> Figure:
@@ -63,7 +137,7 @@ def _states_and_openings(measured: Measured) -> Figure:
         openings.set_xlabel("boats")
     panels[0, 0].set_ylabel(_OUTWARD)
     panels[1, 0].set_ylabel("opening of loops")
-    handles = [*_sizes(design), *_styles({f"started {start}": _LINES[start] for start in STARTS})]
+    handles = [*_sizes(design), *_styles({_STARTED[start]: _LINES[start] for start in STARTS})]
     picture.legend(handles=handles, loc="outside upper center", ncols=3)
     picture.legend(*panels[1, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return picture
@@ -78,8 +152,10 @@ def _loops(measured: Measured) -> Figure:
         density.set_title(f"{way} grows")
         lowest = design.densities[way][0]
         for place, n in enumerate(design.sizes):
+            if Growth(way, n) not in design.looped():
+                continue
             color = COLORS[place % len(COLORS)]
-            loop = measured.loops[Growth(way, n), "slow density"]
+            loop = measured.loops[Growth(way, n), "slowest density"]
             _draw_loop(density, lowest * DENSITY_RATIO**CENTERS, loop, color)
             _draw_loop(noise, LOOP_BW_S * CENTERS, measured.loops[Growth(way, n), "noise"], color)
         density.set_xscale("log")
@@ -112,14 +188,14 @@ def _draw_loop(axes: Axes, x: NDArray[np.float64], loop: Loops, color: str) -> N
 
 
 def _draw_openings(axes: Axes, measured: Measured, way: str) -> None:
-    sizes = measured.design.sizes
+    sizes = [each.n_boats for each in measured.design.looped() if each.way == way]
     for place, kind in enumerate(LOOPS):
         ends = np.array(
             [student_interval(measured.loops[Growth(way, n), kind].openings) for n in sizes]
         )
         bars = [ends[:, 0] - ends[:, 1], ends[:, 2] - ends[:, 0]]
         x = np.array(sizes) * 1.12 ** (place - 1)
-        marker, color = f"{_MARKS[place]}-", COLORS[place + 3]
+        marker, color = f"{_MARKS[place]}-", COLORS[(place + 3) % len(COLORS)]
         axes.errorbar(x, ends[:, 0], bars, fmt=marker, color=color, elinewidth=0.6, label=kind)
     axes.axhline(0.0, color="0.6", lw=0.6, zorder=0)
     axes.set_xscale("log")
@@ -156,7 +232,7 @@ def _cumulants(measured: Measured) -> Figure:
     # Heavy tails about 0 make cumulants as low as -10, which would hide all others.
     for axes, lowest in zip(panels[:, 0], (-1.0, -2.0), strict=True):
         axes.set_ylim(lowest, 0.8)
-    handles = _styles({f"started {start}": _LINES[start] for start in STARTS})
+    handles = _styles({_STARTED[start]: _LINES[start] for start in STARTS})
     picture.legend(handles=handles, loc="outside upper center", ncols=2)
     return picture
 
@@ -204,7 +280,7 @@ def _histograms(measured: Measured, name: str) -> Figure:
         panels[0, column].set_ylim(top=50 * panels[0, column].get_ylim()[1])
         panels[0, column].legend(title="density", ncols=3, title_fontsize=6.5, **_TIGHT)
     picture.supylabel(f"probability density{unit}", fontsize=7)
-    handles = _styles({f"started {start}": _LINES[start] for start in STARTS})
+    handles = _styles({_STARTED[start]: _LINES[start] for start in STARTS})
     picture.legend(handles=handles, loc="outside upper center", ncols=2)
     return picture
 
