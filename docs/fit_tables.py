@@ -143,7 +143,31 @@ def fit_variants() -> str:
     return markdown(["variant", *keys.values()], body)
 
 
+def fit_changes() -> str:
+    """Return what one change at a time does to the targets that no fit has met."""
+    file = f"{FIT}/changes.csv"
+    names = {target.key: target.name for target in TARGETS}
+    found = rows(file)
+    keys = list(dict.fromkeys(row["key"] for row in found))
+    body = []
+    for change in dict.fromkeys(row["change"] for row in found):
+        cells = (_changed(one(file, change=change, key=key)) for key in keys)
+        body.append([change, *cells])
+    return markdown(["change", *(names[key] for key in keys)], body)
+
+
+def _changed(row: Row) -> str:
+    """Return a value, bold if out of range, and the interval of what the change did to it."""
+    value = f"{float(row['value']):.2f}"
+    inside = value if row["in_range"] == "True" else f"**{value}**"
+    if row["change"] == "none":
+        return inside
+    low, high = (f"{float(row[end]):+.2f}" for end in ("difference_low", "difference_high"))
+    return f"{inside} ({low} to {high})"
+
+
 FIT_TABLES = {
+    "fit-changes": fit_changes,
     "fit-targets": fit_targets,
     "fit-variants": fit_variants,
     "fit-constants": fit_constants,

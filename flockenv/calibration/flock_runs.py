@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv.parameters import FlockParameters
+from flockenv.policies.base import LeaderPolicy
 from flockenv.recording import Recording
 from flockenv.runs.executors import in_order
 from flockenv.runs.protocols.target_switching import PERIOD_S, second_halves, simulate_alternating
@@ -214,15 +215,20 @@ def _slope(x: NDArray[np.float64], y: NDArray[np.float64]) -> float:
     return float(np.cov(x, y, ddof=0)[0, 1] / x.var())
 
 
-def run_flock(parameters: FlockParameters, cell: Cell, seed: int) -> list[float]:
-    """Run one flock and measure it, in the order of `QUANTITIES`."""
+def run_flock(
+    parameters: FlockParameters, cell: Cell, seed: int, policy: LeaderPolicy | None = None
+) -> list[float]:
+    """Run one flock and measure it, in the order of `QUANTITIES`.
+
+    Leaders follow the policy, by default the paper's law at every substep.
+    """
     target = "ccw" if seed % 2 else "cw"
     flock = parameters.replace(n_leaders=cell.leaders, bw_s=cell.bw_s, target=target)
     if cell.alternates:
-        run = simulate_alternating(flock, seed, cell.duration_s, _SAMPLE_HZ)
+        run = simulate_alternating(flock, seed, cell.duration_s, _SAMPLE_HZ, policy=policy)
         following = _following(run)
     else:
-        run = simulate(flock, seed, cell.duration_s, _SAMPLE_HZ, dtype=np.float32)
+        run = simulate(flock, seed, cell.duration_s, _SAMPLE_HZ, policy, dtype=np.float32)
         following = math.nan
     order = run.analyzed().order
     states = order.states(parameters.speed_cm_s)
@@ -253,13 +259,17 @@ def run_flocks(
     seeds: Sequence[int],
     jobs: int = 1,
     progress: Callable[[], None] = lambda: None,
+    policy: LeaderPolicy | None = None,
 ) -> FlockRuns:
-    """Run the cells of a design, each as often as there are rows of seeds (`Design.seeds`)."""
+    """Run the cells of a design, each as often as there are rows of seeds (`Design.seeds`).
+
+    Leaders follow the policy as for `run_flock`.
+    """
     rows = design.seeds(seeds)
     items = [(cell, row[place]) for place, cell in enumerate(design.cells) for row in rows]
 
     def run(item: tuple[Cell, int]) -> list[float]:
-        measured = run_flock(parameters, *item)
+        measured = run_flock(parameters, *item, policy)
         progress()
         return measured
 

@@ -175,6 +175,7 @@ def jams(*mean_sizes: float) -> Jams:
     found = object.__new__(Jams)
     found.mean_size = np.array(mean_sizes)
     found.share = found.largest = np.full(len(mean_sizes), 0.5)
+    found.first_s, found.nucleated = np.full(len(mean_sizes), 60.0), np.ones(len(mean_sizes), bool)
     return found
 
 
@@ -232,6 +233,12 @@ def test_jams_of_runs() -> None:
     # On paper: half of the frames hold 4² + 6² over 4 + 6.
     assert found.mean_size == pytest.approx(5.2, abs=0.01)
     assert found.largest == pytest.approx(5.0, abs=0.01)
+    # No jam of these is large enough to last.
+    assert (found.first_s[0], found.nucleated[0]) == (100.0, False)
+    twelve = np.arange(12) * 10.3 / 160.0
+    frames = np.array([_boats(twelve, np.pi), _boats(twelve, 0.0)])
+    found = Jams([with_poses(frames[np.repeat([0, 1], 500)])])
+    assert (found.first_s[0], found.nucleated[0]) == (50.0, True)
 
 
 def test_a_map_of_jams() -> None:
@@ -267,6 +274,10 @@ def test_a_small_design_from_runs_to_tables(tmp_path: object) -> None:
     outcome = reproduction.analyze(settings, Results(store, specs))
     assert len(outcome.tables["transition"]) == len(outcome.tables["jams"]) == 2 * 2 * 2 * 2
     assert len(outcome.tables["substeps"]) == 2 * 2 * 2
+    nucleation = outcome.tables["nucleation"]
+    assert len(nucleation) == 2 * 2 * 2
+    hours = nucleation["hours until then"].astype(float)
+    assert (hours <= 2 / 60 + 1e-3).all()
     # In each way: three claims at each density, one for each size, two for the loops, lifetimes.
     assert len(outcome.claims) == 2 * (2 * 3 + 2 + 2 + 1)
     lifetimes = outcome.tables["lifetimes"]

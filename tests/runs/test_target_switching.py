@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import flockenv
+from flockenv.policies.pretrained import learned, tuned_law
 from flockenv.runs.protocols.target_switching import second_halves, simulate_alternating, target_at
 
 PARAMETERS = flockenv.FlockParameters.preset("experiment").replace(n_boats=9, n_leaders=9, bw_s=0.4)
@@ -37,6 +38,32 @@ def test_the_same_arguments_give_the_same_run():
     first, second = (simulate_alternating(PARAMETERS, 5, 12.0, period_s=5.0) for _ in range(2))
     assert np.array_equal(first.pose, second.pose)
     assert len(first) == 121
+
+
+def test_another_policy_steers_both_ways():
+    class Straight:
+        def predict(self, observation, state=None):
+            return np.zeros(len(observation)), state
+
+    parameters = PARAMETERS.replace(n_boats=3, n_leaders=2)
+    law, straight = (
+        simulate_alternating(parameters, 5, 12.0, period_s=5.0, policy=policy)
+        for policy in (None, Straight())
+    )
+    assert np.array_equal(law.pose[0], straight.pose[0])
+    assert not np.array_equal(law.pose, straight.pose)
+    damped = tuned_law("damped law", "table-1")
+    run = simulate_alternating(parameters, 2, 240.0, period_s=120.0, policy=damped)
+    x, y = run.pose[:, :2, 0], run.pose[:, :2, 1]
+    u, v = run.velocity[:, :2, 0], run.velocity[:, :2, 1]
+    counter_clockwise = ((x * v - y * u) / np.hypot(x, y)).mean(axis=1)
+    assert counter_clockwise[(run.time_s > 60) & (run.time_s < 120)].mean() > 2.0
+    assert counter_clockwise[run.time_s > 180].mean() < -2.0
+
+
+def test_a_policy_that_sees_a_mirrored_flock_is_refused():
+    with pytest.raises(flockenv.ParameterError, match="with mirror_to_target"):
+        simulate_alternating(PARAMETERS, 5, 12.0, policy=learned("table-1"))
 
 
 @pytest.mark.parametrize("period_s", [0.0, 0.05, 1.234])

@@ -122,13 +122,13 @@ class _Curves:
 
 _CURVES: Mapping[Growth, _Curves] = {
     Growth("whole pool", 27): _Curves(24, 4, (1, 1, 1)),
-    Growth("whole pool", 100): _Curves(16, 5, (1, 1, 1)),
+    Growth("whole pool", 100): _Curves(12, 5, (1, 1, 1)),
     Growth("whole pool", 400): _Curves(12, 5, (4, 2, 1)),
     Growth("whole pool", 1600): _Curves(8, 5, (8, 8, 4)),
     Growth("circumference", 27): _Curves(24, 4, (1, 1, 1)),
-    Growth("circumference", 100): _Curves(16, 5, (1, 1, 1)),
-    Growth("circumference", 400): _Curves(8, 4, (16, 16, 8)),
-    Growth("circumference", 1600): _Curves(4, 4, (64, 64, 64)),
+    Growth("circumference", 100): _Curves(12, 5, (1, 1, 1)),
+    Growth("circumference", 400): _Curves(6, 4, (16, 16, 8)),
+    Growth("circumference", 1600): _Curves(3, 3, (128, 128, 64)),
 }
 
 

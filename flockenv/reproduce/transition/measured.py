@@ -23,6 +23,7 @@ __all__ = [
     "JAMMED_ABOVE",
     "MANY_BOATS",
     "M_EDGES",
+    "NUCLEUS",
     "ROTATING_BELOW",
     "STATES",
     "Jams",
@@ -89,11 +90,20 @@ MANY_BOATS = 200
 """Boats from which a flock has room for several jams, at the densities of the study."""
 
 
+NUCLEUS = 10
+"""Boats of a jam that lasts: smaller ones come and go everywhere."""
+
+
 class Jams:
     """Jams in the second half of runs at one density, see `statistics.structure.jam_sizes`.
 
     Attributes
     ----------
+    first_s : float64 array, shape (runs,)
+        When a run has a jam of at least `NUCLEUS` boats for the first time, the length of the run
+        if it never has.
+    nucleated : bool array, shape (runs,)
+        Whether it ever has.
     share : float64 array, shape (runs,)
         Part of the boats in jams.
     mean_size : float64 array, shape (runs,)
@@ -103,15 +113,20 @@ class Jams:
     """
 
     def __init__(self, runs: Sequence[Recording]) -> None:
-        rows = []
+        rows, firsts = [], []
         for run in runs:
+            every = jam_sizes(run.parameters, run.pose)
+            nuclei = np.array([sizes.max(initial=0) >= NUCLEUS for sizes in every])
+            firsts.append(run.time_s[nuclei.argmax()] if nuclei.any() else run.duration_s)
             used = run.analyzed(after=0.5)
-            frames = jam_sizes(used.parameters, used.pose)
+            frames = [every[place] for place in np.searchsorted(run.time_s, used.time_s)]
             boats = sum(int(sizes.sum()) for sizes in frames)
             pairs = sum(int((sizes**2).sum()) for sizes in frames)
             largest = np.mean([sizes.max(initial=0) for sizes in frames])
             share = boats / (len(frames) * used.parameters.n_boats)
             rows.append((share, pairs / max(boats, 1), largest))
+        self.first_s = np.array(firsts, np.float64)
+        self.nucleated = self.first_s < np.array([run.duration_s for run in runs])
         self.share, self.mean_size, self.largest = np.array(rows, np.float64).T
 
 

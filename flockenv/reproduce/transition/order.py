@@ -19,6 +19,7 @@ from itertools import product
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+from scipy.stats import gamma
 
 from flockenv.reproduce.claim import HOLDS, CheckedClaim, Claim, number
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings, designed
@@ -41,6 +42,7 @@ from flockenv.reproduce.transition.measured import (
     JAMMED_ABOVE,
     M_EDGES,
     MANY_BOATS,
+    NUCLEUS,
     ROTATING_BELOW,
     STATES,
     Jams,
@@ -50,7 +52,7 @@ from flockenv.reproduce.transition.measured import (
 )
 from flockenv.reproduce.transition.pictures import pictures
 from flockenv.runs.protocols.hysteresis import DENSITY_RATIO
-from flockenv.statistics.intervals import interval, student_interval
+from flockenv.statistics.intervals import CONFIDENCE, interval, student_interval
 
 __all__ = [
     "BISTABILITY",
@@ -200,13 +202,14 @@ def _analyze(design: TransitionDesign, settings: Settings, results: Results) -> 
     notes += [_cumulants_note(measured), *_method_notes(design, settings)]
     tables = {
         "jams": _jams_table(measured),
+        "nucleation": _nucleation_table(measured),
         "substeps": _substeps_table(measured),
         "transition": _points_table(measured),
         "loops": _loops_table(measured),
         "histograms": _histograms(measured),
         "lifetimes": _lifetimes_table(measured),
     }
-    shown = ["jams", "substeps", "lifetimes"]
+    shown = ["jams", "nucleation", "substeps", "lifetimes"]
     maps = {
         (way, start): results.derive(JamMap, design.stationary(settings, *point)[:1])
         for way, start in product(WAYS, STARTS)
@@ -250,7 +253,9 @@ def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
         f"order if the exponent is at most {OWN_SIZE.high:g} at every density with its whole "
         "interval, and the largest flocks have forgotten their start at every density. Anything "
         "else is inconclusive. Runs of up to 800 boats, of other seeds, suggested that the size of "
-        "jams decides.",
+        f"jams decides. A jam has begun in a flock that started rotating when one holds {NUCLEUS} "
+        "boats for the first time. Where jams begin independently along the pool, their number per "
+        "boat and hour does not depend on the size of the flock.",
         "The density is the number of boats per area of water as large as that of the pool "
         "500-boats. Runs at one density never back up (bw = 0), so that the angular noise c4 is "
         "their only noise. They start with all boats rotating, or standing side by side in one "
@@ -319,7 +324,7 @@ def judge(measured: Measured, growth: Growth) -> tuple[CheckedClaim, ...]:
 
 
 def _jams_table(measured: Measured) -> pd.DataFrame:
-    rows = []
+    rows: list[dict[str, object]] = []
     for (growth, density, start), stationary in measured.stationary.items():
         rows.append(
             {
@@ -343,6 +348,38 @@ def _jam_columns(jams: Jams) -> dict[str, str]:
 def _with_error(values: NDArray[np.float64]) -> str:
     error = values.std(ddof=1) / len(values) ** 0.5
     return f"{number(values.mean())} ± {error:.2g}"
+
+
+def _nucleation_table(measured: Measured) -> pd.DataFrame:
+    """How often jams begin in flocks that started rotating."""
+    rows: list[dict[str, object]] = []
+    for (growth, density, start), stationary in measured.stationary.items():
+        if start != STARTS[0]:
+            continue
+        jams = stationary.jams
+        began = int(jams.nucleated.sum())
+        hours = float(jams.first_s.sum()) / 3600.0
+        # Counts are Poisson's, and the prior of the rate is that of Jeffreys.
+        ends = gamma(began + 0.5).ppf([0.5 - CONFIDENCE / 2, 0.5 + CONFIDENCE / 2])
+        per_hour = np.array([began, *ends]) / (hours * growth.n_boats / 1000.0)
+        rows.append(
+            {
+                "way": growth.way,
+                "density": density,
+                "boats": growth.n_boats,
+                "runs with a jam": f"{began} of {len(jams.nucleated)}",
+                "hours until then": number(hours),
+                "jams begun per 1000 boats and hour": number(per_hour[0]),
+                "interval": f"{number(per_hour[1])} to {number(per_hour[2])}",
+            }
+        )
+    return _by_density(rows)
+
+
+def _by_density(rows: list[dict[str, object]]) -> pd.DataFrame:
+    return pd.DataFrame(rows).sort_values(
+        ["way", "density"], kind="stable", ascending=[False, True]
+    )
 
 
 def _substeps_table(measured: Measured) -> pd.DataFrame:

@@ -7,7 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv import _core
+from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
+from flockenv.policies.base import LeaderPolicy
 from flockenv.recording import Recording
 from flockenv.simulation import recorded
 
@@ -42,20 +44,27 @@ def simulate_alternating(
     duration_s: float,
     sample_hz: float = 10.0,
     period_s: float = PERIOD_S,
+    policy: LeaderPolicy | None = None,
 ) -> Recording:
-    """Run a flock whose leaders follow the paper's law towards directions that alternate.
+    """Run a flock whose leaders follow a policy towards directions that alternate.
 
-    A pure function of its arguments. The first direction is counter-clockwise, whatever the target
-    of the parameters; directions change at samples. The recording and its replay show the
-    parameters' target alone: `target_at` returns the one that held.
+    A pure function of its arguments. None stands for the paper's law at every substep. The first
+    direction is counter-clockwise, whatever the target of the parameters; directions change at
+    samples. The recording and its replay show the parameters' target alone: `target_at` returns the
+    one that held.
 
     Raises
     ------
     ParameterError
-        For arguments out of range, and periods that are no whole number of samples.
+        For arguments out of range, periods that are no whole number of samples, and policies that
+        see a mirrored flock, whose mirror a run cannot change.
     SolverError
         If the motion left its range.
     """
+    if getattr(policy, "mirror_to_target", False):
+        raise ParameterError(
+            "a policy with mirror_to_target = True is not accepted: targets change"
+        )
     samples = _core.samples_in(period_s, sample_hz)
     stretches = int(duration_s / period_s) + 1 if math.isfinite(duration_s) else 0
     changes = [
@@ -63,4 +72,4 @@ def simulate_alternating(
         for stretch in range(stretches)
     ]
     flock = _core.Flock(parameters, seed)
-    return recorded(flock, parameters, duration_s, sample_hz, changes=changes)
+    return recorded(flock, parameters, duration_s, sample_hz, changes=changes, policy=policy)
