@@ -182,8 +182,8 @@ def jams(*mean_sizes: float) -> Jams:
 _SIZES = (100, 200, 400, 800)
 
 
-def grown(power: float, kept: float = 1.0) -> Measured:
-    """Jams of 20 n^power boats, `kept` times as many from one jam, at one density."""
+def grown(power: float, memory: float = 1.0) -> Measured:
+    """Jams of 20 n^power boats, `memory` times as many from one jam, at one density."""
     design = TransitionDesign(
         sizes=_SIZES,
         densities={"whole pool": (8,), "circumference": (8,)},
@@ -196,7 +196,7 @@ def grown(power: float, kept: float = 1.0) -> Measured:
     for growth, density, start in design.points():
         # Without room for several jams, small flocks do not count.
         size = 20.0 * growth.n_boats**power if growth.n_boats >= 200 else 7.0
-        size *= kept if start == "one-jam" else 1.0
+        size *= memory if start == "one-jam" else 1.0
         point = object.__new__(Stationary)
         point.jams = jams(0.99 * size, 1.01 * size)
         stationary[growth, density, start] = point
@@ -204,7 +204,7 @@ def grown(power: float, kept: float = 1.0) -> Measured:
 
 
 @pytest.mark.parametrize(
-    ("power", "kept", "found"),
+    ("power", "memory", "found"),
     [
         (1.0, 1.0, "of first order"),
         (1.0, 3.0, "of first order"),
@@ -213,12 +213,12 @@ def grown(power: float, kept: float = 1.0) -> Measured:
         (0.5, 1.0, "inconclusive. jams have a size of their own (density 8, whole pool): does not"),
     ],
 )
-def test_the_size_of_jams_decides(power: float, kept: float, found: str) -> None:
-    growth, forgotten = judge_jams(grown(power, kept), "whole pool")
+def test_the_size_of_jams_decides(power: float, memory: float, found: str) -> None:
+    growth, forgotten = judge_jams(grown(power, memory), "whole pool")
     assert [claim.claim for claim in growth] == [ONE_PHASE, OWN_SIZE]
     assert [claim.claim for claim in forgotten] == [FORGOTTEN]
     assert growth[0].measured == pytest.approx(power)
-    assert forgotten[0].measured == pytest.approx(kept)
+    assert forgotten[0].measured == pytest.approx(memory)
     assert conclusion(growth, forgotten).startswith(found)
 
 

@@ -65,7 +65,7 @@ def initial_flock(parameters: FlockParameters, seed: int, start: str) -> _core.F
 
 
 def _one_jam(parameters: FlockParameters, first: float) -> NDArray[np.float64]:
-    """Return poses in rows along the outer wall, each beginning at the polar angle `first`."""
+    """Return poses in rows along the outer wall, each from the polar angle `first` on."""
     outer_cm, inner_cm = _core.pool_radii_cm(parameters.pool)
     radius_cm = parameters.boat_radius_cm
     core_cm = radius_cm * parameters.boat_shape
