@@ -3,11 +3,11 @@
     python baselines/missing_physics.py    # into results/missing_physics.csv
     python baselines/missing_physics.py --out docs/experiment_fit/changes.csv    # for the docs
 
-The preset ``experiment`` misses six targets of the experiment, five of which are about leaders or
-low noise. Each change here gives the boats something that the fit could not: stronger rudders and
-faster leaders than its bounds allow, a better steering law, more time, fewer sources of noise. The
-same held-out seeds run with each, so that differences are paired. `make tables` shows them in
-docs/experiment_fit.md.
+The preset ``experiment`` has six targets of the experiment out of range, five of which are about
+leaders or low noise. Each change here gives the boats something that the fit could not: stronger
+rudders and faster leaders than its bounds allow, a better steering law, more time, fewer sources of
+noise. The same held-out seeds run with each, so that differences are paired. `make tables` shows
+them in docs/experiment_fit.md.
 """
 
 import argparse
@@ -115,7 +115,7 @@ def ends(values: pd.Series) -> tuple[float, float, float]:
 
 
 def main() -> None:
-    """Run the changes that are asked for, and write their rows."""
+    """Run the changes, and write their rows."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--held-out", type=int, default=24, help="runs of a kind (24)")
     parser.add_argument("--jobs", type=int, default=cores(), help="runs at a time (every core)")

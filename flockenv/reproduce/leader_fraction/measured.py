@@ -107,7 +107,7 @@ def exponent(curves: Sequence[Curve]) -> NDArray[np.float64]:
     -------
     float64 array, shape (RESAMPLES + 1,)
         NaN where the guiding fraction of any of the sizes is undefined, and for less than three
-        sizes, which no line can miss.
+        sizes, which every line fits.
     """
     if len(curves) < 3:
         return np.full(RESAMPLES + 1, math.nan)

@@ -19,7 +19,6 @@ from itertools import product
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
-from scipy.stats import gamma
 
 from flockenv.reproduce.claim import HOLDS, CheckedClaim, Claim, number
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings, designed
@@ -52,7 +51,7 @@ from flockenv.reproduce.transition.measured import (
 )
 from flockenv.reproduce.transition.pictures import pictures
 from flockenv.runs.protocols.hysteresis import DENSITY_RATIO
-from flockenv.statistics.intervals import CONFIDENCE, interval, student_interval
+from flockenv.statistics.intervals import interval, student_interval
 
 __all__ = [
     "BISTABILITY",
@@ -119,6 +118,9 @@ FORGOTTEN = Claim(
     low=0.75,
     high=1.33,
 )
+
+_EARLY_MIN = 10.0
+"""Until then a flock still forgets how its boats were placed."""
 
 _JAMMED = 0.3
 """Mean Ψ_o cos φ_o from which a loop has reached the jam at its highest density."""
@@ -243,7 +245,7 @@ def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
     stationary, loop = (
         settings.duration_s(m) / 60 for m in (design.stationary_minutes, design.loop_minutes)
     )
-    paces = ", ".join(f"{loop * pace:g}" for pace in dict.fromkeys(LOOPS.values()))
+    lengths = ", ".join(f"{loop * times:g}" for times in dict.fromkeys(LOOPS.values()))
     return [
         "A jam is a cluster of at least three boats with gaps below 0.5 cm that face outward "
         "within 60°. Its mean size is that of the jam which a boat in a jam is in: the sum of "
@@ -253,9 +255,8 @@ def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
         f"order if the exponent is at most {OWN_SIZE.high:g} at every density with its whole "
         "interval, and the largest flocks have forgotten their start at every density. Anything "
         "else is inconclusive. Runs of up to 800 boats, of other seeds, suggested that the size of "
-        f"jams decides. A jam has begun in a flock that started rotating when one holds {NUCLEUS} "
-        "boats for the first time. Where jams begin independently along the pool, their number per "
-        "boat and hour does not depend on the size of the flock.",
+        f"jams decides. The first jam of a flock that started rotating is the first one of "
+        f"{NUCLEUS} boats; the table has its median over the runs with one.",
         "The density is the number of boats per area of water as large as that of the pool "
         "500-boats. Runs at one density never back up (bw = 0), so that the angular noise c4 is "
         "their only noise. They start with all boats rotating, or standing side by side in one "
@@ -273,7 +274,7 @@ def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
         "left out of the claim.",
         f"The compute budget is {settings.budget_core_min:g} minutes of one core. The design has "
         f"{design.runs} seeds, {len(design.sizes)} sizes up to {max(design.sizes)} boats, "
-        f"{stationary:g} minutes per run, whose second half counts, and loops of {paces} minutes "
+        f"{stationary:g} minutes per run, whose second half counts, and loops of {lengths} minutes "
         f"with up to {design.largest_loop} boats. It is estimated to take "
         f"{design.core_minutes(settings):.0f} minutes, and the full design "
         f"{FULL.core_minutes(settings):.0f} (`--budget`).",
@@ -288,8 +289,8 @@ def judge_jams(measured: Measured, way: str) -> tuple[list[CheckedClaim], list[C
         scope = f"density {density}, {way}"
         ends = interval(measured.jam_growth(way, density))
         growth += [claim.check(*ends, scope) for claim in (ONE_PHASE, OWN_SIZE)]
-        kept = interval(measured.memory(largest, density))
-        forgotten.append(FORGOTTEN.check(*kept, f"{largest.n_boats} boats, {scope}"))
+        ratio = interval(measured.memory(largest, density))
+        forgotten.append(FORGOTTEN.check(*ratio, f"{largest.n_boats} boats, {scope}"))
     return growth, forgotten
 
 
@@ -302,7 +303,7 @@ def judge(measured: Measured, growth: Growth) -> tuple[CheckedClaim, ...]:
     states = BISTABILITY.check(*gap, scope, f"at density {density}")
     if growth not in measured.design.looped():
         return (states,)
-    fast, slow = (measured.loops[growth, f"{pace} density"] for pace in ("slow", "slowest"))
+    fast, slow = (measured.loops[growth, f"{how} density"] for how in ("slow", "slowest"))
     nothing = (float("nan"),) * 3
     # A loop on which nothing jammed is closed whatever the transition, and one that never opened
     # cannot close.
@@ -351,26 +352,25 @@ def _with_error(values: NDArray[np.float64]) -> str:
 
 
 def _nucleation_table(measured: Measured) -> pd.DataFrame:
-    """How often jams begin in flocks that started rotating."""
+    """When flocks that started rotating have their first jam."""
     rows: list[dict[str, object]] = []
     for (growth, density, start), stationary in measured.stationary.items():
         if start != STARTS[0]:
             continue
         jams = stationary.jams
-        began = int(jams.nucleated.sum())
-        hours = float(jams.first_s.sum()) / 3600.0
-        # Counts are Poisson's, and the prior of the rate is that of Jeffreys.
-        ends = gamma(began + 0.5).ppf([0.5 - CONFIDENCE / 2, 0.5 + CONFIDENCE / 2])
-        per_hour = np.array([began, *ends]) / (hours * growth.n_boats / 1000.0)
+        first_min = np.sort(jams.first_s[jams.nucleated]) / 60.0
+        early = int((first_min < _EARLY_MIN).sum())
         rows.append(
             {
                 "way": growth.way,
                 "density": density,
                 "boats": growth.n_boats,
-                "runs with a jam": f"{began} of {len(jams.nucleated)}",
-                "hours until then": number(hours),
-                "jams begun per 1000 boats and hour": number(per_hour[0]),
-                "interval": f"{number(per_hour[1])} to {number(per_hour[2])}",
+                "runs": len(jams.nucleated),
+                f"with a jam before {_EARLY_MIN:g} min": early,
+                "with one later": len(first_min) - early,
+                "first jam, min": number(
+                    float(np.median(first_min)) if len(first_min) else math.nan
+                ),
             }
         )
     return _by_density(rows)
