@@ -81,6 +81,8 @@ class TransitionDesign:
     densities : mapping of tuples of int
         By way of growing: boats for each free area of the pool `500-boats`, increasing. Pilot runs
         of other seeds put them where rotation gives way to the jam.
+    largest_throughout : int
+        Number of boats up to which flocks run at all densities, and larger ones at the highest.
     largest_loop : int
         Number of boats up to which loops are run.
     runs : int
@@ -91,6 +93,7 @@ class TransitionDesign:
 
     sizes: tuple[int, ...]
     densities: Mapping[str, tuple[int, ...]]
+    largest_throughout: int
     largest_loop: int
     runs: int
     stationary_minutes: float
@@ -129,6 +132,15 @@ class TransitionDesign:
         """Return all sizes in all ways."""
         return [Growth(way, n) for way in WAYS for n in self.sizes]
 
+    def densities_of(self, growth: Growth) -> tuple[int, ...]:
+        """Return the densities that flocks of a size run at."""
+        every = self.densities[growth.way]
+        return every if growth.n_boats <= self.largest_throughout else every[-1:]
+
+    def sizes_at(self, way: str, density: int) -> tuple[int, ...]:
+        """Return the numbers of boats that run at a density, increasing."""
+        return tuple(n for n in self.sizes if density in self.densities_of(Growth(way, n)))
+
     def looped(self) -> list[Growth]:
         """Return the sizes that go through loops, in all ways."""
         return [growth for growth in self.growths() if growth.n_boats <= self.largest_loop]
@@ -138,7 +150,7 @@ class TransitionDesign:
         return [
             (growth, density, start)
             for growth in self.growths()
-            for density in self.densities[growth.way]
+            for density in self.densities_of(growth)
             for start in STARTS
         ]
 
@@ -197,6 +209,7 @@ _DENSITIES = {"whole pool": (6, 10, 16), "circumference": (24, 36, 54)}
 FULL = TransitionDesign(
     sizes=(50, 100, 200, 400, 800, 1600),
     densities=_DENSITIES,
+    largest_throughout=800,
     largest_loop=400,
     runs=8,
     stationary_minutes=40.0,
@@ -207,6 +220,7 @@ DESIGNS = (
     TransitionDesign(
         sizes=(50, 200, 400, 800),
         densities=_DENSITIES,
+        largest_throughout=800,
         largest_loop=200,
         runs=4,
         stationary_minutes=20.0,
@@ -215,6 +229,7 @@ DESIGNS = (
     TransitionDesign(
         sizes=(50, 100, 200, 400, 800),
         densities=_DENSITIES,
+        largest_throughout=800,
         largest_loop=400,
         runs=8,
         stationary_minutes=40.0,

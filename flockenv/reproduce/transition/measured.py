@@ -297,7 +297,7 @@ class Measured:
     def lifetime(self, growth: Growth) -> Lifetime:
         """Return how long flocks of a size stay in both states at coexistence."""
         dwells = {}
-        for density in self.design.densities[growth.way]:
+        for density in self.design.densities_of(growth):
             first, second = (self.stationary[growth, density, start].dwell for start in STARTS)
             dwells[density] = first + second
         return lifetime(dwells, growth.n_boats)
@@ -329,7 +329,7 @@ class Measured:
             Slope of a straight line through the logarithms at sizes of at least `MANY_BOATS`, of
             the mean over both starts, with its replicates over runs; NaN for less than three sizes.
         """
-        sizes = [n for n in self.design.sizes if n >= MANY_BOATS]
+        sizes = [n for n in self.design.sizes_at(way, density) if n >= MANY_BOATS]
         logs = []
         for n in sizes:
             starts = [

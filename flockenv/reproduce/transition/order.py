@@ -227,7 +227,7 @@ def _cumulants_note(measured: Measured) -> str:
         for start in STARTS:
             ends = [
                 (*interval(measured.stationary[growth, density, start].binder_m), density)
-                for density in measured.design.densities[way]
+                for density in measured.design.densities_of(growth)
             ]
             value, low, high, density = min(ends)
             lowest.append(
@@ -273,8 +273,9 @@ def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
         f"Poisson's counts. Sizes with fewer than {FEWEST_CHANGES} changes out of either state are "
         "left out of the claim.",
         f"The compute budget is {settings.budget_core_min:g} minutes of one core. The design has "
-        f"{design.runs} seeds, {len(design.sizes)} sizes up to {max(design.sizes)} boats, "
-        f"{stationary:g} minutes per run, whose second half counts, and loops of {lengths} minutes "
+        f"{design.runs} seeds, {len(design.sizes)} sizes up to {max(design.sizes)} boats, those "
+        f"above {design.largest_throughout} at the highest density alone, {stationary:g} minutes "
+        f"per run, whose second half counts, and loops of {lengths} minutes "
         f"with up to {design.largest_loop} boats. It is estimated to take "
         f"{design.core_minutes(settings):.0f} minutes, and the full design "
         f"{FULL.core_minutes(settings):.0f} (`--budget`).",
@@ -283,9 +284,9 @@ def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
 
 def judge_jams(measured: Measured, way: str) -> tuple[list[CheckedClaim], list[CheckedClaim]]:
     """Judge the size of jams at each density, and whether the largest flocks forget their start."""
-    largest = Growth(way, measured.design.sizes[-1])
     growth, forgotten = [], []
     for density in measured.design.densities[way]:
+        largest = Growth(way, measured.design.sizes_at(way, density)[-1])
         scope = f"density {density}, {way}"
         ends = interval(measured.jam_growth(way, density))
         growth += [claim.check(*ends, scope) for claim in (ONE_PHASE, OWN_SIZE)]
@@ -298,7 +299,7 @@ def judge(measured: Measured, growth: Growth) -> tuple[CheckedClaim, ...]:
     """Judge the states of whole flocks, and the loops that were run, for one size in one way."""
     scope = f"{growth.n_boats} boats, {growth.way}"
     # The density is chosen once, by the data as measured.
-    densities = measured.design.densities[growth.way]
+    densities = measured.design.densities_of(growth)
     gap, density = max((measured.gap(growth, density), density) for density in densities)
     states = BISTABILITY.check(*gap, scope, f"at density {density}")
     if growth not in measured.design.looped():

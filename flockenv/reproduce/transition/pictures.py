@@ -64,10 +64,10 @@ def _jams(measured: Measured) -> Figure:
     design = measured.design
     picture = column_figure(10.0)
     panels = picture.subplots(2, len(WAYS), sharey="row", sharex=True)
-    sizes = np.array(design.sizes)
     for column, way in enumerate(WAYS):
         panels[0, column].set_title(f"{way} grows")
         for place, density in enumerate(design.densities[way]):
+            sizes = np.array(design.sizes_at(way, density))
             for start in STARTS:
                 found = [measured.stationary[Growth(way, n), density, start].jams for n in sizes]
                 for axes, name in zip(panels[:, column], ("mean_size", "share"), strict=True):
@@ -80,7 +80,7 @@ def _jams(measured: Measured) -> Figure:
                     axes.errorbar(
                         x, ends[:, 0], bars, fmt=line, color=color, elinewidth=0.6, label=label
                     )
-        many = sizes[sizes >= MANY_BOATS]
+        many = np.array([n for n in design.sizes if n >= MANY_BOATS])
         if len(many):
             panels[0, column].plot(many, 40.0 * many / many[0], color="0.6", lw=0.8, zorder=0)
         panels[0, column].set_yscale("log")
@@ -170,7 +170,7 @@ def _loops(measured: Measured) -> Figure:
 
 
 def _draw_states(axes: Axes, measured: Measured, growth: Growth, start: str, color: str) -> None:
-    densities = measured.design.densities[growth.way]
+    densities = measured.design.densities_of(growth)
     ends = np.array(
         [student_interval(measured.stationary[growth, d, start].outward) for d in densities]
     )
@@ -215,15 +215,15 @@ def _cumulants(measured: Measured) -> Figure:
         for row, (name, cumulant) in enumerate(chosen):
             axes = panels[row, column]
             for place, density in enumerate(design.densities[way]):
+                sizes = design.sizes_at(way, density)
                 for start in STARTS:
                     values = [
-                        cumulant(measured.stationary[Growth(way, n), density, start])
-                        for n in design.sizes
+                        cumulant(measured.stationary[Growth(way, n), density, start]) for n in sizes
                     ]
                     label = str(density) if start == STARTS[0] else None
                     line = f"{_MARKS[place % len(_MARKS)]}{_LINES[start]}"
                     ends = np.array([interval(each) for each in values])
-                    _draw_cumulant(axes, design, ends, line, place, label)
+                    _draw_cumulant(axes, sizes, ends, line, place, label)
             axes.set_xscale("log")
             _name_ticks(axes, design.sizes)
             panels[row, 0].set_ylabel(f"Binder cumulant of {name}")
@@ -239,7 +239,7 @@ def _cumulants(measured: Measured) -> Figure:
 
 def _draw_cumulant(
     axes: Axes,
-    design: TransitionDesign,
+    sizes: Sequence[int],
     ends: NDArray[np.float64],
     line: str,
     place: int,
@@ -247,7 +247,7 @@ def _draw_cumulant(
 ) -> None:
     color = COLORS[place % len(COLORS)]
     bars = [ends[:, 0] - ends[:, 1], ends[:, 2] - ends[:, 0]]
-    x = np.array(design.sizes) * 1.06 ** (place - 1)
+    x = np.array(sizes) * 1.06 ** (place - 1)
     axes.errorbar(x, ends[:, 0], np.abs(bars), fmt=line, color=color, elinewidth=0.6, label=label)
 
 
@@ -260,6 +260,8 @@ def _histograms(measured: Measured, name: str) -> Figure:
         for row, n in enumerate(design.sizes):
             axes = panels[row, column]
             for place, density in enumerate(design.densities[way]):
+                if density not in design.densities_of(Growth(way, n)):
+                    continue
                 for start in STARTS:
                     heights = getattr(
                         measured.stationary[Growth(way, n), density, start], f"{name}_density"
