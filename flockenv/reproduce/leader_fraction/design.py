@@ -29,6 +29,7 @@ _CORE_S = {"whole pool": 0.012, "circumference": 0.05}
 """Seconds of one core that an hour of a boat takes, by way of growing."""
 
 _SAMPLE_HZ = 0.5
+_DT_S = 0.05
 
 
 Setup = tuple[str, Growth]
@@ -70,7 +71,7 @@ class FractionDesign:
     ) -> dict[int, tuple[RunSpec, ...]]:
         """Return the runs of a policy in flocks of one size, by number of leaders."""
         bw_s = FlockParameters.preset("simulation").bw_s
-        parameters = growth.parameters(DENSITY, bw_s)
+        parameters = growth.parameters(DENSITY, bw_s, _DT_S)
         return {
             k: tuple(
                 RunSpec(
@@ -128,7 +129,7 @@ _CURVES: Mapping[Growth, _Curves] = {
     Growth("circumference", 27): _Curves(24, 4, (1, 1, 1)),
     Growth("circumference", 100): _Curves(12, 5, (1, 1, 1)),
     Growth("circumference", 400): _Curves(6, 4, (16, 16, 8)),
-    Growth("circumference", 1600): _Curves(3, 3, (128, 128, 64)),
+    Growth("circumference", 1600): _Curves(3, 3, (64, 64, 64)),
 }
 
 
