@@ -188,6 +188,7 @@ def grown(power: float, memory: float = 1.0) -> Measured:
         sizes=_SIZES,
         densities={"whole pool": (8,), "circumference": (8,)},
         largest_throughout=_SIZES[-1],
+        densities_beyond={},
         largest_loop=0,
         runs=2,
         stationary_minutes=1.0,
@@ -258,6 +259,7 @@ def test_a_small_design_from_runs_to_tables(tmp_path: object) -> None:
         sizes=(20, 40, 60),
         densities=densities,
         largest_throughout=40,
+        densities_beyond={"whole pool": (10,), "circumference": ()},
         largest_loop=20,
         runs=2,
         stationary_minutes=1.0,
@@ -266,22 +268,23 @@ def test_a_small_design_from_runs_to_tables(tmp_path: object) -> None:
     settings = Settings(minutes=1.0)
     reproduction = transition_order(design)
     specs = reproduction.runs(settings)
-    # In two ways: two sizes at two densities, one at the higher one and one at the fine substep,
-    # from two starts each, and one size in each kind of loop.
-    assert len(specs) == len(set(specs)) == 2 * ((2 * 2 + 1 + 1) * 2 + len(LOOPS)) * 2
+    # In two ways: two sizes at two densities, and one at the fine substep, from two starts each,
+    # and one size in each kind of loop. In one way, the largest at one density.
+    runs = 2 * ((2 * 2 + 1) * 2 + len(LOOPS)) * 2 + 1 * 2 * 2
+    assert len(specs) == len(set(specs)) == runs
     minutes = {kind: design.loop(settings, Growth("whole pool", 20), kind)[0] for kind in LOOPS}
     assert [spec.duration_s / 60 for spec in minutes.values()] == [1.0, 3.0, 9.0, 1.0]
     store = RunStore(tmp_path)  # type: ignore[arg-type]
     assert run_missing(specs, store) == {}
     outcome = reproduction.analyze(settings, Results(store, specs))
-    assert len(outcome.tables["transition"]) == len(outcome.tables["jams"]) == 2 * 5 * 2
+    assert len(outcome.tables["transition"]) == len(outcome.tables["jams"]) == (2 * 4 + 1) * 2
     assert len(outcome.tables["substeps"]) == 2 * 2 * 2
     nucleation = outcome.tables["nucleation"]
-    assert len(nucleation) == 2 * 5
+    assert len(nucleation) == 2 * 4 + 1
     assert (nucleation["with one later"] == 0).all()
     assert (nucleation["with a jam before 10 min"] <= nucleation["runs"]).all()
     # In each way: three claims at each density, one for each size, two for the loops, lifetimes.
-    assert len(outcome.claims) == 2 * (2 * 3 + 3 + 2 + 1)
+    assert len(outcome.claims) == 2 * (2 * 3 + 2 + 2 + 1) + 1
     lifetimes = outcome.tables["lifetimes"]
     minutes_in = lifetimes["rotating, min"].astype(float) + lifetimes["jammed, min"].astype(float)
     # Two runs of a minute from each of two starts, of samples 10 s apart.
@@ -291,7 +294,7 @@ def test_a_small_design_from_runs_to_tables(tmp_path: object) -> None:
     m = histograms[histograms["quantity"] == "m"]
     width = m["bin_high"] - m["bin_low"]
     total = (m["probability_density"] * width).sum()
-    assert total == pytest.approx(20)
+    assert total == pytest.approx(18)
     assert set(outcome.pictures) == {
         "jams",
         "jam-maps",
@@ -337,6 +340,7 @@ def test_a_loop_that_never_jams_is_no_closed_loop(back: float, verdict: str, not
         sizes=(400,),
         densities={growth.way: (20,)},
         largest_throughout=400,
+        densities_beyond={},
         largest_loop=400,
         runs=2,
         stationary_minutes=1.0,

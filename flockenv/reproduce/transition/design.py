@@ -82,7 +82,9 @@ class TransitionDesign:
         By way of growing: boats for each free area of the pool `500-boats`, increasing. Pilot runs
         of other seeds put them where rotation gives way to the jam.
     largest_throughout : int
-        Number of boats up to which flocks run at all densities, and larger ones at the highest.
+        Number of boats up to which flocks run at all densities.
+    densities_beyond : mapping of tuples of int
+        By way of growing: the densities at which larger flocks run.
     largest_loop : int
         Number of boats up to which loops are run.
     runs : int
@@ -94,6 +96,7 @@ class TransitionDesign:
     sizes: tuple[int, ...]
     densities: Mapping[str, tuple[int, ...]]
     largest_throughout: int
+    densities_beyond: Mapping[str, tuple[int, ...]]
     largest_loop: int
     runs: int
     stationary_minutes: float
@@ -129,13 +132,18 @@ class TransitionDesign:
         return self._seeded(settings.seed, parameters, protocol, length, _LOOP_HZ, "order")
 
     def growths(self) -> list[Growth]:
-        """Return all sizes in all ways."""
-        return [Growth(way, n) for way in WAYS for n in self.sizes]
+        """Return all sizes that run in all ways."""
+        every = (Growth(way, n) for way in WAYS for n in self.sizes)
+        return [growth for growth in every if self.densities_of(growth)]
+
+    def largest(self, way: str) -> Growth:
+        """Return the largest flocks of a way of growing."""
+        return [growth for growth in self.growths() if growth.way == way][-1]
 
     def densities_of(self, growth: Growth) -> tuple[int, ...]:
         """Return the densities that flocks of a size run at."""
-        every = self.densities[growth.way]
-        return every if growth.n_boats <= self.largest_throughout else every[-1:]
+        is_large = growth.n_boats > self.largest_throughout
+        return (self.densities_beyond if is_large else self.densities).get(growth.way, ())
 
     def sizes_at(self, way: str, density: int) -> tuple[int, ...]:
         """Return the numbers of boats that run at a density, increasing."""
@@ -210,6 +218,8 @@ FULL = TransitionDesign(
     sizes=(50, 100, 200, 400, 800, 1600),
     densities=_DENSITIES,
     largest_throughout=800,
+    # Jams vanish in a long ring, whose wall is nearly straight.
+    densities_beyond={"whole pool": _DENSITIES["whole pool"][-1:], "circumference": ()},
     largest_loop=400,
     runs=8,
     stationary_minutes=40.0,
@@ -221,6 +231,7 @@ DESIGNS = (
         sizes=(50, 200, 400, 800),
         densities=_DENSITIES,
         largest_throughout=800,
+        densities_beyond=dict.fromkeys(WAYS, ()),
         largest_loop=200,
         runs=4,
         stationary_minutes=20.0,
@@ -230,6 +241,7 @@ DESIGNS = (
         sizes=(50, 100, 200, 400, 800),
         densities=_DENSITIES,
         largest_throughout=800,
+        densities_beyond=dict.fromkeys(WAYS, ()),
         largest_loop=400,
         runs=8,
         stationary_minutes=40.0,

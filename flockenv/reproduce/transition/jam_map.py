@@ -44,6 +44,7 @@ class JamMap:
 
 def mapped(design: TransitionDesign, way: str, start: str) -> tuple[Growth, int, str]:
     """Return the point whose first run is mapped: a large flock at the middle density."""
-    sizes = [n for n in design.sizes if n <= _MAPPED_BOATS] or list(design.sizes)
-    densities = design.densities[way]
-    return Growth(way, sizes[-1]), densities[len(densities) // 2], start
+    every = [growth for growth in design.growths() if growth.way == way]
+    growth = next((each for each in reversed(every) if each.n_boats <= _MAPPED_BOATS), every[0])
+    densities = design.densities_of(growth)
+    return growth, densities[len(densities) // 2], start

@@ -312,7 +312,8 @@ class Measured:
         sizes : list of int
             Those with at least `FEWEST_CHANGES` out of each state, which the line is through.
         """
-        found = {n: self.lifetime(Growth(way, n)) for n in self.design.sizes}
+        growths = [growth for growth in self.design.growths() if growth.way == way]
+        found = {growth.n_boats: self.lifetime(growth) for growth in growths}
         known = {
             n: each
             for n, each in found.items()

@@ -196,8 +196,9 @@ def _analyze(design: TransitionDesign, settings: Settings, results: Results) -> 
         found = conclusion(growth_claims, forgotten)
         notes.append(f"Where the {way} grows with the flock, the transition is {found}.")
         claims += [*growth_claims, *forgotten]
-        for n in design.sizes:
-            claims += judge(measured, Growth(way, n))
+        for growth in design.growths():
+            if growth.way == way:
+                claims += judge(measured, growth)
         slope, sizes = measured.lifetime_growth(way)
         note = f"of {', '.join(map(str, sizes)) or 'no'} boats"
         claims.append(LIFETIMES.check(*interval(slope), way, note))
@@ -223,7 +224,7 @@ def _analyze(design: TransitionDesign, settings: Settings, results: Results) -> 
 def _cumulants_note(measured: Measured) -> str:
     lowest = []
     for way in WAYS:
-        growth = Growth(way, measured.design.sizes[-1])
+        growth = measured.design.largest(way)
         for start in STARTS:
             ends = [
                 (*interval(measured.stationary[growth, density, start].binder_m), density)
@@ -231,11 +232,12 @@ def _cumulants_note(measured: Measured) -> str:
             ]
             value, low, high, density = min(ends)
             lowest.append(
-                f"{value:.2f} ({low:.2f} to {high:.2f}) at density {density} started {start}, {way}"
+                f"{value:.2f} ({low:.2f} to {high:.2f}) with {growth.n_boats} boats at density "
+                f"{density} started {start}, {way}"
             )
     return (
-        "The lowest Binder cumulants of the rotation m = Ψ_o sin φ_o with "
-        f"{measured.design.sizes[-1]} boats are: {'; '.join(lowest)}. Where runs from the two "
+        "The lowest Binder cumulants of the rotation m = Ψ_o sin φ_o in the largest flocks are: "
+        f"{'; '.join(lowest)}. Where runs from the two "
         "initial states differ, the runs have not reached equilibrium: the cumulant describes the "
         "state that they have not left, and proves nothing about the transition."
     )
@@ -246,6 +248,7 @@ def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
         settings.duration_s(m) / 60 for m in (design.stationary_minutes, design.loop_minutes)
     )
     lengths = ", ".join(f"{loop * times:g}" for times in dict.fromkeys(LOOPS.values()))
+    sizes = "; ".join(f"{design.largest(way).n_boats} where the {way} grows" for way in WAYS)
     return [
         "A jam is a cluster of at least three boats with gaps below 0.5 cm that face outward "
         "within 60°. Its mean size is that of the jam which a boat in a jam is in: the sum of "
@@ -273,10 +276,11 @@ def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
         f"Poisson's counts. Sizes with fewer than {FEWEST_CHANGES} changes out of either state are "
         "left out of the claim.",
         f"The compute budget is {settings.budget_core_min:g} minutes of one core. The design has "
-        f"{design.runs} seeds, {len(design.sizes)} sizes up to {max(design.sizes)} boats, those "
-        f"above {design.largest_throughout} at the highest density alone, {stationary:g} minutes "
-        f"per run, whose second half counts, and loops of {lengths} minutes "
-        f"with up to {design.largest_loop} boats. It is estimated to take "
+        f"{design.runs} seeds, {stationary:g} minutes per run, whose second half counts, and loops "
+        f"of {lengths} minutes with up to {design.largest_loop} boats. The largest flocks are: "
+        f"{sizes}. Those above {design.largest_throughout} run at the highest density alone, and "
+        "not where the circumference grows, because jams vanish in a long ring, whose wall is "
+        "nearly straight. The design is estimated to take "
         f"{design.core_minutes(settings):.0f} minutes, and the full design "
         f"{FULL.core_minutes(settings):.0f} (`--budget`).",
     ]

@@ -84,9 +84,13 @@ def _jams(measured: Measured) -> Figure:
         if len(many):
             panels[0, column].plot(many, 40.0 * many / many[0], color="0.6", lw=0.8, zorder=0)
         panels[0, column].set_yscale("log")
+        # Room for the legend above the points; runs without jams are below.
+        panels[0, column].set_ylim(1.0, 700.0)
         panels[0, column].set_xscale("log")
         _name_ticks(panels[0, column], design.sizes)
-        panels[0, column].legend(title="density", ncols=3, title_fontsize=6.5, **_TIGHT)
+        panels[0, column].legend(
+            title="density", ncols=3, title_fontsize=6.5, loc="upper left", **_TIGHT
+        )
         panels[1, column].set_xlabel("boats")
     panels[0, 0].set_ylabel("mean size of jams (boats)")
     panels[1, 0].set_ylabel("part of the boats in jams")
@@ -128,6 +132,8 @@ def _states_and_openings(measured: Measured) -> Figure:
         states, openings = panels[:, column]
         states.set_title(f"{way} grows")
         for place, n in enumerate(design.sizes):
+            if not design.densities_of(Growth(way, n)):
+                continue
             for start in STARTS:
                 _draw_states(states, measured, Growth(way, n), start, COLORS[place % len(COLORS)])
         states.set_xscale("log")
