@@ -40,8 +40,8 @@ LOOPS: Mapping[str, float] = {
 }
 """Kinds of loops, and how many times as long as the fastest they take."""
 
-_CORE_S = 0.02
-"""Seconds of one core that an hour of a boat takes: 0.01 in rotation to 0.04 in a dense jam."""
+_CORE_S = 0.035
+"""Seconds of one core that an hour of a boat takes: 0.01 in rotation to 0.07 in a dense jam."""
 
 _POOL = "500-boats"
 _DT_S = 0.1
