@@ -20,7 +20,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from flockenv.reproduce.claim import HOLDS, CheckedClaim, Claim, number
+from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, CheckedClaim, Claim, number
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings, designed
 from flockenv.reproduce.transition.design import (
     FINE_DT_S,
@@ -168,7 +168,9 @@ def conclusion(growth: Sequence[CheckedClaim], forgotten: Sequence[CheckedClaim]
         f"{each.claim.text.lower()} ({each.scope}): {each.verdict}, {_measured(each)}"
         for each in open_questions
     )
-    return f"inconclusive. {listed}"
+    slower = all(each.verdict == DOES_NOT_HOLD for each in sizes[ONE_PHASE])
+    though = ", though jams grow more slowly than the flock at every density" if slower else ""
+    return f"inconclusive{though}. Open: {listed}"
 
 
 def _measured(claim: CheckedClaim) -> str:
