@@ -40,8 +40,9 @@ LOOPS: Mapping[str, float] = {
 }
 """Kinds of loops, and how many times as long as the fastest they take."""
 
-_CORE_S = 0.035
-"""Seconds of one core that an hour of a boat takes: 0.01 in rotation to 0.07 in a dense jam."""
+_CORE_S = 0.03
+"""Seconds of one core that an hour of a boat takes in flocks of up to 200, which jam for a part of
+their time; larger flocks have larger islands of contacts."""
 
 _POOL = "500-boats"
 _DT_S = 0.1
@@ -181,8 +182,15 @@ class TransitionDesign:
 
     def core_minutes(self, settings: Settings) -> float:
         """Return about how long one core takes for all runs, in minutes."""
-        hours = sum(s.parameters.n_boats * s.duration_s / 3600 for s in self.all_runs(settings))
-        return _CORE_S * hours / 60
+        seconds = sum(
+            _CORE_S
+            * (max(s.parameters.n_boats, 200) / 200) ** 0.7
+            * s.parameters.n_boats
+            * s.duration_s
+            / 3600
+            for s in self.all_runs(settings)
+        )
+        return float(seconds) / 60
 
     def _standing(
         self, settings: Settings, parameters: FlockParameters, start: str

@@ -250,6 +250,13 @@ def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
         settings.duration_s(m) / 60 for m in (design.stationary_minutes, design.loop_minutes)
     )
     lengths = ", ".join(f"{loop * times:g}" for times in dict.fromkeys(LOOPS.values()))
+    beyond = (
+        f"Those above {design.largest_throughout} run at the highest density alone, and not where "
+        "the circumference grows, because jams vanish in a long ring, whose wall is nearly "
+        "straight. "
+        if design.sizes[-1] > design.largest_throughout
+        else ""
+    )
     sizes = "; ".join(f"{design.largest(way).n_boats} where the {way} grows" for way in WAYS)
     return [
         "A jam is a cluster of at least three boats with gaps below 0.5 cm that face outward "
@@ -280,9 +287,7 @@ def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
         f"The compute budget is {settings.budget_core_min:g} minutes of one core. The design has "
         f"{design.runs} seeds, {stationary:g} minutes per run, whose second half counts, and loops "
         f"of {lengths} minutes with up to {design.largest_loop} boats. The largest flocks are: "
-        f"{sizes}. Those above {design.largest_throughout} run at the highest density alone, and "
-        "not where the circumference grows, because jams vanish in a long ring, whose wall is "
-        "nearly straight. The design is estimated to take "
+        f"{sizes}. {beyond}The design is estimated to take "
         f"{design.core_minutes(settings):.0f} minutes, and the full design "
         f"{FULL.core_minutes(settings):.0f} (`--budget`).",
     ]
