@@ -37,10 +37,12 @@ def picture(design: FractionDesign, curves: Mapping[tuple[str, Growth], Curve]) 
             below.set_xticks(list(design.sizes), [str(n) for n in design.sizes])
             below.set_xticks([], minor=True)
             below.set_xlabel("boats")
+        # Intervals of a few runs would reach beyond what the order can be.
+        panels[0, 0].set_ylim(-1.05, 1.05)
         panels[0, 0].set_ylabel("mean signed order")
         panels[1, 0].set_ylabel(f"proportion for a signed order of {GUIDED:g}")
         figure.legend(
-            *panels[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4
+            *panels[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=2
         )
         figure.legend(
             *panels[1, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3

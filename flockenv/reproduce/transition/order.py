@@ -129,7 +129,7 @@ _CAPTIONS = {
     "jams": "Above: mean size of the jam that a boat in a jam is in, against the number of boats, "
     "by density; a jam that grows with the flock would follow the gray line. Below: part of the "
     "boats in jams; dashed: started in one jam",
-    "jam-maps": "Where boats face outward, around the pool and in time, in one run each: jams "
+    "jam-maps": "Where boats point outward, around the pool and in time, in one run each: jams "
     "form, grow, shrink and merge",
     "transition-order": "Jam (Ψ_o cos φ_o) of runs started rotating or in one jam, against "
     "density; opening of loops, against the number of boats",
@@ -259,7 +259,7 @@ def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
     )
     sizes = "; ".join(f"{design.largest(way).n_boats} where the {way} grows" for way in WAYS)
     return [
-        "A jam is a cluster of at least three boats with gaps below 0.5 cm that face outward "
+        "A jam is a cluster of at least three boats with gaps below 0.5 cm that point outward "
         "within 60°. Its mean size is that of the jam which a boat in a jam is in: the sum of "
         "squared sizes over the sum of sizes, over all frames of a run's second half. By the rule, "
         "which was fixed before the runs, the transition is of first order if the exponent is at "
