@@ -24,6 +24,7 @@ from flockenv.reproduce.leader_fraction.design import (
 from flockenv.reproduce.leader_fraction.fraction import (
     BETTER,
     CONSTANT_NUMBER,
+    FEWEST_RUNS,
     SMALLER,
     fractions_table,
     judge,
@@ -85,12 +86,13 @@ _TWO = ("steering law", "learned")
 _SIZES = (10, 30, 100)
 
 
-def _designed(policies: tuple[str, ...], numbers: tuple[int, ...]) -> FractionDesign:
-    """Two runs of a minute of every policy, size and number of leaders."""
+def _designed(
+    policies: tuple[str, ...], numbers: tuple[int, ...], runs: int = FEWEST_RUNS
+) -> FractionDesign:
+    """Runs of a minute of every policy, size and number of leaders."""
     every = product(policies, WAYS, _SIZES)
     leaders = {(policy, Growth(way, n)): numbers for policy, way, n in every}
-    runs = {growth: 2 for _, growth in leaders}
-    return FractionDesign(leaders, runs, minutes=1.0)
+    return FractionDesign(leaders, {growth: runs for _, growth in leaders}, minutes=1.0)
 
 
 def test_claims_follow_their_rule() -> None:
@@ -117,6 +119,17 @@ def test_the_exponent_is_that_of_the_sizes_with_a_proportion() -> None:
     assert notes["steering law, whole pool"] == ("does not hold", "")
     # Two sizes are left, and a line through two says nothing.
     assert notes["steering law, circumference"] == ("inconclusive", "of 30, 100 boats")
+
+
+def test_no_claim_hangs_on_few_seeds() -> None:
+    design = _designed(_TWO, (1,), runs=FEWEST_RUNS - 1)
+    curves = {setup: curve(setup[1].n_boats, setup[1].n_boats ** -0.5) for setup in design.leaders}
+    claims = judge(design, curves)
+    assert {claim.verdict for claim in claims} == {"inconclusive"}
+    assert {claim.note for claim in claims} == {
+        "of no boats",
+        "inconclusive: needs 8 seeds, where it has 7",
+    }
 
 
 def test_replicates_come_from_the_runs() -> None:
@@ -183,7 +196,7 @@ def test_a_proportion_beyond_the_leaders_that_were_run_is_a_bound(
 
 
 def test_a_small_design_from_runs_to_tables(tmp_path: Path) -> None:
-    design = _designed(tuple(POLICIES), (1, 5))
+    design = _designed(tuple(POLICIES), (1, 5), runs=2)
     settings = Settings()
     reproduction = leader_fraction(design)
     specs = reproduction.runs(settings)

@@ -28,6 +28,7 @@ from flockenv.statistics.intervals import interval, student_interval
 __all__ = [
     "BETTER",
     "CONSTANT_NUMBER",
+    "FEWEST_RUNS",
     "REPRODUCTIONS",
     "SMALLER",
     "fractions_table",
@@ -58,6 +59,9 @@ BETTER = Claim(
     high=1.0,
 )
 
+FEWEST_RUNS = 8
+"""Seeds for each number of leaders from which a curve counts in a claim."""
+
 Curves = Mapping[Setup, Curve]
 
 
@@ -66,8 +70,10 @@ def judge(design: FractionDesign, curves: Curves) -> list[CheckedClaim]:
     claims = []
     for policy in design.policies:
         for way in WAYS:
-            every = [curves[policy, Growth(way, n)] for n in design.sizes]
-            known = [curve for curve in every if not math.isnan(curve.replicates[0])]
+            growths = [Growth(way, n) for n in design.sizes]
+            every = [curves[policy, each] for each in growths]
+            judged = [curves[policy, each] for each in growths if design.runs[each] >= FEWEST_RUNS]
+            known = [curve for curve in judged if not math.isnan(curve.replicates[0])]
             ends = interval(exponent(known))
             sizes = ", ".join(str(curve.n_boats) for curve in known) or "no"
             note = "" if len(known) == len(every) else f"of {sizes} boats"
@@ -78,7 +84,10 @@ def judge(design: FractionDesign, curves: Curves) -> list[CheckedClaim]:
         if policy in others:
             ratio = curves[policy, growth].replicates / curves[law, growth].replicates
             scope = f"{policy}, {growth.n_boats} boats, {growth.way}"
-            claims.append(BETTER.check(*interval(ratio), scope))
+            few = design.runs[growth] < FEWEST_RUNS
+            ends = (math.nan,) * 3 if few else interval(ratio)
+            note = f"inconclusive: needs {FEWEST_RUNS} seeds, where it has {design.runs[growth]}"
+            claims.append(BETTER.check(*ends, scope, note if few else ""))
     return claims
 
 
@@ -135,8 +144,9 @@ def _notes(design: FractionDesign, settings: Settings) -> list[str]:
         "Intervals are a bootstrap over runs. A proportion is undefined where the order is on one "
         f"side of {GUIDED:g} at all numbers of leaders that were run. The table has the bound that "
         "follows, the exponent is that of the other sizes, and draws of the bootstrap without a "
-        "proportion are left out. The first claim is wrong if the exponent is above 0: the "
-        "proportion then grows with the flock.",
+        f"proportion are left out. Claims hang on curves of at least {FEWEST_RUNS} seeds. The "
+        "first claim is wrong if the exponent is above 0: the proportion then grows with the "
+        "flock.",
         f"The compute budget is {settings.budget_core_min:g} minutes of one core. The design has "
         f"{minutes:g} minutes per run, and for each number of leaders these seeds, by boats and "
         f"way: {runs}. It is estimated to take {design.core_minutes(settings):.0f} minutes, and "
