@@ -37,6 +37,7 @@ __all__ = [
     "env_meanings",
     "flock_feature_table",
     "held_decisions",
+    "jam_sizes",
     "lagged_motion",
     "lap_orientation",
     "largest_cluster",
