@@ -110,7 +110,7 @@ def _jam_maps(maps: Mapping[tuple[str, str], JamMap]) -> Figure:
                 origin="lower",
                 aspect="auto",
                 extent=(0.0, 360.0, 0.0, found.minutes),
-                cmap="Greys",
+                cmap="gray_r",
                 vmin=0.0,
                 vmax=2.0,
                 interpolation="nearest",
