@@ -3,7 +3,7 @@
     python baselines/missing_physics.py    # into results/missing_physics.csv
     python baselines/missing_physics.py --out docs/experiment_fit/changes.csv    # for the docs
 
-The preset ``experiment`` has six targets of the experiment out of range, five of which are about
+The preset ``experiment`` has six targets of the experiment out of range, all of which are about
 leaders or low noise. Each change here gives the boats something that the fit could not: stronger
 rudders and faster leaders than its bounds allow, a better steering law, more time, fewer sources of
 noise. The same held-out seeds run with each, so that differences are paired. `make tables` shows
@@ -26,7 +26,7 @@ from flockenv.policies.base import LeaderPolicy
 from flockenv.policies.pretrained import tuned_law
 from flockenv.runs.executors import cores
 from flockenv.runs.seeds import MODEL_SEEDS
-from flockenv.statistics.intervals import percentile_ends
+from flockenv.statistics.intervals import interval
 
 RESULTS = Path("results") / "missing_physics.csv"
 PRESET = "experiment"
@@ -107,13 +107,6 @@ def resampled(boat: Mapping[str, float], runs: FlockRuns) -> pd.DataFrame:
     return pd.DataFrame([measure(boat, runs.resampled(each)) for each in draws])
 
 
-def ends(values: pd.Series) -> tuple[float, float, float]:
-    """Return the first value and the percentiles of the defined others."""
-    drawn = values.iloc[1:].dropna().to_numpy()
-    low, high = percentile_ends(drawn) if len(drawn) else (np.nan, np.nan)
-    return float(values.iloc[0]), float(low), float(high)
-
-
 def main() -> None:
     """Run the changes, and write their rows."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -133,8 +126,10 @@ def main() -> None:
         for target in TARGETS:
             if target.key not in SHOWN:
                 continue
-            value = dict(zip(("value", "low", "high"), ends(drawn[target.key]), strict=True))
-            less = ends(drawn[target.key] - base[target.key])
+            value = dict(
+                zip(("value", "low", "high"), interval(drawn[target.key].to_numpy()), strict=True)
+            )
+            less = interval((drawn[target.key] - base[target.key]).to_numpy())
             difference = dict(
                 zip(("difference", "difference_low", "difference_high"), less, strict=True)
             )

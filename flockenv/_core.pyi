@@ -9,6 +9,7 @@ from flockenv.parameters import FlockParameters
 
 __all__ = [
     "FIRST_PARAMETERS",
+    "JAM_ANGLE",
     "ORDERED_WITHIN",
     "TOWARDS_TARGET",
     "ContactSeries",
@@ -71,6 +72,7 @@ __all__ = [
 
 __version__: str
 TOWARDS_TARGET: float
+JAM_ANGLE: float
 FIRST_PARAMETERS: int
 ORDERED_WITHIN: tuple[float, float]
 

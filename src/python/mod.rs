@@ -70,6 +70,7 @@ mod _core {
         crate::parallel::note_process();
         error::add_exceptions(module)?;
         module.add("TOWARDS_TARGET", crate::environment::TOWARDS_TARGET)?;
+        module.add("JAM_ANGLE", crate::analysis::structure::JAM_ANGLE)?;
         module.add(
             "ORDERED_WITHIN",
             <(f64, f64)>::from(crate::environment::ORDERED_WITHIN),

@@ -1,7 +1,6 @@
 """Changes of the fitted preset: each differs from it in what its name says, on the same seeds."""
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from flockenv import FlockParameters
@@ -46,6 +45,4 @@ def test_differences_are_paired(script) -> None:
     boat = dict.fromkeys((target.key for target in TARGETS if target.value is None), 1.0)
     before, after = (script.resampled(boat, each) for each in runs)
     assert len(before) == 1 + script.RESAMPLES
-    difference = script.ends(after["jamming"] - before["jamming"])
-    assert difference == pytest.approx((0.1, 0.1, 0.1))
-    assert np.isnan(script.ends(pd.Series([np.nan] * 3))).all()
+    assert (after["jamming"] - before["jamming"]).to_numpy() == pytest.approx(0.1)

@@ -16,7 +16,6 @@ from flockenv.reproduce.transition.design import (
     DESIGNS,
     FULL,
     LOOPS,
-    STARTS,
     Growth,
     TransitionDesign,
     within,
@@ -36,14 +35,15 @@ from flockenv.reproduce.transition.measured import (
     states,
 )
 from flockenv.reproduce.transition.order import (
+    CHANNEL_SIZE,
     FORGOTTEN,
     ONE_PHASE,
-    OWN_SIZE,
     conclusion,
     judge,
     judge_jams,
     transition_order,
 )
+from flockenv.runs.protocols.initial_state import STARTS
 from flockenv.runs.spec import ORDER_NAMES
 from flockenv.runs.store import RunStore, run_missing
 from flockenv.statistics.dwell_times import DwellTimes
@@ -175,7 +175,7 @@ def jams(*mean_sizes: float) -> Jams:
     found = object.__new__(Jams)
     found.mean_size = np.array(mean_sizes)
     found.share = found.largest = np.full(len(mean_sizes), 0.5)
-    found.first_s, found.nucleated = np.full(len(mean_sizes), 60.0), np.ones(len(mean_sizes), bool)
+    found.first_s = np.full(len(mean_sizes), 60.0)
     return found
 
 
@@ -184,12 +184,10 @@ _SLOWER = "inconclusive, though jams grow more slowly than the flock at every de
 
 
 def grown(power: float, memory: float = 1.0) -> Measured:
-    """Jams of 20 n^power boats, `memory` times as many from one jam, at one density."""
+    """Jams of 20 n^power boats, `memory` times as many from rotation, at one density."""
     design = TransitionDesign(
         sizes=_SIZES,
         densities={"whole pool": (8,), "circumference": (8,)},
-        largest_throughout=_SIZES[-1],
-        densities_beyond={},
         largest_loop=0,
         runs=2,
         stationary_minutes=1.0,
@@ -199,7 +197,7 @@ def grown(power: float, memory: float = 1.0) -> Measured:
     for growth, density, start in design.points():
         # Without room for several jams, small flocks do not count.
         size = 20.0 * growth.n_boats**power if growth.n_boats >= 200 else 7.0
-        size *= memory if start == "one-jam" else 1.0
+        size *= memory if start == "rotating" else 1.0
         point = object.__new__(Stationary)
         point.jams = jams(0.99 * size, 1.01 * size)
         stationary[growth, density, start] = point
@@ -207,27 +205,40 @@ def grown(power: float, memory: float = 1.0) -> Measured:
 
 
 @pytest.mark.parametrize(
-    ("power", "memory", "found"),
+    ("way", "power", "memory", "found"),
     [
-        (1.0, 1.0, "of first order"),
-        (1.0, 3.0, "of first order"),
-        (0.0, 1.0, "not of first order"),
-        (0.0, 3.0, f"{_SLOWER}. Open: flocks forget"),
-        (0.8, 3.0, "of first order"),
-        (
-            0.5,
-            1.0,
-            f"{_SLOWER}. Open: jams have a size of their own (density 8, whole pool): does not",
-        ),
+        ("whole pool", 1.0, 1.0, "of first order"),
+        ("whole pool", 1.0, 0.3, "of first order"),
+        ("circumference", 0.8, 0.3, "of first order"),
+        ("whole pool", 0.5, 1.0, "not of first order"),
+        ("circumference", 0.0, 1.0, "not of first order"),
+        ("circumference", 0.0, 0.3, f"{_SLOWER}. Open: flocks forget"),
+        ("circumference", 0.0, 0.0, f"{_SLOWER}. Open: flocks forget"),
+        ("circumference", 0.5, 1.0, f"{_SLOWER}. Open: jams grow with the width"),
+        ("whole pool", 0.0, 1.0, f"{_SLOWER}. Open: jams grow with the width"),
     ],
 )
-def test_the_size_of_jams_decides(power: float, memory: float, found: str) -> None:
-    growth, forgotten = judge_jams(grown(power, memory), "whole pool")
-    assert [claim.claim for claim in growth] == [ONE_PHASE, OWN_SIZE]
+def test_the_size_of_jams_decides(way: str, power: float, memory: float, found: str) -> None:
+    growth, forgotten = judge_jams(grown(power, memory), way)
+    assert [claim.claim for claim in growth] == [ONE_PHASE, CHANNEL_SIZE]
     assert [claim.claim for claim in forgotten] == [FORGOTTEN]
     assert growth[0].measured == pytest.approx(power)
+    assert growth[1].measured == pytest.approx(power - (0.5 if way == "whole pool" else 0.0))
     assert forgotten[0].measured == pytest.approx(memory)
     assert conclusion(growth, forgotten).startswith(found)
+
+
+def test_the_size_of_jams_is_that_of_boats_and_not_of_runs() -> None:
+    measured = grown(0.0)
+    growth = Growth("circumference", 200)
+    for start, share, size in (("rotating", 0.1, 10.0), ("one-jam", 0.3, 50.0)):
+        found = measured.stationary[growth, 8, start].jams
+        found.share, found.mean_size = np.full(2, share), np.full(2, size)
+    # On paper: 10 boats of 100 in jams of 10 and 30 in jams of 50 are in jams of 40 on average.
+    # The others are in jams of 20; the slope at x = -ln 2, 0, ln 2 is half of ln(20/40)/ln 2.
+    slope = measured.jam_growth("circumference", 8)
+    assert slope[0] == pytest.approx(-0.5, abs=1e-3)
+    assert measured.memory(growth, 8)[0] == pytest.approx(0.2)
 
 
 def test_jams_of_runs() -> None:
@@ -241,12 +252,16 @@ def test_jams_of_runs() -> None:
     # On paper: half of the frames hold 4² + 6² over 4 + 6.
     assert found.mean_size == pytest.approx(5.2, abs=0.01)
     assert found.largest == pytest.approx(5.0, abs=0.01)
-    # No jam of these is large enough to last.
-    assert (found.first_s[0], found.nucleated[0]) == (100.0, False)
+    # None of these jams has `NUCLEUS` boats.
+    assert np.isnan(found.first_s).all()
+    assert found.dissolved_s == pytest.approx(0.0)
     twelve = np.arange(12) * 10.3 / 160.0
     frames = np.array([_boats(twelve, np.pi), _boats(twelve, 0.0)])
     found = Jams([with_poses(frames[np.repeat([0, 1], 500)])])
-    assert (found.first_s[0], found.nucleated[0]) == (50.0, True)
+    assert found.first_s.tolist() == [50.0]
+    found = Jams([with_poses(frames[np.repeat(places, 500)]) for places in ([1, 0], [1, 1])])
+    assert found.dissolved_s[0] == 50.0
+    assert np.isnan(found.dissolved_s[1])
 
 
 def test_a_map_of_jams() -> None:
@@ -262,10 +277,8 @@ def test_a_map_of_jams() -> None:
 def test_a_small_design_from_runs_to_tables(tmp_path: object) -> None:
     densities = {"whole pool": (5, 10), "circumference": (5, 10)}
     design = TransitionDesign(
-        sizes=(20, 40, 60),
+        sizes=(20, 40),
         densities=densities,
-        largest_throughout=40,
-        densities_beyond={"whole pool": (10,), "circumference": ()},
         largest_loop=20,
         runs=2,
         stationary_minutes=1.0,
@@ -274,23 +287,26 @@ def test_a_small_design_from_runs_to_tables(tmp_path: object) -> None:
     settings = Settings(minutes=1.0)
     reproduction = transition_order(design)
     specs = reproduction.runs(settings)
-    # In two ways: two sizes at two densities, and one at the fine substep, from two starts each,
-    # and one size in each kind of loop. In one way, the largest at one density.
-    runs = 2 * ((2 * 2 + 1) * 2 + len(LOOPS)) * 2 + 1 * 2 * 2
+    # In two ways, for two seeds: two sizes at two densities, and one at the fine substep, from two
+    # starts each, and one size in each kind of loop.
+    runs = 2 * 2 * ((2 * 2 + 1) * 2 + len(LOOPS))
     assert len(specs) == len(set(specs)) == runs
     minutes = {kind: design.loop(settings, Growth("whole pool", 20), kind)[0] for kind in LOOPS}
     assert [spec.duration_s / 60 for spec in minutes.values()] == [1.0, 3.0, 9.0, 1.0]
     store = RunStore(tmp_path)  # type: ignore[arg-type]
     assert run_missing(specs, store) == {}
     outcome = reproduction.analyze(settings, Results(store, specs))
-    assert len(outcome.tables["transition"]) == len(outcome.tables["jams"]) == (2 * 4 + 1) * 2
+    assert len(outcome.tables["transition"]) == len(outcome.tables["jams"]) == 2 * 4 * 2
     assert len(outcome.tables["substeps"]) == 2 * 2 * 2
     nucleation = outcome.tables["nucleation"]
-    assert len(nucleation) == 2 * 4 + 1
+    assert len(nucleation) == 2 * 4
     assert (nucleation["with one later"] == 0).all()
     assert (nucleation["with a jam before 10 min"] <= nucleation["runs"]).all()
+    dissolution = outcome.tables["dissolution"]
+    assert len(dissolution) == 2 * 4
+    assert (dissolution["dissolved"] <= dissolution["runs"]).all()
     # In each way: three claims at each density, one for each size, two for the loops, lifetimes.
-    assert len(outcome.claims) == 2 * (2 * 3 + 2 + 2 + 1) + 1
+    assert len(outcome.claims) == 2 * (2 * 3 + 2 + 2 + 1)
     lifetimes = outcome.tables["lifetimes"]
     minutes_in = lifetimes["rotating, min"].astype(float) + lifetimes["jammed, min"].astype(float)
     # Two runs of a minute from each of two starts, of samples 10 s apart.
@@ -300,7 +316,7 @@ def test_a_small_design_from_runs_to_tables(tmp_path: object) -> None:
     m = histograms[histograms["quantity"] == "m"]
     width = m["bin_high"] - m["bin_low"]
     total = (m["probability_density"] * width).sum()
-    assert total == pytest.approx(18)
+    assert total == pytest.approx(16)
     assert set(outcome.pictures) == {
         "jams",
         "jam-maps",
@@ -315,13 +331,22 @@ def test_a_small_design_from_runs_to_tables(tmp_path: object) -> None:
     assert len(verdicts) == 2
 
 
+def test_large_flocks_get_time_to_forget_their_start() -> None:
+    settings = Settings()
+    minutes = {
+        n: FULL.stationary(settings, Growth("whole pool", n), 6, "one-jam")[0].duration_s / 60
+        for n in (200, 400, 800)
+    }
+    assert minutes == {200: 40.0, 400: 40.0, 800: 80.0}
+
+
 def test_the_budget_chooses_the_design() -> None:
     costs = [design.core_minutes(Settings()) for design in DESIGNS]
     assert costs == sorted(costs)
     for design, cost in zip(DESIGNS, costs, strict=True):
         assert within(Settings(budget_core_min=cost + 0.1)) is design
     assert within(Settings(budget_core_min=1e6)) is FULL
-    assert within(Settings(minutes=1.0, budget_core_min=8.0)) is FULL
+    assert within(Settings(minutes=1.0, budget_core_min=30.0)) is FULL
     with pytest.raises(flockenv.ParameterError, match="budget = 1 core-minutes is not enough"):
         within(Settings(budget_core_min=1.0))
     with pytest.raises(flockenv.ParameterError, match="budget = nan"):
@@ -345,8 +370,6 @@ def test_a_loop_that_never_jams_is_no_closed_loop(back: float, verdict: str, not
     design = TransitionDesign(
         sizes=(400,),
         densities={growth.way: (20,)},
-        largest_throughout=400,
-        densities_beyond={},
         largest_loop=400,
         runs=2,
         stationary_minutes=1.0,

@@ -24,14 +24,18 @@ def test_before_the_first_change_it_is_an_ordinary_run():
     assert np.array_equal(alternating.in_analysis_window, plain.in_analysis_window)
 
 
-def test_leaders_go_the_way_that_holds():
-    parameters = PARAMETERS.replace(n_boats=3, n_leaders=2)
-    run = simulate_alternating(parameters, 2, 240.0, period_s=120.0)
+def check_leaders_turn_round_after_two_minutes(run):
     x, y = run.pose[:, :2, 0], run.pose[:, :2, 1]
     u, v = run.velocity[:, :2, 0], run.velocity[:, :2, 1]
     counter_clockwise = ((x * v - y * u) / np.hypot(x, y)).mean(axis=1)
     assert counter_clockwise[(run.time_s > 60) & (run.time_s < 120)].mean() > 2.0
     assert counter_clockwise[run.time_s > 180].mean() < -2.0
+
+
+def test_leaders_go_the_way_that_holds():
+    parameters = PARAMETERS.replace(n_boats=3, n_leaders=2)
+    run = simulate_alternating(parameters, 2, 240.0, period_s=120.0)
+    check_leaders_turn_round_after_two_minutes(run)
 
 
 def test_the_same_arguments_give_the_same_run():
@@ -54,11 +58,7 @@ def test_another_policy_steers_both_ways():
     assert not np.array_equal(law.pose, straight.pose)
     damped = tuned_law("damped law", "table-1")
     run = simulate_alternating(parameters, 2, 240.0, period_s=120.0, policy=damped)
-    x, y = run.pose[:, :2, 0], run.pose[:, :2, 1]
-    u, v = run.velocity[:, :2, 0], run.velocity[:, :2, 1]
-    counter_clockwise = ((x * v - y * u) / np.hypot(x, y)).mean(axis=1)
-    assert counter_clockwise[(run.time_s > 60) & (run.time_s < 120)].mean() > 2.0
-    assert counter_clockwise[run.time_s > 180].mean() < -2.0
+    check_leaders_turn_round_after_two_minutes(run)
 
 
 def test_a_policy_that_sees_a_mirrored_flock_is_refused():

@@ -5,21 +5,24 @@ fixed width does not. Both are run. How much is run follows from a budget of com
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from flockenv.parameters import FlockParameters
 from flockenv.reproduce.reproduction import Settings, within_budget
 from flockenv.runs.protocols.hysteresis import resized
+from flockenv.runs.protocols.initial_state import STARTS
 from flockenv.runs.spec import RunSpec
 
 __all__ = [
     "DESIGNS",
     "FULL",
+    "LONGER_ABOVE",
     "LOOPS",
     "LOOP_BW_S",
     "SLOWER",
-    "STARTS",
+    "STARTED",
     "WAYS",
+    "WIDTH_EXPONENTS",
     "Growth",
     "TransitionDesign",
     "within",
@@ -28,8 +31,18 @@ __all__ = [
 WAYS = {"whole pool": False, "circumference": True}
 """Ways of growing: whether the channel keeps its width."""
 
-STARTS = ("rotating", "one-jam")
-"""The two ends that runs at one density start from, of `runs.protocols.initial_state.STARTS`."""
+WIDTH_EXPONENTS = {way: 0.0 if keeps else 0.5 for way, keeps in WAYS.items()}
+"""By way of growing: the power of the number of boats that the channel's width is proportional to,
+at one density."""
+
+LONGER_ABOVE = 400
+"""Boats from which runs at one density are longer in proportion to the flock, as is the time that
+one jam of all boats takes to dissolve from its ends."""
+
+STARTED: Mapping[str, str] = dict(
+    zip(STARTS, ("started rotating", "started in one jam"), strict=True)
+)
+"""What a reader is told about each start."""
 
 SLOWER = 3.0
 LOOPS: Mapping[str, float] = {
@@ -82,40 +95,29 @@ class TransitionDesign:
     densities : mapping of tuples of int
         By way of growing: boats for each free area of the pool `500-boats`, increasing. Pilot runs
         of other seeds put them where rotation gives way to the jam.
-    largest_throughout : int
-        Number of boats up to which flocks run at all densities.
-    densities_beyond : mapping of tuples of int
-        By way of growing: the densities at which larger flocks run.
     largest_loop : int
         Number of boats up to which loops are run.
     runs : int
         Seeds for each point and loop.
     stationary_minutes, loop_minutes : float
-        Length of a run at one density, and of the fastest loop.
+        Length of a run at one density, of up to `LONGER_ABOVE` boats, and of the fastest loop.
     """
 
     sizes: tuple[int, ...]
     densities: Mapping[str, tuple[int, ...]]
-    largest_throughout: int
-    densities_beyond: Mapping[str, tuple[int, ...]]
     largest_loop: int
     runs: int
     stationary_minutes: float
     loop_minutes: float
 
     def stationary(
-        self, settings: Settings, growth: Growth, density: int, start: str
+        self, settings: Settings, growth: Growth, density: int, start: str, dt_s: float = _DT_S
     ) -> tuple[RunSpec, ...]:
         """Return the runs at one density without noise, from one of `STARTS`."""
-        return self._standing(settings, growth.parameters(density), start)
-
-    def fine(
-        self, settings: Settings, way: str, density: int, start: str
-    ) -> tuple[Growth, tuple[RunSpec, ...]]:
-        """Return runs of flocks of a middling size as `stationary` does, at `FINE_DT_S`."""
-        growth = Growth(way, self.sizes[(len(self.sizes) - 1) // 2])
-        parameters = growth.parameters(density, dt_s=FINE_DT_S)
-        return growth, self._standing(settings, parameters, start)
+        longer = max(1.0, growth.n_boats / LONGER_ABOVE)
+        length = settings.duration_s(self.stationary_minutes) * longer
+        parameters = growth.parameters(density, dt_s=dt_s)
+        return self._seeded(settings.seed, parameters, start, length, _POSES_HZ, "poses")
 
     def loop(self, settings: Settings, growth: Growth, kind: str) -> tuple[RunSpec, ...]:
         """Return the loops of a kind in `LOOPS`.
@@ -132,23 +134,9 @@ class TransitionDesign:
         length = settings.duration_s(self.loop_minutes) * LOOPS[kind]
         return self._seeded(settings.seed, parameters, protocol, length, _LOOP_HZ, "order")
 
-    def growths(self) -> list[Growth]:
-        """Return all sizes that run in all ways."""
-        every = (Growth(way, n) for way in WAYS for n in self.sizes)
-        return [growth for growth in every if self.densities_of(growth)]
-
-    def largest(self, way: str) -> Growth:
-        """Return the largest flocks of a way of growing."""
-        return [growth for growth in self.growths() if growth.way == way][-1]
-
-    def densities_of(self, growth: Growth) -> tuple[int, ...]:
-        """Return the densities that flocks of a size run at."""
-        is_large = growth.n_boats > self.largest_throughout
-        return (self.densities_beyond if is_large else self.densities).get(growth.way, ())
-
-    def sizes_at(self, way: str, density: int) -> tuple[int, ...]:
-        """Return the numbers of boats that run at a density, increasing."""
-        return tuple(n for n in self.sizes if density in self.densities_of(Growth(way, n)))
+    def growths(self, *ways: str) -> list[Growth]:
+        """Return all sizes in these ways, by default in all."""
+        return [Growth(way, n) for way in ways or WAYS for n in self.sizes]
 
     def looped(self) -> list[Growth]:
         """Return the sizes that go through loops, in all ways."""
@@ -159,22 +147,30 @@ class TransitionDesign:
         return [
             (growth, density, start)
             for growth in self.growths()
-            for density in self.densities_of(growth)
+            for density in self.densities[growth.way]
             for start in STARTS
         ]
 
-    def fine_points(self) -> list[tuple[str, int, str]]:
-        """Return way, density and start of the runs at `FINE_DT_S`: the middle density."""
-        middle = {way: each[len(each) // 2] for way, each in self.densities.items()}
-        return [(way, middle[way], start) for way in WAYS for start in STARTS]
+    def fine_points(self) -> list[tuple[Growth, int, str]]:
+        """Return the points that run at `FINE_DT_S` too: a middling size at the middle density."""
+        n_boats = self.sizes[(len(self.sizes) - 1) // 2]
+        return [
+            (growth, density, start)
+            for growth, density, start in self.points()
+            if growth.n_boats == n_boats and density == self.middle(growth.way)
+        ]
+
+    def middle(self, way: str) -> int:
+        """Return the middle density of a way of growing."""
+        return self.densities[way][len(self.densities[way]) // 2]
 
     def all_runs(self, settings: Settings) -> list[RunSpec]:
         """Return every run."""
         specs: list[RunSpec] = []
-        for growth, density, start in self.points():
-            specs += self.stationary(settings, growth, density, start)
-        for way, density, start in self.fine_points():
-            specs += self.fine(settings, way, density, start)[1]
+        for point in self.points():
+            specs += self.stationary(settings, *point)
+        for point in self.fine_points():
+            specs += self.stationary(settings, *point, FINE_DT_S)
         for growth in self.looped():
             for kind in LOOPS:
                 specs += self.loop(settings, growth, kind)
@@ -191,12 +187,6 @@ class TransitionDesign:
             for s in self.all_runs(settings)
         )
         return float(seconds) / 60
-
-    def _standing(
-        self, settings: Settings, parameters: FlockParameters, start: str
-    ) -> tuple[RunSpec, ...]:
-        length = settings.duration_s(self.stationary_minutes)
-        return self._seeded(settings.seed, parameters, start, length, _POSES_HZ, "poses")
 
     def _seeded(
         self,
@@ -222,39 +212,27 @@ class TransitionDesign:
 
 _DENSITIES = {"whole pool": (6, 10, 16), "circumference": (24, 36, 54)}
 
-FULL = TransitionDesign(
-    sizes=(50, 100, 200, 400, 800, 1600),
+_TO_800 = TransitionDesign(
+    sizes=(50, 100, 200, 400, 800),
     densities=_DENSITIES,
-    largest_throughout=800,
-    # Jams vanish in a long ring, whose wall is nearly straight.
-    densities_beyond={"whole pool": _DENSITIES["whole pool"][-1:], "circumference": ()},
     largest_loop=400,
     runs=8,
     stationary_minutes=40.0,
     loop_minutes=10.0,
 )
 
+FULL = replace(_TO_800, sizes=(*_TO_800.sizes, 1600))
+
 DESIGNS = (
     TransitionDesign(
         sizes=(50, 200, 400, 800),
         densities=_DENSITIES,
-        largest_throughout=800,
-        densities_beyond=dict.fromkeys(WAYS, ()),
         largest_loop=200,
         runs=4,
         stationary_minutes=20.0,
         loop_minutes=3.0,
     ),
-    TransitionDesign(
-        sizes=(50, 100, 200, 400, 800),
-        densities=_DENSITIES,
-        largest_throughout=800,
-        densities_beyond=dict.fromkeys(WAYS, ()),
-        largest_loop=400,
-        runs=8,
-        stationary_minutes=40.0,
-        loop_minutes=10.0,
-    ),
+    _TO_800,
     FULL,
 )
 """By the time they take."""

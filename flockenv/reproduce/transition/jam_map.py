@@ -11,7 +11,6 @@ from flockenv.reproduce.transition.design import Growth, TransitionDesign
 __all__ = ["JamMap", "mapped"]
 
 _BINS = 180
-_FACING = np.pi / 3
 _MAPPED_BOATS = 800
 
 
@@ -32,7 +31,7 @@ class JamMap:
     def __init__(self, runs: Sequence[Recording]) -> None:
         (run,) = runs
         pose = np.asarray(run.pose, np.float64)
-        facing = abs(_core.lap_orientation(pose)) <= _FACING
+        facing = abs(_core.lap_orientation(pose)) <= _core.JAM_ANGLE
         place = (np.arctan2(pose[..., 1], pose[..., 0]) / (2.0 * np.pi) % 1.0 * _BINS).astype(int)
         frame, boat = np.nonzero(facing)
         counts = np.zeros((len(pose), _BINS))
@@ -42,9 +41,8 @@ class JamMap:
         self.minutes = run.duration_s / 60.0
 
 
-def mapped(design: TransitionDesign, way: str, start: str) -> tuple[Growth, int, str]:
-    """Return the point whose first run is mapped: a large flock at the middle density."""
-    every = [growth for growth in design.growths() if growth.way == way]
+def mapped(design: TransitionDesign, way: str) -> tuple[Growth, int]:
+    """Return the size and density of the runs that are mapped: large flocks, the middle density."""
+    every = design.growths(way)
     growth = next((each for each in reversed(every) if each.n_boats <= _MAPPED_BOATS), every[0])
-    densities = design.densities_of(growth)
-    return growth, densities[len(densities) // 2], start
+    return growth, design.middle(way)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from flockenv.recording import Recording
 from flockenv.reproduce.order_statistics import block_length_s
-from flockenv.reproduce.transition.design import STARTS, Growth, TransitionDesign
+from flockenv.reproduce.transition.design import STARTED, Growth, TransitionDesign
 from flockenv.runs.protocols.hysteresis import loop_position
 from flockenv.statistics.block_bootstrap import block_sums, block_sums_resampled
 from flockenv.statistics.dwell_times import DwellTimes, dwell_times
@@ -91,7 +91,7 @@ MANY_BOATS = 200
 
 
 NUCLEUS = 10
-"""Boats of a jam that lasts: smaller ones come and go everywhere."""
+"""Fewest boats of a first jam."""
 
 
 class Jams:
@@ -100,10 +100,10 @@ class Jams:
     Attributes
     ----------
     first_s : float64 array, shape (runs,)
-        When a run has a jam of at least `NUCLEUS` boats for the first time, the length of the run
-        if it never has.
-    nucleated : bool array, shape (runs,)
-        Whether it ever has.
+        When a run has a jam of at least `NUCLEUS` boats for the first time; NaN if it never has.
+    dissolved_s : float64 array, shape (runs,)
+        When a run's largest jam has fewer than half of its boats for the first time; NaN if it
+        always has more.
     share : float64 array, shape (runs,)
         Part of the boats in jams.
     mean_size : float64 array, shape (runs,)
@@ -113,11 +113,12 @@ class Jams:
     """
 
     def __init__(self, runs: Sequence[Recording]) -> None:
-        rows, firsts = [], []
+        rows, firsts, lasts = [], [], []
         for run in runs:
             every = jam_sizes(run.parameters, run.pose)
-            nuclei = np.array([sizes.max(initial=0) >= NUCLEUS for sizes in every])
-            firsts.append(run.time_s[nuclei.argmax()] if nuclei.any() else run.duration_s)
+            most = np.array([sizes.max(initial=0) for sizes in every])
+            firsts.append(_first_s(run, most >= NUCLEUS))
+            lasts.append(_first_s(run, most < run.parameters.n_boats / 2))
             used = run.analyzed(after=0.5)
             frames = [every[place] for place in np.searchsorted(run.time_s, used.time_s)]
             boats = sum(int(sizes.sum()) for sizes in frames)
@@ -125,9 +126,12 @@ class Jams:
             largest = np.mean([sizes.max(initial=0) for sizes in frames])
             share = boats / (len(frames) * used.parameters.n_boats)
             rows.append((share, pairs / max(boats, 1), largest))
-        self.first_s = np.array(firsts, np.float64)
-        self.nucleated = self.first_s < np.array([run.duration_s for run in runs])
+        self.first_s, self.dissolved_s = np.array([firsts, lasts], np.float64)
         self.share, self.mean_size, self.largest = np.array(rows, np.float64).T
+
+
+def _first_s(run: Recording, when: NDArray[np.bool_]) -> float:
+    return float(run.time_s[when.argmax()]) if when.any() else math.nan
 
 
 class Stationary:
@@ -291,14 +295,14 @@ class Measured:
 
     def gap(self, growth: Growth, density: int) -> Ends:
         """Return the difference of Ψ_o cos φ_o between the two starts, seed by seed."""
-        rotating, jammed = (self.stationary[growth, density, start].outward for start in STARTS)
+        rotating, jammed = (self.stationary[growth, density, start].outward for start in STARTED)
         return student_interval(jammed - rotating)
 
     def lifetime(self, growth: Growth) -> Lifetime:
         """Return how long flocks of a size stay in both states at coexistence."""
         dwells = {}
-        for density in self.design.densities_of(growth):
-            first, second = (self.stationary[growth, density, start].dwell for start in STARTS)
+        for density in self.design.densities[growth.way]:
+            first, second = (self.stationary[growth, density, start].dwell for start in STARTED)
             dwells[density] = first + second
         return lifetime(dwells, growth.n_boats)
 
@@ -312,8 +316,7 @@ class Measured:
         sizes : list of int
             Those with at least `FEWEST_CHANGES` out of each state, which the line is through.
         """
-        growths = [growth for growth in self.design.growths() if growth.way == way]
-        found = {growth.n_boats: self.lifetime(growth) for growth in growths}
+        found = {each.n_boats: self.lifetime(each) for each in self.design.growths(way)}
         known = {
             n: each
             for n, each in found.items()
@@ -328,36 +331,35 @@ class Measured:
         -------
         float64 array, shape (RESAMPLES + 1,)
             Slope of a straight line through the logarithms at sizes of at least `MANY_BOATS`, of
-            the mean over both starts, with its replicates over runs; NaN for less than three sizes.
+            the runs from both starts, with its replicates over runs; NaN for less than three sizes.
         """
-        sizes = [n for n in self.design.sizes_at(way, density) if n >= MANY_BOATS]
+        growths = [each for each in self.design.growths(way) if each.n_boats >= MANY_BOATS]
         logs = []
-        for n in sizes:
-            starts = [
-                mean_replicates(
-                    self.stationary[Growth(way, n), density, start].jams.mean_size, n + place
-                )
-                for place, start in enumerate(STARTS)
-            ]
-            means = np.mean(starts, axis=0)
-            logs.append(np.log(np.where(means > 0.0, means, math.nan)))
-        return _slope(np.log(sizes), logs)
+        for growth in growths:
+            sizes = self._jam_size(growth, density, *STARTED)
+            logs.append(np.log(np.where(sizes > 0.0, sizes, math.nan)))
+        return _slope(np.log([growth.n_boats for growth in growths]), logs)
 
     def memory(self, growth: Growth, density: int) -> NDArray[np.float64]:
-        """Return the mean size of jams from one jam over that from rotation.
+        """Return the mean size of jams from rotation over that from one jam, 0 without any.
 
         Returns
         -------
         float64 array, shape (RESAMPLES + 1,)
             With its replicates over runs.
         """
-        rotating, one_jam = (
-            mean_replicates(
-                self.stationary[growth, density, start].jams.mean_size, growth.n_boats + place
-            )
-            for place, start in enumerate(STARTS)
-        )
-        return one_jam / np.where(rotating > 0.0, rotating, math.nan)
+        rotating, one_jam = (self._jam_size(growth, density, start) for start in STARTED)
+        return rotating / np.where(one_jam > 0.0, one_jam, math.nan)
+
+    def _jam_size(self, growth: Growth, density: int, *starts: str) -> NDArray[np.float64]:
+        """Return the mean size of jams of all runs, with replicates; 0 without jams."""
+        boats, pairs = np.zeros((2, RESAMPLES + 1))
+        for place, start in enumerate(starts):
+            jams = self.stationary[growth, density, start].jams
+            # The same seed draws the same runs for both.
+            boats += mean_replicates(jams.share, growth.n_boats + place)
+            pairs += mean_replicates(jams.share * jams.mean_size, growth.n_boats + place)
+        return np.asarray(pairs / np.where(boats > 0.0, boats, 1.0))
 
 
 def _slope(

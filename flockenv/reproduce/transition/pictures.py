@@ -13,8 +13,9 @@ from flockenv.reproduce.style import COLORS, column_figure, paper_style
 from flockenv.reproduce.transition.design import (
     LOOP_BW_S,
     LOOPS,
-    STARTS,
+    STARTED,
     WAYS,
+    WIDTH_EXPONENTS,
     Growth,
     TransitionDesign,
 )
@@ -33,8 +34,7 @@ from flockenv.statistics.intervals import interval, student_interval
 
 __all__ = ["pictures"]
 
-_LINES = dict(zip(STARTS, ("-", "--"), strict=True))
-_STARTED = {"rotating": "started rotating", "one-jam": "started in one jam"}
+_LINES = dict(zip(STARTED, ("-", "--"), strict=True))
 _MARKS = ("o", "s", "^", "D", "v", "P")
 _TIGHT: dict[str, Any] = {"columnspacing": 0.8, "handlelength": 1.2, "handletextpad": 0.4}
 _OUTWARD = r"mean $\Psi_o\,\cos\varphi_o$"
@@ -67,14 +67,14 @@ def _jams(measured: Measured) -> Figure:
     for column, way in enumerate(WAYS):
         panels[0, column].set_title(f"{way} grows")
         for place, density in enumerate(design.densities[way]):
-            sizes = np.array(design.sizes_at(way, density))
-            for start in STARTS:
+            sizes = np.array(design.sizes)
+            for start in STARTED:
                 found = [measured.stationary[Growth(way, n), density, start].jams for n in sizes]
                 for axes, name in zip(panels[:, column], ("mean_size", "share"), strict=True):
                     ends = np.array([student_interval(getattr(each, name)) for each in found])
                     bars = [ends[:, 0] - ends[:, 1], ends[:, 2] - ends[:, 0]]
                     line = f"{_MARKS[place]}{_LINES[start]}"
-                    label = str(density) if start == STARTS[0] else None
+                    label = str(density) if _LINES[start] == "-" else None
                     color = COLORS[place]
                     x = sizes * 1.05 ** (place - 1)
                     axes.errorbar(
@@ -82,7 +82,9 @@ def _jams(measured: Measured) -> Figure:
                     )
         many = np.array([n for n in design.sizes if n >= MANY_BOATS])
         if len(many):
-            panels[0, column].plot(many, 40.0 * many / many[0], color="0.6", lw=0.8, zorder=0)
+            for power in (1.0, WIDTH_EXPONENTS[way]):
+                line = 40.0 * (many / many[0]) ** power
+                panels[0, column].plot(many, line, color="0.6", lw=0.8, zorder=0)
         panels[0, column].set_yscale("log")
         # Room for the legend above the points; runs without jams are below.
         panels[0, column].set_ylim(1.0, 700.0)
@@ -94,15 +96,15 @@ def _jams(measured: Measured) -> Figure:
         panels[1, column].set_xlabel("boats")
     panels[0, 0].set_ylabel("mean size of jams (boats)")
     panels[1, 0].set_ylabel("part of the boats in jams")
-    handles = _styles({_STARTED[start]: _LINES[start] for start in STARTS})
+    handles = _starts()
     picture.legend(handles=handles, loc="outside upper center", ncols=2)
     return picture
 
 
 def _jam_maps(maps: Mapping[tuple[str, str], JamMap]) -> Figure:
     picture = column_figure(11.0)
-    panels = picture.subplots(len(STARTS), len(WAYS), sharex=True, sharey=True)
-    for row, start in enumerate(STARTS):
+    panels = picture.subplots(len(STARTED), len(WAYS), sharex=True, sharey=True)
+    for row, start in enumerate(STARTED):
         for column, way in enumerate(WAYS):
             axes, found = panels[row, column], maps[way, start]
             axes.imshow(
@@ -115,7 +117,7 @@ def _jam_maps(maps: Mapping[tuple[str, str], JamMap]) -> Figure:
                 vmax=2.0,
                 interpolation="nearest",
             )
-            axes.set_title(f"{found.n_boats} boats, {way}\n{_STARTED[start]}")
+            axes.set_title(f"{found.n_boats} boats, {way}\n{STARTED[start]}")
     for axes in panels[-1]:
         axes.set_xticks([0, 120, 240, 360])
         axes.set_xlabel("polar angle (°)")
@@ -132,9 +134,7 @@ def _states_and_openings(measured: Measured) -> Figure:
         states, openings = panels[:, column]
         states.set_title(f"{way} grows")
         for place, n in enumerate(design.sizes):
-            if not design.densities_of(Growth(way, n)):
-                continue
-            for start in STARTS:
+            for start in STARTED:
                 _draw_states(states, measured, Growth(way, n), start, COLORS[place % len(COLORS)])
         states.set_xscale("log")
         _name_ticks(states, design.densities[way])
@@ -143,7 +143,7 @@ def _states_and_openings(measured: Measured) -> Figure:
         openings.set_xlabel("boats")
     panels[0, 0].set_ylabel(_OUTWARD)
     panels[1, 0].set_ylabel("opening of loops")
-    handles = [*_sizes(design), *_styles({_STARTED[start]: _LINES[start] for start in STARTS})]
+    handles = [*_sizes(design), *_starts()]
     picture.legend(handles=handles, loc="outside upper center", ncols=3)
     picture.legend(*panels[1, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return picture
@@ -176,7 +176,7 @@ def _loops(measured: Measured) -> Figure:
 
 
 def _draw_states(axes: Axes, measured: Measured, growth: Growth, start: str, color: str) -> None:
-    densities = measured.design.densities_of(growth)
+    densities = measured.design.densities[growth.way]
     ends = np.array(
         [student_interval(measured.stationary[growth, d, start].outward) for d in densities]
     )
@@ -221,12 +221,12 @@ def _cumulants(measured: Measured) -> Figure:
         for row, (name, cumulant) in enumerate(chosen):
             axes = panels[row, column]
             for place, density in enumerate(design.densities[way]):
-                sizes = design.sizes_at(way, density)
-                for start in STARTS:
+                sizes = design.sizes
+                for start in STARTED:
                     values = [
                         cumulant(measured.stationary[Growth(way, n), density, start]) for n in sizes
                     ]
-                    label = str(density) if start == STARTS[0] else None
+                    label = str(density) if _LINES[start] == "-" else None
                     line = f"{_MARKS[place % len(_MARKS)]}{_LINES[start]}"
                     ends = np.array([interval(each) for each in values])
                     _draw_cumulant(axes, sizes, ends, line, place, label)
@@ -238,7 +238,7 @@ def _cumulants(measured: Measured) -> Figure:
     # Heavy tails about 0 make cumulants as low as -10, which would hide all others.
     for axes, lowest in zip(panels[:, 0], (-1.0, -2.0), strict=True):
         axes.set_ylim(lowest, 0.8)
-    handles = _styles({_STARTED[start]: _LINES[start] for start in STARTS})
+    handles = _starts()
     picture.legend(handles=handles, loc="outside upper center", ncols=2)
     return picture
 
@@ -266,9 +266,7 @@ def _histograms(measured: Measured, name: str) -> Figure:
         for row, n in enumerate(design.sizes):
             axes = panels[row, column]
             for place, density in enumerate(design.densities[way]):
-                if density not in design.densities_of(Growth(way, n)):
-                    continue
-                for start in STARTS:
+                for start in STARTED:
                     heights = getattr(
                         measured.stationary[Growth(way, n), density, start], f"{name}_density"
                     )
@@ -278,7 +276,7 @@ def _histograms(measured: Measured, name: str) -> Figure:
                         color=COLORS[place % len(COLORS)],
                         ls=_LINES[start],
                         lw=0.9,
-                        label=str(density) if start == STARTS[0] else None,
+                        label=str(density) if _LINES[start] == "-" else None,
                     )
             axes.set_yscale("log")
             head = f"{way} grows\n" if row == 0 else ""
@@ -288,7 +286,7 @@ def _histograms(measured: Measured, name: str) -> Figure:
         panels[0, column].set_ylim(top=50 * panels[0, column].get_ylim()[1])
         panels[0, column].legend(title="density", ncols=3, title_fontsize=6.5, **_TIGHT)
     picture.supylabel(f"probability density{unit}", fontsize=7)
-    handles = _styles({_STARTED[start]: _LINES[start] for start in STARTS})
+    handles = _starts()
     picture.legend(handles=handles, loc="outside upper center", ncols=2)
     return picture
 
@@ -303,6 +301,10 @@ def _sizes(design: TransitionDesign) -> list[Line2D]:
         Line2D([], [], color=COLORS[place % len(COLORS)], label=f"{n} boats")
         for place, n in enumerate(design.sizes)
     ]
+
+
+def _starts() -> list[Line2D]:
+    return _styles({words: _LINES[start] for start, words in STARTED.items()})
 
 
 def _styles(lines: dict[str, str]) -> list[Line2D]:
