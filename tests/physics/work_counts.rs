@@ -8,6 +8,7 @@ use crate::support::{disc, driven, flock_of, inert, take_substeps};
 use flockenv::contact::Statistics;
 use flockenv::parameters::{Pool, Preset, Scheme};
 use flockenv::{Flock, FlockParameters};
+use std::f64::consts::PI;
 
 #[test]
 fn one_boat_at_the_wall() {
@@ -156,4 +157,50 @@ fn crowded_scenes_cost_what_they_did() {
         assert_eq!(s.unsolved, 0);
         assert!(s.worst_residual_cm_s <= 1e-10);
     }
+}
+
+/// Boats side by side along the outer wall, facing it, in rows over three quarters of it.
+fn rows_along_the_wall(p: &FlockParameters, outer_cm: f64) -> Vec<([f64; 3], [f64; 3])> {
+    let (radius, room) = (p.boat_radius_cm, 1.001);
+    let core = radius * p.boat_shape;
+    let (mut states, mut wall) = (Vec::new(), outer_cm);
+    while states.len() < p.n_boats {
+        let center = wall - room * (core + radius);
+        let apart = 2.0 * (room * radius / (center - core)).asin();
+        let places = (1.5 * PI / apart) as usize;
+        for place in 0..places.min(p.n_boats - states.len()) {
+            let angle = apart * place as f64;
+            states.push((
+                [center * angle.cos(), center * angle.sin(), angle],
+                [0.0; 3],
+            ));
+        }
+        wall = center - core - radius;
+    }
+    states
+}
+
+#[test]
+fn pivoting_that_cycles_in_a_large_jam_costs_no_round_per_contact() {
+    // Two rows press outward: hundreds of contacts in one island depend on each other.
+    let p = FlockParameters {
+        n_boats: 800,
+        pool: disc(1610.0),
+        dt_s: 0.1,
+        bw_s: 0.0,
+        ..FlockParameters::preset(Preset::Simulation)
+    };
+    let mut flock = flock_of(&p, &rows_along_the_wall(&p, 1610.0));
+    let mut most = 0;
+    for _ in 0..40 {
+        let before = flock.statistics().solver_iterations;
+        take_substeps(&mut flock, 1);
+        most = most.max(flock.statistics().solver_iterations - before);
+    }
+    let statistics = flock.statistics();
+    assert!(statistics.contacts > 40 * 2000);
+    // A descent from no impulses takes some 2000 rounds; pivoting alone ends in some 10.
+    assert!((20..200).contains(&most), "{most}");
+    assert_eq!(statistics.unsolved, 0);
+    assert!(statistics.worst_residual_cm_s <= 1e-10);
 }

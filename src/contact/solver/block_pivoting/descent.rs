@@ -5,7 +5,7 @@
 //! Lawson and Hanson's active-set method (1974) on the dual ½·λᵀ·A·λ + bᵀ·λ over λ ≥ 0. Impulses stay
 //! non-negative and every step lowers the dual, so that no active set comes twice.
 
-use super::IslandSolver;
+use super::island_solver::{IslandSolver, SWEPT_ROWS};
 use super::rows::TOLERANCE;
 use crate::contact::solver::SolveReport;
 
@@ -13,31 +13,55 @@ use crate::contact::solver::SolveReport;
 const CONTRADICTION: f64 = 1e9;
 
 impl IslandSolver {
-    /// Solves the island again, from no impulses at all.
+    /// Solves the island again, from no impulses at all where it is small, and otherwise from those of the last
+    /// round that push.
     pub(super) fn descend(&mut self, regularization: f64, report: &mut SolveReport) {
         let count = self.rows.rows.len();
+        let is_small = count <= SWEPT_ROWS;
         for k in 0..count {
-            self.rows.rows[k].impulse = 0.0;
-            self.set_active(k, false);
+            let row = &mut self.rows.rows[k];
+            row.impulse = if is_small { 0.0 } else { row.impulse.max(0.0) };
+            let pushes = row.impulse > 0.0;
+            self.set_active(k, pushes);
         }
         self.rows.update();
-        let mut held = vec![0.0; count];
+        let mut held: Vec<_> = self.rows.rows.iter().map(|row| row.impulse).collect();
+        if !is_small {
+            self.approach(&mut held, regularization, report);
+        }
         // A contact that would have to pull as soon as it enters depends on those already in.
         let mut is_refused = vec![false; count];
+        let mut enters_alone = is_small;
         for _ in 0..50 + 10 * count {
             let Some(entering) = self.most_violated(&is_refused) else {
                 return;
             };
-            self.set_active(entering, true);
-            let moved = self.approach(&mut held, regularization, report);
-            if !self.rows.rows[entering].is_active && moved == 0.0 {
-                is_refused[entering] = true;
+            if enters_alone {
+                self.set_active(entering, true);
             } else {
+                self.enter_violated();
+            }
+            let moved = self.approach(&mut held, regularization, report);
+            if moved > 0.0 || self.rows.rows[entering].is_active {
                 is_refused.fill(false);
+                enters_alone = is_small;
+            } else {
+                is_refused[entering] = enters_alone;
+                enters_alone = true;
             }
             let largest = held.iter().copied().fold(0.0, f64::max);
             if !largest.is_finite() || largest > CONTRADICTION {
                 return;
+            }
+        }
+    }
+
+    /// Has all contacts enter whose gaps close. Those that would have to pull leave again at once; in a large island
+    /// the others are mostly far apart.
+    fn enter_violated(&mut self) {
+        for k in 0..self.rows.rows.len() {
+            if !self.rows.rows[k].is_active && self.rows.rows[k].is_violated() {
+                self.set_active(k, true);
             }
         }
     }

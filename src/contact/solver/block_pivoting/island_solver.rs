@@ -11,7 +11,7 @@ const PATIENCE: u32 = 5;
 
 /// Islands of more rows than this are swept before the first round; in smaller ones a round costs less than the
 /// sweeps.
-const SWEPT_ROWS: usize = 48;
+pub(super) const SWEPT_ROWS: usize = 48;
 /// How many sweeps guess the active rows.
 const SWEEPS: u32 = 2;
 
