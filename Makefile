@@ -30,6 +30,8 @@ UV := VIRTUAL_ENV="$(CURDIR)/$(VENV)" UV_COMPILE_BYTECODE=1 $(BIN)/uv
 # Directories are listed too: their times change when a file is removed.
 RUST_SOURCES := Cargo.toml Cargo.lock $(shell find src)
 STUBS := flockenv/_core.pyi
+# This machine's own build may use AVX2, which alters no bit. Wheels run on every processor.
+CODEGEN := $(if $(findstring avx2,$(shell rustc --print cfg -C target-cpu=native 2> /dev/null)),-- -C target-feature=+avx2)
 JS_TESTS := tests/replay/js
 
 # The comparison with other engines: a crate and a Python environment of their own.
@@ -305,5 +307,5 @@ ifeq ($(and $(wildcard flockenv/_core.*.so flockenv/_core.*.pyd),$(shell grep -l
 endif
 
 $(STAMPS)/core: $(RUST_SOURCES) pyproject.toml | $(STAMPS)/compare
-	VIRTUAL_ENV="$(CURDIR)/$(VENV)" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
+	VIRTUAL_ENV="$(CURDIR)/$(VENV)" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv $(CODEGEN)
 	@touch $@

@@ -160,13 +160,15 @@ def processor() -> str:
 
 def results(found: dict[str, list[float]], seconds: float) -> dict[str, Any]:
     """Return the medians and ranges of the measured values, and what they were measured with."""
+    from flockenv import _core
+
     load = os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
     return {
         "made": {
             "date": time.strftime("%Y-%m-%d"),
             "machine": f"{processor()}, {os.cpu_count()} cores, {platform.system()} "
             f"{platform.machine()}, Python {platform.python_version()}, "
-            f"flockenv {version('flockenv')}",
+            f"flockenv {version('flockenv')} {'with' if _core.USES_AVX2 else 'without'} AVX2",
             "load": round(load, 1),
             "rounds": len(found["vmas"]),
             "seconds": seconds,
@@ -206,7 +208,8 @@ def page(found: Mapping[str, Any]) -> str:
         f"{provenance['machine']}; load average at the end {provenance['load']:.1f}. "
         f"Every number is the median of {provenance['rounds']} processes of "
         f"{provenance['seconds']:g} s each, which took turns. The range is over these processes, "
-        "and `docs/throughput.toml` holds the numbers.",
+        "and `docs/throughput.toml` holds the numbers. `make` compiles the core for AVX2 where the "
+        "machine has it, to the same bits; wheels and `pip install` do without.",
         "",
         "A flock has 27 boats, 4 of them leaders. It runs 10 control steps per second of five "
         "substeps of 0.02 s each (`leapfrog`, white noise, exact contacts), with the default "

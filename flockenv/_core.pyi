@@ -12,6 +12,7 @@ __all__ = [
     "JAM_ANGLE",
     "ORDERED_WITHIN",
     "TOWARDS_TARGET",
+    "USES_AVX2",
     "ContactSeries",
     "Contacts",
     "EnvBatch",
@@ -73,6 +74,7 @@ __all__ = [
 __version__: str
 TOWARDS_TARGET: float
 JAM_ANGLE: float
+USES_AVX2: bool
 FIRST_PARAMETERS: int
 ORDERED_WITHIN: tuple[float, float]
 

@@ -128,8 +128,8 @@ _CURVES: Mapping[Growth, _Curves] = {
     Growth("whole pool", 1600): _Curves(8, 5, (8, 8, 4)),
     Growth("circumference", 27): _Curves(24, 4, (1, 1, 1)),
     Growth("circumference", 100): _Curves(12, 5, (1, 1, 1)),
-    Growth("circumference", 400): _Curves(6, 4, (16, 16, 8)),
-    Growth("circumference", 1600): _Curves(2, 3, (64, 64, 64)),
+    Growth("circumference", 400): _Curves(8, 4, (16, 16, 8)),
+    Growth("circumference", 1600): _Curves(8, 3, (64, 64, 64)),
 }
 
 
