@@ -225,7 +225,8 @@ PINNED = {
     "moreau": (0.2903342327, -0.4254435937),
     "paper": (0.1727562860, -0.5191166660),
 }
-"""Ψ_o and φ_o of one short run; those of versions 1 and 2 differ by rounding, long runs by more."""
+"""Ψ_o and φ_o of one short run; those of versions 1 and 2 differ by rounding, long runs by more, and
+version 3 differs from 2 where pivoting cycles in large islands."""
 
 
 def test_the_numbers_belong_to_this_results_version() -> None:
@@ -234,4 +235,4 @@ def test_the_numbers_belong_to_this_results_version() -> None:
     for scheme, numbers in PINNED.items():
         order = flockenv.simulate(parameters.replace(scheme=scheme), seed=5, duration_s=6.0).order
         assert (order.psi_o[-1], order.phi_o[-1]) == pytest.approx(numbers, abs=1e-6)
-    assert run_store.RESULTS_VERSION == 2
+    assert run_store.RESULTS_VERSION == 3
