@@ -225,8 +225,8 @@ PINNED = {
     "moreau": (0.2903342327, -0.4254435937),
     "paper": (0.1727562860, -0.5191166660),
 }
-"""Ψ_o and φ_o of one short run; those of versions 1 and 2 differ by rounding, long runs by more, and
-version 3 differs from 2 where pivoting cycles in large islands."""
+"""Ψ_o and φ_o of one short run; those of versions 1 and 2 differ by rounding, long runs by more.
+Version 3 differs from 2 where pivoting cycles in large islands."""
 
 
 def test_the_numbers_belong_to_this_results_version() -> None:

@@ -53,9 +53,8 @@ LOOPS: Mapping[str, float] = {
 }
 """Kinds of loops, and how many times as long as the fastest they take."""
 
-_CORE_S = 0.03
-"""Seconds of one core that an hour of a boat takes in flocks of up to 200, which jam for a part of
-their time; larger flocks have larger islands of contacts."""
+_CORE_S = 0.02
+"""Seconds of one core that an hour of a boat takes in flocks of 800; smaller ones take less."""
 
 _POOL = "500-boats"
 _DT_S = 0.1
@@ -178,15 +177,8 @@ class TransitionDesign:
 
     def core_minutes(self, settings: Settings) -> float:
         """Return about how long one core takes for all runs, in minutes."""
-        seconds = sum(
-            _CORE_S
-            * (max(s.parameters.n_boats, 200) / 200) ** 0.7
-            * s.parameters.n_boats
-            * s.duration_s
-            / 3600
-            for s in self.all_runs(settings)
-        )
-        return float(seconds) / 60
+        boat_s = sum(spec.parameters.n_boats * spec.duration_s for spec in self.all_runs(settings))
+        return _CORE_S * float(boat_s) / 3600 / 60
 
     def _seeded(
         self,
