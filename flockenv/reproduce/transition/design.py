@@ -42,7 +42,7 @@ one jam of all boats takes to dissolve from its ends."""
 STARTED: Mapping[str, str] = dict(
     zip(STARTS, ("started rotating", "started in one jam"), strict=True)
 )
-"""What a reader is told about each start."""
+"""What each start is called in texts and pictures."""
 
 SLOWER = 3.0
 LOOPS: Mapping[str, float] = {
