@@ -6,35 +6,52 @@
 //! non-negative and every step lowers the dual, so that no active set comes twice.
 
 use super::island_solver::{IslandSolver, SWEPT_ROWS};
-use super::rows::TOLERANCE;
+use super::rows::{Row, TOLERANCE};
 use crate::contact::solver::SolveReport;
 
 /// Impulses (times A_kk, in cm/s) that only constraints which contradict each other demand.
 const CONTRADICTION: f64 = 1e9;
 
 impl IslandSolver {
-    /// Solves the island again, from no impulses at all where it is small, and otherwise from those of the last
-    /// round that push.
+    /// Solves the island again: where it is large from the impulses of the last round that push, and where it is
+    /// small, or that fails, from no impulses at all.
     pub(super) fn descend(&mut self, regularization: f64, report: &mut SolveReport) {
-        let count = self.rows.rows.len();
-        let is_small = count <= SWEPT_ROWS;
-        for k in 0..count {
-            let row = &mut self.rows.rows[k];
-            row.impulse = if is_small { 0.0 } else { row.impulse.max(0.0) };
-            let pushes = row.impulse > 0.0;
-            self.set_active(k, pushes);
+        let rows = &self.rows.rows;
+        let is_large = rows.len() > SWEPT_ROWS;
+        let pushes: Vec<_> = rows.iter().map(|row| row.impulse.max(0.0)).collect();
+        if !(is_large && self.descend_from(pushes, regularization, report)) {
+            self.descend_from(vec![0.0; self.rows.rows.len()], regularization, report);
+        }
+    }
+
+    /// Descends from impulses that push, or from none; returns whether all signs are right then. Contacts enter
+    /// together where some push already, and one by one otherwise.
+    fn descend_from(
+        &mut self,
+        mut held: Vec<f64>,
+        regularization: f64,
+        report: &mut SolveReport,
+    ) -> bool {
+        let count = held.len();
+        for (k, &impulse) in held.iter().enumerate() {
+            self.rows.rows[k].impulse = impulse;
+            self.set_active(k, impulse > 0.0);
         }
         self.rows.update();
-        let mut held: Vec<_> = self.rows.rows.iter().map(|row| row.impulse).collect();
-        if !is_small {
+        let is_warm = held.iter().any(|&impulse| impulse > 0.0);
+        if is_warm {
             self.approach(&mut held, regularization, report);
         }
         // A contact that would have to pull as soon as it enters depends on those already in.
         let mut is_refused = vec![false; count];
-        let mut enters_alone = is_small;
+        let mut enters_alone = !is_warm;
         for _ in 0..50 + 10 * count {
+            let largest = held.iter().copied().fold(0.0, f64::max);
+            if !largest.is_finite() || largest > CONTRADICTION {
+                return false;
+            }
             let Some(entering) = self.most_violated(&is_refused) else {
-                return;
+                return !self.rows.rows.iter().any(Row::is_violated);
             };
             if enters_alone {
                 self.set_active(entering, true);
@@ -44,16 +61,13 @@ impl IslandSolver {
             let moved = self.approach(&mut held, regularization, report);
             if moved > 0.0 || self.rows.rows[entering].is_active {
                 is_refused.fill(false);
-                enters_alone = is_small;
+                enters_alone = !is_warm;
             } else {
                 is_refused[entering] = enters_alone;
                 enters_alone = true;
             }
-            let largest = held.iter().copied().fold(0.0, f64::max);
-            if !largest.is_finite() || largest > CONTRADICTION {
-                return;
-            }
         }
+        false
     }
 
     /// Has all contacts enter whose gaps close. Those that would have to pull leave again at once; in a large island
