@@ -10,7 +10,6 @@ pub(crate) mod flock;
 pub(crate) mod observation;
 pub(crate) mod order;
 pub(crate) mod parameters;
-pub(crate) mod processor;
 pub(crate) mod quantities;
 pub(crate) mod recording;
 pub(crate) mod result;
@@ -68,11 +67,10 @@ mod _core {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        processor::check()?;
         crate::parallel::note_process();
         error::add_exceptions(module)?;
         module.add("TOWARDS_TARGET", crate::environment::TOWARDS_TARGET)?;
-        module.add("USES_AVX2", processor::USES_AVX2)?;
+        module.add("USES_AVX2", cfg!(target_feature = "avx2"))?;
         module.add("JAM_ANGLE", crate::analysis::structure::JAM_ANGLE)?;
         module.add(
             "ORDERED_WITHIN",

@@ -16,6 +16,7 @@ from flockenv.reproduce.transition.design import (
     DESIGNS,
     FULL,
     LOOPS,
+    STARTED,
     Growth,
     TransitionDesign,
     within,
@@ -43,7 +44,6 @@ from flockenv.reproduce.transition.order import (
     judge_jams,
     transition_order,
 )
-from flockenv.runs.protocols.initial_state import STARTS
 from flockenv.runs.spec import ORDER_NAMES
 from flockenv.runs.store import RunStore, run_missing
 from flockenv.statistics.dwell_times import DwellTimes
@@ -357,7 +357,7 @@ def test_the_budget_chooses_the_design() -> None:
 def test_every_design_has_three_sizes_with_room_for_jams(design: TransitionDesign) -> None:
     specs = transition_order(design).runs(Settings())
     assert sum(size >= MANY_BOATS for size in design.sizes) >= 3
-    loops = {spec.protocol for spec in specs} - {*STARTS}
+    loops = {spec.protocol for spec in specs} - {*STARTED}
     assert loops == {"rotating-density-loop", "rotating-length-loop", "rotating-noise-loop"}
 
 
@@ -381,7 +381,7 @@ def test_a_loop_that_never_jams_is_no_closed_loop(back: float, verdict: str, not
     loop = Loops([recorded(np.where(there, 0.1, back), steady)] * 2)
     measured = Measured(
         design,
-        {(growth, 20, start): stationary for start in STARTS},
+        {(growth, 20, start): stationary for start in STARTED},
         {(growth, kind): loop for kind in LOOPS},
         {},
     )

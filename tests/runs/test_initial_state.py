@@ -14,14 +14,16 @@ PARAMETERS = flockenv.FlockParameters.preset("simulation").replace(
 
 
 def test_the_states() -> None:
-    rotating, one_jam = (initial_flock(PARAMETERS, 2, start) for start in STARTS)
+    rotating, jammed, one_jam = (initial_flock(PARAMETERS, 2, start) for start in STARTS)
     order = rotating.order_parameters()
     assert (order.psi_o, order.phi_o) == pytest.approx((1.0, np.pi / 2))
     assert (order.psi_v, order.phi_v) == pytest.approx((PARAMETERS.speed_cm_s, np.pi / 2))
+    order = jammed.order_parameters()
+    assert (order.psi_o, order.phi_o, order.psi_v) == pytest.approx((1.0, 0.0, 0.0))
     order = one_jam.order_parameters()
     assert (order.psi_o, order.phi_o, order.psi_v) == pytest.approx((1.0, 0.0, 0.0))
     random = flockenv.Flock(PARAMETERS, 2)
-    assert (rotating.pose[:, :2] == random.pose[:, :2]).all()
+    assert (jammed.pose[:, :2] == random.pose[:, :2]).all()
 
 
 @pytest.mark.parametrize("start", STARTS)
@@ -57,5 +59,5 @@ def test_too_many_boats_for_one_jam_are_refused() -> None:
 
 
 def test_an_unknown_start_is_refused() -> None:
-    with pytest.raises(flockenv.ParameterError, match="rotating, one-jam"):
+    with pytest.raises(flockenv.ParameterError, match="rotating, jammed, one-jam"):
         initial_flock(PARAMETERS, 0, "asleep")

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from flockenv.parameters import FlockParameters
 from flockenv.reproduce.reproduction import Settings, within_budget
 from flockenv.runs.protocols.hysteresis import resized
-from flockenv.runs.protocols.initial_state import STARTS
 from flockenv.runs.spec import RunSpec
 
 __all__ = [
@@ -39,10 +38,8 @@ LONGER_ABOVE = 400
 """Boats from which runs at one density are longer in proportion to the flock, as is the time that
 one jam of all boats takes to dissolve from its ends."""
 
-STARTED: Mapping[str, str] = dict(
-    zip(STARTS, ("started rotating", "started in one jam"), strict=True)
-)
-"""What each start is called in texts and pictures."""
+STARTED: Mapping[str, str] = {"rotating": "started rotating", "one-jam": "started in one jam"}
+"""What each start, of `runs.protocols.initial_state.STARTS`, is called in texts and pictures."""
 
 SLOWER = 3.0
 LOOPS: Mapping[str, float] = {
@@ -112,7 +109,7 @@ class TransitionDesign:
     def stationary(
         self, settings: Settings, growth: Growth, density: int, start: str, dt_s: float = _DT_S
     ) -> tuple[RunSpec, ...]:
-        """Return the runs at one density without noise, from one of `STARTS`."""
+        """Return the runs at one density without noise, from one of `STARTED`."""
         longer = max(1.0, growth.n_boats / LONGER_ABOVE)
         length = settings.duration_s(self.stationary_minutes) * longer
         parameters = growth.parameters(density, dt_s=dt_s)
@@ -147,7 +144,7 @@ class TransitionDesign:
             (growth, density, start)
             for growth in self.growths()
             for density in self.densities[growth.way]
-            for start in STARTS
+            for start in STARTED
         ]
 
     def fine_points(self) -> list[tuple[Growth, int, str]]:

@@ -95,7 +95,9 @@ NUCLEUS = 10
 
 
 class Jams:
-    """Jams in the second half of runs at one density, see `statistics.structure.jam_sizes`.
+    """Jams of runs at one density, shares and sizes in their second halves.
+
+    See `statistics.structure.jam_sizes`.
 
     Attributes
     ----------
@@ -341,12 +343,12 @@ class Measured:
         return _slope(np.log([growth.n_boats for growth in growths]), logs)
 
     def memory(self, growth: Growth, density: int) -> NDArray[np.float64]:
-        """Return the mean size of jams from rotation over that from one jam, 0 without any.
+        """Return the mean size of jams from rotation over that from one jam.
 
         Returns
         -------
         float64 array, shape (RESAMPLES + 1,)
-            With its replicates over runs.
+            With its replicates over runs; 0 without jams from rotation, NaN without any from one.
         """
         rotating, one_jam = (self._jam_size(growth, density, start) for start in STARTED)
         return rotating / np.where(one_jam > 0.0, one_jam, math.nan)

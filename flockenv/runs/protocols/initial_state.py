@@ -1,4 +1,4 @@
-"""Flocks that start in order: all boats circulating, or all in one jam.
+"""Flocks that start in order: all boats circulating, all pressing outward, or all in one jam.
 
 At a transition of first order both states last at one density, and where a run ends depends on
 where it started; a random start shows one of the two, or neither.
@@ -15,9 +15,9 @@ from flockenv.parameters import FlockParameters
 
 __all__ = ["STARTS", "initial_flock"]
 
-STARTS = ("rotating", "one-jam")
-"""All boats clockwise along the tangent at their full speed, where a random start puts them; all
-facing the outer wall at rest side by side, in one stretch of it."""
+STARTS = ("rotating", "jammed", "one-jam")
+"""All boats clockwise along the tangent at their full speed; all facing the outer wall at rest,
+where a random start puts them; all facing it at rest side by side, in one stretch of the wall."""
 
 _STRETCH = 0.75
 """Largest part of the wall that the boats of one jam cover before they stand in several rows."""
@@ -29,7 +29,9 @@ _ROOM = 1.001
 def initial_flock(parameters: FlockParameters, seed: int, start: str) -> _core.Flock:
     """Return a flock in an initial state of that name.
 
-    The seed decides where boats that rotate are, and where on the wall the jam starts.
+    Boats of one jam stand side by side, the seed deciding where on the wall; the others keep the
+    places of a random start. Turning boats where they are may let some overlap; the contact solver
+    takes that out again.
 
     Parameters
     ----------
@@ -50,13 +52,14 @@ def initial_flock(parameters: FlockParameters, seed: int, start: str) -> _core.F
     flock = _core.Flock(parameters, seed)
     pose, velocity = flock.pose, np.zeros((parameters.n_boats, 3))
     outward = np.arctan2(pose[:, 1], pose[:, 0])
+    pose[:, 2] = outward
     if start == "one-jam":
         pose = _one_jam(parameters, outward[0])
-    else:
-        pose[:, 2] = outward - np.pi / 2
-        velocity[:, 0] = parameters.speed_cm_s * np.cos(pose[:, 2])
-        velocity[:, 1] = parameters.speed_cm_s * np.sin(pose[:, 2])
-    # Boats that are turned where they are may overlap; the contact solver takes that out again.
+    elif start == "rotating":
+        heading = outward - np.pi / 2
+        pose[:, 2] = heading
+        velocity[:, 0] = parameters.speed_cm_s * np.cos(heading)
+        velocity[:, 1] = parameters.speed_cm_s * np.sin(heading)
     flock.set_state(pose, velocity, allow_overlap=True)
     return flock
 

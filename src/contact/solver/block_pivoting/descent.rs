@@ -7,7 +7,7 @@
 
 use super::island_solver::{IslandSolver, SWEPT_ROWS};
 use super::rows::{Row, TOLERANCE};
-use crate::contact::solver::SolveReport;
+use crate::contact::solver::{EXACT, SolveReport};
 
 /// Impulses (times A_kk, in cm/s) that only constraints which contradict each other demand.
 const CONTRADICTION: f64 = 1e9;
@@ -17,14 +17,14 @@ impl IslandSolver {
     /// small, or that fails, from no impulses at all.
     pub(super) fn descend(&mut self, regularization: f64, report: &mut SolveReport) {
         let rows = &self.rows.rows;
-        let is_large = rows.len() > SWEPT_ROWS;
         let pushes: Vec<_> = rows.iter().map(|row| row.impulse.max(0.0)).collect();
-        if !(is_large && self.descend_from(pushes, regularization, report)) {
+        let is_warm = rows.len() > SWEPT_ROWS && pushes.iter().any(|&impulse| impulse > 0.0);
+        if !(is_warm && self.descend_from(pushes, regularization, report)) {
             self.descend_from(vec![0.0; self.rows.rows.len()], regularization, report);
         }
     }
 
-    /// Descends from impulses that push, or from none; returns whether all signs are right then. Contacts enter
+    /// Descends from impulses that push, or from none; returns whether that solves it. Contacts enter
     /// together where some push already, and one by one otherwise.
     fn descend_from(
         &mut self,
@@ -51,7 +51,8 @@ impl IslandSolver {
                 return false;
             }
             let Some(entering) = self.most_violated(&is_refused) else {
-                return !self.rows.rows.iter().any(Row::is_violated);
+                let closes = self.worst <= EXACT || regularization > TOLERANCE;
+                return closes && !self.rows.rows.iter().any(Row::is_violated);
             };
             if enters_alone {
                 self.set_active(entering, true);

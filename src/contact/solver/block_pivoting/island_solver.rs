@@ -28,7 +28,7 @@ pub(super) struct IslandSolver {
     solution: Vec<f64>,
     /// Rows whose sign is wrong, and the largest slack of an active row in cm/s.
     violations: usize,
-    worst: f64,
+    pub worst: f64,
 }
 
 impl IslandSolver {
