@@ -346,7 +346,7 @@ def test_the_budget_chooses_the_design() -> None:
     for design, cost in zip(DESIGNS, costs, strict=True):
         assert within(Settings(budget_core_min=cost + 0.1)) is design
     assert within(Settings(budget_core_min=1e6)) is FULL
-    assert within(Settings(minutes=1.0, budget_core_min=30.0)) is FULL
+    assert within(Settings(minutes=1.0, budget_core_min=8.0)) is FULL
     with pytest.raises(flockenv.ParameterError, match="budget = 1 core-minutes is not enough"):
         within(Settings(budget_core_min=1.0))
     with pytest.raises(flockenv.ParameterError, match="budget = nan"):

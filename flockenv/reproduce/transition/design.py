@@ -35,8 +35,8 @@ WIDTH_EXPONENTS = {way: 0.0 if keeps else 0.5 for way, keeps in WAYS.items()}
 at one density."""
 
 LONGER_ABOVE = 400
-"""Boats from which runs at one density are longer in proportion to the flock, as is the time that
-one jam of all boats takes to dissolve from its ends."""
+"""Boats from which runs at one density are longer in proportion to the flock, since one jam of all
+boats takes longer to dissolve from its ends."""
 
 STARTED: Mapping[str, str] = {"rotating": "started rotating", "one-jam": "started in one jam"}
 """What each start, of `runs.protocols.initial_state.STARTS`, is called in texts and pictures."""

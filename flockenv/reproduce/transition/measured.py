@@ -348,7 +348,8 @@ class Measured:
         Returns
         -------
         float64 array, shape (RESAMPLES + 1,)
-            With its replicates over runs; 0 without jams from rotation, NaN without any from one.
+            With its replicates over seeds, which are drawn alike for both starts; 0 without jams
+            from rotation, NaN without any from one.
         """
         rotating, one_jam = (self._jam_size(growth, density, start) for start in STARTED)
         return rotating / np.where(one_jam > 0.0, one_jam, math.nan)

@@ -74,7 +74,7 @@ def _jams(measured: Measured) -> Figure:
                     ends = np.array([student_interval(getattr(each, name)) for each in found])
                     bars = [ends[:, 0] - ends[:, 1], ends[:, 2] - ends[:, 0]]
                     line = f"{_MARKS[place]}{_LINES[start]}"
-                    label = str(density) if _LINES[start] == "-" else None
+                    label = str(density) if start == "rotating" else None
                     color = COLORS[place]
                     x = sizes * 1.05 ** (place - 1)
                     axes.errorbar(
@@ -226,7 +226,7 @@ def _cumulants(measured: Measured) -> Figure:
                     values = [
                         cumulant(measured.stationary[Growth(way, n), density, start]) for n in sizes
                     ]
-                    label = str(density) if _LINES[start] == "-" else None
+                    label = str(density) if start == "rotating" else None
                     line = f"{_MARKS[place % len(_MARKS)]}{_LINES[start]}"
                     ends = np.array([interval(each) for each in values])
                     _draw_cumulant(axes, sizes, ends, line, place, label)
@@ -276,7 +276,7 @@ def _histograms(measured: Measured, name: str) -> Figure:
                         color=COLORS[place % len(COLORS)],
                         ls=_LINES[start],
                         lw=0.9,
-                        label=str(density) if _LINES[start] == "-" else None,
+                        label=str(density) if start == "rotating" else None,
                     )
             axes.set_yscale("log")
             head = f"{way} grows\n" if row == 0 else ""
