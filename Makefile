@@ -32,6 +32,8 @@ RUST_SOURCES := Cargo.toml Cargo.lock $(shell find src)
 STUBS := flockenv/_core.pyi
 # This machine's own build may use AVX2, which alters no bit. Wheels run on every processor.
 CODEGEN := $(if $(findstring avx2,$(shell rustc --print cfg -C target-cpu=native 2> /dev/null)),-- -C target-feature=+avx2)
+# One stamp a kind: where a checkout is moved to a machine without AVX2, the core is compiled again.
+CORE := $(STAMPS)/core$(if $(CODEGEN),-avx2)
 JS_TESTS := tests/replay/js
 
 # The comparison with other engines: a crate and a Python environment of their own.
@@ -65,9 +67,9 @@ test: lint test-rust test-python ## set up, then check style and types and run a
 
 setup: $(STAMPS)/test
 
-build: $(STAMPS)/core ## build the simulator and install the package, editable, into .venv
+build: $(CORE) ## build the simulator and install the package, editable, into .venv
 
-lint: $(STAMPS)/test $(STAMPS)/core ## formatting, clippy without and with all features, Rust module cycles, ruff, import layers, mypy, stubs, spelling, wording
+lint: $(STAMPS)/test $(CORE) ## formatting, clippy without and with all features, Rust module cycles, ruff, import layers, mypy, stubs, spelling, wording
 	cargo fmt --check
 	$(BIN)/ruff format --check
 	cargo clippy --locked --all-targets -- -D warnings
@@ -94,18 +96,18 @@ test-bare: ## the physics without any feature
 
 # One thread for each worker's linear algebra, or the workers fight over the cores. Tests of one file share what
 # it prepares.
-test-python: $(STAMPS)/test $(STAMPS)/core ## the Python package
+test-python: $(STAMPS)/test $(CORE) ## the Python package
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist loadfile $(PYTEST_ARGS)
 
 # Where rustup cannot fetch LLVM's tools, or there is none, LLVM_COV and LLVM_PROFDATA name those of another install.
-coverage: $(STAMPS)/coverage $(STAMPS)/core ## which lines the tests run, of the package and of the physics
+coverage: $(STAMPS)/coverage $(CORE) ## which lines the tests run, of the package and of the physics
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist loadfile --cov=flockenv --cov-report=term:skip-covered $(PYTEST_ARGS)
 	cargo llvm-cov --locked
 
-fuzz: $(STAMPS)/test $(STAMPS)/core ## hostile parameters, options, states, files and command lines, for minutes
+fuzz: $(STAMPS)/test $(CORE) ## hostile parameters, options, states, files and command lines, for minutes
 	OMP_NUM_THREADS=1 FUZZ_EXAMPLES=$(FUZZ_EXAMPLES) $(BIN)/python -m pytest -n $(JOBS) --timeout 1800 tests/fuzz $(PYTEST_ARGS)
 
-test-browser: $(STAMPS)/browser $(STAMPS)/core ## the replay page, clicked and read in headless Chromium
+test-browser: $(STAMPS)/browser $(CORE) ## the replay page, clicked and read in headless Chromium
 	@tests/browser/need_chromium.sh
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m browser tests/browser $(PYTEST_ARGS)
 
@@ -133,7 +135,7 @@ test-oldest: $(STAMPS)/venv ## the oldest supported versions, in .venv-oldest
 	  tests/comparison tests/calibration tests/cli $(PYTEST_ARGS)
 
 # Pages with code cells are executed, and what they trained is trained again.
-docs: $(STAMPS)/docs $(STAMPS)/core ## build the pages, warnings are errors, into docs/_build/html, and those of the crate
+docs: $(STAMPS)/docs $(CORE) ## build the pages, warnings are errors, into docs/_build/html, and those of the crate
 	RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps
 	rm -rf docs/_build/leader
 	OMP_NUM_THREADS=1 $(BIN)/python -m sphinx --fail-on-warning --nitpicky --builder html docs docs/_build/html
@@ -158,24 +160,24 @@ publish-check: ## the crate as it would be published: its files, built alone; an
 	  { cargo semver-checks --version || cargo install --locked cargo-semver-checks; } && \
 	  cargo semver-checks --baseline-rev "$$base"; fi
 
-validate: $(STAMPS)/test $(STAMPS)/core ## the slow tests and the published curves
+validate: $(STAMPS)/test $(CORE) ## the slow tests and the published curves
 	cargo test --locked --features clarabel,draw -- --ignored
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) -m slow --timeout 3600 $(PYTEST_ARGS)
 
-tables: $(STAMPS)/compare $(STAMPS)/core ## fill the tables and draw the curves of README and docs from the committed data
+tables: $(STAMPS)/compare $(CORE) ## fill the tables and draw the curves of README and docs from the committed data
 	$(BIN)/python docs/tables.py
 	$(BIN)/python docs/leader_curves.py
 	$(BIN)/python benches/report docs
 	$(BIN)/python benches/throughput.py --page
 
-replay-animation: $(STAMPS)/browser $(STAMPS)/core ## photograph the replay page into docs/replay.webp
+replay-animation: $(STAMPS)/browser $(CORE) ## photograph the replay page into docs/replay.webp
 	@tests/browser/need_chromium.sh
 	$(BIN)/python docs/replay_animation.py
 
-learning-check: $(STAMPS)/test $(STAMPS)/core ## train 500 000 samples through each interface, write docs/learning-check.md
+learning-check: $(STAMPS)/test $(CORE) ## train 500 000 samples through each interface, write docs/learning-check.md
 	$(BIN)/python baselines/learning_check.py
 
-training-physics: $(STAMPS)/test $(STAMPS)/core ## compare training physics with the default, write docs/training_physics.md
+training-physics: $(STAMPS)/test $(CORE) ## compare training physics with the default, write docs/training_physics.md
 	$(BIN)/python baselines/training_physics.py $(TRAINING_PHYSICS_ARGS)
 
 # RLlib pins an older gymnasium, BenchMARL an older TorchRL, and the peers other things: environments of their own.
@@ -206,21 +208,21 @@ test-ray: $(STAMPS)/test ## the ray engine on a real local Ray, in .venv-ray
 	VIRTUAL_ENV="$(CURDIR)/.venv-ray" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
 	.venv-ray/bin/python -m pytest -m ray tests/runs/test_executors.py tests/cluster
 
-test-slurm: $(STAMPS)/test $(STAMPS)/core ## the recipe for Slurm on a real one of one node, started here (Linux, root)
+test-slurm: $(STAMPS)/test $(CORE) ## the recipe for Slurm on a real one of one node, started here (Linux, root)
 	@tests/need.sh "munged slurmctld slurmd sbatch" "slurm-wlm munge"
 	$(BIN)/python -m pytest -m slurm tests/cluster $(PYTEST_ARGS)
 
-throughput: $(STAMPS)/test $(STAMPS)/core ## measure speed beside VMAS and MPE2, write docs/throughput.md
+throughput: $(STAMPS)/test $(CORE) ## measure speed beside VMAS and MPE2, write docs/throughput.md
 	$(PYTHON) -m venv .venv-peers
 	VIRTUAL_ENV="$(CURDIR)/.venv-peers" $(BIN)/uv pip install vmas mpe2 "torch>=2.5" \
 	  --excludes requirements-excluded.txt
 	$(BIN)/python benches/throughput.py $(THROUGHPUT_ARGS)
 
-learners-throughput: $(STAMPS)/core env-rllib env-benchmarl ## measure the learners' interfaces beside the batch, into docs
+learners-throughput: $(CORE) env-rllib env-benchmarl ## measure the learners' interfaces beside the batch, into docs
 	$(BIN)/python benches/learners.py $(THROUGHPUT_ARGS)
 	$(BIN)/python docs/tables.py
 
-soak: $(STAMPS)/test $(STAMPS)/core ## ten million control steps with random rudders, write docs/soak.md (minutes)
+soak: $(STAMPS)/test $(CORE) ## ten million control steps with random rudders, write docs/soak.md (minutes)
 	$(BIN)/python benches/soak.py $(SOAK_ARGS)
 
 # Counts hold on a busy machine, unlike times. INSTRUCTIONS=--write writes new ones.
@@ -303,9 +305,9 @@ $(STAMPS)/peers: benches/peers/requirements.txt | $(STAMPS)/venv
 # An install from elsewhere, such as `pip install .` in this .venv, takes the place of the editable one; and
 # `git clean` removes what was compiled.
 ifeq ($(and $(wildcard flockenv/_core.*.so flockenv/_core.*.pyd),$(shell grep -lxF "$(CURDIR)" $(VENV)/lib/python3*/site-packages/flockenv.pth 2> /dev/null)),)
-.PHONY: $(STAMPS)/core
+.PHONY: $(CORE)
 endif
 
-$(STAMPS)/core: $(RUST_SOURCES) pyproject.toml | $(STAMPS)/compare
+$(CORE): $(RUST_SOURCES) pyproject.toml | $(STAMPS)/compare
 	VIRTUAL_ENV="$(CURDIR)/$(VENV)" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv $(CODEGEN)
 	@touch $@
