@@ -1,7 +1,7 @@
 """A claim of the paper as a range that a measured quantity must lie in."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from flockenv.statistics.intervals import CONFIDENCE
 
@@ -10,6 +10,9 @@ __all__ = ["DOES_NOT_HOLD", "HOLDS", "INCONCLUSIVE", "CheckedClaim", "Claim", "n
 HOLDS = "holds"
 DOES_NOT_HOLD = "does not hold"
 INCONCLUSIVE = "inconclusive"
+
+_FAR = 100
+"""So many times as many runs are not worth a number."""
 
 
 def number(value: float) -> str:
@@ -24,7 +27,8 @@ class Claim:
     """What the paper says, and how it is judged: fixed before anything is measured.
 
     The claim holds if the whole interval of the quantity lies in [low, high], it does not hold if
-    all of it lies outside, and it is inconclusive otherwise or if the quantity is undefined.
+    all of it lies outside, and it is inconclusive otherwise, if the quantity is undefined, or if it
+    is exactly 0 where a sign is claimed.
 
     Attributes
     ----------
@@ -56,6 +60,9 @@ class Claim:
     ) -> "CheckedClaim":
         """Judge the claim by a measured value and the ends of its interval."""
         if math.isnan(measured) or math.isnan(low) or math.isnan(high):
+            verdict = INCONCLUSIVE
+        elif low == high == 0.0 and 0.0 in (self.low, self.high):
+            # No draw shows any difference, which is not evidence for its sign.
             verdict = INCONCLUSIVE
         elif self.low <= low and high <= self.high:
             verdict = HOLDS
@@ -91,6 +98,29 @@ class CheckedClaim:
     high: float
     verdict: str
     note: str = ""
+
+    def with_needs(self, runs: int, what: str) -> "CheckedClaim":
+        """Return the claim; an open one says how many such runs would decide it.
+
+        Parameters
+        ----------
+        runs
+            How many there are.
+        what
+            What they are, in words: "seeds".
+        """
+        if self.verdict != INCONCLUSIVE:
+            return self
+        nearest = min(abs(self.measured - bound) for bound in (self.claim.low, self.claim.high))
+        half = max(self.measured - self.low, self.high - self.measured)
+        if not half >= 0.0:
+            needs = "longer runs: it is undefined in these"
+        elif half**2 >= _FAR * nearest**2:
+            needs = f"more than {_FAR} times as many {what}"
+        else:
+            needs = f"about {math.ceil(runs * (half / nearest) ** 2)} {what}, where it has {runs}"
+        note = f"inconclusive: needs {needs}"
+        return replace(self, note=f"{self.note}; {note}" if self.note else note)
 
     @property
     def ends(self) -> str:

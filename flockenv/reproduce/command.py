@@ -7,10 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from flockenv.errors import FlockError
-from flockenv.reproduce.catalogue import ALL, load, resolve
+from flockenv.reproduce.catalogue import ALL, BUDGETED, load, resolve
 from flockenv.reproduce.claim import CheckedClaim
 from flockenv.reproduce.files import (
     claims_table,
+    csv_bytes,
     picture_bytes,
     write_file,
     write_outcome,
@@ -19,7 +20,13 @@ from flockenv.reproduce.files import (
 from flockenv.reproduce.report import html_report
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings
 from flockenv.reproduce.style import mark_short
-from flockenv.reproduce.summary import Finished, markdown_summary, shown_pictures
+from flockenv.reproduce.summary import (
+    CLAIMS,
+    Finished,
+    kept_tables,
+    markdown_summary,
+    shown_pictures,
+)
 from flockenv.runs.executors import Engine, local
 from flockenv.runs.spec import RunSpec
 from flockenv.runs.store import RUNS_FOLDER, RunStore, run_missing
@@ -97,8 +104,8 @@ def reproduce(
     notify
         See `RunStore`.
     summary
-        Where to write a page of claims and pictures, like ``summary.md``; the pictures go into a
-        folder of the same name beside it.
+        Where to write a page of claims and pictures, like ``summary.md``; the pictures, and where
+        figures are named one by one their data, go into a folder of the same name beside it.
     workers
         How many runs at a time; every core that this process may use by default.
 
@@ -144,7 +151,8 @@ def mark_where_short(
     given_s, own_s = (max((spec.duration_s for spec in each), default=0.0) for each in (specs, own))
     if given_s < own_s:
         for picture in outcome.pictures.values():
-            mark_short(picture, given_s / 60, own_s / 60)
+            full = "in the full design" if figure.name in BUDGETED else "in the paper"
+            mark_short(picture, given_s / 60, f"{own_s / 60:g} min {full}")
 
 
 def _write_report(
@@ -163,5 +171,9 @@ def _write_summary(plan: Plan, finished: Finished, summary: Path) -> None:
     for figure, name, _ in shown_pictures(finished):
         picture = picture_bytes(outcomes[figure.name].pictures[name], "png")
         write_file(summary.with_suffix("") / f"{name}.png", picture)
-    page = markdown_summary(plan.settings, finished, f"{summary.stem}/{{picture}}.png")
+    for figure, name in kept_tables(finished):
+        claims = outcomes[figure.name].claims
+        table = claims_table(claims) if name == CLAIMS else outcomes[figure.name].tables[name]
+        write_file(summary.with_suffix("") / f"{name}.csv", csv_bytes(table))
+    page = markdown_summary(plan.settings, finished, summary.stem)
     write_file(summary, page.encode())

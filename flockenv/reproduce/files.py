@@ -14,7 +14,15 @@ from flockenv.reproduce.reproduction import Outcome
 from flockenv.reproduce.style import paper_style
 from flockenv.runs.store import StorageError
 
-__all__ = ["PNG_DPI", "claims_table", "picture_bytes", "write_file", "write_outcome", "write_table"]
+__all__ = [
+    "PNG_DPI",
+    "claims_table",
+    "csv_bytes",
+    "picture_bytes",
+    "write_file",
+    "write_outcome",
+    "write_table",
+]
 
 PNG_DPI = 300
 
@@ -54,12 +62,14 @@ def _with_numbered_clips(svg: bytes) -> bytes:
     )
 
 
+def csv_bytes(table: pd.DataFrame) -> bytes:
+    """Return a table as CSV, six significant digits."""
+    return table.to_csv(index=False, float_format="%.6g", lineterminator="\n").encode()
+
+
 def write_table(table: pd.DataFrame, stem: Path) -> None:
     """Write a table as CSV (6 significant digits) and Parquet (all of them)."""
-    write_file(
-        stem.with_suffix(".csv"),
-        table.to_csv(index=False, float_format="%.6g", lineterminator="\n").encode(),
-    )
+    write_file(stem.with_suffix(".csv"), csv_bytes(table))
     buffer = io.BytesIO()
     table.to_parquet(buffer, index=False)
     write_file(stem.with_suffix(".parquet"), buffer.getvalue())

@@ -66,8 +66,8 @@ def column_figure(height_cm: float, width_cm: float = COLUMN_CM) -> Figure:
     return Figure(figsize=(width_cm / 2.54, height_cm / 2.54), layout="constrained")
 
 
-def mark_short(figure: Figure, minutes: float, paper_minutes: float) -> None:
-    """Write below a figure that its runs are shorter than the paper's: it may show other states."""
+def mark_short(figure: Figure, minutes: float, full: str) -> None:
+    """Write below a figure that its runs are shorter than full ones: it may show other states."""
     below = 0.35 / 2.54 / figure.get_figheight()
     layout = figure.get_layout_engine()
     if layout is not None:
@@ -75,7 +75,7 @@ def mark_short(figure: Figure, minutes: float, paper_minutes: float) -> None:
     figure.text(
         0.5,
         0.3 * below,
-        f"short runs: {minutes:.3g} min, {paper_minutes:g} min in the paper",
+        f"short runs: {minutes:.3g} min, {full}",
         ha="center",
         va="bottom",
         fontsize=6.5,

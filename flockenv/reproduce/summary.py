@@ -11,7 +11,18 @@ from flockenv.runs.spec import RunSpec
 from flockenv.runs.store import RESULTS_VERSION
 from flockenv.statistics.intervals import CONFIDENCE
 
-__all__ = ["KEY_FIGURES", "Finished", "command", "markdown_summary", "shown_pictures"]
+__all__ = [
+    "CLAIMS",
+    "KEY_FIGURES",
+    "Finished",
+    "command",
+    "kept_tables",
+    "markdown_summary",
+    "shown_pictures",
+]
+
+CLAIMS = "claims"
+"""Name of the table of claims."""
 
 KEY_FIGURES = ("fig9", "fig12", "fig14", "fig17")
 """The figures shown for `all`: two of the experiment, two of the simulation."""
@@ -23,9 +34,9 @@ Finished = Sequence[tuple[Reproduction, Sequence[RunSpec], Outcome]]
 def markdown_summary(
     settings: Settings,
     finished: Finished,
-    pictures: str = "{name}/{picture}.png",
+    folder: str | None = None,
 ) -> str:
-    """Return the page; `pictures` is the path of a picture of a name."""
+    """Return the page; its pictures and data are in a folder, or by figure in those of results."""
     hours = sum({spec.key: spec.duration_s for _, specs, _ in finished for spec in specs}.values())
     minutes = settings.minutes
     own = "of the lengths given below" if _is_beyond(finished) else "of the paper's own length"
@@ -44,11 +55,12 @@ def markdown_summary(
         f"{hours / 3600:.0f} hours of flock time; their first seed is {settings.seed}. "
         f"A claim holds if the {CONFIDENCE:.0%} interval of the measured quantity lies in the "
         "claimed range, does not hold if it lies outside, and is inconclusive otherwise. The "
-        "ranges stand in the code and were fixed before the runs.",
+        "ranges stand in the code and were fixed before these runs. Verdicts are not corrected for "
+        "the number of claims.",
         "",
     ]
     for figure, picture, caption in shown_pictures(finished):
-        lines += [f"![{caption}]({pictures.format(name=figure.name, picture=picture)})", ""]
+        lines += [f"![{caption}]({folder or figure.name}/{picture}.png)", ""]
         lines += [f"{figure.name}: {caption}.", ""]
     for figure, _, outcome in finished:
         lines += [f"## {figure.name}: {figure.title}", ""]
@@ -59,7 +71,19 @@ def markdown_summary(
             table = outcome.tables[name]
             rows: list[Sequence[object]] = [list(table.columns), *table.to_numpy().tolist()]
             lines += [*_table(rows), ""]
+    if folder is not None and (kept := kept_tables(finished)):
+        links = ", ".join(f"[{name}.csv]({folder}/{name}.csv)" for _, name in kept)
+        lines += [f"The numbers of this page are in {links}.", ""]
     return "\n".join(lines)
+
+
+def kept_tables(finished: Finished) -> list[tuple[Reproduction, str]]:
+    """Return the tables that go along with the page of a single figure, `CLAIMS` first."""
+    if len(finished) != 1:
+        return []
+    figure, _, outcome = finished[0]
+    claims = [CLAIMS] if outcome.claims else []
+    return [(figure, name) for name in (*claims, *outcome.shown, *outcome.kept)]
 
 
 def shown_pictures(finished: Finished) -> list[tuple[Reproduction, str, str]]:

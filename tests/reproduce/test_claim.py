@@ -33,3 +33,18 @@ def test_half_open_ranges() -> None:
     assert most.accepted == "≤ 0"
     assert most.check(0.2, 0.1, 0.3).verdict == DOES_NOT_HOLD
     assert most.check(math.nan, math.nan, math.nan).verdict == INCONCLUSIVE
+
+
+def test_no_difference_at_all_is_no_evidence_for_its_sign() -> None:
+    more = Claim(text="More", section="", quantity="difference", low=0.0)
+    assert more.check(0.0, 0.0, 0.0).verdict == INCONCLUSIVE
+    assert more.check(0.1, 0.0, 0.2).verdict == HOLDS
+    equal = Claim(text="Equal", section="", quantity="difference", low=-0.1, high=0.1)
+    assert equal.check(0.0, 0.0, 0.0).verdict == HOLDS
+
+
+def test_an_open_claim_says_how_many_runs_would_decide_it() -> None:
+    more = Claim(text="More", section="", quantity="difference", low=0.0)
+    open_claim = more.check(0.1, -0.1, 0.3, note="of 50 boats").with_needs(8, "seeds")
+    assert open_claim.note == "of 50 boats; inconclusive: needs about 32 seeds, where it has 8"
+    assert more.check(0.2, 0.1, 0.3).with_needs(8, "seeds").note == ""

@@ -5,6 +5,7 @@ in the middle of the logarithms, at 0.02; and proportions of 0.2, 0.1 and 0.05 i
 and 160 boats have the exponent -1/2.
 """
 
+import math
 from itertools import product
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 
 import flockenv
 from flockenv.recording import RecordedOrder
+from flockenv.reproduce.files import picture_bytes
 from flockenv.reproduce.leader_fraction.design import (
     DESIGNS,
     FULL,
@@ -30,7 +32,8 @@ from flockenv.reproduce.leader_fraction.fraction import (
     judge,
     leader_fraction,
 )
-from flockenv.reproduce.leader_fraction.measured import Curve, exponent, guiding_fraction
+from flockenv.reproduce.leader_fraction.measured import Curve, exponent, guiding_fraction, line_p
+from flockenv.reproduce.leader_fraction.pictures import picture
 from flockenv.reproduce.reproduction import Results, Settings
 from flockenv.reproduce.transition.design import WAYS, Growth
 from flockenv.runs.spec import ORDER_NAMES
@@ -226,3 +229,17 @@ def test_the_budget_chooses_the_design() -> None:
 def test_larger_designs_contain_the_runs_of_smaller_ones() -> None:
     runs = [set(leader_fraction(design).runs(Settings())) for design in DESIGNS]
     assert runs[0] < runs[1] < runs[2]
+
+
+def test_sizes_off_a_power_law_are_named() -> None:
+    on_line = [curve(n, 0.3 * n**-0.5, 0.1) for n in (27, 100, 400)]
+    off_line = [curve(n, fraction, 0.1) for n, fraction in ((27, 0.2), (100, 0.02), (400, 0.2))]
+    assert line_p(on_line) == pytest.approx(1.0)
+    assert line_p(off_line) < 1e-3
+    assert math.isnan(line_p(on_line[:2]))
+
+
+def test_a_picture_without_any_proportion() -> None:
+    design = _designed(_TWO[:1], (1,))
+    curves = {setup: curve(setup[1].n_boats, np.nan) for setup in design.leaders}
+    assert picture_bytes(picture(design, curves), "png")

@@ -58,7 +58,7 @@ def test_short_runs_are_marked_in_the_picture(uninterrupted: Path) -> None:
     figure = column_figure(6.0)
     axes = figure.subplots()
     axes.set_xlabel("x")
-    mark_short(figure, 0.4, 60.0)
+    mark_short(figure, 0.4, "60 min in the paper")
     figure.draw_without_rendering()
     (words,) = figure.texts
     assert words.get_text() == marked

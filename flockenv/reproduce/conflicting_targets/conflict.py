@@ -6,15 +6,13 @@ directions differ enough it chooses one instead of the mean of both. There, indi
 each other; here, boats do nothing but collide.
 """
 
-import math
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from flockenv.reproduce.claim import INCONCLUSIVE, CheckedClaim, Claim
+from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, CheckedClaim, Claim
 from flockenv.reproduce.conflicting_targets.design import (
     AGAINST,
     FULL,
@@ -56,8 +54,6 @@ __all__ = [
 
 _COUZIN = "1, citing Couzin et al. (2005)"
 _BEYOND = "beyond the paper"
-_FAR = 100
-"""So many times as many runs are not worth a number."""
 
 LARGER = Claim(
     text="The flock follows the larger side",
@@ -166,35 +162,24 @@ def _judge_alike(design: ConflictDesign, setup: Setup, found: Found) -> list[Che
     ):
         claims.append(_judged(claim, interval(values), setup.words, runs))
     alone = found[setup, LEADERLESS]
+    without = f"without leaders {cumulant(alone)[0]:.2f}"
     for match in matches:
         if match[0] == match[1]:
             tie, scope = found[setup, match], f"{setup.words}, {_versus(match)}"
             stalled = tie.means["still"] - alone.means["still"]
             mean_life = lifetime_min(tie) / lifetime_min(alone)
             claims += [
-                _judged(CHOOSES, interval(cumulant(tie)), scope, runs),
+                _judged(CHOOSES, interval(cumulant(tie)), scope, runs, without),
                 _judged(STALLS, interval(stalled), scope, runs),
                 _judged(KEEPS, interval(mean_life), scope, runs),
             ]
     return claims
 
 
-def _judged(claim: Claim, found: tuple[float, float, float], scope: str, runs: int) -> CheckedClaim:
-    """Judge a claim; an open one says how many runs would decide it if they measured the same."""
-    checked = claim.check(*found, scope)
-    if checked.verdict != INCONCLUSIVE:
-        return checked
-    value, low, high = found
-    nearest = min(abs(value - bound) for bound in (claim.low, claim.high))
-    half = max(value - low, high - value)
-    if not half >= 0.0:
-        needs = "longer runs: it is undefined in these"
-    elif half**2 >= _FAR * nearest**2:
-        needs = f"more than {_FAR} times as many runs"
-    else:
-        count = math.ceil(runs * (half / nearest) ** 2)
-        needs = f"about {count} runs for each match, where it has {runs}"
-    return replace(checked, note=f"inconclusive: needs {needs}")
+def _judged(
+    claim: Claim, found: tuple[float, float, float], scope: str, runs: int, note: str = ""
+) -> CheckedClaim:
+    return claim.check(*found, scope, note).with_needs(runs, "runs for each match")
 
 
 def _order(found: Measured) -> tuple[float, float, float]:
@@ -212,11 +197,12 @@ def _analyze(design: ConflictDesign, settings: Settings, results: Results) -> Ou
             specs = design.specs(settings, setup, match)
             runs = [results[spec] for spec in specs]
             found[setup, match] = Measured.of_runs(runs, specs[0].draws_seed)
+    claims = judge(design, found)
     return Outcome(
         {"matches": _matches_table(found), "minutes": _minutes_table(found)},
         {"conflicting-targets": picture(design, found), "rotation": histograms(design, found)},
-        judge(design, found),
-        _notes(design, settings),
+        claims,
+        [_answer(claims), *_notes(design, settings)],
         shown=["matches"],
         captions={
             "conflicting-targets": "Above: mean signed order towards the larger side against the "
@@ -226,6 +212,22 @@ def _analyze(design: ConflictDesign, settings: Settings, results: Results) -> Ou
             "rotation": "How the minutes' rotation m of flocks of 27 is distributed without "
             "leaders, between equal sides and with a majority",
         },
+    )
+
+
+def _answer(claims: Sequence[CheckedClaim]) -> str:
+    def of(claim: Claim, verdict: str) -> str:
+        every = [each.verdict for each in claims if each.claim is claim]
+        return f"{every.count(verdict)} of {len(every)}"
+
+    return (
+        f"The flock follows the larger side in {of(LARGER, HOLDS)} matches of unequal sides, and "
+        "shows the opposite with certainty in "
+        f"{of(LARGER, DOES_NOT_HOLD)}. Between equal sides it stalls more than without leaders in "
+        f"{of(STALLS, HOLDS)} matches, keeps its way for a shorter time than without leaders in "
+        f"{of(KEEPS, DOES_NOT_HOLD)}, and goes one way or the other in {of(CHOOSES, HOLDS)}. What "
+        "is missing to these numbers is inconclusive or the opposite; the table of claims says "
+        "which."
     )
 
 
@@ -240,8 +242,7 @@ def _notes(design: ConflictDesign, settings: Settings) -> list[str]:
         "the clockwise one. Each run starts at random and at rest. Signed order is Ψ_o sin φ_o of "
         "the normal boats towards the larger side, in the analysis window of the second half.",
         f"The preset is simulation with dt = 0.05 s, and the noise the critical one of 27 boats, "
-        f"bw {' and '.join(noise)}: there a flock without leaders goes one way for a while and "
-        "then the other. "
+        f"bw {' and '.join(noise)}. "
         "Flocks of 100 have pools of the same shape and density, and four times as many leaders. "
         "The tuned and the learned policy are those of the pool; they were made for three leaders "
         "with one target among 27 boats.",
@@ -254,7 +255,12 @@ def _notes(design: ConflictDesign, settings: Settings) -> list[str]:
         "directions is a stall.",
         "Intervals of means over runs are Student's, the others a bootstrap over runs. A claim "
         "about the proportion or the difference of the sides holds only if both orders are equal "
-        "within a fifth of the order that six leaders reach alone, over the whole interval.",
+        "within a fifth of the order that six leaders reach alone, over the whole interval. Where "
+        "both claims hold, these flocks do not distinguish them. Where a flock without leaders "
+        "does not reach the cumulant of a choice either, that between equal sides says nothing "
+        "about their conflict.",
+        "In the table, `after min` is the mean time until the larger side has the flock, with the "
+        "length of the run where it never does; its intervals are 95 % ones.",
         f"The compute budget is {settings.budget_core_min:g} minutes of one core. The design has "
         f"{seeds} seeds for each match, {minutes:g} minutes per run, and flocks of up to "
         f"{max(design.sizes)} boats. It is estimated to take "

@@ -19,7 +19,7 @@ from flockenv.reproduce.leader_fraction.design import (
     Setup,
     within,
 )
-from flockenv.reproduce.leader_fraction.measured import GUIDED, Curve, exponent
+from flockenv.reproduce.leader_fraction.measured import GUIDED, Curve, exponent, line_p
 from flockenv.reproduce.leader_fraction.pictures import picture
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings, designed
 from flockenv.reproduce.transition.design import WAYS, Growth
@@ -62,6 +62,9 @@ BETTER = Claim(
 FEWEST_RUNS = 8
 """Seeds for each number of leaders from which a curve counts in a claim."""
 
+_UNLIKELY = 0.05
+"""Probability of points below which they are not on a power law."""
+
 Curves = Mapping[Setup, Curve]
 
 
@@ -78,6 +81,12 @@ def judge(design: FractionDesign, curves: Curves) -> list[CheckedClaim]:
             sizes = ", ".join(str(curve.n_boats) for curve in known) or "no"
             note = "" if len(known) == len(every) else f"of {sizes} boats"
             scope = f"{policy}, {way}"
+            remarks = [note] if note else []
+            if len(known) > 2 and math.isnan(ends[1]):
+                remarks.append("more than half of the draws have no proportion at some size")
+            if line_p(known) < _UNLIKELY:
+                remarks.append(f"a power law does not describe the sizes, p = {line_p(known):.1g}")
+            note = "; ".join(remarks)
             claims += [claim.check(*ends, scope, note) for claim in (SMALLER, CONSTANT_NUMBER)]
     law, *others = design.policies
     for policy, growth in design.leaders:
@@ -102,14 +111,34 @@ def _analyze(design: FractionDesign, settings: Settings, results: Results) -> Ou
         {"curves": _curves_table(curves), "fractions": fractions_table(curves)},
         {"leader-fraction": picture(design, curves)},
         judge(design, curves),
-        [_drift_note(design, curves), *_notes(design, settings)],
+        [*_answers(design, curves), _drift_note(design, curves), *_notes(design, settings)],
         shown=["fractions"],
+        kept=["curves"],
         captions={
-            "leader-fraction": "Above: mean signed order under the paper's law against the "
-            "proportion of leaders. Below: proportion of leaders at which it reaches "
+            "leader-fraction": "Above: mean signed order against the proportion of leaders, by "
+            "policy. Below: proportion of leaders at which it reaches "
             f"{GUIDED:g}, by policy, against the number of boats; bars: 95 % intervals"
         },
     )
+
+
+def _answers(design: FractionDesign, curves: Curves) -> list[str]:
+    """Say how large the proportions are, since a power law may not describe them."""
+    answers = []
+    for way in WAYS:
+        policies = []
+        for policy in design.policies:
+            points = []
+            for n in design.sizes:
+                value, low, high = interval(curves[policy, Growth(way, n)].replicates)
+                if not math.isnan(low):
+                    points.append(f"{value:.3f} ({low:.3f} to {high:.3f}) of {n} boats")
+            policies.append(f"{', '.join(points) or 'unknown'} under the policy {policy}")
+        answers.append(
+            f"Where the {way} grows, the proportion of leaders that guides a flock is "
+            f"{'; '.join(policies)}."
+        )
+    return answers
 
 
 def _drift_note(design: FractionDesign, curves: Curves) -> str:
@@ -144,9 +173,10 @@ def _notes(design: FractionDesign, settings: Settings) -> list[str]:
         "Intervals are a bootstrap over runs. A proportion is undefined where the order is on one "
         f"side of {GUIDED:g} at all numbers of leaders that were run. The table has the bound that "
         "follows, the exponent is that of the other sizes, and draws of the bootstrap without a "
-        f"proportion are left out. Claims hang on curves of at least {FEWEST_RUNS} seeds. The "
-        "first claim is wrong if the exponent is above 0: the proportion then grows with the "
-        "flock.",
+        "proportion are left out, of which the table has the share; where they are the "
+        "larger part, there is no interval. Claims hang on curves of at least "
+        f"{FEWEST_RUNS} seeds. The first claim is wrong if the exponent is above 0: the proportion "
+        "then grows with the flock.",
         f"The compute budget is {settings.budget_core_min:g} minutes of one core. The design has "
         f"{minutes:g} minutes per run, and for each number of leaders these seeds, by boats and "
         f"way: {runs}. It is estimated to take {design.core_minutes(settings):.0f} minutes, and "
@@ -180,7 +210,8 @@ def fractions_table(curves: Curves) -> pd.DataFrame:
         else:
             row |= {"fraction": f"{value:.3f}", "interval": f"{low:.3f} to {high:.3f}"}
             row["leaders"] = f"{value * growth.n_boats:.1f}"
-        rows.append(row)
+        undefined = np.isnan(curve.replicates[1:]).mean()
+        rows.append(row | {"undefined draws": f"{undefined:.0%}"})
     return pd.DataFrame(rows)
 
 

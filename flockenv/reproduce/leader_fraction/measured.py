@@ -7,11 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import isotonic_regression
+from scipy.stats import chi2
 
 from flockenv.recording import Recording
 from flockenv.statistics.intervals import RESAMPLES, mean_replicates
 
-__all__ = ["GUIDED", "Curve", "exponent", "guiding_fraction"]
+__all__ = ["GUIDED", "Curve", "exponent", "guiding_fraction", "line_p"]
 
 GUIDED = 0.5
 """Mean signed order from which a flock counts as guided."""
@@ -115,3 +116,21 @@ def exponent(curves: Sequence[Curve]) -> NDArray[np.float64]:
     x -= x.mean()
     y = np.log(np.stack([curve.replicates for curve in curves], axis=1))
     return np.asarray(y @ x / (x @ x))
+
+
+def line_p(curves: Sequence[Curve]) -> float:
+    """Return the probability that points on a power law lie as far from one as those of `exponent`.
+
+    It is that of chi-squared, with the spread of each size's replicates; NaN for less than three
+    sizes.
+    """
+    if len(curves) < 3:
+        return math.nan
+    x = np.log([curve.n_boats for curve in curves])
+    y = np.log([curve.replicates[0] for curve in curves])
+    spreads = np.array([np.nanstd(np.log(curve.replicates[1:])) for curve in curves])
+    if not spreads.min() > 0.0:
+        return math.nan
+    line = np.polyfit(x, y, 1, w=1.0 / spreads)
+    misfit = ((y - np.polyval(line, x)) / spreads) ** 2
+    return float(chi2.sf(misfit.sum(), len(x) - 2))

@@ -1,4 +1,4 @@
-"""The picture of `leader-fraction`: curves by size, and the guiding fraction by policy."""
+"""The picture of `leader-fraction`: curves by policy and size, and the guiding fractions."""
 
 from collections.abc import Mapping
 
@@ -19,33 +19,38 @@ __all__ = ["picture"]
 def picture(design: FractionDesign, curves: Mapping[tuple[str, Growth], Curve]) -> Figure:
     """Return the picture; one column for each way of growing."""
     with paper_style():
-        figure = column_figure(11.0)
-        panels = figure.subplots(2, len(WAYS), sharey="row")
+        policies = design.policies
+        figure = column_figure(6.5 + 4.5 * len(policies))
+        panels = figure.subplots(len(policies) + 1, len(WAYS), sharey="row")
+        has_any = any(np.isfinite(curve.replicates[0]) for curve in curves.values())
         for column, way in enumerate(WAYS):
-            above, below = panels[:, column]
-            above.set_title(f"{way} grows")
-            for place, n in enumerate(design.sizes):
-                _draw_curve(above, curves[design.policies[0], Growth(way, n)], COLORS[place])
-            above.axhline(GUIDED, color="0.6", lw=0.6, zorder=0)
-            above.set_xscale("log")
-            above.set_xlabel("proportion of leaders")
+            *above, below = panels[:, column]
+            above[0].set_title(f"{way} grows")
+            for axes, policy in zip(above, policies, strict=True):
+                for place, n in enumerate(design.sizes):
+                    _draw_curve(axes, curves[policy, Growth(way, n)], COLORS[place])
+                axes.axhline(GUIDED, color="0.6", lw=0.6, zorder=0)
+                axes.set_xscale("log")
+            above[-1].set_xlabel("proportion of leaders")
             for policy, color in policy_colors(design.policies).items():
                 found = [curves[policy, Growth(way, n)] for n in design.sizes]
                 _draw_fractions(below, found, policy, color)
             below.set_xscale("log")
-            below.set_yscale("log")
+            if has_any:
+                below.set_yscale("log")
             below.set_xticks(list(design.sizes), [str(n) for n in design.sizes])
             below.set_xticks([], minor=True)
             below.set_xlabel("boats")
         # Intervals of a few runs would reach beyond what the order can be.
-        panels[0, 0].set_ylim(-1.05, 1.05)
-        panels[0, 0].set_ylabel("mean signed order")
-        panels[1, 0].set_ylabel(f"proportion for a signed order of {GUIDED:g}")
+        for axes, policy in zip(panels[:, 0], policies, strict=False):
+            axes.set_ylim(-1.05, 1.05)
+            axes.set_ylabel(f"signed order, {policy}")
+        panels[-1, 0].set_ylabel(f"proportion for a signed order of {GUIDED:g}")
         figure.legend(
             *panels[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=2
         )
         figure.legend(
-            *panels[1, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3
+            *panels[-1, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3
         )
     return figure
 

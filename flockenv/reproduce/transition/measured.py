@@ -342,6 +342,22 @@ class Measured:
             logs.append(np.log(np.where(sizes > 0.0, sizes, math.nan)))
         return _slope(np.log([growth.n_boats for growth in growths]), logs)
 
+    def dissolution_growth(self, way: str, density: int) -> NDArray[np.float64]:
+        """Return the exponent of the time until one jam has lost half of its boats.
+
+        Returns
+        -------
+        float64 array, shape (RESAMPLES + 1,)
+            As of `jam_growth`, of geometric means; NaN where a jam did not dissolve in every run.
+        """
+        growths = [each for each in self.design.growths(way) if each.n_boats >= MANY_BOATS]
+        runs = [self.stationary[growth, density, "one-jam"].jams for growth in growths]
+        logs = [
+            mean_replicates(np.log(jams.dissolved_s), growth.n_boats)
+            for growth, jams in zip(growths, runs, strict=True)
+        ]
+        return _slope(np.log([growth.n_boats for growth in growths]), logs)
+
     def memory(self, growth: Growth, density: int) -> NDArray[np.float64]:
         """Return the mean size of jams from rotation over that from one jam.
 

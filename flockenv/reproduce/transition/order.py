@@ -13,10 +13,21 @@ hysteresis loops at three rates, lifetimes, and Binder's cumulants 1 - <m⁴>/(3
 it.
 """
 
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import product
 
-from flockenv.reproduce.claim import DOES_NOT_HOLD, HOLDS, CheckedClaim, Claim, number
+import numpy as np
+
+from flockenv.reproduce.claim import (
+    DOES_NOT_HOLD,
+    HOLDS,
+    INCONCLUSIVE,
+    CheckedClaim,
+    Claim,
+    number,
+)
 from flockenv.reproduce.reproduction import Outcome, Reproduction, Results, Settings, designed
 from flockenv.reproduce.transition.design import (
     FINE_DT_S,
@@ -156,16 +167,17 @@ def conclusion(growth: Sequence[CheckedClaim], forgotten: Sequence[CheckedClaim]
             "rotating or in one jam"
         )
     listed = "; ".join(
-        f"{each.claim.text.lower()} ({each.scope}): {each.verdict}, {_measured(each)}"
+        f"{each.claim.text[0].lower()}{each.claim.text[1:]} ({each.scope}: {_measured(each)})"
         for each in open_questions
     )
     slower = all(each.verdict == DOES_NOT_HOLD for each in sizes[ONE_PHASE])
     though = ", though jams grow more slowly than the flock at every density" if slower else ""
-    return f"inconclusive{though}. Open: {listed}"
+    return f"inconclusive{though}. It is not shown that {listed}"
 
 
 def _measured(claim: CheckedClaim) -> str:
-    return f"{number(claim.measured)}, {claim.ends}"
+    value = number(claim.measured)
+    return f"{value} ({claim.ends})" if claim.ends != "none" else claim.note or "undefined"
 
 
 def _analyze(design: TransitionDesign, settings: Settings, results: Results) -> Outcome:
@@ -190,10 +202,9 @@ def _analyze(design: TransitionDesign, settings: Settings, results: Results) -> 
         claims += [*growth_claims, *forgotten]
         for growth in design.growths(way):
             claims += judge(measured, growth)
-        slope, sizes = measured.lifetime_growth(way)
-        note = f"of {', '.join(map(str, sizes)) or 'no'} boats"
-        claims.append(LIFETIMES.check(*interval(slope), way, note))
-    notes += [_cumulants_note(measured), *_method_notes(design, settings)]
+        claims.append(judge_lifetimes(measured, way))
+    notes += [_dissolution_note(measured), _cumulants_note(measured)]
+    notes += _method_notes(design, settings)
     shown = ["jams", "nucleation", "dissolution", "substeps", "lifetimes"]
     maps = {
         (way, start): results.derive(
@@ -201,7 +212,41 @@ def _analyze(design: TransitionDesign, settings: Settings, results: Results) -> 
         )
         for way, start in product(WAYS, STARTED)
     }
-    return Outcome(tables(measured), pictures(measured, maps), claims, notes, shown, _CAPTIONS)
+    return Outcome(
+        tables(measured),
+        pictures(measured, maps),
+        claims,
+        notes,
+        shown,
+        _CAPTIONS,
+        kept=["transition", "loops"],
+    )
+
+
+def judge_lifetimes(measured: Measured, way: str) -> CheckedClaim:
+    """Judge how lifetimes grow; those of sizes that are left out may be the longest ones."""
+    slope, sizes = measured.lifetime_growth(way)
+    found = LIFETIMES.check(*interval(slope), way, f"of {', '.join(map(str, sizes)) or 'no'} boats")
+    left_out = [str(n) for n in measured.design.sizes if n not in sizes]
+    if found.verdict != DOES_NOT_HOLD or not left_out:
+        return found
+    note = f"{found.note}; lifetimes with {', '.join(left_out)} are too long to be measured"
+    return replace(found, verdict=INCONCLUSIVE, note=note)
+
+
+def _dissolution_note(measured: Measured) -> str:
+    """Say how the time until one jam has lost half of its boats grows with the flock."""
+    found = []
+    for way in WAYS:
+        for density in measured.design.densities[way]:
+            value, low, high = interval(measured.dissolution_growth(way, density))
+            known = f"{value:.2f} ({low:.2f} to {high:.2f})" if np.isfinite(low) else "unknown"
+            found.append(f"{known} at density {density}, {way}")
+    return (
+        f"From {MANY_BOATS} boats on, the time after which one jam has lost half of its boats "
+        "(geometric mean over runs) grows with the number of boats to the power "
+        f"{', '.join(found)}. A run has to last several times as long before it forgets that start."
+    )
 
 
 def _cumulants_note(measured: Measured) -> str:
@@ -246,7 +291,10 @@ def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
         "The first jam of a flock that started rotating is the first one of at least "
         f"{NUCLEUS} boats. A flock that started in one jam has dissolved from when its largest jam "
         "has fewer than half of the boats. The tables have medians over the runs where this "
-        "happened.",
+        "happened. In the tables of jams, `in jams` is the part of the boats that are in jams, "
+        "`mean size` the mean size just defined, in boats, and `largest` the mean over frames of "
+        "the largest jam, in boats; frames without a jam lower `largest` alone. Numbers after ± "
+        "are standard errors over runs.",
         "The density is the number of boats per area of water as large as that of the pool "
         "500-boats. Runs at one density never back up (bw = 0), so that the angular noise c4 is "
         "their only noise. They start with all boats rotating, or standing side by side in one "
@@ -261,7 +309,9 @@ def _method_notes(design: TransitionDesign, settings: Settings) -> list[str]:
         "geometric mean of the mean dwell times in both states, at the density where flocks leave "
         "both most alike; half a change is added to each count. Its interval follows from "
         f"Poisson's counts. Sizes with fewer than {FEWEST_CHANGES} changes out of either state are "
-        "left out of the claim.",
+        "left out of the claim. A stay that lasts longer than a run is therefore not measured: "
+        "where sizes are left out, the claim cannot be refuted. The claim that loops do not close "
+        f"allows {SLOWER:g} times as slow ones to lose 30 % of their opening.",
         f"The compute budget is {settings.budget_core_min:g} minutes of one core. The design has "
         f"{design.runs} seeds, runs of {stationary:g} minutes, longer in proportion to the number "
         f"of boats above {LONGER_ABOVE}, whose second half counts, and loops of {lengths} minutes "
@@ -280,11 +330,20 @@ def judge_jams(measured: Measured, way: str) -> tuple[list[CheckedClaim], list[C
         exponent = measured.jam_growth(way, density)
         beyond = exponent - WIDTH_EXPONENTS[way]
         growth += [
-            claim.check(*interval(each), scope)
+            claim.check(*interval(each), scope).with_needs(measured.design.runs, "seeds")
             for claim, each in ((ONE_PHASE, exponent), (CHANNEL_SIZE, beyond))
         ]
         ratio = interval(measured.memory(largest, density))
-        forgotten.append(FORGOTTEN.check(*ratio, f"{largest.n_boats} boats, {scope}"))
+        note = ""
+        if ratio[2] == 0.0:
+            # Runs without any jam have no spread, and say nothing about how rare jams are.
+            ratio = (ratio[0], math.nan, math.nan)
+            note = "inconclusive: needs longer runs, since those that started rotating had no jams"
+        scope = f"{largest.n_boats} boats, {scope}"
+        found = FORGOTTEN.check(*ratio, scope, note)
+        if found.verdict == DOES_NOT_HOLD:
+            found = replace(found, note="needs longer runs to know jams in equilibrium")
+        forgotten.append(found if note else found.with_needs(measured.design.runs, "seeds"))
     return growth, forgotten
 
 
@@ -294,7 +353,8 @@ def judge(measured: Measured, growth: Growth) -> tuple[CheckedClaim, ...]:
     # The density is chosen once, by the data as measured.
     densities = measured.design.densities[growth.way]
     gap, density = max((measured.gap(growth, density), density) for density in densities)
-    states = BISTABILITY.check(*gap, scope, f"at density {density}")
+    runs = measured.design.runs
+    states = BISTABILITY.check(*gap, scope, f"at density {density}").with_needs(runs, "seeds")
     if growth not in measured.design.looped():
         return (states,)
     fast, slow = (measured.loops[growth, f"{how} density"] for how in ("slow", "slowest"))
@@ -302,11 +362,11 @@ def judge(measured: Measured, growth: Growth) -> tuple[CheckedClaim, ...]:
     # A loop on which nothing jammed is closed whatever the transition, and one that never opened
     # cannot close.
     jammed = bool(slow.at_turn.mean() >= _JAMMED)
+    hysteresis = student_interval(slow.openings)
     opened = jammed and student_interval(fast.openings)[0] >= HYSTERESIS.low
-    return (
-        states,
+    loops = (
         HYSTERESIS.check(
-            *(student_interval(slow.openings) if jammed else nothing),
+            *(hysteresis if jammed else nothing),
             scope,
             "" if jammed else "the loop never left rotation",
         ),
@@ -316,6 +376,7 @@ def judge(measured: Measured, growth: Growth) -> tuple[CheckedClaim, ...]:
             "" if opened else "the faster loop did not open",
         ),
     )
+    return (states, *(each if each.note else each.with_needs(runs, "seeds") for each in loops))
 
 
 def transition_order(design: TransitionDesign | None = None) -> Reproduction:
