@@ -5,11 +5,22 @@ from dataclasses import dataclass, replace
 
 from flockenv.statistics.intervals import CONFIDENCE
 
-__all__ = ["DOES_NOT_HOLD", "HOLDS", "INCONCLUSIVE", "CheckedClaim", "Claim", "number"]
+__all__ = [
+    "DOES_NOT_HOLD",
+    "FEWEST_RUNS",
+    "HOLDS",
+    "INCONCLUSIVE",
+    "CheckedClaim",
+    "Claim",
+    "number",
+]
 
 HOLDS = "holds"
 DOES_NOT_HOLD = "does not hold"
 INCONCLUSIVE = "inconclusive"
+
+FEWEST_RUNS = 8
+"""Seeds from which runs count in a claim of a study beyond the paper."""
 
 _FAR = 100
 """So many times as many runs are not worth a number."""
@@ -98,6 +109,13 @@ class CheckedClaim:
     high: float
     verdict: str
     note: str = ""
+
+    def of_seeds(self, runs: int) -> "CheckedClaim":
+        """Return the claim, inconclusive where it hangs on fewer seeds than `FEWEST_RUNS`."""
+        if runs >= FEWEST_RUNS:
+            return self
+        note = f"inconclusive: needs {FEWEST_RUNS} seeds, where it has {runs}"
+        return replace(self, verdict=INCONCLUSIVE, note=note)
 
     def with_needs(self, runs: int, what: str) -> "CheckedClaim":
         """Return the claim; an open one says how many such runs would decide it.

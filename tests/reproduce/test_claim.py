@@ -48,3 +48,11 @@ def test_an_open_claim_says_how_many_runs_would_decide_it() -> None:
     open_claim = more.check(0.1, -0.1, 0.3, note="of 50 boats").with_needs(8, "seeds")
     assert open_claim.note == "of 50 boats; inconclusive: needs about 32 seeds, where it has 8"
     assert more.check(0.2, 0.1, 0.3).with_needs(8, "seeds").note == ""
+
+
+def test_a_claim_needs_some_seeds() -> None:
+    more = Claim(text="More", section="", quantity="difference", low=0.0).check(0.2, 0.1, 0.3)
+    assert more.of_seeds(8) == more
+    few = more.of_seeds(7)
+    assert few.verdict == INCONCLUSIVE
+    assert few.note == "inconclusive: needs 8 seeds, where it has 7"

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 import flockenv
 from flockenv.recording import RecordedOrder
+from flockenv.reproduce.claim import FEWEST_RUNS
 from flockenv.reproduce.files import picture_bytes
 from flockenv.reproduce.leader_fraction.design import (
     DESIGNS,
@@ -26,7 +27,6 @@ from flockenv.reproduce.leader_fraction.design import (
 from flockenv.reproduce.leader_fraction.fraction import (
     BETTER,
     CONSTANT_NUMBER,
-    FEWEST_RUNS,
     SMALLER,
     fractions_table,
     judge,

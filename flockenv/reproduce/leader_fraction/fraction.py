@@ -11,7 +11,7 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from flockenv.reproduce.claim import CheckedClaim, Claim
+from flockenv.reproduce.claim import FEWEST_RUNS, CheckedClaim, Claim
 from flockenv.reproduce.leader_fraction.design import (
     DENSITY,
     FULL,
@@ -28,7 +28,6 @@ from flockenv.statistics.intervals import interval, student_interval
 __all__ = [
     "BETTER",
     "CONSTANT_NUMBER",
-    "FEWEST_RUNS",
     "REPRODUCTIONS",
     "SMALLER",
     "fractions_table",
@@ -58,9 +57,6 @@ BETTER = Claim(
     quantity=f"proportion of leaders for a signed order of {GUIDED:g}, over that under the law",
     high=1.0,
 )
-
-FEWEST_RUNS = 8
-"""Seeds for each number of leaders from which a curve counts in a claim."""
 
 _UNLIKELY = 0.05
 """Probability of points below which they are not on a power law."""
@@ -93,10 +89,7 @@ def judge(design: FractionDesign, curves: Curves) -> list[CheckedClaim]:
         if policy in others:
             ratio = curves[policy, growth].replicates / curves[law, growth].replicates
             scope = f"{policy}, {growth.n_boats} boats, {growth.way}"
-            few = design.runs[growth] < FEWEST_RUNS
-            ends = (math.nan,) * 3 if few else interval(ratio)
-            note = f"inconclusive: needs {FEWEST_RUNS} seeds, where it has {design.runs[growth]}"
-            claims.append(BETTER.check(*ends, scope, note if few else ""))
+            claims.append(BETTER.check(*interval(ratio), scope).of_seeds(design.runs[growth]))
     return claims
 
 

@@ -196,13 +196,15 @@ def _analyze(design: TransitionDesign, settings: Settings, results: Results) -> 
     measured = Measured(design, stationary, loops, fine)
     notes, claims = [], []
     for way in WAYS:
-        growth_claims, forgotten = judge_jams(measured, way)
+        growth_claims, forgotten = (
+            [claim.of_seeds(design.runs) for claim in each] for each in judge_jams(measured, way)
+        )
         found = conclusion(growth_claims, forgotten)
         notes.append(f"Where the {way} grows with the flock, the transition is {found}.")
         claims += [*growth_claims, *forgotten]
         for growth in design.growths(way):
-            claims += judge(measured, growth)
-        claims.append(judge_lifetimes(measured, way))
+            claims += [claim.of_seeds(design.runs) for claim in judge(measured, growth)]
+        claims.append(judge_lifetimes(measured, way).of_seeds(design.runs))
     notes += [_dissolution_note(measured), _cumulants_note(measured)]
     notes += _method_notes(design, settings)
     shown = ["jams", "nucleation", "dissolution", "substeps", "lifetimes"]
