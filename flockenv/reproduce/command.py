@@ -23,7 +23,7 @@ from flockenv.reproduce.style import mark_short
 from flockenv.reproduce.summary import (
     CLAIMS,
     Finished,
-    kept_tables,
+    data_tables,
     markdown_summary,
     shown_pictures,
 )
@@ -171,7 +171,7 @@ def _write_summary(plan: Plan, finished: Finished, summary: Path) -> None:
     for figure, name, _ in shown_pictures(finished):
         picture = picture_bytes(outcomes[figure.name].pictures[name], "png")
         write_file(summary.with_suffix("") / f"{name}.png", picture)
-    for figure, name in kept_tables(finished):
+    for figure, name in data_tables(finished):
         claims = outcomes[figure.name].claims
         table = claims_table(claims) if name == CLAIMS else outcomes[figure.name].tables[name]
         write_file(summary.with_suffix("") / f"{name}.csv", csv_bytes(table))

@@ -149,7 +149,7 @@ class Outcome:
         What a reader needs: how intervals were made, what was left out, what to conclude.
     shown : list of str
         Names of tables that the report shows in full.
-    kept : list of str
+    data : list of str
         Names of further tables that go along with a summary, as CSV.
     """
 
@@ -159,7 +159,7 @@ class Outcome:
     notes: list[str] = field(default_factory=list)
     shown: list[str] = field(default_factory=list)
     captions: dict[str, str] = field(default_factory=dict)
-    kept: list[str] = field(default_factory=list)
+    data: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -16,7 +16,7 @@ __all__ = [
     "KEY_FIGURES",
     "Finished",
     "command",
-    "kept_tables",
+    "data_tables",
     "markdown_summary",
     "shown_pictures",
 ]
@@ -71,19 +71,19 @@ def markdown_summary(
             table = outcome.tables[name]
             rows: list[Sequence[object]] = [list(table.columns), *table.to_numpy().tolist()]
             lines += [*_table(rows), ""]
-    if folder is not None and (kept := kept_tables(finished)):
-        links = ", ".join(f"[{name}.csv]({folder}/{name}.csv)" for _, name in kept)
+    if folder is not None and (data := data_tables(finished)):
+        links = ", ".join(f"[{name}.csv]({folder}/{name}.csv)" for _, name in data)
         lines += [f"The numbers of this page are in {links}.", ""]
     return "\n".join(lines)
 
 
-def kept_tables(finished: Finished) -> list[tuple[Reproduction, str]]:
+def data_tables(finished: Finished) -> list[tuple[Reproduction, str]]:
     """Return the tables that go along with the page of a single figure, `CLAIMS` first."""
     if len(finished) != 1:
         return []
     figure, _, outcome = finished[0]
     claims = [CLAIMS] if outcome.claims else []
-    return [(figure, name) for name in (*claims, *outcome.shown, *outcome.kept)]
+    return [(figure, name) for name in (*claims, *outcome.shown, *outcome.data)]
 
 
 def shown_pictures(finished: Finished) -> list[tuple[Reproduction, str, str]]:

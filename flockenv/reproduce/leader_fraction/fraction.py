@@ -106,7 +106,7 @@ def _analyze(design: FractionDesign, settings: Settings, results: Results) -> Ou
         judge(design, curves),
         [*_answers(design, curves), _drift_note(design, curves), *_notes(design, settings)],
         shown=["fractions"],
-        kept=["curves"],
+        data=["curves"],
         captions={
             "leader-fraction": "Above: mean signed order against the proportion of leaders, by "
             "policy. Below: proportion of leaders at which it reaches "

@@ -221,7 +221,7 @@ def _analyze(design: TransitionDesign, settings: Settings, results: Results) -> 
         notes,
         shown,
         _CAPTIONS,
-        kept=["transition", "loops"],
+        data=["transition", "loops"],
     )
 
 
