@@ -85,7 +85,8 @@ def row_of(trial: pd.Series, runs: FlockRuns) -> dict[str, object]:
     values = pd.DataFrame([measure(boat, runs.resampled(each)) for each in draws])
     found = {target.key: values[target.key].to_numpy() for target in TARGETS}
     found |= dict(zip(MISFITS, misfits(found).T, strict=True))
-    row: dict[str, object] = {"draw": trial["draw"], "pool": trial["pool"]}
+    # Where the trial is in its file, from 0: proposals of the processes have no draw.
+    row: dict[str, object] = {"trial": trial.name, "pool": trial["pool"]}
     row |= {name: trial[name] for name in CONSTANTS}
     row["repetitions"] = count
     for name, each in found.items():
@@ -122,6 +123,7 @@ def main() -> None:
     parser.add_argument("--runs", type=Path, default=RESULTS / "runs", help="where runs are stored")
     parser.add_argument("--out", type=Path, default=RESULTS, help=f"({RESULTS})")
     given = parser.parse_args()
+    given.out.mkdir(parents=True, exist_ok=True)
     given.runs.parent.mkdir(parents=True, exist_ok=True)
     trials = chosen(pd.read_csv(given.trials))
     width = len(JUDGED.cells)

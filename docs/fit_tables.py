@@ -126,6 +126,54 @@ def fit_pairs() -> str:
     return markdown(header, body)
 
 
+FACTS = {
+    "critical_bw_0": "critical bw, 0 leaders",
+    "critical_bw_3": "critical bw, 3 leaders",
+    "low_noise_0": "Ψ_o at low noise, 0 leaders",
+    "low_noise_3": "Ψ_o at low noise, 3 leaders",
+    "jamming": "jamming",
+    "following": "signed order",
+    "leaders_slope": "Ψ_o per leader",
+    "leaders_test": "sets with p ≤ 0.01",
+}
+"""Targets that no finalist has together, by key."""
+
+
+def fit_together() -> str:
+    """Return how many of the measured trials have two targets in range, and one (diagonal)."""
+    known = {target.key: target for target in TARGETS}
+    measured = rows(f"{FIT}/measured/first.csv")
+
+    def inside(row: Row, key: str) -> bool:
+        return bool(row[key]) and known[key].is_in_range(float(row[key]))
+
+    body = []
+    for place, (key, name) in enumerate(FACTS.items()):
+        counts = [
+            str(sum(inside(row, key) and inside(row, other) for row in measured))
+            for other in list(FACTS)[: place + 1]
+        ]
+        body.append([name, *counts, *[""] * (len(FACTS) - place - 1)])
+    return markdown(["", *FACTS.values()], body)
+
+
+def fit_front() -> str:
+    """Return the trials on the measured front, as measured again."""
+    measured = rows(f"{FIT}/measured/again.csv")
+    measured.sort(key=lambda row: sum(float(row[name]) for name in MISFITS))
+    body = []
+    for row in measured:
+        cells = [
+            interval(row, name, f"{name}_low", f"{name}_high", ".2f")
+            if row[name] and row[f"{name}_low"]
+            else row[name] or "none"
+            for name in (*MISFITS, *FACTS)
+        ]
+        body.append([row["trial"], f"`{row['pool']}`", row["met"], *cells])
+    groups = (f"misfit, {group}" for group in GROUPS)
+    return markdown(["trial", "pool", "in range", *groups, *FACTS.values()], body)
+
+
 def fit_variants() -> str:
     """Return what the fitted constants reach with one other choice at a time."""
     file = "results/experiment_variants.csv"
@@ -175,5 +223,7 @@ FIT_TABLES = {
     "fit-comparison": fit_comparison,
     "fit-finalists": fit_finalists,
     "fit-pairs": fit_pairs,
+    "fit-together": fit_together,
+    "fit-front": fit_front,
 }
 """How each table is made."""

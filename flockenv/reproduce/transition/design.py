@@ -210,7 +210,7 @@ _TO_800 = TransitionDesign(
     loop_minutes=10.0,
 )
 
-FULL = replace(_TO_800, sizes=(*_TO_800.sizes, 1600))
+FULL = replace(_TO_800, sizes=(*_TO_800.sizes, 1600), largest_loop=800)
 
 DESIGNS = (
     TransitionDesign(
