@@ -166,7 +166,7 @@ def conclusion(growth: Sequence[CheckedClaim], forgotten: Sequence[CheckedClaim]
             "not of first order: the channel sets the size of jams, whether flocks started "
             "rotating or in one jam"
         )
-    listed = "; ".join(
+    listed = "; that ".join(
         f"{each.claim.text[0].lower()}{each.claim.text[1:]} ({each.scope}: {_measured(each)})"
         for each in open_questions
     )
