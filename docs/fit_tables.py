@@ -126,7 +126,7 @@ def fit_pairs() -> str:
     return markdown(header, body)
 
 
-FACTS = {
+TOGETHER = {
     "critical_bw_0": "critical bw, 0 leaders",
     "critical_bw_3": "critical bw, 3 leaders",
     "low_noise_0": "Ψ_o at low noise, 0 leaders",
@@ -148,13 +148,13 @@ def fit_together() -> str:
         return bool(row[key]) and known[key].is_in_range(float(row[key]))
 
     body = []
-    for place, (key, name) in enumerate(FACTS.items()):
+    for place, (key, name) in enumerate(TOGETHER.items()):
         counts = [
             str(sum(inside(row, key) and inside(row, other) for row in measured))
-            for other in list(FACTS)[: place + 1]
+            for other in list(TOGETHER)[: place + 1]
         ]
-        body.append([name, *counts, *[""] * (len(FACTS) - place - 1)])
-    return markdown(["", *FACTS.values()], body)
+        body.append([name, *counts, *[""] * (len(TOGETHER) - place - 1)])
+    return markdown(["", *TOGETHER.values()], body)
 
 
 def fit_front() -> str:
@@ -167,11 +167,11 @@ def fit_front() -> str:
             interval(row, name, f"{name}_low", f"{name}_high", ".2f")
             if row[name] and row[f"{name}_low"]
             else row[name] or "none"
-            for name in (*MISFITS, *FACTS)
+            for name in (*MISFITS, *TOGETHER)
         ]
         body.append([row["trial"], f"`{row['pool']}`", row["met"], *cells])
     groups = (f"misfit, {group}" for group in GROUPS)
-    return markdown(["trial", "pool", "in range", *groups, *FACTS.values()], body)
+    return markdown(["trial", "pool", "in range", *groups, *TOGETHER.values()], body)
 
 
 def fit_variants() -> str:
