@@ -52,6 +52,7 @@ __all__ = [
     "judge",
 ]
 
+_NAME = "conflicting-targets"
 _COUZIN = "1, citing Couzin et al. (2005)"
 _BEYOND = "beyond the paper"
 
@@ -198,17 +199,24 @@ def _analyze(design: ConflictDesign, settings: Settings, results: Results) -> Ou
             runs = [results[spec] for spec in specs]
             found[setup, match] = Measured.of_runs(runs, specs[0].draws_seed)
     claims = judge(design, found)
+    sizes = {f"{_NAME}-{n}" if place else _NAME: n for place, n in enumerate(design.sizes)}
     return Outcome(
         {"matches": _matches_table(found), "minutes": _minutes_table(found)},
-        {"conflicting-targets": picture(design, found), "rotation": histograms(design, found)},
+        {
+            **{name: picture(design, found, n) for name, n in sizes.items()},
+            "rotation": histograms(design, found),
+        },
         claims,
         [_answer(claims), *_notes(design, settings)],
         shown=["matches"],
         captions={
-            "conflicting-targets": "Above: mean signed order towards the larger side against the "
-            "majority (k1 - k2)/(k1 + k2), of flocks of 27; bars: 95 % intervals. Below: mean "
-            "minutes until the larger side has the flock, the length of the run where it never "
-            "does",
+            **{
+                name: "Above: mean signed order towards the larger side against the majority "
+                f"(k1 - k2)/(k1 + k2), of flocks of {n}; bars: 95 % intervals. Below: mean minutes "
+                "until the larger side has the flock, the length of the run where it never does. "
+                f"Filled: {6 * Setup(design.policies[0], POOLS[0], n).scale} leaders; open: fewer"
+                for name, n in sizes.items()
+            },
             "rotation": "How the minutes' rotation m of flocks of 27 is distributed without "
             "leaders, between equal sides and with a majority",
         },
@@ -316,7 +324,7 @@ def _minutes_table(found: Found) -> pd.DataFrame:
 def conflicting_targets(design: ConflictDesign | None = None) -> Reproduction:
     """Return the reproduction, by default in the largest design that the budget allows."""
     return designed(
-        "conflicting-targets",
+        _NAME,
         "Which of two informed minorities does a flock follow?",
         _COUZIN,
         within if design is None else lambda settings: design,

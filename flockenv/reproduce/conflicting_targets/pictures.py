@@ -32,8 +32,8 @@ def _alike(design: ConflictDesign) -> list[str]:
     return [policy for policy in design.policies if policy != AGAINST]
 
 
-def picture(design: ConflictDesign, found: Found) -> Figure:
-    """Return order and time against the majority; one column for each pool."""
+def picture(design: ConflictDesign, found: Found, n_boats: int) -> Figure:
+    """Return order and time against the majority in one size; one column for each pool."""
     with paper_style():
         figure = column_figure(10.5)
         panels = figure.subplots(2, len(POOLS), sharex=True, sharey="row")
@@ -42,7 +42,7 @@ def picture(design: ConflictDesign, found: Found) -> Figure:
             above.set_title(pool)
             above.axhline(0.0, color="0.6", lw=0.6, zorder=0)
             for policy, color in policy_colors(_alike(design)).items():
-                _draw_majorities(above, below, found, Setup(policy, pool, _BOATS), color)
+                _draw_majorities(above, below, found, Setup(policy, pool, n_boats), color)
             below.set_xlabel(r"majority $(k_1-k_2)/(k_1+k_2)$")
         panels[0, 0].set_ylabel("mean signed order")
         panels[1, 0].set_ylabel(f"minutes until it is {WON:g}")
@@ -53,12 +53,12 @@ def picture(design: ConflictDesign, found: Found) -> Figure:
 
 def _draw_majorities(above: Axes, below: Axes, found: Found, setup: Setup, color: str) -> None:
     own = {m: each for (other, m), each in found.items() if other == setup and m != LEADERLESS}
-    # Filled and joined: all six leaders; open: fewer.
+    # Filled and joined: the most leaders; open: fewer.
     for is_full in (True, False):
         chosen = {
             (k1 - k2) / (k1 + k2): each
             for (k1, k2), each in own.items()
-            if (k1 + k2 == _MOST) == is_full
+            if (k1 + k2 == _MOST * setup.scale) == is_full
         }
         orders = [student_interval(each.signed_order) for each in chosen.values()]
         times = [interval(each.means["decision_min"]) for each in chosen.values()]
