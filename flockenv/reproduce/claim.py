@@ -66,13 +66,18 @@ class Claim:
             return f"≤ {self.high:g}"
         return f"≥ {self.low:g}" if math.isinf(self.high) else f"{self.low:g} to {self.high:g}"
 
+    @property
+    def claims_sign(self) -> bool:
+        """Whether the range is that of all positive or of all negative numbers, with 0."""
+        return (self.low, self.high) in ((0.0, math.inf), (-math.inf, 0.0))
+
     def check(
         self, measured: float, low: float, high: float, scope: str = "", note: str = ""
     ) -> "CheckedClaim":
         """Judge the claim by a measured value and the ends of its interval."""
         if math.isnan(measured) or math.isnan(low) or math.isnan(high):
             verdict = INCONCLUSIVE
-        elif low == high == 0.0 and 0.0 in (self.low, self.high):
+        elif low == high == 0.0 and self.claims_sign:
             # No draw shows any difference, which is not evidence for its sign.
             verdict = INCONCLUSIVE
         elif self.low <= low and high <= self.high:

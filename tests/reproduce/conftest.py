@@ -16,7 +16,7 @@ def follows():
             "≤": lambda: (-math.inf, "", float(words[1])),
         }.get(words[0], lambda: (float(words[0]), words[1], float(words[2])))()
         low, high = (math.nan if row[end] is None else float(row[end]) for end in ("low", "high"))
-        if low == high == 0.0 in (least, most):
+        if low == high == 0.0 in (least, most) and math.inf in (-least, most):
             return row["verdict"] == "inconclusive"
         if least <= low <= high <= most:
             return row["verdict"] == "holds"

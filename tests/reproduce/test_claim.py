@@ -39,6 +39,8 @@ def test_no_difference_at_all_is_no_evidence_for_its_sign() -> None:
     more = Claim(text="More", section="", quantity="difference", low=0.0)
     assert more.check(0.0, 0.0, 0.0).verdict == INCONCLUSIVE
     assert more.check(0.1, 0.0, 0.2).verdict == HOLDS
+    rare = Claim(text="Rare", section="", quantity="share", low=0.0, high=0.05)
+    assert rare.check(0.0, 0.0, 0.0).verdict == HOLDS
     equal = Claim(text="Equal", section="", quantity="difference", low=-0.1, high=0.1)
     assert equal.check(0.0, 0.0, 0.0).verdict == HOLDS
 
