@@ -121,8 +121,8 @@ def exponent(curves: Sequence[Curve]) -> NDArray[np.float64]:
 def line_p(curves: Sequence[Curve]) -> float:
     """Return the probability that points on a power law lie as far from one as those of `exponent`.
 
-    It is that of chi-squared, with the spread of each size's replicates; NaN for less than three
-    sizes.
+    It is that of chi-squared about a line that is weighted by the spread of each size's defined
+    replicates; where many are undefined, it is too small. NaN for less than three sizes.
     """
     if len(curves) < 3:
         return math.nan
