@@ -1,5 +1,5 @@
 """Law: `make build` builds again where another install took the place of this folder's own, and
-where what was compiled is gone."""
+where what was compiled is gone or for another processor."""
 
 import shutil
 import subprocess
@@ -24,21 +24,34 @@ def clone(tmp_path: Path) -> Path:
     (packages / "flockenv.pth").write_text(str(tmp_path))
     stamps = tmp_path / ".venv" / ".stamps"
     stamps.mkdir()
-    for name in ("venv", "compare", "core"):
+    for name in ("venv", "compare", "core", "core-avx2"):
         (stamps / name).touch()
     return tmp_path
 
 
-def builds(clone: Path) -> bool:
+def builds(clone: Path, *variables: str) -> bool:
     """Whether `make build` would build."""
-    reported = subprocess.run(
-        ["make", "--dry-run", "build"], cwd=clone, capture_output=True, text=True, check=True
-    )
+    command = ["make", "--dry-run", "build", *variables]
+    reported = subprocess.run(command, cwd=clone, capture_output=True, text=True, check=True)
     return "maturin develop" in reported.stdout
 
 
 def test_what_is_built_stays(clone: Path) -> None:
     assert not builds(clone)
+
+
+@pytest.mark.parametrize(
+    ("built", "codegen"), [("core-avx2", ""), ("core", "-- -C target-feature=+avx2")]
+)
+def test_what_is_for_another_processor_is_built_again(
+    clone: Path, built: str, codegen: str
+) -> None:
+    for stamp in (clone / ".venv" / ".stamps").glob("core*"):
+        if stamp.name != built:
+            stamp.unlink()
+    assert builds(clone, f"CODEGEN={codegen}")
+    other = "" if codegen else "-- -C target-feature=+avx2"
+    assert not builds(clone, f"CODEGEN={other}")
 
 
 def test_what_was_removed_is_built_again(clone: Path) -> None:
