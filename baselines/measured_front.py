@@ -18,6 +18,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from missing_physics import resampled
 from rich.progress import Progress
 
 from flockenv import FlockParameters
@@ -32,7 +33,6 @@ from flockenv.calibration.targets import (
     MISFITS,
     SEARCHED_TARGETS,
     TARGETS,
-    measure,
     misfits,
 )
 from flockenv.runs.executors import cores
@@ -46,7 +46,6 @@ BOTH = ("critical_bw_0", "critical_bw_3")
 LEAST_TOTAL, LEAST_OF_GROUP = 20, 10
 FIRST_SEED = 20_000
 """Where the first measurement's seeds start, beyond those of trials and finalists."""
-RESAMPLES = 200
 
 
 def chosen(trials: pd.DataFrame) -> pd.DataFrame:
@@ -78,17 +77,13 @@ def parameters_of(trial: pd.Series) -> FlockParameters:
 
 def row_of(trial: pd.Series, runs: FlockRuns) -> dict[str, object]:
     """Return constants, targets and misfits of measured runs, with the ends of their intervals."""
-    boat = single_boat(parameters_of(trial))
-    rng = np.random.default_rng(0)
-    count = runs.repetitions
-    draws = [np.arange(count), *rng.integers(count, size=(RESAMPLES, count))]
-    values = pd.DataFrame([measure(boat, runs.resampled(each)) for each in draws])
+    values = resampled(single_boat(parameters_of(trial)), runs)
     found = {target.key: values[target.key].to_numpy() for target in TARGETS}
     found |= dict(zip(MISFITS, misfits(found).T, strict=True))
     # Where the trial is in its file, from 0: proposals of the processes have no draw.
     row: dict[str, object] = {"trial": trial.name, "pool": trial["pool"]}
     row |= {name: trial[name] for name in CONSTANTS}
-    row["repetitions"] = count
+    row["repetitions"] = runs.repetitions
     for name, each in found.items():
         row |= dict(zip((name, f"{name}_low", f"{name}_high"), interval(each), strict=True))
     row["met"] = sum(target.is_in_range(found[target.key][0]) for target in TARGETS)

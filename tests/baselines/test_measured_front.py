@@ -38,7 +38,6 @@ def test_runs_become_rows_with_intervals_and_a_front(script, trials, monkeypatch
     runs = [FlockRuns(script.JUDGED, rng.uniform(0.2, 0.4, shape)) for _ in range(3)]
     left = iter(runs)
     monkeypatch.setattr(script, "stored_runs", lambda *_: next(left))
-    monkeypatch.setattr(script, "RESAMPLES", 20)
     table = script.measured([trials.iloc[k] for k in range(3)], [1], 1, tmp_path, "first")
     assert (table["repetitions"] == 4).all()
     for name in (*MISFITS, *(target.key for target in TARGETS if target.value)):

@@ -364,11 +364,10 @@ def judge(measured: Measured, growth: Growth) -> tuple[CheckedClaim, ...]:
     # A loop on which nothing jammed is closed whatever the transition, and one that never opened
     # cannot close.
     jammed = bool(slow.at_turn.mean() >= _JAMMED)
-    hysteresis = student_interval(slow.openings)
     opened = jammed and student_interval(fast.openings)[0] >= HYSTERESIS.low
     loops = (
         HYSTERESIS.check(
-            *(hysteresis if jammed else nothing),
+            *(student_interval(slow.openings) if jammed else nothing),
             scope,
             "" if jammed else "the loop never left rotation",
         ),

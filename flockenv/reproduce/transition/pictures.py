@@ -170,7 +170,7 @@ def _loops(measured: Measured) -> Figure:
         noise.set_xlabel(f"bw (s) at density {lowest}")
     for axes in panels[:, 0]:
         axes.set_ylabel(_OUTWARD)
-    handles = [*_sizes(design)[: len(design.looped()) // len(WAYS)]]
+    handles = _sizes(design)[: len(design.looped()) // len(WAYS)]
     handles += _styles({"rising": "-", "falling": "--"})
     picture.legend(handles=handles, loc="outside upper center", ncols=3)
     return picture
