@@ -89,7 +89,11 @@ def judge(design: FractionDesign, curves: Curves) -> list[CheckedClaim]:
         if policy in others:
             ratio = curves[policy, growth].replicates / curves[law, growth].replicates
             scope = f"{policy}, {growth.n_boats} boats, {growth.way}"
-            claims.append(BETTER.check(*interval(ratio), scope).of_seeds(design.runs[growth]))
+            found, seeds = BETTER.check(*interval(ratio), scope), design.runs[growth]
+            # Where a proportion is undefined, other numbers of leaders are missing and not seeds.
+            if found.ends != "none":
+                found = found.with_needs(seeds, "seeds")
+            claims.append(found.of_seeds(seeds))
     return claims
 
 
