@@ -5,7 +5,7 @@ import json
 import os
 import zipfile
 from collections.abc import Mapping
-from inspect import signature
+from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any
 
@@ -253,12 +253,24 @@ def _policy_of(data: Mapping[str, Any]) -> Any:
     """Return the policy with new weights, as its algorithm would make it."""
     kind, options = data["policy_class"], dict(data["policy_kwargs"])
     options.pop("device", None)
-    takes = signature(kind).parameters
+    takes = _arguments(kind)
     if "use_sde" in takes:
         options.setdefault("use_sde", data["use_sde"])
     if "lr_schedule" in takes:
         options["lr_schedule"] = lambda _: 0.0
     return kind(data["observation_space"], data["action_space"], **options)
+
+
+def _arguments(kind: type) -> set[str]:
+    """Return the names of a class's arguments, with those that it hands on to its bases."""
+    found: set[str] = set()
+    for base in kind.__mro__:
+        if "__init__" in vars(base):
+            parameters = signature(vars(base)["__init__"]).parameters.values()
+            found |= {each.name for each in parameters}
+            if all(each.kind is not Parameter.VAR_KEYWORD for each in parameters):
+                break
+    return found
 
 
 def _leaders_of(space: gymnasium.Space[Any], one: gymnasium.spaces.Box) -> int:

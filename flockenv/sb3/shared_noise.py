@@ -1,20 +1,30 @@
 """Exploration that all leaders of a flock share and hold for a time."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from stable_baselines3.common.distributions import DiagGaussianDistribution
+from stable_baselines3.common.distributions import (
+    DiagGaussianDistribution,
+    StateDependentNoiseDistribution,
+)
 from stable_baselines3.common.policies import ActorCriticPolicy
+from stable_baselines3.common.preprocessing import get_action_dim
 from stable_baselines3.common.vec_env import VecEnv
 
 from flockenv import _core
 from flockenv.errors import ParameterError
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
 
-__all__ = ["SharedNoiseDistribution", "SharedNoisePolicy", "shared_noise"]
+__all__ = [
+    "HeldNoise",
+    "SharedNoiseDistribution",
+    "SharedNoisePolicy",
+    "SharedWeightNoiseDistribution",
+    "shared_noise",
+]
 
 
 def shared_noise(venv: VecEnv, hold_s: float) -> dict[str, Any]:
@@ -48,23 +58,25 @@ def shared_noise(venv: VecEnv, hold_s: float) -> dict[str, Any]:
     }
 
 
-class SharedNoiseDistribution(DiagGaussianDistribution):
-    """Gaussian actions whose deviations from the mean are one number per flock, held for a time.
+class HeldNoise:
+    """Normal numbers, a row for each flock, which are drawn again after a number of decisions.
 
-    Each action is distributed as with independent noise, which is what its probability says.
-    Samples of another number of slots than that of the training have independent noise.
+    Parameters
+    ----------
+    flock_of_slot, hold_steps
+        As of `SharedNoisePolicy`.
+    size
+        Numbers of a row.
     """
 
-    def __init__(self, action_dim: int, flock_of_slot: Sequence[int], hold_steps: int) -> None:
-        super().__init__(action_dim)
+    def __init__(self, flock_of_slot: Sequence[int], hold_steps: int, size: int) -> None:
         self._flock_of_slot = torch.as_tensor(list(flock_of_slot))
-        self._flocks = int(self._flock_of_slot.max()) + 1
         self._hold_steps = hold_steps
         self._steps_left = 0
-        self._noise = torch.zeros(self._flocks, action_dim)
+        self._noise = torch.zeros(int(self._flock_of_slot.max()) + 1, size)
 
     def get_state(self) -> dict[str, NDArray[Any]]:
-        """Return the noise, shape (flocks, actions), and for how many more decisions it is held."""
+        """Return the noise, shape (flocks, size), and for how many more decisions it is held."""
         return {
             "noise": self._noise.cpu().numpy().copy(),
             "steps_left": np.array(self._steps_left),
@@ -86,17 +98,78 @@ class SharedNoiseDistribution(DiagGaussianDistribution):
         self._noise = torch.from_numpy(state["noise"].copy())
         self._steps_left = steps_left
 
+    def next(self, slots: int, device: torch.device) -> torch.Tensor:
+        """Return the rows of the next decision, shape (slots, size).
+
+        Another number of slots than that of the training has independent rows.
+        """
+        if slots != len(self._flock_of_slot):
+            return torch.randn(slots, self._noise.shape[1], device=device)
+        if self._steps_left == 0:
+            self._noise = torch.randn(self._noise.shape, device=device)
+            self._steps_left = self._hold_steps
+        self._steps_left -= 1
+        return self._noise.to(device)[self._flock_of_slot.to(device)]
+
+
+class SharedNoiseDistribution(DiagGaussianDistribution):
+    """Gaussian actions whose deviations from the mean are one number per flock, held for a time.
+
+    Each action is distributed as with independent noise, which is what its probability says.
+    Samples of another number of slots than that of the training have independent noise.
+    """
+
+    def __init__(self, action_dim: int, flock_of_slot: Sequence[int], hold_steps: int) -> None:
+        super().__init__(action_dim)
+        self.held = HeldNoise(flock_of_slot, hold_steps, action_dim)
+
     def sample(self) -> torch.Tensor:
         """Return actions, shape (slots, actions)."""
         mean, deviation = self.distribution.mean, self.distribution.stddev
-        if len(mean) != len(self._flock_of_slot):
-            return super().sample()
-        if self._steps_left == 0:
-            self._noise = torch.randn(self._flocks, self.action_dim, device=mean.device)
-            self._steps_left = self._hold_steps
-        self._steps_left -= 1
-        noise = self._noise.to(mean.device)
-        return mean + deviation * noise[self._flock_of_slot.to(mean.device)]
+        return mean + deviation * self.held.next(len(mean), mean.device)
+
+
+class SharedWeightNoiseDistribution(StateDependentNoiseDistribution):
+    """gSDE (Raffin et al. 2021) with one matrix per flock, held for a time, and a constant feature.
+
+    A deviation is the matrix times what the last layer takes, and 1. The leaders of a flock
+    therefore act by one policy whose last layer differs from the mean one, biases included.
+    """
+
+    held: HeldNoise
+    _deviations: torch.Tensor
+
+    def __init__(
+        self, action_dim: int, flock_of_slot: Sequence[int], hold_steps: int, **options: Any
+    ) -> None:
+        super().__init__(action_dim, **options)
+        self._flock_of_slot, self._hold_steps = flock_of_slot, hold_steps
+
+    def proba_distribution_net(
+        self, latent_dim: int, log_std_init: float = -2.0, latent_sde_dim: int | None = None
+    ) -> tuple[torch.nn.Module, torch.nn.Parameter]:
+        """Return the last layer, and the logarithms of the deviations of its weights and biases."""
+        features = (latent_dim if latent_sde_dim is None else latent_sde_dim) + 1
+        self.held = HeldNoise(self._flock_of_slot, self._hold_steps, features * self.action_dim)
+        return super().proba_distribution_net(latent_dim, log_std_init, features)
+
+    def sample_weights(self, log_std: torch.Tensor, batch_size: int = 1) -> None:
+        """Draw nothing: stable-baselines3 asks for new matrices with every minibatch."""
+
+    def proba_distribution(
+        self, mean_actions: torch.Tensor, log_std: torch.Tensor, latent_sde: torch.Tensor
+    ) -> Self:
+        """Return the distribution of actions about their means, by what the last layer takes."""
+        self._deviations = self.get_std(log_std).detach()
+        ones = torch.ones_like(latent_sde[:, :1])
+        super().proba_distribution(mean_actions, log_std, torch.cat([latent_sde, ones], dim=1))
+        return self
+
+    def get_noise(self, latent_sde: torch.Tensor) -> torch.Tensor:
+        """Return deviations from the mean actions, shape (slots, actions)."""
+        drawn = self.held.next(len(latent_sde), latent_sde.device)
+        matrices = drawn.reshape(len(latent_sde), *self._deviations.shape) * self._deviations
+        return torch.einsum("sf,sfa->sa", latent_sde.detach(), matrices)
 
 
 class SharedNoisePolicy(ActorCriticPolicy):
@@ -107,6 +180,10 @@ class SharedNoisePolicy(ActorCriticPolicy):
     The order of a flock answers a common deviation of its leaders that lasts, and hardly those that
     cancel each other. The noise is drawn from torch's generator, so that the seed of the algorithm
     fixes it.
+
+    With ``use_sde=True`` of the algorithm the noise is that of gSDE: it perturbs the weights of the
+    last layer, so that leaders deviate by what they observe (`SharedWeightNoiseDistribution`). It
+    is held as here, whatever ``sde_sample_freq``.
 
     Parameters
     ----------
@@ -120,7 +197,7 @@ class SharedNoisePolicy(ActorCriticPolicy):
     Raises
     ------
     ParameterError
-        For discrete actions, for gSDE, and for a hold of less than one decision.
+        For discrete actions, and for a hold of less than one decision.
     """
 
     def __init__(
@@ -138,16 +215,24 @@ class SharedNoisePolicy(ActorCriticPolicy):
                 f"hold_steps = {hold_steps!r} and {len(flock_of_slot)} slots are not accepted: at "
                 "least 1 each"
             )
+        self._shared: dict[str, Any] = {
+            "flock_of_slot": list(flock_of_slot),
+            "hold_steps": hold_steps,
+        }
         super().__init__(observation_space, action_space, lr_schedule, **options)
-        if type(self.action_dist) is not DiagGaussianDistribution:
+
+    def _build(self, lr_schedule: Any) -> None:
+        kind, actions = type(self.action_dist), get_action_dim(self.action_space)
+        if kind is DiagGaussianDistribution:
+            self.action_dist = SharedNoiseDistribution(actions, **self._shared)
+        elif kind is StateDependentNoiseDistribution:
+            options: dict[str, Any] = dict(self.dist_kwargs or {})
+            self.action_dist = SharedWeightNoiseDistribution(actions, **self._shared, **options)
+        else:
             raise ParameterError(
-                f"{type(self.action_dist).__name__} is not accepted with a shared noise: "
-                "continuous actions without gSDE"
+                f"{kind.__name__} is not accepted with a shared noise: continuous actions"
             )
-        self._shared = {"flock_of_slot": list(flock_of_slot), "hold_steps": hold_steps}
-        self.action_dist = SharedNoiseDistribution(
-            self.action_dist.action_dim, flock_of_slot, hold_steps
-        )
+        super()._build(lr_schedule)
 
     def _get_constructor_parameters(self) -> dict[str, Any]:
         return {**super()._get_constructor_parameters(), **self._shared}

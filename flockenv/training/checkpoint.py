@@ -20,7 +20,7 @@ from flockenv._io.array_file import write_arrays
 from flockenv._io.npz_header import array_of, entry_of, read_headed
 from flockenv.envs.observation import observation_version
 from flockenv.errors import ParameterError
-from flockenv.sb3.shared_noise import SharedNoiseDistribution
+from flockenv.sb3.shared_noise import HeldNoise
 from flockenv.training.learner import Learner
 from flockenv.training.pools import PooledVecEnv
 from flockenv.training.settings import TrainingSettings
@@ -128,9 +128,9 @@ def restore(path: str | os.PathLike[str], model: Learner) -> Progress:
         if model.averaged is not None:
             averaged = _named(arrays, "average")
             model.averaged.load_state_dict({n: torch.from_numpy(a) for n, a in averaged.items()})
-        exploration = getattr(policy, "action_dist", None)
-        if isinstance(exploration, SharedNoiseDistribution):
-            exploration.set_state(_named(arrays, "exploration"))
+        noise = _held_noise(model)
+        if noise is not None:
+            noise.set_state(_named(arrays, "exploration"))
         model.num_timesteps, model._n_updates = progress.samples, updates
         _restore_random_states(arrays)
     return progress
@@ -203,10 +203,14 @@ def _blank(model: Learner) -> State:
 
 def _exploration(model: Learner) -> State:
     """Return what a noise that is held over the end of a rollout leaves to the next one."""
-    exploration = getattr(model.policy, "action_dist", None)
-    if not isinstance(exploration, SharedNoiseDistribution):
+    noise = _held_noise(model)
+    if noise is None:
         return {}
-    return {f"exploration:{name}": array for name, array in exploration.get_state().items()}
+    return {f"exploration:{name}": array for name, array in noise.get_state().items()}
+
+
+def _held_noise(model: Learner) -> HeldNoise | None:
+    return getattr(getattr(model.policy, "action_dist", None), "held", None)
 
 
 def _average(model: Learner) -> State:

@@ -86,7 +86,8 @@ class TrainingSettings:
     shared_noise_s
         Time in s for which all leaders of a flock deviate from the mean policy by one common noise,
         a whole number of decisions (`flockenv.sb3.SharedNoisePolicy`); 0: each leader has a noise
-        of its own at every decision.
+        of its own at every decision. With `use_sde` the noise perturbs the weights of the last
+        layer for this time, instead of `sde_sample_freq`.
     seed
         Number of the training run; the flocks' seeds come from it (`runs.seeds.POLICY_SEEDS`).
     start
@@ -198,8 +199,6 @@ class TrainingSettings:
         object.__setattr__(self, "_decision_period_s", batch.settings["decision_period_s"])
 
     def _check_shared_noise(self, decisions_hz: float) -> None:
-        if self.shared_noise_s and self.use_sde:
-            raise ParameterError("shared_noise_s is not accepted with use_sde: one or the other")
         try:
             self.held_decisions(decisions_hz)
         except ParameterError as error:

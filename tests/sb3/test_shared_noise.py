@@ -21,7 +21,7 @@ def alone():
         yield
 
 
-def model_of(venv, hold_s=2.0, **options):
+def model_of(venv, hold_s=2.0, use_sde=False, **options):
     return PPO(
         SharedNoisePolicy,
         venv,
@@ -30,6 +30,7 @@ def model_of(venv, hold_s=2.0, **options):
         n_epochs=1,
         seed=3,
         device="cpu",
+        use_sde=use_sde,
         policy_kwargs={**shared_noise(venv, hold_s), **options},
     )
 
@@ -63,9 +64,44 @@ def test_noise_is_shared_by_a_flock_and_held():
     assert own.std() == pytest.approx(1.0, abs=0.05)
 
 
-def test_ppo_learns_with_it_and_its_file_steers(tmp_path):
+def test_with_gsde_the_leaders_of_a_flock_act_by_one_perturbed_last_layer():
+    venv = LeaderVecEnv(3, n_leaders=8, **{**OPTIONS, "n_boats": 20})
+    venv.seed(0)
+    venv.reset()
+    policy = model_of(venv, use_sde=True, net_arch=[4], log_std_init=-1.0).policy
+    deviations = policy.log_std.exp().detach().numpy()
+    assert deviations.shape == (5, 1)
+    flock, weights = venv.flock_of_slot, []
+    for _ in range(40):
+        rows = torch.as_tensor(venv.step(np.zeros((24, 1)))[0])
+        with torch.no_grad():
+            actions, _, log_prob = policy.forward(rows)
+            distribution = policy.get_distribution(rows).distribution
+            latent = policy.mlp_extractor.forward_actor(policy.extract_features(rows)).numpy()
+        seen = np.hstack([latent, np.ones((24, 1))])
+        # The probability is that of a sum of independent weights.
+        np.testing.assert_allclose(
+            distribution.stddev.numpy(), np.sqrt(seen**2 @ deviations**2), rtol=1e-4
+        )
+        assert torch.allclose(log_prob, distribution.log_prob(actions).sum(dim=1))
+        found = (actions - distribution.mean).numpy()
+        for number in range(3):
+            own = flock == number
+            solved, *_ = np.linalg.lstsq(seen[own], found[own], rcond=None)
+            np.testing.assert_allclose(seen[own] @ solved, found[own], atol=1e-5)
+            weights.append(solved[:, 0] / deviations[:, 0])
+    # 2 s are four decisions.
+    blocks = np.array(weights).reshape(10, 4, 3, 5)
+    np.testing.assert_allclose(blocks, np.repeat(blocks[:, :1], 4, axis=1), atol=0.02)
+    own = blocks[:, 0].reshape(30, 5)
+    assert np.abs(np.corrcoef(own) - np.eye(30)).max() < 0.999
+    assert own.std() == pytest.approx(1.0, abs=0.2)
+
+
+@pytest.mark.parametrize("use_sde", [False, True])
+def test_ppo_learns_with_it_and_its_file_steers(tmp_path, use_sde):
     venv = LeaderVecEnv(4, n_leaders=2, episode_s=10.0, **OPTIONS)
-    model = model_of(venv, net_arch=[8])
+    model = model_of(venv, use_sde=use_sde, net_arch=[8])
     before = [each.clone() for each in model.policy.parameters()]
     model.learn(2 * 8 * venv.num_envs)
     after = list(model.policy.parameters())

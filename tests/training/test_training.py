@@ -62,6 +62,7 @@ def test_a_folder_takes_one_training_at_a_time(tiny: TrainingSettings, tmp_path:
         # Not a whole number of rollouts: a noise is held over the end of one.
         {"shared_noise_s": 2.5},
         {"shared_noise_s": 2.5, "critic": "flock"},
+        {"shared_noise_s": 2.5, "critic": "flock", "use_sde": True},
         {"encoder": "deepsets", "average": 0.3, "learn_log_std": False},
         {"encoder": "leaning", "average": 0.5, "critic": "flock", "squash": True},
     ],
