@@ -5,6 +5,7 @@ import io
 import shlex
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -58,6 +59,14 @@ def signal(
     shared: Annotated[
         bool, typer.Option("--shared", help="All leaders of a flock explore with one noise.")
     ] = False,
+    weights: Annotated[
+        bool,
+        typer.Option(
+            "--weights",
+            help="The noise perturbs the weights of the last layer of the network that the "
+            "direction goes to, and not the action (gSDE).",
+        ),
+    ] = False,
     hold_s: Annotated[
         float | None, typer.Option(help="Time in s that a noise is held. [one decision]")
     ] = None,
@@ -97,21 +106,23 @@ def signal(
     from flockenv.comparison.signal import SignalSettings, measured_signals
 
     started = time.perf_counter()
+    given: dict[str, Any] = {
+        "action_mode": action_mode,
+        "decision_period_s": decision_period_s,
+        "control_hz": control_hz,
+        "physics": physics,
+    }
     settings = SignalSettings(
         rewards=dict(_weights(text) for text in reward or ["signed_order"]),
         horizons_s=horizon or [8.0, 30.0],
         deviation=deviation,
         hold_s=hold_s,
         shared=shared,
+        weights=weights,
         flocks=flocks,
         rounds=rounds,
         duration_s=60.0 * minutes,
-        options={
-            "action_mode": action_mode,
-            "decision_period_s": decision_period_s,
-            "control_hz": control_hz,
-            "physics": physics,
-        },
+        options=given,
         seed=seed,
     )
     laws = action_mode == "rudder"
@@ -136,7 +147,7 @@ def signal(
                 parameters.replace(n_leaders=leaders),
                 start_policy,
                 end_policy,
-                settings,
+                replace(settings, options={**given, **_layout(start_policy, end_policy)}),
                 lambda seconds: bar.advance(task, seconds),
             )
     rows = [each.row() for each in signals]
@@ -167,6 +178,14 @@ def _weights(text: str) -> tuple[str, dict[str, float]]:
                 f"--reward {text} is not accepted: {value!r} is no weight"
             ) from error
     return text, weights
+
+
+def _layout(*policies: Any) -> dict[str, Any]:
+    """Return what the policies observe, where one of them is a network's."""
+    names = ("observation", "mirror_to_target")
+    return {
+        name: own for policy in policies for name in names if (own := getattr(policy, name, None))
+    }
 
 
 def _policy(name: str, action_mode: str, pool: Any, trust: bool) -> Any:

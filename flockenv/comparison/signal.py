@@ -1,8 +1,8 @@
 """Signal of the policy gradient: how clearly samples show that a direction is the right one.
 
-A policy explores about its mean action: a = mu(s) + sigma*e. Along the direction d(s) from its own
-mean actions to those of another policy, the policy gradient is E[e*d(s)/sigma*A], where A is the
-return less a baseline. Each flock's episode gives an independent estimate. Their mean over its
+A policy explores about its mean action: a = mu(s) + sigma(s)*e. Along the direction d(s) from its
+own mean actions to those of another policy, the policy gradient is E[e*d(s)/sigma(s)*A], where A is
+the return less a baseline. Each flock's episode gives an independent estimate. Their mean over its
 standard error is the significance z. It grows with the square root of the samples, so that z per
 million samples compares rewards, horizons and action modes.
 """
@@ -16,12 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv import _core
+from flockenv.comparison.exploration import Exploration
 from flockenv.envs.batch import LeaderBatch
 from flockenv.envs.observation import BLOCKS, ObservationSpace
 from flockenv.envs.options import EnvOptions
 from flockenv.envs.reward import TERMS
 from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.parameters import FlockParameters
+from flockenv.policies import NetworkPolicy
 from flockenv.policies.base import LeaderPolicy, check_action_mode
 from flockenv.runs.seeds import POLICY_SEEDS
 
@@ -74,6 +76,10 @@ class SignalSettings:
         Time in s that an exploration is held; None: one decision.
     shared
         Whether all leaders of a flock explore with the same noise.
+    weights
+        Whether the noise perturbs weights and not the action (gSDE): those of the last layer of the
+        network that the direction goes to, biases included. `deviation` is then that of an action
+        for inputs of the layer whose mean square is 1.
     flocks, rounds
         Flocks at a time, an even number, and how often that many start.
     duration_s
@@ -91,6 +97,7 @@ class SignalSettings:
     deviation: float = 0.3
     hold_s: float | None = None
     shared: bool = False
+    weights: bool = False
     flocks: int = 64
     rounds: int = 1
     duration_s: float = 240.0
@@ -189,8 +196,14 @@ def measured_signals(
     ------
     ParameterError
         For settings and options out of range, for policies of another action mode or layout of
-        observations, and for two policies that always act alike.
+        observations, for two policies that always act alike, and for a noise of weights without a
+        network that the direction goes to.
     """
+    if settings.weights and not isinstance(towards, NetworkPolicy):
+        raise ParameterError(
+            f"weights = True is not accepted with a direction to {shown(towards)}: to a network, "
+            "whose last layer is perturbed"
+        )
     terms = {name for weights in settings.rewards.values() for name in weights}
     options = {
         **(settings.options or {}),
@@ -204,9 +217,8 @@ def measured_signals(
     for policy in (start, towards):
         check_action_mode(policy, mode, "in this environment")
         _check_layout(policy, batch)
-    hold = 1
-    if settings.hold_s is not None:
-        hold = _core.held_decisions(settings.hold_s, batch.decisions_hz)
+    held_s = settings.hold_s
+    hold = 1 if held_s is None else _core.held_decisions(held_s, batch.decisions_hz)
     pairs = [(name, h) for name in settings.rewards for h in settings.horizons_s]
     found: dict[tuple[str, float], list[tuple[NDArray[np.float64], float]]] = {}
     samples, differs = 0, False
@@ -297,26 +309,31 @@ class _Round:
         self.leaders = batch.leaders[0]
         self.decisions_hz = batch.decisions_hz
         rows = settings.flocks * self.leaders
+        exploration = Exploration(
+            random,
+            settings.flocks,
+            self.leaders,
+            deviation=settings.deviation,
+            shared=settings.shared,
+            hold=hold,
+            inputs=getattr(towards, "last_inputs", None) if settings.weights else None,
+        )
         batch.reset(list(seeds), None, lambda: 0)
         seen = batch.observe()
         inputs: list[NDArray[np.float32]] = []
         scores: list[NDArray[np.float64]] = []
         terms: list[dict[str, NDArray[np.float64]]] = []
-        noise = np.zeros(rows)
         over = False
         while not over:
-            if len(scores) % hold == 0:
-                draws = settings.flocks if settings.shared else rows
-                noise = random.standard_normal(draws)
-                noise = np.repeat(noise, self.leaders) if settings.shared else noise
+            noise, deviation = exploration.next(seen)
             mean, other = (
                 np.asarray(policy.predict(seen)[0], np.float64).reshape(rows)
                 for policy in (start, towards)
             )
             features = np.repeat(batch.flock_features(), self.leaders, axis=0)
             inputs.append(np.concatenate([seen, features], axis=1))
-            scores.append(noise * (other - mean) / settings.deviation)
-            actions = np.clip(mean + settings.deviation * noise, -1.0, 1.0)
+            scores.append(noise * (other - mean) / deviation**2)
+            actions = np.clip(mean + noise, -1.0, 1.0)
             seen, _, truncated = batch.step(actions)
             terms.append(batch.reward_terms())
             over = bool(truncated.all())

@@ -174,13 +174,19 @@ class NetworkPolicy(StoredPolicy):
         """Copies of the layers' biases, shape (outputs,)."""
         return [bias.copy() for _, bias in self._layers]
 
-    def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
+    def last_inputs(self, rows: ArrayLike) -> NDArray[np.float32]:
+        """Return what the last layer takes, shape (rows, inputs), for rows of observations."""
         between = ACTIVATIONS[self.activation]
-        values = rows if self._encoder is None else self._encoder(rows)
+        values = np.asarray(rows, np.float32)
+        if self._encoder is not None:
+            values = self._encoder(values)
         for weight, bias in self._layers[:-1]:
             values = between(values @ weight + bias)
+        return values
+
+    def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
         weight, bias = self._layers[-1]
-        outputs = values @ weight + bias
+        outputs = self.last_inputs(rows) @ weight + bias
         rudders: NDArray[np.float32] = (
             np.tanh(outputs) if self.squashed else np.clip(outputs, -1.0, 1.0)
         )

@@ -3,6 +3,11 @@
 import csv
 import json
 
+import numpy as np
+
+from flockenv.envs.observation import observation_entries
+from flockenv.policies import NetworkPolicy
+
 
 def test_signals_are_printed_and_stored(cli, tmp_path):
     command = ["signal", "--pool", "table-1", "--set", "n_boats=6", "--leaders", "1"]
@@ -19,3 +24,26 @@ def test_signals_are_printed_and_stored(cli, tmp_path):
     refused = cli(*command, "--reward", "jam=much")
     assert refused.returncode == 2
     assert "'much' is no weight" in refused.stderr
+
+
+def test_directions_go_to_networks_of_any_layout(cli, tmp_path):
+    blocks, size = {"order": False}, len(observation_entries({"order": False}))
+    network = NetworkPolicy(
+        [np.zeros((size, 1))],
+        [np.zeros(1)],
+        observation=blocks,
+        mirror_to_target=True,
+        action_mode="lean",
+    )
+    network.save(tmp_path / "network.npz")
+    command = ["signal", "--pool", "table-1", "--set", "n_boats=6", "--leaders", "1"]
+    command += ["--action-mode", "lean", "--from", "0.5", "--flocks", "8", "--rounds", "1"]
+    command += ["--to", str(tmp_path / "network.npz"), "--minutes", "0.1", "--json"]
+    action, weights = (
+        json.loads(cli(*command, *more).stdout)[0]["z"] for more in ([], ["--weights", "--shared"])
+    )
+    assert np.isfinite([action, weights]).all()
+    assert action != weights
+    refused = cli(*command[:-3], *command[-1:], "--weights", "--to", "1")
+    assert refused.returncode == 2
+    assert "to a network" in refused.stderr

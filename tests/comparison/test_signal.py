@@ -5,12 +5,15 @@ The effort of a rudder s is -s²: towards smaller rudders it grows.
 
 import math
 
+import numpy as np
 import pytest
 
 from flockenv import FlockParameters
+from flockenv.comparison.exploration import Exploration
 from flockenv.comparison.signal import ConstantAction, SignalSettings, measured_signals
+from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError
-from flockenv.policies import DampedLaw, SteeringLaw
+from flockenv.policies import DampedLaw, NetworkPolicy, SteeringLaw
 
 FLOCK = FlockParameters(n_boats=9, n_leaders=2, pool="table-1")
 EFFORT = {"effort": {"rudder_effort": 1.0}}
@@ -45,6 +48,52 @@ def test_shared_and_held_noise_has_fewer_draws_and_the_same_sign():
     # One draw per flock and second instead of one per leader and tenth of a second.
     found = signal(0.5, 0.0, shared=True, hold_s=1.0)
     assert 3.0 < found.z < 0.5 * signal(0.5, 0.0).z
+
+
+def straight_ahead():
+    """Return a linear network that goes straight ahead whatever it observes."""
+    size = len(observation_entries())
+    return NetworkPolicy([np.zeros((size, 1))], [np.zeros(1)])
+
+
+def test_a_noise_of_weights_finds_the_gradient_too():
+    def found(reward, **changes):
+        ends = ConstantAction(0.5, "rudder"), straight_ahead()
+        rewards = {"reward": {reward: 1.0}}
+        return measured_signals(FLOCK, *ends, settings(rewards=rewards, weights=True, **changes))[0]
+
+    assert found("rudder_effort").z > 10.0
+    assert found("rudder_effort", shared=True, hold_s=1.0).z > 3.0
+    assert abs(found("jam").z) < 4.0
+
+
+def test_a_noise_of_weights_is_linear_in_what_the_layer_takes():
+    random = np.random.default_rng(0)
+    exploration = Exploration(
+        random, 3, 40, deviation=0.3, shared=True, hold=2, inputs=lambda seen: seen[:, :4]
+    )
+    draws = []
+    for _ in range(300):
+        seen = random.normal(size=(120, 6))
+        noise, deviation = exploration.next(seen)
+        inputs = np.hstack([seen[:, :4], np.ones((120, 1))])
+        scale = 0.3 / math.sqrt(5)
+        np.testing.assert_allclose(deviation, scale * np.sqrt((inputs**2).sum(axis=1)))
+        for flock in range(3):
+            own = slice(40 * flock, 40 * flock + 40)
+            solved = np.linalg.lstsq(inputs[own], noise[own], rcond=None)[0]
+            np.testing.assert_allclose(inputs[own] @ solved, noise[own], atol=1e-12)
+            draws.append(solved / scale)
+    held = np.array(draws).reshape(150, 2, 3, 5)
+    np.testing.assert_allclose(held[:, 0], held[:, 1], atol=1e-9)
+    assert held.std() == pytest.approx(1.0, abs=0.05)
+    correlation = np.corrcoef(held[:, 0].reshape(150, 15).T) - np.eye(15)
+    assert np.abs(correlation).max() < 0.35
+
+
+def test_a_noise_of_weights_needs_a_network():
+    with pytest.raises(ParameterError, match="to a network"):
+        signal(0.5, 0.0, weights=True)
 
 
 def test_a_reward_that_no_action_changes_has_no_signal():
