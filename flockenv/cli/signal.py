@@ -20,8 +20,11 @@ from flockenv.cli.output import check_folder, keep, printable, refuse_overwritin
 from flockenv.cli.parameters import ChangesOption, FileOption, PresetOption, TrustOption
 from flockenv.cli.pools import PoolOption, compared_flocks
 from flockenv.errors import ParameterError
+from flockenv.policies import ObservedPolicy
 
 __all__ = ["signal"]
+
+_DEFAULT: tuple[tuple[str, Any], ...] = (("observation", {}), ("mirror_to_target", False))
 
 
 def signal(
@@ -63,8 +66,8 @@ def signal(
         bool,
         typer.Option(
             "--weights",
-            help="The noise perturbs the weights of the last layer of the network that the "
-            "direction goes to, and not the action (gSDE).",
+            help="The noise perturbs the weights of the last layer of the network that --to "
+            "names (an .npz file of a training), and not the action (gSDE).",
         ),
     ] = False,
     hold_s: Annotated[
@@ -140,14 +143,14 @@ def signal(
         work = len(found) * rounds * flocks * settings.duration_s
         task = bar.add_task("simulating", total=work)
         for parameters in found:
-            start_policy, end_policy = (
-                _policy(name, action_mode, parameters.pool, trust) for name in names
-            )
+            policies = [_policy(name, action_mode, parameters.pool, trust) for name in names]
+            layout = _layout(*policies)
+            start_policy, end_policy = (_observing(each, layout) for each in policies)
             signals += measured_signals(
                 parameters.replace(n_leaders=leaders),
                 start_policy,
                 end_policy,
-                replace(settings, options={**given, **_layout(start_policy, end_policy)}),
+                replace(settings, options={**given, **layout}),
                 lambda seconds: bar.advance(task, seconds),
             )
     rows = [each.row() for each in signals]
@@ -181,11 +184,30 @@ def _weights(text: str) -> tuple[str, dict[str, float]]:
 
 
 def _layout(*policies: Any) -> dict[str, Any]:
-    """Return what the policies observe, where one of them is a network's."""
-    names = ("observation", "mirror_to_target")
-    return {
-        name: own for policy in policies for name in names if (own := getattr(policy, name, None))
-    }
+    """Return what the policies observe; closed-form laws observe what the others do.
+
+    Raises
+    ------
+    ParameterError
+        If two of them observe different layouts.
+    """
+    from flockenv.comparison.signal import ConstantAction
+
+    found = [
+        (policy, {name: getattr(policy, name, None) or missing for name, missing in _DEFAULT})
+        for policy in policies
+        if not isinstance(policy, ConstantAction | ObservedPolicy)
+    ]
+    if len(found) == 2 and found[0][1] != found[1][1]:
+        raise ParameterError(
+            f"{found[0][0]!r} and {found[1][0]!r} observe different layouts: the ends of a "
+            "direction have to observe the same"
+        )
+    return found[0][1] if found else dict(_DEFAULT)
+
+
+def _observing(policy: Any, layout: dict[str, Any]) -> Any:
+    return policy.observing(**layout) if isinstance(policy, ObservedPolicy) else policy
 
 
 def _policy(name: str, action_mode: str, pool: Any, trust: bool) -> Any:

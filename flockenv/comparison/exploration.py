@@ -28,8 +28,8 @@ class Exploration:
     hold
         Decisions that draws are held for.
     inputs
-        What actions are linear in: from observations, shape (rows, numbers), to an array of shape
-        (rows, inputs). None: the actions themselves deviate.
+        What the perturbed weights multiply, a constant apart: from observations, shape (rows,
+        numbers), to an array of shape (rows, inputs). None: the actions themselves deviate.
     """
 
     def __init__(

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv import _core
+from flockenv.comparison.baseline import least_squares
 from flockenv.comparison.exploration import Exploration
 from flockenv.envs.batch import LeaderBatch
 from flockenv.envs.observation import BLOCKS, ObservationSpace
@@ -29,7 +30,7 @@ from flockenv.runs.seeds import POLICY_SEEDS
 
 __all__ = ["ConstantAction", "Signal", "SignalSettings", "measured_signals"]
 
-_REGULARIZATION = 1e-3
+_LARGEST_SQUASHED = 0.9999
 #: Rows that a baseline is fitted to, about.
 _ROWS = 20_000
 
@@ -78,8 +79,8 @@ class SignalSettings:
         Whether all leaders of a flock explore with the same noise.
     weights
         Whether the noise perturbs weights and not the action (gSDE): those of the last layer of the
-        network that the direction goes to, biases included. `deviation` is then that of an action
-        for inputs of the layer whose mean square is 1.
+        `NetworkPolicy` that the direction goes to, biases included. `deviation` is then that of
+        an action for inputs of the layer whose mean square is 1.
     flocks, rounds
         Flocks at a time, an even number, and how often that many start.
     duration_s
@@ -171,8 +172,10 @@ def measured_signals(
 ) -> list[Signal]:
     """Measure the gradient's signal along the direction from one policy to another.
 
-    All rewards and horizons are measured on the same flocks. The baseline is linear in what the
-    leader observes and in the features of its flock, and is fitted to the other half of the flocks.
+    Where the direction goes to a squashed network, exploration and direction are those of what the
+    hyperbolic tangent takes. All rewards and horizons are measured on the same flocks. The baseline
+    is linear in what the leader observes and in the features of its flock, and is fitted to the
+    other half of the flocks.
 
     Parameters
     ----------
@@ -201,8 +204,8 @@ def measured_signals(
     """
     if settings.weights and not isinstance(towards, NetworkPolicy):
         raise ParameterError(
-            f"weights = True is not accepted with a direction to {shown(towards)}: to a network, "
-            "whose last layer is perturbed"
+            f"weights are not perturbed along a direction to {shown(towards)}: it has to go to a "
+            "NetworkPolicy, such as the .npz file of a training"
         )
     terms = {name for weights in settings.rewards.values() for name in weights}
     options = {
@@ -269,6 +272,10 @@ def _significance(estimates: NDArray[np.float64], samples: int) -> tuple[float, 
     return z, z * scale, scale * math.sqrt(1.0 + z * z / (2.0 * len(estimates)))
 
 
+def _unsquashed(actions: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.arctanh(np.clip(actions, -_LARGEST_SQUASHED, _LARGEST_SQUASHED))
+
+
 def _check_layout(policy: Any, batch: LeaderBatch) -> None:
     if isinstance(policy, ConstantAction):
         return
@@ -309,6 +316,7 @@ class _Round:
         self.leaders = batch.leaders[0]
         self.decisions_hz = batch.decisions_hz
         rows = settings.flocks * self.leaders
+        squashed = bool(getattr(towards, "squashed", False))
         exploration = Exploration(
             random,
             settings.flocks,
@@ -332,8 +340,11 @@ class _Round:
             )
             features = np.repeat(batch.flock_features(), self.leaders, axis=0)
             inputs.append(np.concatenate([seen, features], axis=1))
+            if squashed:
+                mean, other = _unsquashed(mean), _unsquashed(other)
             scores.append(noise * (other - mean) / deviation**2)
-            actions = np.clip(mean + noise, -1.0, 1.0)
+            action = mean + noise
+            actions = np.tanh(action) if squashed else np.clip(action, -1.0, 1.0)
             seen, _, truncated = batch.step(actions)
             terms.append(batch.reward_terms())
             over = bool(truncated.all())
@@ -377,24 +388,7 @@ class _Round:
         for own, other in (parts, parts[::-1]):
             # Decisions that follow each other are alike: some of them are enough.
             some = slice(None, None, max(1, returns.size // _ROWS))
-            solution = _fit(self.inputs[some, other], returns[some, other], share[some])
+            solution = least_squares(self.inputs[some, other], returns[some, other], share[some])
             expected = self.inputs[:, own] @ solution[:-1] + solution[-1]
             baseline[:, own] = share[:, None] * expected
         return baseline
-
-
-def _fit(
-    inputs: NDArray[np.float32], returns: NDArray[np.float64], share: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Return weights and constant of the linear function nearest to returns over their shares."""
-    size = inputs.shape[2] + 1
-    squares, products = np.zeros((size, size)), np.zeros(size)
-    for rows, wanted, part in zip(inputs, returns, share, strict=True):
-        row = np.concatenate([rows, np.ones((len(rows), 1))], axis=1) * part
-        squares += row.T @ row
-        products += row.T @ wanted
-    regularization = _REGULARIZATION * np.trace(squares) / size
-    solution: NDArray[np.float64] = np.linalg.solve(
-        squares + regularization * np.eye(size), products
-    )
-    return solution

@@ -46,6 +46,10 @@ class ObservedPolicy(RowPolicy):
         self.gains = dict(gains)
         self._core = _core.ObservedLaw(self._law, self.gains, self.observation, mirror_to_target)
 
+    def observing(self, observation: Mapping[str, Any], mirror_to_target: bool) -> "ObservedPolicy":
+        """Return the same law for another layout of the observations."""
+        return _rebuilt(type(self), self.gains, dict(observation), mirror_to_target)
+
     def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
         return self._core.rudders(rows)
 

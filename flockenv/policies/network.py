@@ -174,12 +174,20 @@ class NetworkPolicy(StoredPolicy):
         """Copies of the layers' biases, shape (outputs,)."""
         return [bias.copy() for _, bias in self._layers]
 
-    def last_inputs(self, rows: ArrayLike) -> NDArray[np.float32]:
-        """Return what the last layer takes, shape (rows, inputs), for rows of observations."""
+    def last_inputs(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Return what the last layer takes, shape (rows, inputs), for rows of observations.
+
+        Raises
+        ------
+        ParameterError
+            If the shape of `rows` is not (rows, numbers of one leader's observation).
+        """
+        if rows.ndim != 2 or rows.shape[1] != self._size:
+            raise ParameterError(
+                f"rows with shape {rows.shape} are not accepted: (rows, {self._size})"
+            )
         between = ACTIVATIONS[self.activation]
-        values = np.asarray(rows, np.float32)
-        if self._encoder is not None:
-            values = self._encoder(values)
+        values = rows if self._encoder is None else self._encoder(rows)
         for weight, bias in self._layers[:-1]:
             values = between(values @ weight + bias)
         return values

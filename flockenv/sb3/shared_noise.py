@@ -59,7 +59,7 @@ def shared_noise(venv: VecEnv, hold_s: float) -> dict[str, Any]:
 
 
 class HeldNoise:
-    """Normal numbers, a row for each flock, which are drawn again after a number of decisions.
+    """Normally distributed numbers, one row per flock, drawn again after a number of decisions.
 
     Parameters
     ----------
@@ -132,8 +132,9 @@ class SharedNoiseDistribution(DiagGaussianDistribution):
 class SharedWeightNoiseDistribution(StateDependentNoiseDistribution):
     """gSDE (Raffin et al. 2021) with one matrix per flock, held for a time, and a constant feature.
 
-    A deviation is the matrix times what the last layer takes, and 1. The leaders of a flock
-    therefore act by one policy whose last layer differs from the mean one, biases included.
+    A deviation is the matrix times the inputs of the last layer, to which a constant 1 is appended.
+    The leaders of a flock therefore act by one policy whose last layer differs from the mean one,
+    biases included.
     """
 
     held: HeldNoise
@@ -154,19 +155,22 @@ class SharedWeightNoiseDistribution(StateDependentNoiseDistribution):
         return super().proba_distribution_net(latent_dim, log_std_init, features)
 
     def sample_weights(self, log_std: torch.Tensor, batch_size: int = 1) -> None:
-        """Draw nothing: stable-baselines3 asks for new matrices with every minibatch."""
+        """Draw nothing: `held` says when, and not stable-baselines3 with each rollout."""
 
     def proba_distribution(
         self, mean_actions: torch.Tensor, log_std: torch.Tensor, latent_sde: torch.Tensor
     ) -> Self:
-        """Return the distribution of actions about their means, by what the last layer takes."""
+        """Return the distribution of actions about their means, for inputs of the last layer."""
         self._deviations = self.get_std(log_std).detach()
         ones = torch.ones_like(latent_sde[:, :1])
         super().proba_distribution(mean_actions, log_std, torch.cat([latent_sde, ones], dim=1))
         return self
 
     def get_noise(self, latent_sde: torch.Tensor) -> torch.Tensor:
-        """Return deviations from the mean actions, shape (slots, actions)."""
+        """Return deviations from the mean actions, shape (slots, actions).
+
+        The inputs have the constant already.
+        """
         drawn = self.held.next(len(latent_sde), latent_sde.device)
         matrices = drawn.reshape(len(latent_sde), *self._deviations.shape) * self._deviations
         return torch.einsum("sf,sfa->sa", latent_sde.detach(), matrices)
@@ -183,7 +187,7 @@ class SharedNoisePolicy(ActorCriticPolicy):
 
     With ``use_sde=True`` of the algorithm the noise is that of gSDE: it perturbs the weights of the
     last layer, so that leaders deviate by what they observe (`SharedWeightNoiseDistribution`). It
-    is held as here, whatever ``sde_sample_freq``.
+    is held for `hold_steps` decisions, whatever ``sde_sample_freq``.
 
     Parameters
     ----------

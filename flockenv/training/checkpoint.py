@@ -210,7 +210,8 @@ def _exploration(model: Learner) -> State:
 
 
 def _held_noise(model: Learner) -> HeldNoise | None:
-    return getattr(getattr(model.policy, "action_dist", None), "held", None)
+    held = getattr(getattr(model.policy, "action_dist", None), "held", None)
+    return held if isinstance(held, HeldNoise) else None
 
 
 def _average(model: Learner) -> State:

@@ -80,7 +80,8 @@ class TrainingSettings:
         the whole flock, too (`LeaderVecEnv.flock_features`).
     log_std_init, use_sde, sde_sample_freq
         Exploration: logarithm of the first standard deviation, whether it depends on the state
-        (gSDE), and control steps after which it is drawn again.
+        (gSDE), and control steps after which it is drawn again. With gSDE the deviation is that of
+        each weight of the last layer, else that of the action.
     learn_log_std
         Whether the standard deviation of the exploration is learned, or stays as it is.
     shared_noise_s

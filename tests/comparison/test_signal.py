@@ -91,8 +91,24 @@ def test_a_noise_of_weights_is_linear_in_what_the_layer_takes():
     assert np.abs(correlation).max() < 0.35
 
 
+def test_a_squashed_network_is_explored_before_its_hyperbolic_tangent():
+    size = len(observation_entries())
+    linear, squashed = (
+        NetworkPolicy([np.zeros((size, 1))], [np.full(1, bias)], squashed=squash)
+        for bias, squash in ((0.0, False), (0.0, True))
+    )
+    ends = [
+        measured_signals(FLOCK, ConstantAction(0.9, "rudder"), towards, settings(deviation=0.05))[0]
+        for towards in (linear, squashed)
+    ]
+    # d(-tanh²)/dx = -2·tanh·(1 - tanh²) against d(-x²)/dx = -2x, each times the distance to go.
+    assert ends[0].z > 5.0
+    assert ends[1].z > 5.0
+    assert ends[0].z != ends[1].z
+
+
 def test_a_noise_of_weights_needs_a_network():
-    with pytest.raises(ParameterError, match="to a network"):
+    with pytest.raises(ParameterError, match="to a NetworkPolicy"):
         signal(0.5, 0.0, weights=True)
 
 
