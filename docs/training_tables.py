@@ -56,6 +56,27 @@ def lean_signals() -> str:
     return _signals({f"{noise} noise, ": f"results/signals_lean_{noise}.csv" for noise in noises})
 
 
+def ppo_signals() -> str:
+    """Return z per million samples along the direction to a trained policy, by kind of noise."""
+    noises = {
+        "of each leader's action": "own",
+        "of the actions of a flock's leaders": "shared",
+        "of the weights of a flock's leaders": "weights",
+    }
+    body = []
+    for title, name in noises.items():
+        found = rows(f"results/signals_ppo_{name}.csv")
+        for reward in dict.fromkeys(row["reward"] for row in found):
+            cells = [_z(row) for row in found if row["reward"] == reward]
+            body.append([title, f"`{reward}`", *cells])
+    horizons = list(dict.fromkeys(row["horizon_s"] for row in found))
+    return markdown(["noise", "reward", *(f"horizon {float(h):g} s" for h in horizons)], body)
+
+
+def _z(row: Mapping[str, str]) -> str:
+    return f"{float(row['z_per_million']):+.1f} ± {float(row['error']):.1f}"
+
+
 def _signals(files: Mapping[str, str]) -> str:
     """Return what `flockenv signal` measured; files stand by how their titles start."""
     every = {title: rows(file) for title, file in files.items()}
@@ -68,8 +89,7 @@ def _signals(files: Mapping[str, str]) -> str:
             for file in files.values()
             for horizon in horizons
         )
-        cells = (f"{float(row['z_per_million']):+.1f} ± {float(row['error']):.1f}" for row in each)
-        body.append([f"`{pool}`", f"`{reward_name}`", *cells])
+        body.append([f"`{pool}`", f"`{reward_name}`", *map(_z, each)])
     titles = [f"{title}horizon {float(each):g} s" for title in files for each in horizons]
     return markdown(["pool", "reward", *titles], body)
 
@@ -123,6 +143,27 @@ def trained(pool: str) -> str:
     return markdown(["policy", "signed order", *(f"minus {law}" for law in laws)], body)
 
 
+def noises() -> str:
+    """Return the held-out orders in 500-boats by what the noise of exploration perturbs."""
+    kinds = {
+        "a deep set, then 32 units": "500-boats-action-noise",
+        "linear": "500-boats-linear-action-noise",
+        "linear, with perturbed weights": "500-boats",
+    }
+    body = []
+    for title, folder in kinds.items():
+        file = f"training/{folder}/evaluation.csv"
+        for row in rows(file, minus=""):
+            if row["policy"].startswith("seed "):
+                gain = one(file, policy=row["policy"], minus="tuned damped law")
+                found = zip((row, gain), (".3f", "+.3f"), strict=True)
+                cells = (
+                    interval(each, "signed_order", "low", "high", form) for each, form in found
+                )
+                body.append([title, row["policy"], *cells])
+    return markdown(["lean", "training", "signed order", "minus tuned damped law"], body)
+
+
 def ppo_search() -> str:
     """Return the runs of the search of PPO's settings, best first."""
     found = rows("leaders/ppo_search.csv")
@@ -141,6 +182,34 @@ def ppo_search() -> str:
             ]
         )
     header = ["", "learning rate", "`log_std_init`", "gSDE", "decisions per second", "signed order"]
+    return markdown(header, body)
+
+
+def lean_search() -> str:
+    """Return the best finished trials of the search of PPO's settings for leans."""
+    found = rows("training/search_ppo.csv", state="complete")
+    found.sort(key=lambda row: -float(row["difference"]))
+    body = []
+    for row in found[:6]:
+        numbers = (
+            f"{float(row['learning_rate']):.1e}",
+            *(f"{float(row[name]):.2f}" for name in ("deviation", "lambda_4s")),
+            *(f"{float(row[name]):.0f}" for name in ("hold_s", "horizon_s", "decision_s")),
+        )
+        network = f"{row['encoder']}, {row['net_arch'] or 'linear'}"
+        cells = (network, interval(row, "difference", "low", "high", "+.3f"))
+        body.append([row["trial"], *numbers, *cells])
+    header = [
+        "trial",
+        "learning rate",
+        "deviation",
+        "λ for 4 s",
+        "noise held, s",
+        "horizon, s",
+        "decision, s",
+        "encoder and layers",
+        "minus the tuned damped law",
+    ]
     return markdown(header, body)
 
 
@@ -175,13 +244,17 @@ TRAINING_TABLES = {
     "first-training": first_training,
     "ppo-comparison": ppo_comparison,
     "ppo-search": ppo_search,
+    "lean-search": lean_search,
     "signals": signals,
     "lean-signals": lean_signals,
+    "noises": noises,
+    "ppo-signals": ppo_signals,
     "rudders": rudders,
     "level-searches": level_searches,
     "terms-of-leans": terms_of_leans,
     "trials-of-leans": trials_of_leans,
     "trained-500-boats": partial(trained, "500-boats"),
     "trained-table-1": partial(trained, "table-1"),
+    "trained-contact-push": partial(trained, "table-1-contact-push"),
 }
 """How each table is made."""
