@@ -1,6 +1,7 @@
 """Law: settings survive TOML, and nonsense is refused in words before anything runs."""
 
 import re
+from pathlib import Path
 
 import pytest
 
@@ -18,6 +19,19 @@ def test_toml_round_trip(tiny: TrainingSettings) -> None:
         tiny.replace(flock_hours=0.5, critic_arch=[], encoder="deepsets"),
     ):
         assert TrainingSettings.from_toml(settings.to_toml()) == settings
+
+
+ROOT = Path(__file__).parents[2]
+COMMITTED = [
+    *ROOT.glob("baselines/ppo_*.toml"),
+    *ROOT.glob("docs/training/*.toml"),
+    *ROOT.glob("docs/training/*/*.toml"),
+]
+
+
+@pytest.mark.parametrize("path", COMMITTED, ids=lambda path: str(path.relative_to(ROOT)))
+def test_committed_settings_are_accepted(path: Path) -> None:
+    assert TrainingSettings.from_toml(path.read_text()).flock_hours is not None
 
 
 @pytest.mark.parametrize(
