@@ -229,9 +229,18 @@ def terms_of_leans() -> str:
 
 def trials_of_leans() -> str:
     """Return the paired differences of changed leans from the pretrained leaders."""
+    return _trials("paired")
+
+
+def trained_leans() -> str:
+    """Return the paired differences of trained leans."""
+    return _trials("trained leans")
+
+
+def _trials(how: str) -> str:
     body = [
         [row["trial"], row["episodes"], row["flock_hours"], _with_error(row)]
-        for row in rows(LEANS, how="paired")
+        for row in rows(LEANS, how=how)
     ]
     return markdown(["change", "pairs of episodes", "flock-hours", "difference"], body)
 
@@ -253,6 +262,7 @@ TRAINING_TABLES = {
     "level-searches": level_searches,
     "terms-of-leans": terms_of_leans,
     "trials-of-leans": trials_of_leans,
+    "trained-leans": trained_leans,
     "trained-500-boats": partial(trained, "500-boats"),
     "trained-table-1": partial(trained, "table-1"),
     "trained-contact-push": partial(trained, "table-1-contact-push"),
