@@ -5,7 +5,6 @@ import io
 import shlex
 import sys
 import time
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -20,11 +19,8 @@ from flockenv.cli.output import check_folder, keep, printable, refuse_overwritin
 from flockenv.cli.parameters import ChangesOption, FileOption, PresetOption, TrustOption
 from flockenv.cli.pools import PoolOption, compared_flocks
 from flockenv.errors import ParameterError
-from flockenv.policies import ObservedPolicy
 
 __all__ = ["signal"]
-
-_DEFAULT: tuple[tuple[str, Any], ...] = (("observation", {}), ("mirror_to_target", False))
 
 
 def signal(
@@ -109,12 +105,6 @@ def signal(
     from flockenv.comparison.signal import SignalSettings, measured_signals
 
     started = time.perf_counter()
-    given: dict[str, Any] = {
-        "action_mode": action_mode,
-        "decision_period_s": decision_period_s,
-        "control_hz": control_hz,
-        "physics": physics,
-    }
     settings = SignalSettings(
         rewards=dict(_weights(text) for text in reward or ["signed_order"]),
         horizons_s=horizon or [8.0, 30.0],
@@ -125,7 +115,12 @@ def signal(
         flocks=flocks,
         rounds=rounds,
         duration_s=60.0 * minutes,
-        options=given,
+        options={
+            "action_mode": action_mode,
+            "decision_period_s": decision_period_s,
+            "control_hz": control_hz,
+            "physics": physics,
+        },
         seed=seed,
     )
     laws = action_mode == "rudder"
@@ -143,14 +138,14 @@ def signal(
         work = len(found) * rounds * flocks * settings.duration_s
         task = bar.add_task("simulating", total=work)
         for parameters in found:
-            policies = [_policy(name, action_mode, parameters.pool, trust) for name in names]
-            layout = _layout(*policies)
-            start_policy, end_policy = (_observing(each, layout) for each in policies)
+            start_policy, end_policy = (
+                _policy(name, action_mode, parameters.pool, trust) for name in names
+            )
             signals += measured_signals(
                 parameters.replace(n_leaders=leaders),
                 start_policy,
                 end_policy,
-                replace(settings, options={**given, **layout}),
+                settings,
                 lambda seconds: bar.advance(task, seconds),
             )
     rows = [each.row() for each in signals]
@@ -181,33 +176,6 @@ def _weights(text: str) -> tuple[str, dict[str, float]]:
                 f"--reward {text} is not accepted: {value!r} is no weight"
             ) from error
     return text, weights
-
-
-def _layout(*policies: Any) -> dict[str, Any]:
-    """Return what the policies observe; closed-form laws observe what the others do.
-
-    Raises
-    ------
-    ParameterError
-        If two of them observe different layouts.
-    """
-    from flockenv.comparison.signal import ConstantAction
-
-    found = [
-        (policy, {name: getattr(policy, name, None) or missing for name, missing in _DEFAULT})
-        for policy in policies
-        if not isinstance(policy, ConstantAction | ObservedPolicy)
-    ]
-    if len(found) == 2 and found[0][1] != found[1][1]:
-        raise ParameterError(
-            f"{found[0][0]!r} and {found[1][0]!r} observe different layouts: the ends of a "
-            "direction have to observe the same"
-        )
-    return found[0][1] if found else dict(_DEFAULT)
-
-
-def _observing(policy: Any, layout: dict[str, Any]) -> Any:
-    return policy.observing(**layout) if isinstance(policy, ObservedPolicy) else policy
 
 
 def _policy(name: str, action_mode: str, pool: Any, trust: bool) -> Any:

@@ -10,7 +10,7 @@ million samples compares rewards, horizons and action modes.
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from flockenv import _core
 from flockenv.comparison.baseline import least_squares
 from flockenv.comparison.exploration import Exploration
+from flockenv.comparison.layout import in_one_layout
 from flockenv.envs.batch import LeaderBatch
-from flockenv.envs.observation import BLOCKS, ObservationSpace
 from flockenv.envs.options import EnvOptions
 from flockenv.envs.reward import TERMS
 from flockenv.errors import ParameterError, refuse_unknown, shown
@@ -57,6 +57,10 @@ class ConstantAction:
         """Return the action for each row of observations, shape (rows, 1)."""
         return np.full((len(observation), 1), self.value, np.float32), state
 
+    def observing(self, observation: Mapping[str, Any], mirror_to_target: bool) -> Self:
+        """Return the same action for another layout of the observations: itself."""
+        return self
+
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.value:g}, {self.action_mode!r})"
 
@@ -87,7 +91,7 @@ class SignalSettings:
         Length of an episode in s.
     options
         Options of the environment, such as ``action_mode``, ``decision_period_s``, ``control_hz``
-        and ``physics``.
+        and ``physics``. Its layout of the observation is that of the policies.
     seed
         Number of the measurement; seeds are those of the range ``"signal"`` of
         `flockenv.runs.seeds.POLICY_SEEDS`.
@@ -208,8 +212,8 @@ def measured_signals(
             "NetworkPolicy, such as the .npz file of a training"
         )
     terms = {name for weights in settings.rewards.values() for name in weights}
-    options = {
-        **(settings.options or {}),
+    (start, towards), options = in_one_layout((start, towards), settings.options or {})
+    options |= {
         "params": parameters,
         "episode_s": settings.duration_s,
         "reward": dict.fromkeys(terms, 1.0),
@@ -219,7 +223,6 @@ def measured_signals(
     mode = batch.settings["action_mode"]
     for policy in (start, towards):
         check_action_mode(policy, mode, "in this environment")
-        _check_layout(policy, batch)
     held_s = settings.hold_s
     hold = 1 if held_s is None else _core.held_decisions(held_s, batch.decisions_hz)
     pairs = [(name, h) for name in settings.rewards for h in settings.horizons_s]
@@ -274,21 +277,6 @@ def _significance(estimates: NDArray[np.float64], samples: int) -> tuple[float, 
 
 def _unsquashed(actions: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.arctanh(np.clip(actions, -_LARGEST_SQUASHED, _LARGEST_SQUASHED))
-
-
-def _check_layout(policy: Any, batch: LeaderBatch) -> None:
-    if isinstance(policy, ConstantAction):
-        return
-    wanted = ObservationSpace(batch.settings).options
-    layout = {
-        "observation": {**BLOCKS, **(getattr(policy, "observation", None) or {})},
-        "mirror_to_target": bool(getattr(policy, "mirror_to_target", False)),
-    }
-    if any(wanted[name] != own for name, own in layout.items()):
-        raise ParameterError(
-            f"{shown(policy)} observes another layout than the environment: set the options "
-            "observation and mirror_to_target to those of the policy"
-        )
 
 
 class _Round:

@@ -94,8 +94,7 @@ def test_a_noise_of_weights_is_linear_in_what_the_layer_takes():
 def test_a_squashed_network_is_explored_before_its_hyperbolic_tangent():
     size = len(observation_entries())
     linear, squashed = (
-        NetworkPolicy([np.zeros((size, 1))], [np.full(1, bias)], squashed=squash)
-        for bias, squash in ((0.0, False), (0.0, True))
+        NetworkPolicy([np.zeros((size, 1))], [np.zeros(1)], squashed=each) for each in (False, True)
     )
     ends = [
         measured_signals(FLOCK, ConstantAction(0.9, "rudder"), towards, settings(deviation=0.05))[0]
@@ -147,16 +146,29 @@ def test_the_baseline_explains_returns_and_every_pair_is_listed():
         ({"hold_s": float("inf")}, "whole number of decisions"),
         ({"options": {"action_mode": "leen"}}, "did you mean 'lean'"),
         ({"options": {"action_mode": "lean"}}, r"ConstantAction.*'rudder'.*'lean'"),
-        ({"options": {"observation": {"order": False}}}, None),
     ],
 )
 def test_bad_input(changes, message):
-    if message is None:
-        with pytest.raises(ParameterError, match="another layout"):
-            measured_signals(FLOCK, SteeringLaw(), DampedLaw(), settings(**changes))
-        return
     with pytest.raises(ParameterError, match=message):
         signal(0.5, 0.0, **changes)
+
+
+def test_laws_observe_what_networks_and_options_say():
+    network = straight_ahead()
+    options = {"observation": {"order": False}, "mirror_to_target": True}
+    with pytest.raises(ParameterError, match=r"NetworkPolicy.*another layout"):
+        measured_signals(FLOCK, SteeringLaw(), network, settings(options=options))
+    size = len(observation_entries(options["observation"]))
+    other = NetworkPolicy([np.zeros((size, 1))], [np.zeros(1)], **options)
+    with pytest.raises(ParameterError, match="observe different layouts"):
+        measured_signals(FLOCK, network, other, settings())
+    usual = measured_signals(FLOCK, SteeringLaw(), DampedLaw(), settings())[0]
+    seen = settings(options={"observation": {"neighbors": 2}})
+    fewer = measured_signals(FLOCK, SteeringLaw(), DampedLaw(), seen)[0]
+    # Laws act alike with fewer neighbors, of which the baseline alone takes notice.
+    assert fewer.z == pytest.approx(usual.z, rel=0.5)
+    assert fewer.explained != usual.explained
+    assert measured_signals(FLOCK, SteeringLaw(), other, settings())[0].samples == usual.samples
 
 
 def test_two_policies_that_act_alike_are_no_direction():
