@@ -143,25 +143,28 @@ def trained(pool: str) -> str:
     return markdown(["policy", "signed order", *(f"minus {law}" for law in laws)], body)
 
 
-def noises() -> str:
-    """Return the held-out orders in 500-boats by what the noise of exploration perturbs."""
+def settings_of_leans() -> str:
+    """Return the held-out orders of trainings in 500-boats with different settings."""
     kinds = {
-        "a deep set, then 32 units": "500-boats-action-noise",
-        "linear": "500-boats-linear-action-noise",
-        "linear, with perturbed weights": "500-boats",
+        "500-boats-action-noise": ("a deep set, then 32 units", "action", "1"),
+        "500-boats-linear-action-noise": ("linear", "action", "1"),
+        "500-boats": ("linear", "weights", "1"),
+        "500-boats-hidden": ("64 units", "weights of the last layer", "1"),
+        "500-boats-5-hz": ("linear", "weights", "5"),
     }
     body = []
-    for title, folder in kinds.items():
+    for folder, cells in kinds.items():
         file = f"training/{folder}/evaluation.csv"
         for row in rows(file, minus=""):
             if row["policy"].startswith("seed "):
                 gain = one(file, policy=row["policy"], minus="tuned damped law")
                 found = zip((row, gain), (".3f", "+.3f"), strict=True)
-                cells = (
+                orders = (
                     interval(each, "signed_order", "low", "high", form) for each, form in found
                 )
-                body.append([title, row["policy"], *cells])
-    return markdown(["lean", "training", "signed order", "minus tuned damped law"], body)
+                body.append([*cells, row["policy"], *orders])
+    header = ["lean", "noise of the", "decisions per second", "training", "signed order"]
+    return markdown([*header, "minus tuned damped law"], body)
 
 
 def ppo_search() -> str:
@@ -256,7 +259,7 @@ TRAINING_TABLES = {
     "lean-search": lean_search,
     "signals": signals,
     "lean-signals": lean_signals,
-    "noises": noises,
+    "settings-of-leans": settings_of_leans,
     "ppo-signals": ppo_signals,
     "rudders": rudders,
     "level-searches": level_searches,
