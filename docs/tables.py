@@ -158,6 +158,21 @@ def strong_rudders() -> str:
     return markdown(header, body)
 
 
+def nonlinear_searches() -> str:
+    """Return the order in table-1 with nonlinear leans that were searched for their rudder."""
+    hours = {row["comparison"]: row["flock_hours"] for row in rows("training/searches.csv")}
+    body = []
+    for times, comparison in ((1, "search-rudder-1"), (10, "search-rudder-10")):
+        for gain in rows(DIFFERENCES, comparison=comparison):
+            known = {"comparison": comparison, "leaders": gain["leaders"]}
+            policies = (gain["reference"], gain["policy"])
+            cells = [order(one(MEANS, policy=name, **known)) for name in policies]
+            head = [f"{times}", hours[comparison], gain["leaders"], gain["n"]]
+            body.append([*head, *cells, difference(gain)])
+    header = ["times the rudder", "flock-hours", "leaders", "episodes", "tuned damped law"]
+    return markdown([*header, "searched", "searched minus tuned damped law"], body)
+
+
 def other_policies() -> str:
     """Return the order with other policies."""
     names = {
@@ -294,6 +309,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "ablation": ablation,
     "one-policy": one_policy,
     "strong-rudders": strong_rudders,
+    "nonlinear-searches": nonlinear_searches,
     "strong-500-boats": strong_500_boats,
     "other-scenes": other_scenes,
     "other-policies": other_policies,
