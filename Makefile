@@ -45,9 +45,9 @@ SPEED_DOCS := $(if $(SPEED_ARGS),benches/target/trial,docs)
 
 # Which extras each front door needs, out of pyproject.toml.
 COMPARE_EXTRAS := --extra plot
-OLDEST_EXTRAS := --extra plot --extra fit --extra render --extra sweep
-AUDIT_EXTRAS := --extra train --extra plot --extra fit --extra search --extra render --extra ray --extra sweep --extra tracks
-TEST_EXTRAS := --extra train --extra plot --extra fit --extra search --extra render --extra sweep --extra tracks --extra test --extra dev
+OLDEST_EXTRAS := --extra plot --extra render --extra sweep
+AUDIT_EXTRAS := --extra train --extra plot --extra search --extra render --extra ray --extra sweep --extra tracks
+TEST_EXTRAS := --extra train --extra plot --extra search --extra render --extra sweep --extra tracks --extra test --extra dev
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
@@ -69,7 +69,7 @@ setup: $(STAMPS)/test
 
 build: $(CORE) ## build the simulator and install the package, editable, into .venv
 
-lint: $(STAMPS)/test $(CORE) ## formatting, clippy without and with all features, Rust module cycles, ruff, import layers, mypy, stubs, spelling, wording
+lint: $(STAMPS)/test $(CORE) ## formatting, clippy without and with all features, Rust module cycles, ruff, import layers, mypy, stubs, spelling
 	cargo fmt --check
 	$(BIN)/ruff format --check
 	cargo clippy --locked --all-targets -- -D warnings
@@ -80,7 +80,6 @@ lint: $(STAMPS)/test $(CORE) ## formatting, clippy without and with all features
 	$(BIN)/mypy
 	$(if $(wildcard $(STUBS)),$(BIN)/stubtest flockenv._core --mypy-config-file tests/modules/stubtest.ini --allowlist tests/modules/stubtest_allowlist.txt)
 	git ls-files -z | xargs -0 $(BIN)/codespell
-	$(BIN)/python docs/wording.py
 
 format: $(STAMPS)/test ## format the Rust and Python sources
 	cargo fmt
@@ -132,7 +131,7 @@ test-oldest: $(STAMPS)/venv ## the oldest supported versions, in .venv-oldest
 	VIRTUAL_ENV="$(CURDIR)/.venv-oldest" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
 	OMP_NUM_THREADS=1 .venv-oldest/bin/python -m pytest -W ignore::DeprecationWarning \
 	  tests/boundary tests/envs tests/policies tests/rendering tests/runs tests/statistics \
-	  tests/comparison tests/calibration tests/cli $(PYTEST_ARGS)
+	  tests/comparison tests/cli $(PYTEST_ARGS)
 
 # Pages with code cells are executed, and what they trained is trained again.
 docs: $(STAMPS)/docs $(CORE) ## build the pages, warnings are errors, into docs/_build/html, and those of the crate

@@ -1,6 +1,6 @@
 """Measure which weights of a leaning law matter: groups are left out, or used alone.
 
-    python baselines/ablate_leaning.py baselines/policies/500-boats.npz --pool 500-boats
+    python baselines/ablate_leaning.py baselines/policies/wide.npz --pool wide
 
 A group that is left out contributes its average lean in the states that the whole law visits, so
 that only its dependence on the state is lost. Three leaders steer among 27 boats at the critical
@@ -108,7 +108,7 @@ def ablated(
 def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("law", type=Path)
-    parser.add_argument("--pool", choices=("500-boats", "table-1"), required=True)
+    parser.add_argument("--pool", choices=("wide", "narrow"), required=True)
     parser.add_argument("--episodes", type=int, default=128)
     parser.add_argument("--minutes", type=float, default=8.0, help="length of an episode")
     parser.add_argument("--seed", type=run_number, default=0, help="which training seeds")

@@ -1,8 +1,8 @@
 """Take the mean of leaning laws that several searches have found.
 
-    python baselines/average_policies.py results/evolution/500-boats/policy.npz \
-        results/evolution/500-boats-1/policy.npz --pool 500-boats \
-        --out results/evolution/500-boats-mean.npz
+    python baselines/average_policies.py results/evolution/wide/policy.npz \
+        results/evolution/wide-1/policy.npz --pool wide \
+        --out results/evolution/wide-mean.npz
 
 Searches of the same form from the same initial law end around the same law, and each differs from
 it by the noise of its own episodes. Their mean may differ less. The search moves logarithms of
@@ -85,7 +85,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("policies", type=Path, nargs="+")
     parser.add_argument("--out", type=Path, default=Path("results/evolution/mean.npz"))
-    parser.add_argument("--pool", choices=("500-boats", "table-1"), help="where to validate")
+    parser.add_argument("--pool", choices=("wide", "narrow"), help="where to validate")
     parser.add_argument("--episodes", type=int, default=512, help="of the validation")
     parser.add_argument("--minutes", type=float, default=8.0, help="length of an episode")
     options = parser.parse_args(arguments)

@@ -6,7 +6,7 @@ the noise of the strongest rotation, mean |Ψ_o sin φ_o|, so that a jam, which 
 not taken for order; the disordered level is mean Ψ_o at the highest noise.
 
     python baselines/critical_noise.py --seeds 8 --out docs/results/critical_noise.csv
-    python baselines/critical_noise.py --preset experiment --pool table-1 \
+    python baselines/critical_noise.py --preset experiment --pool narrow \
         --out docs/results/critical_noise_experiment.csv
 """
 
@@ -29,7 +29,7 @@ NOISE_S = {
     "experiment": np.round(np.arange(0.4, 2.81, 0.2), 1),
     "experiment-2026": np.round(np.arange(0.4, 2.81, 0.2), 1),
 }
-POOLS = ("500-boats", "table-1")
+POOLS = ("wide", "narrow")
 
 
 def order_of_run(

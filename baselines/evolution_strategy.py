@@ -1,9 +1,9 @@
 """Search a leader policy with an evolution strategy, with NumPy and flockenv alone, or by CMA-ES.
 
     python baselines/evolution_strategy.py                          # an easy flock, two minutes
-    python baselines/evolution_strategy.py --pool table-1 --boats 27 --leaders 3 --noise 1 \
+    python baselines/evolution_strategy.py --pool narrow --boats 27 --leaders 3 --noise 1 \
         --control-hz 10 --episode-s 120 --reward signed_order --generations 300 \
-        --out results/evolution/table-1
+        --out results/evolution/narrow
 
 Gaussian perturbations of all weights are tried in antithetic pairs, with one or several flocks for
 each, all in one batch of the simulator. Candidates of a generation steer the same episodes, so that
@@ -280,7 +280,7 @@ def print_held_out(options: argparse.Namespace, policies: dict[str, Any]) -> Non
 
 def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--pool", choices=POOLS, default="500-boats")
+    parser.add_argument("--pool", choices=POOLS, default="wide")
     parser.add_argument("--boats", type=int, default=6, help="leaders included")
     parser.add_argument(
         "--leaders", type=int, nargs="+", default=[2], help="of the generations in turn"

@@ -34,7 +34,7 @@ from flockenv.sb3 import LeaderVecEnv
 EASY: dict[str, Any] = {
     "n_boats": 6,
     "n_leaders": 2,
-    "pool": "500-boats",
+    "pool": "wide",
     "bw_s": 0.1,
     "target": "random",
     "control_hz": 2.0,

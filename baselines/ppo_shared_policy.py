@@ -20,7 +20,7 @@ from flockenv import training
 from flockenv.training import TrainingSettings
 
 SETTINGS = TrainingSettings(
-    pools=("500-boats", "table-1"),
+    pools=("wide", "narrow"),
     n_boats=27,
     n_leaders=(1, 2, 3, 4),
     noise=(0.5, 1.25),

@@ -1,7 +1,7 @@
 """PPO in one file on the native vector environment, with a critic that sees the whole flock.
 
     python baselines/ppo_single_file.py                 # into results/ppo_single_file
-    flockenv evaluate results/ppo_single_file/policy.npz --pool table-1 --set n_boats=9 --leaders 2
+    flockenv evaluate results/ppo_single_file/policy.npz --pool narrow --set n_boats=9 --leaders 2
 
 All leaders share one actor, which sees what its leader observes. The critic sees features of the
 flock (`LeadersVectorEnv.flock_features`) and is needed in training alone, so that the actor is
@@ -26,7 +26,7 @@ from flockenv.runs.seeds import POLICY_SEEDS
 OPTIONS = {
     "n_boats": 9,
     "n_leaders": 2,
-    "pool": "table-1",
+    "pool": "narrow",
     "action_mode": "lean",
     "decision_period_s": 2.0,
     "reward": {"contact_push": 1.0, "signed_order": 0.1},

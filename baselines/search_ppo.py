@@ -1,6 +1,6 @@
 """Search PPO's settings with Optuna: trials of equal flock-hours, judged in pairs with the law.
 
-    python baselines/search_ppo.py                      # forty trials of 60 flock-hours, 500-boats
+    python baselines/search_ppo.py                      # forty trials of 60 flock-hours, wide
     flockenv train --settings results/search_ppo/best.toml --flock-hours 1350
 
 The action of every trial is a lean, of which 0 is the tuned damped law. At each of a trial's
@@ -260,7 +260,7 @@ def suggested(trial: optuna.Trial, name: str) -> Any:
 
 def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--pools", nargs="+", default=["500-boats"])
+    parser.add_argument("--pools", nargs="+", default=["wide"])
     parser.add_argument("--leaders", type=int, nargs="+", default=[3])
     parser.add_argument("--trials", type=int, default=40)
     parser.add_argument("--flock-hours", type=float, default=60.0, help="of a whole trial")

@@ -13,7 +13,7 @@ from flockenv.cli.parameters import changed_fields
 from flockenv.errors import refuse_unknown
 from flockenv.runs.executors import cores, named
 
-POOLS = ("500-boats", "table-1")
+POOLS = ("wide", "narrow")
 TARGETS = ("random", "alternate")
 LIBERAL_STEPS = {"dt_s": 0.1, "relinearizations": 1}
 
@@ -86,7 +86,7 @@ class Scenario:
 
 
 def changes_of(text: str) -> dict[str, Any]:
-    """Return the fields of a scenario that a text such as pool=table-1,leaders=1 sets.
+    """Return the fields of a scenario that a text such as pool=narrow,leaders=1 sets.
 
     Raises
     ------

@@ -21,7 +21,7 @@ from flockenv.statistics.structure import largest_cluster
 from flockenv.tracks import TrackLayout, from_table
 
 QUANTITIES = ("psi_o", "nematic", "milling", "psi_v", "largest_cluster")
-LAYOUT = TrackLayout(pool="500-boats", leaders=("0", "1", "2"), fps=25.0, wrapped=False)
+LAYOUT = TrackLayout(pool="wide", leaders=("0", "1", "2"), fps=25.0, wrapped=False)
 
 
 @dataclass(frozen=True)
@@ -86,8 +86,8 @@ def main() -> None:
     parser.add_argument("--minutes", type=float, default=8.0)
     parser.add_argument("--out", type=Path, default=Path("results/track_errors.csv"))
     options = parser.parse_args()
-    bw_s = flockenv.FlockParameters.critical_bw_s("simulation", "500-boats")
-    parameters = flockenv.FlockParameters(n_boats=27, n_leaders=3, pool="500-boats", bw_s=bw_s)
+    bw_s = flockenv.FlockParameters.critical_bw_s("simulation", "wide")
+    parameters = flockenv.FlockParameters(n_boats=27, n_leaders=3, pool="wide", bw_s=bw_s)
     rows = []
     for seed in range(options.runs):
         truth = flockenv.simulate(parameters, seed, options.minutes * 60, sample_hz=LAYOUT.fps)

@@ -106,7 +106,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--episodes", type=int, default=64)
     parser.add_argument("--samples", type=int, default=1_000_000, help="0 trains nothing")
-    parser.add_argument("--pools", nargs="+", default=["500-boats", "table-1"])
+    parser.add_argument("--pools", nargs="+", default=["wide", "narrow"])
     parser.add_argument("--out", type=Path, default=RESULTS)
     given = parser.parse_args()
     command = shlex.join(["baselines/training_physics.py", *sys.argv[1:]])

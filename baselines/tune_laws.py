@@ -1,7 +1,7 @@
 """Tune the gains of the closed-form laws on training seeds.
 
     python baselines/tune_laws.py                            # both laws in both pools, half an hour
-    python baselines/tune_laws.py --law "damped law" --pool table-1 --generations 10
+    python baselines/tune_laws.py --law "damped law" --pool narrow --generations 10
 
 The search is CMA-ES (Hansen's covariance matrix adaptation, from the package cmaes) over logarithms
 of the gains. A candidate's score is the mean signed order of its episodes. All candidates of a
@@ -45,7 +45,7 @@ LAWS: dict[str, tuple[Any, dict[str, tuple[float, float]]]] = {
         },
     ),
 }
-POOLS = ("500-boats", "table-1")
+POOLS = ("wide", "narrow")
 
 
 def flock_parameters(pool: str, options: argparse.Namespace) -> flockenv.FlockParameters:

@@ -1,7 +1,7 @@
 """Measure and draw how leaders move: their rudders, positions and tracks, for several policies.
 
-    python baselines/understand_leaders.py --pool table-1 \\
-        --policy "steering law" --policy "damped law" --out results/understand/table-1
+    python baselines/understand_leaders.py --pool narrow \\
+        --policy "steering law" --policy "damped law" --out results/understand/narrow
 
 The script draws rudders.png (mean rudder by time in the control cycle, against the angular velocity
 of a leader that heads nearly right, and against misalignment), places.png (headings, distances from
@@ -13,6 +13,7 @@ critical noise, clockwise targets and paired seeds, and the first tenth of each 
 import argparse
 from pathlib import Path
 
+import matplotlib as mpl
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -24,10 +25,9 @@ from script_end import one_line_end
 import flockenv
 from flockenv._core import pool_radii_cm
 from flockenv._io.atomic_write import atomic_write, write_csv
-from flockenv.comparison.figure import policy_colors
+from flockenv.comparison.figure import COLORS, policy_colors
 from flockenv.envs.observation import observation_entries, state_entries
 from flockenv.policies.registry import named_policy
-from flockenv.reproduce.style import COLORS, column_figure, paper_style
 from flockenv.runs.seeds import check_evaluation_seeds
 
 CONTROL_HZ = 10.0
@@ -131,7 +131,7 @@ def apart_cm(state: np.ndarray, parameters: flockenv.FlockParameters) -> np.ndar
 
 
 def draw_rudders(found: dict[str, pd.DataFrame], parameters: flockenv.FlockParameters) -> Figure:
-    figure = column_figure(4.2 * len(found), 17.0)
+    figure = Figure((17 / 2.54, 4.2 / 2.54 * len(found)), layout="constrained")
     panels = figure.subplots(len(found), 2, squeeze=False, sharex=True)
     for (left, right), (name, rows) in zip(panels, found.items(), strict=True):
         nearly = rows[rows["misalignment_rad"].abs() < NEARLY_RIGHT_RAD]
@@ -172,7 +172,7 @@ def draw_places(found: dict[str, pd.DataFrame], parameters: flockenv.FlockParame
         "radius_cm": ("distance from the center [cm]", np.linspace(inner, outer, 31)),
         "apart_cm": ("distance to the next leader [cm]", np.linspace(0.0, 2.0 * outer, 41)),
     }
-    figure = column_figure(5.0, 17.0)
+    figure = Figure((17 / 2.54, 5 / 2.54), layout="constrained")
     for axes, (column, (label, edges)) in zip(figure.subplots(1, 3), shown.items(), strict=True):
         colors = policy_colors(found)
         for name, rows in found.items():
@@ -196,7 +196,7 @@ def draw_tracks(
     names: list[str], parameters: flockenv.FlockParameters, options: argparse.Namespace
 ) -> Figure:
     """Draw two minutes in the middle of one episode; every track starts at its dot."""
-    figure = column_figure(6.5, 6.0 * len(names))
+    figure = Figure((6 / 2.54 * len(names), 6.5 / 2.54), layout="constrained")
     outer, inner = pool_radii_cm(parameters.pool)
     middle = options.minutes * 30.0
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False)[0], names, strict=True):
@@ -228,7 +228,7 @@ def draw_tracks(
 
 def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--pool", choices=("500-boats", "table-1"), default="table-1")
+    parser.add_argument("--pool", choices=("wide", "narrow"), default="narrow")
     parser.add_argument("--policy", action="append", help="name or .npz [both laws]")
     parser.add_argument("--leaders", type=int, default=3)
     parser.add_argument("--episodes", type=int, default=64)
@@ -254,7 +254,7 @@ def main(arguments: list[str] | None = None) -> None:
             for label, name in zip(labels, names, strict=True):
                 found[label], order = watch(name, parameters, options, progress)
                 means.append({"policy": label, "signed_order": order, **found[label].mean()})
-        with paper_style():
+        with mpl.rc_context({"font.size": 7, "legend.frameon": False, "svg.hashsalt": "flockenv"}):
             figures = {
                 "rudders": draw_rudders(found, parameters),
                 "places": draw_places(found, parameters),

@@ -29,18 +29,18 @@ fn control_steps(bencher: Bencher, pool: Pool, bw_s: f64) {
 
 #[divan::bench]
 fn five_hundred_boats(bencher: Bencher) {
-    control_steps(bencher, Pool::FIVE_HUNDRED_BOATS, 0.3);
+    control_steps(bencher, Pool::WIDE, 0.3);
 }
 
 #[divan::bench]
-fn table_1(bencher: Bencher) {
-    control_steps(bencher, Pool::TABLE_1, 0.4);
+fn narrow(bencher: Bencher) {
+    control_steps(bencher, Pool::NARROW, 0.4);
 }
 
 /// Observations alone, without physics.
 #[divan::bench]
 fn observe(bencher: Bencher) {
-    let mut batch = batch_of_16(Pool::FIVE_HUNDRED_BOATS, 0.3);
+    let mut batch = batch_of_16(Pool::WIDE, 0.3);
     let mut observations = vec![0.0; batch.rows() * batch.observation_size()];
     bencher.counter(ItemsCount::new(16_u32)).bench_local(|| {
         batch.observe(&mut observations);

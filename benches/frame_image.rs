@@ -26,7 +26,7 @@ fn frames(bencher: Bencher, pool: Pool) {
 
 #[divan::bench]
 fn five_hundred_boats(bencher: Bencher) {
-    frames(bencher, Pool::FIVE_HUNDRED_BOATS);
+    frames(bencher, Pool::WIDE);
 }
 
 #[divan::bench]

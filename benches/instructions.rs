@@ -55,10 +55,8 @@ fn work(name: &str) -> Option<Work> {
         "cycle of 27, 1 relinearization" => flock(Scene::Cycle, 27, 1),
         "cycle of 27 with 300 posts" => Work::Flock(with_posts(Scene::Cycle.parameters(27))),
         "jam of 1000" => flock(Scene::Jam, 1000, 0),
-        "control step in 500-boats" => {
-            Work::Environment(environment(Pool::FIVE_HUNDRED_BOATS, 0.3))
-        }
-        "control step in table-1" => Work::Environment(environment(Pool::TABLE_1, 0.4)),
+        "control step in wide" => Work::Environment(environment(Pool::WIDE, 0.3)),
+        "control step in narrow" => Work::Environment(environment(Pool::NARROW, 0.4)),
         _ => return None,
     })
 }
@@ -89,8 +87,8 @@ const SCENES: [&str; 9] = [
     "cycle of 27, 1 relinearization",
     "cycle of 27 with 300 posts",
     "jam of 1000",
-    "control step in 500-boats",
-    "control step in table-1",
+    "control step in wide",
+    "control step in narrow",
 ];
 
 /// Seeds that a count is the mean of.

@@ -23,7 +23,7 @@ from throughput import POOLS, ROOT, SCENE, processor
 
 FLOCKS = 64
 DATA = ROOT / "docs" / "learners_throughput.toml"
-FLOCK = {"pool": "500-boats", "bw_s": POOLS["500-boats"], **SCENE}
+FLOCK = {"pool": "wide", "bw_s": POOLS["wide"], **SCENE}
 LEADERS = FLOCK["n_leaders"]
 
 

@@ -23,7 +23,7 @@ from flockenv._io.atomic_write import atomic_write
 
 ROOT = Path(__file__).parents[1]
 SCENE = {"n_boats": 27, "n_leaders": 4, "bw_s": (0.0, 1.0), "target": "random", "episode_s": 48.0}
-POOLS = ("500-boats", "table-1")
+POOLS = ("wide", "narrow")
 FLOCKS = 64
 #: Share of the steps before memory is stationary, and number of readings.
 TRANSIENT, SAMPLES = 0.2, 200

@@ -26,7 +26,7 @@ import tomli_w
 ROOT = Path(__file__).parents[1]
 PEERS_PYTHON = ROOT / ".venv-peers" / "bin" / "python"
 SCENE = {"n_boats": 27, "n_leaders": 4}
-POOLS = {"500-boats": 0.3, "table-1": 0.4}
+POOLS = {"wide": 0.3, "narrow": 0.4}
 
 
 def vector_env(num_envs: int, pool: str):
@@ -121,10 +121,10 @@ def ppo_environment_share(seconds: float) -> float:
 
 #: Rows measured here: name, function of seconds, threads of the simulator (None: all).
 OWN: dict[str, tuple[Callable[[float], float], str | None]] = {
-    "step 500-boats": (lambda seconds: control_step_us("500-boats", seconds), "1"),
-    "step table-1": (lambda seconds: control_step_us("table-1", seconds), "1"),
-    "batch 500-boats": (lambda seconds: batch_steps_per_s("500-boats", seconds), None),
-    "batch table-1": (lambda seconds: batch_steps_per_s("table-1", seconds), None),
+    "step wide": (lambda seconds: control_step_us("wide", seconds), "1"),
+    "step narrow": (lambda seconds: control_step_us("narrow", seconds), "1"),
+    "batch wide": (lambda seconds: batch_steps_per_s("wide", seconds), None),
+    "batch narrow": (lambda seconds: batch_steps_per_s("narrow", seconds), None),
     "vec env overhead": (vec_env_overhead_us, "1"),
     "ppo share": (ppo_environment_share, None),
 }
@@ -193,15 +193,15 @@ def page(found: Mapping[str, Any]) -> str:
     def line(row: str, what: str, unit: str) -> str:
         return f"| {what} | {number(found[row]['median'])} {unit} | {spread(found[row])} |"
 
-    batch = found["batch 500-boats"]
-    step, table_1 = found["step 500-boats"]["median"], found["step table-1"]["median"]
+    batch = found["batch wide"]
+    step, narrow = found["step wide"]["median"], found["step narrow"]["median"]
     benchmark = "`gymnasium.utils.performance.benchmark_vector_step`"
     settings = "64 slots, 64 steps, batch 512, 10 epochs, MlpPolicy"
     lines = [
         "# Throughput",
         "",
-        f"A control step of one flock takes {step:.3g} µs of one core in the pool `500-boats` and "
-        f"{table_1:.3g} µs in `table-1`. A batch of 64 flocks advances by "
+        f"A control step of one flock takes {step:.3g} µs of one core in the pool `wide` and "
+        f"{narrow:.3g} µs in `narrow`. A batch of 64 flocks advances by "
         f"{number(batch['median'], 3)} flock control steps per second on {os_cores(provenance)}.",
         "",
         f"`make throughput` measured all numbers of this page on {provenance['date']}: "
@@ -217,10 +217,10 @@ def page(found: Mapping[str, Any]) -> str:
         "",
         "| quantity | median | range |",
         "| --- | --- | --- |",
-        line("step 500-boats", "control step of a flock, one core, `500-boats`, bw 0.3 s", "µs"),
-        line("step table-1", "control step of a flock, one core, `table-1`, bw 0.4 s", "µs"),
-        line("batch 500-boats", f"64 flocks, {benchmark}, `500-boats`", "flock steps/s"),
-        line("batch table-1", f"64 flocks, {benchmark}, `table-1`", "flock steps/s"),
+        line("step wide", "control step of a flock, one core, `wide`, bw 0.3 s", "µs"),
+        line("step narrow", "control step of a flock, one core, `narrow`, bw 0.4 s", "µs"),
+        line("batch wide", f"64 flocks, {benchmark}, `wide`", "flock steps/s"),
+        line("batch narrow", f"64 flocks, {benchmark}, `narrow`", "flock steps/s"),
         line("vec env overhead", "overhead of `LeaderVecEnv` at 64 slots", "µs per sample"),
         line("ppo share", f"share of the environment in the time of SB3's PPO ({settings})", "%"),
         "",
@@ -231,7 +231,7 @@ def page(found: Mapping[str, Any]) -> str:
         "",
         "| environment | environment steps/s | range | flockenv over peer |",
         "| --- | --- | --- | --- |",
-        f"| flockenv, 64 flocks, `500-boats` | {number(batch['median'])} | {spread(batch)} | 1 |",
+        f"| flockenv, 64 flocks, `wide` | {number(batch['median'])} | {spread(batch)} | 1 |",
     ]
     for row, name in (
         ("vmas", f"VMAS {provenance['vmas']} `flocking`, 27 agents, 64 environments"),

@@ -9,7 +9,7 @@ DOCS = Path(__file__).parent
 # What policies reached in comparisons, and their paired differences.
 MEANS = "leaders/means.csv"
 DIFFERENCES = "leaders/differences.csv"
-POOLS = ("500-boats", "table-1")
+POOLS = ("wide", "narrow")
 
 Row = dict[str, str]
 

@@ -13,7 +13,7 @@ from flockenv.comparison.figure import leader_curve
 from flockenv.statistics.intervals import Line
 
 FOLDER = DOCS / "leaders"
-BW_S = {"500-boats": 0.31, "table-1": 0.45}
+BW_S = {"wide": 0.31, "narrow": 0.45}
 
 
 def main() -> None:

@@ -17,7 +17,7 @@ import flockenv
 from flockenv.policies.registry import named_policy
 from flockenv.replay import write_replay
 
-PARAMETERS = flockenv.FlockParameters(n_boats=27, n_leaders=4, pool="500-boats", bw_s=0.3)
+PARAMETERS = flockenv.FlockParameters(n_boats=27, n_leaders=4, pool="wide", bw_s=0.3)
 SEED, DURATION_S = 7, 480.0
 POLICIES = {"steering law": None, "learned": named_policy("learned", PARAMETERS.pool)()}
 SIZE = (1160, 816)

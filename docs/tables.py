@@ -23,7 +23,6 @@ from committed_data import (
     ratio,
     rows,
 )
-from fit_tables import FIT_TABLES
 from learners_table import learners
 from suite_tables import suite_scores, suite_tasks
 from training_tables import TRAINING_TABLES
@@ -91,12 +90,12 @@ def leaders_of(pool: str, policies: Sequence[str]) -> str:
 def other_scenes() -> str:
     """Return the order with three leaders in scenes that no search has used."""
     scenes = {
-        "`500-boats`, bw = 0.15 s": ("less-noise", "500-boats-bw-0.15"),
-        "`500-boats`, bw = 0.25 s": ("less-noise", "500-boats-bw-0.25"),
-        "`500-boats`, alternating target": ("alternating-500-boats", "500-boats-bw-0.31"),
-        "`500-boats`, 0.3 % of positions dropped": ("drop-outs-500-boats", "500-boats-bw-0.31"),
-        "`table-1`, alternating target": ("alternating-table-1", "table-1-bw-0.45"),
-        "`table-1`, 0.3 % of positions dropped": ("drop-outs-table-1", "table-1-bw-0.45"),
+        "`wide`, bw = 0.15 s": ("less-noise", "wide-bw-0.15"),
+        "`wide`, bw = 0.25 s": ("less-noise", "wide-bw-0.25"),
+        "`wide`, alternating target": ("alternating-wide", "wide-bw-0.31"),
+        "`wide`, 0.3 % of positions dropped": ("drop-outs-wide", "wide-bw-0.31"),
+        "`narrow`, alternating target": ("alternating-narrow", "narrow-bw-0.45"),
+        "`narrow`, 0.3 % of positions dropped": ("drop-outs-narrow", "narrow-bw-0.45"),
     }
     body = []
     for title, (comparison, scene) in scenes.items():
@@ -123,23 +122,23 @@ def one_policy() -> str:
     return markdown(header, body)
 
 
-def strong_500_boats() -> str:
-    """Return the order in 500-boats with more than the boats' rudder, for the same policies."""
+def strong_wide() -> str:
+    """Return the order in wide with more than the boats' rudder, for the same policies."""
     policies = ("tuned damped law", "learned")
     body = []
-    for times, comparison in ((1, "500-boats"), (2, "rudder-2"), (10, "rudder-10")):
-        known = {"comparison": comparison, "scene": "500-boats-bw-0.31", "leaders": "3"}
+    for times, comparison in ((1, "wide"), (2, "rudder-2"), (10, "rudder-10")):
+        known = {"comparison": comparison, "scene": "wide-bw-0.31", "leaders": "3"}
         cells = [order(one(MEANS, policy=name, **known)) for name in policies]
         body.append([f"{times}", *cells])
     return markdown(["times the rudder", *policies], body)
 
 
 def strong_rudders() -> str:
-    """Return the order in table-1 with ten times the rudder."""
+    """Return the order in narrow with ten times the rudder."""
     file = "leaders/strong_rudders.csv"
     body = []
     for k in ("1", "3"):
-        law = one(MEANS, comparison="table-1", policy="tuned damped law", leaders=k)
+        law = one(MEANS, comparison="narrow", policy="tuned damped law", leaders=k)
         cells = [order(law)]
         for policy in ("tuned damped law", "policy"):
             mean = one(MEANS, comparison="strong-rudders", policy=policy, leaders=k)
@@ -159,7 +158,7 @@ def strong_rudders() -> str:
 
 
 def nonlinear_searches() -> str:
-    """Return the order in table-1 with nonlinear leans that were searched for their rudder."""
+    """Return the order in narrow with nonlinear leans that were searched for their rudder."""
     hours = {row["comparison"]: row["flock_hours"] for row in rows("training/searches.csv")}
     body = []
     for times, comparison in ((1, "search-rudder-1"), (10, "search-rudder-10")):
@@ -180,7 +179,7 @@ def other_policies() -> str:
         "straight ahead": "straight ahead",
         "random rudders": "random rudders",
         "steering law, every substep": "steering law at every substep",
-        "linear-table-1.npz": "linear feedback",
+        "linear-narrow.npz": "linear feedback",
     }
     body = []
     for policy, name in names.items():
@@ -194,7 +193,7 @@ def other_policies() -> str:
 
 def ablation() -> str:
     """Return the change of order when weights of the pretrained leaders are left out."""
-    found = {row["law"]: row for row in rows("leaders/ablation-500-boats.csv")}
+    found = {row["law"]: row for row in rows("leaders/ablation-wide.csv")}
 
     def change(name: str) -> str:
         return interval(found[name], "beyond_whole", "low", "high", "+.3f")
@@ -299,18 +298,16 @@ TABLES: dict[str, Callable[[], str]] = {
     "parameters": parameters,
     "easy": easy,
     "leader-count": leader_count,
-    "leaders-500-boats": lambda: leaders_of(
-        "500-boats", ("steering law", "tuned damped law", "learned")
-    ),
-    "leaders-table-1": lambda: leaders_of(
-        "table-1", ("steering law", "tuned sign-corrected law", "tuned damped law", "learned")
+    "leaders-wide": lambda: leaders_of("wide", ("steering law", "tuned damped law", "learned")),
+    "leaders-narrow": lambda: leaders_of(
+        "narrow", ("steering law", "tuned sign-corrected law", "tuned damped law", "learned")
     ),
     "leader-motion": leader_motion,
     "ablation": ablation,
     "one-policy": one_policy,
     "strong-rudders": strong_rudders,
     "nonlinear-searches": nonlinear_searches,
-    "strong-500-boats": strong_500_boats,
+    "strong-wide": strong_wide,
     "other-scenes": other_scenes,
     "other-policies": other_policies,
     "suite-tasks": suite_tasks,
@@ -318,7 +315,6 @@ TABLES: dict[str, Callable[[], str]] = {
     "track-errors": track_errors,
     "learners": learners,
     **TRAINING_TABLES,
-    **FIT_TABLES,
 }
 """How each table is made."""
 

@@ -21,7 +21,7 @@ LEANS = "training/trials_of_leans.csv"
 def ppo_comparison() -> str:
     """Return the order with PPO's best policy and three leaders."""
     body = []
-    for pool, scene in zip(POOLS, ("500-boats-bw-0.31", "table-1-bw-0.45"), strict=True):
+    for pool, scene in zip(POOLS, ("wide-bw-0.31", "narrow-bw-0.45"), strict=True):
         mean = one(MEANS, comparison="ppo", scene=scene, policy="best")
         gains = [
             one(DIFFERENCES, comparison="ppo", scene=scene, policy="best", reference=law)
@@ -95,7 +95,7 @@ def _signals(files: Mapping[str, str]) -> str:
 
 
 def rudders() -> str:
-    """Return what PPO of rudders from random weights reached in table-1."""
+    """Return what PPO of rudders from random weights reached in narrow."""
     observed = {"default": "default_observation", "default and `law_rudder`": "law_rudder"}
     body = []
     for title, name in observed.items():
@@ -112,8 +112,8 @@ def level_searches() -> str:
     """Return what searches reached that gained nothing over the pretrained leaders."""
     hours = {row["comparison"]: row["flock_hours"] for row in rows("training/searches.csv")}
     titles = {
-        "search-alternating": "`500-boats`, target alternates",
-        "search-nonlinear": "`table-1`, nonlinear lean with the gaps to fellow leaders",
+        "search-alternating": "`wide`, target alternates",
+        "search-nonlinear": "`narrow`, nonlinear lean with the gaps to fellow leaders",
     }
     body = []
     for comparison, title in titles.items():
@@ -144,13 +144,13 @@ def trained(pool: str) -> str:
 
 
 def settings_of_leans() -> str:
-    """Return the held-out orders of trainings in 500-boats with different settings."""
+    """Return the held-out orders of trainings in wide with different settings."""
     kinds = {
-        "500-boats-action-noise": ("a deep set, then 32 units", "action", "1"),
-        "500-boats-linear-action-noise": ("linear", "action", "1"),
-        "500-boats": ("linear", "weights", "1"),
-        "500-boats-hidden": ("64 units", "weights of the last layer", "1"),
-        "500-boats-5-hz": ("linear", "weights", "5"),
+        "wide-action-noise": ("a deep set, then 32 units", "action", "1"),
+        "wide-linear-action-noise": ("linear", "action", "1"),
+        "wide": ("linear", "weights", "1"),
+        "wide-hidden": ("64 units", "weights of the last layer", "1"),
+        "wide-5-hz": ("linear", "weights", "5"),
     }
     body = []
     for folder, cells in kinds.items():
@@ -266,8 +266,8 @@ TRAINING_TABLES = {
     "terms-of-leans": terms_of_leans,
     "trials-of-leans": trials_of_leans,
     "trained-leans": trained_leans,
-    "trained-500-boats": partial(trained, "500-boats"),
-    "trained-table-1": partial(trained, "table-1"),
-    "trained-contact-push": partial(trained, "table-1-contact-push"),
+    "trained-wide": partial(trained, "wide"),
+    "trained-narrow": partial(trained, "narrow"),
+    "trained-contact-push": partial(trained, "narrow-contact-push"),
 }
 """How each table is made."""

@@ -5,7 +5,6 @@ from importlib.metadata import version
 from typing import Any
 
 from flockenv import policies
-from flockenv._io.moved_modules import keep_old_names
 from flockenv.envs.parallel import LeadersParallelEnv, parallel_env
 from flockenv.envs.registration import register
 from flockenv.envs.single import LeadersEnv
@@ -58,13 +57,9 @@ __version__ = version("flockenv")
 
 register()
 
-_moved = keep_old_names(__name__)
-
 
 def __getattr__(name: str) -> Any:
     # What belongs to other libraries takes seconds to import: only for those who use it.
     if name in ("benchmarl", "rllib", "sb3", "torchrl"):
         return importlib.import_module(f"flockenv.{name}")
-    if name in _moved:
-        return _moved[name]
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

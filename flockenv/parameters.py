@@ -65,7 +65,7 @@ class FlockParameters:
     leaders_reverse: bool = _declared("leaders_reverse")
     target: str | tuple[str, ...] = _declared("target")
     scheme: str = _declared("scheme")
-    noise: str = _declared("noise")
+    noise_scheme: str = _declared("noise_scheme")
     solver: str = _declared("solver")
     dt_s: float = _declared("dt_s")
     overlap_tolerance_cm: float = _declared("overlap_tolerance_cm")
@@ -83,12 +83,6 @@ class FlockParameters:
         refuse_unknown(values, _NAMES, "field of FlockParameters")
         if values.get("gyration_radius_cm", 0.0) is None:
             raise TypeError("gyration_radius_cm must be a number or left out, not None")
-        if type(values.get("noise")) in (int, float):
-            level = values["noise"]
-            raise TypeError(
-                f"noise = {level!r} is not accepted: 'white' or 'per-step'. How disordered a flock "
-                f"is depends on the backward duration, bw_s = {level!r}"
-            )
         return object.__new__(cls)
 
     def __post_init__(self) -> None:
@@ -146,7 +140,7 @@ class FlockParameters:
         The length of the backward phase, in s, at which mean Ψ_o of leaderless runs falls through
         the middle between its ordered and its disordered level; measured by
         ``baselines/critical_noise.py`` for Table 3's presets in both named pools, for
-        ``"experiment"`` and ``"experiment-2026"`` in ``"table-1"``.
+        ``"experiment"`` and ``"experiment-2026"`` in ``"narrow"``.
 
         Raises
         ------
@@ -158,7 +152,7 @@ class FlockParameters:
             raise ParameterError(
                 f"pool = {pool!r}: the critical noise of preset {preset!r} has not been measured "
                 "there. Choose another pool, or give a backward duration (bw_s; on the command "
-                "line `--pool table-1` or `--set bw_s=1.0`); baselines/critical_noise.py measures "
+                "line `--pool narrow` or `--set bw_s=1.0`); baselines/critical_noise.py measures "
                 "it"
             )
         return bw_s

@@ -57,7 +57,7 @@ impl Scene {
         }
     }
 
-    /// Leaderless boats in pool `table-1`, scaled by sqrt(n/50) beyond 50.
+    /// Leaderless boats in pool `narrow`, scaled by sqrt(n/50) beyond 50.
     pub fn parameters(self, boats: usize) -> FlockParameters {
         let scale = (boats as f64 / 50.0).sqrt().max(1.0);
         let rest = match self {
@@ -67,8 +67,8 @@ impl Scene {
         FlockParameters {
             n_boats: boats,
             pool: Pool {
-                outer_radius_cm: Pool::TABLE_1.outer_radius_cm * scale,
-                inner_radius_cm: Pool::TABLE_1.inner_radius_cm * scale,
+                outer_radius_cm: Pool::NARROW.outer_radius_cm * scale,
+                inner_radius_cm: Pool::NARROW.inner_radius_cm * scale,
             },
             fw_s: 2.0,
             nop1_s: rest,

@@ -17,14 +17,11 @@ from flockenv.cli.console import (
 )
 from flockenv.cli.demo import demo
 from flockenv.cli.evaluate import evaluate
-from flockenv.cli.fit import fit
 from flockenv.cli.parameters import refuse_fields_as_options
 from flockenv.cli.play import play
 from flockenv.cli.presets import presets
 from flockenv.cli.replay import replay
-from flockenv.cli.reproduce import reproduce
 from flockenv.cli.run import run
-from flockenv.cli.signal import signal
 from flockenv.cli.sweep import sweep
 from flockenv.cli.train import train
 from flockenv.errors import FlockError
@@ -58,12 +55,9 @@ COMMANDS = (
     play,
     compare,
     evaluate,
-    fit,
     presets,
-    reproduce,
     sweep,
     train,
-    signal,
 )
 
 for command in COMMANDS:

@@ -50,7 +50,7 @@ def compare(
     `runs.csv`, `means.csv`, `lines.csv`, `differences.csv`, `leader_curve.png`, `run.toml` (seeds,
     policies, environment) and the exact parameters, which `--params` reads, for each pool.
 
-    Example: `flockenv compare --pool table-1 --policy "damped law" --set bw_s=0.4`
+    Example: `flockenv compare --pool narrow --policy "damped law" --set bw_s=0.4`
     """
     from flockenv.comparison.report import ComparisonReport, report
     from flockenv.policies.registry import named_policy

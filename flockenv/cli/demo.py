@@ -24,7 +24,7 @@ def demo(
 ) -> None:
     """Run the paper's law and the learned leaders side by side, and open the page that plays both.
 
-    27 boats in the pool 500-boats, four of them leaders, at bw_s = 0.3 s. Both runs have the same
+    27 boats in the pool wide, four of them leaders, at bw_s = 0.3 s. Both runs have the same
     initial placement and the same noise.
 
     Example: `flockenv demo`

@@ -84,7 +84,7 @@ def evaluate(
     With `--suite v1` the policy is scored on frozen tasks instead, and the options of flocks and
     episodes are refused.
 
-    Example: `flockenv evaluate learned --pool table-1 --leaders 3`
+    Example: `flockenv evaluate learned --pool narrow --leaders 3`
     """
     if suite is not None:
         refuse_altered(context, suite)

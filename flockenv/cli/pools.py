@@ -21,8 +21,8 @@ class PoolChoice(StrEnum):
     """Pools of a comparison."""
 
     BOTH = "both"
-    FIVE_HUNDRED_BOATS = "500-boats"
-    TABLE_1 = "table-1"
+    WIDE = "wide"
+    NARROW = "narrow"
 
 
 PoolOption = Annotated[

@@ -60,7 +60,7 @@ def train(
     tensorboard. `docs/train.md` describes the TOML file. With `--seeds N` it trains N times in
     folders `seed-0` and so on, and writes `learning_curves.csv` and `.png` and `evaluation.csv`.
 
-    Example: `flockenv train --set 'pools=["table-1"]' --set 'start=damped law' --samples 500000`
+    Example: `flockenv train --set 'pools=["narrow"]' --set 'start=damped law' --samples 500000`
     """
     from flockenv import training
 

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv._io.extras import require
-from flockenv._io.moved_modules import renamed_argument
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import (
@@ -156,7 +155,6 @@ def _check_environment(
         )
 
 
-@renamed_argument("scene", "parameters")
 def run_episodes(
     parameters: FlockParameters,
     policy: LeaderPolicy,

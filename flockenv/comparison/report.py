@@ -14,7 +14,6 @@ from rich.text import Text
 from flockenv._core import __version__
 from flockenv._io.atomic_write import write_csv, write_text
 from flockenv._io.extras import require
-from flockenv._io.moved_modules import renamed_argument, renamed_attribute
 from flockenv.comparison.episodes import (
     CONTROL_HZ,
     NO_LEADERS,
@@ -77,9 +76,6 @@ class ComparisonReport:
         Options of the environment that differ from its defaults.
     """
 
-    scene = renamed_attribute("scene", "parameters")
-    asked = renamed_attribute("asked", "conditions")
-
     parameters: FlockParameters
     means: "pd.DataFrame"
     lines: dict[tuple[str, str], Line]
@@ -128,7 +124,7 @@ class ComparisonReport:
             "alternating targets" if target == "alternate" else f"target {target}",
             *([f"{100 * dropped:.3g} % of positions dropped"] if dropped else []),
             *(f"{name} = {value}" for name, value in options.items()),
-            f"{parameters.scheme} + {parameters.noise}",
+            f"{parameters.scheme} + {parameters.noise_scheme}",
         ]
         return ", ".join(parts)
 
@@ -175,7 +171,6 @@ class ComparisonReport:
         )
 
 
-@renamed_argument("scene", "parameters")
 def report(
     parameters: FlockParameters,
     leaders: Sequence[int],

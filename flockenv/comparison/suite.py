@@ -101,38 +101,38 @@ class Task:
 # Written out, so that no other default changes a task.
 _FROZEN: Mapping[str, Any] = {"n_boats": 27, "dt_s": 0.02, "target": "cw"}
 
-_500: Mapping[str, Any] = {"pool": "500-boats", "bw_s": 0.31, "n_leaders": 3}
-_TABLE_1: Mapping[str, Any] = {"pool": "table-1", "bw_s": 0.45, "n_leaders": 3}
+_500: Mapping[str, Any] = {"pool": "wide", "bw_s": 0.31, "n_leaders": 3}
+_TABLE_1: Mapping[str, Any] = {"pool": "narrow", "bw_s": 0.45, "n_leaders": 3}
 
 _V1 = (
-    Task("circulate-500-boats-k1", "One leader, critical noise.", {**_500, "n_leaders": 1}),
-    Task("circulate-500-boats-k3", "Three leaders, critical noise.", _500),
-    Task("circulate-table-1-k1", "One leader, critical noise.", {**_TABLE_1, "n_leaders": 1}),
-    Task("circulate-table-1-k3", "Three leaders, critical noise.", _TABLE_1),
+    Task("circulate-wide-k1", "One leader, critical noise.", {**_500, "n_leaders": 1}),
+    Task("circulate-wide-k3", "Three leaders, critical noise.", _500),
+    Task("circulate-narrow-k1", "One leader, critical noise.", {**_TABLE_1, "n_leaders": 1}),
+    Task("circulate-narrow-k3", "Three leaders, critical noise.", _TABLE_1),
     Task(
-        "reverse-500-boats-k3",
+        "reverse-wide-k3",
         "The target alternates every 4 minutes (figure 7).",
         _500,
         {"target": "alternate"},
         16 * _MINUTES,
     ),
     Task(
-        "camera-500-boats-k3",
+        "camera-wide-k3",
         "The camera drops 2 % of the positions, and its picture is one frame late.",
         _500,
         {"dropout_rate": 0.02, "delay_frames": 1},
     ),
     Task(
-        "range-500-boats-k3",
+        "range-wide-k3",
         "The noise of each episode is drawn from half to 1.25 times the critical one.",
         _500,
         {"bw_s": (0.155, 0.3875)},
     ),
-    Task("crowd-500-boats-k3", "50 boats in the same pool.", {**_500, "n_boats": 50}),
+    Task("crowd-wide-k3", "50 boats in the same pool.", {**_500, "n_boats": 50}),
     Task(
-        "easy-table-1-k1",
+        "easy-narrow-k1",
         "One leader among nine boats, the flock of `flockenv/Circulate-easy-v0`.",
-        {"pool": "table-1", "bw_s": 0.3, "n_boats": 9, "n_leaders": 1},
+        {"pool": "narrow", "bw_s": 0.3, "n_boats": 9, "n_leaders": 1},
     ),
 )
 

@@ -17,7 +17,7 @@ ENVIRONMENTS: Mapping[str, Mapping[str, Any]] = {
     EASY_ID: {
         "n_boats": 9,
         "n_leaders": 1,
-        "pool": "table-1",
+        "pool": "narrow",
         "control_hz": 5.0,
         "episode_s": 60.0,
         "reward": {"leader_velocity": 1.0},

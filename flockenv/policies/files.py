@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv._io.array_file import write_arrays
-from flockenv._io.moved_modules import renamed_attribute
 from flockenv._io.npz_header import read_headed
 from flockenv.envs.observation import observation_version
 from flockenv.errors import ParameterError
@@ -29,8 +28,6 @@ _LARGEST_FILE = 5 << 20
 
 class StoredPolicy(RowPolicy):
     """A policy of rows that a file holds: a header and plain arrays."""
-
-    made = renamed_attribute("made", "provenance")
 
     @abstractmethod
     def _contents(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:

@@ -7,7 +7,6 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flockenv._io.moved_modules import renamed_argument
 from flockenv._io.npz_header import array_of, entry_of
 from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError, refuse_unknown
@@ -172,7 +171,6 @@ class LeaningLaw(StoredPolicy):
         `FEATURES`, and those of `FURTHER_FEATURES` that weights or hidden units name.
     """
 
-    @renamed_argument("made", "provenance")
     def __init__(
         self,
         gains: Mapping[str, float],

@@ -16,7 +16,6 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv import _core
 from flockenv._io.array_file import is_special
 from flockenv._io.extras import require
-from flockenv._io.moved_modules import renamed_argument, renamed_attribute
 from flockenv.envs.observation import ObservationSpace, observation_space, seen_space
 from flockenv.errors import ParameterError
 from flockenv.policies.base import leaders_observed
@@ -62,9 +61,6 @@ class ModelPolicy:
         If the spaces are none of an environment here with those options.
     """
 
-    made = renamed_attribute("made", "provenance")
-
-    @renamed_argument("made", "provenance")
     def __init__(
         self,
         model: Any,

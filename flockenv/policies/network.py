@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
-from flockenv._io.moved_modules import renamed_argument
 from flockenv._io.npz_header import array_of, entry_of
 from flockenv.envs.observation import BLOCKS, ObservationSpace, observation_entries
 from flockenv.errors import ParameterError, refuse_unknown, shown
@@ -58,7 +57,6 @@ class NetworkPolicy(StoredPolicy):
         unknown activations.
     """
 
-    @renamed_argument("made", "provenance")
     def __init__(
         self,
         weights: Sequence[ArrayLike],

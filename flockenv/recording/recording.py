@@ -279,7 +279,7 @@ class Recording:
             Shape (t, n, 3): [x cm, y cm from the pool's center, heading rad counter-clockwise from
             x]. Rows of NaN where a boat is not there.
         pool
-            "table-1", "500-boats", or the outer and the inner radius in cm; (inf, 0) for none.
+            "narrow", "wide", or the outer and the inner radius in cm; (inf, 0) for none.
         hull
             Radius in cm, and half the length of the straight part in radii; (r, 0) is a disc.
         velocity

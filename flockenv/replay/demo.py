@@ -11,7 +11,7 @@ from flockenv.simulation import simulate
 
 __all__ = ["DEMO_MINUTES", "DEMO_PARAMETERS", "DEMO_POLICIES", "DEMO_SEED", "demo_runs"]
 
-DEMO_PARAMETERS: Final = FlockParameters(n_boats=27, n_leaders=4, pool="500-boats", bw_s=0.3)
+DEMO_PARAMETERS: Final = FlockParameters(n_boats=27, n_leaders=4, pool="wide", bw_s=0.3)
 """Four leaders among 27 boats, near the critical noise."""
 
 DEMO_SEED = 7

@@ -1,7 +1,6 @@
 """One table of seed ranges by use: none of the seeds that made a policy is used to judge it."""
 
 import itertools
-import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
@@ -9,11 +8,9 @@ from flockenv.errors import ParameterError, shown
 
 __all__ = [
     "FIRST_TRAINING_SEED",
-    "MODEL_SEEDS",
     "POLICY_SEEDS",
     "SeedRange",
     "check_evaluation_seeds",
-    "training_seed",
 ]
 
 FIRST_TRAINING_SEED = 1 << 32
@@ -82,36 +79,10 @@ POLICY_SEEDS: Mapping[str, SeedRange] = {
         _search("averaging", 4),
         _search("easy environment", 5),
         _search("learning check", 6),
-        _search("signal", 8),
         SeedRange("validation", FIRST_TRAINING_SEED + (1 << 62), 1 << 32),
     )
 }
 """Seeds of what makes and judges policies, by use; no two ranges meet."""
-
-MODEL_SEEDS: Mapping[str, SeedRange] = {
-    each.use: each
-    for each in (
-        SeedRange("calibration", 0, 1_000_000),
-        SeedRange("calibration check", 1_000_000, 1_000_000),
-    )
-}
-"""Seeds of the fit of the model's constants and of its held-out runs, where no policy is made."""
-
-
-def training_seed(number: int) -> int:
-    """Return the training seed of a number from 0 to 2^63 - 1; deprecated, see `POLICY_SEEDS`.
-
-    Raises
-    ------
-    ParameterError
-        For numbers out of range.
-    """
-    warnings.warn(
-        "training_seed is replaced by POLICY_SEEDS[use].seeds(...)", DeprecationWarning, 2
-    )
-    if not 0 <= number < 1 << 63:
-        raise ParameterError(f"seed = {shown(number)} is not accepted: from 0 to 2^63 - 1")
-    return FIRST_TRAINING_SEED + number
 
 
 def check_evaluation_seeds(seeds: Iterable[int]) -> None:

@@ -99,8 +99,8 @@ class RunSpec:
         "alternating": by eq. (10), towards directions that alternate every 4 minutes; the same as
         "law" from the starts of `runs.protocols.initial_state`; the loops of
         `runs.protocols.hysteresis`; and policies tuned or trained for a named pool, whatever the
-        pool of the run, such as "learned (500-boats)", also of the clockwise leaders alone:
-        "learned (500-boats) against law".
+        pool of the run, such as "learned (wide)", also of the clockwise leaders alone:
+        "learned (wide) against law".
     keep : str
         What is stored of the run, one of `KEEP`.
 

@@ -9,7 +9,7 @@ protocol = "law"          # may be left out: leaders follow eq. (10)
 keep = "window"           # may be left out: what the store keeps, see flockenv.runs.spec.KEEP
 
 [fixed]                   # may be left out: fields that every run has
-pool = "table-1"
+pool = "narrow"
 
 [[grid]]                  # every combination of these lists
 n_boats = [20]

@@ -114,7 +114,7 @@ class TrackLayout:
                 raise ParameterError(f"{shown(name)} is no field of a layout: {', '.join(names)}")
         if "pool" not in values:
             raise ParameterError(
-                'pool is missing: "table-1", "500-boats", or the outer and the inner radius in cm'
+                'pool is missing: "narrow", "wide", or the outer and the inner radius in cm'
             )
         plain: dict[str, Any] = {
             name: tuple(value) if isinstance(value, list) else value

@@ -108,7 +108,7 @@ class TrainingSettings:
 
     preset: str = "simulation"
     n_boats: int = 27
-    pools: tuple[str, ...] = ("500-boats", "table-1")
+    pools: tuple[str, ...] = ("wide", "narrow")
     n_leaders: tuple[int, ...] = (1, 2, 3, 4)
     noise: tuple[float, float] = (0.5, 1.25)
     target: str = "random"

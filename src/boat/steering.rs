@@ -58,17 +58,17 @@ pub const DAMPED_LAW: Law = Law::Damped {
 pub const TUNED_LAWS: [(&str, &str, Law); 4] = [
     (
         "sign-corrected law",
-        "500-boats",
+        "wide",
         Law::SignCorrected { gain: 1.91 },
     ),
     (
         "sign-corrected law",
-        "table-1",
+        "narrow",
         Law::SignCorrected { gain: 0.957 },
     ),
     (
         "damped law",
-        "500-boats",
+        "wide",
         Law::Damped {
             gain: 1.42,
             backward_gain: 3.28,
@@ -77,7 +77,7 @@ pub const TUNED_LAWS: [(&str, &str, Law); 4] = [
     ),
     (
         "damped law",
-        "table-1",
+        "narrow",
         Law::Damped {
             gain: 3.02,
             backward_gain: 4.1,

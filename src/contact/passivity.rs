@@ -11,7 +11,7 @@ use super::velocity_bias::VelocityBias;
 use crate::geometry::Velocity;
 
 /// Part of an island's energy that a curve may seem to add. Its true share is of third order in dt: in
-/// 500-boats and `table-1`, free or jammed, below 0.01 at dt = 0.01 to 0.05 s in all but 6 of
+/// wide and `narrow`, free or jammed, below 0.01 at dt = 0.01 to 0.05 s in all but 6 of
 /// 1.8 million islands.
 const ALLOWED: f64 = 0.01;
 

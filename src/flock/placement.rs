@@ -26,7 +26,7 @@ const WELL_COVERED: f64 = 0.78;
 const GROWTH: [f64; 8] = [0.5, 0.65, 0.78, 0.87, 0.93, 0.97, 0.99, 1.0];
 /// Distance kept between placed hulls, as a fraction of the boat's radius.
 const CLEARANCE: f64 = 1e-3;
-/// Open water gets this many hull areas a boat, as dilute as 20 boats in the `500-boats` pool.
+/// Open water gets this many hull areas a boat, as dilute as 20 boats in the `wide` pool.
 const OPEN_WATER_AREAS: f64 = 25.0;
 /// Places that show how much of the water discs take up: good to about a percent.
 const SURVEYED: u32 = 1024;

@@ -10,7 +10,7 @@ impl Integrator {
     /// at `start`.
     pub(super) fn draw_noise(&mut self, start: Ticks, from: u64, to: u64) {
         let Some(noise) = &mut self.noise else { return };
-        let scale = match self.parameters.noise {
+        let scale = match self.parameters.noise_scheme {
             Noise::White => {
                 noise.increments(from, to, &mut self.noise_increments);
                 self.parameters.c4

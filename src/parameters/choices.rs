@@ -55,7 +55,7 @@ impl Scheme {
 
 named_choice! {
     /// What η of eq. (9) means.
-    pub enum Noise ("noise") {
+    pub enum Noise ("noise_scheme") {
         /// A stochastic differential equation: increment c4·sqrt(dt)·N(0, 1), c4 in rad/s^1.5.
         White = "white",
         /// The literal reading: increment c4·dt·N(0, 1), c4 in rad/s². Statistics depend on dt.

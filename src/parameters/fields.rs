@@ -57,9 +57,9 @@ declare_parameters! {
     n_boats: usize = 20, "", Range::Within(1.0, Self::MOST_BOATS as f64, "1 to 100000"), "Table 3 (20 to 50)";
     /// Number of steerable leaders, boats 0..k-1 (Table 3: k).
     n_leaders: usize = 0, "", Range::Dependent("0 to n_boats"), "Table 3 (0 or 0.2 n)";
-    /// The water: "500-boats" (radii 180 and 97 cm, the free space of Section 2.2), "table-1" (90 and 48.5 cm, Table 1
+    /// The water: "wide" (radii 180 and 97 cm, the free space of Section 2.2), "narrow" (90 and 48.5 cm, Table 1
     /// as printed) or (outer_radius_cm, inner_radius_cm); inner 0: no obstacle, outer infinite: open water.
-    pool: Pool = Pool::FIVE_HUNDRED_BOATS, "cm", Range::Dependent("0 <= inner < outer"), "Section 2.2 (room for 500 boats)";
+    pool: Pool = Pool::WIDE, "cm", Range::Dependent("0 <= inner < outer"), "Section 2.2 (room for 500 boats)";
     /// Radius of the hull's end discs (Table 3: r).
     boat_radius_cm: f64 = 5.0, "cm", Range::Positive, "Table 3";
     /// Half-length of the hull's core segment over its radius (Table 3: p).
@@ -98,7 +98,7 @@ declare_parameters! {
     /// literally).
     scheme: Scheme = Scheme::Leapfrog, "", Range::Any, "chosen";
     /// What η of eq. (9) means: "white" (increment c4·sqrt(dt)·N(0, 1)) or "per-step" (c4·dt·N(0, 1)).
-    noise: Noise = Noise::White, "", Range::Any, "chosen";
+    noise_scheme: Noise = Noise::White, "", Range::Any, "chosen";
     /// How contacts are solved: "block-pivoting" (exact), or for comparison "gauss-seidel" or "clarabel".
     solver: Solver = Solver::BlockPivoting, "", Range::Any, "chosen";
     /// Longest substep, rounded to 1 ns.

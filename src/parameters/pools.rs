@@ -13,20 +13,18 @@ pub struct Pool {
 
 impl Pool {
     /// Table 1 as printed: diameters 180 and 97 cm.
-    pub const TABLE_1: Self = Self {
+    pub const NARROW: Self = Self {
         outer_radius_cm: 90.0,
         inner_radius_cm: 48.5,
     };
     /// Section 2.2's "500 boats" of free space: radii 180 and 97 cm.
-    pub const FIVE_HUNDRED_BOATS: Self = Self {
+    pub const WIDE: Self = Self {
         outer_radius_cm: 180.0,
         inner_radius_cm: 97.0,
     };
     /// Names of the pools, as users write them.
-    pub(crate) const NAMED: [(&'static str, Self); 2] = [
-        ("500-boats", Self::FIVE_HUNDRED_BOATS),
-        ("table-1", Self::TABLE_1),
-    ];
+    pub(crate) const NAMED: [(&'static str, Self); 2] =
+        [("wide", Self::WIDE), ("narrow", Self::NARROW)];
 
     /// The pool of that name.
     ///
@@ -38,7 +36,7 @@ impl Pool {
             FlockError::parameter(
                 "pool",
                 format!("{name:?}"),
-                "\"500-boats\", \"table-1\" or (outer_radius_cm, inner_radius_cm)",
+                "\"wide\", \"narrow\" or (outer_radius_cm, inner_radius_cm)",
             )
         })
     }

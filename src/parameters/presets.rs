@@ -59,12 +59,12 @@ impl Preset {
     /// `docs/results/critical_noise_experiment.csv` and `critical_noise_experiment_2026.csv`), rounded to 0.01 s.
     pub fn critical_bw_s(self, pool: &Pool) -> Option<f64> {
         match (self, pool.name()?) {
-            (Self::Simulation, "500-boats") => Some(0.31),
-            (Self::Simulation, "table-1") => Some(0.45),
-            (Self::Paper, "500-boats") => Some(0.57),
-            (Self::Paper, "table-1") => Some(0.64),
-            (Self::Experiment, "table-1") => Some(1.49),
-            (Self::Experiment2026, "table-1") => Some(1.80),
+            (Self::Simulation, "wide") => Some(0.31),
+            (Self::Simulation, "narrow") => Some(0.45),
+            (Self::Paper, "wide") => Some(0.57),
+            (Self::Paper, "narrow") => Some(0.64),
+            (Self::Experiment, "narrow") => Some(1.49),
+            (Self::Experiment2026, "narrow") => Some(1.80),
             _ => None,
         }
     }
@@ -86,14 +86,14 @@ impl Preset {
             Self::Paper => changes! {
                 bw_s = 0.6, "Section 5.2 (0.6 to 0.8)";
                 scheme = Scheme::Paper, "Appendix A";
-                noise = Noise::PerStep, "eq. (9), taken literally";
+                noise_scheme = Noise::PerStep, "eq. (9), taken literally";
                 overlap_tolerance_cm = 0.01, "Appendix A";
             },
             // Fitted by `flockenv fit` (seed 0); docs/experiment_fit.md.
             Self::Experiment => changes! {
                 n_boats = 27, "Table 1";
                 n_leaders = 0, "Table 1 (0 to 4)";
-                pool = Pool::TABLE_1, "Table 1";
+                pool = Pool::NARROW, "Table 1";
                 speed_cm_s = 17.93, "flockenv fit";
                 reverse_speed_cm_s = 8.2, "flockenv fit";
                 c0 = 0.8263, "flockenv fit";
@@ -113,7 +113,7 @@ impl Preset {
             Self::Experiment2026 => changes! {
                 n_boats = 27, "Table 1";
                 n_leaders = 0, "Table 1 (0 to 4)";
-                pool = Pool::TABLE_1, "Table 1";
+                pool = Pool::NARROW, "Table 1";
                 speed_cm_s = 15.0, "Table 1 (15 ± 5)";
                 reverse_speed_cm_s = 4.94, "an earlier flockenv fit";
                 c1 = 0.265, "an earlier flockenv fit";

@@ -33,7 +33,7 @@ def test_what_is_left_out_leans_as_usual(script) -> None:
 
 def test_a_short_run(script, tmp_path: Path, capsys) -> None:
     LeaningLaw(GAINS, 0.1, {"near_ahead": 3.0}).save(tmp_path / "law.npz")
-    arguments = ["--pool", "table-1", "--episodes", "3", "--minutes", "0.3"]
+    arguments = ["--pool", "narrow", "--episodes", "3", "--minutes", "0.3"]
     out = ["--out", str(tmp_path / "a.csv")]
     script.main([str(tmp_path / "law.npz"), *arguments, *out])
     table = pd.read_csv(tmp_path / "a.csv", index_col="law")

@@ -44,7 +44,7 @@ def test_parts_and_mean_lead_in_episodes_for_training(
     law(4.0, 0.3, {}, 4).save(tmp_path / "other.npz")
     files = [str(tmp_path / "one.npz"), str(tmp_path / "other.npz")]
     out = ["--out", str(tmp_path / "mean.npz")]
-    script.main([*files, *out, "--pool", "table-1", "--episodes", "3"])
+    script.main([*files, *out, "--pool", "narrow", "--episodes", "3"])
     assert [gain for gain, _ in seen] == pytest.approx([1.0, 4.0, 2.0, 3.02])
     assert all(seeds == seen[0][1] and min(seeds) >= 2**32 for _, seeds in seen)
     assert "their mean: signed order 2.000 [2.000, 2.000]" in capsys.readouterr().out

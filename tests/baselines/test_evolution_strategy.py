@@ -74,7 +74,7 @@ def test_candidates_steer_as_their_policies_do(script) -> None:
 def options_of(script, **changes):
     """Options as the command has them."""
     given = {
-        "leaders": [2], "control_hz": 2.0, "seed": 0, "pool": "table-1", "boats": 8, "noise": 1.0,
+        "leaders": [2], "control_hz": 2.0, "seed": 0, "pool": "narrow", "boats": 8, "noise": 1.0,
         "episode_s": 60.0, "reward": "signed_order", "liberal_steps": False, "set": [],
         "tuned": True, "start": None, "scenario": [], "target": "random", "form": "leaning",
         "hidden": [], "fellow_leaders": 0,
@@ -89,7 +89,7 @@ def options_of(script, **changes):
         ({"fellow_leaders": 2}, 3 + 1 + 28),
         ({"form": "nonlinear", "hidden": [3]}, 3 + 1 + 29 + 3 * 31),
         ({"form": "nonlinear", "hidden": [2], "fellow_leaders": 2}, 3 + 1 + 34 + 2 * 36),
-        ({"scenario": ["pool=500-boats", "target=alternate,leaders=3"]}, 3 + 1 + 23),
+        ({"scenario": ["pool=wide", "target=alternate,leaders=3"]}, 3 + 1 + 23),
     ],
 )
 def test_leaning_candidates_steer_as_their_policies_do(script, changes, size: int) -> None:
@@ -106,7 +106,7 @@ def test_leaning_candidates_steer_as_their_policies_do(script, changes, size: in
         np.testing.assert_allclose(rudders[candidate], expected, atol=1e-6)
         seen.append(expected)
     # What it starts as is the damped law.
-    assert shape.initial.gains == tuned_law("damped law", "table-1").gains
+    assert shape.initial.gains == tuned_law("damped law", "narrow").gains
     initial = shape.policy(shape.first(random), {})
     np.testing.assert_allclose(
         initial.predict(rows)[0][..., 0], shape.initial.predict(rows)[0][..., 0], atol=1e-5
@@ -167,7 +167,7 @@ def test_it_climbs(script, monkeypatch: pytest.MonkeyPatch, method: str) -> None
     rates = {"sigma": 0.1, "rate": 0.1, "average": 1.0}
     parser = {"pairs": 8, "flocks": 1, "seed": 0, "engine": None, **rates}
     options = script.argparse.Namespace(**parser)
-    scenario = script.Scenario("500-boats", 6, 2, 1.0, "random", 60.0)
+    scenario = script.Scenario("wide", 6, 2, 1.0, "random", 60.0)
     zeros = np.zeros(shape.size)
     state = script.State(0, script.METHODS[method](zeros, options), zeros, 0.0, np.empty(0))
     for _ in range(60):
@@ -197,7 +197,7 @@ def test_other_options_do_not_go_on(script, tmp_path: Path) -> None:
         ("bw_s=0.2", "--noise rules it"),
         ("n_boats=8", "--boats rules it"),
         ("n_leaders=1", "--leaders rules it"),
-        ("pool=table-1", "--pool rules it"),
+        ("pool=narrow", "--pool rules it"),
         ("reward={signed_order=1.0}", "reward' is no field"),
         ("episode_s=5.0", "episode_s' is no field"),
         ("control_hz=5.0", "control_hz' is no field"),

@@ -16,8 +16,8 @@ from flockenv.policies import LeaningLaw
 BASELINES = Path(__file__).parents[2] / "baselines"
 #: What is at work when Ctrl-C comes, and arguments without those of the output.
 AT_WORK = {
-    "ablate_leaning": ("run_episodes", ["{law}", "--pool", "table-1", "--quiet"]),
-    "critical_noise": ("order_of_run", ["--seeds", "1", "--pool", "table-1"]),
+    "ablate_leaning": ("run_episodes", ["{law}", "--pool", "narrow", "--quiet"]),
+    "critical_noise": ("order_of_run", ["--seeds", "1", "--pool", "narrow"]),
     "evolution_strategy": ("scores", ["--quiet"]),
     "learning_check": ("train", []),
     "search_ppo": ("settings_of", ["--quiet"]),

@@ -13,7 +13,7 @@ QUICK = {"start": "", "validation_episodes": 2, "validation_s": 5.0}
 def test_a_short_run(script, tmp_path: Path, monkeypatch, capsys) -> None:
     monkeypatch.setattr(script, "SETTINGS", script.SETTINGS.replace(**SHORT, **QUICK))
     script.main(["--samples", "320", "--out", str(tmp_path)])
-    assert "500-boats k=4" in capsys.readouterr().out
+    assert "wide k=4" in capsys.readouterr().out
     script.main(["--samples", "640", "--out", str(tmp_path), "--resume"])
     assert len((tmp_path / "curve.csv").read_text().splitlines()) == 3
     with pytest.raises(SystemExit, match="holds a run already"):

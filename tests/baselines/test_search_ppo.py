@@ -128,7 +128,7 @@ def test_pruned_where_even_the_upper_end_is_below_the_best(script, high, pruned)
 
 
 def test_every_setting_makes_a_training(script) -> None:
-    options = SimpleNamespace(pools=["500-boats"], leaders=[1, 3], flock_hours=1.0, seed=0, rungs=4)
+    options = SimpleNamespace(pools=["wide"], leaders=[1, 3], flock_hours=1.0, seed=0, rungs=4)
     ends = {
         name: each.choices if hasattr(each, "choices") else (each.low, each.high)
         for name, each in script.SPACE.items()
@@ -141,7 +141,7 @@ def test_every_setting_makes_a_training(script) -> None:
 
 
 def test_the_law_is_the_lean_of_zero(script) -> None:
-    options = SimpleNamespace(pools=["table-1"], leaders=[2], flock_hours=1.0, seed=0, rungs=1)
+    options = SimpleNamespace(pools=["narrow"], leaders=[2], flock_hours=1.0, seed=0, rungs=1)
     values = {"learning_rate": 1e-3, "deviation": 0.5, "hold_s": 8.0, "horizon_s": 100.0}
     values |= {"lambda_4s": 0.9, "decision_s": 4.0, "encoder": "none", "net_arch": ""}
     settings = script.settings_of(values, options)

@@ -23,7 +23,7 @@ def search(script, monkeypatch):
 
 def options_of(script, **changes):
     given = {
-        "pool": "table-1", "boats": 8, "leaders": [3, 1], "noise": 1.0, "target": "random",
+        "pool": "narrow", "boats": 8, "leaders": [3, 1], "noise": 1.0, "target": "random",
         "episode_s": 60.0, "scenario": [], "set": [], "liberal_steps": True, "control_hz": 2.0,
         "reward": "signed_order", "pairs": 2, "flocks": 3, "generations": None,
         "flock_hours": None,
@@ -32,13 +32,13 @@ def options_of(script, **changes):
 
 
 def test_each_number_of_leaders_has_every_scenario_once(script) -> None:
-    scenario = ["pool=500-boats,noise=0.5..1.25", "target=alternate,episode-s=480,leaders=2"]
+    scenario = ["pool=wide,noise=0.5..1.25", "target=alternate,episode-s=480,leaders=2"]
     found = script.scenarios_of(options_of(script, scenario=scenario))
     assert [str(each) for each in found] == [
-        "pool=500-boats,boats=8,leaders=3,noise=0.5..1.25,target=random,episode-s=60",
-        "pool=table-1,boats=8,leaders=2,noise=1,target=alternate,episode-s=480",
-        "pool=500-boats,boats=8,leaders=1,noise=0.5..1.25,target=random,episode-s=60",
-        "pool=table-1,boats=8,leaders=2,noise=1,target=alternate,episode-s=480",
+        "pool=wide,boats=8,leaders=3,noise=0.5..1.25,target=random,episode-s=60",
+        "pool=narrow,boats=8,leaders=2,noise=1,target=alternate,episode-s=480",
+        "pool=wide,boats=8,leaders=1,noise=0.5..1.25,target=random,episode-s=60",
+        "pool=narrow,boats=8,leaders=2,noise=1,target=alternate,episode-s=480",
     ]
     assert [each.leaders for each in script.scenarios_of(options_of(script))] == [3, 1]
 
@@ -48,8 +48,8 @@ def test_each_number_of_leaders_has_every_scenario_once(script) -> None:
     [
         ("pool", "'pool' is no NAME=VALUE"),
         ("", "'' is no NAME=VALUE"),
-        ("poll=table-1", "did you mean 'pool'"),
-        ("pool=table-2", "pool = 'table-2' is not accepted: one of 500-boats, table-1"),
+        ("poll=narrow", "did you mean 'pool'"),
+        ("pool=table-2", "pool = 'table-2' is not accepted: one of wide, narrow"),
         ("leaders=0", "leaders = '0' is not accepted: a whole number of at least 1"),
         ("boats=2.5", "boats = '2.5' is not accepted"),
         ("noise=1.25..0.5", "noise = '1.25..0.5' is not accepted: a number, or a range"),
@@ -68,7 +68,7 @@ def test_bad_scenarios_are_named(script, text: str, words: str) -> None:
 def test_noise_is_drawn_from_its_range_by_the_seed(script) -> None:
     scenario = script.scenarios_of(options_of(script, noise=(0.5, 1.25)))[0]
     env = script.environment(options_of(script), 40, scenario)
-    critical = flockenv.FlockParameters.critical_bw_s("simulation", "table-1")
+    critical = flockenv.FlockParameters.critical_bw_s("simulation", "narrow")
     for _ in range(2):
         env.reset(seed=[*range(20), *range(20)])
         drawn = np.array([env._batch.flock(place).parameters.bw_s for place in range(40)])
@@ -92,7 +92,7 @@ def test_rewards_count_from_the_first_switch_of_the_target_on(script) -> None:
 
 
 def test_what_generations_take(script) -> None:
-    scenario = ["target=alternate,episode-s=480,leaders=2", "pool=500-boats"]
+    scenario = ["target=alternate,episode-s=480,leaders=2", "pool=wide"]
     turns = script.Turns(options_of(script, scenario=scenario, flock_hours=4.0))
     # 12 flocks, in turn of 480 s with 2 leaders, and of 60 s with 3 leaders and with 1.
     assert turns.flock_hours(3) == pytest.approx(12 * (480 + 60 + 480) / 3600)
@@ -105,7 +105,7 @@ def test_what_generations_take(script) -> None:
 
 
 def test_a_mixed_search_ends_with_its_flock_hours(search, tmp_path: Path, capsys) -> None:
-    mixed = ["--scenario", "pool=table-1,boats=8", "--scenario", "target=alternate,episode-s=8"]
+    mixed = ["--scenario", "pool=narrow,boats=8", "--scenario", "target=alternate,episode-s=8"]
     options = [*TINY, "--leaders", "2", "1", "--episode-s", "4", *mixed, "--form", "leaning"]
     # 4 flocks of 4 s and 8 s: the third generation ends beyond 16 s of 4 flocks.
     hours = 3 * 4 * 4 / 3600
@@ -113,12 +113,12 @@ def test_a_mixed_search_ends_with_its_flock_hours(search, tmp_path: Path, capsys
     expected = 4 * (4 + 8) / 3600
     assert float(read_arrays(tmp_path / "state.npz")["flock_hours"]) == pytest.approx(expected)
     table = pd.read_csv(tmp_path / "curve.csv")
-    assert table["pool"].tolist() == ["table-1", "500-boats"]
+    assert table["pool"].tolist() == ["narrow", "wide"]
     assert table["target"].tolist() == ["random", "alternate"]
     assert table["flock_hours"].tolist() == pytest.approx([16 / 3600, 48 / 3600], abs=1e-4)
     assert load(tmp_path / "policy.npz").provenance["flock_hours"] == f"{expected:.6g}"
     printed = capsys.readouterr().out
-    assert "pool=500-boats,boats=6,leaders=1,noise=0.3,target=alternate,episode-s=8" in printed
+    assert "pool=wide,boats=6,leaders=1,noise=0.3,target=alternate,episode-s=8" in printed
     # More flock-hours continue it, here by a generation with one leader.
     search([*options, "--flock-hours", str(hours + 1e-9), "--out", str(tmp_path)])
     assert pd.read_csv(tmp_path / "curve.csv")["leaders"].tolist() == [2, 2, 1]

@@ -55,7 +55,7 @@ def test_files_of_one_name_are_distinguished(script, tmp_path: Path) -> None:
 
 
 def test_samples_are_the_flocks_own(script) -> None:
-    parameters = flockenv.FlockParameters(n_boats=8, n_leaders=3, pool="table-1", bw_s=0.4)
+    parameters = flockenv.FlockParameters(n_boats=8, n_leaders=3, pool="narrow", bw_s=0.4)
     env = flockenv.LeadersVectorEnv(1, params=parameters)
     observations, _ = env.reset(seed=3)
     actions = np.array([[0.5, -1.0, 0.0]], np.float32)

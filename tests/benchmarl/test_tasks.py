@@ -37,7 +37,7 @@ from torchrl.envs.utils import (  # noqa: E402
 from flockenv.benchmarl import CONF, LeadersTask, network_policy  # noqa: E402
 from flockenv.runs.seeds import POLICY_SEEDS  # noqa: E402
 
-SMALL = {"n_boats": 6, "n_leaders": 2, "pool": "table-1", "episode_s": 2.0}
+SMALL = {"n_boats": 6, "n_leaders": 2, "pool": "narrow", "episode_s": 2.0}
 
 
 def short(tmp_path, **changes):

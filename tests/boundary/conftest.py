@@ -8,7 +8,7 @@ import flockenv
 @pytest.fixture
 def parameters() -> flockenv.FlockParameters:
     return flockenv.FlockParameters.preset("simulation").replace(
-        n_boats=12, n_leaders=2, pool="table-1"
+        n_boats=12, n_leaders=2, pool="narrow"
     )
 
 

@@ -87,7 +87,7 @@ def test_none_after_a_state_was_set(flock):
 
 
 def test_places_along_the_cores_give_the_points_back():
-    jam = FlockParameters(n_boats=40, n_leaders=0, pool="table-1", bw_s=0.0)
+    jam = FlockParameters(n_boats=40, n_leaders=0, pool="narrow", bw_s=0.0)
     run = flockenv.simulate(jam, seed=3, duration_s=20.0, contacts=True)
     contacts = run.contacts
     assert len(contacts.i) > 500

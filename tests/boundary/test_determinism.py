@@ -12,7 +12,7 @@ import flockenv
 
 SCRIPT = """
 import hashlib, flockenv
-p = flockenv.FlockParameters(n_boats=20, n_leaders=2, pool="table-1")
+p = flockenv.FlockParameters(n_boats=20, n_leaders=2, pool="narrow")
 run = flockenv.simulate(p, seed=5, duration_s=30.0)
 print(hashlib.sha256(run.pose.tobytes() + run.velocity.tobytes()).hexdigest())
 """
@@ -25,7 +25,7 @@ def test_processes_and_thread_counts_agree():
         command = [sys.executable, "-c", SCRIPT]
         run = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
         hashes.add(run.stdout.strip())
-    p = flockenv.FlockParameters(n_boats=20, n_leaders=2, pool="table-1")
+    p = flockenv.FlockParameters(n_boats=20, n_leaders=2, pool="narrow")
     here = flockenv.simulate(p, seed=5, duration_s=30.0)
     hashes.add(hashlib.sha256(here.pose.tobytes() + here.velocity.tobytes()).hexdigest())
     assert len(hashes) == 1

@@ -12,7 +12,7 @@ from flockenv import Flock, OrderParameters, OrderSeries, ParameterError
 
 def circling(parameters, n, n_leaders=0, speed=10.0):
     """All boats on a circle, heading and moving clockwise."""
-    flock = Flock(parameters.replace(n_boats=n, n_leaders=n_leaders, pool="500-boats"), seed=1)
+    flock = Flock(parameters.replace(n_boats=n, n_leaders=n_leaders, pool="wide"), seed=1)
     angles = 2 * np.pi * np.arange(n) / n
     headings = angles - np.pi / 2
     pose = np.column_stack([140 * np.cos(angles), 140 * np.sin(angles), headings])

@@ -11,11 +11,10 @@ import typer
 
 import flockenv
 import flockenv.comparison.suite
-import flockenv.reproduce
 import flockenv.runs.workload
 from flockenv.cli import app
 
-PARAMETERS = flockenv.FlockParameters(n_boats=4, n_leaders=1, pool="table-1")
+PARAMETERS = flockenv.FlockParameters(n_boats=4, n_leaders=1, pool="narrow")
 #: Names by the object that has them.
 NAMES = {
     "": "Flock FlockError FlockParameters LeadersEnv LeadersParallelEnv LeadersVectorEnv "
@@ -32,8 +31,8 @@ NAMES = {
 }
 FIELDS = (
     "n_boats n_leaders pool boat_radius_cm boat_shape gyration_radius_cm speed_cm_s "
-    "reverse_speed_cm_s c0 c1 c2 c3 c4 fw_s nop1_s bw_s nop2_s leaders_reverse target scheme noise "
-    "solver dt_s overlap_tolerance_cm relinearizations"
+    "reverse_speed_cm_s c0 c1 c2 c3 c4 fw_s nop1_s bw_s nop2_s leaders_reverse target scheme "
+    "noise_scheme solver dt_s overlap_tolerance_cm relinearizations"
 )
 SIGNATURES = {
     "Flock": ["parameters", "seed"],
@@ -52,7 +51,7 @@ NAMED = {
 ENVIRONMENT_OPTIONS = {
     "preset": {"preset": "paper"},
     "params": {"params": PARAMETERS},
-    "fields": {"n_boats": 5, "bw_s": 0.4, "pool": "table-1"},
+    "fields": {"n_boats": 5, "bw_s": 0.4, "pool": "narrow"},
     "target": {"target": "random"},
     "episode_s": {"episode_s": 960.0},
     "control_hz": {"control_hz": 5.0},
@@ -69,7 +68,6 @@ LONG_WORK = "--out --quiet"
 COMMANDS = {
     "run": f"--preset --params --set --policy --seed --minutes {LONG_WORK}",
     "compare": f"--pool --policy --episodes {LONG_WORK}",
-    "reproduce": f"--minutes --shard {LONG_WORK}",
     "sweep": f"--shard --dry-run --engine {LONG_WORK}",
     "train": f"--set --resume {LONG_WORK}",
     "evaluate": f"--against --suite --task {LONG_WORK}",
@@ -77,7 +75,6 @@ COMMANDS = {
     "presets": "--json",
     "demo": f"--seed {LONG_WORK}",
     "analyze": f"--layout --plot {LONG_WORK}",
-    "signal": f"--reward --horizon {LONG_WORK}",
 }
 
 
@@ -104,7 +101,7 @@ def test_parameters_have_their_fields():
     assert flockenv.FlockParameters.preset("experiment").leaders_reverse is False
     for name, bw_s in (("simulation", 0.3), ("paper", 0.6)):
         preset = flockenv.FlockParameters.preset(name)
-        assert (preset.pool, preset.n_boats, preset.n_leaders) == ("500-boats", 20, 0)
+        assert (preset.pool, preset.n_boats, preset.n_leaders) == ("wide", 20, 0)
         assert (preset.bw_s, preset.leaders_reverse) == (bw_s, True)
 
 
@@ -121,9 +118,9 @@ def test_named_arguments_are_known(name):
 
 
 def test_pretrained_leaders_have_a_name():
-    law = flockenv.policies.load("learned", pool="500-boats")
-    run = flockenv.simulate(PARAMETERS.replace(pool="500-boats"), 1, 0.3, policy="learned")
-    assert run == flockenv.simulate(PARAMETERS.replace(pool="500-boats"), 1, 0.3, policy=law)
+    law = flockenv.policies.load("learned", pool="wide")
+    run = flockenv.simulate(PARAMETERS.replace(pool="wide"), 1, 0.3, policy="learned")
+    assert run == flockenv.simulate(PARAMETERS.replace(pool="wide"), 1, 0.3, policy=law)
 
 
 def test_environments_are_made_as_they_were():
@@ -180,7 +177,6 @@ def test_commands_keep_their_names_and_options(name):
 
 
 def test_commands_keep_what_they_accept():
-    assert "leader-fraction" in flockenv.reproduce.names()
     assert flockenv.runs.workload.Shard.parse("2/3")
     assert len(flockenv.comparison.suite.tasks_named("v1", [])) == 9
 

@@ -16,7 +16,7 @@ FIXTURES = Path(__file__).parents[1] / "fixtures" / "v0.1.0"
 TABLE = _core.quantities()
 RECORDED = [each.name for each in TABLE if each.kind == "recorded"]
 AVERAGED = [each.name for each in TABLE if each.is_averaged]
-PARAMETERS = FlockParameters(n_boats=5, n_leaders=1, pool="table-1")
+PARAMETERS = FlockParameters(n_boats=5, n_leaders=1, pool="narrow")
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import flockenv
 from flockenv import Flock, ParameterError
 from flockenv.simulation import recorded
 
-PARAMETERS = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="table-1", bw_s=0.5)
+PARAMETERS = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="narrow", bw_s=0.5)
 
 
 def same(run: flockenv.Recording, place: int, flock: Flock) -> bool:

@@ -18,7 +18,7 @@ from flockenv import (
 )
 from flockenv.recording import RECORDED
 
-PARAMETERS = FlockParameters(n_boats=5, n_leaders=1, pool="table-1")
+PARAMETERS = FlockParameters(n_boats=5, n_leaders=1, pool="narrow")
 RUN = simulate(PARAMETERS, seed=3, duration_s=1.0)
 
 

@@ -23,7 +23,7 @@ from flockenv import (
     simulate,
 )
 
-PARAMETERS = FlockParameters(n_boats=5, n_leaders=1, pool="table-1")
+PARAMETERS = FlockParameters(n_boats=5, n_leaders=1, pool="narrow")
 RUN = simulate(PARAMETERS, seed=3, duration_s=1.0)
 
 
@@ -189,7 +189,7 @@ class Waiting:
 
 
 def test_what_steered_is_recorded():
-    learned = flockenv.policies.load("learned", pool="table-1")
+    learned = flockenv.policies.load("learned", pool="narrow")
     tuned = flockenv.policies.DampedLaw(gain=2.0)
     named = {
         "law": None,
@@ -205,11 +205,11 @@ def test_what_steered_is_recorded():
 
 
 def test_the_digest_is_that_of_the_numbers(tmp_path):
-    policy = flockenv.policies.load("learned", pool="table-1")
+    policy = flockenv.policies.load("learned", pool="narrow")
     policy.save(tmp_path / "copy.npz")
     copied = flockenv.policies.load(tmp_path / "copy.npz")
     assert copied.digest == policy.digest
-    assert flockenv.policies.load("learned", pool="500-boats").digest != policy.digest
+    assert flockenv.policies.load("learned", pool="wide").digest != policy.digest
 
 
 def test_pickled_objects_are_never_loaded(tmp_path):

@@ -11,7 +11,7 @@ import flockenv
 from flockenv._io.extras import MissingExtraError
 from flockenv.recording import RECORDED
 
-PARAMETERS = flockenv.FlockParameters(n_boats=5, n_leaders=2, pool="table-1")
+PARAMETERS = flockenv.FlockParameters(n_boats=5, n_leaders=2, pool="narrow")
 ORDER = ["psi_o", "phi_o", "c_o", "psi_v", "phi_v", "c_v"]
 
 

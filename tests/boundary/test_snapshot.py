@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import flockenv
 from flockenv import Flock, FlockParameters, ParameterError
 
-PARAMETERS = FlockParameters(n_boats=12, n_leaders=2, pool="table-1")
+PARAMETERS = FlockParameters(n_boats=12, n_leaders=2, pool="narrow")
 
 
 def moving(parameters=PARAMETERS):
@@ -25,7 +25,7 @@ SNAPSHOT = moving().snapshot()
 @pytest.mark.parametrize("preset", FlockParameters.presets())
 @pytest.mark.parametrize("seconds", [0.0, 1.0, 2.013, 3.5])
 def test_continuing_is_bit_identical(preset, seconds):
-    p = FlockParameters.preset(preset).replace(n_boats=20, n_leaders=3, pool="table-1")
+    p = FlockParameters.preset(preset).replace(n_boats=20, n_leaders=3, pool="narrow")
     flock, other = Flock(p, seed=7), Flock(p, seed=8)
     flock.advance(seconds)
     other.restore(flock.snapshot())

@@ -21,7 +21,7 @@ LAST_DIGIT = 0.0056
 
 @pytest.fixture(scope="session")
 def parameters() -> flockenv.FlockParameters:
-    return flockenv.FlockParameters(n_boats=12, n_leaders=2, pool="table-1", bw_s=0.0)
+    return flockenv.FlockParameters(n_boats=12, n_leaders=2, pool="narrow", bw_s=0.0)
 
 
 def program(variable: str, *names: str) -> str:

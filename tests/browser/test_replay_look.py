@@ -130,7 +130,7 @@ def test_a_boats_card_covers_no_words(open_page, pages, name, size):
 
 
 def test_nothing_is_aimed_at_without_leaders(open_page, parameters, tmp_path):
-    run = flockenv.simulate(parameters.replace(n_leaders=0, pool="500-boats"), 7, 30.0)
+    run = flockenv.simulate(parameters.replace(n_leaders=0, pool="wide"), 7, 30.0)
     write_replay(tmp_path / "free.html", run)
     page = open_page(tmp_path / "free.html")
     assert "target" not in page.text("main")
@@ -141,7 +141,7 @@ def test_nothing_is_aimed_at_without_leaders(open_page, parameters, tmp_path):
     arrow = page.script("return player.palette.target")
     target = tuple(int(arrow[k : k + 2], 16) for k in (1, 3, 5))
     assert target not in ring(page)
-    led = flockenv.simulate(parameters.replace(pool="500-boats"), 7, 1.0)
+    led = flockenv.simulate(parameters.replace(pool="wide"), 7, 1.0)
     write_replay(tmp_path / "led.html", {"led": led, "free": run})
     pair = open_page(tmp_path / "led.html")
     assert target in ring(pair)

@@ -188,7 +188,7 @@ def test_without_contacts_or_normal_boats(open_page, parameters, tmp_path):
 
 
 def test_an_hour_opens_at_once_and_scrubs_smoothly(open_page, parameters, tmp_path):
-    parameters = parameters.replace(n_boats=27, n_leaders=3, pool="500-boats", bw_s=0.3)
+    parameters = parameters.replace(n_boats=27, n_leaders=3, pool="wide", bw_s=0.3)
     run = flockenv.simulate(parameters, 7, 3600.0, contacts=True)
     assert write_replay(tmp_path / "hour.html", {"hour": run}).every == 1
     assert (tmp_path / "hour.html").stat().st_size < MOST_BYTES

@@ -11,7 +11,7 @@ import flockenv
 
 @pytest.fixture
 def run(tmp_path):
-    parameters = flockenv.FlockParameters(n_boats=6, n_leaders=1, pool="table-1")
+    parameters = flockenv.FlockParameters(n_boats=6, n_leaders=1, pool="narrow")
     flockenv.simulate(parameters, 1, 20.0).save(tmp_path / "run.npz")
     return tmp_path / "run.npz"
 
@@ -41,7 +41,7 @@ def test_tracks_have_the_numbers_of_the_run_they_are_of(cli, run, tmp_path):
 
 
 def test_nobody_heads_for_a_target_without_leaders(cli, tmp_path):
-    parameters = flockenv.FlockParameters(n_boats=6, pool="table-1")
+    parameters = flockenv.FlockParameters(n_boats=6, pool="narrow")
     flockenv.simulate(parameters, 1, 10.0).save(tmp_path / "run.npz")
     printed = cli("analyze", str(tmp_path / "run.npz")).stdout
     assert "rotation" in printed
@@ -65,7 +65,7 @@ def test_gsd(cli, run, tmp_path):
 
 def test_mistakes_are_one_line_with_exit_code_2(cli, run, tmp_path):
     (tmp_path / "alone.csv").write_text("frame,id,x,y,heading\n0,0,0,0,0\n")
-    (tmp_path / "layout.toml").write_text('pool = "table-1"\nx = "x_cm"\n')
+    (tmp_path / "layout.toml").write_text('pool = "narrow"\nx = "x_cm"\n')
     for arguments, words in (
         (["analyze", "alone.csv"], "alone.toml is missing"),
         (["analyze", "alone.csv", "--layout", "layout.toml"], "column 'x_cm' is missing"),

@@ -13,7 +13,7 @@ def test_the_table_and_the_files(cli, tmp_path: Path, colors_in) -> None:
     done = cli("compare", *SHORT, "--out", str(tmp_path))
     assert done.returncode == 0, done.stderr
     colors = {*policy_colors(["steering law", "tuned damped law", "learned"]).values()}
-    for pool in ("500-boats", "table-1"):
+    for pool in ("wide", "narrow"):
         assert f"pool {pool}" in done.stdout
         assert colors_in(tmp_path / pool / "leader_curve.png") == colors
     assert "F = " in done.stdout
@@ -21,9 +21,9 @@ def test_the_table_and_the_files(cli, tmp_path: Path, colors_in) -> None:
 
 
 def test_json_is_all_that_is_printed(cli, tmp_path: Path) -> None:
-    arguments = ["--pool", "table-1", "--json", "--out", str(tmp_path)]
+    arguments = ["--pool", "narrow", "--json", "--out", str(tmp_path)]
     done = cli("compare", *SHORT, *arguments)
-    means = json.loads(done.stdout)["table-1"]
+    means = json.loads(done.stdout)["narrow"]
     assert [row["leaders"] for row in means] == [0, 1, 1, 1]
     policies = [row["policy"] for row in means]
     assert policies == ["no leaders", "steering law", "tuned damped law", "learned"]

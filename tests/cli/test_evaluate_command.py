@@ -9,7 +9,7 @@ from flockenv.comparison.figure import policy_colors
 from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy
 
-SHORT = ["--episodes", "3", "--minutes", "0.5", "--set", "n_boats=8", "--pool", "table-1"]
+SHORT = ["--episodes", "3", "--minutes", "0.5", "--set", "n_boats=8", "--pool", "narrow"]
 
 
 def learned(folder: Path) -> str:
@@ -30,14 +30,14 @@ def test_the_card_reports_what_made_it_and_how_it_compares(cli, tmp_path: Path, 
     assert card.startswith("# leaning\n")
     for text in (
         "by hand",
-        "table-1-bw-0.2",
-        "table-1-bw-0.4",
+        "narrow-bw-0.2",
+        "narrow-bw-0.4",
         "| tuned damped law | 2 |",
         "seeds 0 to 2",
     ):
         assert text in card
     colors = policy_colors(["leaning.npz", "steering law", "tuned damped law"])
-    assert colors_in(out / "table-1-bw-0.4" / "leader_curve.png") == {*colors.values()}
+    assert colors_in(out / "narrow-bw-0.4" / "leader_curve.png") == {*colors.values()}
 
 
 def test_alternating_targets_and_drop_outs(cli, tmp_path: Path) -> None:
@@ -46,7 +46,7 @@ def test_alternating_targets_and_drop_outs(cli, tmp_path: Path) -> None:
     done = cli("evaluate", "damped law", *SHORT, *arguments, *out)
     assert done.returncode == 0, done.stderr
     assert "alternating targets, 1 % of positions dropped" in (tmp_path / "card.md").read_text()
-    (row,) = json.loads(done.stdout)["table-1-bw-0.45"]
+    (row,) = json.loads(done.stdout)["narrow-bw-0.45"]
     assert (row["policy"], row["reference"], row["n"]) == ("damped law", "straight ahead", 3)
     assert row["low"] <= row["mean"] <= row["high"]
 
@@ -55,7 +55,7 @@ def test_a_policy_that_is_a_default_reference_is_left_out_there(cli, tmp_path: P
     arguments = ["--leaders", "1", "--json", "--out", str(tmp_path)]
     done = cli("evaluate", "steering law", *SHORT, *arguments)
     assert done.returncode == 0, done.stderr
-    (row,) = json.loads(done.stdout)["table-1-bw-0.45"]
+    (row,) = json.loads(done.stdout)["narrow-bw-0.45"]
     assert (row["policy"], row["reference"]) == ("steering law", "tuned damped law")
 
 
@@ -64,7 +64,7 @@ def test_a_file_called_like_a_reference_is_not_it(cli, tmp_path: Path) -> None:
     arguments = ["--against", "learned", "--leaders", "1", "--json", "--out", str(tmp_path)]
     done = cli("evaluate", str(file), *SHORT, *arguments)
     assert done.returncode == 0, done.stderr
-    (row,) = json.loads(done.stdout)["table-1-bw-0.45"]
+    (row,) = json.loads(done.stdout)["narrow-bw-0.45"]
     assert (row["policy"], row["reference"]) == (str(file), "learned")
 
 
@@ -107,4 +107,4 @@ def test_what_ships_for_a_pool(cli, tmp_path: Path) -> None:
     assert "baselines/" in (tmp_path / "out" / "card.md").read_text("utf-8")
     done = cli("evaluate", "learned", "--set", "pool=[90.0, 20.0]", "--bw-s", "0.3", *out)
     assert done.returncode == 2
-    assert "tuned and learned leaders are for 500-boats, table-1" in done.stderr
+    assert "tuned and learned leaders are for wide, narrow" in done.stderr

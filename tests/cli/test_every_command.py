@@ -110,7 +110,7 @@ def test_presets_as_json_are_the_presets(cli):
 @pytest.mark.parametrize(
     ("variable", "line", "words"),
     [
-        ("complete_bash", "flockenv re", ["replay", "reproduce"]),
+        ("complete_bash", "flockenv re", ["replay"]),
         ("complete_zsh", "flockenv comp", ["compare"]),
         ("complete_fish", "flockenv eval", ["evaluate"]),
         ("complete_bash", "flockenv run --see", ["--seed"]),
@@ -135,18 +135,15 @@ def test_shells_complete(cli, variable, line, words):
         (["compare", "--set", "n_bots=3"], "did you mean 'n_boats'"),
         (["compare", "--set", "n_leaders=3"], "an option of their own"),
         (["compare", "--params", "{}/none.toml"], "cannot be read"),
-        (["compare", "--params", "{}/wall.toml", "--pool", "500-boats"], "contradicts"),
+        (["compare", "--params", "{}/wall.toml", "--pool", "wide"], "contradicts"),
         (["compare", "--set", "pool=[90, 10]"], "`--set bw_s=1.0`"),
         (["compare", "--set", "n_boats=4"], "--most-leaders"),
         (["compare", "--out", "{}/file/out"], "cannot be written"),
         (["evaluate", "straight ahead", "--set", "bw_s=1", "--bw-s", "2"], "--bw-s contradicts"),
         (["evaluate", "straight ahead", "--out", "{}/file"], "cannot be written"),
-        (["fit", "--out", "{}/file/out"], "cannot be written"),
         (["sweep", "{}/none.toml"], "cannot be read"),
         (["sweep", "{}/spec.toml", "--out", "{}/file/out"], "cannot be written"),
         (["sweep", "{}/spec.toml", "--engine", "lokal"], "local"),
-        (["reproduce", "fig14", "--out", "{}/file/out"], "cannot be written"),
-        (["reproduce", "fig99"], "fig14"),
         (["run", "--out", "{}/file/run.npz"], "cannot be written"),
         (["replay", "{}/file"], "file"),
     ],
@@ -154,7 +151,7 @@ def test_shells_complete(cli, variable, line, words):
 def test_errors_are_one_line_with_exit_code_2(cli, arguments, words, tmp_path, monkeypatch):
     (tmp_path / "file").write_text("here already")
     (tmp_path / "spec.toml").write_text(SPEC)
-    (tmp_path / "wall.toml").write_text('pool = "table-1"\n')
+    (tmp_path / "wall.toml").write_text('pool = "narrow"\n')
     before = sorted(tmp_path.rglob("*"))
     monkeypatch.chdir(tmp_path)
     done = cli(*(a.replace("{}", ".") for a in arguments))
@@ -164,12 +161,12 @@ def test_errors_are_one_line_with_exit_code_2(cli, arguments, words, tmp_path, m
 
 
 def test_saved_parameters_compare_the_same_again(cli, tmp_path):
-    first = cli("compare", "--pool", "table-1", *TINY, "--json", "--out", tmp_path / "a")
+    first = cli("compare", "--pool", "narrow", *TINY, "--json", "--out", tmp_path / "a")
     assert first.returncode == 0, first.stderr
-    params = tmp_path / "a" / "table-1" / "parameters.toml"
+    params = tmp_path / "a" / "narrow" / "parameters.toml"
     parameters = flockenv.FlockParameters.from_toml(params.read_text())
-    assert (parameters.n_boats, parameters.pool) == (5, "table-1")
-    assert parameters.bw_s == flockenv.FlockParameters.critical_bw_s("simulation", "table-1")
+    assert (parameters.n_boats, parameters.pool) == (5, "narrow")
+    assert parameters.bw_s == flockenv.FlockParameters.critical_bw_s("simulation", "narrow")
     again = cli("compare", "--params", params, *TINY[:4], "--json", "--out", tmp_path / "b")
     assert json.loads(again.stdout) == json.loads(first.stdout)
 
@@ -187,10 +184,10 @@ def test_a_pool_of_ones_own(cli, tmp_path):
 def test_a_table_in_80_columns(cli, tmp_path):
     own = tmp_path / "a_folder_of_my_own" / "policy.npz"
     own.parent.mkdir()
-    flockenv.policies.load("learned", pool="table-1").save(own)
+    flockenv.policies.load("learned", pool="narrow").save(own)
     named = ["--policy", "tuned sign-corrected law", "--policy", str(own)]
     for columns in ("80", "200"):
-        words = ["compare", "--pool", "table-1", *TINY, "-q", "--out", tmp_path, *named]
+        words = ["compare", "--pool", "narrow", *TINY, "-q", "--out", tmp_path, *named]
         done = cli(*words, COLUMNS=columns)
         assert done.stderr == ""
         table, _ = done.stdout.split("means over")
@@ -208,10 +205,8 @@ def test_a_sweep_keeps_what_was_asked_beside_its_table(cli, tmp_path):
 
 
 LONG = {
-    "compare": (["--minutes", "900", "--episodes", "8", "--pool", "table-1"], "Nothing was"),
+    "compare": (["--minutes", "900", "--episodes", "8", "--pool", "narrow"], "Nothing was"),
     "evaluate": (["straight ahead", "--minutes", "900", "--episodes", "8"], "Nothing was"),
-    "fit": (["--flock-hours", "5000"], "Finished trials are stored in "),
-    "reproduce": (["fig14", "--minutes", "10"], "Finished runs are stored in "),
     "sweep": (["{}/spec.toml"], "Finished runs are stored in "),
 }
 
@@ -311,10 +306,7 @@ def test_a_command_that_ends_leaves_ctrl_c_alone():
 @pytest.mark.parametrize(
     ("package", "extra", "arguments"),
     [
-        *((each, "plot", ["reproduce", "fig14"]) for each in ("pandas", "matplotlib", "scipy")),
-        ("pyarrow", "plot", ["reproduce", "fig14"]),
-        *((each, "fit", ["fit"]) for each in ("pandas", "matplotlib", "scipy", "sklearn")),
-        ("pandas", "fit", ["fit", "--check", "experiment"]),
+        *((each, "plot", ["compare"]) for each in ("pandas", "matplotlib", "scipy")),
     ],
 )
 def test_a_missing_extra_is_named_before_any_work(cli, package, extra, arguments, tmp_path):

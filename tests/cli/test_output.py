@@ -17,7 +17,7 @@ from flockenv.errors import ParameterError
 
 TINY = ["-q", "--minutes", "0.02", "--set", "n_boats=3"]
 SHORT = ["-q", "--episodes", "2", "--minutes", "0.1", "--out", "c"]
-EPISODES = [*SHORT, "--pool", "table-1", "--set", "n_boats=5"]
+EPISODES = [*SHORT, "--pool", "narrow", "--set", "n_boats=5"]
 
 
 @pytest.fixture(autouse=True)
@@ -88,7 +88,7 @@ def test_a_comparison_whose_folder_was_taken_away_is_kept_elsewhere(cli, tmp_pat
     monkeypatch.setattr(report, "compare_leaders", meanwhile)
     done = cli("compare", *EPISODES, "--most-leaders", "1", "--policy", "straight ahead")
     assert done.returncode == 2
-    (stored,) = tmp_path.glob("flockenv-*/table-1")
+    (stored,) = tmp_path.glob("flockenv-*/narrow")
     assert str(stored) in done.stderr.replace("\n", "")
     assert {"runs.csv", "leader_curve.png", "run.toml"} <= {each.name for each in stored.iterdir()}
 
@@ -113,20 +113,20 @@ def test_what_cannot_be_kept_anywhere_says_so(monkeypatch, tmp_path):
         (["run", *TINY, "--params", "link.toml", "--out", "X.npz"], "--params link.toml"),
         (["run", *TINY, "--policy", "p.npz", "--out", "p.npz"], "--policy p.npz"),
         (
-            ["compare", *EPISODES, "--params", "c/table-1/parameters.toml"],
-            "--params c/table-1/parameters.toml",
+            ["compare", *EPISODES, "--params", "c/narrow/parameters.toml"],
+            "--params c/narrow/parameters.toml",
         ),
         (
-            ["evaluate", "straight ahead", "--params", "c/table-1-bw-1/parameters.toml", *SHORT],
-            "--params c/table-1-bw-1/parameters.toml",
+            ["evaluate", "straight ahead", "--params", "c/narrow-bw-1/parameters.toml", *SHORT],
+            "--params c/narrow-bw-1/parameters.toml",
         ),
     ],
 )
 def test_what_the_user_gave_is_not_written_over(cli, arguments, given, tmp_path):
     (tmp_path / "sub").mkdir()
-    for folder in ("table-1", "table-1-bw-1"):
+    for folder in ("narrow", "narrow-bw-1"):
         (tmp_path / "c" / folder).mkdir(parents=True)
-        text = 'n_boats = 5\npool = "table-1"\nbw_s = 1.0\n'
+        text = 'n_boats = 5\npool = "narrow"\nbw_s = 1.0\n'
         (tmp_path / "c" / folder / "parameters.toml").write_text(text)
     (tmp_path / "X.toml").write_text("n_boats = 5  # my own words\n")
     (tmp_path / "link.toml").hardlink_to(tmp_path / "X.toml")
@@ -171,8 +171,8 @@ def test_policies_may_have_any_name(cli, tmp_path, colors_in):
     assert done.returncode == 0, done.stderr
     assert "x[/b] $a_{ $.npz" in done.stdout.replace("\n", "")
     (first,) = policy_colors(names[:1]).values()
-    assert first in colors_in(tmp_path / "c" / "table-1" / "leader_curve.png")
-    assert "\ufffd.npz" in (tmp_path / "c" / "table-1" / "run.toml").read_text("utf-8")
+    assert first in colors_in(tmp_path / "c" / "narrow" / "leader_curve.png")
+    assert "\ufffd.npz" in (tmp_path / "c" / "narrow" / "run.toml").read_text("utf-8")
     evaluated = ["--against", names[0], "--leaders", "1"]
     done = cli("evaluate", names[2], *EPISODES, *evaluated)
     assert done.returncode == 0, done.stderr

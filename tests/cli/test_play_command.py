@@ -16,7 +16,7 @@ pygame = pytest.importorskip("pygame")
 
 from flockenv import rendering  # noqa: E402 - after the extra is known to be there
 
-PARAMETERS = flockenv.FlockParameters(n_boats=9, n_leaders=3, pool="table-1")
+PARAMETERS = flockenv.FlockParameters(n_boats=9, n_leaders=3, pool="narrow")
 
 
 @pytest.fixture(autouse=True)
@@ -115,13 +115,13 @@ def test_other_keys_change_the_speed_and_pause():
 
 
 def test_the_score_is_printed_beside_that_of_the_law(cli, page_runs, tmp_path):
-    fields = [f"--set={field}" for field in ("n_boats=9", "n_leaders=2", "pool=table-1")]
+    fields = [f"--set={field}" for field in ("n_boats=9", "n_leaders=2", "pool=narrow")]
     page = tmp_path / "play.html"
     done = cli("play", *fields, "--minutes", 2, "--speed", 64, "--json", "--out", page)
     assert done.returncode == 0, done.stderr
     scores = json.loads(done.stdout)["runs"]
     assert list(scores) == ["you", "paper's law"]
-    parameters = flockenv.FlockParameters(n_boats=9, n_leaders=2, pool="table-1")
+    parameters = flockenv.FlockParameters(n_boats=9, n_leaders=2, pool="narrow")
     law = flockenv.simulate(parameters, 7, 120.0, policy=SteeringLaw())
     late = law.in_analysis_window & (law.time_s > 12.0)
     assert scores["paper's law"]["signed_order"] == law.order.signed_order("cw")[late].mean()

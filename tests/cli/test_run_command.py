@@ -10,7 +10,7 @@ import pytest
 
 import flockenv
 
-SMALL = ["--set", "n_boats=8", "--set", "n_leaders=2", "--set", "pool=table-1", "--minutes", "0.2"]
+SMALL = ["--set", "n_boats=8", "--set", "n_leaders=2", "--set", "pool=narrow", "--minutes", "0.2"]
 
 
 @pytest.fixture(scope="module")
@@ -23,7 +23,7 @@ def run(cli, tmp_path_factory) -> Path:
 
 
 def test_the_recording_is_what_simulate_returns(run):
-    parameters = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="table-1")
+    parameters = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="narrow")
     assert flockenv.Recording.load(run) == flockenv.simulate(parameters, 7, 12.0, contacts=True)
 
 
@@ -109,7 +109,7 @@ def test_replay_writes_a_page_beside_the_recording(cli, run, tmp_path):
         (["run", "--n_boats", "27"], "as in --set n_boats=27"),
         (["run", "--n-boats=27"], "as in --set n_boats=27"),
         (["run", "--n_boats", "--json"], "as in --set n_boats=VALUE"),
-        (["run", "--set", "noise=0.3"], "bw_s = 0.3"),
+        (["run", "--set", "noise=0.3"], "noise_scheme"),
         (["run", "--preset", "simulaton"], "simulation"),
         (["run", "--policy", "dampd law"], "damped law"),
         (["run", "--policy", "{}/none.npz"], "cannot be read"),
@@ -166,7 +166,7 @@ def model(tmp_path_factory) -> Path:
     stable_baselines3 = pytest.importorskip("stable_baselines3")
     from flockenv.sb3 import LeaderVecEnv
 
-    parameters = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="table-1")
+    parameters = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="narrow")
     ppo = stable_baselines3.PPO(
         "MlpPolicy", LeaderVecEnv(1, params=parameters), device="cpu", seed=1
     )
@@ -185,13 +185,13 @@ def test_models_of_stable_baselines3_steer_with_trust(cli, model, tmp_path):
     done = cli("run", *SMALL, "--seed", "3", *trusted, "--out", out)
     assert done.returncode == 0, done.stderr
     policy = flockenv.policies.load(model, trust=True)
-    parameters = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="table-1")
+    parameters = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="narrow")
     assert flockenv.Recording.load(out) == flockenv.simulate(parameters, 3, 12.0, policy=policy)
 
 
 @pytest.mark.parametrize("name", ["compare", "evaluate"])
 def test_models_of_stable_baselines3_are_compared_with_trust(cli, name, model, tmp_path):
-    short = ["--pool", "table-1", "--episodes", "2", "--minutes", "0.1", "--set", "n_boats=6"]
+    short = ["--pool", "narrow", "--episodes", "2", "--minutes", "0.1", "--set", "n_boats=6"]
     if name == "compare":
         call = ["compare", "--policy", model, "--policy", "steering law", "--most-leaders", "1"]
     else:

@@ -70,7 +70,7 @@ def test_runs_that_fail_are_counted_and_end_the_command_with_exit_code_1(
     cli, tmp_path: Path
 ) -> None:
     spec = tmp_path / "crowd.toml"
-    spec.write_text('minutes = 0.1\nseeds = 2\n[[grid]]\nn_boats = [6, 400]\npool = ["table-1"]\n')
+    spec.write_text('minutes = 0.1\nseeds = 2\n[[grid]]\nn_boats = [6, 400]\npool = ["narrow"]\n')
     sweep = ["sweep", str(spec), "--quiet", "--out", str(tmp_path / "out")]
     done = cli(*sweep)
     assert done.returncode == 1

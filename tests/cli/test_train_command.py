@@ -14,7 +14,7 @@ pytest.importorskip("stable_baselines3")
 
 TINY = """
 n_boats = 6
-pools = ["500-boats"]
+pools = ["wide"]
 n_leaders = [1, 2]
 episode_s = 5.0
 control_hz = 2.0
@@ -72,7 +72,7 @@ def test_several_seeds_and_a_budget_in_flock_hours(
     assert load(out / "seed-1" / "best.npz").provenance["seed"] == "1"
     again = cli("train", *arguments, "--out", str(out), "--quiet")
     assert again.returncode == 0, again.stderr
-    assert "500-boats k=2: all seeds minus tuned damped law: " in again.stdout
+    assert "wide k=2: all seeds minus tuned damped law: " in again.stdout
     for wrong, words in (
         (["--seeds", "2", "--resume"], "the same command resumes"),
         (["--episodes", "4"], "--episodes is not accepted without --seeds"),

@@ -20,7 +20,7 @@ LAW = {"steering law": POLICIES["steering law"]}
 
 @pytest.fixture(scope="module")
 def parameters() -> flockenv.FlockParameters:
-    return flockenv.FlockParameters.preset("simulation").replace(n_boats=9, pool="table-1")
+    return flockenv.FlockParameters.preset("simulation").replace(n_boats=9, pool="narrow")
 
 
 def test_one_row_for_each_policy_number_and_seed(parameters: flockenv.FlockParameters) -> None:
@@ -129,10 +129,10 @@ def test_policies_by_name_and_by_file(tmp_path: Path) -> None:
     size = len(observation_entries())
     learned = NetworkPolicy([np.zeros((size, 1))], [[0.5]], mirror_to_target=True)
     learned.save(tmp_path / "left.npz")
-    assert repr(named_policy(str(tmp_path / "left.npz"), "table-1")()) == repr(learned)
+    assert repr(named_policy(str(tmp_path / "left.npz"), "narrow")()) == repr(learned)
     assert named_policy("damped law", (90.0, 20.0)) is POLICIES["damped law"]
     with pytest.raises(flockenv.ParameterError, match="did you mean 'steering law'"):
-        named_policy("stering law", "table-1")
+        named_policy("stering law", "narrow")
 
 
 def test_leaders_that_never_steer_are_rudders_of_zero(parameters: flockenv.FlockParameters) -> None:
@@ -158,7 +158,7 @@ def test_the_law_at_every_substep_is_what_simulate_does(
 
 def test_what_is_measured_in_steps_is_what_the_recording_says() -> None:
     # A flock that orders: low noise, four leaders.
-    parameters = flockenv.FlockParameters(n_boats=12, n_leaders=4, pool="500-boats", bw_s=0.0)
+    parameters = flockenv.FlockParameters(n_boats=12, n_leaders=4, pool="wide", bw_s=0.0)
     law = flockenv.policies.SteeringLaw()
     runs = compare_leaders(parameters, [4], {"law": lambda: law}, range(4), 240.0)
     env = flockenv.LeadersVectorEnv(4, params=parameters)

@@ -30,7 +30,7 @@ from flockenv.policies.registry import named_policy
 from flockenv.runs.spec import RunSpec
 
 V1 = {task.name: task for task in SUITES["v1"]}
-EASY = V1["easy-table-1-k1"]
+EASY = V1["easy-narrow-k1"]
 
 
 def reference(task: Task, name: str) -> Any:
@@ -100,7 +100,7 @@ def few(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("few")
 def test_references_are_what_the_policies_do() -> None:
-    for task in (EASY, V1["camera-500-boats-k3"]):
+    for task in (EASY, V1["camera-wide-k3"]):
         found = run_task(task, named_policy(REFERENCES[0], task.pool))
         assert found == pytest.approx(reference(task, REFERENCES[0]), abs=6e-6)
     found = run_task(EASY, named_policy(REFERENCES[1], EASY.pool))
@@ -109,10 +109,10 @@ def test_references_are_what_the_policies_do() -> None:
 
 def test_learned_leaders_are_those_of_the_pool(monkeypatch: pytest.MonkeyPatch) -> None:
     def run_episodes(parameters: Any, policy: Any, *rest: Any) -> Any:
-        return {"signed_order": np.full(EPISODES, float("500-boats" in str(policy.provenance)))}
+        return {"signed_order": np.full(EPISODES, float("wide" in str(policy.provenance)))}
 
     monkeypatch.setattr(suite, "run_episodes", run_episodes)
-    for name in ("circulate-500-boats-k1", "circulate-table-1-k1"):
+    for name in ("circulate-wide-k1", "circulate-narrow-k1"):
         task = V1[name]
         found = run_task(task, named_policy("learned", task.pool))
         assert set(found) == {float("500" in name)}
@@ -149,7 +149,7 @@ def test_unknown_names() -> None:
         tasks_named("v2", [])
     with pytest.raises(flockenv.ParameterError, match="task = 'hard' is not accepted: circulate"):
         tasks_named("v1", ["hard"])
-    assert tasks_named("v1", ["easy-table-1-k1"]) == [EASY]
+    assert tasks_named("v1", ["easy-narrow-k1"]) == [EASY]
 
 
 def test_policies_that_are_refused() -> None:
@@ -162,7 +162,7 @@ def test_policies_that_are_refused() -> None:
         run_task(EASY, Often)
 
 
-SUITE = ["evaluate", "straight ahead", "--suite", "v1", "--task", "easy-table-1-k1"]
+SUITE = ["evaluate", "straight ahead", "--suite", "v1", "--task", "easy-narrow-k1"]
 
 
 @pytest.mark.usefixtures("few")
@@ -170,7 +170,7 @@ def test_the_command(cli: Any, tmp_path: Path) -> None:
     done = cli(*SUITE, "--flock-hours", "150", "--json", "--out", str(tmp_path))
     assert done.returncode == 0, done.stderr
     (row,) = json.loads(done.stdout)["scores"]
-    assert (row["policy"], row["task"]) == ("straight ahead", "easy-table-1-k1")
+    assert (row["policy"], row["task"]) == ("straight ahead", "easy-narrow-k1")
     assert row["score_low"] < row["score"] < row["score_high"]
     scores = (tmp_path / "scores.csv").read_text().splitlines()
     assert scores[0] == "policy,task,signed_order,score,score_low,score_high"
@@ -184,7 +184,7 @@ def test_the_command(cli: Any, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("option", "value"),
     [
-        ("--pool", "table-1"),
+        ("--pool", "narrow"),
         ("--episodes", "512"),
         ("--set", "n_boats=9"),
         ("--minutes", "8"),
@@ -198,7 +198,7 @@ def test_an_altered_task_has_no_score(cli: Any, tmp_path: Path, option: str, val
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("option", [("--task", "easy-table-1-k1"), ("--flock-hours", "3")])
+@pytest.mark.parametrize("option", [("--task", "easy-narrow-k1"), ("--flock-hours", "3")])
 def test_options_of_a_suite_need_one(cli: Any, option: tuple[str, str]) -> None:
     done = cli("evaluate", "straight ahead", *option)
     assert done.returncode == 2

@@ -8,7 +8,7 @@ pub fn parameters(n_leaders: usize) -> FlockParameters {
     FlockParameters {
         n_boats: 9,
         n_leaders,
-        pool: Pool::TABLE_1,
+        pool: Pool::NARROW,
         ..FlockParameters::preset(Preset::Simulation)
     }
 }

@@ -15,7 +15,7 @@ from flockenv.errors import ParameterError
 from flockenv.policies import DampedLaw, NetworkPolicy, WithLevels
 from flockenv.policies.pretrained import TUNED_GAINS, tuned_law
 
-POOLS = ("500-boats", "table-1")
+POOLS = ("wide", "narrow")
 
 
 def rolled(steps, actions=None, policy=None, **options):
@@ -56,7 +56,7 @@ def test_a_heading_of_zero_is_the_damped_law():
 )
 @pytest.mark.parametrize(("target", "sign"), [("cw", 1.0), ("ccw", -1.0)])
 def test_leaders_steer_outward_of_the_tangent_by_the_angle(mode, largest, gain, target, sign):
-    params = flockenv.FlockParameters(n_boats=2, n_leaders=1, pool="500-boats", c4=0.0, c2=1.0)
+    params = flockenv.FlockParameters(n_boats=2, n_leaders=1, pool="wide", c4=0.0, c2=1.0)
     env = LeadersEnv(params=params, action_mode=mode, target=target)
     # At (-140, 0) outward is -x and clockwise +y: the leader heads along the tangent.
     pose = [[-140.0, 0.0, sign * np.pi / 2], [140.0, 0.0, 0.0]]
@@ -75,7 +75,7 @@ def test_leaders_steer_outward_of_the_tangent_by_the_angle(mode, largest, gain, 
 
 @pytest.mark.parametrize("mode", ["rudder", "heading", "lean"])
 def test_a_held_action_is_the_action_in_each_control_step(mode):
-    options = {"action_mode": mode, "pool": "table-1", "target": "alternate", "rudder_lag_s": 0.2}
+    options = {"action_mode": mode, "pool": "narrow", "target": "alternate", "rudder_lag_s": 0.2}
     held = rolled(8, 0.4, decision_period_s=0.5, **options)
     each = rolled(40, 0.4, **options)
     assert held[0].tobytes() == each[0].tobytes()
@@ -84,7 +84,7 @@ def test_a_held_action_is_the_action_in_each_control_step(mode):
 
 
 def test_an_episode_that_ends_inside_a_period_has_its_own_length():
-    options = {"n_boats": 6, "n_leaders": 2, "episode_s": 1.2, "pool": "table-1"}
+    options = {"n_boats": 6, "n_leaders": 2, "episode_s": 1.2, "pool": "narrow"}
     env = LeadersEnv(**options, decision_period_s=0.5)
     by_step = LeadersEnv(**options)
     env.reset(seed=3)
@@ -114,7 +114,7 @@ def test_autoreset_comes_with_the_step_that_ends(mode):
         n_boats=6,
         n_leaders=1,
         episode_s=1.2,
-        pool="table-1",
+        pool="narrow",
         decision_period_s=0.5,
         autoreset_mode=mode,
     )
@@ -126,7 +126,7 @@ def test_autoreset_comes_with_the_step_that_ends(mode):
 
 
 def test_the_reward_horizon_makes_sums_over_it_means():
-    options = {"n_boats": 6, "n_leaders": 2, "pool": "table-1", "decision_period_s": 0.4}
+    options = {"n_boats": 6, "n_leaders": 2, "pool": "narrow", "decision_period_s": 0.4}
     plain, scaled = LeadersEnv(**options), LeadersEnv(**options, reward_horizon_s=20.0)
     plain.reset(seed=1)
     scaled.reset(seed=1)
@@ -137,7 +137,7 @@ def test_the_reward_horizon_makes_sums_over_it_means():
 
 
 def test_the_parallel_environment_and_the_single_one_agree():
-    options = {"n_boats": 6, "n_leaders": 2, "pool": "table-1", "action_mode": "lean"}
+    options = {"n_boats": 6, "n_leaders": 2, "pool": "narrow", "action_mode": "lean"}
     options["decision_period_s"] = 0.5
     single, parallel = LeadersEnv(**options), LeadersParallelEnv(**options)
     single.reset(seed=2)
@@ -178,7 +178,7 @@ def test_motor_cycles_are_rounded_to_control_steps(cycles: float, period_s: floa
         ),
         ({"action_mode": "leen"}, "did you mean 'lean'"),
         ({"action_mode": "xyz"}, "there are rudder, heading, lean"),
-        ({"action_mode": "lean", "pool": (100.0, 40.0)}, "500-boats and table-1"),
+        ({"action_mode": "lean", "pool": (100.0, 40.0)}, "wide and narrow"),
         ({"decision_period_s": 0.25}, "0.2 and 0.3 s are nearest"),
         ({"decision_period_s": 0.04}, "0.1 s is nearest"),
         ({"decision_period_s": 0.0}, "whole number of control steps"),
@@ -187,7 +187,7 @@ def test_motor_cycles_are_rounded_to_control_steps(cycles: float, period_s: floa
         ({"reward_horizon_s": 0.0}, "positive time"),
         ({"reward": {"contact_pusch": 1.0}}, "did you mean 'contact_push'"),
         ({"observation": {"law_ruder": True}}, "did you mean 'law_rudder'"),
-        ({"observation": {"law_rudder": True}, "pool": (100.0, 40.0)}, "500-boats and table-1"),
+        ({"observation": {"law_rudder": True}, "pool": (100.0, 40.0)}, "wide and narrow"),
         ({"decision_periods": 1.0}, "did you mean 'decision_period_s'"),
     ],
 )
@@ -205,7 +205,7 @@ def lean_policy(period=0.5):
 def test_policies_of_another_action_mode_are_refused_by_name(tmp_path):
     from flockenv.comparison.episodes import compare_leaders
 
-    parameters = flockenv.FlockParameters(n_boats=6, n_leaders=1, pool="table-1")
+    parameters = flockenv.FlockParameters(n_boats=6, n_leaders=1, pool="narrow")
     policy = lean_policy()
     with pytest.raises(ParameterError, match=r"NetworkPolicy.*'lean'.*simulation.*'rudder'"):
         flockenv.simulate(parameters, 0, 1.0, policy=policy)
@@ -223,12 +223,12 @@ def test_policies_of_another_action_mode_are_refused_by_name(tmp_path):
 def test_a_leaning_policy_is_compared_in_its_own_action_mode(tmp_path):
     from flockenv.comparison.episodes import run_episodes
 
-    parameters = flockenv.FlockParameters(n_boats=6, n_leaders=1, pool="table-1")
+    parameters = flockenv.FlockParameters(n_boats=6, n_leaders=1, pool="narrow")
     lean_policy().save(tmp_path / "lean.npz")
     read = flockenv.policies.load(tmp_path / "lean.npz")
     assert (read.action_mode, read.decision_period_s) == ("lean", 0.5)
     zero = NetworkPolicy([np.zeros((67, 1))], [[0.0]], action_mode="lean", decision_period_s=0.5)
-    law = run_episodes(parameters, tuned_law("damped law", "table-1"), [0, 1], 20.0)
+    law = run_episodes(parameters, tuned_law("damped law", "narrow"), [0, 1], 20.0)
     leaning = run_episodes(parameters, zero, [0, 1], 20.0)
     np.testing.assert_array_equal(leaning["signed_order"], law["signed_order"])
     assert not np.array_equal(
@@ -238,7 +238,7 @@ def test_a_leaning_policy_is_compared_in_its_own_action_mode(tmp_path):
 
 def test_levels_stand_for_leans_too():
     assert WithLevels(lean_policy(), 5).action_mode == "lean"
-    options = {"pool": "table-1", "action_mode": "lean"}
+    options = {"pool": "narrow", "action_mode": "lean"}
     levels = rolled(20, 3, rudder_levels=5, **options)
     assert same(levels, rolled(20, 0.5, **options))
 

@@ -292,7 +292,7 @@ def test_vector_seeds_options_and_masks():
 
 
 def test_too_many_boats_are_an_error_and_leave_the_episode():
-    env = flockenv.LeadersEnv(n_boats=300, n_leaders=1, pool="table-1")
+    env = flockenv.LeadersEnv(n_boats=300, n_leaders=1, pool="narrow")
     with pytest.raises(ParameterError, match="do not fit"):
         env.reset(seed=0)
 

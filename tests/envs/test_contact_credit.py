@@ -96,7 +96,7 @@ def test_contacts_of_others_give_no_credit():
 
 
 def test_a_credit_changes_no_bits_and_survives_a_stored_state():
-    options = {"n_boats": 20, "n_leaders": 3, "pool": "table-1", "action_mode": "lean"}
+    options = {"n_boats": 20, "n_leaders": 3, "pool": "narrow", "action_mode": "lean"}
     plain = LeadersVectorEnv(2, **options)
     credited = LeadersVectorEnv(2, reward=CREDIT, decision_period_s=0.5, **options)
     plain.reset(seed=0)

@@ -5,7 +5,7 @@ import pytest
 
 import flockenv
 
-CROWD = {"n_boats": 27, "n_leaders": 3, "pool": "table-1", "episode_s": 20.0}
+CROWD = {"n_boats": 27, "n_leaders": 3, "pool": "narrow", "episode_s": 20.0}
 
 
 @pytest.mark.parametrize("control_hz", [0.7, 3.0, 9.99, 15.0, 24.0, 30.0, 60.0, 144.0, 1000.0])

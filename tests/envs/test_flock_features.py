@@ -12,7 +12,7 @@ from flockenv.envs.single import LeadersEnv
 from flockenv.envs.vector import LeadersVectorEnv
 
 NAMES = [(entry.block, entry.name) for entry in flock_feature_entries()]
-OPTIONS = {"n_boats": 12, "n_leaders": 3, "pool": "table-1"}
+OPTIONS = {"n_boats": 12, "n_leaders": 3, "pool": "narrow"}
 
 
 @pytest.fixture(scope="module")

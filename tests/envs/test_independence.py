@@ -11,7 +11,7 @@ import pytest
 
 import flockenv
 
-OPTIONS = {"n_boats": 12, "n_leaders": 2, "episode_s": 3.0, "pool": "table-1", "target": "random"}
+OPTIONS = {"n_boats": 12, "n_leaders": 2, "episode_s": 3.0, "pool": "narrow", "target": "random"}
 
 
 def rollout(num_envs, first_seed=0, steps=70):

@@ -11,7 +11,7 @@ from flockenv import Flock, FlockParameters, ParameterError, Recording
 from flockenv.policies import DampedLaw, StraightAhead
 from flockenv.replay.page import write_replay
 
-SMALL = {"n_boats": 9, "n_leaders": 3, "episode_s": 6.0, "pool": "table-1"}
+SMALL = {"n_boats": 9, "n_leaders": 3, "episode_s": 6.0, "pool": "narrow"}
 MIXED = ("cw", "ccw", "cw")
 FLIP = np.array([1.0, -1.0, -1.0])
 
@@ -142,14 +142,14 @@ def test_the_mirror_image_with_opposite_targets_is_the_same_game(mirror_to_targe
 @pytest.mark.parametrize("mirror_to_target", [False, True])
 def test_policies_steer_each_leader_to_its_own_target(mirror_to_target):
     def rudders(policy, target):
-        parameters = FlockParameters(n_boats=9, n_leaders=3, pool="table-1", target=target)
+        parameters = FlockParameters(n_boats=9, n_leaders=3, pool="narrow", target=target)
         # The first decision is held when the second sample is taken.
         run = flockenv.simulate(parameters, 5, 0.1, policy=policy, control_hz=1.0)
         return run.rudder[1]
 
     for policy in (
         DampedLaw(mirror_to_target=mirror_to_target),
-        flockenv.policies.load("learned", pool="table-1"),
+        flockenv.policies.load("learned", pool="narrow"),
         StraightAhead(mirror_to_target=mirror_to_target),
     ):
         cw, ccw, mixed = (rudders(policy, target) for target in ("cw", "ccw", MIXED))
@@ -242,7 +242,7 @@ def test_targets_change_during_a_run():
 
 def test_frames_and_pages_show_the_leaders_in_the_colors_of_their_targets(tmp_path):
     def flock(target):
-        return Flock(FlockParameters(n_boats=9, n_leaders=3, pool="table-1", target=target), 1)
+        return Flock(FlockParameters(n_boats=9, n_leaders=3, pool="narrow", target=target), 1)
 
     amber, purple = (240, 162, 2), (204, 121, 167)
 

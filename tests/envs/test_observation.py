@@ -159,7 +159,7 @@ def test_clip_rate_counts_what_is_clipped():
 
 
 def test_observations_stay_inside_their_space():
-    venv = flockenv.LeadersVectorEnv(8, pool="table-1", bw_s=(0.0, 1.0), target="random")
+    venv = flockenv.LeadersVectorEnv(8, pool="narrow", bw_s=(0.0, 1.0), target="random")
     venv.reset(seed=0)
     for _ in range(300):
         observations, *_ = venv.step(venv.action_space.sample())

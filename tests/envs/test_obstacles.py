@@ -119,7 +119,7 @@ def test_policies_of_both_versions(tmp_path):
 
 def test_an_earlier_policy_steers_as_it_did():
     parameters = flockenv.FlockParameters(n_boats=9, n_leaders=2)
-    policy = flockenv.policies.load("learned", pool="500-boats")
+    policy = flockenv.policies.load("learned", pool="wide")
     assert policy.observation.get("obstacles", 0) == 0
     plain = flockenv.simulate(parameters, 1, 2.0, policy=policy)
     among = flockenv.simulate(parameters.replace(discs=[(179, 0, 2)]), 1, 2.0, policy=policy)

@@ -44,4 +44,4 @@ def test_parameters_that_are_given_are_stepped_as_chosen():
 
 def test_trainers_take_it_among_their_options():
     settings = TrainingSettings(options={"physics": "training"})
-    assert settings.environment("table-1")["physics"] == "training"
+    assert settings.environment("narrow")["physics"] == "training"

@@ -14,7 +14,7 @@ from flockenv.envs.options import _NAMES
 
 FUZZ = settings.get_profile("fuzz")
 NAMED = (FlockError, ValueError, TypeError)
-SMALL = {"n_boats": 6, "n_leaders": 2, "pool": "table-1", "episode_s": 0.5}
+SMALL = {"n_boats": 6, "n_leaders": 2, "pool": "narrow", "episode_s": 0.5}
 
 anything = st.one_of(
     st.none(),

@@ -29,7 +29,7 @@ from flockenv.runs.sweep_spec import read_sweep
 from flockenv.tracks import TrackLayout, read_tracks
 
 FUZZ = settings.get_profile("fuzz")
-PARAMETERS = FlockParameters(n_boats=4, n_leaders=1, pool="table-1")
+PARAMETERS = FlockParameters(n_boats=4, n_leaders=1, pool="narrow")
 RUN = simulate(PARAMETERS, 1, 0.5, contacts=True)
 SPEC = RunSpec(parameters=PARAMETERS, seed=1, duration_s=5.0, keep="poses")
 RESULT = execute(SPEC)
@@ -39,7 +39,7 @@ SWEEP = """
 minutes = 0.1
 seeds = 2
 [fixed]
-pool = "table-1"
+pool = "narrow"
 [[grid]]
 n_boats = [4, 5]
 bw_s = [0.0, 0.2]
@@ -84,7 +84,7 @@ KINDS = {
     ),
     "arrays of tracks": (
         lambda path: np.savez(path, time_s=RUN.time_s, pose=RUN.pose),
-        lambda path: read_tracks(path, TrackLayout(pool="table-1", wrapped=False)).to_recording(),
+        lambda path: read_tracks(path, TrackLayout(pool="narrow", wrapped=False)).to_recording(),
         lambda found: np.array_equal(found.pose, RUN.pose),
     ),
     "parameters": (
@@ -353,4 +353,4 @@ def test_animations(frames, fps, name):
 def test_the_largest_flock_still_answers():
     # Far more than any pool holds: refused in words, not by the memory.
     with pytest.raises(ParameterError, match="do not fit"):
-        flockenv.Flock(FlockParameters(n_boats=100_000, pool="table-1"), 0)
+        flockenv.Flock(FlockParameters(n_boats=100_000, pool="narrow"), 0)

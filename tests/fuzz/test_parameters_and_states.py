@@ -18,7 +18,7 @@ FUZZ = settings.get_profile("fuzz")
 NAMED = (FlockError, ValueError, TypeError)
 FIELDS = list(FlockParameters().to_dict())
 TOML = FlockParameters.preset("paper").to_toml()
-SMALL = FlockParameters(n_boats=6, n_leaders=2, pool="table-1")
+SMALL = FlockParameters(n_boats=6, n_leaders=2, pool="narrow")
 
 #: Numbers that claim petabytes: a view, and nested sequences that would stack to as many.
 VIEW = np.broadcast_to(1.0, (10**7, 10**7, 3))
@@ -34,7 +34,7 @@ plain = st.one_of(
     st.floats(),
     st.complex_numbers(),
     st.text(max_size=10),
-    st.sampled_from(["cw", "ccw", "table-1", "leapfrog", "white", "\udc80", "paper", "law"]),
+    st.sampled_from(["cw", "ccw", "narrow", "leapfrog", "white", "\udc80", "paper", "law"]),
     st.binary(max_size=10),
 )
 hostile = st.recursive(
@@ -134,11 +134,11 @@ extreme = st.fixed_dictionaries(
             if type(value) is float
         },
         "pool": st.one_of(
-            st.sampled_from(["table-1", (math.inf, 0.0), (1e6, 0.0), (1e6, 9.9e5)]),
+            st.sampled_from(["narrow", (math.inf, 0.0), (1e6, 0.0), (1e6, 9.9e5)]),
             st.tuples(numbers, numbers),
         ),
         "scheme": st.sampled_from(["leapfrog", "moreau", "paper"]),
-        "noise": st.sampled_from(["white", "per-step"]),
+        "noise_scheme": st.sampled_from(["white", "per-step"]),
         "solver": st.sampled_from(["block-pivoting", "gauss-seidel", "clarabel"]),
         "relinearizations": st.integers(0, 2),
         "turning_bias": st.floats(-1, 1),

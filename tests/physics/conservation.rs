@@ -122,7 +122,7 @@ proptest! {
         // wall has to lift off by (R_in + r)·(dt·ω)²/2: with v⁺ = v⁻ + M⁻¹·Jᵀ·λ the energy changes by
         // λ·J·v⁺ − λ·A·λ/2 ≤ Σλ·(−g + lift)/dt, and by nothing more.
         for scheme in VELOCITY_SCHEMES {
-            let p = FlockParameters { pool: Pool::TABLE_1, ..inert(scheme) };
+            let p = FlockParameters { pool: Pool::NARROW, ..inert(scheme) };
             let mut flock = scattered(&p, n, seed, 12.0);
             let start = kinetic_energy(&flock);
             let mut before = start;
@@ -151,7 +151,7 @@ proptest! {
         // Overlap after a substep is what the linearization leaves: at most |d²gap/dt²|·dt²/2. A core
         // end moves at 60 cm/s at the very most here, past something of radius 10 cm or more.
         for scheme in VELOCITY_SCHEMES {
-            let p = FlockParameters { pool: Pool::TABLE_1, ..inert(scheme) };
+            let p = FlockParameters { pool: Pool::NARROW, ..inert(scheme) };
             let mut flock = scattered(&p, n, seed, 12.0);
             for _ in 0..30 {
                 take_substeps(&mut flock, 5);
@@ -194,7 +194,7 @@ fn a_lone_boat_keeps_its_energy_along_a_round_wall_but_for_the_chords() {
 #[test]
 fn poses_reported_are_finite_and_inside() {
     let p = FlockParameters {
-        pool: Pool::TABLE_1,
+        pool: Pool::NARROW,
         ..inert(Scheme::Leapfrog)
     };
     let mut flock = scattered(&p, 27, 5, 15.0);

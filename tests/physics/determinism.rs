@@ -42,7 +42,7 @@ fn a_run_cut_on_the_grid_is_the_same_run() {
             &[0.7, 0.02, 0.6, 1.18, 1.5],
         ] {
             let cut = advanced(&mut Flock::new(p.clone(), 3).expect("room"), cuts);
-            assert_eq!(cut, whole, "{:?} {:?} {cuts:?}", p.scheme, p.noise);
+            assert_eq!(cut, whole, "{:?} {:?} {cuts:?}", p.scheme, p.noise_scheme);
         }
     }
 }
@@ -55,7 +55,7 @@ fn a_run_cut_at_its_own_phase_switches_is_the_same_run() {
             &mut Flock::new(p.clone(), 3).expect("room"),
             &[0.713, 0.2, 0.305, 0.1],
         );
-        assert_eq!(cut, whole, "{:?} {:?}", p.scheme, p.noise);
+        assert_eq!(cut, whole, "{:?} {:?}", p.scheme, p.noise_scheme);
     }
 }
 
@@ -141,14 +141,14 @@ fn a_reset_flock_is_a_new_flock() {
     assert_eq!(advanced(&mut flock, &[1.0]), advanced(&mut fresh, &[1.0]));
 }
 
-/// A jam in `table-1`, scaled beyond 50 boats: its islands hold most of the contacts.
+/// A jam in `narrow`, scaled beyond 50 boats: its islands hold most of the contacts.
 fn jam(n_boats: usize, relinearizations: usize) -> FlockParameters {
     let scale = (n_boats as f64 / 50.0).sqrt().max(1.0);
     FlockParameters {
         n_boats,
         pool: Pool {
-            outer_radius_cm: scale * Pool::TABLE_1.outer_radius_cm,
-            inner_radius_cm: scale * Pool::TABLE_1.inner_radius_cm,
+            outer_radius_cm: scale * Pool::NARROW.outer_radius_cm,
+            inner_radius_cm: scale * Pool::NARROW.inner_radius_cm,
         },
         nop1_s: 0.0,
         bw_s: 0.0,

@@ -14,7 +14,7 @@ fn jam(n_boats: usize, c4: f64, seed: u64) -> Flock {
     let p = FlockParameters {
         n_boats,
         c4,
-        pool: Pool::TABLE_1,
+        pool: Pool::NARROW,
         dt_s: 0.01,
         ..driven(Scheme::Leapfrog)
     };
@@ -123,7 +123,7 @@ fn the_longest_step_of_the_explicit_schemes_stays_bounded() {
                     n_boats: 27,
                     bw_s: 2.0,
                     dt_s: scheme.longest_dt_s(),
-                    pool: Pool::TABLE_1,
+                    pool: Pool::NARROW,
                     ..FlockParameters::preset(Preset::Simulation)
                 };
                 let mut flock = Flock::new(p, seed).expect("27 boats fit");

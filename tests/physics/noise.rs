@@ -55,7 +55,7 @@ fn white_noise_has_the_variance_c4_squared_t_at_any_dt() {
             let p = FlockParameters {
                 c4: 0.3,
                 dt_s,
-                noise: Noise::White,
+                noise_scheme: Noise::White,
                 ..inert(scheme)
             };
             let mut flock = spread_out(&p, BOATS, 0.0, 5);
@@ -85,7 +85,7 @@ fn per_step_noise_has_a_variance_in_proportion_to_dt() {
             let p = FlockParameters {
                 c4: 0.3,
                 dt_s,
-                noise: Noise::PerStep,
+                noise_scheme: Noise::PerStep,
                 ..inert(scheme)
             };
             let mut flock = spread_out(&p, BOATS, 0.0, 6);
@@ -111,7 +111,7 @@ fn boats_and_times_are_independent() {
     for noise in NOISES {
         let p = FlockParameters {
             c4: 1.0,
-            noise,
+            noise_scheme: noise,
             ..inert(Scheme::Moreau)
         };
         let mut flock = spread_out(&p, BOATS, 0.0, 9);
@@ -159,7 +159,7 @@ fn two_control_rates_meet_the_same_path() {
     for scheme in SCHEMES {
         let p = FlockParameters {
             c4: 0.3,
-            noise: Noise::White,
+            noise_scheme: Noise::White,
             ..inert(scheme)
         };
         let spins_at = |control: f64, end: f64| {
@@ -195,7 +195,7 @@ fn two_policies_meet_the_same_path() {
             let p = FlockParameters {
                 n_leaders: 1,
                 c4: 0.5,
-                noise,
+                noise_scheme: noise,
                 ..driven(scheme)
             };
             let states = [([0.0; 3], [0.0; 3]), ([0.0, 500.0, 0.0], [0.0; 3])];
@@ -301,7 +301,7 @@ fn leapfrog_has_the_exact_stationary_spin_and_moreau_to_first_order() {
             c1: 0.0,
             c4: 0.01,
             dt_s,
-            noise: Noise::White,
+            noise_scheme: Noise::White,
             ..driven(scheme)
         };
         let mut flock = spread_out(&p, 1000, 15.0, 21);

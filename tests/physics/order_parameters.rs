@@ -137,7 +137,7 @@ fn of_the_normal_boats_only_unless_asked() {
     ]
     .map(|(polar, phi, v)| (polar, phi, v));
     let (mut poses, velocities) = ring(&scene);
-    // In the 500-boats pool water starts at 97 cm.
+    // In the wide pool water starts at 97 cm.
     poses.iter_mut().for_each(|pose| pose.position *= 2.3);
     flock
         .set_state(&poses, &velocities, 0.0, false)

@@ -67,11 +67,11 @@ fn deep_overlap_and_crossed_cores_come_apart_without_speed() {
 
 #[test]
 fn too_many_boats_for_the_pool_stay_bounded() {
-    // 140 hulls cover 99.6 % of table-1 and cannot be disjoint: velocities stay bounded by what engines
+    // 140 hulls cover 99.6 % of narrow and cannot be disjoint: velocities stay bounded by what engines
     // can give, nothing is NaN, and a status says so.
     for scheme in SCHEMES {
         let p = FlockParameters {
-            pool: flockenv::parameters::Pool::TABLE_1,
+            pool: flockenv::parameters::Pool::NARROW,
             c4: 0.1,
             ..driven(scheme)
         };
@@ -106,7 +106,7 @@ fn substeps_of_a_whole_second_are_stable() {
     for n_boats in [1, 12, 27] {
         let p = FlockParameters {
             n_boats,
-            pool: flockenv::parameters::Pool::TABLE_1,
+            pool: flockenv::parameters::Pool::NARROW,
             dt_s: 1.0,
             ..FlockParameters::preset(flockenv::parameters::Preset::Simulation)
         };
@@ -132,7 +132,7 @@ fn a_full_pool_with_its_engines_off_never_gains_energy() {
             let p = FlockParameters {
                 n_boats: 114,
                 c0,
-                pool: flockenv::parameters::Pool::TABLE_1,
+                pool: flockenv::parameters::Pool::NARROW,
                 ..inert(scheme)
             };
             let mut flock = Flock::new(p, 2).expect("room");

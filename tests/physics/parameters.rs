@@ -16,30 +16,33 @@ fn presets_are_the_tables() {
         assert_eq!([p.c0, p.c1, p.c2, p.c3, p.c4], [1.0, 1.0, 0.1, 1.0, 0.1]);
         assert_eq!([p.fw_s, p.nop1_s, p.nop2_s], [2.0, 1.0, 1.0]);
         assert_eq!((p.n_boats, p.n_leaders), (20, 0));
-        assert_eq!(p.pool.name(), Some("500-boats"));
+        assert_eq!(p.pool.name(), Some("wide"));
         assert!(p.leaders_reverse);
     }
     let (simulation, paper) = (table_3(), FlockParameters::preset(Preset::Paper));
     assert_eq!((simulation.bw_s, paper.bw_s), (0.3, 0.6));
     assert_eq!(
-        (simulation.scheme, simulation.noise),
+        (simulation.scheme, simulation.noise_scheme),
         (Scheme::Leapfrog, Noise::White)
     );
-    assert_eq!((paper.scheme, paper.noise), (Scheme::Paper, Noise::PerStep));
+    assert_eq!(
+        (paper.scheme, paper.noise_scheme),
+        (Scheme::Paper, Noise::PerStep)
+    );
     let radii = |name| Pool::named(name).map(|p| (p.outer_radius_cm, p.inner_radius_cm));
-    assert_eq!(radii("table-1"), Ok((90.0, 48.5)));
-    assert_eq!(radii("500-boats"), Ok((180.0, 97.0)));
+    assert_eq!(radii("narrow"), Ok((90.0, 48.5)));
+    assert_eq!(radii("wide"), Ok((180.0, 97.0)));
 }
 
 #[test]
-fn the_experiment_is_table_1() {
+fn the_experiment_is_narrow() {
     for preset in [Preset::Experiment, Preset::Experiment2026] {
         let p = FlockParameters::preset(preset);
         assert_eq!((p.n_boats, p.n_leaders, p.leaders_reverse), (27, 0, false));
-        assert_eq!(p.pool.name(), Some("table-1"));
+        assert_eq!(p.pool.name(), Some("narrow"));
         assert!((10.0..=20.0).contains(&p.speed_cm_s));
         assert_eq!([p.fw_s, p.nop1_s, p.nop2_s], [2.0, 1.0, 1.0]);
-        assert_eq!((p.scheme, p.noise), (Scheme::Leapfrog, Noise::White));
+        assert_eq!((p.scheme, p.noise_scheme), (Scheme::Leapfrog, Noise::White));
         // Table 1: backing boats turn at 1 ± 0.2 rad/s; where that rate is steady,
         // c1·w² = c3·v0·c0²/(c0² + w²).
         let lag = |w: f64| p.c0 * p.c0 / (p.c0 * p.c0 + w * w);
@@ -158,5 +161,5 @@ fn names_are_parsed_and_unknown_ones_refused_with_what_there_is() {
     let target = "CW".parse::<Target>().map_err(message);
     assert!(target.is_err_and(|m| m.contains("target") && m.contains("ccw")));
     let pool = Pool::named("bathtub").map_err(message);
-    assert!(pool.is_err_and(|m| m.contains("pool") && m.contains("table-1")));
+    assert!(pool.is_err_and(|m| m.contains("pool") && m.contains("narrow")));
 }

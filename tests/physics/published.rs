@@ -1,4 +1,4 @@
-//! What the paper and the model's prototype report of whole flocks, in the `500-boats` pool with 20
+//! What the paper and the model's prototype report of whole flocks, in the `wide` pool with 20
 //! boats: the transition from order to disorder, and who gives the direction. Hours of simulated time;
 //! all ignored by default.
 //!
@@ -161,7 +161,7 @@ fn assert_row(scheme: Scheme, noise: Noise, row: Row) {
         let p = FlockParameters {
             bw_s,
             scheme,
-            noise,
+            noise_scheme: noise,
             ..FlockParameters::preset(Preset::Simulation)
         };
         let found = mean_orders(&p, 8);

@@ -17,7 +17,7 @@ fn jam_problem(n_boats: usize, seconds: f64, seed: u64) -> Owned {
     let p = FlockParameters {
         n_boats,
         c4: 0.1,
-        pool: Pool::TABLE_1,
+        pool: Pool::NARROW,
         dt_s: 0.01,
         ..driven(Scheme::Leapfrog)
     };
@@ -108,7 +108,7 @@ fn flocks_move_alike_with_either_solver() {
         let p = FlockParameters {
             n_boats: 40,
             solver,
-            pool: Pool::TABLE_1,
+            pool: Pool::NARROW,
             ..driven(Scheme::Leapfrog)
         };
         let mut flock = Flock::new(p, 8).expect("room");

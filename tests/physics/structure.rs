@@ -13,9 +13,9 @@ use flockenv::parameters::{Pool, Preset};
 use flockenv::{Flock, FlockParameters};
 use std::f64::consts::FRAC_PI_2;
 
-fn table_1() -> FlockParameters {
+fn narrow() -> FlockParameters {
     FlockParameters {
-        pool: Pool::TABLE_1,
+        pool: Pool::NARROW,
         ..FlockParameters::preset(Preset::Simulation)
     }
 }
@@ -27,7 +27,7 @@ fn a_cluster_is_what_gaps_below_half_a_centimeter_join() {
         let place = |boat| Pose::new(0.0, (10.0 + gap) * boat as f64, 0.0);
         (0..count).map(place).collect()
     };
-    let p = table_1();
+    let p = narrow();
     assert_eq!(largest_cluster(&row(0.4, 5), &p), 1.0);
     assert_eq!(largest_cluster(&row(0.6, 5), &p), 0.2);
     let mut two = row(0.4, 3);
@@ -46,7 +46,7 @@ fn a_cluster_is_what_gaps_below_half_a_centimeter_join() {
 
 #[test]
 fn a_jam_is_three_boats_in_touch_that_face_outward() {
-    let p = table_1();
+    let p = narrow();
     // Far from the center in two directions, 10.4 cm apart: the gap of hulls 10 cm wide is 0.4 cm.
     let row = |side: f64, count: i32, turned: f64| -> Vec<Pose> {
         let outward = if side > 0.0 {
@@ -83,7 +83,7 @@ fn polarization_is_the_length_of_the_mean_heading_wherever_boats_are() {
 #[test]
 fn boats_on_the_wall_are_counted() {
     // Outer radius 90: headed outward a boat touches at 82.5 cm, along it at sqrt(85² − 2.5²) = 84.96.
-    let p = table_1();
+    let p = narrow();
     let along = (85.0_f64.powi(2) - 2.5_f64.powi(2)).sqrt();
     let on = [
         Pose::new(82.4, 0.0, 0.0),
@@ -133,7 +133,7 @@ fn independent_boats_have_a_flat_pair_distribution() {
     // Places of one boat each in many flocks: independent, but for hulls that cannot overlap.
     let p = FlockParameters {
         n_boats: 1,
-        ..table_1()
+        ..narrow()
     };
     let place = |seed| Flock::new(p.clone(), seed).expect("room").poses()[0];
     let boats: Vec<Pose> = (0..600).map(place).collect();

@@ -80,9 +80,9 @@ pub fn busy(scheme: Scheme, noise: Noise) -> FlockParameters {
     FlockParameters {
         n_boats: 27,
         n_leaders: 3,
-        pool: Pool::TABLE_1,
+        pool: Pool::NARROW,
         scheme,
-        noise,
+        noise_scheme: noise,
         fw_s: 0.713,
         nop1_s: 0.2,
         bw_s: 0.305,

@@ -17,7 +17,7 @@ fn crowd(scheme: Scheme) -> FlockParameters {
     FlockParameters {
         n_boats: 40,
         n_leaders: 2,
-        pool: Pool::TABLE_1,
+        pool: Pool::NARROW,
         fw_s: 0.9,
         nop1_s: 0.1,
         bw_s: 0.2,
@@ -66,7 +66,7 @@ fn map(
 fn a_turned_wall_hit_is_the_same_hit() {
     for scheme in SCHEMES {
         let p = FlockParameters {
-            pool: Pool::TABLE_1,
+            pool: Pool::NARROW,
             ..driven(scheme)
         };
         let mut right = flock_of(&p, &[([80.0, 0.0, 0.4], [15.0, 2.0, 0.0])]);

@@ -110,7 +110,7 @@ fn boats_that_stay_within_their_skin_share_one_neighbor_list() {
 fn counted(n_boats: usize, bw_s: f64) -> (Statistics, f64) {
     let p = FlockParameters {
         n_boats,
-        pool: Pool::TABLE_1,
+        pool: Pool::NARROW,
         dt_s: 0.01,
         fw_s: 2.0,
         nop1_s: if bw_s > 0.0 { 1.0 } else { 0.0 },

@@ -31,7 +31,7 @@ def row(**entries: float) -> np.ndarray:
 
 def visited() -> np.ndarray:
     env = flockenv.LeadersVectorEnv(
-        4, n_boats=27, n_leaders=3, pool="table-1", bw_s=0.5, mirror_to_target=True, target="random"
+        4, n_boats=27, n_leaders=3, pool="narrow", bw_s=0.5, mirror_to_target=True, target="random"
     )
     rows, _ = env.reset(seed=1)
     law, seen = DampedLaw(mirror_to_target=True), []

@@ -23,7 +23,7 @@ from stable_baselines3.common.vec_env import VecFrameStack, VecNormalize  # noqa
 
 from flockenv.sb3 import LeaderVecEnv  # noqa: E402
 
-PARAMETERS = flockenv.FlockParameters(n_boats=6, n_leaders=2, pool="table-1")
+PARAMETERS = flockenv.FlockParameters(n_boats=6, n_leaders=2, pool="narrow")
 OPTIONS = {"params": PARAMETERS, "episode_s": 2.0}
 FEW = {"observation": {"neighbors": 2, "order": False}, "mirror_to_target": True, "control_hz": 5.0}
 

@@ -15,7 +15,7 @@ LAWS = (SteeringLaw, SignCorrectedLaw, DampedLaw)
 
 
 @pytest.mark.parametrize("target", ["cw", "ccw", "alternate"])
-@pytest.mark.parametrize("pool", ["500-boats", "table-1"])
+@pytest.mark.parametrize("pool", ["wide", "narrow"])
 def test_steering_law_from_the_observation(target, pool):
     env = flockenv.LeadersEnv(n_leaders=4, target=target, pool=pool, episode_s=240.0, bw_s=0.4)
     law = SteeringLaw()
@@ -196,11 +196,11 @@ def test_rudders_of_a_law_are_no_levels():
 
 
 def test_sign_correction_helps():
-    # What leaders can gain, in the small: paired episodes at the critical noise of `table-1`.
+    # What leaders can gain, in the small: paired episodes at the critical noise of `narrow`.
     means = {}
     for law in (SteeringLaw(), SignCorrectedLaw()):
         venv = flockenv.LeadersVectorEnv(
-            16, pool="table-1", bw_s=0.4, episode_s=240.0, autoreset_mode="same_step"
+            16, pool="narrow", bw_s=0.4, episode_s=240.0, autoreset_mode="same_step"
         )
         observations, _ = venv.reset(seed=0)
         for _ in range(2400):

@@ -8,7 +8,7 @@ from flockenv.comparison import POOL_POLICIES, named_policy, run_episodes
 from flockenv.policies import SteeringLaw
 from flockenv.policies.pretrained import TUNED_GAINS, learned, tuned_law
 
-POOLS = ("500-boats", "table-1")
+POOLS = ("wide", "narrow")
 
 
 @pytest.mark.parametrize("pool", POOLS)
@@ -25,13 +25,13 @@ def test_every_one_is_there_for_every_pool(pool: str) -> None:
 @pytest.mark.parametrize("pool", ["500 boats", (90.0, 48.5), None])
 def test_other_pools_have_none(pool) -> None:
     for name in POOL_POLICIES:
-        with pytest.raises(flockenv.ParameterError, match="500-boats, table-1"):
+        with pytest.raises(flockenv.ParameterError, match="wide, narrow"):
             named_policy(name, pool)
 
 
 @pytest.mark.parametrize("pool", POOLS)
 def test_learned_leaders_lead_better_than_the_papers(pool: str) -> None:
-    """By more than twice in `table-1` and half as much again in `500-boats`, where measured."""
+    """By more than twice in `narrow` and half as much again in `wide`, where measured."""
     parameters = flockenv.FlockParameters(
         n_boats=27,
         n_leaders=3,

@@ -10,7 +10,7 @@ import flockenv
 from flockenv.policies.registry import EVERY_SUBSTEP, POLICIES, POOL_POLICIES, named_policy, quoted
 
 REPOSITORY = Path(__file__).parents[2]
-PARAMETERS = flockenv.FlockParameters(n_boats=6, n_leaders=2, pool="table-1")
+PARAMETERS = flockenv.FlockParameters(n_boats=6, n_leaders=2, pool="narrow")
 RUN = {"seed": 3, "duration_s": 5.0}
 
 
@@ -23,7 +23,7 @@ def test_names_steer_as_the_policies_they_stand_for(name: str) -> None:
 
 
 def test_learned_leaders_are_loaded_by_name_and_by_file() -> None:
-    for pool in ("500-boats", "table-1"):
+    for pool in ("wide", "narrow"):
         named = flockenv.policies.load("learned", pool=pool)
         assert repr(named) == repr(named_policy("learned", pool)())
         file = REPOSITORY / "baselines" / "policies" / f"{pool}.npz"
@@ -34,7 +34,7 @@ def test_learned_leaders_are_loaded_by_name_and_by_file() -> None:
 def test_learned_leaders_have_one_home() -> None:
     home = REPOSITORY / "flockenv" / "policies" / "learned"
     files = sorted(home.glob("*.npz"))
-    assert [each.stem for each in files] == ["500-boats", "table-1"]
+    assert [each.stem for each in files] == ["wide", "narrow"]
     for each in files:
         assert (REPOSITORY / "baselines" / "policies" / each.name).samefile(each)
         assert (REPOSITORY / "baselines" / "policies" / f"{each.stem}.md").is_file()
@@ -47,10 +47,10 @@ def test_a_pool_without_learned_leaders_says_which_have_some() -> None:
         lambda: flockenv.policies.load("learned"),
         lambda: flockenv.simulate(elsewhere, policy="learned", **RUN),
     ):
-        with pytest.raises(flockenv.ParameterError, match="500-boats, table-1"):
+        with pytest.raises(flockenv.ParameterError, match="wide, narrow"):
             call()
-    with pytest.raises(flockenv.ParameterError, match="'500-boats' is not accepted with the file"):
-        flockenv.policies.load("other.npz", pool="500-boats")
+    with pytest.raises(flockenv.ParameterError, match="'wide' is not accepted with the file"):
+        flockenv.policies.load("other.npz", pool="wide")
 
 
 @pytest.mark.parametrize(
@@ -64,20 +64,20 @@ def test_a_pool_without_learned_leaders_says_which_have_some() -> None:
 )
 def test_unknown_names_are_reported_with_what_there_is(name: str, words: str) -> None:
     with pytest.raises(flockenv.ParameterError) as reported:
-        named_policy(name, "table-1")
+        named_policy(name, "narrow")
     assert words in str(reported.value)
 
 
 def test_no_name_holds_a_comma_and_older_names_are_known() -> None:
     assert not [name for name in (*POLICIES, *POOL_POLICIES) if "," in name]
     for name in (EVERY_SUBSTEP, "steering law, every substep"):
-        assert named_policy(name, "table-1")() == EVERY_SUBSTEP
+        assert named_policy(name, "narrow")() == EVERY_SUBSTEP
 
 
 def test_the_command_line_knows_names_in_any_folder(
     cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    fields = [f"--set={field}" for field in ("n_boats=6", "n_leaders=2", "pool=table-1")]
+    fields = [f"--set={field}" for field in ("n_boats=6", "n_leaders=2", "pool=narrow")]
     monkeypatch.chdir(tmp_path)
     words = ["--policy", "learned", "--minutes", "0.2", "--seed", "3", "--json"]
     done = cli("run", *fields, *words)

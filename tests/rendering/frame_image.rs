@@ -54,7 +54,7 @@ fn color_at(frame: &[u8], x_cm: f64, y_cm: f64) -> [u8; 3] {
 
 #[test]
 fn boats_are_where_they_are_and_y_points_up() {
-    let frame = drawn(&circling(Pool::TABLE_1, Target::Clockwise), 300, 300);
+    let frame = drawn(&circling(Pool::NARROW, Target::Clockwise), 300, 300);
     // Near the sterns, clear of the marks: leaders are boats 0 (east, heading south) and 1 (north,
     // heading east).
     let (leader, normal, water) = ([0xF0, 0xA2, 0x02], [0x00, 0x72, 0xB2], [0xDC, 0xEA, 0xF3]);
@@ -70,8 +70,8 @@ fn boats_are_where_they_are_and_y_points_up() {
 #[test]
 fn a_fixed_scene_has_fixed_bytes() {
     let scenes = [
-        (Pool::TABLE_1, Target::Clockwise),
-        (Pool::TABLE_1, Target::CounterClockwise),
+        (Pool::NARROW, Target::Clockwise),
+        (Pool::NARROW, Target::CounterClockwise),
         (OPEN_WATER, Target::Clockwise),
     ];
     let hashes = scenes.map(|(pool, target)| hash(&drawn(&circling(pool, target), 300, 300)));
@@ -88,7 +88,7 @@ const HASHES: [u64; 3] = [
 #[test]
 fn without_leaders_there_is_no_target_in_the_picture() {
     let leaderless = |target| {
-        let mut flock = circling(Pool::TABLE_1, target);
+        let mut flock = circling(Pool::NARROW, target);
         let parameters = FlockParameters {
             n_leaders: 0,
             ..flock.parameters().clone()
@@ -101,8 +101,8 @@ fn without_leaders_there_is_no_target_in_the_picture() {
     let frame = leaderless(Target::Clockwise);
     assert_eq!(frame, leaderless(Target::CounterClockwise));
     // The lowest point of the arrow's circle, at two thirds of the obstacle's radius.
-    let below = -0.66 * Pool::TABLE_1.inner_radius_cm;
-    let led = drawn(&circling(Pool::TABLE_1, Target::Clockwise), 300, 300);
+    let below = -0.66 * Pool::NARROW.inner_radius_cm;
+    let led = drawn(&circling(Pool::NARROW, Target::Clockwise), 300, 300);
     assert_ne!(color_at(&led, 0.0, below), color_at(&led, 0.0, 0.0));
     assert_eq!(color_at(&frame, 0.0, below), color_at(&frame, 0.0, 0.0));
 }
@@ -110,12 +110,12 @@ fn without_leaders_there_is_no_target_in_the_picture() {
 #[test]
 fn what_was_drawn_before_leaves_no_trace() {
     let scenes = [
-        circling(Pool::TABLE_1, Target::Clockwise),
-        circling(Pool::TABLE_1, Target::CounterClockwise),
+        circling(Pool::NARROW, Target::Clockwise),
+        circling(Pool::NARROW, Target::CounterClockwise),
         circling(
             Pool {
                 inner_radius_cm: 0.0,
-                ..Pool::TABLE_1
+                ..Pool::NARROW
             },
             Target::Clockwise,
         ),
@@ -130,14 +130,14 @@ fn what_was_drawn_before_leaves_no_trace() {
         circling(
             Pool {
                 inner_radius_cm: 30.0,
-                ..Pool::TABLE_1
+                ..Pool::NARROW
             },
             Target::Clockwise,
         ),
         circling(
             Pool {
                 inner_radius_cm: 20.0,
-                ..Pool::TABLE_1
+                ..Pool::NARROW
             },
             Target::Clockwise,
         ),
@@ -154,7 +154,7 @@ fn what_was_drawn_before_leaves_no_trace() {
 #[test]
 fn targets_look_different() {
     let [cw, ccw] = [Target::Clockwise, Target::CounterClockwise]
-        .map(|target| drawn(&circling(Pool::TABLE_1, target), 300, 300));
+        .map(|target| drawn(&circling(Pool::NARROW, target), 300, 300));
     assert_ne!(cw, ccw);
 }
 
@@ -187,7 +187,7 @@ fn open_water_follows_the_flock() {
 
 #[test]
 fn any_size_in_range_is_drawn_and_others_are_refused() {
-    let flock = circling(Pool::TABLE_1, Target::Clockwise);
+    let flock = circling(Pool::NARROW, Target::Clockwise);
     for (width, height) in [(64, 64), (64, 4096), (4096, 64), (101, 333), (1920, 1080)] {
         let frame = drawn(&flock, width, height);
         assert_eq!(frame.len(), (width * height * 3) as usize);
@@ -238,7 +238,7 @@ fn extreme_scenes_are_drawn() {
         drawn(&Flock::new(parameters, 3).unwrap(), 128, 96);
     }
     // A boat far outside the pool is simply not in the picture.
-    let mut flock = circling(Pool::TABLE_1, Target::Clockwise);
+    let mut flock = circling(Pool::NARROW, Target::Clockwise);
     let poses = [0.0, 1e3, 1e6, 1e9].map(|x| Pose::new(x, 0.0, 0.0));
     flock
         .set_state(&poses, &[Velocity::default(); 4], 1e9, true)

@@ -19,7 +19,7 @@ from flockenv import rendering
 
 SHORT = {"n_boats": 8, "n_leaders": 2, "episode_s": 3.0}
 SMALL = {**SHORT, "render_size": (160, 120)}
-POOLS = ["500-boats", "table-1", (100.0, 0.0), (float("inf"), 0.0), (float("inf"), 30.0)]
+POOLS = ["wide", "narrow", (100.0, 0.0), (float("inf"), 0.0), (float("inf"), 30.0)]
 
 
 def flock(**fields):
@@ -68,7 +68,7 @@ def test_a_returned_frame_is_never_written_to_again():
 
 
 def test_frames_may_be_drawn_in_several_threads():
-    scenes = [flock(n_boats=n, pool=pool) for n in (3, 8) for pool in ("500-boats", "table-1")]
+    scenes = [flock(n_boats=n, pool=pool) for n in (3, 8) for pool in ("wide", "narrow")]
     alone = [rendering.frame(scene, 160, 120) for scene in scenes]
     with ThreadPoolExecutor(len(scenes)) as threads:
         # All of them share one renderer.
@@ -80,7 +80,7 @@ def test_frames_may_be_drawn_in_several_threads():
 
 def test_a_frame_without_leaders_shows_no_target():
     pictures = [
-        rendering.frame(flock(n_leaders=0, pool="table-1", target=target), 300, 300)
+        rendering.frame(flock(n_leaders=0, pool="narrow", target=target), 300, 300)
         for target in ("cw", "ccw")
     ]
     np.testing.assert_array_equal(*pictures)

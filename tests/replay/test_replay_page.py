@@ -20,7 +20,7 @@ def hour():
 
 
 def test_an_hour_is_under_the_limit_with_every_sample(hour, tmp_path):
-    jam = PARAMETERS.replace(pool="table-1", bw_s=0.0)
+    jam = PARAMETERS.replace(pool="narrow", bw_s=0.0)
     crowded = flockenv.simulate(jam, 7, 3600.0, contacts=True)
     for name, run in (("moving", hour), ("jam", crowded)):
         written = write_replay(tmp_path / f"{name}.html", {name: run})

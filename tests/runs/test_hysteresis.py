@@ -25,18 +25,18 @@ LONG = PARAMETERS.replace(pool=(300.0, 217.0))
 
 
 def test_pools() -> None:
-    assert radii_cm("500-boats") == (180.0, 97.0)
+    assert radii_cm("wide") == (180.0, 97.0)
     assert radii_cm((60.0, 0.0)) == (60.0, 0.0)
-    outer, inner = resized("500-boats", 2.0, fixed_width=False)
+    outer, inner = resized("wide", 2.0, fixed_width=False)
     assert (outer, inner) == pytest.approx((180 * 2**0.5, 97 * 2**0.5))
-    outer, inner = resized("500-boats", 2.0, fixed_width=True)
+    outer, inner = resized("wide", 2.0, fixed_width=True)
     assert outer - inner == pytest.approx(83.0)
     assert outer + inner == pytest.approx(2 * 277.0)
     with pytest.raises(flockenv.ParameterError, match="no inner wall"):
-        resized("500-boats", 0.25, fixed_width=True)
+        resized("wide", 0.25, fixed_width=True)
     with pytest.raises(flockenv.ParameterError, match="open water"):
         resized((np.inf, 0.0), 2.0, fixed_width=False)
-    with pytest.raises(flockenv.ParameterError, match="table-1"):
+    with pytest.raises(flockenv.ParameterError, match="narrow"):
         radii_cm("table-2")
 
 

@@ -39,9 +39,9 @@ def test_runs_are_seeded_and_come_apart(start: str) -> None:
 
 @pytest.mark.parametrize("n_boats", [20, 60])
 def test_one_jam_is_one_jam_without_overlap(n_boats: int) -> None:
-    # On paper: the wall of table-1 is 2π·90 cm long, of which hulls 10 cm wide take three quarters
+    # On paper: the wall of narrow is 2π·90 cm long, of which hulls 10 cm wide take three quarters
     # when some 40 boats stand side by side; 60 stand in two rows.
-    parameters = PARAMETERS.replace(n_boats=n_boats, pool="table-1")
+    parameters = PARAMETERS.replace(n_boats=n_boats, pool="narrow")
     flock = initial_flock(parameters, 2, "one-jam")
     assert min(flock.contacts().gap_cm, default=0.0) > -1e-9
     (sizes,) = jam_sizes(parameters, flock.pose[None])

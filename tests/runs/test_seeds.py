@@ -7,17 +7,16 @@ from pathlib import Path
 import pytest
 
 from flockenv import ParameterError
-from flockenv.runs.seeds import MODEL_SEEDS, POLICY_SEEDS, training_seed
+from flockenv.runs.seeds import POLICY_SEEDS
 
 REPOSITORY = Path(__file__).parents[2]
 MAKERS = [*(REPOSITORY / "baselines").glob("*.py"), *(REPOSITORY / "flockenv").rglob("*.py")]
 
 
-@pytest.mark.parametrize("table", [POLICY_SEEDS, MODEL_SEEDS])
-def test_no_two_uses_meet(table):
-    for one, other in combinations([each.every for each in table.values()], 2):
+def test_no_two_uses_meet():
+    for one, other in combinations([each.every for each in POLICY_SEEDS.values()], 2):
         assert one.stop <= other.start or other.stop <= one.start, (one, other)
-    assert all(0 <= each.every.start < each.every.stop <= 2**64 for each in table.values())
+    assert all(0 <= each.every.start < each.every.stop <= 2**64 for each in POLICY_SEEDS.values())
 
 
 def test_runs_of_one_use_do_not_meet():
@@ -28,13 +27,6 @@ def test_runs_of_one_use_do_not_meet():
             assert whole.stop <= seeds.every.stop
             if seeds.runs > 1:
                 assert seeds.seeds(1, run + 1)[0] == whole.stop
-
-
-def test_training_runs_keep_the_seeds_that_they_had():
-    """Checkpoints of earlier versions resume with them."""
-    assert POLICY_SEEDS["training"].seeds(2, 3, 5) == range(2**32 + 3 * 2**20 + 5, 2**32 + 3145735)
-    assert POLICY_SEEDS["validation"].seeds(1)[0] == 2**32 + 2**62
-    assert MODEL_SEEDS["calibration check"].seeds(1)[0] == 1_000_000
 
 
 def test_each_use_that_makes_policies_has_one_script():
@@ -61,13 +53,3 @@ def test_each_use_that_makes_policies_has_one_script():
 def test_seeds_that_a_use_has_not_are_refused(arguments, words):
     with pytest.raises(ParameterError, match=words):
         POLICY_SEEDS["ablation"].seeds(*arguments)
-
-
-def test_the_old_name_warns():
-    with pytest.warns(DeprecationWarning, match="POLICY_SEEDS"):
-        assert training_seed(7) == 2**32 + 7
-    with (
-        pytest.warns(DeprecationWarning, match="POLICY_SEEDS"),
-        pytest.raises(ParameterError, match="seed = -1"),
-    ):
-        training_seed(-1)

@@ -19,7 +19,7 @@ from flockenv.runs.store import RunStore, StorageError, StoreWarning, run_missin
 
 @pytest.fixture
 def parameters() -> flockenv.FlockParameters:
-    return flockenv.FlockParameters.preset("simulation").replace(n_boats=6, pool="table-1")
+    return flockenv.FlockParameters.preset("simulation").replace(n_boats=6, pool="narrow")
 
 
 @pytest.fixture
@@ -183,7 +183,7 @@ from flockenv import FlockParameters
 from flockenv._io import atomic_write
 from flockenv.runs.store import RunStore
 from flockenv.runs.spec import RunSpec, execute
-parameters = FlockParameters.preset("simulation").replace(n_boats=6, pool="table-1")
+parameters = FlockParameters.preset("simulation").replace(n_boats=6, pool="narrow")
 spec = RunSpec(parameters=parameters, seed=3, duration_s=30.0)
 result = execute(spec)
 atomic_write.os.fsync = lambda number: os.kill(os.getpid(), signal.SIGKILL)
@@ -231,7 +231,7 @@ Version 3 differs from 2 where pivoting cycles in large islands."""
 
 def test_the_numbers_belong_to_this_results_version() -> None:
     """If the physics changed on purpose: raise RESULTS_VERSION, then pin the new numbers."""
-    parameters = flockenv.FlockParameters.preset("simulation").replace(n_boats=20, pool="table-1")
+    parameters = flockenv.FlockParameters.preset("simulation").replace(n_boats=20, pool="narrow")
     for scheme, numbers in PINNED.items():
         order = flockenv.simulate(parameters.replace(scheme=scheme), seed=5, duration_s=6.0).order
         assert (order.psi_o[-1], order.phi_o[-1]) == pytest.approx(numbers, abs=1e-6)

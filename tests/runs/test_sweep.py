@@ -21,12 +21,12 @@ c4 = 0.05
 
 [[grid]]
 n_boats = [6]
-pool = ["table-1", [120, 20]]
+pool = ["narrow", [120, 20]]
 bw_s = [0, 0.5]
 
 [[grid]]
 n_boats = [8]
-pool = ["table-1"]
+pool = ["narrow"]
 bw_s = [0.5]
 """
 
@@ -41,15 +41,15 @@ def test_every_combination_once(tmp_path: Path) -> None:
     sweep = read(tmp_path, SPEC)
     assert sweep.axes == ("n_boats", "pool", "bw_s")
     assert sweep.points == (
-        (6, "table-1", 0),
-        (6, "table-1", 0.5),
+        (6, "narrow", 0),
+        (6, "narrow", 0.5),
         (6, (120, 20), 0),
         (6, (120, 20), 0.5),
-        (8, "table-1", 0.5),
+        (8, "narrow", 0.5),
     )
     assert [spec.seed for spec in sweep.runs] == [0, 1] * 5
     base = flockenv.FlockParameters.preset("paper").replace(c4=0.05)
-    parameters = base.replace(n_boats=8, pool="table-1", bw_s=0.5)
+    parameters = base.replace(n_boats=8, pool="narrow", bw_s=0.5)
     assert sweep.runs[-1].parameters == parameters
     assert sweep.runs[-1].duration_s == 30.0
 
@@ -60,7 +60,7 @@ def test_the_table_holds_what_the_runs_have(tmp_path: Path) -> None:
     table = run_sweep(sweep, tmp_path / "out", progress=seen.append)
     assert set(seen) == set(sweep.runs)
     assert len(table) == len(sweep.runs)
-    assert table["pool"].tolist() == ["table-1"] * 4 + ["120x20"] * 4 + ["table-1"] * 2
+    assert table["pool"].tolist() == ["narrow"] * 4 + ["120x20"] * 4 + ["narrow"] * 2
     spec = sweep.runs[3]
     row = table.iloc[3]
     recording = flockenv.simulate(spec.parameters, spec.seed, 30.0)
@@ -90,13 +90,13 @@ def test_as_xarray(tmp_path: Path) -> None:
     table = run_sweep(read(tmp_path, SPEC), tmp_path / "out")
     dataset = to_xarray(table)
     assert dict(dataset.sizes) == {"n_boats": 2, "pool": 2, "bw_s": 2, "seed": 2}
-    point = {"n_boats": 8, "pool": "table-1", "bw_s": 0.5, "seed": 1}
+    point = {"n_boats": 8, "pool": "narrow", "bw_s": 0.5, "seed": 1}
     assert float(dataset["psi_o_mean"].sel(point)) == table["psi_o_mean"].iloc[-1]
     assert np.isnan(dataset["psi_o_mean"].sel(n_boats=8, pool="120x20")).all()
 
 
 def test_a_run_that_fails_is_a_row_that_says_why(tmp_path: Path) -> None:
-    text = "minutes = 0.5\nseeds = 1\n[grid]\nn_boats = [6, 900]\npool = ['table-1']\n"
+    text = "minutes = 0.5\nseeds = 1\n[grid]\nn_boats = [6, 900]\npool = ['narrow']\n"
     table = run_sweep(read(tmp_path, text), tmp_path / "out")
     assert table["failure"].iloc[0] == ""
     assert "fit" in table["failure"].iloc[1]
@@ -156,13 +156,6 @@ def test_the_example_of_the_docs_is_accepted() -> None:
     assert len(sweep.runs) == 2 * 2 * 5 * 4
 
 
-def test_the_sweeps_beside_the_studies_are_accepted() -> None:
-    sides = read_sweep(DOCS / "sweep-conflicting-targets.toml")
-    assert len(sides.runs) == 8 * 12
-    assert sides.points[-1] == (6, ("cw",) * 3 + ("ccw",) * 3)
-    assert len(read_sweep(DOCS / "sweep-leader-fraction.toml").runs) == 3 * 6 * 12
-
-
 def test_targets_of_each_leader_are_an_axis(tmp_path: Path) -> None:
     spec = tmp_path / "sides.toml"
     text = """
@@ -170,7 +163,7 @@ def test_targets_of_each_leader_are_an_axis(tmp_path: Path) -> None:
     seeds = 1
     [fixed]
     n_boats = 20
-    pool = "table-1"
+    pool = "narrow"
     [[grid]]
     n_leaders = [2]
     target = ["cw", ["cw", "ccw"], ["ccw", "cw"]]

@@ -56,14 +56,14 @@ def test_another_policy_steers_both_ways():
     )
     assert np.array_equal(law.pose[0], straight.pose[0])
     assert not np.array_equal(law.pose, straight.pose)
-    damped = tuned_law("damped law", "table-1")
+    damped = tuned_law("damped law", "narrow")
     run = simulate_alternating(parameters, 2, 240.0, period_s=120.0, policy=damped)
     check_leaders_turn_round_after_two_minutes(run)
 
 
 def test_a_policy_that_sees_a_mirrored_flock_is_refused():
     with pytest.raises(flockenv.ParameterError, match="with mirror_to_target"):
-        simulate_alternating(PARAMETERS, 5, 12.0, policy=learned("table-1"))
+        simulate_alternating(PARAMETERS, 5, 12.0, policy=learned("narrow"))
 
 
 @pytest.mark.parametrize("period_s", [0.0, 0.05, 1.234])

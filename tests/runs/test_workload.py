@@ -93,14 +93,14 @@ def test_each_run_takes_the_rate_of_a_trial_with_its_protocol(tmp_path, monkeypa
     monkeypatch.setattr("time.process_time", lambda: next(clock))
     specs = [
         RunSpec(parameters=PARAMETERS, seed=0, duration_s=600.0, protocol=protocol)
-        for protocol in ("law", "learned (table-1)")
+        for protocol in ("law", "learned (narrow)")
     ]
     work = measure_workload(specs, RunStore(tmp_path))
     assert work.core_hours * 3600 == pytest.approx(10 * 1.0 + 10 * 4.0)
 
 
 def test_flocks_that_cannot_be_made_have_no_time(tmp_path):
-    crowded = PARAMETERS.replace(n_boats=300, pool="table-1")
+    crowded = PARAMETERS.replace(n_boats=300, pool="narrow")
     work = measure_workload(
         [RunSpec(parameters=crowded, seed=0, duration_s=60.0)], RunStore(tmp_path)
     )

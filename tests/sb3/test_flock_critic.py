@@ -125,7 +125,7 @@ def test_it_goes_with_shared_noise_and_through_a_file(tmp_path):
 
 
 def test_the_model_steers_wherever_a_policy_does(tmp_path):
-    options = {**OPTIONS, "pool": "table-1", "action_mode": "lean", "decision_period_s": 0.2}
+    options = {**OPTIONS, "pool": "narrow", "action_mode": "lean", "decision_period_s": 0.2}
     options["episode_s"] = 2.0
     venv = WithFlockFeatures(LeaderVecEnv(2, **options))
     model = model_of(venv).learn(64)
@@ -137,7 +137,7 @@ def test_the_model_steers_wherever_a_policy_does(tmp_path):
     policy = load(tmp_path / "model.zip", trust=True)
     assert (policy.action_mode, policy.decision_period_s, policy.leaders) == ("lean", 0.2, 1)
     np.testing.assert_array_equal(policy.predict(rows[:, :seen])[0], np.clip(whole, -1.0, 1.0))
-    parameters = FlockParameters(n_boats=8, n_leaders=3, pool="table-1")
+    parameters = FlockParameters(n_boats=8, n_leaders=3, pool="narrow")
     found = run_episodes(parameters, model, [0], 10.0)
     assert np.isfinite(found["signed_order"]).all()
     mean, _ = evaluate_flocks(model, venv, n_eval_episodes=2, seed=0)

@@ -12,7 +12,7 @@ from flockenv.errors import ParameterError
 from flockenv.sb3 import LeaderVecEnv, SharedNoisePolicy, evaluate_flocks, shared_noise
 from flockenv.training.actor import one_thread
 
-OPTIONS = {"n_boats": 6, "pool": "table-1", "action_mode": "lean", "decision_period_s": 0.5}
+OPTIONS = {"n_boats": 6, "pool": "narrow", "action_mode": "lean", "decision_period_s": 0.5}
 
 
 @pytest.fixture(autouse=True)
@@ -115,7 +115,7 @@ def test_ppo_learns_with_it_and_its_file_steers(tmp_path, use_sde):
     policy = flockenv.policies.load(tmp_path / "model.zip", trust=True)
     assert (policy.action_mode, policy.decision_period_s) == ("lean", 0.5)
     found = run_episodes(
-        flockenv.FlockParameters(n_boats=6, n_leaders=2, pool="table-1"), policy, [0], 10.0
+        flockenv.FlockParameters(n_boats=6, n_leaders=2, pool="narrow"), policy, [0], 10.0
     )
     assert np.isfinite(found["signed_order"]).all()
 
@@ -133,7 +133,7 @@ def test_the_length_of_an_episode_counts_decisions():
 
 
 def test_models_of_another_action_mode_are_refused():
-    options = {"n_boats": 6, "n_leaders": 2, "pool": "table-1", "episode_s": 5.0}
+    options = {"n_boats": 6, "n_leaders": 2, "pool": "narrow", "episode_s": 5.0}
     model = model_of(LeaderVecEnv(2, n_leaders=2, **OPTIONS))
     with pytest.raises(ParameterError, match=r"'lean'.*in this evaluation.*'rudder'"):
         evaluate_flocks(model, LeaderVecEnv(2, **options))

@@ -11,9 +11,9 @@ from flockenv.tracks import TrackLayout
 
 PIXEL_CM = 0.25
 CENTER = (812.0, 604.5)
-PARAMETERS = flockenv.FlockParameters(n_boats=20, n_leaders=2, pool="table-1", bw_s=0.3)
+PARAMETERS = flockenv.FlockParameters(n_boats=20, n_leaders=2, pool="narrow", bw_s=0.3)
 LAYOUT = TrackLayout(
-    pool="table-1",
+    pool="narrow",
     leaders=("boat1", "boat2"),
     fps=10.0,
     id="track",

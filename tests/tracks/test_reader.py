@@ -47,7 +47,7 @@ def test_order_parameters_of_a_camera_are_those_of_the_run(seen):
 def test_boats_that_are_all_there_have_the_very_order_parameters(seen):
     truth = seen.truth
     found = flockenv.Recording.from_tracks(
-        truth.time_s, truth.pose, pool="table-1", velocity=truth.velocity, phase=truth.phase,
+        truth.time_s, truth.pose, pool="narrow", velocity=truth.velocity, phase=truth.phase,
         leaders=("0", "1"),
     )  # fmt: skip
     for name in ("psi_o", "phi_o", "c_o", "psi_v", "phi_v", "c_v", "nematic", "milling"):
@@ -76,7 +76,7 @@ def test_heading_from_motion():
     table = pd.DataFrame(
         {"frame": time_s, "id": "a", "x": 100 * np.cos(angle), "y": 100 * np.sin(angle)}
     )
-    found = from_table(table, TrackLayout(pool="500-boats", heading=None))
+    found = from_table(table, TrackLayout(pool="wide", heading=None))
     # Counter-clockwise on a circle: a quarter turn ahead of the place.
     assert np.allclose(found.pose[1:-1, 0, 2], angle[1:-1] + np.pi / 2, atol=1e-6)
     expected = np.stack([-10 * np.sin(angle), 10 * np.cos(angle), 0.1 + 0 * angle], axis=1)
@@ -94,7 +94,7 @@ def line(**columns) -> pd.DataFrame:
     return pd.DataFrame({**table, **columns})
 
 
-OPEN = TrackLayout(pool="500-boats", fps=10.0)
+OPEN = TrackLayout(pool="wide", fps=10.0)
 
 
 def test_a_jump_is_left_out_and_counted():
@@ -175,7 +175,7 @@ def test_mistakes_are_named(table, changes, words):
 
 def test_files_with_their_layout_beside_them(seen, tmp_path):
     layout = (
-        'pool = "table-1"\nleaders = ["boat1", "boat2"]\nfps = 10\nid = "track"\nx = "x_px"\n'
+        'pool = "narrow"\nleaders = ["boat1", "boat2"]\nfps = 10\nid = "track"\nx = "x_px"\n'
         'y = "y_px"\nheading = "angle"\nheading_unit = "deg"\ncm_per_unit = 0.25\n'
         f"center = [{CENTER[0]}, {CENTER[1]}]\ny_down = true\n"
     )
@@ -191,7 +191,7 @@ def test_files_with_their_layout_beside_them(seen, tmp_path):
 def test_arrays(seen, tmp_path):
     truth = seen.truth
     np.savez(tmp_path / "tracks.npz", time_s=truth.time_s, pose=truth.pose)
-    layout = TrackLayout(pool="table-1", leaders=("0", "1"), wrapped=False)
+    layout = TrackLayout(pool="narrow", leaders=("0", "1"), wrapped=False)
     found = read_tracks(tmp_path / "tracks.npz", layout).to_recording()
     assert np.array_equal(found.pose, truth.pose)
     assert (found.order.psi_o == truth.order.psi_o).all()
@@ -213,7 +213,7 @@ def test_files_that_are_none(tmp_path):
     (tmp_path / "noise.parquet").write_bytes(bytes(range(256)))
     with pytest.raises(flockenv.ParameterError, match="it is no table"):
         read_tracks(tmp_path / "noise.parquet", OPEN)
-    (tmp_path / "wrong.toml").write_text("pool = 'table-1'\nfbs = 25\n")
+    (tmp_path / "wrong.toml").write_text("pool = 'narrow'\nfbs = 25\n")
     with pytest.raises(flockenv.ParameterError, match=r"'fbs' is no field of a layout: pool, hull"):
         layout_beside(tmp_path / "wrong.csv")
 
@@ -234,7 +234,7 @@ def test_a_dataset_of_movement(seen):
         },
         attrs={"time_unit": "seconds", "source_software": "none", "ds_type": "poses"},
     )
-    layout = TrackLayout(pool="table-1", leaders=("boat1", "boat2"))
+    layout = TrackLayout(pool="narrow", leaders=("boat1", "boat2"))
     found = from_movement(dataset, layout, center="mast", tail="stern", head="bow").to_recording()
     assert np.allclose(found.pose, truth.pose, atol=1e-9)
     assert np.allclose(found.order.psi_o, truth.order.psi_o, atol=1e-9)

@@ -80,7 +80,7 @@ def test_it_is_played_beside_the_model(tracked, seen, tmp_path):
 def test_phases_that_are_known_have_their_analysis_window():
     phase = ["fw"] * 4 + ["nop1"] * 2 + ["bw"] * 2
     pose = np.full((8, 2, 3), 90.0) * [1, 0, 0]
-    recording = Recording.from_tracks(np.arange(8.0), pose, pool="table-1", phase=phase)
+    recording = Recording.from_tracks(np.arange(8.0), pose, pool="narrow", phase=phase)
     assert recording.in_analysis_window.tolist() == [False] * 2 + [True] * 3 + [False] * 3
 
 
@@ -109,7 +109,7 @@ def test_mistakes_are_named(changes, words):
     given = {
         "time_s": [0.0, 1.0, 2.0],
         "pose": np.full((3, 2, 3), 90.0) * [1, 0, 0],
-        "pool": "table-1",
+        "pool": "narrow",
     }
     with pytest.raises(flockenv.ParameterError, match=re.escape(words)):
         Recording.from_tracks(**(given | changes))
@@ -118,7 +118,7 @@ def test_mistakes_are_named(changes, words):
 def test_tracks_may_have_obstacles_in_their_pool(tmp_path):
     pose = np.full((3, 2, 3), 70.0) * [1, 0, 0]
     recording = Recording.from_tracks(
-        np.arange(3.0), pose, pool="table-1", discs=[(0, 70, 5)], walls=np.array([[-60, 0, -80, 0]])
+        np.arange(3.0), pose, pool="narrow", discs=[(0, 70, 5)], walls=np.array([[-60, 0, -80, 0]])
     )
     assert recording.parameters.discs == ((0.0, 70.0, 5.0),)
     recording.save(tmp_path / "tracks.npz")

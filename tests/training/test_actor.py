@@ -24,7 +24,7 @@ from flockenv.training.learner import learner
 
 
 def test_leaders_of_a_flock_explore_with_one_noise_in_every_pool(tiny: TrainingSettings) -> None:
-    settings = tiny.replace(pools=["500-boats", "table-1"], shared_noise_s=1.5)
+    settings = tiny.replace(pools=["wide", "narrow"], shared_noise_s=1.5)
     model = learner(settings)
     rows = torch.as_tensor(model.env.reset())
     noises = []

@@ -23,7 +23,7 @@ def _short(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture(scope="module")
 def short(tiny: TrainingSettings) -> TrainingSettings:
     return tiny.replace(
-        pools=["table-1"], n_leaders=[2], batch_size=32, samples=256, validate_every=128
+        pools=["narrow"], n_leaders=[2], batch_size=32, samples=256, validate_every=128
     )
 
 
@@ -85,7 +85,7 @@ def test_the_same_command_resumes(
     )
     # The evaluations of the trained policies were finished.
     assert [words for words in reported if " in " in words] == [
-        f"{name} in table-1 k=2" for name in seeds.RIVALS
+        f"{name} in narrow k=2" for name in seeds.RIVALS
     ]
     for name in FILES:
         first, again = (tmp_path / run / name for run in ("whole", "killed"))

@@ -149,7 +149,7 @@ def test_a_budget_in_flock_hours(tiny: TrainingSettings, tmp_path: Path) -> None
 
 
 def test_flocks_restart_together(tiny: TrainingSettings) -> None:
-    model = learner(tiny.replace(pools=["500-boats", "table-1"]))
+    model = learner(tiny.replace(pools=["wide", "narrow"]))
     model.env.reset()
     ended = [model.env.step(np.zeros((6, 1)))[2] for _ in range(30)]
     # Episodes of 5 s with two decisions per second.
@@ -273,7 +273,7 @@ def test_what_a_run_leaves(tiny: TrainingSettings, tmp_path: Path) -> None:
     assert TrainingSettings.from_toml((tmp_path / "settings.toml").read_text()) == tiny
     rows = result.progress.validations
     assert [row["samples"] for row in rows] == [384, 768]
-    cells = {"500-boats k=1", "500-boats k=2", "table-1 k=1", "table-1 k=2"}
+    cells = {"wide k=1", "wide k=2", "narrow k=1", "narrow k=2"}
     assert set(rows[0]) == {"samples", "mean", *cells}
     assert result.progress.best_score == max(row["mean"] for row in rows)
     assert any((tmp_path / "tensorboard").iterdir())

@@ -49,7 +49,7 @@ def test_committed_settings_are_accepted(path: Path) -> None:
         ({"n_leaders": [30]}, "n_leaders"),
         ({"noise": [1.0]}, "noise"),
         ({"noise": [1.0, 0.5]}, "lowest, highest"),
-        ({"pools": ["bath", "table-1"]}, "bath"),
+        ({"pools": ["bath", "narrow"]}, "bath"),
         ({"preset": "simulatoin"}, "simulation"),
         ({"reward": {"order": 1.0}}, "order"),
         ({"reward": 1.0}, "a table"),
@@ -115,7 +115,7 @@ def test_flock_hours_are_the_time_that_all_flocks_take(tiny: TrainingSettings) -
 def test_decisions_once_a_motor_cycle(tiny: TrainingSettings) -> None:
     # 2 s forward, 0.31 s backward and 1 s of drift after each, at two control steps per second.
     options = {"decision_period_cycles": 1.0}
-    cycled = tiny.replace(pools=["500-boats"], noise=[1.0, 1.0], batch_size=32, options=options)
+    cycled = tiny.replace(pools=["wide"], noise=[1.0, 1.0], batch_size=32, options=options)
     assert cycled.decisions["decision_period_s"] == 4.5
     assert cycled.decisions_hz == pytest.approx(1 / 4.5)
     with pytest.raises(ParameterError, match="not accepted with a drawn bw_s"):

@@ -1,4 +1,4 @@
-//! What a user cares about: mean Ψ_o and C_v of 20 boats without leaders in pool `500-boats` at
+//! What a user cares about: mean Ψ_o and C_v of 20 boats without leaders in pool `wide` at
 //! bw = 0.3 s, white noise, over the 10 Hz frames in the analysis window after the first tenth.
 //!
 //! The same seeds for everyone, against leapfrog at 0.005 s, seed by seed. The path of the noise differs

@@ -47,7 +47,7 @@ fn scenes() -> Vec<(&'static str, FlockParameters)> {
         (
             "both walls; per-step noise",
             FlockParameters {
-                noise: Noise::PerStep,
+                noise_scheme: Noise::PerStep,
                 ..whole.clone()
             },
         ),

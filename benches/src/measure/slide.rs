@@ -1,4 +1,4 @@
-//! One boat slides along the outer wall of `table-1` for 2 s, its bow touching all the time: the
+//! One boat slides along the outer wall of `narrow` for 2 s, its bow touching all the time: the
 //! distance from where it ends to where steps of 1e-4 s take it.
 
 use super::{distance, on_all_cores, push_row, table};

@@ -19,7 +19,7 @@ pub fn scene() -> FlockParameters {
         c4: 0.0,
         pool: Pool {
             inner_radius_cm: 0.0,
-            ..Pool::TABLE_1
+            ..Pool::NARROW
         },
         ..Scene::Jam.parameters(BOATS)
     }

@@ -1,1 +1,0 @@
-"""Constants of the preset "experiment", fitted to what the paper says of its boats."""

@@ -1,1 +1,0 @@
-"""Leaders with opposite targets: which side a flock follows, how soon, and whether it stalls."""

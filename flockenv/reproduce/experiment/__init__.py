@@ -1,1 +1,0 @@
-"""Section 4: the experiment's figures."""

@@ -1,1 +1,0 @@
-"""Section 5: the simulation's figures and claims."""
