@@ -20,4 +20,4 @@ def test_settings_are_accepted(path: Path) -> None:
 
 def test_there_is_one_for_each_pool() -> None:
     pools = [TrainingSettings.from_toml(path.read_text(encoding="utf-8")).pools for path in FILES]
-    assert pools == [("wide",), ("narrow",)]
+    assert pools == [("narrow",), ("wide",)]

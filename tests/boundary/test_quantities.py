@@ -1,7 +1,6 @@
 """Law: a quantity of the table is in recordings, sweep tables, commands and the replay page."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +11,6 @@ from flockenv.replay.quantities import shown_quantities
 from flockenv.runs.spec import RunSpec, execute
 from flockenv.runs.sweep import summary
 
-FIXTURES = Path(__file__).parents[1] / "fixtures" / "v0.1.0"
 TABLE = _core.quantities()
 RECORDED = [each.name for each in TABLE if each.kind == "recorded"]
 AVERAGED = [each.name for each in TABLE if each.is_averaged]
@@ -59,19 +57,6 @@ def test_recordings_keep_every_recorded_quantity(run, tmp_path):
     with np.load(tmp_path / "run.npz") as file:
         assert {f"order_{name}" for name in RECORDED} <= set(file)
     assert Recording.load(tmp_path / "run.npz") == run
-
-
-def test_recordings_of_earlier_versions_get_what_came_later_from_their_poses():
-    with np.load(FIXTURES / "recording.npz") as file:
-        assert "order_nematic" not in file
-        psi_o = file["order_psi_o"]
-    recording = Recording.load(FIXTURES / "recording.npz")
-    assert (recording.order.psi_o == psi_o).all()
-    k = recording.parameters.n_leaders
-    states = (each[:, k:].astype(float) for each in (recording.pose, recording.velocity))
-    computed = _core.order_series(*states)
-    assert (recording.order.nematic == computed.nematic).all()
-    assert (recording.order.milling == computed.milling).all()
 
 
 def test_tables_of_sweeps_have_every_averaged_quantity():

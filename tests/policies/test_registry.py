@@ -34,7 +34,7 @@ def test_learned_leaders_are_loaded_by_name_and_by_file() -> None:
 def test_learned_leaders_have_one_home() -> None:
     home = REPOSITORY / "flockenv" / "policies" / "learned"
     files = sorted(home.glob("*.npz"))
-    assert [each.stem for each in files] == ["wide", "narrow"]
+    assert [each.stem for each in files] == ["narrow", "wide"]
     for each in files:
         assert (REPOSITORY / "baselines" / "policies" / each.name).samefile(each)
         assert (REPOSITORY / "baselines" / "policies" / f"{each.stem}.md").is_file()

@@ -36,19 +36,6 @@ def press(pygame, *keys):
         pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=key))
 
 
-def test_human_mode_keeps_real_time(pygame):
-    env = flockenv.parallel_env(render_mode="human", **SMALL)
-    env.reset(seed=0)
-    start = time.perf_counter()
-    for _ in range(5):
-        env.step({agent: [0.0] for agent in env.agents})
-        assert env.render() is None
-    # 0.1 s a step; render() has nothing new to show and does not wait.
-    assert 0.45 < time.perf_counter() - start < 0.9
-    env.close()
-    assert not pygame.display.get_init()
-
-
 def test_window_shows_the_frame(pygame):
     scene = flock()
     window = rendering.Window(160, 120, fps=100.0)
