@@ -10,7 +10,7 @@ import pandas as pd
 from committed_data import DOCS
 
 from flockenv.comparison.figure import leader_curve
-from flockenv.statistics.intervals import Line
+from flockenv.statistics import Line
 
 FOLDER = DOCS / "leaders"
 BW_S = {"wide": 0.31, "narrow": 0.45}

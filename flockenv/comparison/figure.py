@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from flockenv._io.atomic_write import atomic_write
 from flockenv.comparison.episodes import NO_LEADERS
-from flockenv.statistics.intervals import Line
+from flockenv.statistics import Line
 
 __all__ = ["COLORS", "POLICY_COLORS", "leader_curve", "policy_colors"]
 

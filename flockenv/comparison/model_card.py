@@ -1,6 +1,5 @@
 """A policy's model card in Markdown: the policy, its provenance and its comparison."""
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -58,9 +57,9 @@ def model_card(
         "",
         f"`{command}` made the tables with flockenv {__version__}. Each row is over {len(seeds)} "
         f"episodes of {duration_s:g} s, with the same seeds {seeds[0]} to {seeds[-1]} for every "
-        f"policy and number of leaders. Brackets hold {CONFIDENCE:.0%} bootstrap intervals. "
-        "Differences and the ratios of means are paired by seed, and d is a difference's mean over "
-        "its standard deviation.",
+        f"policy and number of leaders. Brackets hold {CONFIDENCE:.0%} intervals. "
+        "Differences are paired by seed, and d is a difference's mean over its standard "
+        "deviation.",
     ]
     for flock, result in results.items():
         lines += ["", f"### {flock}", "", f"{result.title()}.", "", *_means(result)]
@@ -89,17 +88,13 @@ def _means(result: ComparisonReport) -> list[str]:
 def _differences(name: str, result: ComparisonReport) -> list[str]:
     own = result.differences[result.differences["policy"] == name]
     lines = [
-        "| reference | leaders | difference of the signed order | d | ratio |",
-        "| --- " * 5 + "|",
+        "| reference | leaders | difference of the signed order | d |",
+        "| --- " * 4 + "|",
     ]
     for row in own.to_dict("records"):
         interval = f"{row['mean']:+.3f} [{row['low']:+.3f}, {row['high']:+.3f}]"
-        # A ratio needs a reference clearly above zero.
-        known = not math.isnan(row["ratio"])
-        ratio = f"{row['ratio']:.2f} [{row['ratio_low']:.2f}, {row['ratio_high']:.2f}]"
         lines.append(
-            f"| {row['reference']} | {row['leaders']} | {interval} | {row['effect']:.2f} "
-            f"| {ratio if known else ''} |"
+            f"| {row['reference']} | {row['leaders']} | {interval} | {row['effect']:.2f} |"
         )
     return lines if len(own) > 0 else []
 

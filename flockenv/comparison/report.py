@@ -24,7 +24,7 @@ from flockenv.comparison.episodes import (
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import LeaderPolicy
 from flockenv.policies.model import as_policy
-from flockenv.statistics.intervals import (
+from flockenv.statistics import (
     CONFIDENCE,
     Difference,
     Line,

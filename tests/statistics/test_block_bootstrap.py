@@ -9,8 +9,13 @@ import pytest
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from flockenv.statistics.block_bootstrap import block_sums, block_sums_resampled
-from flockenv.statistics.intervals import interval
+from flockenv.statistics import (
+    binder_cumulant,
+    block_sums,
+    block_sums_resampled,
+    interval,
+    time_average_interval,
+)
 
 A = 0.9
 SAMPLES = 4000
@@ -56,6 +61,24 @@ def test_runs_that_stay_in_different_states_widen_the_interval() -> None:
     assert means(runs, 100.0)[1:].std() == pytest.approx(9.43, rel=0.1)
     assert low < -15
     assert high > 15
+
+
+def test_a_function_of_time_averages_has_the_interval_of_its_parts() -> None:
+    times = np.arange(SAMPLES, dtype=float)
+    runs = [(times, autoregressive(seed)) for seed in range(4)]
+    # The same draws as step by step.
+    assert time_average_interval(runs, 100.0, seed=1) == interval(
+        means([values for _, values in runs], 100.0)
+    )
+    moments = [(times, np.stack([m**2, m**4], axis=1)) for _, m in runs]
+    value, low, high = time_average_interval(moments, 100.0, binder_cumulant)
+    assert low < 0.0 < high  # Normal samples have none.
+    assert low < value < high < 0.1
+    one = np.ones((SAMPLES, 2))  # |m| = 1 throughout.
+    ordered = time_average_interval([(times, one)], 100.0, binder_cumulant)
+    assert ordered == pytest.approx((2 / 3,) * 3)
+    with pytest.raises(ValueError, match="no runs"):
+        time_average_interval([], 100.0)
 
 
 def test_blocks_are_of_time_and_lose_nothing() -> None:

@@ -1,15 +1,16 @@
-"""Means have intervals that hold, and the straight line is the one of least squares.
+"""Intervals hold the mean as often as they say, for few values and for many.
 
-On paper: y = 1, 2, 2 at x = 0, 1, 2 has slope 1/2, intercept 7/6, F = 3 and p = 1/3.
+On paper: the mean of 1, 2 and 3 is 2, with the standard error 1/√3 and Student's quantile 4.303.
 """
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from flockenv.statistics.intervals import (
+from flockenv.statistics import (
+    FEW,
+    bootstrap_interval,
     crossed_replicates,
-    fit_line,
     interval,
     mean_interval,
     paired_difference,
@@ -17,46 +18,44 @@ from flockenv.statistics.intervals import (
 )
 
 
-def test_a_line_through_three_points() -> None:
-    line = fit_line([0, 1, 2], [1, 2, 2])
-    assert line.slope == pytest.approx(1 / 2)
-    assert line.intercept == pytest.approx(7 / 6)
-    # Residual sum of squares 1/6 with one degree of freedom, explained 1/2.
-    assert line.f == pytest.approx(3)
-    # The F distribution with 1 and 1 degrees of freedom: p = 1 - (2/π)·atan(sqrt(F)).
-    assert line.p == pytest.approx(1 - 2 / np.pi * np.arctan(np.sqrt(3)))
-    assert line.n == 3
+def test_few_values_have_students_interval() -> None:
+    mean, low, high = mean_interval([1.0, 2.0, 3.0])
+    assert (mean, high - mean, mean - low) == pytest.approx((2.0, *[4.302653 / 3**0.5] * 2))
 
 
-def test_points_on_a_line_leave_no_doubt() -> None:
-    line = fit_line(range(5), [3 - 2 * x for x in range(5)])
-    assert (line.slope, line.intercept) == pytest.approx((-2, 3))
-    assert line.f > 1e12
-    assert line.p < 1e-12
-
-
-def test_equal_values_have_no_line() -> None:
-    line = fit_line(range(5), [0.25] * 5)
-    assert (line.slope, line.intercept, line.n) == (0.0, 0.25, 5)
-    assert np.isnan([line.f, line.p]).all()
-    assert str(line) == "0.250 in all 5 runs: no line to fit"
-
-
-@pytest.mark.parametrize(("x", "y"), [([1, 2], [1, 2]), ([1, 1, 1], [1, 2, 3])])
-def test_too_little_for_a_line_is_refused(x: list[float], y: list[float]) -> None:
-    with pytest.raises(ValueError, match="three points at two different x"):
-        fit_line(x, y)
-
-
-def test_the_interval_covers_the_mean_as_often_as_it_says() -> None:
+@pytest.mark.parametrize("count", [3, FEW, 40])
+def test_the_interval_covers_the_mean_as_often_as_it_says(count: int) -> None:
     rng = np.random.default_rng(1)
     covered = 0
-    for _ in range(60):
-        mean, low, high = mean_interval(rng.normal(2.0, 1.0, 40))
+    for _ in range(100):
+        mean, low, high = mean_interval(rng.normal(2.0, 1.0, count))
         assert low < mean < high
         covered += low <= 2.0 <= high
-    # Binomial with n = 60 and 0.95: 49 or fewer has a chance of about 1e-4.
-    assert covered >= 50
+    # Binomial with n = 100 and 0.95: 86 or fewer has a chance of about 5e-4.
+    assert covered >= 87
+
+
+def test_any_statistic_of_runs_has_an_interval() -> None:
+    """The median of n normal values has the standard deviation sqrt(π/2n)."""
+    values = np.random.default_rng(3).normal(size=400)
+    median, low, high = bootstrap_interval([values], np.median)
+    assert median == np.median(values)
+    assert high - low == pytest.approx(2 * 1.96 * np.sqrt(np.pi / 800), rel=0.25)
+    assert np.isnan(bootstrap_interval([[1.0]], np.mean)[1:]).all()
+
+
+def test_pairs_share_what_moves_both() -> None:
+    def difference(a: np.ndarray, b: np.ndarray, axis: int) -> np.ndarray:
+        return np.asarray(a.mean(axis) - b.mean(axis))
+
+    rng = np.random.default_rng(4)
+    common = rng.normal(size=100)
+    samples = [common + rng.normal(0.0, 0.1, 100) for _ in range(2)]
+    paired = bootstrap_interval(samples, difference)
+    apart = bootstrap_interval(samples, difference, paired=False)
+    # Standard errors: 0.1·sqrt(2)/10 and about sqrt(2)/10.
+    assert paired[2] - paired[1] == pytest.approx(2 * 1.96 * 0.01414, rel=0.25)
+    assert apart[2] - apart[1] == pytest.approx(2 * 1.96 * 0.1414, rel=0.25)
 
 
 def test_intervals_of_one_value_and_of_equal_values() -> None:
@@ -64,6 +63,10 @@ def test_intervals_of_one_value_and_of_equal_values() -> None:
     assert mean == 3.0
     assert np.isnan([low, high]).all()
     assert mean_interval([2.0, 2.0, 2.0]) == (2.0, 2.0, 2.0)
+    # A run without the quantity leaves its mean unknown, not the mean of the others.
+    assert np.isnan(mean_interval([1.0, np.nan, 2.0])).all()
+    with pytest.raises(ValueError, match="no values"):
+        mean_interval([])
 
 
 def test_groups_keep_their_order_and_their_own_means() -> None:
@@ -80,27 +83,13 @@ def test_pairs_are_compared_seed_by_seed() -> None:
     found = paired_difference(theirs + np.array([1.0, 2.0, 3.0, 2.0]), theirs)
     assert found.mean == pytest.approx(2.0)
     assert found.effect == pytest.approx(2.0 / np.sqrt(2.0 / 3.0))
-    assert 1.0 <= found.low < 2.0 < found.high <= 3.0
+    # Student's quantile for four values is 3.182, the standard error sqrt(2/3)/2.
+    assert found.high - found.mean == pytest.approx(3.182446 * np.sqrt(2 / 3) / 2)
     same = paired_difference(theirs, theirs)
     assert (same.mean, same.low, same.high, same.n) == (0.0, 0.0, 0.0, 4)
     assert np.isnan(same.effect)
     with pytest.raises(ValueError, match="3 and 2"):
         paired_difference([1, 2, 3], [1, 2])
-
-
-def test_ratios_stand_where_what_divides_is_above_zero() -> None:
-    random = np.random.default_rng(0)
-    theirs = random.normal(0.4, 0.2, 400)
-    ours = 1.5 * theirs + random.normal(0.0, 0.05, 400)
-    found = paired_difference(ours, theirs)
-    assert found.ratio == pytest.approx(ours.mean() / theirs.mean())
-    # Paired, what both share cancels: the ratio's standard error is 0.05/20/0.4.
-    assert found.ratio_low == pytest.approx(found.ratio - 1.96 * 0.00625, abs=0.003)
-    assert found.ratio_high == pytest.approx(found.ratio + 1.96 * 0.00625, abs=0.003)
-    same = paired_difference(theirs, theirs)
-    assert (same.ratio, same.ratio_low, same.ratio_high) == (1.0, 1.0, 1.0)
-    assert np.isnan(paired_difference(ours, theirs - 0.4).ratio)
-    assert np.isnan(paired_difference([1.0], [1.0]).ratio)
 
 
 def test_crossed_intervals_hold_where_rows_and_columns_vary() -> None:

@@ -1,0 +1,74 @@
+"""A straight line by least squares, and the test of figure 12."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from flockenv._io.extras import require
+
+__all__ = ["Line", "fit_line"]
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A straight line fitted by least squares, and the tests of its slope.
+
+    Attributes
+    ----------
+    slope, intercept : float
+        In units of y over x, and of y.
+    f : float
+        F statistic with 1 and n - 2 degrees of freedom, against no linear dependence; NaN where
+        all y are the same. It does not know whether the line rises.
+    p : float
+        Probability of such an F or a larger one if y did not depend on x; NaN likewise.
+    n : int
+        Number of points.
+    """
+
+    slope: float
+    intercept: float
+    f: float
+    p: float
+    n: int
+
+    @property
+    def t(self) -> float:
+        """Student's t of the slope, with n - 2 degrees of freedom: √F with the slope's sign."""
+        return math.copysign(math.sqrt(self.f), self.slope)
+
+    @property
+    def p_rising(self) -> float:
+        """Probability of such a t or a larger one if y did not rise with x: the signed test."""
+        return self.p / 2 if self.slope > 0 else 1.0 - self.p / 2
+
+    def __str__(self) -> str:
+        if math.isnan(self.f):
+            return f"{self.intercept:.3f} in all {self.n} runs: no line to fit"
+        sign = "-" if self.slope < 0 else "+"
+        return (
+            f"{self.intercept:.3f} {sign} {abs(self.slope):.4f} k (F = {self.f:.2f}, "
+            f"p = {self.p:.2g}, {self.n} runs)"
+        )
+
+
+def fit_line(x: Iterable[float], y: Iterable[float]) -> Line:
+    """Fit y = intercept + slope x, one point per run.
+
+    Raises
+    ------
+    ValueError
+        For fewer than three points or a single x.
+    """
+    stats = require("scipy.stats", "plot")
+    x, y = np.asarray(list(x), float), np.asarray(list(y), float)
+    if len(x) < 3 or np.ptp(x) == 0.0:
+        raise ValueError("a line needs at least three points at two different x")
+    if np.ptp(y) == 0.0:
+        return Line(0.0, float(y[0]), math.nan, math.nan, len(x))
+    fit = stats.linregress(x, y)
+    unexplained = 1.0 - fit.rvalue**2
+    f = fit.rvalue**2 / unexplained * (len(x) - 2) if unexplained > 0 else np.inf
+    return Line(float(fit.slope), float(fit.intercept), float(f), float(fit.pvalue), len(x))

@@ -1,0 +1,118 @@
+"""Times of events that did not come to every run, such as ordering times (Kaplan and Meier 1958).
+
+A run without the event says that its time is longer than the run, no more: its time is censored.
+To leave such runs out, or to count them with the length of the run, makes all times too short.
+"""
+
+import math
+import warnings
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from flockenv._io.extras import require
+from flockenv.statistics.intervals import CONFIDENCE
+
+__all__ = ["Survival", "kaplan_meier", "logrank_p"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Survival:
+    """The share of runs that still wait for an event, against time.
+
+    Attributes
+    ----------
+    time_s : float64 array, shape (m,)
+        Times at which events came, ascending, in s.
+    share : float64 array, shape (m,)
+        Share of the runs that wait longer than that, as Kaplan and Meier estimate it.
+    low, high : float64 array, shape (m,)
+        Its pointwise interval at level `CONFIDENCE` (exponential Greenwood, which is the log-log
+        transform); the ends are those of [0, 1] where it is undefined.
+    runs, events : int
+        Number of runs, and of those to which the event came.
+    """
+
+    time_s: NDArray[np.float64]
+    share: NDArray[np.float64]
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+    runs: int
+    events: int
+
+    @property
+    def median_s(self) -> tuple[float, float, float]:
+        """Median time and its interval in s; infinite if too few runs had the event for one."""
+        return self._passes(self.share), self._passes(self.low), self._passes(self.high)
+
+    def share_at(self, time_s: float) -> float:
+        """Return the share of the runs that wait longer than a time in s."""
+        place = int(np.searchsorted(self.time_s, time_s, side="right"))
+        return 1.0 if place == 0 else float(self.share[place - 1])
+
+    def _passes(self, share: NDArray[np.float64]) -> float:
+        passed = np.flatnonzero(share <= 0.5)
+        return float(self.time_s[passed[0]]) if len(passed) else math.inf
+
+
+def kaplan_meier(times_s: ArrayLike, until_s: ArrayLike) -> Survival:
+    """Estimate how long runs wait for an event.
+
+    Parameters
+    ----------
+    times_s
+        Shape (n,): when the event came to each run, in s; infinite if it did not, as ordering times
+        have it.
+    until_s
+        How long each run was watched, in s: one number, or one per run.
+
+    Raises
+    ------
+    ValueError
+        Without runs, for times that are NaN or negative, and for events after the end of their run.
+    """
+    found = require("scipy.stats", "plot").ecdf(_censored(times_s, until_s)).sf
+    came = np.diff(found.probabilities, prepend=1.0) < 0.0
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore", RuntimeWarning)  # Where the share is 0 or 1.
+        ends = found.confidence_interval(CONFIDENCE, method="log-log")
+    low, high = ends.low.probabilities[came], ends.high.probabilities[came]
+    times = np.asarray(times_s, np.float64)
+    return Survival(
+        np.asarray(found.quantiles[came], np.float64),
+        np.asarray(found.probabilities[came], np.float64),
+        np.where(np.isnan(low), 0.0, low),
+        np.where(np.isnan(high), 1.0, high),
+        len(times),
+        int(np.isfinite(times).sum()),
+    )
+
+
+def logrank_p(
+    times_s: ArrayLike, until_s: ArrayLike, other_times_s: ArrayLike, other_until_s: ArrayLike
+) -> float:
+    """Return the probability of so different waiting times if both kinds of runs had the same.
+
+    That is the two-sided log-rank test (Mantel 1966). Parameters and errors are those of
+    `kaplan_meier`, for two sets of runs.
+    """
+    sets = (_censored(times_s, until_s), _censored(other_times_s, other_until_s))
+    return float(require("scipy.stats", "plot").logrank(*sets).pvalue)
+
+
+def _censored(times_s: ArrayLike, until_s: ArrayLike) -> Any:
+    times = np.asarray(times_s, np.float64)
+    ends = np.broadcast_to(np.asarray(until_s, np.float64), times.shape)
+    if times.ndim != 1 or len(times) == 0:
+        raise ValueError(f"times_s has shape {times.shape}, expected (n,) with at least one run")
+    if np.isnan(times).any() or (times < 0.0).any():
+        raise ValueError("times_s holds NaN or negative times; infinite ones stand for no event")
+    if not np.isfinite(ends).all() or (ends < 0.0).any():
+        raise ValueError("until_s is not accepted: finite times, at least 0 s")
+    if (np.isfinite(times) & (times > ends)).any():
+        raise ValueError("times_s holds events after until_s, the end of their run")
+    waits = ~np.isfinite(times)
+    stats = require("scipy.stats", "plot")
+    return stats.CensoredData.right_censored(np.where(waits, ends, times), waits)
