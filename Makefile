@@ -166,7 +166,6 @@ validate: $(STAMPS)/test $(CORE) ## the slow tests and the published curves
 tables: $(STAMPS)/compare $(CORE) ## fill the tables and draw the curves of README and docs from the committed data
 	$(BIN)/python docs/tables.py
 	$(BIN)/python docs/leader_curves.py
-	$(BIN)/python benches/report docs
 	$(BIN)/python benches/throughput.py --page
 
 replay-animation: $(STAMPS)/browser $(CORE) ## photograph the replay page into docs/replay.webp
@@ -239,7 +238,7 @@ speed-vs-error: $(STAMPS)/compare $(STAMPS)/peers ## measure speed and error aga
 	$(PEERS)/bin/python benches/peers/run.py $(SPEED_FILES) $(SPEED)
 	$(SPEED) $(SPEED_ARGS) $(SPEED_DOCS)/speed_vs_error judge $(SPEED_FILES) \
 		overlap slide wall_push momentum horizon order
-	$(BIN)/python benches/report $(SPEED_DOCS) $(SPEED_FILES) $(SPEED_ARGS)
+	$(BIN)/python benches/report $(SPEED_DOCS)/speed_vs_error $(SPEED_FILES)
 
 lint-benches: ## formatting and clippy of the comparison with other engines
 	cargo fmt --check --manifest-path benches/Cargo.toml

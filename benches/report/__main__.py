@@ -1,9 +1,8 @@
-"""Write the report from the tables of one run: ``python benches/report DOCS FILES``.
+"""Draw the figures and write the short tables of one run: ``python benches/report FOLDER [FILES]``.
 
-DOCS is the folder of ``speed_vs_error.md``, with the tables in ``speed_vs_error`` beside it. FILES
-is the folder with the peers' versions; after a measurement it is given, figures are drawn, and
-``made.toml`` beside the tables stores the date, the machine and the versions. Without FILES only
-the page is written again, from the committed tables.
+FOLDER has the tables of the run. The short ones, which docs/speed_vs_error.md shows, are written
+beside them. FILES is the folder with the peers' versions; after a measurement it is given, and
+``made.toml`` stores the date, the machine and the versions.
 """
 
 from __future__ import annotations
@@ -11,55 +10,136 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-import sections
-from machine import provenance, read_provenance, write_provenance
-from measurements import Measurements
+import numpy as np
+import pandas as pd
+from machine import provenance, write_provenance
+from measurements import BOX2D, RAPIER, STEP_S, Measurements, ours
 from plots import draw_all
-from recommendation import recommendation
-from summary import headline, summary
 
-TEMPLATE = Path(__file__).parent / "template.md"
+# Columns of the short tables, and what they are called there.
+ENGINES = {
+    "jam_us_per_step": "jam, µs",
+    "jam_faster": "jam, speed",
+    "cycle_us_per_step": "cycle, µs",
+    "cycle_faster": "cycle, speed",
+    "jam_overlap_mean_cm": "overlap, cm",
+    "force_error": "force",
+    "slide_median_cm": "slide, cm",
+    "cycle_half_second_cm": "0.5 s, cm",
+}
+SIZES = {
+    "leapfrog": ours("leapfrog", 0),
+    "leapfrog, 1 relinearization": ours("leapfrog", 1),
+    "rapier2d-f64": RAPIER,
+    "Box2D": BOX2D,
+}
 
 
 def main() -> None:
-    """Read the tables, draw the figures, fill the template."""
+    """Read the tables, draw the figures and write the short tables."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("docs", type=Path)
+    parser.add_argument("folder", type=Path)
     parser.add_argument("files", type=Path, nargs="?")
-    parser.add_argument("--trial", action="store_true")
     arguments = parser.parse_args()
-    folder = arguments.docs / "speed_vs_error"
-    m = Measurements.read(folder)
+    m = Measurements.read(arguments.folder)
     if arguments.files is not None:
-        draw_all(m, folder)
-        write_provenance(folder, provenance(Path(__file__).parents[1], arguments.files))
-    origin = read_provenance(folder)
-    warning = (
-        "**This is a trial run, which is too short for results.**\n\n" if arguments.trial else ""
+        made = provenance(Path(__file__).parents[1], arguments.files)
+        write_provenance(arguments.folder, made)
+    draw_all(m, arguments.folder)
+    for name, make in {
+        "engines": engines,
+        "steps": steps,
+        "sizes": sizes,
+        "exponents": exponents,
+        "order_errors": order_errors,
+    }.items():
+        path = arguments.folder / f"short_{name}.csv"
+        make(m).to_csv(path, index=False, float_format=two_digits, lineterminator="\n")
+
+
+def two_digits(value: float) -> str:
+    """Round to two digits that mean something, without an exponent for everyday sizes."""
+    return f"{float(f'{value:.2g}'):g}"
+
+
+def engines(m: Measurements) -> pd.DataFrame:
+    """Return every engine and setting with 27 boats at the reference step, flockenv first."""
+    rows = m.settings()
+    rows = rows[rows.dt_s == STEP_S].copy()
+    rows["theirs"] = rows.engine.ne("flockenv")
+    return _short(rows.sort_values(["theirs", "engine"], kind="stable"), {}, ENGINES)
+
+
+def steps(m: Measurements) -> pd.DataFrame:
+    """Return leapfrog's speed and errors against the step."""
+    rows = m.settings()
+    rows = rows[(rows.scheme == "leapfrog") & (rows.solver == "block-pivoting")]
+    columns = {"dt_s": "dt, s"}
+    more = {"jam_overlap_max_cm": "deepest overlap, cm", "jam_times_real_time": "jam, × real time"}
+    return _short(rows, columns, {**ENGINES, **more})
+
+
+def _short(rows: pd.DataFrame, first: dict[str, str], columns: dict[str, str]) -> pd.DataFrame:
+    names = rows.engine.where(rows.engine.ne("flockenv"), "") + " " + rows.setting
+    short = rows.rename(columns=first | columns)[[*first.values(), *columns.values()]]
+    named = names.str.strip().str.replace("block-pivoting", "exact")
+    short.insert(0, "engine, setting", named)
+    return short
+
+
+def sizes(m: Measurements) -> pd.DataFrame:
+    """Return µs per step of jams against the number of boats."""
+    jam = m.speed[(m.speed.scene == "jam") & (m.speed.dt_s == STEP_S)]
+    table = {
+        name: jam[(jam.engine == engine) & (jam.setting == setting)].set_index("n").us_per_step
+        for name, (engine, setting) in SIZES.items()
+    }
+    return pd.DataFrame(table).rename_axis("boats").reset_index()
+
+
+def exponents(m: Measurements) -> pd.DataFrame:
+    """Return the power of the step that errors grow with, over the smallest steps."""
+    settings = m.settings()
+    found = []
+    for scheme in ("leapfrog", "moreau", "paper"):
+        slide = _by_step(m.slide, scheme).head(4)
+        whole = _by_step(settings, scheme).head(3)
+        found.append(
+            {
+                "scheme": scheme,
+                "sliding for 2 s": _exponent(slide, "slide_median_cm"),
+                "0.5 s of the jam": _exponent(whole, "jam_half_second_cm"),
+                "0.5 s of the cycle": _exponent(whole, "cycle_half_second_cm"),
+            }
+        )
+    return pd.DataFrame(found)
+
+
+def _by_step(rows: pd.DataFrame, scheme: str) -> pd.DataFrame:
+    engine, setting = ours(scheme, 2)
+    return rows[(rows.engine == engine) & (rows.setting == setting)].sort_values("dt_s")
+
+
+def _exponent(rows: pd.DataFrame, column: str) -> float:
+    return float(np.polyfit(np.log(rows.dt_s), np.log(rows[column]), 1)[0])
+
+
+def order_errors(m: Measurements) -> pd.DataFrame:
+    """Return the errors of the mean Ψ_o and C_v against leapfrog at 0.005 s."""
+    rows = m.order[m.order.psi_o_half_width > 0]
+    named = rows.engine.where(rows.engine.ne("flockenv"), "") + " " + rows.setting
+    other = rows.first_seed.map(lambda seed: "" if seed == 1 else " (other seeds)")
+    return pd.DataFrame(
+        {
+            "engine, setting": named.str.strip().str.replace("block-pivoting", "exact") + other,
+            "dt, s": rows.dt_s,
+            "runs": rows.seeds,
+            "error of Ψ_o": rows.psi_o_error,
+            "± (Ψ_o)": rows.psi_o_half_width,
+            "error of C_v, cm²/s²": rows.c_v_error_cm2_s2,
+            "± (C_v)": rows.c_v_half_width_cm2_s2,
+        }
     )
-    text = TEMPLATE.read_text().format(
-        trial=warning,
-        headline=headline(m),
-        date=origin["date"],
-        machine=origin["machine"],
-        versions=origin["versions"],
-        spread=sections.spread(m),
-        summary=summary(m),
-        call_only=sections.call_only(m),
-        recommendation=recommendation(m),
-        speeds=sections.speeds(m),
-        errors=sections.errors(m),
-        profile=sections.profile(m),
-        lost=sections.lost(m),
-        every_setting=sections.every_setting(m),
-        larger_flocks=sections.larger_flocks(m),
-        solvers=sections.solvers(m),
-        order_of_schemes=sections.order_of_schemes(m),
-        order_parameters=sections.order_parameters(m),
-        parts=sections.parts(m),
-        growth=sections.growth(m),
-    )
-    (arguments.docs / "speed_vs_error.md").write_text(text)
 
 
 if __name__ == "__main__":

@@ -28,11 +28,6 @@ def write_provenance(folder: Path, found: dict[str, str]) -> None:
     (folder / FILE).write_text("".join(lines), encoding="utf-8")
 
 
-def read_provenance(folder: Path) -> dict[str, str]:
-    """Return what `write_provenance` stored."""
-    return tomllib.loads((folder / FILE).read_text(encoding="utf-8"))
-
-
 def _machine() -> str:
     model = platform.processor() or platform.machine()
     cpuinfo = Path("/proc/cpuinfo")

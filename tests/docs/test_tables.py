@@ -37,7 +37,6 @@ def test_a_changed_number_is_put_back():
 
 
 MEASURED = {
-    "speed_vs_error": ["benches/report", "DOCS"],
     "throughput": ["benches/throughput.py", "--page", "--docs", "DOCS"],
 }
 
