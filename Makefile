@@ -54,7 +54,7 @@ TEST_EXTRAS := --extra train --extra plot --extra search --extra render --extra 
 .NOTPARALLEL:
 .PHONY: help setup build compare test lint format test-rust test-bare test-python coverage test-js test-browser test-wheel test-oldest \
         test-benchmarl test-rllib test-ray test-slurm validate docs wheel audit licenses tables replay-animation publish-check \
-        instructions learning-check training-physics throughput learners-throughput env-benchmarl env-rllib soak fuzz speed-vs-error \
+        instructions learning-check training-physics throughput env-benchmarl env-rllib soak fuzz speed-vs-error \
         lint-benches clean
 
 help: ## list the commands
@@ -166,7 +166,6 @@ validate: $(STAMPS)/test $(CORE) ## the slow tests and the published curves
 tables: $(STAMPS)/compare $(CORE) ## fill the tables and draw the curves of README and docs from the committed data
 	$(BIN)/python docs/tables.py
 	$(BIN)/python docs/leader_curves.py
-	$(BIN)/python benches/throughput.py --page
 
 replay-animation: $(STAMPS)/browser $(CORE) ## photograph the replay page into docs/replay.webp
 	@tests/browser/need_chromium.sh
@@ -210,17 +209,14 @@ test-slurm: $(STAMPS)/test $(CORE) ## the recipe for Slurm on a real one of one 
 	@tests/need.sh "munged slurmctld slurmd sbatch" "slurm-wlm munge"
 	$(BIN)/python -m pytest -m slurm tests/cluster $(PYTEST_ARGS)
 
-throughput: $(STAMPS)/test $(CORE) ## measure speed beside VMAS and MPE2, write docs/throughput.md
+throughput: $(STAMPS)/test $(CORE) env-rllib env-benchmarl ## measure speed beside VMAS, MPE2 and the learners' interfaces
 	$(PYTHON) -m venv .venv-peers
 	VIRTUAL_ENV="$(CURDIR)/.venv-peers" $(BIN)/uv pip install vmas mpe2 "torch>=2.5" \
 	  --excludes requirements-excluded.txt
 	$(BIN)/python benches/throughput.py $(THROUGHPUT_ARGS)
-
-learners-throughput: $(CORE) env-rllib env-benchmarl ## measure the learners' interfaces beside the batch, into docs
 	$(BIN)/python benches/learners.py $(THROUGHPUT_ARGS)
-	$(BIN)/python docs/tables.py
 
-soak: $(STAMPS)/test $(CORE) ## ten million control steps with random rudders, write docs/soak.md (minutes)
+soak: $(STAMPS)/test $(CORE) ## ten million control steps with random rudders (minutes)
 	$(BIN)/python benches/soak.py $(SOAK_ARGS)
 
 # Counts hold on a busy machine, unlike times. INSTRUCTIONS=--write writes new ones.

@@ -1,28 +1,27 @@
-"""Samples per second of each learner's interface beside the batch: `make learners-throughput`.
+"""Samples per second of each learner's interface beside the batch: `make throughput`.
 
 Every row is measured in a process of its own, in turn, in several rounds, each with the Python of
 the library that it measures. A row is compared with the batch of its own round. The numbers go to
-docs/learners_throughput.toml, and `make tables` fills the table of docs/learners_throughput.md.
+docs/throughput, whose page shows them.
 """
 
 import argparse
+import csv
 import json
 import os
-import platform
 import statistics
 import subprocess
 import sys
 import time
 from collections.abc import Callable
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
 import tomli_w
-from throughput import POOLS, ROOT, SCENE, processor
+from throughput import POOLS, ROOT, SCENE, made
 
 FLOCKS = 64
-DATA = ROOT / "docs" / "learners_throughput.toml"
+OUT = ROOT / "docs" / "throughput"
 FLOCK = {"pool": "wide", "bw_s": POOLS["wide"], **SCENE}
 LEADERS = FLOCK["n_leaders"]
 
@@ -173,19 +172,43 @@ def rllib_agents(seconds: float) -> float:
     return rllib_samples(config, MultiAgentEnvRunner, seconds, LEADERS)
 
 
-#: Rows: name, what it measures, and the environment whose Python it needs.
-ROWS: dict[str, tuple[Callable[[float], float], str]] = {
-    "batch": (batch, ".venv"),
-    "vector": (vector, ".venv"),
-    "sb3": (sb3, ".venv"),
-    "torchrl": (torchrl, ".venv"),
-    "torchrl features": (lambda seconds: torchrl(seconds, "features"), ".venv"),
-    "torchrl boats": (lambda seconds: torchrl(seconds, "boats"), ".venv"),
-    "torchrl GymWrapper": (gym_wrapper, ".venv"),
-    "benchmarl": (benchmarl, ".venv-benchmarl"),
-    "rllib native": (lambda seconds: rllib_joint(seconds, "vector_entry_point"), ".venv-rllib"),
-    "rllib sync": (lambda seconds: rllib_joint(seconds, "sync"), ".venv-rllib"),
-    "rllib agents": (rllib_agents, ".venv-rllib"),
+#: Rows: what each is called, how it is measured, and the environment whose Python it needs.
+ROWS: dict[str, tuple[str, Callable[[float], float], str]] = {
+    "batch": ("the batch itself", batch, ".venv"),
+    "vector": ("LeadersVectorEnv, in the file of PPO", vector, ".venv"),
+    "sb3": ("flockenv.sb3.LeaderVecEnv", sb3, ".venv"),
+    "torchrl": ("TorchRL, LeadersEnv without a state", torchrl, ".venv"),
+    "torchrl features": (
+        "TorchRL, LeadersEnv with features of the flock",
+        lambda seconds: torchrl(seconds, "features"),
+        ".venv",
+    ),
+    "torchrl boats": (
+        "TorchRL, LeadersEnv with the global state",
+        lambda seconds: torchrl(seconds, "boats"),
+        ".venv",
+    ),
+    "torchrl GymWrapper": ("TorchRL, GymWrapper on LeadersVectorEnv", gym_wrapper, ".venv"),
+    "benchmarl": (
+        "BenchMARL, with features of the flock and sums of rewards",
+        benchmarl,
+        ".venv-benchmarl",
+    ),
+    "rllib native": (
+        "RLlib, LeadersVectorEnv",
+        lambda seconds: rllib_joint(seconds, "vector_entry_point"),
+        ".venv-rllib",
+    ),
+    "rllib sync": (
+        "RLlib, single flocks in a loop",
+        lambda seconds: rllib_joint(seconds, "sync"),
+        ".venv-rllib",
+    ),
+    "rllib agents": (
+        "RLlib, leaders as agents of single flocks in a loop",
+        rllib_agents,
+        ".venv-rllib",
+    ),
 }
 PACKAGES = {".venv": ["torchrl", "stable-baselines3"], ".venv-benchmarl": ["benchmarl", "torchrl"]}
 PACKAGES[".venv-rllib"] = ["ray"]
@@ -193,7 +216,7 @@ PACKAGES[".venv-rllib"] = ["ray"]
 
 def measure(row: str, seconds: float) -> float:
     """Take one measurement in a process of its own."""
-    python = ROOT / ROWS[row][1] / "bin" / "python"
+    python = ROOT / ROWS[row][2] / "bin" / "python"
     command = [python, "-W", "ignore", __file__, "--row", row, "--seconds", str(seconds)]
     environment = {**os.environ, "OMP_NUM_THREADS": "1"}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
@@ -216,34 +239,6 @@ def versions() -> str:
     return "; ".join(parts)
 
 
-def results(found: dict[str, list[float]], seconds: float) -> dict:
-    """Return the medians and ranges of rates, and of their ratios to the batch of their round."""
-    load = os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
-    summary: dict = {
-        "made": {
-            "date": time.strftime("%Y-%m-%d"),
-            "machine": f"{processor()}, {os.cpu_count()} cores, {platform.system()} "
-            f"{platform.machine()}, Python {platform.python_version()}, "
-            f"flockenv {version('flockenv')}",
-            "libraries": versions(),
-            "load": round(load, 1),
-            "rounds": len(found["batch"]),
-            "seconds": seconds,
-        }
-    }
-    for row, rates in found.items():
-        ratios = [each / own for each, own in zip(rates, found["batch"], strict=True)]
-        summary[row] = {
-            "median": statistics.median(rates),
-            "least": min(rates),
-            "most": max(rates),
-            "ratio": statistics.median(ratios),
-            "ratio_least": min(ratios),
-            "ratio_most": max(ratios),
-        }
-    return summary
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--row", choices=ROWS, help="measure one row and print it as JSON")
@@ -251,15 +246,34 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=3)
     options = parser.parse_args()
     if options.row:
-        print(json.dumps({"value": ROWS[options.row][0](options.seconds)}))
+        print(json.dumps({"value": ROWS[options.row][1](options.seconds)}))
         return
     found: dict[str, list[float]] = {row: [] for row in ROWS}
     for _ in range(options.rounds):
         for row, rates in found.items():
             rates.append(measure(row, options.seconds))
             print(f"{row:>20}: {rates[-1]:,.4g} samples/s", flush=True)
-    DATA.write_text(tomli_w.dumps(results(found, options.seconds)), encoding="utf-8")
-    print(f"written to {DATA}")
+    OUT.mkdir(parents=True, exist_ok=True)
+    with (OUT / "learners.csv").open("w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        columns = ["interface", "samples/s", "least", "most"]
+        table.writerow(
+            [*columns, *(f"{each} of the batch" for each in ("median", "least", "most"))]
+        )
+        for row, rates in found.items():
+            ratios = [each / own for each, own in zip(rates, found["batch"], strict=True)]
+            table.writerow(
+                [
+                    ROWS[row][0],
+                    *(f"{each:.0f}" for each in (statistics.median(rates), min(rates), max(rates))),
+                    *(
+                        f"{each:.3f}"
+                        for each in (statistics.median(ratios), min(ratios), max(ratios))
+                    ),
+                ]
+            )
+    written = {**made(options.rounds, options.seconds), "libraries": versions()}
+    (OUT / "learners.toml").write_text(tomli_w.dumps(written), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -1,25 +1,19 @@
 """Run ten million control steps with random rudders, and check the results: `make soak`.
 
 Two batches, one per pool, take turns. Each episode draws its backward duration and its target
-direction, and episodes reset automatically. The exit code is 1 if a check fails. The page goes to
-docs/soak.md.
+direction, and episodes reset automatically. The exit code is 1 if a check fails. The numbers go to
+docs/throughput/soak.csv.
 """
 
 import argparse
-import os
-import platform
-import shlex
-import sys
-import time
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from rich.progress import Progress
-from throughput import processor
 
 import flockenv
-from flockenv._io.atomic_write import atomic_write
+from flockenv._io.atomic_write import write_text
 
 ROOT = Path(__file__).parents[1]
 SCENE = {"n_boats": 27, "n_leaders": 4, "bw_s": (0.0, 1.0), "target": "random", "episode_s": 48.0}
@@ -129,72 +123,39 @@ def failures(pools: list[Pool], memory: np.ndarray) -> list[str]:
     return found
 
 
-def page(pools: list[Pool], memory: np.ndarray, seed: int, wall_s: float) -> str:
-    slope, apart = growth(memory)
-    steps = sum(pool.steps for pool in pools)
-    places = [round(part * (len(memory) - 1) / 5) for part in range(1, 6)]
-    fifths = ", ".join(f"{memory[place, 1]:.0f}" for place in places)
-    load = os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
-    rows = {
-        "control steps": [f"{pool.steps:,}" for pool in pools],
-        "episodes, reset automatically": [f"{pool.episodes:,}" for pool in pools],
-        "substeps": [f"{pool.substeps:,}" for pool in pools],
-        "contacts, summed over substeps": [f"{pool.contacts:,}" for pool in pools],
-        "solves that exceeded their residual": [f"{pool.unsolved}" for pool in pools],
-        "worst residual of a solve, cm/s": [f"{pool.worst_residual_cm_s:.1e}" for pool in pools],
-        "worst overlap, cm": [f"{pool.worst_overlap_cm:.1e}" for pool in pools],
-        "worst overlap of an episode, mean, cm": [
-            f"{pool.sum_of_worst_overlaps_cm / max(pool.episodes, 1):.1e}" for pool in pools
-        ],
+def table(pools: list[Pool]) -> list[list[str]]:
+    """Return what each pool saw, a row per quantity."""
+    quantities = {
+        "control steps": lambda pool: f"{pool.steps}",
+        "episodes, reset automatically": lambda pool: f"{pool.episodes}",
+        "substeps": lambda pool: f"{pool.substeps}",
+        "contacts, summed over substeps": lambda pool: f"{pool.contacts}",
+        "solves that exceeded their residual": lambda pool: f"{pool.unsolved}",
+        "worst residual of a solve, cm/s": lambda pool: f"{pool.worst_residual_cm_s:.1e}",
+        "worst overlap, cm": lambda pool: f"{pool.worst_overlap_cm:.1e}",
+        "worst overlap of an episode, mean, cm": lambda pool: (
+            f"{pool.sum_of_worst_overlaps_cm / max(pool.episodes, 1):.1e}"
+        ),
     }
-    lines = [
-        "# Soak",
-        "",
-        f"All {steps:,} control steps with random rudders gave finite observations and rewards, "
-        "and every episode ended in a finite state.",
-        "",
-        f"`{shlex.join(['python', *sys.argv])}` (`make soak`) wrote this page with seed {seed} on "
-        f"{time.strftime('%Y-%m-%d')}: {processor()}, {os.cpu_count()} cores, {platform.system()} "
-        f"{platform.machine()}, Python {platform.python_version()}, flockenv "
-        f"{flockenv.__version__}; {wall_s:.0f} s, load average at the end {load:.1f}.",
-        "",
-        f"The soak runs {FLOCKS} flocks of {SCENE['n_boats']} boats, {SCENE['n_leaders']} of them "
-        f"leaders, half in each pool. Episodes last {SCENE['episode_s']:g} s, at 10 control steps "
-        "per second of five substeps each. Every episode draws a backward duration (bw from 0 to "
-        "1 s) and a target direction. Leaders hold random rudders from -1.2 to 1.2 (clipped at 1) "
-        f"for {RUDDER_HELD} steps on average. Every {STORED_EVERY} steps the whole batch is "
-        "stored as bytes and restored.",
-        "",
-        f"| | {' | '.join(f'`{pool.name}`' for pool in pools)} |",
-        f"| --- |{' --- |' * len(pools)}",
-        *(f"| {name} | {' | '.join(cells)} |" for name, cells in rows.items()),
-        "",
-        f"The resident memory is {memory[0, 1] / 1024:.1f} MiB at the start and "
-        f"{memory[-1, 1] / 1024:.1f} MiB at the end. At 20, 40, 60, 80 and 100 % of the steps it "
-        f"is {fifths} KiB. After the first {TRANSIENT:.0%} of the steps it changes by "
-        f"{slope:+.1f} KiB per million control steps (least squares of {len(memory)} readings), "
-        f"and all readings lie within {apart:.0f} KiB.",
-        "",
-        f"The run fails for NaN, for memory that grows by more than {MOST_GROWTH_KIB:.0f} KiB, for "
-        "any solve that exceeds its residual, for a residual above "
-        f"{BOUNDS['worst_residual_cm_s']:g} cm/s and for an overlap above "
-        f"{BOUNDS['worst_overlap_cm']:g} cm.",
-    ]
-    return "\n".join(lines) + "\n"
+    header = ["quantity", *(pool.name for pool in pools)]
+    return [header, *([name, *map(of, pools)] for name, of in quantities.items())]
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--steps", type=float, default=1e7, help="control steps, all flocks")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--out", type=Path, default=ROOT / "docs" / "soak.md")
+    parser.add_argument("--out", type=Path, default=ROOT / "docs" / "throughput" / "soak.csv")
     options = parser.parse_args()
-    start = time.perf_counter()
     pools, memory = soak(int(options.steps), options.seed)
-    text = page(pools, memory, options.seed, time.perf_counter() - start)
-    with atomic_write(options.out) as file:
-        file.write(text.encode())
-    print(text)
+    lines = [",".join(f'"{cell}"' for cell in row) for row in table(pools)]
+    write_text(options.out, "\n".join(lines) + "\n")
+    slope, apart = growth(memory)
+    print(*lines, sep="\n")
+    print(
+        f"Resident memory, {memory[0, 1]:.0f} KiB at the start, changes by {slope:+.1f} KiB per "
+        f"million control steps after the first {TRANSIENT:.0%}, within {apart:.0f} KiB."
+    )
     if found := failures(pools, memory):
         raise SystemExit("\n".join(found))
 

@@ -1,8 +1,7 @@
 """Environment steps per second of flockenv and of others, in one run: `make throughput`.
 
 Every row is measured in a process of its own, in turn, in several rounds; the median counts. The
-numbers go to docs/throughput.toml and the page to docs/throughput.md, which `--page` writes again
-from the numbers.
+numbers go to docs/throughput, whose page shows them.
 """
 
 import argparse
@@ -14,8 +13,7 @@ import statistics
 import subprocess
 import sys
 import time
-import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -130,6 +128,20 @@ OWN: dict[str, tuple[Callable[[float], float], str | None]] = {
 }
 
 
+#: What each row is called, and its unit.
+NAMES = {
+    "step wide": ("control step of a flock, one core, wide, bw 0.3 s", "µs"),
+    "step narrow": ("control step of a flock, one core, narrow, bw 0.4 s", "µs"),
+    "batch wide": ("64 flocks, wide", "flock steps/s"),
+    "batch narrow": ("64 flocks, narrow", "flock steps/s"),
+    "vec env overhead": ("overhead of LeaderVecEnv at 64 slots", "µs per sample"),
+    "ppo share": ("share of the environment in the time of SB3's PPO", "%"),
+    "vmas": ("VMAS flocking, 27 agents, 64 environments", "environment steps/s"),
+    "mpe2": ("MPE2 simple_spread, 27 agents", "environment steps/s"),
+}
+PEERS = ("vmas", "mpe2")
+
+
 def measure(row: str, seconds: float) -> float:
     """Take one measurement in a process of its own."""
     environment = dict(os.environ)
@@ -158,149 +170,25 @@ def processor() -> str:
     return named[0] if named else platform.processor()
 
 
-def results(found: dict[str, list[float]], seconds: float) -> dict[str, Any]:
-    """Return the medians and ranges of the measured values, and what they were measured with."""
+def made(rounds: int, seconds: float) -> dict[str, Any]:
+    """Return when, where and with what the numbers were measured."""
     from flockenv import _core
 
     load = os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
     return {
-        "made": {
-            "date": time.strftime("%Y-%m-%d"),
-            "machine": f"{processor()}, {os.cpu_count()} cores, {platform.system()} "
-            f"{platform.machine()}, Python {platform.python_version()}, "
-            f"flockenv {version('flockenv')} {'with' if _core.USES_AVX2 else 'without'} AVX2",
-            "load": round(load, 1),
-            "rounds": len(found["vmas"]),
-            "seconds": seconds,
-            "vmas": peer_version("vmas"),
-            "mpe2": peer_version("mpe2"),
-        },
-        **{
-            row: {
-                "median": statistics.median(values),
-                "least": min(values),
-                "most": max(values),
-            }
-            for row, values in found.items()
-        },
+        "date": time.strftime("%Y-%m-%d"),
+        "machine": f"{processor()}, {os.cpu_count()} cores, {platform.system()} "
+        f"{platform.machine()}, Python {platform.python_version()}, "
+        f"flockenv {version('flockenv')} {'with' if _core.USES_AVX2 else 'without'} AVX2",
+        "load": round(load, 1),
+        "rounds": rounds,
+        "seconds": seconds,
     }
 
 
-def page(found: Mapping[str, Any]) -> str:
-    """Return the page of the results."""
-    provenance = found["made"]
-
-    def line(row: str, what: str, unit: str) -> str:
-        return f"| {what} | {number(found[row]['median'])} {unit} | {spread(found[row])} |"
-
-    batch = found["batch wide"]
-    step, narrow = found["step wide"]["median"], found["step narrow"]["median"]
-    benchmark = "`gymnasium.utils.performance.benchmark_vector_step`"
-    settings = "64 slots, 64 steps, batch 512, 10 epochs, MlpPolicy"
-    lines = [
-        "# Throughput",
-        "",
-        f"A control step of one flock takes {step:.3g} µs of one core in the pool `wide` and "
-        f"{narrow:.3g} µs in `narrow`. A batch of 64 flocks advances by "
-        f"{number(batch['median'], 3)} flock control steps per second on {os_cores(provenance)}.",
-        "",
-        f"`make throughput` measured all numbers of this page on {provenance['date']}: "
-        f"{provenance['machine']}; load average at the end {provenance['load']:.1f}. "
-        f"Every number is the median of {provenance['rounds']} processes of "
-        f"{provenance['seconds']:g} s each, which took turns. The range is over these processes, "
-        "and `docs/throughput.toml` holds the numbers. `make` compiles the core for AVX2 where the "
-        "machine has it, to the same bits; wheels and `pip install` do without.",
-        "",
-        "A flock has 27 boats, 4 of them leaders. It runs 10 control steps per second of five "
-        "substeps of 0.02 s each (`leapfrog`, white noise, exact contacts), with the default "
-        "observation and reward.",
-        "",
-        "| quantity | median | range |",
-        "| --- | --- | --- |",
-        line("step wide", "control step of a flock, one core, `wide`, bw 0.3 s", "µs"),
-        line("step narrow", "control step of a flock, one core, `narrow`, bw 0.4 s", "µs"),
-        line("batch wide", f"64 flocks, {benchmark}, `wide`", "flock steps/s"),
-        line("batch narrow", f"64 flocks, {benchmark}, `narrow`", "flock steps/s"),
-        line("vec env overhead", "overhead of `LeaderVecEnv` at 64 slots", "µs per sample"),
-        line("ppo share", f"share of the environment in the time of SB3's PPO ({settings})", "%"),
-        "",
-        "## Other environments",
-        "",
-        "The peers have the same number of agents in comparable tasks. An environment step moves "
-        "all 27 agents.",
-        "",
-        "| environment | environment steps/s | range | flockenv over peer |",
-        "| --- | --- | --- | --- |",
-        f"| flockenv, 64 flocks, `wide` | {number(batch['median'])} | {spread(batch)} | 1 |",
-    ]
-    for row, name in (
-        ("vmas", f"VMAS {provenance['vmas']} `flocking`, 27 agents, 64 environments"),
-        ("mpe2", f"MPE2 {provenance['mpe2']} `simple_spread`, 27 agents"),
-    ):
-        median = found[row]["median"]
-        ratio = batch["median"] / median
-        lines.append(f"| {name} | {number(median)} | {spread(found[row])} | {ratio:,.0f} |")
-    lines += ["", choices()]
-    return "\n".join(lines)
-
-
-def spread(row: Mapping[str, float]) -> str:
-    """Return the range of a row's values."""
-    return f"{number(row['least'], 3)}-{number(row['most'], 3)}"
-
-
-def number(value: float, digits: int = 4) -> str:
-    """Return a number of so many significant digits, without an exponent."""
-    return f"{float(f'{value:.{digits}g}'):,g}"
-
-
-def os_cores(provenance: Mapping[str, Any]) -> str:
-    """Return the number of cores that the machine's description names."""
-    return next(part for part in provenance["machine"].split(", ") if part.endswith(" cores"))
-
-
-#: Columns from the speed-against-error report: heading, file, scene and number.
-ERRORS = {
-    "jam, µs per substep": ("speed", "jam", "us_per_step"),
-    "cycle, µs per substep": ("speed", "cycle", "us_per_step"),
-    "deepest overlap in the jam, cm": ("overlap", "jam", "overlap_max_cm"),
-    "error after sliding for 2 s, cm": ("slide", None, "slide_median_cm"),
-    "error of Ψ_o": ("order", None, "psi_o_error"),
-    "its 95 % half-width": ("order", None, "psi_o_half_width"),
-}
-
-
-def choices() -> str:
-    """Return how dt and the control rate were chosen, with the errors of other steps."""
-    lines = [
-        "## Choice of dt and the control rate",
-        "",
-        "The control rate of 10 Hz is the camera's frame rate (Section 2.4), which no leader of "
-        "the experiment could exceed. A substep of 0.02 s divides control steps and phases evenly. "
-        "Of the substeps in the table below, it is the longest that keeps overlaps in the jam "
-        "under 0.01 cm without relinearization. Its Ψ_o cannot be distinguished from that of the "
-        "reference, which is `leapfrog` at 0.005 s. The numbers are those of `leapfrog` with 27 "
-        "boats (Ψ_o: 20 boats) in [Speed against error](speed_vs_error.md):",
-        "",
-        f"| dt, s | relinearizations | {' | '.join(ERRORS)} |",
-        "| ---: " * (2 + len(ERRORS)) + "|",
-    ]
-    for passes, dt in ((0, 0.01), (0, 0.02), (0, 0.05), (0, 0.1), (1, 0.1)):
-        cells = [f"{reported(*where, passes, dt):.2g}" for where in ERRORS.values()]
-        lines.append(f"| {dt:g} | {passes} | {' | '.join(cells)} |")
-    return "\n".join([*lines, ""])
-
-
-def reported(file: str, scene: str | None, number: str, passes: int, dt: float) -> float:
-    """Return a number of the speed-against-error report for `leapfrog` with the exact solver."""
-    path = ROOT / "docs" / "speed_vs_error" / f"{file}.csv"
-    with path.open(encoding="utf-8", newline="") as lines:
-        for row in csv.DictReader(lines):
-            is_setting = row["setting"] == f"leapfrog / block-pivoting / r{passes}"
-            is_scene = scene is None or (row["scene"] == scene and row["n"] == "27")
-            if is_setting and is_scene and float(row["dt_s"]) == dt:
-                return float(row[number])
-    raise LookupError(f"{path} does not hold {scene} at {dt} s")
+def four_digits(value: float) -> str:
+    """Return a number of four significant digits, without an exponent."""
+    return f"{float(f'{value:.4g}'):.12g}"
 
 
 def main() -> None:
@@ -308,24 +196,25 @@ def main() -> None:
     parser.add_argument("--row", choices=OWN, help="measure one row and print it as JSON")
     parser.add_argument("--seconds", type=float, default=5.0)
     parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--docs", type=Path, default=ROOT / "docs", help="folder of the page")
-    parser.add_argument("--page", action="store_true", help="write the page again, measure nothing")
+    parser.add_argument("--out", type=Path, default=ROOT / "docs" / "throughput")
     options = parser.parse_args()
     if options.row:
         print(json.dumps({"value": OWN[options.row][0](options.seconds)}))
         return
-    data = options.docs / "throughput.toml"
-    if not options.page:
-        found: dict[str, list[float]] = {row: [] for row in (*OWN, "vmas", "mpe2")}
-        for _ in range(options.rounds):
-            for row, values in found.items():
-                values.append(measure(row, options.seconds))
-                print(f"{row:>18}: {values[-1]:,.4g}", flush=True)
-        options.docs.mkdir(parents=True, exist_ok=True)
-        data.write_text(tomli_w.dumps(results(found, options.seconds)), encoding="utf-8")
-    text = page(tomllib.loads(data.read_text(encoding="utf-8")))
-    (options.docs / "throughput.md").write_text(text, encoding="utf-8")
-    print(f"written to {options.docs / 'throughput.md'}")
+    found: dict[str, list[float]] = {row: [] for row in NAMES}
+    for _ in range(options.rounds):
+        for row, values in found.items():
+            values.append(measure(row, options.seconds))
+            print(f"{row:>18}: {values[-1]:,.4g}", flush=True)
+    options.out.mkdir(parents=True, exist_ok=True)
+    with (options.out / "environments.csv").open("w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(["row", "unit", "median", "least", "most"])
+        for row, values in found.items():
+            numbers = (statistics.median(values), min(values), max(values))
+            table.writerow([*NAMES[row], *map(four_digits, numbers)])
+    written = {**made(options.rounds, options.seconds), **{n: peer_version(n) for n in PEERS}}
+    (options.out / "environments.toml").write_text(tomli_w.dumps(written), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -23,7 +23,6 @@ from committed_data import (
     ratio,
     rows,
 )
-from learners_table import learners
 from suite_tables import suite_scores, suite_tasks
 from training_tables import TRAINING_TABLES
 
@@ -313,7 +312,6 @@ TABLES: dict[str, Callable[[], str]] = {
     "suite-tasks": suite_tasks,
     "suite-scores": suite_scores,
     "track-errors": track_errors,
-    "learners": learners,
     **TRAINING_TABLES,
 }
 """How each table is made."""

@@ -2,8 +2,6 @@
 
 import importlib.util
 import re
-import shutil
-import subprocess
 import sys
 from pathlib import Path
 
@@ -34,20 +32,3 @@ def test_a_changed_number_is_put_back():
     changed = re.sub(r"(?m)^(\| 1 \| )\d\.\d+", r"\g<1>9.999", text, count=1)
     assert changed != text
     assert tables.filled(changed) == text
-
-
-MEASURED = {
-    "throughput": ["benches/throughput.py", "--page", "--docs", "DOCS"],
-}
-
-
-@pytest.mark.parametrize("page", MEASURED)
-def test_measured_pages_show_the_committed_data(page, tmp_path):
-    docs = REPOSITORY / "docs"
-    shutil.copytree(docs / "speed_vs_error", tmp_path / "speed_vs_error")
-    shutil.copy(docs / "throughput.toml", tmp_path)
-    program, *options = MEASURED[page]
-    given = [str(tmp_path) if option == "DOCS" else option for option in options]
-    subprocess.run([sys.executable, REPOSITORY / program, *given], check=True, timeout=120)
-    written = (tmp_path / f"{page}.md").read_text(encoding="utf-8")
-    assert written == (docs / f"{page}.md").read_text(encoding="utf-8"), "run `make tables`"
