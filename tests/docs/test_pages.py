@@ -19,7 +19,7 @@ EXECUTED = {
     "docs/api/flock.md": ["python"],
     "docs/extend/policy.md": ["python"],
     "docs/train_with_sb3.md": ["python", "sh"],
-    "docs/train_with_torchrl.md": ["python"],
+    "docs/other_learners.md": ["python"],
     "docs/tracks.md": ["python", "sh"],
 }
 PAGES = sorted(
