@@ -53,7 +53,7 @@ TEST_EXTRAS := --extra train --extra plot --extra search --extra render --extra 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .PHONY: help setup build compare test lint format test-rust test-bare test-python coverage test-js test-browser test-wheel test-oldest \
-        test-benchmarl test-rllib test-ray test-slurm validate docs wheel audit licenses tables replay-animation publish-check \
+        test-benchmarl test-rllib test-ray test-slurm validate docs wheel audit licenses tables replay-animation publish-check release-check \
         instructions learning-check training-physics throughput env-benchmarl env-rllib soak fuzz speed-vs-error \
         lint-benches clean
 
@@ -158,6 +158,12 @@ publish-check: ## the crate as it would be published: its files, built alone; an
 	if [ -z "$$base" ]; then echo "NOT RUN: cargo semver-checks, for want of a release; SEMVER_BASELINE=COMMIT names another."; else \
 	  { cargo semver-checks --version || cargo install --locked cargo-semver-checks; } && \
 	  cargo semver-checks --baseline-rev "$$base"; fi
+
+release-check: audit publish-check docs test-oldest test-wheel ## all of a release that can run here, and what is left for the owner
+	@echo "Left for the owner of the accounts:"
+	@echo "1. Name this repository and publish.yml as trusted publisher, with the environments pypi and crates-io."
+	@echo "2. Turn on the static host for the documentation and the live page."
+	@echo "3. Date the section of CHANGELOG.md, and push the tag v$$(cargo metadata --no-deps --format-version 1 | $(PYTHON) -c 'import json, sys; print(json.load(sys.stdin)["packages"][0]["version"])')."
 
 validate: $(STAMPS)/test $(CORE) ## the slow tests and the published curves
 	cargo test --locked --features clarabel,draw -- --ignored
