@@ -11,7 +11,6 @@ JOBS ?= 2
 PYTEST_ARGS ?=
 COMPARE_ARGS ?=
 THROUGHPUT_ARGS ?=
-TRAINING_PHYSICS_ARGS ?=
 SOAK_ARGS ?=
 # `make publish-check PUBLISH_ARGS=--allow-dirty`: with changes that are not committed.
 PUBLISH_ARGS ?=
@@ -46,15 +45,15 @@ SPEED_DOCS := $(if $(SPEED_ARGS),benches/target/trial,docs)
 # Which extras each front door needs, out of pyproject.toml.
 COMPARE_EXTRAS := --extra plot
 OLDEST_EXTRAS := --extra plot --extra render --extra sweep
-AUDIT_EXTRAS := --extra train --extra plot --extra search --extra render --extra ray --extra sweep --extra tracks
-TEST_EXTRAS := --extra train --extra plot --extra search --extra render --extra sweep --extra tracks --extra test --extra dev
+AUDIT_EXTRAS := --extra train --extra plot --extra render --extra ray --extra sweep --extra tracks
+TEST_EXTRAS := --extra train --extra plot --extra render --extra sweep --extra tracks --extra test --extra dev
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .PHONY: help setup build compare test lint format test-rust test-bare test-python coverage test-js test-browser test-wheel test-oldest \
         test-benchmarl test-rllib test-ray test-slurm validate docs wheel audit licenses tables replay-animation publish-check release-check \
-        instructions learning-check training-physics throughput env-benchmarl env-rllib soak fuzz speed-vs-error \
+        instructions throughput env-benchmarl env-rllib soak fuzz speed-vs-error \
         lint-benches clean
 
 help: ## list the commands
@@ -176,12 +175,6 @@ tables: $(STAMPS)/compare $(CORE) ## fill the tables and draw the curves of READ
 replay-animation: $(STAMPS)/browser $(CORE) ## photograph the replay page into docs/replay.webp
 	@tests/browser/need_chromium.sh
 	$(BIN)/python docs/replay_animation.py
-
-learning-check: $(STAMPS)/test $(CORE) ## train 500 000 samples through each interface, write docs/learning-check.md
-	$(BIN)/python baselines/learning_check.py
-
-training-physics: $(STAMPS)/test $(CORE) ## compare training physics with the default, write docs/training_physics.md
-	$(BIN)/python baselines/training_physics.py $(TRAINING_PHYSICS_ARGS)
 
 # RLlib pins an older gymnasium, BenchMARL an older TorchRL, and the peers other things: environments of their own.
 env-rllib: $(STAMPS)/test

@@ -17,7 +17,6 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from rich.progress import track
-from script_end import one_line_end
 
 import flockenv
 from flockenv.runs.executors import local
@@ -77,9 +76,8 @@ def main(arguments: list[str] | None = None) -> None:
         order = order_of_run(parameters, seed, options.minutes)
         return {"preset": preset, "pool": pool, "bw_s": bw_s, "seed": seed, **order}
 
-    with one_line_end(lambda: "nothing was written"):
-        found = dict(track(local(run, cells), "simulating", total=len(cells)))
-        rows = [found[place] for place in range(len(cells))]
+    found = dict(track(local(run, cells), "simulating", total=len(cells)))
+    rows = [found[place] for place in range(len(cells))]
     runs = pd.DataFrame(rows)
     options.out.parent.mkdir(parents=True, exist_ok=True)
     runs.round(4).to_csv(options.out, index=False)

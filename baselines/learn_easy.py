@@ -22,8 +22,6 @@ import gymnasium
 import numpy as np
 import torch
 from matplotlib.figure import Figure
-from run_number import run_number
-from script_end import one_line_end
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 
@@ -143,16 +141,15 @@ def draw(rows: list[dict[str, Any]], path: Path) -> None:
 
 def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", nargs="+", type=run_number, default=[0, 1, 2])
+    parser.add_argument("--seeds", nargs="+", type=int, default=[0, 1, 2])
     parser.add_argument("--samples", type=int, default=200_000)
     parser.add_argument("--processes", type=int, default=2, help="curves at once")
     parser.add_argument("--out", type=Path, default=Path("results/easy"))
     options = parser.parse_args(arguments)
     rows = references()
-    with one_line_end(lambda: "nothing was written"):
-        task = partial(learn, samples=options.samples)
-        found = dict(joblib(task, options.seeds, options.processes))
-        rows += itertools.chain.from_iterable(found[place] for place in range(len(found)))
+    task = partial(learn, samples=options.samples)
+    found = dict(joblib(task, options.seeds, options.processes))
+    rows += itertools.chain.from_iterable(found[place] for place in range(len(found)))
     options.out.mkdir(parents=True, exist_ok=True)
     with (options.out / "curve.csv").open("w", encoding="utf-8", newline="") as file:
         table = csv.DictWriter(file, COLUMNS, lineterminator="\n")

@@ -31,7 +31,6 @@ OPTIONS = {
     "decision_period_s": 2.0,
     "reward": {"contact_push": 1.0, "signed_order": 0.1},
     "reward_horizon_s": 40.0,
-    "observation": {"law_rudder": True},
     "physics": "training",
     "episode_s": 40.0,
 }

@@ -22,8 +22,6 @@ import numpy as np
 import pandas as pd
 import tomli_w
 from rich.progress import Progress
-from run_number import run_number
-from script_end import one_line_end
 
 import flockenv
 from flockenv._io.atomic_write import write_csv, write_text
@@ -98,7 +96,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--generations", type=int, default=10)
     parser.add_argument("--episodes", type=int, default=32, help="for each candidate")
     parser.add_argument("--minutes", type=float, default=8.0, help="length of an episode")
-    parser.add_argument("--seed", type=run_number, default=0)
+    parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=Path("results/tune_laws"))
     parser.add_argument("--quiet", action="store_true")
     options = parser.parse_args(arguments)
@@ -107,15 +105,14 @@ def main(arguments: list[str] | None = None) -> None:
     given = sys.argv[1:] if arguments is None else arguments
     command = shlex.join(["python", "baselines/tune_laws.py", *given])
     start, tuned = time.perf_counter(), {}
-    with one_line_end(lambda: f"candidates so far are in {options.out}, but no gains"):
-        options.out.mkdir(parents=True, exist_ok=True)
-        with Progress(disable=options.quiet) as progress:
-            for law in options.law or LAWS:
-                for pool in options.pool or POOLS:
-                    tuned.setdefault(law, {})[pool] = tune(law, pool, options, progress)
-        wall_s = time.perf_counter() - start
-        provenance = provenance_of(command, seed=options.seed, samples=0, wall_s=wall_s)
-        write_text(options.out / "gains.toml", tomli_w.dumps({**tuned, "made": provenance}))
+    options.out.mkdir(parents=True, exist_ok=True)
+    with Progress(disable=options.quiet) as progress:
+        for law in options.law or LAWS:
+            for pool in options.pool or POOLS:
+                tuned.setdefault(law, {})[pool] = tune(law, pool, options, progress)
+    wall_s = time.perf_counter() - start
+    provenance = provenance_of(command, seed=options.seed, samples=0, wall_s=wall_s)
+    write_text(options.out / "gains.toml", tomli_w.dumps({**tuned, "made": provenance}))
     print(tomli_w.dumps(tuned))
     print(f"written to {options.out}")
 

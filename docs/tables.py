@@ -20,7 +20,6 @@ from committed_data import (
     markdown,
     one,
     order,
-    ratio,
     rows,
 )
 from suite_tables import suite_scores, suite_tasks
@@ -108,19 +107,6 @@ def other_scenes() -> str:
     return markdown(header, body)
 
 
-def one_policy() -> str:
-    """Return the order with one policy for both pools beside that of each pool's own."""
-    body = []
-    for row in rows(DIFFERENCES, policy="both-pools", reference="learned"):
-        known = {name: row[name] for name in ("comparison", "scene", "leaders")}
-        own, mean = (one(MEANS, policy=name, **known) for name in ("learned", "both-pools"))
-        pool, _, noise = row["scene"].partition("-bw-")
-        cells = [order(own), order(mean), ratio(row)]
-        body.append([f"`{pool}`", f"{noise} s", row["leaders"], *cells])
-    header = ["pool", "bw", "leaders", "the pool's own", "one for both", "ratio"]
-    return markdown(header, body)
-
-
 def strong_wide() -> str:
     """Return the order in wide with more than the boats' rudder, for the same policies."""
     policies = ("tuned damped law", "learned")
@@ -130,83 +116,6 @@ def strong_wide() -> str:
         cells = [order(one(MEANS, policy=name, **known)) for name in policies]
         body.append([f"{times}", *cells])
     return markdown(["times the rudder", *policies], body)
-
-
-def strong_rudders() -> str:
-    """Return the order in narrow with ten times the rudder."""
-    file = "leaders/strong_rudders.csv"
-    body = []
-    for k in ("1", "3"):
-        law = one(MEANS, comparison="narrow", policy="tuned damped law", leaders=k)
-        cells = [order(law)]
-        for policy in ("tuned damped law", "policy"):
-            mean = one(MEANS, comparison="strong-rudders", policy=policy, leaders=k)
-            gain = one(file, policy=policy, leaders=k)
-            cells += [order(mean), ratio(gain)]
-        body.append([k, *cells])
-    strong = "with ten times the rudder"
-    header = [
-        "leaders",
-        "tuned damped law",
-        f"tuned damped law {strong}",
-        "ratio",
-        f"law searched {strong}",
-        "ratio",
-    ]
-    return markdown(header, body)
-
-
-def nonlinear_searches() -> str:
-    """Return the order in narrow with nonlinear leans that were searched for their rudder."""
-    hours = {row["comparison"]: row["flock_hours"] for row in rows("training/searches.csv")}
-    body = []
-    for times, comparison in ((1, "search-rudder-1"), (10, "search-rudder-10")):
-        for gain in rows(DIFFERENCES, comparison=comparison):
-            known = {"comparison": comparison, "leaders": gain["leaders"]}
-            policies = (gain["reference"], gain["policy"])
-            cells = [order(one(MEANS, policy=name, **known)) for name in policies]
-            head = [f"{times}", hours[comparison], gain["leaders"], gain["n"]]
-            body.append([*head, *cells, difference(gain)])
-    header = ["times the rudder", "flock-hours", "leaders", "episodes", "tuned damped law"]
-    return markdown([*header, "searched", "searched minus tuned damped law"], body)
-
-
-def other_policies() -> str:
-    """Return the order with other policies."""
-    names = {
-        "no leaders": "no leaders",
-        "straight ahead": "straight ahead",
-        "random rudders": "random rudders",
-        "steering law, every substep": "steering law at every substep",
-        "linear-narrow.npz": "linear feedback",
-    }
-    body = []
-    for policy, name in names.items():
-        for k in ("0",) if policy == "no leaders" else ("1", "3"):
-            means = [
-                one(MEANS, comparison=f"others-{pool}", policy=policy, leaders=k) for pool in POOLS
-            ]
-            body.append([name, k, *(order(row) for row in means)])
-    return markdown(["policy", "leaders", *(f"`{pool}`" for pool in POOLS)], body)
-
-
-def ablation() -> str:
-    """Return the change of order when weights of the pretrained leaders are left out."""
-    found = {row["law"]: row for row in rows("leaders/ablation-wide.csv")}
-
-    def change(name: str) -> str:
-        return interval(found[name], "beyond_whole", "low", "high", "+.3f")
-
-    groups = (
-        "normal neighbors",
-        "order of the flock",
-        "outer wall",
-        "own velocity",
-        "other leaders",
-    )
-    body = [["all weights", change("no weights"), ""]]
-    body += [[name, change(f"without {name}"), change(f"{name} alone")] for name in groups]
-    return markdown(["group of weights", "left out", "kept alone"], body)
 
 
 def leader_motion() -> str:
@@ -298,17 +207,10 @@ TABLES: dict[str, Callable[[], str]] = {
     "easy": easy,
     "leader-count": leader_count,
     "leaders-wide": lambda: leaders_of("wide", ("steering law", "tuned damped law", "learned")),
-    "leaders-narrow": lambda: leaders_of(
-        "narrow", ("steering law", "tuned sign-corrected law", "tuned damped law", "learned")
-    ),
+    "leaders-narrow": lambda: leaders_of("narrow", ("steering law", "tuned damped law", "learned")),
     "leader-motion": leader_motion,
-    "ablation": ablation,
-    "one-policy": one_policy,
-    "strong-rudders": strong_rudders,
-    "nonlinear-searches": nonlinear_searches,
     "strong-wide": strong_wide,
     "other-scenes": other_scenes,
-    "other-policies": other_policies,
     "suite-tasks": suite_tasks,
     "suite-scores": suite_scores,
     "track-errors": track_errors,

@@ -7,7 +7,6 @@ import re
 import signal
 import subprocess
 import sys
-from functools import partial
 
 import gymnasium
 import hypothesis
@@ -62,15 +61,6 @@ def page_runs():
         return [(run["name"], run["seed"], run["samples"], run["boats"]) for run in runs]
 
     return read
-
-
-@pytest.fixture
-def _quick_clones(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let trainings start from a clone that saw little: how near it is, test_cloning.py tests."""
-    from flockenv.training import cloning
-
-    quick = partial(cloning.clone_law, samples=600, epochs=2)
-    monkeypatch.setattr(cloning, "clone_law", quick)
 
 
 class CommandLine:

@@ -4,14 +4,9 @@ from typing import Any
 
 import numpy as np
 import torch
-from gymnasium.spaces import Box
 from numpy.typing import NDArray
 from stable_baselines3.common.policies import ActorCriticPolicy
-from stable_baselines3.common.torch_layers import (
-    BaseFeaturesExtractor,
-    FlattenExtractor,
-    MlpExtractor,
-)
+from stable_baselines3.common.torch_layers import MlpExtractor
 from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
 
 from flockenv.envs.observation import FlockRowSpace, ObservationSpace
@@ -67,10 +62,6 @@ class WithFlockFeatures(VecEnvWrapper):
             infos[slot]["terminal_observation"] = np.concatenate(last)
         return self._joined(observations), rewards, dones, infos
 
-    def set_state(self, state: bytes) -> NDArray[np.float32]:
-        """Continue from `LeaderVecEnv.get_state` of the same options; return the rows."""
-        return self._joined(self.venv.set_state(state))
-
     def _joined(self, observations: NDArray[np.float32]) -> NDArray[np.float32]:
         return np.concatenate([observations, self.venv.flock_features()], axis=1)
 
@@ -78,16 +69,9 @@ class WithFlockFeatures(VecEnvWrapper):
 class _TwoViews(torch.nn.Module):
     """Hidden layers of the actor on the first numbers of a row, of the critic on the whole row."""
 
-    def __init__(
-        self,
-        seen: int,
-        encoder: BaseFeaturesExtractor | None,
-        actor: MlpExtractor,
-        critic: MlpExtractor,
-    ) -> None:
+    def __init__(self, seen: int, actor: MlpExtractor, critic: MlpExtractor) -> None:
         super().__init__()
         self._seen = seen
-        self.encoder = encoder
         self.policy_net, self.value_net = actor.policy_net, critic.value_net
         self.latent_dim_pi, self.latent_dim_vf = actor.latent_dim_pi, critic.latent_dim_vf
 
@@ -95,8 +79,7 @@ class _TwoViews(torch.nn.Module):
         return self.forward_actor(rows), self.forward_critic(rows)
 
     def forward_actor(self, rows: torch.Tensor) -> torch.Tensor:
-        seen = rows[..., : self._seen]
-        latent: torch.Tensor = self.policy_net(seen if self.encoder is None else self.encoder(seen))
+        latent: torch.Tensor = self.policy_net(rows[..., : self._seen])
         return latent
 
     def forward_critic(self, rows: torch.Tensor) -> torch.Tensor:
@@ -118,9 +101,6 @@ class FlockCriticPolicy(ActorCriticPolicy):
         both.
     seen
         Numbers of a row that the actor sees.
-    features_extractor_class, features_extractor_kwargs
-        Feature extractor of the actor alone, from what it sees; None: rows as they are, which the
-        critic takes in any case.
 
     Raises
     ------
@@ -135,16 +115,12 @@ class FlockCriticPolicy(ActorCriticPolicy):
         lr_schedule: Any,
         *,
         seen: int,
-        features_extractor_class: type[BaseFeaturesExtractor] | None = None,
-        features_extractor_kwargs: dict[str, Any] | None = None,
         **options: Any,
     ) -> None:
         size = observation_space.shape[0]
         if not 1 <= seen <= size:
             raise ParameterError(f"seen = {seen!r} is not accepted: from 1 to {size}")
         self._seen = seen
-        self._encoder_class = features_extractor_class or FlattenExtractor
-        self._encoder_kwargs = features_extractor_kwargs or {}
         super().__init__(observation_space, action_space, lr_schedule, **options)
 
     def predict(
@@ -162,29 +138,11 @@ class FlockCriticPolicy(ActorCriticPolicy):
         return super().predict(rows, state, episode_start, deterministic)
 
     def _build_mlp_extractor(self) -> None:
-        encoder, inputs = None, self._seen
-        if self._encoder_class is not FlattenExtractor:
-            encoder = self._encoder_class(self._seen_space(), **self._encoder_kwargs)
-            inputs = encoder.features_dim
         actor, critic = (
             MlpExtractor(size, self.net_arch, self.activation_fn, self.device)
-            for size in (inputs, self.features_dim)
+            for size in (self._seen, self.features_dim)
         )
-        views = _TwoViews(self._seen, encoder, actor, critic)
-        self.mlp_extractor = views  # type: ignore[assignment]
-
-    def _seen_space(self) -> Box:
-        space = self.observation_space
-        if isinstance(space, FlockRowSpace):
-            return space.observed
-        assert isinstance(space, Box)
-        if self._seen == space.shape[0]:
-            return space
-        return Box(space.low[: self._seen], space.high[: self._seen])
+        self.mlp_extractor = _TwoViews(self._seen, actor, critic)  # type: ignore[assignment]
 
     def _get_constructor_parameters(self) -> dict[str, Any]:
-        encoder = {
-            "features_extractor_class": self._encoder_class,
-            "features_extractor_kwargs": self._encoder_kwargs,
-        }
-        return {**super()._get_constructor_parameters(), "seen": self._seen, **encoder}
+        return {**super()._get_constructor_parameters(), "seen": self._seen}

@@ -1,11 +1,9 @@
 """Exploration that all leaders of a flock share and hold for a time."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, Self
 
-import numpy as np
 import torch
-from numpy.typing import NDArray
 from stable_baselines3.common.distributions import (
     DiagGaussianDistribution,
     StateDependentNoiseDistribution,
@@ -74,29 +72,6 @@ class HeldNoise:
         self._hold_steps = hold_steps
         self._steps_left = 0
         self._noise = torch.zeros(int(self._flock_of_slot.max()) + 1, size)
-
-    def get_state(self) -> dict[str, NDArray[Any]]:
-        """Return the noise, shape (flocks, size), and for how many more decisions it is held."""
-        return {
-            "noise": self._noise.cpu().numpy().copy(),
-            "steps_left": np.array(self._steps_left),
-        }
-
-    def set_state(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Continue from `get_state`.
-
-        Raises
-        ------
-        ParameterError
-            For a number of decisions that no noise is held for.
-        """
-        steps_left = int(state["steps_left"])
-        if not 0 <= steps_left < self._hold_steps:
-            raise ParameterError(
-                f"steps_left = {steps_left} is not accepted: 0 to {self._hold_steps - 1}"
-            )
-        self._noise = torch.from_numpy(state["noise"].copy())
-        self._steps_left = steps_left
 
     def next(self, slots: int, device: torch.device) -> torch.Tensor:
         """Return the rows of the next decision, shape (slots, size).

@@ -1,29 +1,35 @@
-"""Training of leaders: PPO with one policy shared by all of them.
+"""Training of leaders: PPO of stable-baselines3 with one policy shared by all of them.
 
 Needs the extra ``train``: ``pip install flockenv[train]``.
 """
 
-# First: it says what to install where stable-baselines3 and torch are missing.
-import flockenv.training.actor  # noqa: F401
-from flockenv.policies.laws import LAWS
-from flockenv.training.checkpoint import Progress
-from flockenv.training.cloning import clone_law
-from flockenv.training.ppo import TrainingResult, resume, stored_settings, train
-from flockenv.training.rollback_point import with_flock_hours
-from flockenv.training.seeds import SeedsResult, train_seeds
-from flockenv.training.settings import TrainingError, TrainingSettings
+from flockenv._io.extras import require
+
+require("stable_baselines3", "train")
+
+# ruff: noqa: E402 - after the check above
+from flockenv.training.curve import compare_with_laws, draw_curve, learning_curve
+from flockenv.training.run import (
+    CHECKPOINT,
+    MODEL,
+    Progress,
+    TrainingError,
+    resume,
+    stored_settings,
+    train,
+)
+from flockenv.training.settings import TrainingSettings
 
 __all__ = [
-    "LAWS",
+    "CHECKPOINT",
+    "MODEL",
     "Progress",
-    "SeedsResult",
     "TrainingError",
-    "TrainingResult",
     "TrainingSettings",
-    "clone_law",
+    "compare_with_laws",
+    "draw_curve",
+    "learning_curve",
     "resume",
     "stored_settings",
     "train",
-    "train_seeds",
-    "with_flock_hours",
 ]

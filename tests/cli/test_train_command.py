@@ -1,112 +1,59 @@
-"""`flockenv train` trains, resumes, and names what is missing."""
+"""`flockenv train` trains, resumes, compares, and names what is wrong or missing."""
 
 import json
 import signal
-import time
-import zipfile
 from pathlib import Path
 
 import pytest
 
-from flockenv.policies import load
-
 pytest.importorskip("stable_baselines3")
 
-TINY = """
-n_boats = 6
-pools = ["wide"]
-n_leaders = [1, 2]
-episode_s = 5.0
-control_hz = 2.0
-num_flocks = 2
-n_steps = 32
-batch_size = 32
-n_epochs = 1
-net_arch = [8]
-samples = 192
-checkpoint_every = 1
-validation_episodes = 2
-validation_s = 5.0
-device = "cpu"
-"""
+from flockenv.policies import load
+
+TINY = [
+    *("--leaders", "2", "--set", "n_boats=6", "--set", "episode_s=16.0"),
+    *("--ppo", "n_steps=16", "--ppo", "batch_size=32"),
+    *("--flock-hours", str(128 * 32 / 3600), "--episodes", "2"),
+]
 
 
-@pytest.fixture
-def tiny(tmp_path: Path) -> str:
-    path = tmp_path / "tiny.toml"
-    path.write_text(TINY)
-    return str(path)
+@pytest.fixture(autouse=True)
+def _short_comparisons(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flockenv.training.curve._EPISODE_S", 8.0)
 
 
-def test_it_trains_and_resumes(cli, tiny: str, tmp_path: Path) -> None:
+def test_it_trains_resumes_and_compares(cli, tmp_path: Path) -> None:
     out = str(tmp_path / "run")
-    arguments = ["--settings", tiny, "--set", "net_arch=[4]", "--seed", "5", "--out", out]
-    done = cli("train", *arguments, "--json")
+    done = cli("train", *TINY, "--seed", "5", "--out", out, "--json")
     assert done.returncode == 0, done.stderr
-    assert json.loads(done.stdout)["samples"] == 192
     assert done.stderr == ""
-    policy = load(tmp_path / "run" / "best.npz")
-    assert policy.weights[0].shape[1] == 4
-    assert policy.provenance["seed"] == "5"
-    assert "train --settings" in policy.provenance["command"]
-    more = cli("train", "--resume", "--samples", "384", "--out", out, "--quiet")
-    assert more.returncode == 0, more.stderr
-    assert "samples: 384" in more.stdout
-    assert "best.npz" in more.stdout
-
-
-def test_several_seeds_and_a_budget_in_flock_hours(
-    cli, tiny: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("flockenv.training.seeds._EPISODE_S", 5.0)
-    out = tmp_path / "runs"
-    # Two flocks for 16 s.
-    hours = str(2 * 16 / 3600)
-    arguments = ["--settings", tiny, "--flock-hours", hours, "--seeds", "2", "--episodes", "2"]
-    done = cli("train", *arguments, "--out", str(out), "--json")
-    assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
-    assert found["flock_hours"] == round(2 * 16 / 3600, 3)
-    policies = {row["policy"] for row in found["evaluation"]}
-    assert {"seed 0", "seed 1", "all seeds", "tuned damped law"} < policies
-    assert load(out / "seed-1" / "best.npz").provenance["seed"] == "1"
-    again = cli("train", *arguments, "--out", str(out), "--quiet")
-    assert again.returncode == 0, again.stderr
-    assert "wide k=2: all seeds minus tuned damped law: " in again.stdout
-    for wrong, words in (
-        (["--seeds", "2", "--resume"], "the same command resumes"),
-        (["--episodes", "4"], "--episodes is not accepted without --seeds"),
-        (["--settings", tiny, "--flock-hours", "1", "--samples", "9"], "one or the other"),
-        (["--settings", tiny, "--flock-hours", "0"], "flock_hours = 0.0 is not accepted"),
-    ):
-        refused = cli("train", *wrong, "--out", str(tmp_path / "wrong"))
-        assert refused.returncode == 2
-        assert words in refused.stderr
-    assert not (tmp_path / "wrong").exists()
+    assert set(found["signed_order"]) == {"paper's law", "tuned law", "trained"}
+    assert load(found["model"], trust=True).provenance["samples"] == str(128 * 32 * 2)
+    assert len((tmp_path / "run" / "comparison.csv").read_text().splitlines()) == 1 + 3 * 2
+    assert (tmp_path / "run" / "curve.png").stat().st_size > 0
+    hours = str(128 * 48 / 3600)
+    more = cli("train", "--resume", "--flock-hours", hours, "--episodes", "2", "--out", out)
+    assert more.returncode == 0, more.stderr
+    assert f"Resuming from {out}/checkpoint.zip" in more.stderr.replace("\n", "")
+    assert "trained: signed order " in more.stdout
+    assert load(found["model"], trust=True).provenance["samples"] == str(128 * 48 * 2)
 
 
-def test_errors_are_one_line_with_exit_code_2(cli, tiny: str, tmp_path: Path) -> None:
-    (tmp_path / "torn.toml").write_text("samples = ")
-    (tmp_path / "misspelt.toml").write_text("sample = 3")
-    with zipfile.ZipFile(tmp_path / "model.zip", "w") as archive:
-        archive.writestr("policy.pth", b"")
+def test_errors_are_one_line_with_exit_code_2(cli, tmp_path: Path) -> None:
     for arguments, words in (
-        (["--settings", tiny, "--set", "net_arc=[4]"], "net_arch"),
-        (["--settings", tiny, "--set", "start=lore"], "start"),
-        (["--settings", tiny, "--set", f"start={tmp_path / 'model.zip'}"], "command line --trust"),
-        (["--settings", tiny, "--set", f"start={tmp_path / 'model.zip'}", "--trust"], "no model"),
-        (["--settings", str(tmp_path / "none.toml")], "none.toml"),
-        (["--settings", str(tmp_path / "torn.toml")], "torn.toml"),
-        (["--settings", str(tmp_path / "misspelt.toml")], "misspelt.toml"),
+        (["--pool", "deep"], "pool = 'deep' is not accepted: wide or narrow"),
+        (["--set", "n_boat=6"], "n_boat"),
+        (["--ppo", "gama=0.9"], "did you mean 'gamma'"),
+        (["--flock-hours", "0"], "flock_hours = 0.0 is not accepted"),
         (["--resume"], "no checkpoint"),
-        (["--resume", "--seed", "3"], "only --samples"),
+        (["--resume", "--seed", "3"], "only --flock-hours may differ"),
     ):
         done = cli("train", *arguments, "--out", str(tmp_path / "run"))
         assert done.returncode == 2, done.stderr
         assert words in done.stderr
-        assert "Traceback" not in done.stderr
-        # A policy to start from is read only when training starts.
-        assert done.stderr.startswith("Error:") or "start=" in " ".join(arguments)
+        assert done.stderr.startswith("Error:")
+        assert not (tmp_path / "run").exists()
 
 
 def test_the_missing_extra_is_named(cli, tmp_path: Path) -> None:
@@ -116,17 +63,25 @@ def test_the_missing_extra_is_named(cli, tmp_path: Path) -> None:
     assert "pip install 'flockenv[train]'" in done.stderr
 
 
-def test_an_interrupt_names_the_command_that_resumes(cli, tiny: str, tmp_path: Path) -> None:
+def test_an_interrupt_names_the_command_that_resumes(
+    cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from stable_baselines3 import PPO
+
+    # Amid the second update.
+    update, calls = PPO.train, []
+
+    def pressed(self: PPO) -> None:
+        calls.append(1)
+        if len(calls) == 2:
+            signal.raise_signal(signal.SIGINT)
+        update(self)
+
+    monkeypatch.setattr(PPO, "train", pressed)
     out = tmp_path / "run"
-    arguments = ["--settings", tiny, "--samples", "100000000", "--out", out]
-    run = cli.start("train", "--quiet", *arguments)
-    deadline = time.monotonic() + 120
-    while not (out / "checkpoint.npz").exists():
-        assert time.monotonic() < deadline
-        assert run.poll() is None
-        time.sleep(0.1)
-    run.send_signal(signal.SIGINT)
-    _, reported = run.communicate(timeout=60)
-    assert run.returncode == 130
-    assert "--resume" in reported
-    assert (out / "checkpoint.npz").exists()
+    done = cli("train", *TINY, "--quiet", "--out", str(out))
+    assert done.returncode == 130
+    assert f"flockenv train --resume --out {out}" in done.stderr
+    monkeypatch.undo()
+    assert {path.name for path in out.iterdir()} >= {"checkpoint.zip", "settings.toml"}
+    assert not list(out.glob("*.tmp"))

@@ -5,7 +5,6 @@ import pytest
 
 import flockenv
 from flockenv import FlockParameters
-from flockenv.training.settings import TrainingSettings
 
 PARAMETERS = {"n_boats": 9, "n_leaders": 2, "bw_s": 0.3, "episode_s": 2.0}
 SAME = {
@@ -40,8 +39,3 @@ def test_parameters_that_are_given_are_stepped_as_chosen():
     assert env.parameters.dt_s == 0.1
     assert env.parameters.relinearizations == 1
     env.close()
-
-
-def test_trainers_take_it_among_their_options():
-    settings = TrainingSettings(options={"physics": "training"})
-    assert settings.environment("narrow")["physics"] == "training"

@@ -17,15 +17,8 @@ from flockenv.sb3 import (
     evaluate_flocks,
     shared_noise,
 )
-from flockenv.training.actor import one_thread
 
 OPTIONS = {"n_boats": 8, "n_leaders": 2, "episode_s": 0.3}
-
-
-@pytest.fixture(autouse=True)
-def alone():
-    with one_thread():
-        yield
 
 
 class Both(FlockCriticPolicy, SharedNoisePolicy):
@@ -97,16 +90,6 @@ def test_features_at_the_end_are_those_of_the_last_step():
         if each is short:
             last = infos[0]["terminal_flock_features"]
     np.testing.assert_array_equal(last[:-1], long.flock_features()[0, :-1])
-
-
-def test_a_restored_environment_has_the_rows_that_were_stored():
-    venv = WithFlockFeatures(LeaderVecEnv(2, **OPTIONS))
-    venv.seed(2)
-    venv.reset()
-    rows, *_ = venv.step(np.full((4, 1), 0.5))
-    state = venv.get_state()
-    venv.step(np.zeros((4, 1)))
-    np.testing.assert_array_equal(venv.set_state(state), rows)
 
 
 def test_it_goes_with_shared_noise_and_through_a_file(tmp_path):

@@ -10,15 +10,8 @@ import flockenv
 from flockenv.comparison import run_episodes
 from flockenv.errors import ParameterError
 from flockenv.sb3 import LeaderVecEnv, SharedNoisePolicy, evaluate_flocks, shared_noise
-from flockenv.training.actor import one_thread
 
 OPTIONS = {"n_boats": 6, "pool": "narrow", "action_mode": "lean", "decision_period_s": 0.5}
-
-
-@pytest.fixture(autouse=True)
-def alone():
-    with one_thread():
-        yield
 
 
 def model_of(venv, hold_s=2.0, use_sde=False, **options):

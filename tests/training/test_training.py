@@ -1,279 +1,156 @@
-"""Law: a run that was killed and resumed leaves the same bytes as one that never stopped."""
+"""Law: a training that was killed goes on from its last checkpoint, to the same samples."""
 
-import errno
-import math
+import zipfile
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 import torch
+from stable_baselines3 import PPO
 
-import flockenv
 from flockenv import InUseError, ParameterError, training
-from flockenv._io.atomic_write import atomic_write
 from flockenv.policies import load
-from flockenv.runs.seeds import FIRST_TRAINING_SEED
-from flockenv.training import TrainingError, TrainingSettings, checkpoint, ppo, validation
-from flockenv.training.actor import network_policy
-from flockenv.training.learner import Learner, learner
-
-EVERY_FILE = ("best.npz", "last.npz", "checkpoint.npz", "curve.csv", "validations.csv")
+from flockenv.training import Progress, TrainingError, TrainingSettings
 
 
 class Killed(BaseException):
     """Stands for a kill: nothing catches it."""
 
 
-@pytest.fixture(autouse=True)
-def no_clock(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Wall time is the one thing in the files that two equal runs do not share."""
-    monkeypatch.setattr(ppo.time, "perf_counter", lambda: 0.0)
-
-
 def killed_after(samples: int):
-    def report(progress: checkpoint.Progress) -> None:
+    def report(progress: Progress) -> None:
         if progress.samples == samples:
             raise Killed
 
     return report
 
 
-def test_a_folder_takes_one_training_at_a_time(tiny: TrainingSettings, tmp_path: Path) -> None:
-    refused = []
-
-    def meanwhile(progress: checkpoint.Progress) -> None:
-        with pytest.raises(InUseError, match="is in use by another process") as raised:
-            training.resume(tmp_path) if progress.samples else training.train(tiny, tmp_path)
-        refused.append(raised)
-
-    training.train(tiny.replace(samples=192), tmp_path, report=meanwhile)
-    assert len(refused) == 2
-    with pytest.raises(ParameterError, match="holds a run already"):
-        training.train(tiny, tmp_path)
-
-
-@pytest.mark.parametrize(
-    "kind",
-    [
-        {},
-        {"use_sde": True, "sde_sample_freq": 4},
-        {"critic": "flock"},
-        # Not a whole number of rollouts: a noise is held over the end of one.
-        {"shared_noise_s": 2.5},
-        {"shared_noise_s": 2.5, "critic": "flock"},
-        {"shared_noise_s": 2.5, "critic": "flock", "use_sde": True},
-        {"encoder": "deepsets", "average": 0.3, "learn_log_std": False},
-        {"encoder": "leaning", "average": 0.5, "critic": "flock", "squash": True},
-    ],
-    ids=lambda kind: " and ".join(kind) or "own noise",
-)
-def test_resumed_is_uninterrupted(
-    tiny: TrainingSettings, tmp_path: Path, kind: dict[str, Any]
-) -> None:
-    # Checkpoints every other rollout, a kill after the third: one rollout is done again. Lost
-    # frames make sure that the camera continues where it was, too.
-    settings = tiny.replace(
-        checkpoint_every=384,
-        validate_every=768,
-        final_learning_rate=1e-5,
-        options={"dropout_rate": 0.2, "delay_frames": 1},
-        **kind,
+def weights(model: PPO) -> np.ndarray:
+    return np.concatenate(
+        [each.detach().numpy().ravel() for each in model.policy.state_dict().values()]
     )
-    training.train(settings, tmp_path / "whole", command="train")
+
+
+def test_the_same_settings_train_the_same_leaders(tiny: TrainingSettings, tmp_path: Path) -> None:
+    first = training.train(tiny, tmp_path / "first")
+    again = training.train(tiny, tmp_path / "again")
+    other = training.train(tiny.replace(seed=1), tmp_path / "other")
+    np.testing.assert_array_equal(weights(first), weights(again))
+    assert (weights(first) != weights(other)).any()
+    assert first.num_timesteps == tiny.samples(tiny.venv())
+
+
+def test_a_killed_training_goes_on(tiny: TrainingSettings, tmp_path: Path) -> None:
     with pytest.raises(Killed):
-        training.train(settings, tmp_path / "killed", command="train", report=killed_after(576))
-    torch.manual_seed(99)
-    np.random.seed(99)  # noqa: NPY002 - the generator that PPO shuffles with
-    result = training.resume(tmp_path / "killed")
-    assert result.progress.samples == 768
-    for name in EVERY_FILE:
-        whole, resumed = (tmp_path / run / name for run in ("whole", "killed"))
-        assert whole.read_bytes() == resumed.read_bytes(), name
+        training.train(tiny, tmp_path, killed_after(128))
+    with pytest.raises(ParameterError, match="holds a run already: resume it"):
+        training.train(tiny, tmp_path)
+    stored = PPO.load(tmp_path / "checkpoint.zip", device="cpu")
+    seen: list[int] = []
+    model = training.resume(tmp_path, report=lambda progress: seen.append(progress.samples))
+    assert seen[0] == stored.num_timesteps == 128
+    assert model.num_timesteps == seen[-1] == 192
+    # It starts from what was stored, and learns.
+    assert (weights(model) != weights(stored)).any()
+    more = training.resume(tmp_path, flock_hours=2 * tiny.flock_hours)
+    assert more.num_timesteps == 384
+    # Each of the flocks' episodes stands once in the files of the three parts, two of them whole.
+    curve = training.learning_curve(tmp_path, points=2)
+    assert len(curve) == 2
+    assert curve["flock_hours"].is_monotonic_increasing
 
 
-def test_another_seed_is_another_run(tiny: TrainingSettings, tmp_path: Path) -> None:
-    first = training.train(tiny.replace(samples=192), tmp_path / "first")
-    other = training.train(tiny.replace(samples=192, seed=1), tmp_path / "other")
-    assert first.progress.curve != other.progress.curve
+def test_resuming_reads_weights_and_the_optimizer(tiny: TrainingSettings, tmp_path: Path) -> None:
+    model = training.train(tiny, tmp_path)
+    again = training.resume(tmp_path)
+    np.testing.assert_array_equal(weights(again), weights(model))
+    for own, other in zip(
+        model.policy.optimizer.state_dict()["state"].values(),
+        again.policy.optimizer.state_dict()["state"].values(),
+        strict=True,
+    ):
+        assert torch.equal(own["exp_avg"], other["exp_avg"])
 
 
-def test_learning_goes_on_past_the_end(tiny: TrainingSettings, tmp_path: Path) -> None:
-    training.train(tiny.replace(samples=192), tmp_path)
-    assert training.resume(tmp_path).progress.samples == 192
-    assert training.resume(tmp_path, samples=384).progress.samples == 384
-    assert len((tmp_path / "curve.csv").read_text().splitlines()) == 3
+def test_the_model_steers_wherever_a_policy_does(tiny: TrainingSettings, tmp_path: Path) -> None:
+    training.train(tiny, tmp_path)
+    policy = load(tmp_path / "model.zip", trust=True)
+    assert (policy.action_mode, policy.leaders) == ("lean", 1)
 
 
-def test_the_average_is_what_is_stored(tiny: TrainingSettings, tmp_path: Path) -> None:
-    last, averaged = [], []
-    update_average = Learner.update_average
-
-    def watched(model: Learner) -> None:
-        update_average(model)
-        last.append(network_policy(model.policy, settings, {}).weights)
-        averaged.append(network_policy(model.mean_actor(), settings, {}).weights)
-
-    settings = tiny.replace(average=0.25, learn_log_std=False, validate_from=1.0)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Learner, "update_average", watched)
-        result = training.train(settings, tmp_path)
-    assert len(last) == 4
-    expected = last[0]
-    for weights in last[1:]:
-        expected = [0.75 * old + 0.25 * new for old, new in zip(expected, weights, strict=True)]
-    stored = load(tmp_path / "last.npz")
-    for own, other, latest in zip(stored.weights, expected, last[-1], strict=True):
-        np.testing.assert_allclose(own, other, atol=1e-6)
-        assert abs(own - latest).max() > 1e-5
-    # One validation at the end alone, so that nothing is chosen by it.
-    assert [row["samples"] for row in result.progress.validations] == [768]
-    assert load(tmp_path / "best.npz").digest == stored.digest
-
-
-def test_a_budget_in_flock_hours(tiny: TrainingSettings, tmp_path: Path) -> None:
-    # A rollout is 16 s of four flocks.
-    settings = tiny.replace(flock_hours=4 * 16 / 3600)
-    result = training.train(settings, tmp_path)
-    assert result.progress.samples == 192
-    assert result.policy.provenance["flock_hours"] == "0.0177778"
-    for name in ("curve.csv", "validations.csv"):
-        header, row = (tmp_path / name).read_text().splitlines()
-        assert header.startswith("samples,flock_hours,")
-        assert row.startswith("192,0.0177778,")
-    result = training.resume(tmp_path, flock_hours=8 * 16 / 3600)
-    assert result.progress.samples == 384
-    assert training.resume(tmp_path, samples=576).progress.samples == 576
-    with pytest.raises(ParameterError, match="one or the other"):
-        training.resume(tmp_path, samples=768, flock_hours=1.0)
-
-
-def test_flocks_restart_together(tiny: TrainingSettings) -> None:
-    model = learner(tiny.replace(pools=["wide", "narrow"]))
-    model.env.reset()
-    ended = [model.env.step(np.zeros((6, 1)))[2] for _ in range(30)]
-    # Episodes of 5 s with two decisions per second.
-    assert [step for step, dones in enumerate(ended, 1) if dones.all()] == [10, 20, 30]
-    assert not any(dones.any() for step, dones in enumerate(ended, 1) if step % 10)
-
-
-def test_a_full_disk_leaves_the_last_checkpoint(
-    tiny: TrainingSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("content", [b"", b"no archive"])
+def test_damaged_checkpoints_are_named(
+    tiny: TrainingSettings, tmp_path: Path, content: bytes
 ) -> None:
-    class FullDisk:
-        """Takes the first bytes of a checkpoint's third version, then no more."""
-
-        versions = 0
-
-    def full(path, arrays, **options):
-        FullDisk.versions += 1
-        if FullDisk.versions < 3:
-            return write_arrays(path, arrays, **options)
-        with atomic_write(path) as file:
-            file.write(b"PK the start")
-            raise OSError(errno.ENOSPC, "No space left on device")
-
-    write_arrays = checkpoint.write_arrays
-    monkeypatch.setattr(checkpoint, "write_arrays", full)
-    with pytest.raises(TrainingError, match=r"No space left.*last good checkpoint is .*npz"):
-        training.train(tiny, tmp_path / "full")
-    monkeypatch.undo()
-    monkeypatch.setattr(ppo.time, "perf_counter", lambda: 0.0)
-    assert not list((tmp_path / "full").glob(".*.tmp"))
-    training.resume(tmp_path / "full")
-    training.train(tiny, tmp_path / "whole")
-    for name in EVERY_FILE:
-        whole, resumed = (tmp_path / run / name for run in ("whole", "full"))
-        assert whole.read_bytes() == resumed.read_bytes(), name
+    training.train(tiny, tmp_path)
+    (tmp_path / "checkpoint.zip").write_bytes(content)
+    with pytest.raises(ParameterError, match="is no checkpoint of these settings"):
+        training.resume(tmp_path)
 
 
-def test_a_loss_that_is_no_number_stops_before_the_next_checkpoint(
+def test_resuming_executes_nothing_in_a_checkpoint(tiny: TrainingSettings, tmp_path: Path) -> None:
+    # Without the objects that stable-baselines3 pickles: only weights and a number are read.
+    training.train(tiny, tmp_path)
+    path = tmp_path / "checkpoint.zip"
+    with zipfile.ZipFile(path) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    parts["data"] = b'{"num_timesteps": 192, "policy_class": {":serialized:": "not to be read"}}'
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, content in parts.items():
+            archive.writestr(name, content)
+    assert training.resume(tmp_path).num_timesteps == 192
+
+
+def test_a_checkpoint_of_other_settings_is_refused(tiny: TrainingSettings, tmp_path: Path) -> None:
+    training.train(tiny, tmp_path)
+    policy = {"policy_kwargs": {"net_arch": {"pi": [], "vf": [16]}}}
+    (tmp_path / "settings.toml").write_text(tiny.replace(ppo={**tiny.ppo, **policy}).to_toml())
+    with pytest.raises(ParameterError, match="is no checkpoint of these settings"):
+        training.resume(tmp_path)
+    with pytest.raises(ParameterError, match="holds no checkpoint to resume"):
+        training.resume(tmp_path / "nowhere")
+
+
+def test_a_folder_takes_one_training_at_a_time(tiny: TrainingSettings, tmp_path: Path) -> None:
+    def meanwhile(progress: Progress) -> None:
+        with pytest.raises(InUseError, match="is in use by another process"):
+            training.resume(tmp_path)
+
+    training.train(tiny, tmp_path, meanwhile)
+
+
+def test_weights_that_are_no_numbers_end_the_training(
     tiny: TrainingSettings, tmp_path: Path
 ) -> None:
-    training.train(tiny.replace(samples=192), tmp_path)
-    before = (tmp_path / "checkpoint.npz").read_bytes()
+    def spoil(progress: Progress) -> None:
+        if progress.samples == 128:
+            model.policy.action_net.weight.data.fill_(torch.nan)
 
-    restore = checkpoint.restore
-
-    def spoiled(path, model):
-        progress = restore(path, model)
-        with torch.no_grad():
-            model.policy.value_net.bias.fill_(math.nan)
-        return progress
-
+    model = tiny.model(tiny.venv())
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(checkpoint, "restore", spoiled)
-        with pytest.raises(TrainingError, match=r"loss is nan.*last good checkpoint"):
-            training.resume(tmp_path, samples=384)
-    assert (tmp_path / "checkpoint.npz").read_bytes() == before
-    assert training.resume(tmp_path, samples=384).progress.samples == 384
+        patch.setattr(TrainingSettings, "model", lambda self, venv: model)
+        with pytest.raises(TrainingError, match=r"not finite after .* last good checkpoint"):
+            training.train(tiny, tmp_path, spoil)
+    stored = PPO.load(tmp_path / "checkpoint.zip", device="cpu")
+    assert np.isfinite(weights(stored)).all()
 
 
-def test_validations_use_the_same_seeds_and_none_that_claims_are_made_with(
+def test_a_full_disk_is_named(
     tiny: TrainingSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    seen = []
-    run_episodes = validation.run_episodes
+    def full(path: object) -> None:
+        raise OSError(28, "No space left on device")
 
-    def watched(parameters, policy, seeds, *arguments, **options):
-        seen.append((parameters.pool, parameters.n_leaders, tuple(seeds)))
-        return run_episodes(parameters, policy, seeds, *arguments, **options)
-
-    monkeypatch.setattr(validation, "run_episodes", watched)
-    training.train(tiny, tmp_path)
-    assert seen[:4] == seen[4:]
-    assert len(set(seen)) == 4
-    seeds = {seed for _, _, each in seen for seed in each}
-    assert len(seeds) == tiny.validation_episodes
-    # Neither those of evaluations nor those of any training run.
-    assert min(seeds) > FIRST_TRAINING_SEED + 2**32 * 2**20
-
-
-def test_folders_are_not_mixed_up(tiny: TrainingSettings, tmp_path: Path) -> None:
-    with pytest.raises(flockenv.ParameterError, match="no checkpoint"):
-        training.resume(tmp_path)
-    training.train(tiny.replace(samples=192), tmp_path)
-    with pytest.raises(flockenv.ParameterError, match="holds a run already"):
+    monkeypatch.setattr("flockenv.training.run.atomic_write", full)
+    with pytest.raises(TrainingError, match=r"No space left .* there is no checkpoint yet"):
         training.train(tiny, tmp_path)
 
 
-@pytest.mark.parametrize("stored", [0, 100, 5000])
-def test_damaged_checkpoints_are_refused(
-    tiny: TrainingSettings, tmp_path: Path, stored: int
+def test_trained_leaders_are_compared_with_the_laws(
+    tiny: TrainingSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    training.train(tiny.replace(samples=192), tmp_path)
-    path = tmp_path / "checkpoint.npz"
-    path.write_bytes(path.read_bytes()[:stored])
-    with pytest.raises(flockenv.ParameterError, match=r"checkpoint\.npz"):
-        training.resume(tmp_path)
-
-
-def test_a_policy_is_no_checkpoint(tiny: TrainingSettings, tmp_path: Path) -> None:
-    training.train(tiny.replace(samples=192), tmp_path)
-    (tmp_path / "best.npz").replace(tmp_path / "checkpoint.npz")
-    with pytest.raises(flockenv.ParameterError, match="no checkpoint in the format"):
-        training.resume(tmp_path)
-
-
-def test_a_run_that_is_cut_short_has_its_policy(tiny: TrainingSettings, tmp_path: Path) -> None:
-    with pytest.raises(Killed):
-        training.train(tiny, tmp_path, report=killed_after(192))
-    assert not (tmp_path / "best.npz").exists()
-    result = training.resume(tmp_path, samples=192)
-    assert result.progress.samples == 192
-    assert result.policy.provenance["samples"] == "192"
-
-
-def test_what_a_run_leaves(tiny: TrainingSettings, tmp_path: Path) -> None:
-    result = training.train(tiny, tmp_path, command="the command")
-    best = load(tmp_path / "best.npz")
-    assert best.provenance["command"] == "the command"
-    assert best.provenance["seed"] == "0"
-    assert set(best.provenance) >= {"commit", "flockenv", "samples", "wall_s", "validation"}
-    assert TrainingSettings.from_toml((tmp_path / "settings.toml").read_text()) == tiny
-    rows = result.progress.validations
-    assert [row["samples"] for row in rows] == [384, 768]
-    cells = {"wide k=1", "wide k=2", "narrow k=1", "narrow k=2"}
-    assert set(rows[0]) == {"samples", "mean", *cells}
-    assert result.progress.best_score == max(row["mean"] for row in rows)
-    assert any((tmp_path / "tensorboard").iterdir())
+    monkeypatch.setattr("flockenv.training.curve._EPISODE_S", 8.0)
+    model = training.train(tiny, tmp_path)
+    rows = training.compare_with_laws(model, tiny, episodes=2)
+    assert list(rows.groupby("policy").size()) == [2, 2, 2]
+    assert rows["signed_order"].notna().all()
