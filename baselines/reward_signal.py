@@ -25,6 +25,7 @@ import flockenv
 from flockenv.policies import StraightAhead
 from flockenv.policies.registry import named_policy
 from flockenv.runs.seeds import POLICY_SEEDS
+from flockenv.sb3 import LeaderVecEnv
 
 REWARDS = ("leader_velocity", "contact_push", "signed_order")
 #: Rows that a baseline is fitted to, about.
@@ -53,22 +54,21 @@ def policy_of(name: str, pool: str) -> Any:
 
 def episode(env: Any, policies: Any, options: Any, random: Any, seeds: Any) -> dict[str, Any]:
     """Return scores, inputs of the baseline and reward terms: shape (decisions, rows, ...) each."""
-    flocks, leaders = env.num_envs, env.num_leaders
-    seen, _ = env.reset(seed=seeds)
-    scores, inputs, terms = [], [], []
-    ended, hold = np.zeros(flocks, bool), max(1, round(options.hold_s * env.metadata["render_fps"]))
-    while not ended.all():
+    env.seed(seeds[0])
+    seen, scores, inputs, terms = env.reset(), [], [], []
+    hold, flock = max(1, round(options.hold_s * env.decisions_hz)), env.flock_of_slot
+    over = False
+    while not over:
         if len(scores) % hold == 0:
-            noise = random.standard_normal((flocks, 1 if options.shared else leaders))
-            noise = np.broadcast_to(noise, (flocks, leaders))
-        mean, other = (np.asarray(each.predict(seen)[0], float) for each in policies)
-        features = np.repeat(env.flock_features()[:, None], leaders, axis=1)
-        rows = np.concatenate([seen.reshape(flocks, leaders, -1), features], axis=2)
-        inputs.append(rows.reshape(flocks * leaders, -1))
-        scores.append((noise * (other - mean) / options.deviation).ravel())
+            noise = random.standard_normal(env.num_flocks if options.shared else env.num_envs)
+            noise = noise[flock] if options.shared else noise
+        mean, other = (np.asarray(each.predict(seen)[0], float).ravel() for each in policies)
+        inputs.append(np.concatenate([seen, env.flock_features()], axis=1))
+        scores.append(noise * (other - mean) / options.deviation)
         actions = np.clip(mean + options.deviation * noise, -1.0, 1.0)
-        seen, _, _, ended, _ = env.step(actions.astype(np.float32))
-        terms.append({name: each.ravel() for name, each in env.reward_terms().items()})
+        seen, _, ended, _ = env.step(actions[:, None])
+        terms.append(env.reward_terms())
+        over = bool(ended.all())
     stacked = {name: np.array([each[name] for each in terms]) for name in REWARDS}
     return {"scores": np.array(scores), "inputs": np.array(inputs), **stacked}
 
@@ -83,7 +83,7 @@ def estimates(found: Mapping[str, Any], reward: str, gamma: float, leaders: int)
         left = (1.0 - gamma) + gamma * left
         returns[step], share[step] = later, left
     # Near the end of the episode returns hold a share of the horizon alone.
-    design = np.concatenate([inputs, np.ones((*inputs.shape[:2], 1))], axis=2)
+    design = np.concatenate([inputs, np.ones((*inputs.shape[:2], 1), inputs.dtype)], axis=2)
     design *= share[:, None, None]
     half = scores.shape[1] // 2 // leaders * leaders
     some, advantage = slice(None, None, max(1, returns.size // ROWS)), np.empty_like(returns)
@@ -106,9 +106,8 @@ def significance(values: np.ndarray, samples: int) -> tuple[float, float]:
 def measured(options: argparse.Namespace) -> list[dict[str, Any]]:
     """Return z per million samples of each reward and horizon."""
     policies = [policy_of(name, options.pool) for name in (options.start, options.to)]
-    env = flockenv.LeadersVectorEnv(
+    env = LeaderVecEnv(
         options.flocks,
-        autoreset_mode="disabled",
         pool=options.pool,
         n_boats=27,
         n_leaders=options.leaders,
@@ -123,12 +122,12 @@ def measured(options: argparse.Namespace) -> list[dict[str, Any]]:
     )
     seeds = POLICY_SEEDS["training"].seeds(options.flocks, options.seed)
     random = np.random.default_rng(options.seed)
-    found = episode(env, policies, options, random, list(seeds))
+    found = episode(env, policies, options, random, seeds)
     rows = []
     for reward in REWARDS:
         for horizon_s in options.horizon:
-            gamma = math.exp(-1.0 / (horizon_s * env.metadata["render_fps"]))
-            values = estimates(found, reward, gamma, env.num_leaders)
+            gamma = math.exp(-1.0 / (horizon_s * env.decisions_hz))
+            values = estimates(found, reward, gamma, options.leaders)
             z, error = significance(values, found["scores"].size)
             row = {"pool": options.pool, "action_mode": options.action_mode, "reward": reward}
             numbers = {"horizon_s": horizon_s, "z_per_million": z, "error": error}
