@@ -1,4 +1,4 @@
-"""The console script: the command line, which Ctrl-C ends in a line until a command starts.
+"""The console script: the command line, which Ctrl-C ends in a line before and after a command.
 
 It stands beside the package, because importing anything in the package imports the package.
 """
@@ -22,6 +22,6 @@ def main() -> None:
 
 
 def _end(number: int, frame: FrameType | None) -> None:
-    """End at once: an exception would pass through packages that are half imported."""
-    os.write(2, b"Interrupted. Nothing was written.\n")
+    """End at once, as nothing is at work; an exception would pass through half of an import."""
+    os.write(2, b"Interrupted.\n")
     os._exit(130)

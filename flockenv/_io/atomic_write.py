@@ -1,29 +1,30 @@
 """Files that are written whole or not at all."""
 
-import glob
+import atexit
 import os
 import secrets
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
-
-from flockenv._io.locks import hold
 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["atomic_write", "write_csv", "write_text"]
+__all__ = ["atomic_write", "remove_temporary_files", "write_csv", "write_text"]
 
 # File systems take names of 255 bytes; the temporary one is longer by its marks.
 _LONGEST_STEM = 200
+
+# A name is here before there is a file of that name, so that no moment is left out.
+_temporary: set[Path] = set()
 
 
 @contextmanager
 def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     """Open a file for writing bytes: a temporary one beside it, renamed where all went well.
 
-    Temporary files of writers that were killed are removed; those that a living writer holds stay.
+    It is removed on every way out but a kill, at the latest when Python ends.
 
     Raises
     ------
@@ -32,52 +33,28 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     """
     target = Path(path)
     stem = os.fsdecode(os.fsencode(f".{target.name}")[:_LONGEST_STEM])
-    _remove_abandoned(target.parent, stem)
-    file, temporary = _opened(target.parent, stem)
+    temporary = target.parent / f"{stem}.{secrets.token_hex(4)}.tmp"
+    _temporary.add(temporary)
     try:
-        with file:
+        with temporary.open("xb") as file:
             yield file
             file.flush()
             os.fsync(file.fileno())
-            if os.name == "posix":  # While it is held: once it is closed it looks abandoned.
-                temporary.replace(target)
-        if os.name != "posix":
-            temporary.replace(target)
-    except BaseException:
+        temporary.replace(target)
+    finally:
         temporary.unlink(missing_ok=True)
-        raise
+        _temporary.discard(temporary)
 
 
-def _opened(folder: Path, stem: str) -> tuple[IO[bytes], Path]:
-    """Open a new temporary file and hold it, so that nobody takes it for abandoned."""
-    while True:
-        temporary = folder / f"{stem}.{secrets.token_hex(4)}.tmp"
-        file = temporary.open("xb")
-        with suppress(OSError):  # Some file systems have no locks.
-            hold(file)
-        # Between the two steps above another writer may have removed it.
-        if temporary.exists():
-            return file, temporary
-        file.close()
-
-
-def _remove_abandoned(folder: Path, stem: str) -> None:
-    marks = "[0-9a-f]" * 8
-    for abandoned in folder.glob(f"{glob.escape(stem)}.{marks}.tmp"):
-        # What cannot be opened or removed does not keep this file from being written.
-        with suppress(OSError), abandoned.open("rb+") as file:
-            if hold(file):
-                abandoned.unlink()
+@atexit.register
+def remove_temporary_files() -> None:
+    """Remove what unfinished writing left, before the process ends."""
+    for path in tuple(_temporary):
+        path.unlink(missing_ok=True)
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> None:
-    """Write a text to a file as UTF-8, whole or not at all.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written; what was there before is still there.
-    """
+    """Write a text to a file as UTF-8, as `atomic_write` does."""
     with atomic_write(path) as file:
         file.write(text.encode())
 
@@ -88,15 +65,10 @@ def write_csv(path: str | os.PathLike[str], table: "pd.DataFrame", **options: An
     Parameters
     ----------
     path
-        The file, written whole or not at all.
+        The file, written as by `atomic_write`.
     table
         What to write.
     options
         As of ``to_csv``.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written; what was there before is still there.
     """
     write_text(path, table.to_csv(index=False, lineterminator="\n", **options))

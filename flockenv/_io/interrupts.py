@@ -1,149 +1,88 @@
-"""Ctrl-C handled for a while."""
+"""One rule for Ctrl-C: a command finishes the work under way, keeps it, and ends.
 
+While a command runs the signal is only noted. Work calls `end_if_interrupted` where nothing is half
+done, and engines start no further run. A second signal ends the process at once. A request to end,
+as of Slurm before a job's time is over, counts as Ctrl-C.
+"""
+
+import os
 import signal
-import sys
-from _thread import interrupt_main
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from threading import Timer, current_thread, main_thread
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from threading import current_thread, main_thread
 from types import FrameType
-from typing import Any
 
-__all__ = ["held_interrupts", "interrupts_wait_for_imports", "on_interrupt"]
+from flockenv._io.atomic_write import remove_temporary_files
 
-_PATIENCE_S = 0.02
+__all__ = ["INTERRUPTED", "end_if_interrupted", "interrupted", "noted_interrupts"]
 
+INTERRUPTED = 130
+"""Exit code after Ctrl-C."""
 
-class _AfterImports:
-    """A handler that takes an action as soon as the main thread imports nothing.
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+_NOTED = b"\nEnding when the work under way is done. Ctrl-C again does not wait.\n"
+_SHOW_CURSOR = b"\x1b[?25h"
 
-    Compiled packages do not expect a Ctrl-C while they are imported: one in matplotlib's aborted
-    the interpreter.
-    """
-
-    def __init__(self, action: Callable[[int, FrameType | None], Any]) -> None:
-        self._action = action
-        self._waits = False
-
-    def __call__(self, number: int, frame: FrameType | None) -> None:
-        if self._waits:
-            return
-        if not _importing():
-            self._action(number, frame)
-            return
-        self._waits = True
-        again = Timer(_PATIENCE_S, self._again)
-        again.daemon = True
-        again.start()
-
-    def _again(self) -> None:
-        self._waits = False
-        if sys.platform == "win32":
-            interrupt_main()
-        else:
-            # Unlike `interrupt_main`, it wakes a main thread that waits for a lock.
-            signal.pthread_kill(main_thread().ident or 0, signal.SIGINT)
+_is_noted = False
 
 
-def _importing() -> bool:
-    frame: FrameType | None = sys._getframe()
-    while frame is not None:
-        if frame.f_code.co_filename == "<frozen importlib._bootstrap>":
-            return True
-        frame = frame.f_back
-    return False
+def interrupted() -> bool:
+    """Return whether Ctrl-C was noted: nothing further is to be started."""
+    return _is_noted
 
 
-_RAISING = _AfterImports(signal.default_int_handler)
-
-
-@contextmanager
-def interrupts_wait_for_imports() -> Iterator[None]:
-    """Let a Ctrl-C within a `with` block raise `KeyboardInterrupt`, but not amid an import.
-
-    Nothing changes elsewhere than in the main thread, nor where somebody handles Ctrl-C already.
-    """
-    before = signal.getsignal(signal.SIGINT)
-    if before is not signal.default_int_handler or current_thread() is not main_thread():
-        yield
-        return
-    signal.signal(signal.SIGINT, _RAISING)
-    try:
-        yield
-    finally:
-        if signal.getsignal(signal.SIGINT) is _RAISING:
-            signal.signal(signal.SIGINT, before)
-
-
-@contextmanager
-def on_interrupt(
-    action: Callable[[int, FrameType | None], None] | signal.Handlers,
-) -> Iterator[None]:
-    """Let Ctrl-C do something else than raise `KeyboardInterrupt` within a `with` block.
-
-    Nothing changes elsewhere than in the main thread, where none arrives, nor where somebody
-    ignores Ctrl-C (as nohup does) or handles it already.
-
-    Parameters
-    ----------
-    action
-        As `signal.signal` takes it; a function is not called amid an import. It may set the default
-        handler again.
-    """
-    before = signal.getsignal(signal.SIGINT)
-    ours = before is _RAISING or before is signal.default_int_handler
-    if not ours or current_thread() is not main_thread():
-        yield
-        return
-    handler = action if isinstance(action, signal.Handlers) else _AfterImports(action)
-    signal.signal(signal.SIGINT, handler)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-
-
-@contextmanager
-def held_interrupts() -> Iterator[Callable[[], None]]:
-    """Hold back a Ctrl-C within a `with` block; it acts at the block's end, a second one at once.
-
-    Packages do not expect one everywhere: amid an entry of an archive `zipfile` raises a ValueError
-    in its place, one in the middle of tensorboard's writing leaves a queue whose closing waits for
-    ever, and one in torch's backward pass leaves gradients off. Nothing changes outside of the main
-    thread, nor where somebody ignores Ctrl-C. An error within the block takes the Ctrl-C's place.
-
-    Yields
-    ------
-    Callable
-        Lets what is held back act, if anything: for places within the block that can be left.
+def end_if_interrupted() -> None:
+    """End the work where nothing is half done.
 
     Raises
     ------
     KeyboardInterrupt
-        At the end of the block, if one was held back.
+        If Ctrl-C was noted.
     """
-    handler = signal.getsignal(signal.SIGINT)
-    if not callable(handler) or current_thread() is not main_thread():
-        yield lambda: None
+    if _is_noted:
+        raise KeyboardInterrupt
+
+
+@contextmanager
+def noted_interrupts() -> Iterator[None]:
+    """Note Ctrl-C within a `with` block; a second one ends the process and its temporary files.
+
+    Nothing changes elsewhere than in the main thread, nor where Ctrl-C is ignored, as under nohup.
+    """
+    global _is_noted
+    found = {number: signal.getsignal(number) for number in _SIGNALS}
+    before = {number: now for number, now in found.items() if now not in (signal.SIG_IGN, None)}
+    if _note in before.values() or current_thread() is not main_thread():
+        yield
         return
-    held: list[Any] = []
-
-    def hold(*arrived: Any) -> None:
-        if held:
-            held.clear()
-            signal.signal(signal.SIGINT, handler)
-            handler(*arrived)
-        held.append(arrived)
-
-    def release() -> None:
-        if held:
-            signal.signal(signal.SIGINT, handler)
-            handler(*held.pop())
-
-    signal.signal(signal.SIGINT, hold)
+    for number in before:
+        signal.signal(number, _note)
     try:
-        yield release
+        yield
     finally:
-        if signal.getsignal(signal.SIGINT) is hold:
-            signal.signal(signal.SIGINT, handler)
-    release()
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        _is_noted = False
+
+
+def _note(number: int, frame: FrameType | None) -> None:
+    global _is_noted
+    if _is_noted:
+        _end()
+    _is_noted = True
+    _write(_NOTED)
+
+
+def _end() -> None:
+    try:
+        remove_temporary_files()
+        if os.isatty(2):
+            _write(_SHOW_CURSOR)
+    finally:
+        os._exit(INTERRUPTED)
+
+
+def _write(text: bytes) -> None:
+    # Python's own streams may be what was interrupted.
+    with suppress(OSError):
+        os.write(2, text)

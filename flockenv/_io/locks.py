@@ -1,4 +1,4 @@
-"""Files that one process holds at a time; the system lets go of them when the process ends."""
+"""A file that one process holds at a time; the system lets go of it when the process ends."""
 
 import os
 import sys
@@ -9,7 +9,7 @@ from typing import IO, Any
 
 from flockenv.errors import InUseError
 
-__all__ = ["held", "hold"]
+__all__ = ["held"]
 
 if sys.platform == "win32":
     import msvcrt
@@ -17,40 +17,15 @@ if sys.platform == "win32":
     # A byte beyond every file's end: what others read stays readable.
     _FAR = 1 << 30
 
-    def hold(file: IO[Any]) -> bool:
-        """Hold an open file until it is closed; return whether nobody else holds it.
-
-        Raises
-        ------
-        OSError
-            Where the file system has no locks.
-        """
-        place = file.tell()
+    def _lock(file: IO[Any]) -> None:
         file.seek(_FAR)
-        try:
-            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-        except PermissionError:
-            return False
-        finally:
-            file.seek(place)
-        return True
+        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
 
 else:
     import fcntl
 
-    def hold(file: IO[Any]) -> bool:
-        """Hold an open file until it is closed; return whether nobody else holds it.
-
-        Raises
-        ------
-        OSError
-            Where the file system has no locks.
-        """
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            return False
-        return True
+    def _lock(file: IO[Any]) -> None:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 @contextmanager
@@ -73,11 +48,13 @@ def held(path: Path, what: str) -> Iterator[None]:
     """
     with open(os.open(path, os.O_RDWR | os.O_CREAT, 0o666), "r+b") as file:
         try:
-            free = hold(file)
+            _lock(file)
+        except (BlockingIOError, PermissionError) as error:
+            raise InUseError(
+                f"{what} is in use by another process: name another, or wait"
+            ) from error
         except OSError:  # Without locks everybody looks after their own folder.
-            free = True
-        if not free:
-            raise InUseError(f"{what} is in use by another process: name another, or wait")
+            pass
         try:
             yield
         finally:

@@ -3,25 +3,27 @@
 import codecs
 import functools
 import io
-import signal
 import sys
 import unicodedata
 from collections.abc import Callable, Collection, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
-from threading import current_thread, main_thread
-from threading import enumerate as enumerate_threads
-from types import FrameType
 from typing import Any
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    Progress,
+    TaskID,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 
-from flockenv._io.interrupts import interrupts_wait_for_imports, on_interrupt
+from flockenv._io.interrupts import INTERRUPTED, end_if_interrupted, noted_interrupts
 
 __all__ = [
-    "INTERRUPTED",
     "console",
     "ends_on_interrupt",
     "errors",
@@ -34,10 +36,7 @@ __all__ = [
     "say",
 ]
 
-INTERRUPTED = 130
-"""Exit code after Ctrl-C."""
-
-_NOTHING = "Nothing was written."
+_STORED = "Work that was finished before is stored."
 
 console = Console()
 errors = Console(stderr=True)
@@ -96,8 +95,13 @@ def print_anywhere() -> None:
 class _Bar(Progress):
     """A bar that goes away with an error, which is all that is left to read then.
 
-    Without one it ends full, whatever the rounding of its parts.
+    Without one it ends full, whatever the rounding of its parts. Work ends where it advances, if
+    Ctrl-C was noted; `update` is for work that ends elsewhere.
     """
+
+    def advance(self, task_id: TaskID, advance: float = 1.0) -> None:
+        super().advance(task_id, advance)
+        end_if_interrupted()
 
     def __exit__(self, kind: type[BaseException] | None, *rest: Any) -> None:
         for task in self.tasks if kind is None else ():
@@ -124,34 +128,20 @@ def progress_bar(disable: bool) -> Progress:
 
 
 def ends_on_interrupt(command: Callable[..., None]) -> Callable[..., None]:
-    """Return a command that Ctrl-C ends with exit code 130 and what `interruptible` noted on it.
-
-    Another Ctrl-C does not cut that off, nor does it spill tracebacks of packages that are being
-    left; where runs in other threads are waited for, it ends them.
-    """
+    """Return a command that Ctrl-C ends with exit code 130 and what `interruptible` noted on it."""
 
     @functools.wraps(command)
     def wrapped(*arguments: Any, **options: Any) -> None:
-        try:
-            _raise_on_interrupt()
-            with interrupts_wait_for_imports():
+        with noted_interrupts():
+            try:
                 command(*arguments, **options)
-        except KeyboardInterrupt as interrupt:
-            notes = getattr(interrupt, "__notes__", ["Work that was finished before is stored."])
-            with on_interrupt(signal.SIG_IGN):
+                end_if_interrupted()
+            except KeyboardInterrupt as interrupt:
+                notes = getattr(interrupt, "__notes__", [_STORED])
                 say(f"Interrupted. {notes[0]}", errors)
-            others = (each for each in enumerate_threads() if each is not main_thread())
-            if current_thread() is main_thread() and all(each.daemon for each in others):
-                signal.signal(signal.SIGINT, signal.SIG_IGN)
-            raise typer.Exit(INTERRUPTED) from None
+                raise typer.Exit(INTERRUPTED) from None
 
     return wrapped
-
-
-def _raise_on_interrupt() -> None:
-    """Let Ctrl-C raise in a command; the console script ends on it at once before."""
-    if getattr(signal.getsignal(signal.SIGINT), "__module__", None) == "flockenv_command":
-        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @contextmanager
@@ -166,13 +156,11 @@ def interruptible(message: str | Callable[[], str]) -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt as interrupt:
-        with on_interrupt(signal.SIG_IGN):
-            interrupt.add_note(message if isinstance(message, str) else message())
+        interrupt.add_note(message if isinstance(message, str) else message())
         raise
 
 
-@contextmanager
-def finished_in(folder: Path, parts: Collection[str]) -> Iterator[None]:
+def finished_in(folder: Path, parts: Collection[str]) -> AbstractContextManager[None]:
     """Note on a Ctrl-C within a `with` block which parts are finished.
 
     Parameters
@@ -184,30 +172,14 @@ def finished_in(folder: Path, parts: Collection[str]) -> Iterator[None]:
     """
 
     def message() -> str:
-        return f"Finished and stored in {folder}: {', '.join(parts)}." if parts else _NOTHING
+        done = f"Finished and stored in {folder}: {', '.join(parts)}."
+        return done if parts else "Nothing was written."
 
-    with interruptible(message):
-        yield
-
-
-@contextmanager
-def resumable(folder: Path) -> Iterator[None]:
-    """Note on a Ctrl-C within a `with` block where work resumes from.
-
-    Runs under way cannot be stopped in their middle, and long ones take a minute to end: that is
-    said at once.
-    """
-    message = f"Finished runs are stored in {folder}: the same command resumes from them."
-    with interruptible(message), _announced():
-        yield
+    return interruptible(message)
 
 
-@contextmanager
-def _announced() -> Iterator[None]:
-    def announce(number: int, frame: FrameType | None) -> None:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-        say("Waiting for the runs under way to end. Ctrl-C again does not wait.", errors)
-        raise KeyboardInterrupt
-
-    with on_interrupt(announce):
-        yield
+def resumable(folder: Path) -> AbstractContextManager[None]:
+    """Note on a Ctrl-C within a `with` block where work resumes from."""
+    return interruptible(
+        f"Finished runs are stored in {folder}: the same command resumes from them."
+    )

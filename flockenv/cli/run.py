@@ -116,8 +116,7 @@ def run(
             raise
         written.append(path)
 
-    with interruptible(f"{out} may not have been written."):
-        keep(out, write)
+    keep(out, write)
     if written != [out]:
         say(f"{out} was written by another command meanwhile.", errors)
         (out,) = written

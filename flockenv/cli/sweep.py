@@ -72,7 +72,7 @@ def sweep(
             work,
             folder,
             where,
-            lambda run: progress.advance(task, run.cost),
+            lambda run: progress.update(task, advance=run.cost),
             warn,
             workers,
         )

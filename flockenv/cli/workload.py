@@ -92,7 +92,7 @@ def make_shard(
             mine,
             RunStore(runs, warn),
             engine,
-            lambda spec: progress.advance(task, spec.cost),
+            lambda spec: progress.update(task, advance=spec.cost),
             workers,
         )
     for spec, error in failures.items():

@@ -1,8 +1,6 @@
 """Leader policies against each other: seeded episodes, order by number of leaders (figure 12)."""
 
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import CancelledError
-from threading import Event
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +10,7 @@ from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv._io.extras import require
+from flockenv._io.interrupts import end_if_interrupted
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import (
@@ -194,6 +193,7 @@ def run_episodes(
         actions, state = policy.predict(observations, state)
         observations, _, _, ended, infos = env.step(actions)
         progress(len(seeds) / env.metadata["render_fps"])
+        end_if_interrupted()
     summary = infos["episode_summary"]
     names = (*QUANTITIES, *ORDERING_TIMES)
     return {name: _told(summary, name, len(seeds)) for name in names}
@@ -241,15 +241,14 @@ def _simulated(
     _, infos = env.reset(seed=list(seeds))
     flock_seeds = [int(seed) for seed in infos["flock_seed"]]
 
-    stop = Event()
-
-    def go_on(done: float) -> None:
-        if stop.is_set():
-            raise CancelledError
-
     def run(seed: int) -> list[float]:
         recording = simulate(
-            parameters, seed, duration_s, CONTROL_HZ, dtype=np.float32, progress=go_on
+            parameters,
+            seed,
+            duration_s,
+            CONTROL_HZ,
+            dtype=np.float32,
+            progress=lambda done: end_if_interrupted(),
         )
         order = recording.analyzed().order
         signed = order.signed_order(parameters.target)
@@ -265,5 +264,5 @@ def _simulated(
             *ordering,
         ]
 
-    means = np.array(in_order(run, flock_seeds, stop=stop))
+    means = np.array(in_order(run, flock_seeds))
     return dict(zip((*QUANTITIES, *ORDERING_TIMES), means.T, strict=True))

@@ -8,6 +8,7 @@ import numpy as np
 
 from flockenv._core import Flock
 from flockenv._io.extras import require
+from flockenv._io.interrupts import end_if_interrupted
 from flockenv.errors import FlockError, ParameterError, shown
 from flockenv.rendering.frames import renderer
 
@@ -80,6 +81,7 @@ class Window:
         self._due = max(self._due + 1 / (self._fps * self.speed), now)
         self._handle_events()
         while self.is_open and self._is_waiting():
+            end_if_interrupted()
             time.sleep(self._pause_s())
             self._handle_events()
 

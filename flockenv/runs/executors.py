@@ -1,19 +1,20 @@
 """Engines: where many independent runs are made. A spec goes to each of them unchanged.
 
 All share one form, `Engine`: a function of (function, items, workers) that yields the place of each
-item and the function's value of it, as they are finished and so in any order. What they are given
-must be pure and, but for `local`, picklable: then results do not depend on the engine.
+item and the function's value of it, as they are finished and so in any order. Once Ctrl-C was noted
+they start no further item, and end with those under way. What they are given must be pure and, but
+for `local`, picklable: then results do not depend on the engine.
 """
 
 import functools
 import itertools
 import os
-from collections.abc import Callable, Generator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
-from threading import Event
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from typing import Any, Protocol, TypeVar
 
 from flockenv._io.extras import require
+from flockenv._io.interrupts import end_if_interrupted, interrupted
 from flockenv.errors import ParameterError
 
 __all__ = ["ENGINES", "Engine", "cores", "in_order", "joblib", "local", "named", "ray"]
@@ -38,36 +39,37 @@ class Engine(Protocol):
         """Yield (place, function(items[place])) as they are finished."""
 
 
+def _started(items: Sequence[Item]) -> Iterator[tuple[int, Item]]:
+    """Yield items with their places, as long as no Ctrl-C was noted."""
+    return itertools.takewhile(lambda _: not interrupted(), enumerate(items))
+
+
 def local(
-    function: Callable[[Item], Value],
-    items: Sequence[Item],
-    workers: int | None = None,
-    stop: Event | None = None,
+    function: Callable[[Item], Value], items: Sequence[Item], workers: int | None = None
 ) -> Generator[tuple[int, Value], None, None]:
     """Run in threads of this process: the simulator lets go of the interpreter while it runs.
 
-    On Ctrl-C runs under way are waited for, all others are dropped. `stop` is set before the
-    waiting, so that runs that heed it end sooner.
+    An error ends the work when the runs under way have ended.
     """
-    pool = ThreadPoolExecutor(workers or cores())
-    try:
-        places = {pool.submit(function, item): place for place, item in enumerate(items)}
-        for future in as_completed(places):
-            yield places.pop(future), future.result()
-    finally:
-        if stop is not None:
-            stop.set()
-        pool.shutdown(cancel_futures=True)
+    at_once = workers or cores()
+    waiting = _started(items)
+    places: dict[Future[Value], int] = {}
+    with ThreadPoolExecutor(at_once) as pool:
+        while True:
+            for place, item in itertools.islice(waiting, at_once - len(places)):
+                places[pool.submit(function, item)] = place
+            if not places:
+                return
+            for future in wait(places, return_when=FIRST_COMPLETED).done:
+                yield places.pop(future), future.result()
 
 
 def in_order(
-    function: Callable[[Item], Value],
-    items: Sequence[Item],
-    workers: int | None = None,
-    stop: Event | None = None,
+    function: Callable[[Item], Value], items: Sequence[Item], workers: int | None = None
 ) -> list[Value]:
     """Return the values of a function in the order of the items, computed as by `local`."""
-    values = dict(local(function, items, workers, stop))
+    values = dict(local(function, items, workers))
+    end_if_interrupted()
     return [values[place] for place in range(len(items))]
 
 
@@ -97,7 +99,7 @@ def joblib(
     """
     task = require("joblib", "sweep").delayed(_numbered)
     parallel = _parallel(workers or -1, backend)
-    yield from parallel(task(function, place, item) for place, item in enumerate(items))
+    yield from parallel(task(function, place, item) for place, item in _started(items))
 
 
 def _parallel(workers: int, backend: str | None) -> Any:
@@ -138,15 +140,15 @@ def ray(
     if started:
         _start_ray(package, workers)
     tasks: dict[Any, int] = {}
-    waiting = iter(range(len(items)))
+    waiting = _started(items)
     try:
         # Repeated without end where a worker or its node is lost; an error of the function is not.
         remote = package.remote(num_cpus=1, max_retries=-1)(function)
         while True:
             # Counted again each time: nodes come and go.
             at_once = max(2, 2 * int(package.cluster_resources().get("CPU", 0)))
-            for place in itertools.islice(waiting, max(0, at_once - len(tasks))):
-                tasks[remote.remote(items[place])] = place
+            for place, item in itertools.islice(waiting, max(0, at_once - len(tasks))):
+                tasks[remote.remote(item)] = place
             if not tasks:
                 return
             finished, _ = package.wait(list(tasks), num_returns=1)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv._io.array_file import read_arrays, write_arrays
+from flockenv._io.interrupts import end_if_interrupted
 from flockenv.errors import FlockError, ParameterError
 from flockenv.flock import OrderSeries
 from flockenv.policies.registry import EVERY_SUBSTEP
@@ -228,8 +229,8 @@ def run_missing(
     specs
         The runs; repeated ones are made once. Expensive ones start first.
     store
-        Where finished runs are stored. Ctrl-C or a full disk ends the work, and costs only the runs
-        under way.
+        Where finished runs are stored. A full disk ends the work, and costs only the runs under
+        way; so does Ctrl-C outside of a command, which itself waits for them.
     engine
         Where to run, one of `flockenv.runs.executors.ENGINES`. The results are the same on each.
     progress
@@ -262,6 +263,7 @@ def run_missing(
             else:
                 failures[missing[place]] = outcome
             progress(missing[place])
+    end_if_interrupted()
     return failures
 
 

@@ -16,6 +16,7 @@ from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import configure
 
 from flockenv._io.atomic_write import atomic_write, write_text
+from flockenv._io.interrupts import end_if_interrupted
 from flockenv._io.locks import held
 from flockenv.errors import FlockError, ParameterError
 from flockenv.runs.seeds import POLICY_SEEDS
@@ -194,6 +195,7 @@ class _Checkpoints(BaseCallback):
         self.last: float | None = None
 
     def _on_step(self) -> bool:
+        end_if_interrupted()
         for info in self.locals["infos"]:
             if "episode" in info:
                 self.orders.append(info["episode_summary"]["signed_order"])

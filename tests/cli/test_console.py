@@ -3,14 +3,24 @@
 import io
 import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+import typer
 
 import flockenv
-from flockenv.cli.console import print_anywhere, print_json, progress_bar, say
+from flockenv.cli.console import (
+    ends_on_interrupt,
+    finished_in,
+    interruptible,
+    print_anywhere,
+    print_json,
+    progress_bar,
+    say,
+)
 
 
 @pytest.fixture
@@ -93,7 +103,7 @@ def test_an_interrupt_while_packages_are_imported_ends_in_a_line(name):
         [sys.executable, "-c", source, "presets"], capture_output=True, text=True, timeout=60
     )
     assert (done.returncode, done.stdout) == (130, "")
-    assert done.stderr == "Interrupted. Nothing was written.\n"
+    assert done.stderr == "Interrupted.\n"
 
 
 def test_an_interrupt_while_arguments_are_read_ends_in_a_line():
@@ -106,7 +116,7 @@ def test_an_interrupt_while_arguments_are_read_ends_in_a_line():
         [sys.executable, "-c", source, "run"], capture_output=True, text=True, timeout=60
     )
     assert (done.returncode, done.stdout) == (130, "")
-    assert done.stderr == "Interrupted. Nothing was written.\n"
+    assert done.stderr == "Interrupted.\n"
 
 
 def test_an_interrupt_that_is_ignored_stays_so_while_packages_are_imported():
@@ -116,3 +126,19 @@ def test_an_interrupt_that_is_ignored_stays_so_while_packages_are_imported():
         [sys.executable, "-c", source, "--version"], capture_output=True, text=True, timeout=60
     )
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_what_is_finished_is_said_and_the_innermost_word_counts(capsys):
+    @ends_on_interrupt
+    def command(parts):
+        with interruptible("outside"), finished_in(Path("here"), parts):
+            signal.raise_signal(signal.SIGINT)
+            with progress_bar(True) as bar:
+                bar.advance(bar.add_task("a unit of work"))
+
+    for parts, said in ([], "Nothing was written."), (["a"], "Finished and stored in here: a."):
+        with pytest.raises(typer.Exit) as ended:
+            command(parts)
+        assert ended.value.exit_code == 130
+        assert f"Interrupted. {said}" in capsys.readouterr().err
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler

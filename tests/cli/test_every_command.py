@@ -7,18 +7,14 @@ import pty
 import signal
 import subprocess
 import sys
-import threading
-import time
-from contextlib import nullcontext
-from pathlib import Path
 
 import pytest
-import typer
 
 import flockenv
 from flockenv.cli import app
-from flockenv.cli.console import ends_on_interrupt, finished_in, interruptible, resumable
 from flockenv.cli.presets import ABOUT
+from flockenv.comparison import episodes
+from flockenv.runs import store
 
 COMMANDS = sorted(command.callback.__name__ for command in app.registered_commands)
 SPEC = """
@@ -204,103 +200,67 @@ def test_a_sweep_keeps_what_was_asked_beside_its_table(cli, tmp_path):
     assert (tmp_path / "out" / "sweep.toml").read_bytes() == (tmp_path / "small.toml").read_bytes()
 
 
-LONG = {
-    "compare": (["--minutes", "900", "--episodes", "8", "--pool", "narrow"], "Nothing was"),
-    "evaluate": (["straight ahead", "--minutes", "900", "--episodes", "8"], "Nothing was"),
-    "sweep": (["{}/spec.toml"], "Finished runs are stored in "),
-}
+@pytest.fixture
+def pressed_in(monkeypatch):
+    """Let Ctrl-C come once, when a function is called."""
+
+    def patched(owner, name):
+        work, presses = getattr(owner, name), [signal.SIGINT]
+
+        def pressed(*arguments, **options):
+            for number in presses[:1]:
+                presses.clear()
+                signal.raise_signal(number)
+            return work(*arguments, **options)
+
+        monkeypatch.setattr(owner, name, pressed)
+
+    return patched
 
 
-@pytest.mark.parametrize("name", LONG)
-def test_ctrl_c_says_where_finished_work_is(cli, name, tmp_path):
-    (tmp_path / "spec.toml").write_text(SPEC)
-    arguments, words = LONG[name]
-    arguments = [each.replace("{}", str(tmp_path)) for each in arguments]
-    # A bar is drawn on a terminal only.
-    terminal, own = pty.openpty()
-    out = ["--out", tmp_path / "out"]
-    process = cli.start(name, *arguments, *out, stderr=own, COLUMNS="200", TERM="xterm")
-    os.close(own)
-    try:
-        # The bar appears when the work starts.
-        assert os.read(terminal, 1000)
-        time.sleep(0.5)
-        process.send_signal(signal.SIGINT)
-        reported = everything(terminal)
-        assert process.wait(timeout=60) == 130, reported
-    finally:
-        process.kill()
-        os.close(terminal)
-    assert f"Interrupted. {words}" in reported
-    assert "left:" in reported
-    assert "Traceback" not in reported
-    assert not list(Path(tmp_path).rglob("*.tmp"))
+EPISODES = ["--episodes", "2", "--minutes", "9", "--set", "n_boats=5"]
+NO_LEADERS = episodes, "simulate"
+STEPPED = flockenv.LeadersVectorEnv, "step"
+#: Where Ctrl-C comes, what is written before, and what is said.
+AT_WORK = [
+    (["run"], (sys.modules["flockenv.cli.run"], "simulate"), "Nothing was written."),
+    (["compare", "--pool", "narrow", *EPISODES], NO_LEADERS, "Nothing was written."),
+    (["compare", "--pool", "narrow", *EPISODES], STEPPED, "Nothing was written."),
+    (["evaluate", "straight ahead", *EPISODES], STEPPED, "Nothing was written."),
+]
 
 
-NOTED = {
-    "All is stored.": lambda: interruptible("All is stored."),
-    "All was stored.": lambda: interruptible(lambda: "All was stored."),
-    "Finished and stored in here: a.": lambda: finished_in(Path("here"), ["a"]),
-    "Finished runs are stored in here": lambda: resumable(Path("here")),
-    "Work that was finished before is stored.": nullcontext,
-}
+@pytest.mark.parametrize(("arguments", "place", "said"), AT_WORK)
+def test_ctrl_c_says_what_became_of_the_work(cli, arguments, place, said, tmp_path, pressed_in):
+    pressed_in(*place)
+    out = tmp_path / "sub" / "out.npz"
+    done = cli(*arguments, "--out", out, FORCE_COLOR="1")
+    assert done.returncode == 130, done.stderr
+    assert f"Interrupted. {said}" in done.stderr
+    assert "left:" in done.stderr, "the bar stays"
+    assert not [path for path in tmp_path.rglob("*") if path.is_file()]
 
 
-@pytest.mark.parametrize("words", NOTED)
-def test_another_ctrl_c_neither_cuts_off_the_message_nor_disturbs_the_end(
-    words, monkeypatch, capsys
-):
-    console = sys.modules[interruptible.__module__]  # The package has another thing of that name.
-    whole = console.say
-
-    def pressed(text, on):
-        signal.raise_signal(signal.SIGINT)
-        whole(text, on)
-
-    @ends_on_interrupt
-    def command():
-        with interruptible("This stands further out."), NOTED[words]():
-            raise KeyboardInterrupt
-
-    @ends_on_interrupt
-    def without_notes():
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(console, "say", pressed)
-    # Other tests leave threads of joblib's behind, which a command would let Ctrl-C end.
-    monkeypatch.setattr(console, "enumerate_threads", lambda: [threading.main_thread()])
-    try:
-        with pytest.raises((typer.Exit, KeyboardInterrupt)) as ended:
-            (without_notes if NOTED[words] is nullcontext else command)()
-        assert isinstance(ended.value, typer.Exit)
-        assert ended.value.exit_code == 130
-        assert f"Interrupted. {words}" in capsys.readouterr().err
-        assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
-    finally:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+def test_ctrl_c_keeps_the_runs_of_a_sweep(cli, tmp_path, pressed_in):
+    spec, out = tmp_path / "spec.toml", tmp_path / "out"
+    spec.write_text("minutes = 0.1\nseeds = 9\n[[grid]]\nn_boats = [3]\n")
+    pressed_in(store, "execute")
+    done = cli("sweep", spec, "--workers", "1", "--out", out)
+    assert done.returncode == 130, done.stderr
+    assert f"Interrupted. Finished runs are stored in {out / 'runs'}: " in done.stderr
+    assert len(list(out.rglob("*.npz"))) == 1
+    assert cli("sweep", spec, "--out", out).returncode == 0
+    assert len(list(out.rglob("*.npz"))) == 9
 
 
-def test_another_ctrl_c_ends_what_other_threads_are_at(capsys):
-    over = threading.Event()
-    waited_for = threading.Thread(target=over.wait)
-    waited_for.start()
-
-    @ends_on_interrupt
-    def command():
-        raise KeyboardInterrupt
-
-    try:
-        with pytest.raises(typer.Exit):
-            command()
-        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
-    finally:
-        over.set()
-        waited_for.join()
-
-
-def test_a_command_that_ends_leaves_ctrl_c_alone():
-    ends_on_interrupt(lambda: None)()
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+def test_ctrl_c_amid_a_file_leaves_it_whole(cli, tmp_path, pressed_in):
+    pressed_in(os, "fsync")
+    out = tmp_path / "run.npz"
+    done = cli("run", "--minutes", "0.1", "--set", "n_boats=4", "--out", out)
+    assert (done.returncode, done.stdout.count("Written to")) == (130, 1)
+    assert "Interrupted. Work that was finished before is stored." in done.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["run.npz", "run.toml"]
+    assert len(flockenv.Recording.load(out)) == 61
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,7 @@
 """`flockenv run` and `flockenv replay`: they write the given run, completely."""
 
 import json
-import signal
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -143,22 +141,6 @@ def test_errors_are_named_with_exit_code_2(cli, arguments, words, run, tmp_path)
     assert words in done.stderr
     assert "Traceback" not in done.stderr
     assert sorted(tmp_path.iterdir()) == before
-
-
-@pytest.mark.parametrize("policy", ["law", "steering law"])
-def test_ctrl_c_says_what_became_of_the_work(cli, policy, tmp_path):
-    out = tmp_path / "sub" / "run.npz"
-    long = ["run", "--minutes", "6000", "--hz", "0.01", "--policy", policy, "--set", "n_leaders=1"]
-    process = cli.start(*long, "--out", out, FORCE_COLOR="1")
-    # The bar, drawn because of FORCE_COLOR, appears when the run starts.
-    assert process.stderr.read(1)
-    time.sleep(1.0)
-    process.send_signal(signal.SIGINT)
-    _, reported = process.communicate(timeout=30)
-    assert process.returncode == 130
-    assert "Nothing was written" in reported
-    assert "Traceback" not in reported
-    assert not out.parent.exists()
 
 
 @pytest.fixture(scope="module")

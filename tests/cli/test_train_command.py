@@ -68,12 +68,12 @@ def test_an_interrupt_names_the_command_that_resumes(
 ) -> None:
     from stable_baselines3 import PPO
 
-    # Amid the second update.
+    # Amid the first update.
     update, calls = PPO.train, []
 
     def pressed(self: PPO) -> None:
         calls.append(1)
-        if len(calls) == 2:
+        if len(calls) == 1:
             signal.raise_signal(signal.SIGINT)
         update(self)
 

@@ -1,146 +1,116 @@
-"""Ctrl-C waits for the end of what must not stop halfway, and is never lost."""
+"""Law: Ctrl-C ends a command where nothing is half done, a second one at once; no file is left."""
 
+import contextlib
+import itertools
 import signal
+import subprocess
 import sys
-import time
-from threading import Event
+from functools import partial
+from types import FrameType
+from typing import Any
 
 import pytest
 
-from flockenv._io.interrupts import held_interrupts, interrupts_wait_for_imports, on_interrupt
+from flockenv._io import atomic_write
+from flockenv._io.atomic_write import write_text
+from flockenv._io.interrupts import end_if_interrupted, interrupted, noted_interrupts
+
+press = partial(signal.raise_signal, signal.SIGINT)
 
 
-def press() -> None:
-    signal.raise_signal(signal.SIGINT)
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_is_noted_until_work_can_end(number, capfd):
+    before = signal.getsignal(number)
+    with noted_interrupts():
+        end_if_interrupted()
+        assert not interrupted()
+        signal.raise_signal(number)
+        assert interrupted()
+        with pytest.raises(KeyboardInterrupt):
+            end_if_interrupted()
+    assert not interrupted()
+    assert signal.getsignal(number) is before
+    assert "Ctrl-C again does not wait" in capfd.readouterr().err
 
 
-def test_an_interrupt_is_raised_at_the_end_of_the_block() -> None:
-    reached = []
-
-    def held() -> None:
-        with held_interrupts():
+def test_a_block_within_another_changes_nothing():
+    with noted_interrupts():
+        with noted_interrupts():
             press()
-            reached.append("the end")
-
-    with pytest.raises(KeyboardInterrupt):
-        held()
-    assert reached == ["the end"]
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+        assert interrupted()
 
 
-def test_a_block_can_be_left_sooner() -> None:
-    reached = []
-
-    def left() -> None:
-        with held_interrupts() as release:
-            release()
-            reached.append("before")
-            press()
-            release()
-            reached.append("after")
-
-    with pytest.raises(KeyboardInterrupt):
-        left()
-    assert reached == ["before"]
-
-
-def test_a_second_interrupt_is_not_held_back() -> None:
-    reached = []
-
-    def pressed_twice() -> None:
-        with held_interrupts():
-            press()
-            reached.append("once")
-            press()
-            reached.append("twice")
-
-    with pytest.raises(KeyboardInterrupt):
-        pressed_twice()
-    assert reached == ["once"]
-
-
-def test_an_error_is_reported_before_a_held_interrupt() -> None:
-    def failing() -> None:
-        with held_interrupts():
-            press()
-            raise OSError("disk full")
-
-    with pytest.raises(OSError, match="disk full"):
-        failing()
-
-
-def test_ignored_interrupts_stay_ignored() -> None:
+def test_ignored_interrupts_stay_ignored():
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
-        with held_interrupts() as release:
+        with noted_interrupts():
             press()
-            release()
-        assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+            assert not interrupted()
     finally:
         signal.signal(signal.SIGINT, before)
 
 
-PRESSED_AMID_IMPORT = """
-import signal
-
-signal.raise_signal(signal.SIGINT)
-signal.raise_signal(signal.SIGINT)
-done = True
+TWICE = """
+import signal, sys
+from flockenv._io.atomic_write import atomic_write
+from flockenv._io.interrupts import noted_interrupts
+with noted_interrupts(), atomic_write(sys.argv[1]) as file:
+    file.write(b"half")
+    signal.raise_signal(signal.SIGINT)
+    print("goes on", flush=True)
+    signal.raise_signal(signal.SIGINT)
+    print("is not reached", flush=True)
 """
 
 
-def soon(over: object) -> None:
-    """Wait, not in one go: a handler runs between two bytecodes."""
-    end = time.monotonic() + 20.0
-    while not over and time.monotonic() < end:
-        time.sleep(0.01)
+def test_a_second_one_ends_the_process_and_its_temporary_file(tmp_path):
+    words = [sys.executable, "-c", TWICE, str(tmp_path / "a.txt")]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout) == (130, "goes on\n")
+    assert list(tmp_path.iterdir()) == []
 
 
-def test_an_interrupt_waits_for_the_end_of_an_import(tmp_path, monkeypatch) -> None:
-    (tmp_path / "pressed_amid_import.py").write_text(PRESSED_AMID_IMPORT)
-    monkeypatch.syspath_prepend(tmp_path)
+class Interrupt:
+    """Ctrl-C before the n-th step of the writing of a file."""
 
-    def importing() -> None:
-        with interrupts_wait_for_imports():
-            import pressed_amid_import
+    FILES = (atomic_write.__file__, contextlib.__file__)
 
-            assert pressed_amid_import.done
-            soon([])
+    def __init__(self, step: int) -> None:
+        self.left = step
 
-    with pytest.raises(KeyboardInterrupt):
-        importing()
-    assert sys.modules.pop("pressed_amid_import").done
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
-
-
-def test_an_action_of_ones_own_waits_for_the_end_of_an_import(tmp_path, monkeypatch) -> None:
-    (tmp_path / "pressed_amid_import.py").write_text(PRESSED_AMID_IMPORT)
-    monkeypatch.syspath_prepend(tmp_path)
-    acted: list[bool] = []
-    with (
-        interrupts_wait_for_imports(),
-        on_interrupt(lambda *_: acted.append("pressed_amid_import" in finished)),
-    ):
-        finished: list[str] = []
-        import pressed_amid_import
-
-        finished.append(pressed_amid_import.__name__)
-        soon(acted)
-    del sys.modules["pressed_amid_import"]
-    assert acted == [True]
+    def __call__(self, frame: FrameType, event: str, argument: Any) -> Any:
+        if frame.f_code.co_filename not in self.FILES:
+            return None
+        frame.f_trace_opcodes = True
+        self.left -= 1
+        if self.left == 0:
+            raise KeyboardInterrupt
+        return self
 
 
-def test_an_interrupt_wakes_a_thread_that_waits_for_a_lock(tmp_path, monkeypatch) -> None:
-    (tmp_path / "pressed_amid_import.py").write_text(PRESSED_AMID_IMPORT)
-    monkeypatch.syspath_prepend(tmp_path)
-
-    def waiting() -> None:
-        with interrupts_wait_for_imports():
-            import pressed_amid_import  # noqa: F401
-
-            Event().wait(20.0)
-            raise AssertionError("the interrupt was not raised while the thread waited")
-
-    with pytest.raises(KeyboardInterrupt):
-        waiting()
-    del sys.modules["pressed_amid_import"]
+# A file that was just opened is closed where nothing holds it any more, which Python warns of.
+@pytest.mark.filterwarnings("ignore::ResourceWarning")
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+@pytest.mark.parametrize("old", [None, "old"])
+def test_wherever_writing_is_interrupted_no_file_is_left(old, tmp_path):
+    path, found = tmp_path / "file", set()
+    for step in itertools.count(1):
+        path.unlink(missing_ok=True)
+        if old is not None:
+            path.write_text(old)
+        pressed = Interrupt(step)
+        sys.settrace(pressed)
+        try:
+            write_text(path, "new")
+        except KeyboardInterrupt:
+            pass
+        finally:
+            sys.settrace(None)
+        # As Python does when it ends.
+        atomic_write.remove_temporary_files()
+        assert {each.name for each in tmp_path.iterdir()} <= {path.name}
+        found.add(path.read_text() if path.exists() else None)
+        if pressed.left > 0:
+            break
+    assert found == {old, "new"}
+    assert step > 100

@@ -1,14 +1,16 @@
 """Law: the window keeps real time, obeys its keys, and may be closed at any moment."""
 
 import pickle
+import signal
 import sys
-import time
+from types import SimpleNamespace
 
 import pytest
 
 import flockenv
 from flockenv import rendering
 from flockenv._io.extras import MissingExtraError
+from flockenv._io.interrupts import noted_interrupts
 
 SHORT = {"n_boats": 8, "n_leaders": 2, "episode_s": 3.0}
 SMALL = {**SHORT, "render_size": (160, 120)}
@@ -34,6 +36,34 @@ def pygame():
 def press(pygame, *keys):
     for key in keys:
         pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=key))
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    """Real time of a window, which passes only while it waits; what happens at given times."""
+    passed = SimpleNamespace(now=0.0, events={})
+
+    def sleep(seconds):
+        passed.now += seconds
+        for due in [due for due in passed.events if due <= passed.now]:
+            passed.events.pop(due)()
+
+    fake = SimpleNamespace(perf_counter=lambda: passed.now, sleep=sleep)
+    monkeypatch.setattr(rendering.window, "time", fake)
+    return passed
+
+
+def test_human_mode_keeps_real_time(pygame, clock):
+    env = flockenv.parallel_env(render_mode="human", **SMALL)
+    env.reset(seed=0)
+    start = clock.now
+    for _ in range(5):
+        env.step({agent: [0.0] for agent in env.agents})
+        assert env.render() is None
+    # 0.1 s a step; render() has nothing new to show and does not wait.
+    assert clock.now - start == pytest.approx(0.5)
+    env.close()
+    assert not pygame.display.get_init()
 
 
 def test_window_shows_the_frame(pygame):
@@ -77,13 +107,21 @@ def test_keys(pygame):
     window.close()
 
 
-def test_a_pause_lasts_until_the_key_is_pressed_again(pygame):
+def test_a_pause_lasts_until_the_key_is_pressed_again(pygame, clock):
     window = rendering.Window(160, 120, fps=100.0)
     press(pygame, pygame.K_SPACE)
-    start = time.perf_counter()
-    pygame.time.set_timer(pygame.event.Event(pygame.KEYDOWN, key=pygame.K_SPACE), 300, loops=1)
+    clock.events[100.0] = lambda: press(pygame, pygame.K_SPACE)
     window.show(flock())
-    assert time.perf_counter() - start > 0.25
+    assert clock.now == pytest.approx(100.0, abs=0.1)
+    window.close()
+
+
+def test_an_interrupt_ends_a_pause(pygame, clock):
+    window = rendering.Window(160, 120, fps=100.0)
+    press(pygame, pygame.K_SPACE)
+    clock.events[100.0] = lambda: signal.raise_signal(signal.SIGINT)
+    with noted_interrupts(), pytest.raises(KeyboardInterrupt):
+        window.show(flock())
     window.close()
 
 

@@ -1,13 +1,14 @@
 """Every engine gives the same bits, and each result as soon as it is finished."""
 
 import os
+import signal
 import threading
 from pathlib import Path
-from threading import Event
 
 import pytest
 
 import flockenv
+from flockenv._io.interrupts import interrupted, noted_interrupts
 from flockenv.runs.executors import ENGINES, Engine, cores, in_order, joblib, local, named
 from flockenv.runs.spec import RunSpec
 from flockenv.runs.store import RunStore, run_missing
@@ -124,17 +125,24 @@ def test_an_unknown_engine_is_refused() -> None:
     assert set(ENGINES) == {"local", "joblib", "ray"}
 
 
-def test_runs_that_heed_a_stop_end_with_an_error_of_another():
-    stop, under_way = Event(), Event()
-    heeded = []
+@pytest.mark.parametrize(
+    "engine", ["local", "joblib:threading", "joblib", pytest.param("ray", marks=pytest.mark.ray)]
+)
+def test_a_noted_interrupt_lets_runs_under_way_end_and_starts_no_other(engine) -> None:
+    items, found = range(100_000), []
+    with noted_interrupts():
+        for place, value in named(engine)(abs, items, workers=2):
+            found.append((place, value))
+            if not interrupted():
+                signal.raise_signal(signal.SIGINT)
+    assert 0 < len(found) < len(items)
+    assert all(place == value for place, value in found)
 
-    def work(item):
-        if item == 0:
-            assert under_way.wait(20.0)
-            raise ValueError("item 0")
-        under_way.set()
-        heeded.append(stop.wait(20.0))
 
-    with pytest.raises(ValueError, match="item 0"):
-        in_order(work, [0, 1], workers=2, stop=stop)
-    assert heeded == [True]
+def test_values_in_order_are_all_or_none() -> None:
+    def work(item: int) -> None:
+        if item == 1:
+            signal.raise_signal(signal.SIGINT)
+
+    with noted_interrupts(), pytest.raises(KeyboardInterrupt):
+        in_order(work, range(1000), workers=2)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import flockenv
+from flockenv._io.interrupts import noted_interrupts
 from flockenv.runs import store as run_store
 from flockenv.runs.executors import local
 from flockenv.runs.spec import KEEP, ORDER_NAMES, RunSpec, execute
@@ -142,6 +143,24 @@ def test_an_interruption_keeps_what_was_finished(spec: RunSpec, tmp_path: Path) 
     assert sum(store.path(spec).exists() for spec in specs) == 2
     run_missing(specs, store)
     assert all(store.load(spec) == execute(spec) for spec in specs)
+
+
+def test_a_command_that_is_interrupted_keeps_the_runs_under_way(
+    spec: RunSpec, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store, made = RunStore(tmp_path), []
+    specs = [RunSpec(parameters=spec.parameters, seed=seed, duration_s=30.0) for seed in range(9)]
+
+    def pressed(spec: RunSpec) -> flockenv.Recording:
+        made.append(spec)
+        signal.raise_signal(signal.SIGINT)
+        return execute(spec)
+
+    monkeypatch.setattr(run_store, "execute", pressed)
+    with noted_interrupts(), pytest.raises(KeyboardInterrupt):
+        run_missing(specs, store)
+    assert 0 < len(made) < len(specs)
+    assert {spec for spec in specs if store.load(spec) is not None} == set(made)
 
 
 def test_a_full_disk_is_named_and_leaves_no_half_file(spec: RunSpec, tmp_path: Path) -> None:
