@@ -51,7 +51,7 @@ TEST_EXTRAS := --extra train --extra plot --extra render --extra sweep --extra t
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help setup build compare test lint format test-rust test-bare test-python coverage test-js test-browser test-wheel test-oldest \
+.PHONY: help setup build compare live test lint format test-rust test-bare test-python coverage test-js test-browser test-live test-wheel test-oldest \
         test-benchmarl test-rllib test-ray test-slurm validate docs wheel audit licenses tables replay-animation publish-check release-check \
         instructions throughput env-benchmarl env-rllib soak fuzz speed-vs-error \
         lint-benches clean
@@ -109,8 +109,17 @@ test-browser: $(STAMPS)/browser $(CORE) ## the replay page, clicked and read in 
 	@tests/browser/need_chromium.sh
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m browser tests/browser $(PYTEST_ARGS)
 
-test-js: $(JS_TESTS)/node_modules ## the replay page's scripts: style, and unit tests, with Node
+test-live: live $(STAMPS)/browser ## the live page: its bits against the native ones, and every control in headless Chromium
+	@tests/browser/need_chromium.sh
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m live tests/web tests/browser $(PYTEST_ARGS)
+
+test-js: $(JS_TESTS)/node_modules ## the pages' scripts: style, and unit tests, with Node
 	cd $(JS_TESTS) && npm run lint && npm test
+
+# The crate itself needs nothing of this; without rustup, another toolchain's cargo and target will do.
+live: $(CORE) ## the live page: the simulator compiled to WebAssembly, in one file, web/live.html
+	@rustup target add wasm32-unknown-unknown || rustc --print target-libdir --target wasm32-unknown-unknown
+	$(BIN)/python web/build.py
 
 wheel: $(STAMPS)/venv ## the wheel and the source distribution, into dist
 	rm -rf dist

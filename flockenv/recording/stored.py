@@ -13,14 +13,16 @@ from flockenv.parameters import FlockParameters
 from flockenv.recording.checks import CONTACTS, PRECISIONS, check_array
 from flockenv.recording.order import ORDER
 
-__all__ = ["ARRAYS", "OPTIONAL", "TIMES", "arrays_of", "fields_from"]
+__all__ = ["ARRAYS", "FORMAT", "OPTIONAL", "TIMES", "arrays_of", "fields_from"]
 
 TIMES = ("time_s", "phase", "in_analysis_window")
 ARRAYS = (*TIMES, "pose", "velocity")
 OPTIONAL = ("rudder", "ids")
 """Arrays that a recording may lack."""
 
-_FORMAT = "flockenv recording 3"
+FORMAT = "flockenv recording 3"
+"""What the file of a recording says that it is."""
+
 # Format 1 held Section 3.2's six order parameters, and neither the policy nor the duration; later
 # files hold the quantities that were recorded at the time. Format 2 held no rudders.
 _FIRST_FORMAT = "flockenv recording 1"
@@ -36,7 +38,7 @@ def arrays_of(fields: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
     if fields["contacts"] is not None:
         arrays |= {f"contacts_{name}": getattr(fields["contacts"], name) for name in CONTACTS}
     texts = {
-        "format": _FORMAT,
+        "format": FORMAT,
         "version": fields["version"],
         "parameters": fields["parameters"].to_toml(),
         "policy": fields["policy"] or "",
@@ -74,8 +76,8 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
     check_array("seed", arrays["seed"], (), (np.dtype(np.uint64),))
     check_array("duration_s", arrays["duration_s"], (), PRECISIONS[:1])
     form, version, stored, policy = (str(arrays[name]) for name in texts)
-    if form not in (_SECOND_FORMAT, _FORMAT):
-        raise ParameterError(f"format = {form!r} is not accepted: {_FORMAT!r} or an earlier one")
+    if form not in (_SECOND_FORMAT, FORMAT):
+        raise ParameterError(f"format = {form!r} is not accepted: {FORMAT!r} or an earlier one")
     held = {name: arrays[f"order_{name}"] for name in order}
     parameters = FlockParameters.from_toml(stored)
     whole_order = _whole_order(held, [arrays["pose"], arrays["velocity"]], parameters)

@@ -2,7 +2,7 @@
 
 import { span } from "./run.mjs";
 import { fitted } from "./scene.mjs";
-import { clockText, plain, roundNumber } from "./words.mjs";
+import { caption, clockText, element, fixed, plain, roundNumber } from "./words.mjs";
 
 const EDGE = { left: 40, right: 10, top: 8, bottom: 20 };
 
@@ -144,6 +144,20 @@ export class Chart {
       context.fillText(clockText(time), Math.min(this.xOf(time), width - 22), height - 5);
     }
   }
+}
+
+/** What stands above a chart: the series' words, and its value in each run at a time. */
+export function legendOf(runs, quantity, time) {
+  const parts = runs.map((run, place) => {
+    const part = element("span", "value");
+    if (runs.length > 1) {
+      part.title = run.name;
+      part.append(element("span", `swatch run-${place + 1}`), element("span", "unseen", `${run.name} `));
+    }
+    part.append(element("b", "", fixed(run.value(quantity.key, run.sampleAt(time)), quantity.decimals)));
+    return part;
+  });
+  return [element("span", "", caption(quantity)), ...parts];
 }
 
 const ranges = new Map();

@@ -1,12 +1,9 @@
 """The page: recordings, a template, a style sheet and scripts, in one file that loads nothing."""
 
-import base64
-import hashlib
 import html
 import json
 import math
 import os
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -25,6 +22,7 @@ from flockenv.parameters import FlockParameters
 from flockenv.recording import PHASES, Recording
 from flockenv.replay.packing import Packer
 from flockenv.replay.quantities import ShownQuantity, decisive_minute, shown_quantities
+from flockenv.replay.template import as_script_content, digest, filled, joined
 
 __all__ = ["MOST_BYTES", "MOST_INLINE_BYTES", "Replay", "inline_replay", "write_replay"]
 
@@ -184,8 +182,8 @@ def _page(recordings: Mapping[str, Recording], every: int, plays: bool) -> str:
         "policy": "; ".join(
             (
                 "default-src 'none'",
-                f"style-src '{_digest(style)}'",
-                f"script-src '{_digest(script)}'",
+                f"style-src {digest(style)}",
+                f"script-src {digest(script)}",
                 "img-src data:",
                 "base-uri 'none'",
                 "form-action 'none'",
@@ -193,10 +191,9 @@ def _page(recordings: Mapping[str, Recording], every: int, plays: bool) -> str:
         ),
         "style": style,
         "script": script,
-        "data": _as_script_content(data),
+        "data": as_script_content(json.dumps(data, separators=(",", ":"), allow_nan=False)),
     }
-    # One pass over the template alone: nothing that a recording says is taken for a place in it.
-    return re.sub(r"\{\{(\w+)\}\}", lambda match: parts[match[1]], _read("page.html"))
+    return filled(_read("page.html"), parts)
 
 
 @cache
@@ -206,19 +203,7 @@ def _read(name: str) -> str:
 
 @cache
 def _script() -> str:
-    """Return the modules as one: without the lines that import and the words that export."""
-    modules = "\n".join(map(_read, _SCRIPTS))
-    return re.sub(r"^(?:import .*;\n|export )", "", modules, flags=re.MULTILINE)
-
-
-def _digest(source: str) -> str:
-    return "sha256-" + base64.b64encode(hashlib.sha256(source.encode()).digest()).decode("ascii")
-
-
-def _as_script_content(value: Any) -> str:
-    """Return JSON that cannot end the script element it stands in."""
-    text = json.dumps(value, separators=(",", ":"), allow_nan=False)
-    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+    return joined(map(_read, _SCRIPTS))
 
 
 def _run(

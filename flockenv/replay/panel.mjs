@@ -11,7 +11,6 @@ const PHASES = {
   nop2: ["drift", "the motors are off after driving backward"],
 };
 
-/** A run's canvas with everything around it. */
 /** Where a leader heads, in words, if not all head there. */
 function targetWords(run, boat) {
   return run.targets ? ` ${run.targets[boat] === "cw" ? "↻ cw" : "↺ ccw"}` : "";
@@ -28,6 +27,7 @@ function leaderKey(run) {
   });
 }
 
+/** A run's canvas with everything around it. */
 export class Panel {
   constructor(run, place, several) {
     this.run = run;
@@ -46,6 +46,17 @@ export class Panel {
     this.picture.append(this.#clock(), this.#scene(), this.canvas, this.#order(), this.#sense(), this.card);
     this.root.append(title, this.picture);
     this.scene = new Scene(this.canvas, run);
+  }
+
+  /** Calls `hover` with the boat under the pointer, or null, and `choose` with one that is clicked. */
+  onBoat(hover, choose) {
+    const boatAt = (event) => {
+      const box = this.canvas.getBoundingClientRect();
+      return this.scene.boatAt(event.clientX - box.left, event.clientY - box.top);
+    };
+    this.canvas.addEventListener("pointermove", (event) => hover(boatAt(event)));
+    this.canvas.addEventListener("pointerleave", () => hover(null));
+    this.canvas.addEventListener("click", (event) => choose(boatAt(event)));
   }
 
   #clock() {
@@ -201,4 +212,18 @@ export function boatNumbers(run, boat, sample) {
     numbers.push(["contacts", String(touching.length), ""], ["strongest push", fixed(strongest, 1), "cm/s²"]);
   }
   return numbers;
+}
+
+/** A table of the parameters; those that differ between runs stand out. */
+export function parameterTable(runs) {
+  const table = element("table");
+  const rows = [["", (run) => run.name], ["seed", (run) => run.seed], ["version", (run) => run.version],
+    ...Object.keys(runs[0].parameters).map((key) => [key, (run) => run.parameters[key]])];
+  for (const [name, value] of rows) {
+    const values = runs.map(value);
+    const row = element("tr", new Set(values).size > 1 ? "differs" : "");
+    row.append(element("th", "", name), ...values.map((each) => element("td", "", each)));
+    table.append(row);
+  }
+  return table;
 }

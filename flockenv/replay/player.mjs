@@ -1,12 +1,12 @@
 // The clock of the page: playing, scrubbing, keys, the link, and what is shown.
 
-import { Chart } from "./chart.mjs";
+import { Chart, legendOf } from "./chart.mjs";
 import { forceScale } from "./forces.mjs";
 import { linkTo, readLink } from "./link.mjs";
-import { Panel } from "./panel.mjs";
+import { Panel, parameterTable } from "./panel.mjs";
 import { span } from "./run.mjs";
 import { colors } from "./scene.mjs";
-import { caption, element, fixed } from "./words.mjs";
+import { caption, fixed } from "./words.mjs";
 
 export const SPEEDS = [0.25, 0.5, 1, 2, 4, 8, 16, 32, 64];
 const FIRST_SPEED = 8;
@@ -71,7 +71,7 @@ export class Player {
       label.append(" (not recorded)");
       label.title = "Runs recorded with contacts=True show them";
     }
-    fillParameters(this.runs);
+    document.getElementById("parameters").append(parameterTable(this.runs));
   }
 
   #mostBoats() {
@@ -91,16 +91,7 @@ export class Player {
     speed.addEventListener("change", () => { this.#writeLink(); this.show(); });
     boat.addEventListener("change", () => this.pin(boat.value === "" ? null : Number(boat.value)));
     for (const panel of this.panels) {
-      const boatAt = (event) => {
-        const box = panel.canvas.getBoundingClientRect();
-        return panel.scene.boatAt(event.clientX - box.left, event.clientY - box.top);
-      };
-      panel.canvas.addEventListener("pointermove", (event) => this.hover(boatAt(event)));
-      panel.canvas.addEventListener("pointerleave", () => this.hover(null));
-      panel.canvas.addEventListener("click", (event) => {
-        const chosen = boatAt(event);
-        this.pin(chosen === this.pinned ? null : chosen);
-      });
+      panel.onBoat((boat) => this.hover(boat), (boat) => this.pin(boat === this.pinned ? null : boat));
     }
     document.addEventListener("keydown", (event) => this.#key(event));
     window.addEventListener("hashchange", () => this.#followLink());
@@ -275,34 +266,6 @@ export class Player {
     scrub.style.setProperty("--done", `${(100 * (this.time - this.start)) / (this.end - this.start || 1)}%`);
     clock.textContent = `${fixed(this.#sampled(this.time), 1)} s of ${fixed(this.end, 1)} s`;
     scrub.setAttribute("aria-valuetext", clock.textContent);
-    this.#legend(chosen);
+    this.controls.legend.replaceChildren(...legendOf(this.runs, chosen, this.time));
   }
-
-  #legend(chosen) {
-    const parts = this.runs.map((run, place) => {
-      const part = element("span", "value");
-      if (this.runs.length > 1) {
-        part.title = run.name;
-        part.append(element("span", `swatch run-${place + 1}`), element("span", "unseen", `${run.name} `));
-      }
-      const value = run.value(chosen.key, run.sampleAt(this.time));
-      part.append(element("b", "", fixed(value, chosen.decimals)));
-      return part;
-    });
-    this.controls.legend.replaceChildren(element("span", "", caption(chosen)), ...parts);
-  }
-}
-
-/** A table of the parameters; those that differ between runs stand out. */
-function fillParameters(runs) {
-  const table = element("table");
-  const rows = [["", (run) => run.name], ["seed", (run) => run.seed], ["version", (run) => run.version],
-    ...Object.keys(runs[0].parameters).map((key) => [key, (run) => run.parameters[key]])];
-  for (const [name, value] of rows) {
-    const values = runs.map(value);
-    const row = element("tr", new Set(values).size > 1 ? "differs" : "");
-    row.append(element("th", "", name), ...values.map((each) => element("td", "", each)));
-    table.append(row);
-  }
-  document.getElementById("parameters").append(table);
 }

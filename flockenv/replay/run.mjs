@@ -1,12 +1,12 @@
 // A run: what the recording says at each of its samples, and in between for the picture.
 
 export class Run {
-  constructor(described, columns) {
+  /** `time`: that of each sample in s, where it is no series in quanta. */
+  constructor(described, columns, time = timesOf(columns.get("time_s"))) {
     Object.assign(this, described);
     this.columns = columns;
-    const time = columns.get("time_s");
+    this.time = time;
     this.length = time.length;
-    this.time = Float64Array.from(time.values, (value) => value * time.quantum);
     this.firstContact = this.#firstContacts();
   }
 
@@ -16,7 +16,7 @@ export class Run {
 
   #firstContacts() {
     const first = new Int32Array(this.length + 1);
-    if (this.hasForces) {
+    if (this.columns.has("contact_count")) {
       const count = this.columns.get("contact_count").values;
       for (let k = 0; k < this.length; k += 1) {
         first[k + 1] = first[k] + count[k];
@@ -116,6 +116,10 @@ export class Run {
     }
     return found;
   }
+}
+
+function timesOf(column) {
+  return Float64Array.from(column.values, (value) => value * column.quantum);
 }
 
 /** First and last time of all runs. */

@@ -15,6 +15,15 @@ from flockenv.replay import write_replay
 SIZE = (1366, 768)
 OUTER_CM = 90.0
 """Of the pool of `parameters`."""
+# Nothing that a fresh browser does on its own account.
+_QUIET = (
+    "disable-gpu",
+    "disable-quic",
+    "no-first-run",
+    "disable-background-networking",
+    "disable-component-update",
+    "disable-sync",
+)
 LAST_DIGIT = 0.0056
 """Numbers with two decimals, and what they were rounded to in the page."""
 
@@ -40,8 +49,8 @@ def chromium() -> Iterator:
     options = webdriver.ChromeOptions()
     options.binary_location = program("CHROMIUM", "chromium")
     # Containers run as root, where Chromium's own sandbox refuses to start, with little /dev/shm.
-    for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage"):
-        options.add_argument(argument)
+    for argument in ("headless=new", "no-sandbox", "disable-dev-shm-usage", *_QUIET):
+        options.add_argument(f"--{argument}")
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     service = Service(program("CHROMEDRIVER", "chromedriver"))
     driver = webdriver.Chrome(options=options, service=service)

@@ -1,0 +1,51 @@
+// Law: an .npz file holds what was put into it, and a file that is none is refused in words.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { array, readNpz, writeNpz } from "../../web/npz.mjs";
+
+const whole = () => writeNpz({
+  pose: array.reals([1, 2, 3, 4, 5, 6], [2, 1, 3]),
+  phase: array.texts(["fw", "nop1"], [2]),
+  in_analysis_window: array.flags([true, false], [2]),
+  seed: array.whole("18446744073709551615"),
+  none: array.reals([], [0]),
+});
+
+test("arrays come out as they went in", async () => {
+  const arrays = await readNpz(whole().buffer);
+  assert.deepEqual(Object.keys(arrays), ["pose", "phase", "in_analysis_window", "seed", "none"]);
+  assert.deepEqual(arrays.pose, { shape: [2, 1, 3], values: Float64Array.of(1, 2, 3, 4, 5, 6) });
+  assert.deepEqual(arrays.phase, { shape: [2], values: ["fw", "nop1"] });
+  assert.deepEqual([...arrays.in_analysis_window.values], [1, 0]);
+  assert.deepEqual(arrays.seed, { shape: [], values: ["18446744073709551615"] });
+  assert.equal(arrays.none.values.length, 0);
+});
+
+test("the bytes are the same at every time", () => {
+  assert.deepEqual(whole(), whole());
+});
+
+test("anything else is refused in words", async () => {
+  await assert.rejects(readNpz(new ArrayBuffer(0)), { message: "it is no .npz file" });
+  await assert.rejects(readNpz(new TextEncoder().encode("<script>".repeat(100)).buffer), { message: "it is no .npz file" });
+});
+
+test("wherever a file is cut off, it is refused", async () => {
+  const bytes = whole();
+  for (let length = 0; length < bytes.length; length += 7) {
+    await assert.rejects(readNpz(bytes.slice(0, length).buffer), Error);
+  }
+});
+
+test("an entry that claims more than it holds is refused", async () => {
+  const bytes = whole();
+  const text = new TextDecoder("latin1").decode(bytes);
+  bytes.set(new TextEncoder().encode("9"), text.indexOf("(2, 1, 3)") + 1);
+  await assert.rejects(readNpz(bytes.buffer), { message: "an array has a shape that does not match its size" });
+});
+
+test("objects are refused", async () => {
+  const bytes = writeNpz({ pose: { shape: [1], descr: "|O", bytes: new Uint8Array(8) } });
+  await assert.rejects(readNpz(bytes.buffer), { message: "an array of |O is not accepted" });
+});

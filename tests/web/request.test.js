@@ -1,0 +1,86 @@
+// Law: a link is followed where it can be, what cannot be followed is named, and what is shown makes the same link.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { commandLine, linkTo, pythonText, readLink, requestOfToml, requestsOf, tomlOf } from "../../web/request.mjs";
+
+const FIELDS = ["n_boats", "n_leaders", "pool", "bw_s", "target", "dt_s", "discs"];
+
+test("parameters of one flock, of a second beside it, and the rest", () => {
+  const wanted = readLink("#preset=paper&n_boats=27&pool=180,0&beside.leaders=tuned damped law&speed=max&lesson=noise", FIELDS);
+  assert.deepEqual(wanted.flock, { preset: "paper", n_boats: "27", pool: "180,0" });
+  assert.deepEqual(wanted.beside, { leaders: "tuned damped law" });
+  assert.deepEqual(wanted.other, { speed: "max", lesson: "noise" });
+  assert.deepEqual(wanted.ignored, []);
+});
+
+test("an empty link asks for nothing", () => {
+  assert.deepEqual(readLink("", FIELDS), { flock: {}, beside: null, other: {}, ignored: [] });
+});
+
+for (const [fragment, sentence] of [
+  ["n_boats=1000000", "The link's n_boats=1000000 is ignored: n_boats is 2 to 300 on this page."],
+  ["n_boats=NaN", "The link's n_boats=NaN is ignored: n_boats is 2 to 300 on this page."],
+  ["n_boats=", "The link's n_boats= is ignored: n_boats is 2 to 300 on this page."],
+  ["beside.n_leaders=9", "The link's beside.n_leaders=9 is ignored: n_leaders is 0 to 8 on this page."],
+  ["dt_s=1e-6", "The link's dt_s=1e-6 is ignored: dt_s is 0.001 to 1 on this page."],
+  ["speed=3", "The link's speed=3 is ignored: speed is one of 1, 2, 4, 8, 16, 32, 64 and max."],
+  ["lesson=<script>alert(1)</script>", "The link's lesson=<script>alert(1)</script> is ignored: lesson is a word."],
+  ["<img src=x>=1", "The link's <img src=x>=1 is ignored: this page knows no such parameter."],
+  ["__proto__=1", "The link's __proto__=1 is ignored: this page knows no such parameter."],
+  ["toString=1", "The link's toString=1 is ignored: this page knows no such parameter."],
+  ["bw_s=1%0Aseed=5", "The link's bw_s=1\nseed=5 is ignored: this page knows no such parameter."],
+]) {
+  test(`${fragment} is ignored in words, and what is beside it is not`, () => {
+    const wanted = readLink(`#${fragment}&bw_s=0.4`, FIELDS);
+    assert.deepEqual(wanted.ignored, [sentence]);
+    assert.deepEqual(wanted.flock, { bw_s: "0.4" });
+  });
+}
+
+test("long texts are cut", () => {
+  assert.ok(readLink(`#n_boats=${"9".repeat(5000)}`, FIELDS).ignored[0].length < 150);
+});
+
+test("what is shown makes a link that asks for it", () => {
+  const shown = { flock: { preset: "experiment", n_boats: "27", target: "cw,ccw" }, beside: { leaders: "tuned damped law" }, other: { speed: "8" } };
+  const { ignored, ...wanted } = readLink(linkTo(shown), FIELDS);
+  assert.deepEqual(wanted, shown);
+  assert.deepEqual(ignored, []);
+});
+
+test("requests are a line for each parameter, those of the second flock with its own", () => {
+  assert.deepEqual(requestsOf({ flock: { n_boats: "27" }, beside: null }), ["n_boats=27"]);
+  assert.deepEqual(requestsOf({ flock: { n_boats: "27", leaders: "law" }, beside: { leaders: "you" } }),
+    ["n_boats=27\nleaders=law", "n_boats=27\nleaders=you"]);
+});
+
+test("the same flock as a command", () => {
+  assert.equal(commandLine({}, 480), "flockenv run --seed 0 --minutes 8");
+  assert.equal(commandLine({ preset: "paper", n_boats: "27", pool: "180,0", leaders: "tuned damped law", seed: "7" }, 60),
+    "flockenv run --preset paper --set n_boats=27 --set 'pool=[180, 0]' --policy 'tuned damped law' --seed 7 --minutes 1");
+});
+
+test("the same flock in Python", () => {
+  const kinds = { n_boats: "count", pool: "pool", target: "choices" };
+  assert.equal(pythonText({ n_boats: "27", pool: "inf,0", target: "cw,ccw", leaders: "learned" }, 60, kinds), [
+    "import flockenv", "",
+    'parameters = flockenv.FlockParameters.preset("simulation").replace(',
+    '    n_boats=27, pool=(float("inf"), 0), target=["cw", "ccw"]', ")",
+    'recording = flockenv.simulate(parameters, seed=0, duration_s=60, policy="learned")', "",
+  ].join("\n"));
+});
+
+test("parameters as TOML are read back as the request that they came from", () => {
+  const kinds = { n_boats: "count", pool: "pool", bw_s: "real", leaders_reverse: "flag", target: "choices", discs: "rows" };
+  const values = { n_boats: "27", pool: "inf,0", bw_s: "1e-7", leaders_reverse: "true", target: "cw,ccw", discs: "1,2,3;4,5,6.5" };
+  const toml = tomlOf(values, kinds);
+  assert.match(toml, /^pool = \[inf, 0\.0\]$/m);
+  assert.match(toml, /^discs = \[\[1\.0, 2\.0, 3\.0\], \[4\.0, 5\.0, 6\.5\]\]$/m);
+  assert.equal(requestOfToml(toml), "n_boats=27\npool=inf,0.0\nbw_s=1e-7\nleaders_reverse=true\ntarget=cw,ccw\ndiscs=1.0,2.0,3.0;4.0,5.0,6.5");
+});
+
+test("lists over several lines, as Python writes them", () => {
+  assert.equal(requestOfToml('pool = [\n    180.0,\n    0.0,\n]\nscheme = "leapfrog"\n'), "pool=180.0,0.0\nscheme=leapfrog");
+  assert.equal(requestOfToml("discs = [\n    [\n        1.0,\n        2.0,\n        3.0,\n    ],\n]\nwalls = []\n"), "discs=1.0,2.0,3.0\nwalls=");
+});

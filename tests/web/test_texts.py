@@ -1,0 +1,76 @@
+"""Law: what the page says of a flock, as a command and in Python, is the flock."""
+
+import json
+import runpy
+import shlex
+import subprocess
+from itertools import pairwise
+
+import pytest
+
+import flockenv
+from flockenv.cli.parameters import read_parameters
+
+pytestmark = pytest.mark.live
+
+SCRIPT = """
+import { readFileSync } from "node:fs";
+import { commandLine, pythonText } from "./web/request.mjs";
+const { flocks, kinds } = JSON.parse(readFileSync(0, "utf8"));
+const texts = flocks.map((each) => [commandLine(each, 90), pythonText(each, 90, kinds)]);
+process.stdout.write(JSON.stringify(texts));
+"""
+KINDS = {
+    "n_boats": "count",
+    "n_leaders": "count",
+    "pool": "pool",
+    "bw_s": "real",
+    "target": "choices",
+    "scheme": "choice",
+    "leaders_reverse": "flag",
+    "discs": "rows",
+}
+
+
+@pytest.mark.parametrize(
+    ("flock", "expected"),
+    [
+        ({}, {}),
+        (
+            {"n_boats": "12", "n_leaders": "2", "bw_s": "0.35", "seed": "11", "scheme": "moreau"},
+            {"n_boats": 12, "n_leaders": 2, "bw_s": 0.35, "scheme": "moreau"},
+        ),
+        (
+            {"pool": "180,0", "n_leaders": "2", "target": "cw,ccw", "leaders_reverse": "false"},
+            {"pool": (180, 0), "n_leaders": 2, "target": ["cw", "ccw"], "leaders_reverse": False},
+        ),
+        ({"pool": "inf,0"}, {"pool": (float("inf"), 0)}),
+        (
+            {"discs": "120,0,5;-130,0,8", "leaders": "damped law", "n_leaders": "1"},
+            {"discs": ((120, 0, 5), (-130, 0, 8)), "n_leaders": 1},
+        ),
+    ],
+)
+def test_command_and_python_name_the_same_flock(flock, expected, pytestconfig, tmp_path):
+    done = subprocess.run(
+        ["node", "--input-type=module", "-e", SCRIPT],
+        input=json.dumps({"flocks": [flock], "kinds": KINDS}),
+        cwd=pytestconfig.rootpath,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    ((command, python),) = json.loads(done.stdout)
+    wanted = flockenv.FlockParameters(**expected)
+    words = shlex.split(command)
+    changes = [value for option, value in pairwise(words) if option == "--set"]
+    assert read_parameters(changes=changes) == wanted
+    assert words[words.index("--minutes") + 1] == "1.5"
+    assert words[words.index("--seed") + 1] == flock.get("seed", "0")
+    same = tmp_path / "same.py"
+    same.write_text(python)
+    recording = runpy.run_path(str(same))["recording"]
+    assert recording.parameters == wanted
+    assert recording.seed == int(flock.get("seed", "0"))
+    assert recording.duration_s == 90.0
+    assert recording.policy.startswith("Damped" if "leaders" in flock else "law")

@@ -1,0 +1,102 @@
+// Sliders and choices, one for each parameter that the page lets a visitor change.
+
+import { element, plain } from "../flockenv/replay/words.mjs";
+import { MOST_NOISE } from "./order_map.mjs";
+
+/** Parameter, words, least, most, step. */
+const SLIDERS = [
+  ["n_boats", "boats", 2, 300, 1],
+  ["n_leaders", "leaders", 0, 8, 1],
+  ["bw_s", "backward duration (s)", 0, MOST_NOISE, 0.05],
+  ["c4", "angular noise", 0, 0.5, 0.01],
+  ["boat_shape", "hull shape", 0, 2, 0.05],
+];
+
+/** Parameter, words, accepted values with their words. */
+const CHOICES = [
+  ["preset", "preset", [["simulation"], ["paper"], ["experiment"]]],
+  ["pool", "pool", [["wide"], ["narrow"], ["180,0", "dish"], ["inf,0", "open water"]]],
+  ["target", "target", [["cw", "clockwise"], ["ccw", "counter-clockwise"], ["opposed", "opposed"]]],
+  ["scheme", "scheme", [["leapfrog"], ["moreau"], ["paper"]]],
+  ["noise_scheme", "noise", [["white"], ["per-step"]]],
+];
+
+/** How leaders may steer, in words. */
+export const LEADERS = {
+  law: "the paper's law",
+  "tuned damped law": "the tuned law",
+  learned: "pretrained leaders",
+  you: "you",
+};
+
+/** What may run beside a flock: what of it differs, and in words. */
+const BESIDE_CHOICES = [
+  ["", "nothing"],
+  ["leaders=law", "the paper's law"],
+  ["leaders=tuned damped law", "the tuned law"],
+  ["n_leaders=0", "no leaders"],
+  ["n_leaders=1", "one leader"],
+  ["n_leaders=4", "four leaders"],
+];
+
+/** The targets of so many leaders, half of them against the other half. */
+export function opposedTargets(leaders) {
+  return Array.from({ length: leaders }, (_, k) => (k < leaders / 2 ? "cw" : "ccw")).join(",");
+}
+
+export class Controls {
+  /** `meanings`: what the simulator says of each parameter; `change` gets a name and a value. */
+  constructor(meanings, policies, change) {
+    Object.assign(this, { meanings, change, inputs: new Map() });
+    const sliders = document.getElementById("sliders");
+    for (const [name, words, low, high, step] of SLIDERS) {
+      sliders.append(this.#slider(name, words, { low, high, step }));
+    }
+    const choices = document.getElementById("choices");
+    const known = Object.entries(LEADERS).filter(([name]) => policies.includes(name));
+    choices.append(this.#choice("leaders", "leaders steer by", known), this.#choice("beside", "beside it", BESIDE_CHOICES));
+    for (const [name, words, options] of CHOICES) {
+      choices.append(this.#choice(name, words, options));
+    }
+  }
+
+  #slider(name, words, { low, high, step }) {
+    const label = element("label");
+    const [text, value, input] = [element("span", "", words), element("output"), element("input")];
+    Object.assign(input, { type: "range", min: low, max: high, step, id: name, title: this.meanings[name] ?? "" });
+    input.addEventListener("input", () => this.change(name, plain(Number(input.value)).replace("−", "-")));
+    label.append(text, value, input);
+    this.inputs.set(name, (shown) => {
+      input.value = shown;
+      value.textContent = plain(Number(shown));
+      input.setAttribute("aria-valuetext", value.textContent);
+    });
+    return label;
+  }
+
+  #choice(name, words, options) {
+    const label = element("label", "", `${words} `);
+    const select = element("select");
+    Object.assign(select, { id: name, title: this.meanings[name] ?? "" });
+    select.append(...options.map(([value, shown]) => new Option(shown ?? value, value)));
+    select.addEventListener("change", () => this.change(name, select.value));
+    label.append(select);
+    this.inputs.set(name, (shown) => {
+      select.querySelector("[data-other]")?.remove();
+      if (![...select.options].some(({ value }) => value === shown)) {
+        const other = new Option(shown.length > 24 ? `${shown.slice(0, 24)}…` : shown, shown);
+        other.dataset.other = "true";
+        select.append(other);
+      }
+      select.value = shown;
+    });
+    return label;
+  }
+
+  /** Shows these values. */
+  show(values) {
+    for (const [name, set] of this.inputs) {
+      set(values[name] ?? "");
+    }
+  }
+}

@@ -1,0 +1,116 @@
+// The compiled simulator behind functions: text to flocks, numbers back.
+
+/** Names of the columns that a flock fills, in their order. */
+export const COLUMNS = ["time_s", "phase", "in_analysis_window", "pose", "velocity", "rudder", "series",
+  "contacts", "observation"];
+/** Numbers of a contact: two boats (−1 for a wall), place along the core, direction, force. */
+export const CONTACT = 5;
+
+/** The longest sentence, in letters: values may have hundreds of digits. */
+const LONGEST_SENTENCE = 250;
+
+/** A request that the simulator refuses: the parameter that is to blame, if one is, and a sentence. */
+export class Refusal extends Error {
+  constructor(text) {
+    const [field, ...sentence] = text.split("\t");
+    const words = sentence.join(" ");
+    super(words.length > LONGEST_SENTENCE ? `${words.slice(0, LONGEST_SENTENCE)}…` : words);
+    this.field = field;
+  }
+}
+
+export class Core {
+  constructor(exports) {
+    this.exports = exports;
+  }
+
+  static async load(bytes) {
+    const { instance } = await WebAssembly.instantiate(bytes, {});
+    return new Core(instance.exports);
+  }
+
+  /** What there is: presets, fields, quantities … */
+  describe() {
+    this.exports.describe();
+    return this.#text();
+  }
+
+  /** All parameters of a request. */
+  check(request) {
+    return this.#ask(request, () => this.exports.check());
+  }
+
+  /** Starts a flock again; returns its parameters. */
+  open(flock, request) {
+    return this.#ask(request, () => this.exports.open(flock));
+  }
+
+  /** Changes a flock; returns how it continued, and its parameters. */
+  change(flock, request) {
+    return this.#ask(request, () => this.exports.change(flock));
+  }
+
+  close(flock) {
+    this.exports.close(flock);
+  }
+
+  steer(flock, rudder) {
+    this.#done(this.exports.steer(flock, rudder));
+  }
+
+  /** Takes up to so many samples within so much work; returns how many. */
+  advance(flock, samples, work) {
+    const taken = this.exports.advance(flock, samples, work);
+    this.#done(taken >= 0);
+    return taken;
+  }
+
+  /** Notes the contacts, and what a boat observes, as they are now. */
+  look(flock, boat) {
+    this.#done(this.exports.look(flock, boat));
+  }
+
+  /** The quantity in this place of the table, of boats with an order at an angle and of a target of this sign. */
+  derived(place, order, angle, sign) {
+    return this.exports.derived(place, order, angle, sign);
+  }
+
+  /** The columns since the last call, by name. */
+  take(flock) {
+    const taken = COLUMNS.map((name, place) => {
+      const [start, length] = [this.exports.column(flock, place), this.exports.column_length(flock, place)];
+      return [name, new Float64Array(this.exports.memory.buffer, length > 0 ? start : 0, length).slice()];
+    });
+    this.exports.take(flock);
+    return Object.fromEntries(taken);
+  }
+
+  #ask(request, call) {
+    const bytes = new TextEncoder().encode(request);
+    const place = this.exports.input(bytes.length);
+    new Uint8Array(this.exports.memory.buffer, place, bytes.length).set(bytes);
+    this.#done(call());
+    return this.#text();
+  }
+
+  #done(isDone) {
+    if (!isDone) {
+      throw new Refusal(this.#text());
+    }
+  }
+
+  #text() {
+    const [start, length] = [this.exports.text(), this.exports.text_length()];
+    return new TextDecoder().decode(new Uint8Array(this.exports.memory.buffer, start, length));
+  }
+}
+
+/** The lines of a text of the simulator, by their first word: the other words of each. */
+export function byKind(text) {
+  const lines = new Map();
+  for (const line of text.split("\n").filter(Boolean)) {
+    const [kind, ...words] = line.split("\t");
+    lines.set(kind, [...(lines.get(kind) ?? []), words]);
+  }
+  return lines;
+}

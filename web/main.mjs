@@ -1,0 +1,28 @@
+// Starts the page, or says why it cannot.
+
+import { LivePage, OPENING } from "./live.mjs";
+import { Simulator } from "./simulator.mjs";
+
+async function start() {
+  for (const needed of ["Worker", "WebAssembly", "DecompressionStream"]) {
+    if (!(needed in globalThis)) {
+      throw new Error(`this browser has no ${needed}, in which the simulator runs`);
+    }
+  }
+  const text = (id) => document.getElementById(id).textContent;
+  const packed = Uint8Array.from(atob(text("wasm")), (letter) => letter.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+  const simulator = new Simulator(text("thread"), await new Response(stream).arrayBuffer());
+  const about = JSON.parse(text("about"));
+  window.page = new LivePage(simulator, about, await simulator.start());
+  await window.page.follow(location.hash.length > 1 ? location.hash : about.opening ?? OPENING);
+  document.body.dataset.ready = "true";
+  if (!matchMedia("(prefers-reduced-motion: reduce)").matches) {
+    window.page.toggle();
+  }
+}
+
+start().catch((error) => {
+  document.getElementById("status").textContent = `This page cannot run here: ${error.message}.`;
+  document.body.dataset.ready = "failed";
+});

@@ -1,0 +1,187 @@
+// Named arrays in an .npz file: a zip of .npy entries. What is read is data, whatever it says.
+
+const MOST_BYTES = 1 << 29;
+
+/** The bytes of a file of arrays: `{name: {shape, descr, bytes}}`, uncompressed. */
+export function writeNpz(arrays) {
+  const [parts, directory] = [[], []];
+  let place = 0;
+  const names = Object.keys(arrays);
+  for (const name of names) {
+    const entry = npyOf(arrays[name]);
+    const path = new TextEncoder().encode(`${name}.npy`);
+    const about = new DataView(new ArrayBuffer(26));
+    about.setUint16(0, 20, true);
+    // 1 January 1980: no clock in the file.
+    about.setUint16(8, 33, true);
+    about.setUint32(10, crc32(entry), true);
+    about.setUint32(14, entry.length, true);
+    about.setUint32(18, entry.length, true);
+    about.setUint16(22, path.length, true);
+    const local = [Uint8Array.of(80, 75, 3, 4), new Uint8Array(about.buffer), path];
+    const rest = new DataView(new ArrayBuffer(14));
+    rest.setUint32(10, place, true);
+    directory.push(Uint8Array.of(80, 75, 1, 2, 20, 0), new Uint8Array(about.buffer), new Uint8Array(rest.buffer), path);
+    parts.push(...local, entry);
+    place += 30 + path.length + entry.length;
+  }
+  const size = directory.reduce((sum, part) => sum + part.length, 0);
+  const end = new DataView(new ArrayBuffer(22));
+  end.setUint32(0, 0x06054b50, true);
+  end.setUint16(8, names.length, true);
+  end.setUint16(10, names.length, true);
+  end.setUint32(12, size, true);
+  end.setUint32(16, place, true);
+  return joined([...parts, ...directory, new Uint8Array(end.buffer)]);
+}
+
+function joined(parts) {
+  const bytes = new Uint8Array(parts.reduce((sum, part) => sum + part.length, 0));
+  let place = 0;
+  for (const part of parts) {
+    bytes.set(part, place);
+    place += part.length;
+  }
+  return bytes;
+}
+
+function npyOf({ shape, descr, bytes }) {
+  const sizes = shape.length === 1 ? `(${shape[0]},)` : `(${shape.join(", ")})`;
+  const header = `{'descr': '${descr}', 'fortran_order': False, 'shape': ${sizes}, }`;
+  const padded = `${header.padEnd(Math.ceil((11 + header.length) / 64) * 64 - 11)}\n`;
+  const start = Uint8Array.of(0x93, 78, 85, 77, 80, 89, 1, 0, padded.length & 255, padded.length >> 8);
+  return joined([start, new TextEncoder().encode(padded), bytes]);
+}
+
+/** An array of numbers, of booleans or of strings, as `writeNpz` takes it. */
+export const array = {
+  reals: (values, shape) => ({ shape, descr: "<f8", bytes: new Uint8Array(Float64Array.from(values).buffer) }),
+  flags: (values, shape) => ({ shape, descr: "|b1", bytes: Uint8Array.from(values, Number) }),
+  whole: (value) => ({ shape: [], descr: "<u8", bytes: new Uint8Array(BigUint64Array.of(BigInt(value)).buffer) }),
+  texts: (values, shape, least = 1) => {
+    const size = values.reduce((most, text) => Math.max(most, text.length), least);
+    const letters = new Uint32Array(size * values.length);
+    values.forEach((text, k) => { letters.set([...text].map((letter) => letter.codePointAt(0)), k * size); });
+    return { shape, descr: `<U${size}`, bytes: new Uint8Array(letters.buffer) };
+  },
+};
+
+/** The arrays of a file: `{name: {shape, values}}`, values flat: numbers, booleans as numbers, or strings. */
+export async function readNpz(buffer) {
+  const bytes = new Uint8Array(buffer);
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.length);
+  const arrays = {};
+  let held = 0;
+  for (const { name, start, packed, size, method } of entries(view)) {
+    held += size;
+    if (held > MOST_BYTES) {
+      throw new Error("it holds more than this page shows");
+    }
+    const content = bytes.subarray(start, start + packed);
+    const entry = method === 0 ? content : await inflated(content, size);
+    if (entry.length !== size) {
+      throw new Error(`${name} is cut off`);
+    }
+    arrays[name.replace(/\.npy$/, "")] = readNpy(entry);
+  }
+  return arrays;
+}
+
+function* entries(view) {
+  let end = view.byteLength - 22;
+  while (end >= 0 && end > view.byteLength - 70_000 && view.getUint32(end, true) !== 0x06054b50) {
+    end -= 1;
+  }
+  if (end < 0 || view.getUint32(end, true) !== 0x06054b50) {
+    throw new Error("it is no .npz file");
+  }
+  let place = view.getUint32(end + 16, true);
+  for (let left = view.getUint16(end + 10, true); left > 0; left -= 1) {
+    const [method, packed, size] = [view.getUint16(place + 10, true), view.getUint32(place + 20, true), view.getUint32(place + 24, true)];
+    const [length, extra, comment] = [28, 30, 32].map((at) => view.getUint16(place + at, true));
+    const name = new TextDecoder().decode(new Uint8Array(view.buffer, view.byteOffset + place + 46, length));
+    const local = view.getUint32(place + 42, true);
+    if (![0, 8].includes(method) || packed === 0xffffffff) {
+      throw new Error(`${name} is packed in an unknown way`);
+    }
+    const start = local + 30 + view.getUint16(local + 26, true) + view.getUint16(local + 28, true);
+    yield { name, start, packed, size, method };
+    place += 46 + length + extra + comment;
+  }
+}
+
+async function inflated(bytes, most) {
+  const reader = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw")).getReader();
+  const parts = [];
+  let length = 0;
+  for (let next = await reader.read(); !next.done; next = await reader.read()) {
+    length += next.value.length;
+    if (length > most) {
+      throw new Error("an entry holds more than it says");
+    }
+    parts.push(next.value);
+  }
+  return joined(parts);
+}
+
+const READERS = {
+  "<f8": (bytes) => new Float64Array(bytes),
+  "<f4": (bytes) => new Float32Array(bytes),
+  "<i8": (bytes) => Float64Array.from(new BigInt64Array(bytes), Number),
+  "<i4": (bytes) => new Int32Array(bytes),
+  "<u4": (bytes) => new Uint32Array(bytes),
+  "<u8": (bytes) => Array.from(new BigUint64Array(bytes), String),
+  "|b1": (bytes) => new Uint8Array(bytes),
+  "|u1": (bytes) => new Uint8Array(bytes),
+};
+
+function readNpy(bytes) {
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.length);
+  if (bytes.length < 12 || bytes[0] !== 0x93 || ![1, 2].includes(bytes[6])) {
+    throw new Error("an entry is no array");
+  }
+  const start = bytes[6] === 1 ? 10 : 12;
+  const length = bytes[6] === 1 ? view.getUint16(8, true) : view.getUint32(8, true);
+  const header = new TextDecoder().decode(bytes.subarray(start, start + length));
+  const descr = /'descr':\s*'([^']+)'/.exec(header)?.[1] ?? "";
+  const shape = (/'shape':\s*\(([^)]*)\)/.exec(header)?.[1] ?? "").split(",").map((each) => each.trim()).filter(Boolean).map(Number);
+  const count = shape.reduce((product, each) => product * each, 1);
+  const content = bytes.slice(start + length).buffer;
+  const width = /^<U(\d+)$/.exec(descr)?.[1];
+  if (/'fortran_order':\s*True/.test(header) && shape.length > 1) {
+    throw new Error("an array is stored column by column");
+  }
+  if (width === undefined && !Object.hasOwn(READERS, descr)) {
+    throw new Error(`an array of ${descr.slice(0, 20) || "an unknown kind"} is not accepted`);
+  }
+  const values = width === undefined ? READERS[descr](content) : textsOf(content, Number(width));
+  if (values.length !== count) {
+    throw new Error("an array has a shape that does not match its size");
+  }
+  return { shape, values };
+}
+
+function textsOf(content, width) {
+  const letters = new Uint32Array(content);
+  return Array.from({ length: width === 0 ? 0 : letters.length / width }, (_, k) => {
+    const points = letters.subarray(k * width, (k + 1) * width).filter((point) => point > 0 && point <= 0x10ffff);
+    return String.fromCodePoint(...points);
+  });
+}
+
+let table = null;
+
+function crc32(bytes) {
+  table ??= Uint32Array.from({ length: 256 }, (_, k) => {
+    let value = k;
+    for (let bit = 0; bit < 8; bit += 1) {
+      value = value & 1 ? (value >>> 1) ^ 0xedb88320 : value >>> 1;
+    }
+    return value;
+  });
+  let sum = 0xffffffff;
+  for (const byte of bytes) {
+    sum = table[(sum ^ byte) & 255] ^ (sum >>> 8);
+  }
+  return (sum ^ 0xffffffff) >>> 0;
+}

@@ -1,0 +1,78 @@
+// Order against noise: where the flock is, and what it has shown so far.
+
+import { fitted } from "../flockenv/replay/scene.mjs";
+import { plain } from "../flockenv/replay/words.mjs";
+
+const EDGE_OF_MAP = { left: 30, right: 8, top: 6, bottom: 30 };
+/** The longest backward phase on the map, in s, and how many cells it and order are divided into. */
+export const MOST_NOISE = 3;
+const CELLS = [60, 25];
+
+export class OrderMap {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.clear();
+  }
+
+  clear() {
+    this.counts = new Uint32Array(CELLS[0] * CELLS[1]);
+    this.dot = null;
+  }
+
+  /** Notes the mean order of an analysis window at a backward duration in s. */
+  note(noise, order) {
+    this.dot = [noise, order];
+    const cell = (share, count) => Math.min(Math.max(Math.floor(share * count), 0), count - 1);
+    if (noise <= MOST_NOISE) {
+      this.counts[cell(noise / MOST_NOISE, CELLS[0]) * CELLS[1] + cell(order, CELLS[1])] += 1;
+    }
+  }
+
+  draw(palette) {
+    const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
+    if (width === 0) {
+      return;
+    }
+    const context = fitted(this.canvas);
+    const [across, up] = [width - EDGE_OF_MAP.left - EDGE_OF_MAP.right, height - EDGE_OF_MAP.top - EDGE_OF_MAP.bottom];
+    const x = (noise) => EDGE_OF_MAP.left + (Math.min(noise, MOST_NOISE) / MOST_NOISE) * across;
+    const y = (order) => EDGE_OF_MAP.top + (1 - order) * up;
+    context.clearRect(0, 0, width, height);
+    context.fillStyle = palette.water;
+    context.fillRect(EDGE_OF_MAP.left, EDGE_OF_MAP.top, across, up);
+    this.#cells(context, palette, across / CELLS[0], up / CELLS[1]);
+    context.fillStyle = palette.faint;
+    context.font = `11px ${getComputedStyle(document.body).fontFamily}`;
+    context.textAlign = "center";
+    for (const noise of [0, 1, 2, 3]) {
+      context.fillText(plain(noise), x(noise), height - 17);
+    }
+    context.fillText("backward duration (s)", EDGE_OF_MAP.left + across / 2, height - 4);
+    context.textAlign = "right";
+    for (const order of [0, 0.5, 1]) {
+      context.fillText(plain(order), EDGE_OF_MAP.left - 5, y(order) + 4);
+    }
+    if (this.dot) {
+      context.beginPath();
+      context.arc(x(this.dot[0]), y(this.dot[1]), 5, 0, 2 * Math.PI);
+      context.fillStyle = palette.leader;
+      context.fill();
+      context.strokeStyle = palette.outline;
+      context.lineWidth = 1.5;
+      context.stroke();
+    }
+  }
+
+  #cells(context, palette, wide, high) {
+    const most = Math.max(1, ...this.counts);
+    context.fillStyle = palette.normal;
+    this.counts.forEach((count, cell) => {
+      if (count > 0) {
+        const [column, row] = [Math.floor(cell / CELLS[1]), cell % CELLS[1]];
+        context.globalAlpha = 0.25 + 0.75 * Math.sqrt(count / most);
+        context.fillRect(EDGE_OF_MAP.left + column * wide, EDGE_OF_MAP.top + (CELLS[1] - 1 - row) * high, wide + 0.5, high + 0.5);
+      }
+    });
+    context.globalAlpha = 1;
+  }
+}

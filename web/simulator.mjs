@@ -1,0 +1,64 @@
+// The simulator as the page sees it: questions and answers, and a new thread where the old one does not answer.
+
+/** How long a question may take, in ms, before the thread is taken for lost. */
+const PATIENCE = 15_000;
+
+/** Something that the simulator does not do, in words; `field` names the parameter that is to blame, if one is. */
+export class Unanswered extends Error {
+  constructor({ words, field = "", refused = false }) {
+    super(words);
+    Object.assign(this, { field, refused });
+  }
+}
+
+export class Simulator {
+  /** `script`: the thread's own; `bytes`: the compiled simulator. */
+  constructor(script, bytes) {
+    Object.assign(this, { script, bytes, next: 0, open: new Map() });
+  }
+
+  /** Starts a thread, in place of the one there is; returns what the simulator says of itself. */
+  async start() {
+    this.worker?.terminate();
+    const address = URL.createObjectURL(new Blob([this.script], { type: "text/javascript" }));
+    this.worker = new Worker(address);
+    this.worker.addEventListener("message", ({ data }) => this.#answered(data));
+    this.worker.addEventListener("error", (event) => this.#fail(event.message || "the simulator's thread does not start"));
+    const { text } = await this.ask("start", { bytes: this.bytes });
+    URL.revokeObjectURL(address);
+    return text;
+  }
+
+  /** Asks; the answer, or an `Unanswered`. */
+  ask(kind, message) {
+    return new Promise((resolve, reject) => {
+      this.next += 1;
+      const id = this.next;
+      const waited = setTimeout(() => this.#fail("the simulator took too long"), PATIENCE);
+      this.open.set(id, { resolve, reject, waited });
+      this.worker.postMessage({ id, kind, ...message });
+    });
+  }
+
+  #answered({ id, said, error }) {
+    const question = this.open.get(id);
+    if (!question) {
+      return;
+    }
+    this.open.delete(id);
+    clearTimeout(question.waited);
+    if (error) {
+      question.reject(new Unanswered(error));
+    } else {
+      question.resolve(said);
+    }
+  }
+
+  #fail(words) {
+    for (const { reject, waited } of this.open.values()) {
+      clearTimeout(waited);
+      reject(new Unanswered({ words }));
+    }
+    this.open.clear();
+  }
+}

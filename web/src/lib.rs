@@ -1,0 +1,236 @@
+//! The simulator as the live page calls it: a plain C interface to a few flocks.
+//!
+//! Text goes in through [`input`] and comes out through [`text`], as lines of fields that tabs separate; numbers come
+//! out as columns of `f64`. A call that fails returns 0 (or −1 where it counts) and leaves the name of a parameter,
+//! if one is to blame, and a sentence as the text. The flocks are numbered, and each fails alone.
+
+mod describe;
+mod leaders;
+mod live;
+mod request;
+
+use flockenv::analysis::quantities::Formula;
+use flockenv::parameters::Target;
+use flockenv::{FlockError, OrderParameters};
+use live::{Columns, Live};
+use std::cell::RefCell;
+
+/// How many flocks the page runs side by side.
+const FLOCKS: usize = 2;
+
+#[derive(Default)]
+struct Page {
+    input: Vec<u8>,
+    text: String,
+    flocks: [Option<Live>; FLOCKS],
+}
+
+thread_local! {
+    static PAGE: RefCell<Page> = RefCell::default();
+}
+
+fn with<T>(call: impl FnOnce(&mut Page) -> T) -> T {
+    PAGE.with_borrow_mut(call)
+}
+
+impl Page {
+    fn request(&self) -> Result<&str, FlockError> {
+        std::str::from_utf8(&self.input)
+            .map_err(|_| FlockError::parameter("input", "bytes", "text in UTF-8"))
+    }
+
+    /// Keeps what a call says, and returns whether it did what it should.
+    fn say(&mut self, said: Result<String, FlockError>) -> u32 {
+        let is_done = said.is_ok();
+        self.text = said.unwrap_or_else(|error| {
+            let field = match &error {
+                FlockError::Parameter { field, .. } => field,
+                FlockError::Placement { .. } => "n_boats",
+                _ => "",
+            };
+            format!("{field}\t{error}")
+        });
+        u32::from(is_done)
+    }
+
+    fn flock(&mut self, flock: usize) -> Result<&mut Live, FlockError> {
+        let found = self.flocks.get_mut(flock).and_then(Option::as_mut);
+        found.ok_or_else(|| FlockError::parameter("flock", flock, "a flock that is open"))
+    }
+}
+
+/// Where the next request is to be written: so many bytes of UTF-8.
+#[unsafe(no_mangle)]
+pub extern "C" fn input(length: usize) -> *mut u8 {
+    with(|page| {
+        page.input.clear();
+        page.input.resize(length, 0);
+        page.input.as_mut_ptr()
+    })
+}
+
+/// Where the text of the last call is.
+#[unsafe(no_mangle)]
+pub extern "C" fn text() -> *const u8 {
+    with(|page| page.text.as_ptr())
+}
+
+/// How many bytes it has.
+#[unsafe(no_mangle)]
+pub extern "C" fn text_length() -> usize {
+    with(|page| page.text.len())
+}
+
+/// Says what there is: presets, parameters, policies, quantities and what leaders observe.
+#[unsafe(no_mangle)]
+pub extern "C" fn describe() -> u32 {
+    with(|page| page.say(Ok(describe::all())))
+}
+
+/// Says all parameters of a request, without a flock.
+#[unsafe(no_mangle)]
+pub extern "C" fn check() -> u32 {
+    with(|page| {
+        let said = page.request().and_then(request::Request::read);
+        page.say(said.map(|request| describe::values(&request.parameters)))
+    })
+}
+
+/// Starts a flock again from a request.
+#[unsafe(no_mangle)]
+pub extern "C" fn open(flock: usize) -> u32 {
+    with(|page| {
+        let opened = page.request().and_then(request::Request::read);
+        let said = opened.and_then(Live::new).and_then(|live| {
+            let text = describe::values(live.parameters());
+            let place = page.flocks.get_mut(flock);
+            *place.ok_or_else(|| FlockError::parameter("flock", flock, "0 or 1"))? = Some(live);
+            Ok(text)
+        });
+        page.say(said)
+    })
+}
+
+/// Changes a flock to a request. The first line says whether it continued from where it was, or started again.
+#[unsafe(no_mangle)]
+pub extern "C" fn change(flock: usize) -> u32 {
+    with(|page| {
+        let wanted = page.request().and_then(request::Request::read);
+        let said = wanted.and_then(|request| {
+            let live = page.flock(flock)?;
+            let continues = live.change(request)?;
+            let how = if continues {
+                "continued"
+            } else {
+                "started again"
+            };
+            Ok(format!("{how}\n{}", describe::values(live.parameters())))
+        });
+        page.say(said)
+    })
+}
+
+/// Forgets a flock.
+#[unsafe(no_mangle)]
+pub extern "C" fn close(flock: usize) {
+    with(|page| {
+        if let Some(place) = page.flocks.get_mut(flock) {
+            *place = None;
+        }
+    });
+}
+
+/// The derived quantity in this place of the table, of boats with an order Ψ_o at an angle φ_o in rad and a target,
+/// clockwise for a positive sign; NaN for a quantity that has more to it.
+#[unsafe(no_mangle)]
+pub extern "C" fn derived(place: usize, psi_o: f64, phi_o: f64, sign: f64) -> f64 {
+    let target = if sign < 0.0 {
+        Target::CounterClockwise
+    } else {
+        Target::Clockwise
+    };
+    let order = OrderParameters {
+        psi_o,
+        phi_o,
+        ..OrderParameters::default()
+    };
+    match live::quantities()
+        .nth(place)
+        .map(|quantity| quantity.formula)
+    {
+        Some(Formula::Derived(formula)) => formula(&order, target),
+        _ => f64::NAN,
+    }
+}
+
+/// Holds the rudder of the leader that the visitor steers, from the next control step on.
+#[unsafe(no_mangle)]
+pub extern "C" fn steer(flock: usize, rudder: f64) -> u32 {
+    with(|page| {
+        let said = page.flock(flock).and_then(|live| live.steer(rudder));
+        page.say(said.map(|()| String::new()))
+    })
+}
+
+/// Takes up to so many samples, within about so many substeps times boats; returns how many, −1 for an error.
+#[unsafe(no_mangle)]
+pub extern "C" fn advance(flock: usize, samples: u32, boat_substeps: u32) -> i32 {
+    with(|page| {
+        let live = page.flock(flock);
+        match live.and_then(|live| live.advance(samples, u64::from(boat_substeps))) {
+            Ok(taken) => taken as i32,
+            Err(error) => {
+                page.say(Err(error));
+                -1
+            }
+        }
+    })
+}
+
+/// Fills the columns of contacts, and of what a leader observes, with what they are now; a boat that is no leader
+/// observes nothing.
+#[unsafe(no_mangle)]
+pub extern "C" fn look(flock: usize, boat: usize) -> u32 {
+    with(|page| {
+        let said = page.flock(flock).and_then(|live| live.look(boat));
+        page.say(said.map(|()| String::new()))
+    })
+}
+
+fn column_of(flock: usize, column: usize) -> (*const f64, usize) {
+    with(|page| {
+        let live = page.flock(flock).ok();
+        let column = live.and_then(|live| live.columns().get(column));
+        column.map_or((std::ptr::null(), 0), |values| {
+            (values.as_ptr(), values.len())
+        })
+    })
+}
+
+/// Where a column of a flock is.
+#[unsafe(no_mangle)]
+pub extern "C" fn column(flock: usize, column: usize) -> *const f64 {
+    column_of(flock, column).0
+}
+
+/// How many numbers it has.
+#[unsafe(no_mangle)]
+pub extern "C" fn column_length(flock: usize, column: usize) -> usize {
+    column_of(flock, column).1
+}
+
+/// Empties the columns of a flock, for the samples that follow.
+#[unsafe(no_mangle)]
+pub extern "C" fn take(flock: usize) {
+    with(|page| {
+        if let Ok(live) = page.flock(flock) {
+            live.columns().iter_mut().for_each(Vec::clear);
+        }
+    });
+}
+
+/// How many columns there are, in the order of [`Columns`].
+#[unsafe(no_mangle)]
+pub extern "C" fn columns() -> usize {
+    Columns::default().len()
+}

@@ -1,0 +1,228 @@
+//! A flock that continues for as long as somebody watches.
+
+use crate::leaders::{CONTROL_HZ, Leaders, observed};
+use crate::request::Request;
+use flockenv::analysis::quantities::{Formula, QUANTITIES, Quantity};
+use flockenv::contact::Partner;
+use flockenv::flock::{Change, Sampling};
+use flockenv::integrator::Steering;
+use flockenv::parameters::FlockParameters;
+use flockenv::{Flock, FlockError, Result};
+
+/// The longest run that is sampled, in s.
+const LONGEST_S: f64 = 1e9;
+
+/// Numbers of the samples since they were last taken: time in s, phase (0 to 3), whether it is analyzed, poses,
+/// velocities, rudders, quantities; then the contacts that carry a force now (boats, −1 for a wall; place along the
+/// core in cm; direction in rad; force in cm/s²), and what a leader observes now.
+pub(crate) type Columns = [Vec<f64>; 9];
+
+/// The quantities of a sample, in the order of the table.
+pub(crate) fn quantities() -> impl Iterator<Item = &'static Quantity> {
+    let all = QUANTITIES.iter();
+    all.filter(|each| !matches!(each.formula, Formula::Structure(_)))
+}
+
+/// A flock with its leaders, sampled at the rate of decisions.
+pub(crate) struct Live {
+    flock: Flock,
+    leaders: Leaders,
+    policy: String,
+    rudder: Option<Vec<f64>>,
+    yours: f64,
+    sampling: Sampling,
+    taken: u64,
+    columns: Columns,
+}
+
+impl Live {
+    /// A flock from its start, with its first sample.
+    ///
+    /// # Errors
+    /// As for [`Flock::new`] and [`Leaders::named`].
+    pub fn new(request: Request) -> Result<Self> {
+        let leaders = Leaders::named(&request.leaders, &request.parameters)?;
+        let mut live = Self {
+            flock: Flock::new(request.parameters, request.seed)?,
+            leaders,
+            policy: request.leaders,
+            rudder: None,
+            yours: 0.0,
+            sampling: Sampling::new(LONGEST_S, CONTROL_HZ)?,
+            taken: 0,
+            columns: Columns::default(),
+        };
+        live.start_steering();
+        live.sample();
+        Ok(live)
+    }
+
+    /// The flock's parameters.
+    pub fn parameters(&self) -> &FlockParameters {
+        self.flock.parameters()
+    }
+
+    /// What was sampled.
+    pub fn columns(&mut self) -> &mut Columns {
+        &mut self.columns
+    }
+
+    /// Has the flock become what is wanted: from where it is if that is possible, which it returns, else from its
+    /// start.
+    ///
+    /// # Errors
+    /// As for [`Live::new`]; the flock is unchanged then.
+    pub fn change(&mut self, request: Request) -> Result<bool> {
+        let leaders = Leaders::named(&request.leaders, &request.parameters)?;
+        let (old, new) = (self.parameters(), &request.parameters);
+        let continues = request.seed == self.flock.seed()
+            && new.n_boats == old.n_boats
+            && new.pool.has_outer_wall() == old.pool.has_outer_wall();
+        let change = Change::Parameters(Box::new(new.clone()));
+        if !continues || (new != old && self.flock.change(&change).is_err()) {
+            *self = Self::new(request)?;
+            return Ok(false);
+        }
+        (self.leaders, self.policy) = (leaders, request.leaders);
+        self.start_steering();
+        Ok(true)
+    }
+
+    /// Rudders amidships, where they are held, until the next decision.
+    fn start_steering(&mut self) {
+        let is_held = !matches!(self.leaders, Leaders::EverySubstep);
+        let amidships = vec![0.0; self.parameters().n_leaders];
+        let held = self
+            .rudder
+            .take()
+            .filter(|rudder| rudder.len() == amidships.len());
+        self.rudder = is_held.then(|| held.unwrap_or(amidships));
+    }
+
+    /// Holds the visitor's rudder from the next decision on.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for a rudder beyond −1 and 1.
+    pub fn steer(&mut self, rudder: f64) -> Result<()> {
+        if !(-1.0..=1.0).contains(&rudder) {
+            return Err(FlockError::parameter(
+                "rudder",
+                rudder,
+                "a number in [-1, 1]",
+            ));
+        }
+        self.yours = rudder;
+        Ok(())
+    }
+
+    /// Takes up to so many samples within about so many substeps times boats, and returns how many.
+    ///
+    /// # Errors
+    /// [`FlockError::Solver`] if numbers left their range.
+    pub fn advance(&mut self, samples: u32, boat_substeps: u64) -> Result<u32> {
+        let start = self.flock.statistics().substeps;
+        let boats = self.parameters().n_boats as u64;
+        let mut taken = 0;
+        while taken < samples {
+            let done = (self.flock.statistics().substeps - start) * boats;
+            if done >= boat_substeps {
+                break;
+            }
+            let steering = self.rudder.as_deref().map_or(Steering::Law, Steering::Held);
+            let end = self.sampling.time(self.taken);
+            if self
+                .flock
+                .advance_towards(end, steering, boat_substeps - done)?
+            {
+                self.sample();
+                taken += 1;
+            }
+        }
+        Ok(taken)
+    }
+
+    /// Takes a sample, then has the leaders decide.
+    fn sample(&mut self) {
+        let flock = &self.flock;
+        let [
+            time,
+            phase,
+            analyzed,
+            poses,
+            velocities,
+            rudders,
+            series,
+            ..,
+        ] = &mut self.columns;
+        time.push(flock.time_s());
+        phase.push(flock.phase().phase.index() as f64);
+        analyzed.push(f64::from(u8::from(
+            flock.schedule().in_analysis_window(flock.time()),
+        )));
+        for pose in flock.poses() {
+            poses.extend([pose.position.x, pose.position.y, pose.heading]);
+        }
+        for velocity in flock.velocities() {
+            velocities.extend([velocity.linear.x, velocity.linear.y, velocity.angular]);
+        }
+        match &self.rudder {
+            Some(held) => rudders.extend(held),
+            None => {
+                rudders.extend((0..flock.parameters().n_leaders).map(|k| flock.steering_law(k)))
+            }
+        }
+        let (recorded, order) = (
+            flock.recorded(false).ok(),
+            flock.order_parameters(false).ok(),
+        );
+        let target = flock.parameters().target.reference();
+        series.extend(
+            quantities()
+                .enumerate()
+                .map(|(place, quantity)| match quantity.formula {
+                    Formula::Derived(formula) => {
+                        order.map_or(f64::NAN, |order| formula(&order, target))
+                    }
+                    _ => recorded.map_or(f64::NAN, |recorded| recorded[place]),
+                }),
+        );
+        self.taken += 1;
+        let held = self.rudder.as_deref().unwrap_or_default();
+        if let Some(rudder) = self.leaders.decide(flock, held, self.yours) {
+            self.rudder = Some(rudder);
+        }
+    }
+
+    /// Fills the columns of contacts and of what a leader observes.
+    ///
+    /// # Errors
+    /// Those of the observer.
+    pub fn look(&mut self, boat: usize) -> Result<()> {
+        let held = self.rudder.as_deref().unwrap_or_default();
+        let seen = if boat < self.parameters().n_leaders {
+            observed(&self.flock, held, boat)?
+        } else {
+            Vec::new()
+        };
+        let mut contacts = Vec::new();
+        for each in self.flock.contacts().iter().filter(|each| each.force > 0.0) {
+            let contact = &each.contact;
+            let partner = match contact.partner {
+                Partner::Boat(boat) => f64::from(boat),
+                Partner::OuterWall | Partner::InnerWall | Partner::Obstacle(_) => -1.0,
+            };
+            let normal = contact.gap.normal;
+            let direction = normal.y.atan2(normal.x);
+            contacts.extend([
+                f64::from(contact.boat),
+                partner,
+                contact.gap.along,
+                direction,
+                each.force,
+            ]);
+        }
+        let [.., carried, observation] = &mut self.columns;
+        (*carried, *observation) = (contacts, seen);
+        Ok(())
+    }
+}
