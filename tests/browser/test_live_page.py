@@ -1,0 +1,541 @@
+"""Law: the live page shows the simulator's own flock, does what is clicked, says what it cannot."""
+
+import json
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import flockenv
+
+pytestmark = pytest.mark.live
+
+PHONE, LAPTOP = (390, 844), (1280, 800)
+FLOCK = "#n_boats=12&n_leaders=2&bw_s=0.3&seed=7"
+"""A small flock, which is there at once."""
+
+
+class LivePage:
+    def __init__(self, driver, file: Path, size: tuple[int, int]) -> None:
+        self.driver, self.file = driver, file
+        metrics = {"width": size[0], "height": size[1], "deviceScaleFactor": 1}
+        driver.execute_cdp_cmd(
+            "Emulation.setDeviceMetricsOverride", {**metrics, "mobile": size[0] < 500}
+        )
+
+    def go(self, fragment: str = FLOCK, *, plays: bool = False) -> "LivePage":
+        self.driver.get("about:blank")
+        self.driver.get_log("browser")
+        self.driver.get_log("performance")
+        self.driver.get(self.file.as_uri() + fragment)
+        self.until("return document.body.dataset.ready")
+        if not plays and self.script("return window.page?.playing"):
+            self.click("#play")
+        return self
+
+    def script(self, source: str, *arguments):
+        return self.driver.execute_script(source, *arguments)
+
+    def until(self, source: str, *arguments):
+        from selenium.webdriver.support.ui import WebDriverWait
+
+        wait = WebDriverWait(self.driver, 60, poll_frequency=0.05)
+        return wait.until(lambda _: self.script(source, *arguments))
+
+    def find(self, selector: str):
+        return self.driver.find_element("css selector", selector)
+
+    def text(self, selector: str) -> str:
+        return self.find(selector).text
+
+    def click(self, selector: str) -> None:
+        self.script(
+            "document.querySelector(arguments[0]).scrollIntoView({block: 'center'})", selector
+        )
+        self.find(selector).click()
+
+    def choose(self, selector: str, value: str) -> None:
+        from selenium.webdriver.support.ui import Select
+
+        Select(self.find(selector)).select_by_value(value)
+        self.wait()
+
+    def wait(self) -> None:
+        """Wait until the simulator has answered all its questions."""
+        self.until("return !page.changing && !page.advancing && page.simulator.open.size === 0")
+
+    def press(self, *names: str) -> None:
+        from selenium.webdriver.common.action_chains import ActionChains
+        from selenium.webdriver.common.keys import Keys
+
+        keys = [getattr(Keys, name, name) for name in names]
+        ActionChains(self.driver).send_keys(*keys).perform()
+
+    def run_to(self, seconds: float) -> None:
+        """Let the flock run fast until this time at least, and pause."""
+        self.choose("#speed", "64")
+        self.click("#play")
+        self.until("return page.runs[0].end >= arguments[0]", seconds)
+        self.click("#play")
+        self.wait()
+
+    def rows(self, name: str, run: int = 0) -> np.ndarray:
+        """All samples that the page holds of a column, a row each."""
+        source = """
+            const run = page.runs[arguments[0]];
+            return Array.from(run.raw[arguments[1]].from(0)).concat(run.length)"""
+        *numbers, samples = self.script(source, run, name)
+        return np.array(numbers).reshape(int(samples), -1)
+
+    def parameters(self, run: int = 0) -> dict[str, str]:
+        return self.script("return page.runs[arguments[0]].parameters", run)
+
+    def status(self) -> str:
+        return self.text("#status")
+
+    def complaints(self) -> list[str]:
+        return [each["message"] for each in self.driver.get_log("browser")]
+
+
+@pytest.fixture(scope="session")
+def file(pytestconfig) -> Path:
+    return pytestconfig.rootpath / "web" / "live.html"
+
+
+@pytest.fixture
+def open_live(chromium, file) -> Iterator[Callable[..., LivePage]]:
+    yield lambda size=LAPTOP: LivePage(chromium, file, size)
+    # Its flock would continue beside the next test.
+    chromium.get("about:blank")
+
+
+@pytest.fixture
+def live(open_live) -> LivePage:
+    return open_live().go()
+
+
+def test_it_opens_and_plays_without_a_network_or_a_complaint(open_live):
+    live = open_live().go("", plays=True)
+    assert live.script("return document.body.dataset.ready") == "true"
+    live.until("return page.time > 5")
+    live.wait()
+    assert live.complaints() == []
+    log = [json.loads(entry["message"])["message"] for entry in live.driver.get_log("performance")]
+    requested = [
+        each["params"]["request"]["url"]
+        for each in log
+        if each["method"] == "Network.requestWillBeSent"
+    ]
+    assert requested
+    assert [url for url in requested if not url.startswith(("file:", "data:", "blob:"))] == []
+
+
+@pytest.mark.parametrize("policy", ["law", "tuned damped law"])
+def test_its_numbers_are_those_of_python(open_live, policy):
+    live = open_live().go(f"{FLOCK}&leaders={policy}")
+    live.run_to(10.0)
+    parameters = flockenv.FlockParameters(n_boats=12, n_leaders=2, bw_s=0.3)
+    native = flockenv.simulate(parameters, 7, 10.0, policy=policy)
+    pose, velocity = (live.rows(name)[:101] for name in ("pose", "velocity"))
+    assert np.allclose(pose.reshape(-1, 12, 3), native.pose, rtol=0, atol=1e-9)
+    assert np.allclose(velocity.reshape(-1, 12, 3), native.velocity, rtol=0, atol=1e-9)
+    assert np.array_equal(live.rows("in_analysis_window")[:101, 0] > 0, native.in_analysis_window)
+    names = live.script("return page.quantities.map(({key}) => key)")
+    series = dict(zip(names, live.rows("series")[:101].T, strict=True))
+    for name in ("psi_o", "phi_o", "milling", "rotation", "signed_order"):
+        assert np.allclose(series[name], native.order.series(name, "cw"), atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "continues"),
+    [
+        ("n_boats", "ARROW_RIGHT", False),
+        ("n_leaders", "ARROW_RIGHT", True),
+        ("bw_s", "ARROW_RIGHT", True),
+        ("c4", "ARROW_LEFT", True),
+        ("boat_shape", "ARROW_RIGHT", True),
+    ],
+)
+def test_sliders_change_the_flock_from_where_it_is_or_say_that_it_starts_again(
+    live, name, key, continues
+):
+    live.run_to(3.0)
+    before, time = live.parameters(), live.script("return page.runs[0].end")
+    live.script("document.getElementById(arguments[0]).focus()", name)
+    live.press(key)
+    live.wait()
+    after = live.parameters()
+    changed = {each for each in after if after[each] != before[each]}
+    assert changed - {"gyration_radius_cm"} == {name}
+    assert (float(after[name]) > float(before[name])) == (key == "ARROW_RIGHT")
+    assert live.script("return page.runs[0].end") == (time if continues else 0)
+    assert ("continues" if continues else "starts again") in live.status()
+    assert live.text(f"label:has(#{name}) output") == f"{float(after[name]):g}"
+    live.until("return location.hash.includes(arguments[0])", f"{name}={float(after[name]):g}")
+    assert live.complaints() == []
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "field", "expected", "continues"),
+    [
+        ("pool", "narrow", "pool", "narrow", True),
+        ("pool", "180,0", "pool", "180,0", True),
+        ("pool", "inf,0", "pool", "inf,0", False),
+        ("target", "ccw", "target", "ccw", True),
+        ("target", "opposed", "target", "cw,ccw", True),
+        ("scheme", "moreau", "scheme", "moreau", True),
+        ("noise_scheme", "per-step", "noise_scheme", "per-step", True),
+        ("preset", "experiment", "c3", "0.1906", True),
+    ],
+)
+def test_choices(live, name, value, field, expected, continues):
+    live.run_to(3.0)
+    live.choose(f"#{name}", value)
+    assert live.parameters()[field] == expected
+    assert ("continues" if continues else "starts again") in live.status()
+    live.run_to(live.script("return page.runs[0].end") + 2.0)
+    assert live.complaints() == []
+
+
+def test_leaders_steer_as_they_are_told(live):
+    live.choose("#leaders", "tuned damped law")
+    assert live.script("return page.shown.flock.leaders") == "tuned damped law"
+    live.choose("#pool", "180,0")
+    assert "the tuned law is for the pools that have a name" in live.status()
+    # What was refused is not shown.
+    assert live.find("#pool").get_attribute("value") == "wide"
+    assert live.parameters()["pool"] == "wide"
+    live.run_to(2.0)
+
+
+def test_a_second_flock_runs_beside(live):
+    for value, leaders in (("n_leaders=0", "0"), ("n_leaders=4", "4")):
+        live.choose("#beside", value)
+        assert live.parameters(1)["n_leaders"] == leaders
+        assert live.script("return page.runs.map((run) => run.end)") == [0, 0]
+    live.choose("#beside", "leaders=tuned damped law")
+    live.run_to(20.0)
+    assert np.array_equal(live.rows("time_s", 0), live.rows("time_s", 1))
+    first, second = live.rows("pose", 0), live.rows("pose", 1)
+    assert np.array_equal(first[0], second[0])
+    assert not np.array_equal(first[-1], second[-1])
+    assert "the paper's law" in live.text("#score")
+    assert "the tuned law" in live.text("#score")
+    live.choose("#beside", "")
+    assert live.script("return page.runs.length") == 1
+    assert live.complaints() == []
+
+
+def test_the_arrow_keys_steer_one_leader(live):
+    live.choose("#leaders", "you")
+    assert live.find("#thumb").is_displayed()
+    live.choose("#speed", "8")
+    live.script("document.activeElement.blur()")
+    hold = "document.dispatchEvent(new KeyboardEvent(arguments[0], {key: arguments[1]}))"
+    live.click("#play")
+    live.script("document.activeElement.blur()")
+    for key, rudder in (("ArrowLeft", 1.0), ("ArrowRight", -1.0)):
+        live.script(hold, "keydown", key)
+        live.until(
+            "return page.runs[0].rudder(0, page.runs[0].length - 1) === arguments[0]", rudder
+        )
+        live.script(hold, "keyup", key)
+    now = live.script("return page.runs[0].end")
+    live.until("return page.runs[0].end > arguments[0] + 3", now)
+    live.click("#play")
+    live.wait()
+    rudders = live.rows("rudder")
+    assert set(rudders[:, 0]) == {-1.0, 0.0, 1.0}
+    assert (rudders[1:, 1] != rudders[1:, 0]).any()
+    assert rudders[-1, 0] == 0.0
+    assert "you" in live.text("#score")
+    assert "the paper's law" in live.text("#score")
+    assert live.complaints() == []
+
+
+def test_a_thumb_steers_on_a_phone(open_live):
+    from selenium.webdriver.common.action_chains import ActionChains
+
+    live = open_live(PHONE).go(f"{FLOCK}&leaders=you&beside.leaders=law")
+    thumb = live.find("#thumb")
+    # In reach wherever the page is scrolled.
+    for top in (0, 400):
+        live.script("window.scrollTo(0, arguments[0])", top)
+        box = live.script(
+            "return document.getElementById('thumb').getBoundingClientRect().toJSON()"
+        )
+        assert 0 < box["top"] < box["bottom"] <= PHONE[1]
+        assert box["height"] >= 44
+    live.click("#play")
+    width = thumb.size["width"]
+    held = ActionChains(live.driver).move_to_element(thumb).click_and_hold()
+    held.move_by_offset(round(-0.25 * width), 0).perform()
+    assert live.script("return page.rudder") == pytest.approx(0.5, abs=0.15)
+    now = live.script("return page.runs[0].end")
+    live.until("return page.runs[0].end > arguments[0] + 1", now)
+    assert live.script("return page.runs[0].rudder(0, page.runs[0].length - 1)") > 0.3
+    ActionChains(live.driver).release().perform()
+    assert live.script("return page.rudder") == 0
+    assert thumb.get_attribute("value") == "0"
+
+
+def test_every_scene_is_a_link_to_a_flock(open_live):
+    live = open_live().go()
+    names = live.script(
+        "return [...document.querySelectorAll('#lessons a')].map((a) => a.dataset.lesson)"
+    )
+    assert names == ["noise", "leaders", "learned", "forces", "opposed"]
+    for name in names:
+        live.click(f"#lessons a[data-lesson='{name}']")
+        live.until(
+            "return page.other.lesson === arguments[0] && page.simulator.open.size === 0", name
+        )
+        assert (
+            live.find(f"#lessons a[data-lesson='{name}']").get_attribute("aria-current") == "true"
+        )
+        assert len(live.text("#story")) > 100
+        live.run_to(live.script("return page.runs[0].end") + 3.0)
+        for link in live.driver.find_elements("css selector", "#story a"):
+            link.click()
+            live.wait()
+            assert live.script("return page.other.lesson") == name
+            # A story that stays is not written again: the keyboard's focus remains.
+            assert link.is_displayed()
+    assert live.complaints() == []
+
+
+def test_noise_makes_motion(open_live):
+    """At bw_s = 0 the flock jams, at 1 s it circles, at 2.8 s it does neither."""
+    live = open_live().go("")
+    seen = {}
+    for bw_s in ("0", "1", "2.8"):
+        live.click(f"#story a[href$='bw_s={bw_s}']")
+        live.wait()
+        assert live.parameters()["bw_s"] == bw_s
+        live.click("#again")
+        live.wait()
+        live.run_to(240.0)
+        names = live.script("return page.quantities.map(({key}) => key)")
+        series = dict(zip(names, live.rows("series").T, strict=True))
+        late = (live.rows("in_analysis_window")[:, 0] > 0) & (live.rows("time_s")[:, 0] > 120.0)
+        seen[bw_s] = (series["psi_o"][late].mean(), abs(series["rotation"][late].mean()))
+    assert seen["0"][0] > 0.7
+    assert seen["0"][1] < 0.4
+    assert seen["1"][1] > 0.7
+    assert seen["2.8"][0] < 0.4
+
+
+def test_a_link_shows_the_same_flock_again(open_live):
+    live = open_live().go("#n_boats=9&bw_s=0.2&pool=narrow&seed=3&beside.bw_s=0.8&speed=4&forces=1")
+    live.run_to(5.0)
+    pose = live.rows("pose", 1)[:51]
+    live.until("return location.hash.includes('speed=64')")
+    fragment = live.script("return location.hash")
+    live.go(fragment)
+    assert live.parameters(1)["bw_s"] == "0.8"
+    assert live.find("#forces").is_selected()
+    live.run_to(5.0)
+    assert np.array_equal(live.rows("pose", 1)[:51], pose)
+
+
+@pytest.mark.parametrize(
+    ("fragment", "words"),
+    [
+        ("#n_boats=1000000", "n_boats is 2 to 300 on this page"),
+        ("#n_boats=NaN&bw_s=Infinity", "bw_s = inf is not accepted"),
+        ("#bw_s=NaN", "bw_s = NaN is not accepted"),
+        ("#n_leaders=5&n_boats=3", "n_leaders = 5 is not accepted: 0 to n_boats = 3"),
+        ("#pool=<img src=x onerror=alert(1)>", "pool = "),
+        ("#leaders=<script>window.stolen=1</script>", "leaders = <script>window.stolen=1</script>"),
+        ("#seed=-1", "seed = -1 is not accepted"),
+        ("#preset=none", "preset = "),
+        ("#wheels=4", "this page knows no such parameter"),
+        ("#n_boats=300&pool=narrow", "boats do not fit the pool"),
+        ("#target=cw,cw,ccw", "target = [cw, cw, ccw] is not accepted"),
+        ("#speed_cm_s=1e300", "speed_cm_s = "),
+        ("#c1=1e6&c3=1e6&dt_s=1&n_boats=40", ""),
+        ("#%E0%A4%A&=&&&==", "this page knows no such parameter"),
+    ],
+)
+def test_a_link_that_cannot_be_followed_is_named_and_not_executed(open_live, fragment, words):
+    live = open_live().go(fragment)
+    assert live.script("return document.body.dataset.ready") == "true"
+    assert words in live.status()
+    assert len(live.status()) < 400
+    assert live.script("return window.stolen") is None
+    assert live.script("return document.querySelectorAll('#status *').length") == 0
+    live.choose("#speed", "8")
+    live.click("#play")
+    live.until("return page.runs[0].end > 1 || page.broken")
+    assert live.complaints() == []
+
+
+@pytest.fixture
+def downloads(chromium, tmp_path) -> Path:
+    behavior = {"behavior": "allow", "downloadPath": str(tmp_path), "eventsEnabled": False}
+    chromium.execute_cdp_cmd("Browser.setDownloadBehavior", behavior)
+    return tmp_path
+
+
+def test_a_recording_is_saved_loaded_and_played(live, downloads):
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    live.run_to(8.0)
+    live.script("document.getElementById('take').open = true")
+    live.click("#save")
+    saved = downloads / "flock.npz"
+    WebDriverWait(live.driver, 30).until(lambda _: saved.exists() and saved.stat().st_size > 0)
+    recording = flockenv.Recording.load(saved)
+    native = flockenv.simulate(recording.parameters, 7, recording.duration_s)
+    assert recording.parameters == flockenv.FlockParameters(n_boats=12, n_leaders=2, bw_s=0.3)
+    assert len(recording) == len(native)
+    assert recording.policy == native.policy
+    assert np.array_equal(recording.phase, native.phase)
+    assert np.allclose(recording.pose[:101], native.pose[:101], rtol=0, atol=1e-9)
+    # Times, and the file that Python writes, are played alike.
+    packed = downloads / "packed.npz"
+    recording.save(packed, compressed=True)
+    for file in (saved, packed):
+        live.go()
+        live.script("document.getElementById('take').open = true")
+        live.find("#open").send_keys(str(file))
+        live.until("return page.recorded")
+        assert file.name in live.status()
+        assert np.array_equal(live.rows("pose").reshape(-1, 12, 3), recording.pose)
+        assert live.find("#scrub").is_displayed()
+        live.choose("#speed", "64")
+        live.click("#play")
+        live.until("return !page.playing")
+        assert live.script("return page.time") == pytest.approx(recording.time_s[-1])
+        assert live.complaints() == []
+    live.click("#again")
+    live.wait()
+    assert not live.script("return page.recorded")
+    assert live.parameters()["n_boats"] == "12"
+
+
+def test_what_is_no_recording_is_refused_in_words(live, tmp_path):
+    files = {
+        "text.npz": b"<script>alert(1)</script>",
+        "empty.npz": b"",
+        "half.npz": None,
+        "other.npz": None,
+    }
+    recording = flockenv.simulate(flockenv.FlockParameters(n_boats=3), 1, 1.0)
+    recording.save(tmp_path / "whole.npz")
+    files["half.npz"] = (tmp_path / "whole.npz").read_bytes()[:2000]
+    np.savez(tmp_path / "arrays.npz", a=np.zeros(3))
+    files["other.npz"] = (tmp_path / "arrays.npz").read_bytes()
+    live.script("document.getElementById('take').open = true")
+    for name, content in files.items():
+        (tmp_path / name).write_bytes(content)
+        live.find("#open").send_keys(str(tmp_path / name))
+        live.until(
+            "return document.getElementById('status').textContent.startsWith(arguments[0])", name
+        )
+        assert f"{name} cannot be shown: " in live.status()
+        assert not live.script("return page.recorded")
+    live.run_to(2.0)
+    assert live.complaints() == []
+
+
+@pytest.mark.parametrize("missing", ["Worker", "WebAssembly", "DecompressionStream"])
+def test_a_browser_without_what_it_needs_gets_a_sentence(open_live, chromium, missing):
+    source = {"source": f"delete window.{missing}"}
+    script = chromium.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", source)
+    try:
+        live = open_live().go()
+        assert live.script("return document.body.dataset.ready") == "failed"
+        assert f"this browser has no {missing}" in live.status()
+        assert "Noise makes motion" not in live.status()
+    finally:
+        chromium.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", script)
+
+
+def test_a_boats_numbers_frame_and_observation(live):
+    live.run_to(2.0)
+    live.choose("#boat", "1")
+    assert live.text(".card .head").startswith("boat 1")
+    live.script("document.getElementById('observes').open = true")
+    live.run_to(4.0)
+    live.until("return document.querySelectorAll('#observation td').length > 0")
+    assert len(live.script("return page.observed")) == live.script("return page.entries.length")
+    live.choose("#boat", "5")
+    assert not live.find("#observes").is_displayed()
+    live.press("ESCAPE")
+    live.script("document.activeElement.blur()")
+    live.press("ESCAPE")
+    assert live.script("return page.pinned") is None
+
+
+def test_texts_of_the_flock_are_shown_and_copied(live, chromium):
+    live.script("document.getElementById('take').open = true")
+    command = live.find("#command").get_attribute("value")
+    assert command == (
+        "flockenv run --set n_boats=12 --set n_leaders=2 --set bw_s=0.3 --seed 7 --minutes 8"
+    )
+    assert "flockenv.simulate(parameters, seed=7" in live.find("#python").get_attribute("value")
+    for button in live.driver.find_elements("css selector", "[data-copies]"):
+        live.script("document.getElementById('status').textContent = ''")
+        button.click()
+        live.until("return /Copied|here it is/.test(document.getElementById('status').textContent)")
+
+
+@pytest.mark.parametrize("size", [PHONE, LAPTOP])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize(
+    "fragment", ["", "#n_boats=27&n_leaders=4&seed=7&beside.n_leaders=1&boat=0"]
+)
+def test_nothing_is_wider_than_the_window(open_live, chromium, size, scheme, fragment):
+    features = [{"name": "prefers-color-scheme", "value": scheme}]
+    chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
+    try:
+        live = open_live(size).go(fragment)
+        assert live.script("return document.documentElement.scrollWidth <= innerWidth")
+        ground = live.script("return getComputedStyle(document.body).backgroundColor")
+        assert (ground == "rgb(20, 25, 31)") == (scheme == "dark")
+    finally:
+        chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+
+
+def test_everything_is_reached_by_the_keyboard_and_has_a_name(live):
+    live.script("document.querySelectorAll('details').forEach((each) => { each.open = true; })")
+    wanted = live.script("""
+        return [...document.querySelectorAll("a, button, input, select, textarea, summary")]
+            .filter((each) => each.checkVisibility()).map((each) => each.id || each.textContent)""")
+    live.script("document.activeElement.blur()")
+    reached = []
+    for _ in range(len(wanted) + 2):
+        live.press("TAB")
+        reached.append(
+            live.script("const at = document.activeElement; return at.id || at.textContent")
+        )
+    assert [each for each in wanted if each not in reached] == []
+    tree = live.driver.execute_cdp_cmd("Accessibility.getFullAXTree", {})["nodes"]
+    roles = {"button", "slider", "combobox", "checkbox", "textbox", "link", "img"}
+    unnamed = [
+        node["role"]["value"]
+        for node in tree
+        if not node.get("ignored")
+        and node.get("role", {}).get("value") in roles
+        and not node.get("name", {}).get("value")
+    ]
+    assert unnamed == []
+
+
+def test_less_motion_is_respected_and_it_plays_when_asked(open_live, chromium):
+    features = [{"name": "prefers-reduced-motion", "value": "reduce"}]
+    chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
+    try:
+        live = open_live().go("", plays=True)
+        assert not live.script("return page.playing")
+        live.script("document.activeElement.blur()")
+        live.press(" ")
+        live.until("return page.time > 0.5")
+    finally:
+        chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+
+
+def test_the_file_is_small(file):
+    assert file.stat().st_size < 500_000
