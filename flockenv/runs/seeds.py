@@ -71,15 +71,13 @@ def _search(use: str, place: int) -> SeedRange:
 POLICY_SEEDS: Mapping[str, SeedRange] = {
     each.use: each
     for each in (
-        SeedRange("evaluation", 0, FIRST_TRAINING_SEED),
+        SeedRange("evaluation", 0, 3_000_000_000),
+        # Of the studies in paper/, which no policy was made or judged with.
+        SeedRange("paper", 3_000_000_000, FIRST_TRAINING_SEED - 3_000_000_000),
         SeedRange("training", FIRST_TRAINING_SEED, 1 << 20, _RUNS),
         _search("law tuning", 1),
         _search("evolution strategy", 2),
-        _search("ablation", 3),
-        _search("averaging", 4),
         _search("easy environment", 5),
-        _search("learning check", 6),
-        SeedRange("validation", FIRST_TRAINING_SEED + (1 << 62), 1 << 32),
     )
 }
 """Seeds of what makes and judges policies, by use; no two ranges meet."""

@@ -5,8 +5,6 @@ import json
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
-from functools import partial
-from itertools import product
 from typing import Any
 
 import numpy as np
@@ -15,12 +13,10 @@ from flockenv import _core
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import OrderSeries
 from flockenv.parameters import FlockParameters
-from flockenv.policies.pretrained import TUNED_GAINS
 from flockenv.policies.registry import POOL_POLICIES
 from flockenv.recording import RECORDED, RecordedOrder, Recording
 from flockenv.runs.protocols.hysteresis import LOOPS, simulate_loop, simulate_prepared
 from flockenv.runs.protocols.initial_state import STARTS
-from flockenv.runs.protocols.opponents import simulate_against_the_law
 from flockenv.runs.protocols.target_switching import simulate_alternating
 from flockenv.simulation import simulate
 
@@ -33,8 +29,11 @@ first tenth; of all samples; or these and all poses and velocities."""
 ORDER_NAMES = tuple(each.name for each in RECORDED)
 
 
-def _law(spec: "RunSpec") -> Recording:
-    return simulate(spec.parameters, spec.seed, spec.duration_s, spec.sample_hz, dtype=np.float32)
+def _simulated(spec: "RunSpec") -> Recording:
+    policy = None if spec.protocol == "law" else spec.protocol
+    return simulate(
+        spec.parameters, spec.seed, spec.duration_s, spec.sample_hz, policy, dtype=np.float32
+    )
 
 
 def _alternating(spec: "RunSpec") -> Recording:
@@ -51,31 +50,12 @@ def _prepared(spec: "RunSpec") -> Recording:
     )
 
 
-def _steered(policy: str, pool: str, spec: "RunSpec") -> Recording:
-    steering: Any = POOL_POLICIES[policy](pool)
-    return simulate(
-        spec.parameters, spec.seed, spec.duration_s, spec.sample_hz, steering, dtype=np.float32
-    )
-
-
-def _against_the_law(policy: str, pool: str, spec: "RunSpec") -> Recording:
-    return simulate_against_the_law(
-        spec.parameters, spec.seed, spec.duration_s, spec.sample_hz, POOL_POLICIES[policy](pool)
-    )
-
-
-_POLICIES = tuple(product(POOL_POLICIES, TUNED_GAINS["damped law"]))
-_STEERED = {f"{policy} ({pool})": partial(_steered, policy, pool) for policy, pool in _POLICIES} | {
-    f"{policy} ({pool}) against law": partial(_against_the_law, policy, pool)
-    for policy, pool in _POLICIES
-}
-
 PROTOCOLS: Mapping[str, Callable[["RunSpec"], Recording]] = {
-    "law": _law,
+    "law": _simulated,
     "alternating": _alternating,
     **dict.fromkeys(STARTS, _prepared),
     **dict.fromkeys(LOOPS, _loop),
-    **_STEERED,
+    **dict.fromkeys(POOL_POLICIES, _simulated),
 }
 """Ways to make a run, by name. They live in this package, so that any worker process finds them."""
 
@@ -98,9 +78,7 @@ class RunSpec:
         How leaders are led, a name in `PROTOCOLS`; "law": by eq. (10), towards the fixed target;
         "alternating": by eq. (10), towards directions that alternate every 4 minutes; the same as
         "law" from the starts of `runs.protocols.initial_state`; the loops of
-        `runs.protocols.hysteresis`; and policies tuned or trained for a named pool, whatever the
-        pool of the run, such as "learned (wide)", also of the clockwise leaders alone:
-        "learned (wide) against law".
+        `runs.protocols.hysteresis`; and policies made for the run's pool, such as "learned".
     keep : str
         What is stored of the run, one of `KEEP`.
 

@@ -27,8 +27,9 @@ and all grids must name the same fields.
 """
 
 import itertools
+import math
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -85,13 +86,21 @@ def read_sweep(path: str | os.PathLike[str]) -> SweepSpec:
 
 
 def _parse(values: Mapping[str, Any]) -> SweepSpec:
-    _refuse_unknown(values)
-    grids = _grids(values)
-    seeds = _seeds(values.get("seeds"))
-    fixed = _table("fixed", values.get("fixed", {}))
-    axes = tuple(grids[0])
+    for key in values:
+        if key not in _KEYS and key in FlockParameters.__dataclass_fields__:
+            raise ParameterError(
+                f"{key!r} is no key of a sweep: it is a field of the parameters, which belongs "
+                "under [fixed] or [[grid]]"
+            )
+    refuse_unknown(values, _KEYS, "key of a sweep")
+    grids, fixed = _grids(values), values.get("fixed", {})
+    if not isinstance(fixed, dict):
+        raise ParameterError(f"fixed = {fixed!r} is not accepted: a table [fixed]")
+    seeds, axes = _seeds(values.get("seeds")), tuple(grids[0])
     _check_axes(grids, axes, fixed)
-    _check_size(grids, len(seeds))
+    count = len(seeds) * sum(math.prod(map(len, grid.values())) for grid in grids)
+    if count > MOST_RUNS:
+        raise ParameterError(f"the sweep has {count} runs; at most {MOST_RUNS} are accepted")
     base = FlockParameters.from_dict({"preset": values.get("preset", "simulation"), **fixed})
     points = tuple(
         dict.fromkeys(
@@ -108,16 +117,6 @@ def _parse(values: Mapping[str, Any]) -> SweepSpec:
     flocks = [base.replace(**dict(zip(axes, point, strict=True))) for point in points]
     runs = tuple(RunSpec(parameters=each, seed=seed, **run) for each in flocks for seed in seeds)
     return SweepSpec(axes, points, runs, seeds)
-
-
-def _refuse_unknown(values: Mapping[str, Any]) -> None:
-    for key in values:
-        if key not in _KEYS and key in FlockParameters.__dataclass_fields__:
-            raise ParameterError(
-                f"{key!r} is no key of a sweep: it is a field of the parameters, which belongs "
-                "under [fixed] or [[grid]]"
-            )
-    refuse_unknown(values, _KEYS, "key of a sweep")
 
 
 def _grids(values: Mapping[str, Any]) -> list[dict[str, list[Any]]]:
@@ -151,19 +150,6 @@ def _check_axes(
             raise ParameterError(f"{name!r} is both under [fixed] and in a grid")
 
 
-def _check_size(grids: list[dict[str, list[Any]]], seeds: int) -> None:
-    count = seeds * sum(_product(map(len, grid.values())) for grid in grids)
-    if count > MOST_RUNS:
-        raise ParameterError(f"the sweep has {count} runs; at most {MOST_RUNS} are accepted")
-
-
-def _product(lengths: Iterable[int]) -> int:
-    product = 1
-    for length in lengths:
-        product *= length
-    return product
-
-
 def _seeds(seeds: Any) -> tuple[int, ...]:
     if isinstance(seeds, int) and not isinstance(seeds, bool) and 1 <= seeds <= MOST_RUNS:
         return tuple(range(seeds))
@@ -179,12 +165,6 @@ def _number(name: str, value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ParameterError(f"{name} = {value!r} is not accepted: a number")
     return float(value)
-
-
-def _table(name: str, value: Any) -> Mapping[str, Any]:
-    if not isinstance(value, dict):
-        raise ParameterError(f"{name} = {value!r} is not accepted: a table [{name}]")
-    return value
 
 
 def _plain(value: Any) -> Any:

@@ -2,10 +2,8 @@
 
 import re
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-
-import numpy as np
 
 from flockenv.errors import FlockError, ParameterError
 from flockenv.runs.spec import RunSpec, execute
@@ -13,7 +11,6 @@ from flockenv.runs.store import RunStore
 
 __all__ = ["Shard", "Workload", "measure_workload"]
 
-_TRIALS = 4
 _TRIAL_S = 60.0
 
 
@@ -83,7 +80,7 @@ class Workload:
         Simulated hours of the runs that have none.
     core_hours : float or None
         What these take on one core of this machine, extrapolated from trial runs of a minute; None
-        where no trial run could be made.
+        where those of a protocol could not be made.
     """
 
     runs: int
@@ -121,33 +118,20 @@ def measure_workload(specs: Iterable[RunSpec], store: RunStore) -> Workload:
 def _core_seconds(specs: Sequence[RunSpec]) -> float | None:
     """Return the processor time of runs; None if none of them could be tried.
 
-    A run takes the rate of the trial with its protocol whose flock is nearest in size; without one,
-    the rate of the nearest trial of any protocol. Each rate is the processor time in s per unit of
-    `RunSpec.cost`.
+    Each protocol is tried with its smallest and its largest flock. A run takes the rate of the
+    trial with its protocol that is nearer in size, in s per unit of `RunSpec.cost`.
     """
-    if not specs:
-        return 0.0
-    tried = {(spec.protocol, _size(spec)): spec for spec in _trials(specs)}
-    found = {place: _rate(spec) for place, spec in tried.items()}
-    rates = {place: rate for place, rate in found.items() if rate is not None}
-    if not rates:
-        return None
-
-    def rate(spec: RunSpec) -> float:
-        def distance(place: tuple[str, float]) -> tuple[bool, float]:
-            return place[0] != spec.protocol, abs(place[1] - _size(spec))
-
-        return rates[min(rates, key=distance)]
-
-    return sum(spec.cost * rate(spec) for spec in specs)
-
-
-def _trials(specs: Sequence[RunSpec]) -> Iterator[RunSpec]:
-    """Yield some runs of each protocol, from its smallest flock to its largest."""
+    seconds = 0.0
     for protocol in dict.fromkeys(spec.protocol for spec in specs):
         by_size = sorted((spec for spec in specs if spec.protocol == protocol), key=_size)
-        places = np.linspace(0, len(by_size) - 1, _TRIALS).round().astype(int)
-        yield from (by_size[place] for place in places)
+        trials = {_size(spec): spec for spec in (by_size[0], by_size[-1])}
+        found = {size: _rate(spec) for size, spec in trials.items()}
+        rates = {size: rate for size, rate in found.items() if rate is not None}
+        if not rates:
+            return None
+        for spec in by_size:
+            seconds += spec.cost * rates[min(rates, key=lambda size: abs(size - _size(spec)))]
+    return seconds
 
 
 def _size(spec: RunSpec) -> float:

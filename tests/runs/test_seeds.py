@@ -35,9 +35,8 @@ def test_each_use_that_makes_policies_has_one_script():
         for use in re.findall(r'POLICY_SEEDS\["([^"]+)"\]', path.read_text()):
             scripts[use].add(path.name)
     # Those that train policies draw from one range, and judge none of each other's.
-    trainers = {"settings.py", "ppo_single_file.py", "tasks.py"}
-    assert scripts.pop("training") == trainers
-    assert all(len(found) == 1 for use, found in scripts.items() if use != "evaluation"), scripts
+    shared = ("training", "evaluation", "paper")
+    assert all(len(found) == 1 for use, found in scripts.items() if use not in shared), scripts
 
 
 @pytest.mark.parametrize(
@@ -46,10 +45,10 @@ def test_each_use_that_makes_policies_has_one_script():
         ((1, 2**32), "seed = 4294967296 is not accepted: from 0 to 4294967295"),
         ((1, -1), "seed = -1"),
         ((2**24 + 1,), "16777217 seeds are not accepted: there are 16777216"),
-        ((1, 0, 2**24), "for each run of ablation"),
+        ((1, 0, 2**24), "for each run of law tuning"),
         ((-1,), "-1 seeds"),
     ],
 )
 def test_seeds_that_a_use_has_not_are_refused(arguments, words):
     with pytest.raises(ParameterError, match=words):
-        POLICY_SEEDS["ablation"].seeds(*arguments)
+        POLICY_SEEDS["law tuning"].seeds(*arguments)

@@ -10,6 +10,7 @@ from flockenv.runs.store import RunStore
 from flockenv.runs.workload import Shard, measure_workload
 
 PARAMETERS = flockenv.FlockParameters.preset("paper").replace(n_boats=8)
+NARROW = PARAMETERS.replace(pool="narrow")
 SPECS = [RunSpec(parameters=PARAMETERS, seed=seed, duration_s=60.0) for seed in range(300)]
 
 
@@ -92,8 +93,8 @@ def test_each_run_takes_the_rate_of_a_trial_with_its_protocol(tmp_path, monkeypa
     clock = iter([0.0, 1.0, 10.0, 14.0])
     monkeypatch.setattr("time.process_time", lambda: next(clock))
     specs = [
-        RunSpec(parameters=PARAMETERS, seed=0, duration_s=600.0, protocol=protocol)
-        for protocol in ("law", "learned (narrow)")
+        RunSpec(parameters=NARROW, seed=0, duration_s=600.0, protocol=protocol)
+        for protocol in ("law", "learned")
     ]
     work = measure_workload(specs, RunStore(tmp_path))
     assert work.core_hours * 3600 == pytest.approx(10 * 1.0 + 10 * 4.0)
