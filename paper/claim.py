@@ -9,24 +9,19 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 from study import Options, write
 
-CONFIDENCE = 0.95
+from flockenv.statistics import CONFIDENCE, bootstrap_interval, mean_interval
 
 Interval = tuple[float, float, float]
 """A value and the ends of its 95 % interval."""
 
 
-def student(values: Iterable[float]) -> Interval:
-    """Return the mean of independent values with Student's interval; NaN ends for fewer than 2."""
+def mean(values: Iterable[float]) -> Interval:
+    """Return the mean of independent runs with its interval; NaN for no runs."""
     found = np.asarray(list(values), float)
-    if len(found) < 2:
-        return float(found.mean()) if len(found) else math.nan, math.nan, math.nan
-    half = stats.t.ppf((1 + CONFIDENCE) / 2, len(found) - 1) * stats.sem(found)
-    mean = float(found.mean())
-    return mean, mean - float(half), mean + float(half)
+    return mean_interval(found) if len(found) else (math.nan, math.nan, math.nan)
 
 
 def proportion(count: int, of: int) -> Interval:
@@ -37,33 +32,22 @@ def proportion(count: int, of: int) -> Interval:
     return count / of, float(ends.low), float(ends.high)
 
 
-def bca(groups: Sequence[Any], statistic: Callable[..., float], resamples: int = 999) -> Interval:
-    """Return a statistic of groups of runs with its BCa interval, runs resampled in each group.
+def bca(groups: Sequence[Any], statistic: Callable[..., Any]) -> Interval:
+    """Return a statistic of groups of runs with its BCa interval, runs drawn in each group apart.
 
-    A group is an array of one value per run, or of one row per run.
+    Each group is an array of shape (runs, columns). The statistic takes arrays of shape
+    (..., runs, columns) and returns one of shape (...).
     """
     arrays = [np.asarray(group, float) for group in groups]
-    value = float(statistic(*arrays))
-    if min(map(len, arrays)) < 3 or not math.isfinite(value):
-        return value, math.nan, math.nan
-    places = [np.arange(len(group)) for group in arrays]
+    if min(map(len, arrays)) < 3:
+        return math.nan, math.nan, math.nan
 
-    def of_places(*chosen: NDArray[np.int64]) -> float:
-        picked = [g[np.asarray(p, int)] for g, p in zip(arrays, chosen, strict=True)]
-        return float(statistic(*picked))
+    def of_places(*places: Any, axis: int) -> Any:
+        return statistic(*(g[np.asarray(p, int)] for g, p in zip(arrays, places, strict=True)))
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        found = stats.bootstrap(
-            places,
-            of_places,
-            vectorized=False,
-            n_resamples=resamples,
-            confidence_level=CONFIDENCE,
-            method="BCa",
-            rng=np.random.default_rng(0),
-        ).confidence_interval
-    return value, float(found.low), float(found.high)
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")  # Draws without spread.
+        return bootstrap_interval([np.arange(len(g)) for g in arrays], of_places, paired=False)
 
 
 HOLDS, FAILS = "holds", "fails"
@@ -127,15 +111,38 @@ class Claim:
         )
 
 
-def exists(claim: str, section: str, reading: str, quantity: str, count: int, runs: int) -> Claim:
-    """Return the claim that something happens, judged by existence, with its rate beside it.
+class Claims(list[Claim]):
+    """Claims of one section about one reading."""
 
-    It fails where its rate is below one run in twenty.
-    """
-    value, low, high = proportion(count, runs)
-    if count:
-        return Claim(claim, section, reading, quantity, (value, max(low, 1e-9), high), runs, 1e-9)
-    return Claim(claim, section, reading, quantity, (value, low, high), runs, 0.05)
+    def __init__(self, section: str, reading: str) -> None:
+        super().__init__()
+        self.section, self.reading = section, reading
+
+    def add(
+        self,
+        claim: str,
+        quantity: str,
+        found: Interval,
+        runs: int,
+        *,
+        least: float = -math.inf,
+        most: float = math.inf,
+        n: str = "",
+    ) -> None:
+        """Add a claim; `n` is added to the reading."""
+        reading = f"{self.reading}, n = {n}" if n else self.reading
+        self.append(Claim(claim, self.section, reading, quantity, found, int(runs), least, most))
+
+    def exists(self, claim: str, quantity: str, count: int, runs: int, *, n: str = "") -> None:
+        """Add the claim that something happens, judged by existence, with its rate beside it.
+
+        It fails where its rate is below one run in twenty.
+        """
+        value, low, high = proportion(count, runs)
+        least = 1e-9 if count else 0.05
+        self.add(
+            claim, quantity, (value, max(low, least * bool(count)), high), runs, least=least, n=n
+        )
 
 
 _COLUMNS = (
@@ -169,3 +176,37 @@ def write_claims(options: Options, figure: str, claims: Iterable[Claim]) -> None
     writer.writeheader()
     writer.writerows(sorted(lines, key=lambda line: line["figure"]))
     write(path, file.getvalue().encode())
+
+
+def critical_bw(levels_s: Sequence[float], groups: Sequence[Any]) -> Interval:
+    """Return the bw in s at which mean Ψ_o falls through the middle between order and disorder.
+
+    Each group is of shape (runs, 2): Ψ_o and |m| of the runs at a level, the last level being
+    disordered. The ordered level is mean Ψ_o where mean |m| is largest. NaN where there is no order
+    to lose: where mean |m| is nowhere 0.5.
+    """
+    arrays = [np.asarray(group, float) for group in groups]
+    if min(map(len, arrays)) < 3 or max(group[:, 1].mean() for group in arrays) < 0.5:
+        return math.nan, math.nan, math.nan
+    return bca(arrays, lambda *drawn: fall(levels_s, drawn))
+
+
+def fall(levels_s: Sequence[float], groups: Sequence[Any]) -> Any:
+    """Return `critical_bw` of groups of shape (..., runs, 2), one value for each draw."""
+    x = np.asarray(levels_s, float)
+    psi_o, abs_m = (
+        np.stack(np.broadcast_arrays(*(each[..., column].mean(-1) for each in groups)))
+        for column in (0, 1)
+    )
+    curves = zip(psi_o.reshape(len(x), -1).T, abs_m.reshape(len(x), -1).T, strict=True)
+    return np.array([_middle(x, *each) for each in curves]).reshape(psi_o.shape[1:])
+
+
+def _middle(x: Any, psi_o: Any, abs_m: Any) -> float:
+    top = int(abs_m.argmax())
+    middle = (psi_o[top] + psi_o[-1]) / 2
+    place = top + int(np.flatnonzero(psi_o[top:] >= middle)[-1])
+    if place == len(x) - 1:
+        return float(x[-1])
+    share = (psi_o[place] - middle) / (psi_o[place] - psi_o[place + 1])
+    return float(x[place] + share * (x[place + 1] - x[place]))

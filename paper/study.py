@@ -321,6 +321,19 @@ def curve(
     axes.errorbar(list(x), value, bars, elinewidth=0.7, **{"marker": "o", **style})
 
 
+def density_map(
+    axes: Any, x: Sequence[float], edges: NDArray[np.float64], shares: Sequence[Any], most: float
+) -> Any:
+    """Draw histograms side by side, as densities over a uniform one."""
+    centers = np.asarray(x, float)
+    step = np.diff(centers).min() / 2
+    sides = np.array([*(centers - step), centers[-1] + step])
+    density = (len(edges) - 1) * np.array(shares).T
+    return axes.pcolormesh(
+        sides, edges, density, cmap="cividis", vmin=0.0, vmax=most, rasterized=True
+    )
+
+
 # --- scripts --------------------------------------------------------------------------------------
 
 

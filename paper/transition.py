@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from claim import Claim, bca, write_claims
+from claim import Claim, Interval, bca, proportion, write_claims
 from scipy import stats
 from study import COLORS, FIRST_SEED, Options, Row, Study, flock, main, picture
 
 from flockenv.runs.protocols.initial_state import initial_flock
+from flockenv.statistics import kaplan_meier
 from flockenv.statistics.structure import jam_sizes
 
 RUNS = 8
@@ -138,9 +139,9 @@ def state(row: Mapping[str, Any]) -> str:
     return "many jams" if row["in_jams"] >= 0.5 else "neither"
 
 
-def rate_per_hour(stayed_min: np.ndarray, exited: np.ndarray) -> float:
+def rate_per_hour(runs: np.ndarray) -> np.ndarray:
     """Return exits per hour in the state: the estimate for lifetimes cut off by the run's end."""
-    return float(60.0 * exited.sum() / stayed_min.sum())
+    return np.asarray(60.0 * runs[..., 1].sum(-1) / runs[..., 0].sum(-1))
 
 
 def cells(table: pd.DataFrame) -> pd.DataFrame:
@@ -149,7 +150,7 @@ def cells(table: pd.DataFrame) -> pd.DataFrame:
     by = ["scheme", "c4", "dt_s", "coverage", "n_boats", "start"]
     for key, group in table.groupby(by, sort=False):
         pair = group[["stayed_min", "exited"]].to_numpy()
-        rate = bca([pair], lambda runs: rate_per_hour(runs[:, 0], runs[:, 1]))
+        rate = bca([pair], rate_per_hour)
         states = group.apply(state, axis=1).value_counts()
         lines.append(
             dict(zip(by, key, strict=True))
@@ -161,7 +162,7 @@ def cells(table: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(lines)
 
 
-def doubling(table: pd.DataFrame, start: str) -> tuple[float, float, float]:
+def doubling(table: pd.DataFrame, start: str) -> Interval:
     """Return by what the rate of exits is multiplied as the flock doubles, largest over smallest.
 
     A half exit is added to each size, so that sizes without exits have a rate too.
@@ -175,9 +176,10 @@ def doubling(table: pd.DataFrame, start: str) -> tuple[float, float, float]:
     ]
     x = np.log2(sizes)
 
-    def factor(*runs: np.ndarray) -> float:
-        rates = [(each[:, 1].sum() + 0.5) / each[:, 0].sum() for each in runs]
-        return float(2.0 ** np.polyfit(x, np.log2(rates), 1)[0])
+    def factor(*runs: np.ndarray) -> np.ndarray:
+        rates = [(each[..., 1].sum(-1) + 0.5) / each[..., 0].sum(-1) for each in runs]
+        slope = np.tensordot(x - x.mean(), np.log2(rates), 1) / ((x - x.mean()) ** 2).sum()
+        return np.asarray(2.0**slope)
 
     return bca(groups, factor)
 
@@ -193,7 +195,7 @@ def judge(table: pd.DataFrame) -> list[Claim]:
         reading = f"{scheme}, {noise} c4 = {c4:g}, dt = {dt_s:g} s, coverage 0.5, n = {sizes}"
         for start in STARTED:
             chosen = group[group["start"] == start]
-            stays = bca([1.0 - chosen["exited"]], lambda runs: runs.mean())
+            stays = proportion((chosen["exited"] == 0).sum(), len(chosen))
             claims.append(
                 Claim(
                     f"A flock that starts {STARTED[start]} stays so for two hours",
@@ -229,13 +231,11 @@ def draw(options: Options, table: pd.DataFrame) -> None:
             for axes, start in zip(column, STARTED, strict=True):
                 chosen = group[group["start"] == start]
                 for color, (n, runs) in zip(COLORS, chosen.groupby("n_boats"), strict=False):
-                    times = stats.CensoredData.right_censored(
-                        runs["stayed_min"].to_numpy(), runs["exited"].to_numpy() == 0
-                    )
-                    left = stats.ecdf(times).sf
+                    times = runs["stayed_min"].where(runs["exited"] == 1, np.inf)
+                    left = kaplan_meier(times, runs["stayed_min"])
                     axes.step(
-                        [0.0, *left.quantiles],
-                        [1.0, *left.probabilities],
+                        [0.0, *left.time_s, runs["stayed_min"].max()],
+                        [1.0, *left.share, left.share_at(math.inf)],
                         where="post",
                         color=color,
                         label=f"n = {n} ({len(runs)} runs)",

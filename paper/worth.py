@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from claim import Claim, Interval, bca, student, write_claims
+from claim import Claim, Interval, bca, mean, write_claims
 from study import COLORS, FIRST_SEED, Options, Row, Study, curve, flock, main, picture
 
 import flockenv
+from flockenv.comparison import named_policy
 
 RUNS = 64
 DENSITY_BOATS = 27
@@ -93,7 +94,7 @@ def measure(row: Row) -> Row:
 
 
 def _policy(name: str) -> Any:
-    return flockenv.comparison.named_policy(name, "wide")()
+    return named_policy(name, "wide")()
 
 
 STUDY = Study("worth", design, measure, lambda row: row["n_boats"] <= 100)
@@ -111,7 +112,7 @@ def slope(table: pd.DataFrame, policy: str, n_boats: int, bw_s: float) -> Interv
     """Return the flock's response per leader, by the fewest leaders that were run."""
     leaders = {27: 1, 100: 4, 400: 15}[n_boats]
     runs = of(table, policy=policy, n_boats=n_boats, bw_s=bw_s, leaders=leaders, against=0)
-    value, low, high = student(runs[:, 0])
+    value, low, high = mean(runs[:, 0])
     return value / leaders, low / leaders, high / leaders
 
 
@@ -122,7 +123,7 @@ def worth(table: pd.DataFrame, policy: str, n_boats: int, bw_s: float) -> Interv
     groups = [of(table, policy=name, **same) for name in (policy, LAW)]
     if min(map(len, groups)) < 3:
         return math.nan, math.nan, math.nan
-    return bca(groups, lambda ours, theirs: ours[:, 0].mean() / theirs[:, 0].mean())
+    return bca(groups, lambda ours, theirs: ours[..., 0].mean(-1) / theirs[..., 0].mean(-1))
 
 
 def gain(table: pd.DataFrame, bw_s: float) -> Interval:
@@ -131,7 +132,7 @@ def gain(table: pd.DataFrame, bw_s: float) -> Interval:
     led, free = of(table, leaders=1, **same), of(table, leaders=0, **same)
     if min(len(led), len(free)) < 3:
         return math.nan, math.nan, math.nan
-    return bca([led, free], lambda a, b: a[:, 0].mean() / (27 * b[:, 1].mean()))
+    return bca([led, free], lambda a, b: a[..., 0].mean(-1) / (27 * b[..., 1].mean(-1)))
 
 
 def judge(table: pd.DataFrame) -> list[Claim]:
@@ -160,9 +161,9 @@ def judge(table: pd.DataFrame) -> list[Claim]:
 
         def difference(
             met: np.ndarray, own: np.ndarray, law: np.ndarray, k: int = leaders, c: int = against
-        ) -> float:
-            expected = k * own[:, 0].mean() - c * law[:, 0].mean()
-            return float((met[:, 0].mean() - expected) / law[:, 0].mean())
+        ) -> np.ndarray:
+            seen, ours, theirs = (each[..., 0].mean(-1) for each in (met, own, law))
+            return np.asarray((seen - (k * ours - c * theirs)) / theirs)
 
         claims.append(
             Claim(
