@@ -58,7 +58,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
             curve(right, x, jams, **style)
         left.axhspan(0.6, 0.8, color="0.9", zorder=0)
         left.set(ylabel="critical bw (s), n = 20, k = 0")
-        right.set(ylabel="share of jammed frames, n = 50, bw = 0", ylim=(0, 1))
+        right.set(ylabel="jammed share, n = 50, bw = 0", ylim=(0, 1))
         for axes in (left, right):
             axes.set(xscale="log", xlabel="overlap tolerance (cm), scheme paper, dt = 0.02 s")
         left.legend()

@@ -210,7 +210,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
             ratios = [worth(table, policy, 27, b) for b in known]
             if policy != LAW and known:
                 curve(right, np.array(known) + shift, ratios, color=color)
-        left.set(xlabel="bw (s)", ylabel="m per leader, n = 27, 64 runs each")
+        left.set(xlabel="bw (s)", ylabel="m per leader, n = 27")
         right.axhline(1.0, color=COLORS[0])
         right.set(xlabel="bw (s)", ylabel="worth in leaders of the paper's law")
         left.legend()
