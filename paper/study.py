@@ -147,27 +147,31 @@ class _Store:
     ) -> None:
         """Make runs, writing the file every half minute and at the end, however it comes."""
         pool = ThreadPoolExecutor(workers)
+        futures = {pool.submit(measure, row): key for key, row in missing.items()}
         written = time.monotonic()
         try:
-            futures = {pool.submit(measure, row): key for key, row in missing.items()}
             for future in track(
                 as_completed(futures), self.path.stem, len(futures), disable=not futures
             ):
-                key = futures[future]
-                try:
-                    measured = future.result()
-                except flockenv.FlockError as error:
-                    raise StudyError(f"the run {missing[key]} cannot be made: {error}") from error
-                self.measured = self.measured or list(measured)
-                line = dict(zip(self.columns, key, strict=True))
-                self.lines[key] = line | {name: _text(v) for name, v in measured.items()}
+                if isinstance(error := future.exception(), flockenv.FlockError):
+                    row = missing[futures[future]]
+                    raise StudyError(f"the run {row} cannot be made: {error}") from error
+                self._keep(futures[future], future.result())
                 if time.monotonic() - written > 30.0:
                     self._write()
                     written = time.monotonic()
         finally:
             pool.shutdown(cancel_futures=True)
+            for future, key in futures.items():
+                if not future.cancelled() and future.exception() is None:
+                    self._keep(key, future.result())
             if missing:
                 self._write()
+
+    def _keep(self, key: tuple[str, ...], measured: Row) -> None:
+        self.measured = self.measured or list(measured)
+        line = dict(zip(self.columns, key, strict=True))
+        self.lines[key] = line | {name: _text(value) for name, value in measured.items()}
 
     def _write(self) -> None:
         file = io.StringIO()
