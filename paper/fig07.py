@@ -7,7 +7,7 @@ from section4 import READING
 from study import COLORS, SEEDS, Options, Row, Study, flock, main, picture, seed_of
 
 import flockenv
-from flockenv.runs.protocols.target_switching import second_halves, simulate_alternating
+from flockenv.runs import simulate_alternating
 
 NOISES_S = (1.8, 1.4)
 
@@ -31,9 +31,8 @@ def measure(row: Row) -> Row:
     """Return mean Ψ_o, and how the second half of each stretch goes."""
     run = run_of(row)
     used = run.analyzed(0.0)
-    late, signs = second_halves(used.time_s)
-    towards = used.order.rotation() * signs
-    stretch = (used.time_s // 240.0).astype(int)
+    stretch, late = (used.time_s // 240.0).astype(int), used.time_s % 240.0 >= 120.0
+    towards = used.order.rotation() * np.where(stretch % 2 == 0, -1.0, 1.0)
     chosen = [late & (stretch == i) for i in range(4)]
     found = {f"stretch_{i}": towards[c].mean() if c.any() else 0.0 for i, c in enumerate(chosen)}
     return {"psi_o": used.order.psi_o.mean(), **found}

@@ -30,10 +30,11 @@ from numpy.typing import NDArray
 from rich.progress import track
 
 import flockenv
+from flockenv.runs import POLICY_SEEDS
 
 HERE = Path(__file__).parent
-FIRST_SEED = 3_000_000_000
-"""Seeds of these studies are from here on; no policy was made or judged with any of them."""
+FIRST_SEED = POLICY_SEEDS["paper"].first
+"""Seeds of these studies are from here on; nothing else uses them."""
 SEEDS = 24
 """Runs at each point of a design, unless it says otherwise."""
 

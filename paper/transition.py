@@ -13,7 +13,7 @@ from claim import Claim, Interval, bca, proportion, write_claims
 from scipy import stats
 from study import COLORS, FIRST_SEED, Options, Row, Study, flock, main, picture
 
-from flockenv.runs.protocols.initial_state import initial_flock
+from flockenv.runs import initial_flock
 from flockenv.statistics import kaplan_meier
 from flockenv.statistics.structure import jam_sizes
 
