@@ -1,7 +1,7 @@
 """PPO in one file on the native vector environment, with a critic that sees the whole flock.
 
     python baselines/ppo_single_file.py                 # into results/ppo_single_file
-    flockenv evaluate results/ppo_single_file/policy.npz --pool narrow --set n_boats=9 --leaders 2
+    flockenv compare --policy results/ppo_single_file/policy.npz --pool narrow --set n_boats=9
 
 All leaders share one actor, which sees what its leader observes. The critic sees features of the
 flock (`LeadersVectorEnv.flock_features`) and is needed in training alone, so that the actor is

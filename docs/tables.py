@@ -22,7 +22,6 @@ from committed_data import (
     order,
     rows,
 )
-from suite_tables import suite_scores, suite_tasks
 from training_tables import TRAINING_TABLES
 
 from flockenv import FlockParameters
@@ -211,8 +210,6 @@ TABLES: dict[str, Callable[[], str]] = {
     "leader-motion": leader_motion,
     "strong-wide": strong_wide,
     "other-scenes": other_scenes,
-    "suite-tasks": suite_tasks,
-    "suite-scores": suite_scores,
     "track-errors": track_errors,
     **TRAINING_TABLES,
 }

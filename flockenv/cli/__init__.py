@@ -6,7 +6,7 @@ import typer
 import typer.core
 
 from flockenv._core import __version__
-from flockenv.cli.analyze import analyze, export
+from flockenv.cli.analyze import analyze
 from flockenv.cli.compare import compare
 from flockenv.cli.console import (
     console,
@@ -16,7 +16,6 @@ from flockenv.cli.console import (
     say,
 )
 from flockenv.cli.demo import demo
-from flockenv.cli.evaluate import evaluate
 from flockenv.cli.parameters import refuse_fields_as_options
 from flockenv.cli.play import play
 from flockenv.cli.presets import presets
@@ -51,10 +50,8 @@ COMMANDS = (
     run,
     replay,
     analyze,
-    export,
     play,
     compare,
-    evaluate,
     presets,
     sweep,
     train,

@@ -1,107 +1,168 @@
-"""`flockenv compare`."""
+"""`flockenv compare`: policies against each other, in flocks of one's own or on frozen tasks."""
 
 import json
-from collections.abc import Callable
+import shlex
+import sys
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-import typer
-
+from flockenv._io.atomic_write import write_csv, write_text
+from flockenv._io.extras import require
+from flockenv.cli.compare_options import (
+    REFERENCES,
+    CompareOptions,
+    cases_of,
+    is_file,
+    own_policies,
+)
 from flockenv.cli.console import console, errors, finished_in, print_json, progress_bar, say
+from flockenv.cli.options import takes
 from flockenv.cli.output import check_folder, keep, printable, refuse_overwriting
-from flockenv.cli.parameters import ChangesOption, FileOption, PresetOption, TrustOption
-from flockenv.cli.pools import PoolOption, compared_flocks, pool_name
+from flockenv.comparison.suite import REFERENCE
 from flockenv.errors import ParameterError
-from flockenv.policies.base import LeaderPolicy
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from flockenv.comparison.case import Case
+    from flockenv.comparison.report import ComparisonReport
 
 __all__ = ["compare"]
 
-DEFAULT_POLICIES = ("steering law", "tuned damped law", "learned")
+Policies = dict[str, dict[str, Any]]
+"""What steers, as `compare_leaders` takes it, by case and by name."""
 
 
-def compare(
-    pool: PoolOption = None,
-    preset: PresetOption = None,
-    params: FileOption = None,
-    changes: ChangesOption = None,
-    most_leaders: Annotated[int, typer.Option(min=1, help="Runs 0 to this many leaders.")] = 4,
-    episodes: Annotated[int, typer.Option(min=2, help="Seeds for each number.")] = 64,
-    minutes: Annotated[float, typer.Option(min=0.0, help="Length of an episode.")] = 8.0,
-    policy: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Policy to compare, repeatable: a name, the .npz file of a learned one, or the "
-            ".zip file of an SB3 model (with --trust); differences are taken from the first. "
-            "[steering law, tuned damped law, learned]"
-        ),
-    ] = None,
-    trust: TrustOption = False,
-    seed: Annotated[int, typer.Option(min=0, help="First seed.")] = 0,
-    out: Annotated[Path, typer.Option(help="Folder for tables and pictures.")] = Path(
-        "results/compare"
-    ),
-    as_json: Annotated[bool, typer.Option("--json", help="Print the means as JSON.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no progress.")] = False,
-) -> None:
-    """Print and plot order against the number of leaders (figure 12).
+@takes(CompareOptions)
+def compare(options: CompareOptions) -> None:
+    """Print and plot order against the number of leaders, for your policies and others.
 
-    Runs without leaders, and with leaders that follow each policy, on the same seeds: 27 boats in
-    both pools, at the critical noise of each, unless the parameters say otherwise. Writes
-    `runs.csv`, `means.csv`, `lines.csv`, `differences.csv`, `leader_curve.png`, `run.toml` (seeds,
-    policies, environment) and the exact parameters, which `--params` reads, for each pool.
+    Runs each policy on the same seeds: 27 boats in both pools, at the critical noise of each,
+    unless the options say otherwise. Differences are those of your first policy from the others.
+    Writes `runs.csv`, `means.csv`, `differences.csv`, `lines.csv`, `leader_curve.png`, `run.toml`
+    (seeds, policies, environment), the parameters of each case, which `--params` reads, and the
+    card of your first policy, `card.md`.
 
-    Example: `flockenv compare --pool narrow --policy "damped law" --set bw_s=0.4`
+    With `--suite v2` policies are scored on frozen tasks: `scores.csv`, and `entry.toml` for yours.
+
+    Example: `flockenv compare --policy mine.npz --name mine --pool narrow --leaders 0-3`
     """
-    from flockenv.comparison.report import ComparisonReport, report
-    from flockenv.policies.registry import named_policy
+    for package in ("matplotlib", "pandas", "scipy"):  # All of them before hours of runs.
+        require(package, "plot")
+    cases, own = cases_of(options), own_policies(options)
+    policies = {case.name: _policies(case.parameters.pool, own, options) for case in cases}
+    check_folder(options.out)
+    written = [options.out / f"{case.name}.toml" for case in cases]
+    refuse_overwriting(options.params, "--params", written)
+    for given in filter(is_file, own.values()):
+        refuse_overwriting(given, "--policy", written)
+    result = _compared(options, cases, policies)
+    scores = _scores(options, result, own, policies) if options.suite else None
+    if own:
+        _write_card(options, result, next(iter(own)), policies)
+    _print(options, result, scores)
 
-    found = compared_flocks(preset, params, changes, pool)
-    policies = {
-        pool_name(parameters): {
-            printable(name): named_policy(name, parameters.pool, trust=trust) for name in policy
-        }
-        if policy
-        else _default_policies(parameters.pool)
-        for parameters in found
+
+def _compared(
+    options: CompareOptions, cases: "list[Case]", policies: Policies
+) -> "ComparisonReport":
+    """Run the cases and return their report; it is written whenever a case is finished."""
+    from flockenv.comparison.report import joined, report
+
+    names = list(dict.fromkeys(name for each in policies.values() for name in each))
+    conditions = {"command": printable(shlex.join(["flockenv", *sys.argv[1:]]))}
+    shown = {
+        case.name: {name: str(steers) for name, steers in _made(case, policies).items()}
+        for case in cases
     }
-    check_folder(out)
-    refuse_overwriting(params, "--params", [out / name / "parameters.toml" for name in policies])
-    runs = sum(1 + most_leaders * len(each) for each in policies.values())
-    work = runs * episodes * minutes * 60
-    results: dict[str, ComparisonReport] = {}
-    with finished_in(out, results), progress_bar(quiet or as_json) as progress:
-        task = progress.add_task("simulating", total=work)
-        for parameters in found:
-            name = pool_name(parameters)
-            result = report(
-                parameters,
-                range(most_leaders + 1),
-                policies[name],
-                range(seed, seed + episodes),
-                minutes * 60,
-                lambda seconds: progress.advance(task, seconds),
-            )
-            keep(out / name, result.write)
-            results[name] = result
-    if as_json:
-        means = {name: each.means.to_json(orient="records") for name, each in results.items()}
-        print_json({name: json.loads(text) for name, text in means.items()})
-        return
-    for name, result in results.items():
-        console.print(result.table(console.width))
-        words = [result.lines_in_words(), result.differences_in_words()]
-        say("\n".join(filter(None, words)))
-        say(f"Written to {out / name}\n")
+    finished: dict[str, Any] = {}
+    with finished_in(options.out, finished), progress_bar(options.shows_nothing) as progress:
+        hours = sum(case.flock_hours(len(policies[case.name])) for case in cases)
+        bar = progress.add_task("simulating", total=3600 * hours)
+        for case in cases:
+            runs = case.run(policies[case.name], lambda seconds: progress.advance(bar, seconds))
+            every = joined([*finished.values(), runs])
+            done = cases[: len(finished) + 1]
+            result = report(done, names, every, {**conditions, "policies": shown})
+            keep(options.out, result.write)
+            finished[case.name] = runs
+    return result
 
 
-def _default_policies(pool: Any) -> dict[str, Callable[[], LeaderPolicy | str]]:
-    """Return the default policies: those made for a pool only where there are such."""
-    from flockenv.policies.registry import named_policy
+def _made(case: "Case", policies: Policies) -> dict[str, Any]:
+    from flockenv.comparison.episodes import steering
 
-    policies = {}
-    for name in DEFAULT_POLICIES:
+    pool = case.parameters.pool
+    return {name: steering(policy, pool) for name, policy in policies[case.name].items()}
+
+
+def _policies(pool: Any, own: Mapping[str, Any], options: CompareOptions) -> dict[str, Any]:
+    """Return the policies of a case by name, the user's first; those not for its pool are told."""
+    found = {name: _read(given, pool, options.trust) for name, given in own.items()}
+    if options.suite:
+        return found | {REFERENCE: _read(REFERENCE, pool, options.trust)}
+    for name in () if options.only else REFERENCES:
         try:
-            policies[name] = named_policy(name, pool)
+            found.setdefault(name, _read(name, pool, options.trust))
         except ParameterError as error:
             say(f"Left out, {name}: {error}", errors)
-    return policies
+    if not found:
+        raise ParameterError("--only is not accepted without --policy: nothing would be compared")
+    return found
+
+
+def _read(given: Any, pool: Any, trust: bool) -> Any:
+    from flockenv.policies.registry import named_policy
+
+    if isinstance(given, Mapping):
+        return {leader: _read(each, pool, trust) for leader, each in given.items()}
+    try:
+        return named_policy(given, pool, trust=trust)
+    except OSError as error:
+        raise ParameterError(f"--policy {given} cannot be read: {error.strerror}") from error
+
+
+def _scores(
+    options: CompareOptions, result: "ComparisonReport", own: Mapping[str, Any], policies: Policies
+) -> "pd.DataFrame":
+    """Write the scores, and an entry if the first policy is a file; return the scores."""
+    from flockenv.comparison.suite import scores_table, write_entry
+
+    scores = scores_table(result)
+    path = options.out / "scores.csv"
+    keep(path, lambda path: write_csv(path, scores, float_format="%.4f"))
+    name, given = next(iter(own.items()), ("", None))
+    hours = options.flock_hours
+    if is_file(given) and hours is not None:
+        provenance = getattr(_made(result.cases[0], policies)[name], "provenance", {})
+        entry = (name, Path(given), hours, provenance)
+        keep(options.out / "entry.toml", lambda path: write_entry(path.parent, *entry))
+    return scores
+
+
+def _write_card(
+    options: CompareOptions, result: "ComparisonReport", name: str, policies: Policies
+) -> None:
+    from flockenv.comparison.model_card import model_card
+
+    policy = _made(result.cases[0], policies)[name]
+    card = model_card(name, policy, result, result.conditions["command"])
+    keep(options.out / "card.md", lambda path: write_text(path, card))
+
+
+def _print(
+    options: CompareOptions, result: "ComparisonReport", scores: "pd.DataFrame | None"
+) -> None:
+    if options.as_json:
+        tables = {"means": result.means, "differences": result.differences, "scores": scores}
+        found = {name: table for name, table in tables.items() if table is not None}
+        print_json({n: json.loads(table.to_json(orient="records")) for n, table in found.items()})
+        return
+    console.print(result.table())
+    for row in [] if scores is None else scores.to_dict("records"):
+        ends = f"{row['score']:+.3f} [{row['score_low']:+.3f}, {row['score_high']:+.3f}]"
+        say(f"{row['policy']}, {row['task']}: {ends}")
+    if options.full:
+        say(result.in_words())
+    say(f"Written to {options.out}")

@@ -21,6 +21,7 @@ __all__ = [
     "open_page",
     "printable",
     "refuse_overwriting",
+    "refuse_present",
     "writable",
 ]
 
@@ -41,7 +42,8 @@ def load_recording(path: Path, layout: Path | None = None, *, quiet: bool = Fals
     path
         An ``.npz`` file of a recording; or tracks: a table, or with `layout` also arrays.
     layout
-        How tracks lie in the file; by default as the TOML file beside it says.
+        How tracks lie in the file; by default as the TOML file beside it says. A table without one
+        gets one that is guessed from its columns, and what is to be checked in it is printed.
     quiet
         Whether to print nothing.
 
@@ -53,6 +55,9 @@ def load_recording(path: Path, layout: Path | None = None, *, quiet: bool = Fals
     from flockenv.tracks import SUFFIXES, read_layout, read_tracks
 
     if layout is not None or path.suffix.lower() in SUFFIXES:
+        beside = path.with_suffix(".toml")
+        if layout is None and path.exists() and not beside.exists():
+            _guess(path, beside)
         tracks = read_tracks(path, None if layout is None else read_layout(layout))
         if not quiet:
             say(f"{printable(path)}: {tracks.report}", errors)
@@ -61,6 +66,16 @@ def load_recording(path: Path, layout: Path | None = None, *, quiet: bool = Fals
         return Recording.load(path)
     except OSError as error:
         raise ParameterError(f"{path} cannot be read: {error.strerror}") from error
+
+
+def _guess(path: Path, beside: Path) -> None:
+    """Write a description of tracks that have none, and say what in it to check."""
+    from flockenv.tracks import guess_layout
+
+    _, doubts = guess_layout(path)
+    say(f"{printable(path)} has no description; {printable(beside)} is a guess. Check:", errors)
+    for name, meaning in doubts.items():
+        say(f"  {name}: {meaning}", errors)
 
 
 def check_folder(folder: Path, option: str = "--out") -> None:
@@ -121,6 +136,19 @@ def refuse_overwriting(
             raise ParameterError(
                 f"{option} {given} is where results would be written: name another --out"
             )
+
+
+def refuse_present(written: Iterable[Path], force: bool) -> None:
+    """Refuse to write over files that are there, unless that was asked for.
+
+    Raises
+    ------
+    ParameterError
+        For the first of them.
+    """
+    for path in written:
+        if path.exists() and not force:
+            raise ParameterError(f"{path} is there already: --force overwrites it")
 
 
 def keep(path: Path, write: Callable[[Path], object]) -> None:

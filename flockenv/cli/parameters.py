@@ -118,8 +118,10 @@ def _file_fields(path: Path) -> dict[str, Any]:
     return read_toml_file(path, f"--params {path}")
 
 
-def changed_fields(changes: Sequence[str]) -> dict[str, Any]:
-    """Return what `--set` options give: values as in TOML, words and lists of words also bare.
+def changed_fields(changes: Sequence[str], option: str = "--set") -> dict[str, Any]:
+    """Return what `--set` options, or others like it, give.
+
+    Values are as in TOML, words and lists of words also bare.
 
     Raises
     ------
@@ -130,9 +132,9 @@ def changed_fields(changes: Sequence[str]) -> dict[str, Any]:
     for change in changes:
         name, equals, text = (part.strip() for part in change.partition("="))
         if not (name and equals and text):
-            raise ParameterError(f"--set {change!r} is not accepted: FIELD=VALUE, as in bw_s=0.3")
+            raise ParameterError(f"{option} {change!r} is not accepted: NAME=VALUE, as in bw_s=0.3")
         if name in fields:
-            raise ParameterError(f"--set changes {name} twice")
+            raise ParameterError(f"{option} changes {name} twice")
         fields[name] = _value(text)
     return fields
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv.cli.console import errors, interruptible, print_json, progress_bar, say
-from flockenv.cli.output import check_file, keep, printable, refuse_overwriting
+from flockenv.cli.output import check_file, keep, printable, refuse_overwriting, refuse_present
 from flockenv.cli.parameters import (
     ChangesOption,
     FileOption,
@@ -84,9 +84,7 @@ def run(
         check_file(path)
     refuse_overwriting(params, "--params", (out, beside))
     refuse_overwriting(policy, "--policy", (out,))
-    for path in (out, beside):
-        if path.exists() and not force:
-            raise ParameterError(f"{path} is there already: --force overwrites it")
+    refuse_present((out, beside), force)
     with interruptible("Nothing was written."), progress_bar(quiet or as_json) as progress:
         task = progress.add_task("simulating", total=minutes * 60)
         recording = simulate(

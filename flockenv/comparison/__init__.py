@@ -1,5 +1,6 @@
 """Leader policies against each other."""
 
+from flockenv.comparison.case import Case
 from flockenv.comparison.episodes import (
     CONTROL_HZ,
     NO_LEADERS,
@@ -8,6 +9,7 @@ from flockenv.comparison.episodes import (
     compare_leaders,
     run_episodes,
 )
+from flockenv.comparison.report import ComparisonReport, report
 from flockenv.policies.registry import EVERY_SUBSTEP, POLICIES, POOL_POLICIES, named_policy
 
 __all__ = [
@@ -18,7 +20,10 @@ __all__ = [
     "POLICIES",
     "POOL_POLICIES",
     "QUANTITIES",
+    "Case",
+    "ComparisonReport",
     "compare_leaders",
     "named_policy",
+    "report",
     "run_episodes",
 ]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from flockenv import _core
 from flockenv._io.extras import require
 from flockenv._io.interrupts import end_if_interrupted
+from flockenv.comparison.each_leader import EachLeader
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import (
@@ -21,6 +22,7 @@ from flockenv.policies.base import (
     control_rate,
 )
 from flockenv.policies.model import ModelPolicy, as_policy
+from flockenv.policies.registry import EVERY_SUBSTEP, named_policy
 from flockenv.runs.executors import in_order
 from flockenv.runs.seeds import check_evaluation_seeds
 from flockenv.simulation import simulate
@@ -33,9 +35,15 @@ __all__ = [
     "NO_LEADERS",
     "ORDERING_TIMES",
     "QUANTITIES",
+    "Steering",
     "compare_leaders",
     "run_episodes",
+    "steering",
 ]
+
+Steering = LeaderPolicy | str | Mapping[str, Any] | Callable[[], Any]
+"""A policy or a model; its name, or the path of its file; a dictionary of these with one for each
+of ``"leader_0"``, ``"leader_1"`` and so on; or a function that returns one of them."""
 
 NO_LEADERS = "no leaders"
 """Name under which runs without leaders are listed."""
@@ -55,7 +63,7 @@ not order."""
 def compare_leaders(
     parameters: FlockParameters,
     leaders: Sequence[int],
-    policies: Mapping[str, Callable[[], LeaderPolicy | str]],
+    policies: Mapping[str, Steering],
     seeds: Sequence[int],
     duration_s: float,
     progress: Callable[[float], None] = lambda flock_seconds: None,
@@ -63,9 +71,9 @@ def compare_leaders(
 ) -> "pd.DataFrame":
     """Run seeded episodes for every policy and number of leaders.
 
-    Flocks with leaders are stepped through the Gymnasium vector environment with its default
-    observation; flocks without run in `simulate`. Seed i gives the same initial placement and the
-    same noise whatever the leaders do.
+    Flocks with leaders are stepped through the Gymnasium vector environment with the observation
+    of their policy; flocks without run in `simulate`. Seed i gives the same initial placement and
+    the same noise whatever the leaders do.
 
     Parameters
     ----------
@@ -74,8 +82,9 @@ def compare_leaders(
     leaders
         Numbers of leaders; 0 is run once, whatever the policies.
     policies
-        What makes each policy, by the name to list it under: such as those of `POLICIES`, or of
-        your own, such as models of stable-baselines3. Each is made for every number of leaders.
+        How leaders steer, by the name to list it under, such as
+        ``{"mine": model, "paper's law": "paper's law"}``; see `Steering`. A function makes a policy
+        for each number of leaders; all else is one object for all of them.
     seeds
         One episode each; of the range ``"evaluation"`` of `flockenv.runs.seeds.POLICY_SEEDS`.
     duration_s
@@ -84,49 +93,89 @@ def compare_leaders(
         Called with flock-seconds as they are simulated.
     environment
         Options of the environment that differ from its defaults, such as ``target="alternate"`` or
-        ``dropout_rate=0.003``. What runs in `simulate` (no leaders, the law at every substep) has
-        none of them and is refused then.
+        ``dropout_rate=0.003``. What runs in `simulate` has none of them and is refused then.
 
     Returns
     -------
     pandas.DataFrame
         One row per episode: ``policy``, ``leaders``, ``seed``, the `QUANTITIES` and the
-        `ORDERING_TIMES`.
+        `ORDERING_TIMES`; NaN where an episode has no frame in the analysis window.
 
     Raises
     ------
     ParameterError
-        For parameters, options and durations out of range, for training seeds, for models that
-        steer another number of leaders at once, and for policies of another action mode than that
+        For parameters, options, names and durations out of range, for training seeds, for policies
+        that steer another number of leaders, and for policies of another action mode than that
         of `environment`.
     """
     pandas = require("pandas", "plot")
     check_evaluation_seeds(seeds)
     _check_leaders(parameters, leaders)
-    for policy in (as_policy(make()) for make in policies.values()):
-        if environment and "action_mode" in environment and not isinstance(policy, str):
-            check_action_mode(policy, environment["action_mode"], "in this environment")
-        if isinstance(policy, ModelPolicy):
-            for k in (k for k in leaders if k > 0):
-                policy.check_leaders(k)
-    if environment:
-        _check_environment(environment, leaders, policies)
+    for name, policy in policies.items():
+        found = steering(policy, parameters.pool)
+        _check_policy(name, found, [k for k in leaders if k > 0], environment or {})
+    if environment and 0 in leaders:
+        raise _outside(NO_LEADERS, environment)
     options = {"target": parameters.target, **(environment or {})}
     parts = []
     if 0 in leaders:
-        found = _simulated(parameters.replace(n_leaders=0), seeds, duration_s, progress)
-        parts.append({"policy": NO_LEADERS, "leaders": 0, "seed": seeds, **found})
-    for name, make in policies.items():
+        alone = parameters.replace(n_leaders=0)
+        parts.append((NO_LEADERS, 0, _simulated(alone, seeds, duration_s, progress)))
+    for name, policy in policies.items():
         for k in (k for k in leaders if k > 0):
-            led, policy = parameters.replace(n_leaders=k), make()
-            if isinstance(policy, str):
-                found = _simulated(led, seeds, duration_s, progress)
+            led, found = parameters.replace(n_leaders=k), steering(policy, parameters.pool)
+            if isinstance(found, str):
+                measured = _simulated(led, seeds, duration_s, progress)
             else:
-                found = run_episodes(led, policy, seeds, duration_s, progress, options)
-            parts.append({"policy": name, "leaders": k, "seed": seeds, **found})
-    tables = [pandas.DataFrame(part) for part in parts]
+                measured = run_episodes(led, found, seeds, duration_s, progress, options)
+            parts.append((name, k, measured))
+    tables = [
+        pandas.DataFrame({"policy": name, "leaders": k, "seed": seeds, **measured})
+        for name, k, measured in parts
+    ]
     runs: pd.DataFrame = pandas.concat(tables, ignore_index=True)
     return runs
+
+
+def steering(policy: Steering, pool: Any) -> Any:
+    """Return what steers: a policy, or `EVERY_SUBSTEP`.
+
+    Raises
+    ------
+    ParameterError
+        For unknown names, files that are no policy, pools that a policy is not made for, and a
+        dictionary whose policies observe or act in different ways.
+    OSError
+        If a file cannot be opened.
+    """
+    if isinstance(policy, type) or (callable(policy) and not hasattr(policy, "predict")):
+        policy = policy()
+    if isinstance(policy, str) and policy != EVERY_SUBSTEP:
+        policy = named_policy(policy, pool)()
+    if isinstance(policy, Mapping):
+        return EachLeader({leader: steering(each, pool) for leader, each in policy.items()})
+    return as_policy(policy)
+
+
+def _check_policy(
+    name: str, policy: Any, leaders: Sequence[int], environment: Mapping[str, Any]
+) -> None:
+    if isinstance(policy, str):
+        if environment:
+            raise _outside(name, environment)
+        return
+    if "action_mode" in environment:
+        check_action_mode(policy, environment["action_mode"], "in this environment")
+    if isinstance(policy, ModelPolicy | EachLeader):
+        for k in leaders:
+            policy.check_leaders(k)
+
+
+def _outside(name: str, environment: Mapping[str, Any]) -> ParameterError:
+    return ParameterError(
+        f"{name!r} runs outside of the environment, which is not accepted with its options "
+        f"{', '.join(environment)}"
+    )
 
 
 def _check_leaders(parameters: FlockParameters, leaders: Sequence[int]) -> None:
@@ -134,24 +183,9 @@ def _check_leaders(parameters: FlockParameters, leaders: Sequence[int]) -> None:
     if most >= parameters.n_boats:
         raise ParameterError(
             f"{most} leaders among n_boats = {parameters.n_boats} are not accepted: at least one "
-            "normal boat, as order is theirs (on the command line fewer `--most-leaders` or "
-            "`--leaders`, or more boats)"
+            "normal boat, as order is theirs (on the command line fewer `--leaders`, or more boats)"
         )
     parameters.replace(n_leaders=most)
-
-
-def _check_environment(
-    environment: Mapping[str, Any],
-    leaders: Sequence[int],
-    policies: Mapping[str, Callable[[], LeaderPolicy | str]],
-) -> None:
-    outside = [NO_LEADERS] if 0 in leaders else []
-    outside += [name for name, make in policies.items() if isinstance(make(), str)]
-    if outside:
-        raise ParameterError(
-            f"{outside[0]!r} runs outside of the environment, which is not accepted with its "
-            f"options {', '.join(environment)}"
-        )
 
 
 def run_episodes(
@@ -194,7 +228,7 @@ def run_episodes(
         observations, _, _, ended, infos = env.step(actions)
         progress(len(seeds) / env.metadata["render_fps"])
         end_if_interrupted()
-    summary = infos["episode_summary"]
+    summary = infos.get("episode_summary", {})
     names = (*QUANTITIES, *ORDERING_TIMES)
     return {name: _told(summary, name, len(seeds)) for name in names}
 
@@ -235,6 +269,7 @@ def _simulated(
     duration_s: float,
     progress: Callable[[float], None],
 ) -> dict[str, NDArray[np.float64]]:
+    target = parameters.target if isinstance(parameters.target, str) else parameters.target[0]
     # The environment derives a flock's seed from its own, which pairs the runs.
     some = parameters.replace(n_leaders=max(1, parameters.n_leaders))
     env = _environment(some, len(seeds), duration_s, {})
@@ -251,12 +286,14 @@ def _simulated(
             progress=lambda done: end_if_interrupted(),
         )
         order = recording.analyzed().order
-        signed = order.signed_order(parameters.target)
+        signed = order.signed_order(target)
         progress(duration_s)
         ordering = [
             recording.order.ordering_time(recording.time_s, within)
             for within in ORDERING_TIMES.values()
         ]
+        if len(signed) == 0:
+            return [np.nan] * len(QUANTITIES) + ordering
         return [
             order.psi_o.mean(),
             signed.mean(),

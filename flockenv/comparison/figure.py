@@ -5,14 +5,12 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import matplotlib as mpl
-import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from flockenv._io.atomic_write import atomic_write
 from flockenv.comparison.episodes import NO_LEADERS
-from flockenv.statistics import Line
 
 __all__ = ["COLORS", "POLICY_COLORS", "leader_curve", "policy_colors"]
 
@@ -21,81 +19,103 @@ COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 
 POLICY_COLORS: Mapping[str, str] = {
     NO_LEADERS: "#555555",
-    "steering law": COLORS[0],
-    "tuned damped law": COLORS[1],
-    "learned": COLORS[2],
-    "tuned sign-corrected law": COLORS[3],
-    "damped law": COLORS[4],
-    "sign-corrected law": COLORS[5],
+    "steering law": "#0072b2",
+    "tuned damped law": "#e69f00",
+    "learned": "#009e73",
+    "damped law": "#56b4e9",
     "steering law at every substep": "#332288",
     "straight ahead": "#882255",
-    "random rudders": "#999933",
+    "random rudders": "#ddcc77",
+    "tuned sign-corrected law": "#aa4499",
+    "sign-corrected law": "#44aa99",
 }
-"""The color that a policy has in every figure."""
+"""The color that a named policy has in every figure."""
 
-# Of Tol's muted set, for policies of the user's own.
-_OTHERS = ("#44aa99", "#117733", "#aa4499", "#661100", "#6699cc", "#888888")
+_OWN = ("#d55e00", "#cc79a7", "#661100", "#6699cc", "#999999", "#bbbb00")
+"""Colors for policies of the user's own, none of them a shade of a named one."""
 
 _LONGEST_LABEL = 40
-
-_LABELS = {
-    "psi_o": r"mean $\Psi_o$",
-    "signed_order": r"mean signed order $\Psi_o\,\cos(\varphi_o-\varphi_\mathrm{target})$",
-}
+_ORDER = r"mean signed order $\Psi_o\,\cos(\varphi_o-\varphi_\mathrm{target})$"
 
 
 def policy_colors(names: Iterable[str]) -> dict[str, str]:
     """Return a color for each policy: its own in `POLICY_COLORS`, or the next that none has."""
     names = list(dict.fromkeys(names))
-    others = itertools.cycle(_OTHERS)
+    others = itertools.cycle(_OWN)
     return {name: POLICY_COLORS.get(name) or next(others) for name in names}
 
 
 def leader_curve(
-    runs: pd.DataFrame | None,
     means: pd.DataFrame,
-    lines: Mapping[tuple[str, str], Line],
-    title: str,
     path: Path,
+    *,
+    runs: pd.DataFrame | None = None,
+    titles: Mapping[str, str] | None = None,
 ) -> None:
-    """Draw order against the number of leaders, as figure 12 does.
+    """Draw order against the number of leaders, as figure 12 does, a panel for each case.
 
     Parameters
     ----------
-    runs
-        One row per episode, of `compare_leaders`; None draws no dots for episodes.
     means
-        Its means and intervals by policy and number of leaders, of `summarize`.
-    lines
-        The fitted line for each (policy, quantity) that has one.
-    title
-        What was run.
+        Means and intervals by case, policy and number of leaders, as in a `ComparisonReport`.
     path
         Where to write the picture; the suffix decides its format.
+    runs
+        One row per episode, to be drawn as dots.
+    titles
+        What was run, by case.
     """
     policies = [name for name in means["policy"].unique() if name != NO_LEADERS]
-    colors = policy_colors(policies)
+    colors, cases = policy_colors(policies), list(means["case"].unique())
     with mpl.rc_context({"font.size": 9, "axes.spines.top": False, "axes.spines.right": False}):
-        figure = Figure(figsize=(7.5, 4.0), layout="constrained")
-        for axes, quantity in zip(figure.subplots(1, 2), _LABELS, strict=True):
+        figure = Figure(figsize=(0.6 + 3.6 * len(cases), 4.0), layout="constrained")
+        panels = figure.subplots(1, len(cases), sharey=True, squeeze=False)[0]
+        for axes, case in zip(panels, cases, strict=True):
+            own = means[means["case"] == case]
+            dots = None if runs is None else runs[runs["case"] == case]
             for place, policy in enumerate(policies):
-                shown = _Shown(runs, means, [policy, NO_LEADERS], quantity)
                 shift = 0.1 * (place - (len(policies) - 1) / 2)
-                line = lines.get((policy, quantity))
-                _draw_policy(axes, shown, line, shift, colors[policy])
+                _draw_policy(axes, own, dots, policy, shift, colors[policy])
             axes.set_xlabel("number of leaders k")
-            axes.set_ylabel(_LABELS[quantity])
-            axes.set_xticks(sorted(means["leaders"].unique()))
-            # Below: the episodes fill the panel.
-            legend = axes.legend(
-                frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.16), fontsize=8
-            )
-            # Policies may have the names of files: a dollar sign there starts no formula.
-            for text in legend.get_texts():
-                text.set_parse_math(False)
-        figure.suptitle(title, fontsize=9, parse_math=False)
+            axes.set_xticks(sorted(own["leaders"].unique()))
+            title = (titles or {}).get(case, case).replace(", ", "\n", 1)
+            axes.set_title(title, fontsize=8, parse_math=False, wrap=True)
+        panels[0].set_ylabel(_ORDER)
+        handles, labels = panels[0].get_legend_handles_labels()
+        legend = figure.legend(handles, labels, frameon=False, loc="outside lower center", ncols=3)
+        # Policies may have the names of files: a dollar sign there starts no formula.
+        for text in legend.get_texts():
+            text.set_parse_math(False)
         with atomic_write(path) as file:
             figure.savefig(file, dpi=200, format=path.suffix.removeprefix("."))
+
+
+def _draw_policy(
+    axes: Axes,
+    means: pd.DataFrame,
+    runs: pd.DataFrame | None,
+    policy: str,
+    shift: float,
+    color: str,
+) -> None:
+    names = [policy, NO_LEADERS]
+    if runs is not None:
+        dots = runs[runs["policy"].isin(names)]
+        k, orders = dots["leaders"] + shift, dots["signed_order"]
+        axes.plot(k, orders, ".", ms=3, alpha=0.3, color=color, mew=0)
+    shown = means[means["policy"].isin(names)].sort_values("leaders")
+    ends = shown[["signed_order_low", "signed_order_high"]].to_numpy().T
+    axes.errorbar(
+        shown["leaders"] + shift,
+        shown["signed_order"],
+        abs(ends - shown["signed_order"].to_numpy()),
+        fmt="o-",
+        ms=4,
+        lw=1,
+        capsize=3,
+        color=color,
+        label=_legend_label(policy),
+    )
 
 
 def _legend_label(policy: str) -> str:
@@ -104,39 +124,3 @@ def _legend_label(policy: str) -> str:
         return "…" + policy[1 - _LONGEST_LABEL :]
     # A legend leaves out labels that start with an underscore.
     return f" {policy}" if policy.startswith("_") else policy
-
-
-class _Shown:
-    """One quantity of one policy: episodes, means by number of leaders, and their intervals."""
-
-    def __init__(
-        self, runs: pd.DataFrame | None, means: pd.DataFrame, policies: list[str], quantity: str
-    ) -> None:
-        self.label = _legend_label(policies[0])
-        runs = means.iloc[:0] if runs is None else runs[runs["policy"].isin(policies)]
-        means = means[means["policy"].isin(policies)].sort_values("leaders")
-        self.leaders, self.values = runs["leaders"].to_numpy(), runs[quantity].to_numpy()
-        self.k, self.mean = means["leaders"].to_numpy(), means[quantity].to_numpy()
-        ends = means[[f"{quantity}_low", f"{quantity}_high"]].to_numpy().T
-        self.spread = abs(ends - self.mean)
-
-
-def _draw_policy(axes: Axes, shown: _Shown, line: Line | None, shift: float, color: str) -> None:
-    axes.plot(shown.leaders + shift, shown.values, ".", ms=3, alpha=0.3, color=color, mew=0)
-    axes.errorbar(
-        shown.k + shift,
-        shown.mean,
-        shown.spread,
-        fmt="o",
-        ms=4,
-        lw=1,
-        capsize=3,
-        color=color,
-        label=shown.label if line is None else None,
-    )
-    if line is None:
-        return
-    x = np.array([shown.k.min(), shown.k.max()])
-    y = line.intercept + line.slope * x
-    label = "no line to fit" if np.isnan(line.f) else f"F = {line.f:.1f}, p = {line.p:.1g}"
-    axes.plot(x, y, "-", lw=1, color=color, label=f"{shown.label}: {label}")

@@ -1,8 +1,8 @@
-"""The report of `flockenv compare`: means, straight lines, files."""
+"""The report of `flockenv compare`: means, paired differences, straight lines, files."""
 
 import itertools
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,16 +14,8 @@ from rich.text import Text
 from flockenv._core import __version__
 from flockenv._io.atomic_write import write_csv, write_text
 from flockenv._io.extras import require
-from flockenv.comparison.episodes import (
-    CONTROL_HZ,
-    NO_LEADERS,
-    ORDERING_TIMES,
-    QUANTITIES,
-    compare_leaders,
-)
-from flockenv.parameters import FlockParameters
-from flockenv.policies.base import LeaderPolicy
-from flockenv.policies.model import as_policy
+from flockenv.comparison.case import Case
+from flockenv.comparison.episodes import NO_LEADERS, ORDERING_TIMES, QUANTITIES
 from flockenv.statistics import (
     CONFIDENCE,
     Difference,
@@ -36,193 +28,162 @@ from flockenv.statistics import (
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["ComparisonReport", "report"]
-
-
-# Columns that a table of one line per row needs.
-_WIDE = 132
-# The width of "[-0.123, 0.045]".
-_INTERVAL_WIDTH = 15
-
-NAMES = {
-    "psi_o": "Ψ_o",
-    "signed_order": "signed order",
-    "share_towards_target": "time towards target",
-}
-"""Printed names of the `QUANTITIES`."""
+__all__ = ["ComparisonReport", "joined", "report"]
 
 
 @dataclass(frozen=True, slots=True)
 class ComparisonReport:
-    """Means of a comparison by policy and number of leaders, and the fitted lines.
+    """What policies reached in some cases.
 
     Attributes
     ----------
-    parameters : FlockParameters
-        Of the flock, except for the number of leaders.
-    means : pandas.DataFrame
-        One row for each policy and number of leaders.
-    lines : dict
-        The line for each (policy, quantity), over all its runs and those without leaders;
-        empty for a single number of leaders.
-    differences : pandas.DataFrame
-        How much signed order each policy has beyond each one before it, its ``reference``, seed by
-        seed, for each number of leaders; empty for a single policy.
+    cases : tuple of Case
+        The cases.
     runs : pandas.DataFrame
-        One row per episode, of `compare_leaders`.
+        One row per episode, of `Case.run`.
+    means : pandas.DataFrame
+        One row for each case, policy and number of leaders: means with intervals, the share of the
+        episodes that ordered, and the median time to it (infinite where none did).
+    differences : pandas.DataFrame
+        How much signed order each policy has beyond each one after it, its ``reference``, seed by
+        seed, for each case and number of leaders; empty for a single policy.
+    lines : pandas.DataFrame
+        The line of each quantity over the number of leaders, by case and policy, over all its
+        episodes and those without leaders; empty for a single number of leaders.
     conditions : dict
-        What the numbers depend on, the parameters aside: seeds, policies, options.
-    environment : dict
-        Options of the environment that differ from its defaults.
+        What else the numbers depend on: the command, and the policies of each case as they print.
     """
 
-    parameters: FlockParameters
-    means: "pd.DataFrame"
-    lines: dict[tuple[str, str], Line]
-    differences: "pd.DataFrame"
+    cases: tuple[Case, ...]
     runs: "pd.DataFrame"
-    conditions: Mapping[str, Any]
-    environment: Mapping[str, Any] = field(default_factory=dict)
+    means: "pd.DataFrame"
+    differences: "pd.DataFrame"
+    lines: "pd.DataFrame"
+    conditions: Mapping[str, Any] = field(default_factory=dict)
 
     def write(self, folder: Path) -> None:
         """Write the comparison into a folder, which is made.
 
-        ``runs.csv``, ``means.csv``, ``lines.csv``, ``differences.csv``, ``leader_curve.png``,
-        ``parameters.toml`` (those of the flock) and ``run.toml`` (all else that the numbers depend
-        on).
+        ``runs.csv``, ``means.csv``, ``differences.csv``, ``lines.csv``, ``run.toml`` (all that the
+        numbers depend on but the parameters), for each case its parameters in ``NAME.toml``, and
+        ``leader_curve.png`` if a case has several numbers of leaders.
 
         Raises
         ------
         OSError
             If one cannot be written; each is whole or as it was before.
         """
-        from flockenv.comparison.figure import leader_curve
-
         folder.mkdir(parents=True, exist_ok=True)
-        for name, table in (
-            ("runs", self.runs),
-            ("means", self.means),
-            ("lines", _lines_table(self.lines)),
-            ("differences", self.differences),
-        ):
-            write_csv(folder / f"{name}.csv", table)
-        write_text(folder / "run.toml", tomli_w.dumps(dict(self.conditions)))
-        header = f"# flockenv {__version__}: the flock; seeds, policies and options in run.toml\n"
-        write_text(folder / "parameters.toml", header + self.parameters.to_toml())
-        picture = folder / "leader_curve.png"
-        leader_curve(self.runs, self.means, self.lines, self.title(), picture)
+        for name in ("runs", "means", "differences", "lines"):
+            write_csv(folder / f"{name}.csv", getattr(self, name))
+        write_text(folder / "run.toml", tomli_w.dumps(self._provenance()))
+        for case in self.cases:
+            header = f"# flockenv {__version__}: the flock; seeds, policies and options in run.toml"
+            text = f"{header}\n{case.parameters.to_toml()}"
+            write_text(folder / f"{case.name}.toml", text)
+        if len(self.lines) > 0:
+            from flockenv.comparison.figure import leader_curve
 
-    def title(self) -> str:
-        """Return the parameters and the options in one line."""
-        parameters, options = self.parameters, dict(self.environment)
-        target = options.pop("target", parameters.target)
-        dropped = options.pop("dropout_rate", 0.0)
-        parts = [
-            f"{parameters.n_boats} boats",
-            f"pool {parameters.pool}",
-            f"bw = {parameters.bw_s:g} s",
-            "alternating targets" if target == "alternate" else f"target {target}",
-            *([f"{100 * dropped:.3g} % of positions dropped"] if dropped else []),
-            *(f"{name} = {value}" for name, value in options.items()),
-            f"{parameters.scheme} + {parameters.noise_scheme}",
-        ]
-        return ", ".join(parts)
+            titles = {case.name: case.title() for case in self.cases}
+            leader_curve(self.means, folder / "leader_curve.png", runs=self.runs, titles=titles)
 
-    def table(self, width: int = _WIDE) -> Table:
-        """Return the means as a table for a terminal of this width in columns."""
-        is_wide = width >= _WIDE
-        table = Table(title=self.title(), title_justify="left", caption_justify="left")
-        table.caption = (
-            f"means over {self.means['runs'].max()} runs with {CONFIDENCE:.0%} intervals"
-        )
-        if not is_wide:
-            table.box, table.padding, table.pad_edge = None, (0, 1, 0, 0), False
-        table.add_column("policy", overflow="fold")
+    def _provenance(self) -> dict[str, Any]:
+        cases = {
+            case.name: {
+                "leaders": list(case.leaders),
+                "seeds": {"first": case.seeds[0], "number": len(case.seeds)},
+                "episode_s": case.episode_s,
+                "environment": {"target": case.parameters.target, **case.environment},
+            }
+            for case in self.cases
+        }
+        return {"flockenv": __version__, **self.conditions, "cases": cases}
+
+    def table(self) -> Table:
+        """Return the mean signed orders as a table: rows are numbers of leaders."""
+        runs = self.means["runs"].max()
+        table = Table(title="signed order of the normal boats", title_justify="left", box=None)
+        table.padding, table.pad_edge = (0, 1, 0, 0), False  # Four policies fit into 80 columns.
+        table.caption = f"± half the {CONFIDENCE:.0%} interval of the mean over {runs} episodes"
+        table.caption_justify = "left"
+        table.add_column("", overflow="fold")
         table.add_column("leaders", no_wrap=True)
-        for quantity in QUANTITIES:
-            table.add_column(NAMES[quantity], no_wrap=is_wide, min_width=_INTERVAL_WIDTH)
-        table.add_column("ordered", no_wrap=True)
-        for row in self.means.to_dict("records"):
-            cells = [
-                f"{row[q]:6.3f}{' ' if is_wide else chr(10)}"
-                f"[{row[f'{q}_low']:.3f}, {row[f'{q}_high']:.3f}]"
-                for q in QUANTITIES
-            ]
-            ordered = f"{row['ordered']:4.0%}"
-            table.add_row(Text(row["policy"]), str(row["leaders"]), *cells, ordered)
+        policies = [name for name in self.means["policy"].unique() if name != NO_LEADERS]
+        for name in policies or [NO_LEADERS]:
+            table.add_column(Text(name), min_width=12, overflow="fold")
+        for case in self.cases:
+            own = self.means[self.means["case"] == case.name]
+            name = case.name
+            for k in sorted(own["leaders"].unique()):
+                found = own[own["leaders"] == k].set_index("policy")
+                # Flocks without leaders are the same for all policies.
+                names = policies if k > 0 else [NO_LEADERS]
+                cells = [_plus_minus(found.loc[name]) for name in names if name in found.index]
+                table.add_row(Text(name), str(k), *cells)
+                name = ""
         return table
 
-    def differences_in_words(self) -> str:
-        """Return the differences from the first policy, one per line."""
-        shown = self.differences
-        if len(shown) > 0:
-            shown = shown[shown["reference"] == shown["reference"].iloc[0]]
-        return "\n".join(
-            f"{row['policy']} - {row['reference']}, k = {row['leaders']}: signed order "
+    def in_words(self) -> str:
+        """Return the differences and the lines, one per line of text."""
+        differences = [
+            f"{row['case']}, {row['policy']} minus {row['reference']}, k = {row['leaders']}: "
             f"{row['mean']:+.3f} [{row['low']:+.3f}, {row['high']:+.3f}], d = {row['effect']:.2f}"
-            for row in shown.to_dict("records")
-        )
+            for row in self.differences.to_dict("records")
+        ]
+        names = [each.name for each in fields(Line)]
+        lines = [
+            f"{row['case']}, {row['policy']}: {row['quantity']} = "
+            f"{Line(**{name: row[name] for name in names})}"
+            for row in self.lines.to_dict("records")
+        ]
+        return "\n".join(differences + lines)
 
-    def lines_in_words(self) -> str:
-        """Return the fitted lines, one per line of text."""
-        return "\n".join(
-            f"{policy}: {NAMES[quantity]} = {line}"
-            for (policy, quantity), line in self.lines.items()
-        )
+
+def _plus_minus(row: Mapping[str, Any]) -> str:
+    half = (row["signed_order_high"] - row["signed_order_low"]) / 2
+    return f"{row['signed_order']:.3f} ±{half:.3f}"
 
 
 def report(
-    parameters: FlockParameters,
-    leaders: Sequence[int],
-    policies: Mapping[str, Callable[[], LeaderPolicy | str]],
-    seeds: Sequence[int],
-    duration_s: float,
-    progress: Callable[[float], None],
-    environment: Mapping[str, Any] | None = None,
+    cases: Sequence[Case],
+    policies: Sequence[str],
+    runs: "pd.DataFrame",
+    conditions: Mapping[str, Any] | None = None,
 ) -> ComparisonReport:
-    """Run a comparison of policies.
+    """Return what the episodes of some cases say.
+
+    Parameters
+    ----------
+    cases, runs
+        The cases, and the rows of `Case.run` of all of them.
+    policies
+        Names, those first whose differences from the others are wanted.
+    conditions
+        What else the numbers depend on.
 
     Raises
     ------
-    ParameterError
-        For parameters, seeds and durations out of range.
     MissingExtraError
         Without the extra ``plot``.
     """
-    # All of them before hours of runs.
-    for package in ("matplotlib", "pandas", "scipy"):
-        require(package, "plot")
-    runs = compare_leaders(parameters, leaders, policies, seeds, duration_s, progress, environment)
-    means = _means(runs)
-    lines = {}
-    for policy in policies:
-        own = runs[runs["policy"].isin([policy, NO_LEADERS])]
-        for quantity in QUANTITIES if own["leaders"].nunique() > 1 else ():
-            lines[policy, quantity] = fit_line(own["leaders"], own[quantity])
-    differences = _differences(runs, list(policies))
-    conditions = {
-        "flockenv": __version__,
-        "duration_s": float(duration_s),
-        "leaders": [int(k) for k in leaders],
-        "seeds": {"first": int(seeds[0]), "last": int(seeds[-1]), "number": len(seeds)},
-        "policies": {name: str(as_policy(make())) for name, make in policies.items()},
-        "environment": {
-            "target": parameters.target,
-            "control_hz": CONTROL_HZ,
-            **(environment or {}),
-        },
-    }
     return ComparisonReport(
-        parameters, means, lines, differences, runs, conditions, environment or {}
+        tuple(cases),
+        runs,
+        _means(runs),
+        _differences(runs, policies),
+        _lines(runs, policies),
+        conditions or {},
     )
 
 
-def _means(runs: "pd.DataFrame") -> "pd.DataFrame":
-    """Return means and intervals, which part of the runs ordered, and how soon those did (medians).
+def joined(tables: "Sequence[pd.DataFrame]") -> "pd.DataFrame":
+    """Return the rows of several tables as one."""
+    table: pd.DataFrame = require("pandas", "plot").concat(tables, ignore_index=True)
+    return table
 
-    A median is infinite where none did.
-    """
-    by, times = ["policy", "leaders"], list(ORDERING_TIMES)
+
+def _means(runs: "pd.DataFrame") -> "pd.DataFrame":
+    by, times = ["case", "policy", "leaders"], list(ORDERING_TIMES)
     means = summarize(runs, by, list(QUANTITIES))
     came = runs[[*by, *times]].replace(math.inf, math.nan).groupby(by, sort=False)
     columns = came[times].median().fillna(math.inf)
@@ -232,26 +193,39 @@ def _means(runs: "pd.DataFrame") -> "pd.DataFrame":
 
 
 def _differences(runs: "pd.DataFrame", policies: Sequence[str]) -> "pd.DataFrame":
-    """Return what each policy has beyond each one before it, seed by seed."""
-    pandas = require("pandas", "plot")
-    runs = runs[runs["leaders"] > 0]
-    orders = runs.pivot_table(index=["leaders", "seed"], columns="policy", values="signed_order")
-    rows = [
-        {"policy": policy, "reference": reference, "leaders": k}
-        | asdict(paired_difference(orders.loc[k][policy], orders.loc[k][reference]))
-        for reference, policy in itertools.combinations(policies, 2)
-        for k in sorted(runs["leaders"].unique())
+    """Return what each policy has beyond each one after it, seed by seed."""
+    rows = []
+    for (case, k), own in runs[runs["leaders"] > 0].groupby(["case", "leaders"], sort=False):
+        orders = own.pivot_table(
+            index="seed", columns="policy", values="signed_order", dropna=False
+        )
+        for policy, reference in itertools.combinations(policies, 2):
+            if {policy, reference} <= set(orders):
+                found = asdict(paired_difference(orders[policy], orders[reference]))
+                names = {"case": case, "policy": policy, "reference": reference, "leaders": k}
+                rows.append(names | found)
+    columns = [
+        "case",
+        "policy",
+        "reference",
+        "leaders",
+        *(each.name for each in fields(Difference)),
     ]
-    columns = ["policy", "reference", "leaders", *(each.name for each in fields(Difference))]
-    table: pd.DataFrame = pandas.DataFrame(rows, columns=columns)
+    table: pd.DataFrame = require("pandas", "plot").DataFrame(rows, columns=columns)
     return table
 
 
-def _lines_table(lines: Mapping[tuple[str, str], Line]) -> "pd.DataFrame":
-    pandas = require("pandas", "plot")
-    rows = [
-        {"policy": policy, "quantity": quantity} | asdict(line)
-        for (policy, quantity), line in lines.items()
-    ]
-    table: pd.DataFrame = pandas.DataFrame(rows).rename(columns={"n": "runs"})
+def _lines(runs: "pd.DataFrame", policies: Sequence[str]) -> "pd.DataFrame":
+    """Return the line of each quantity over the number of leaders, by case and policy."""
+    rows = []
+    for case, every in runs.groupby("case", sort=False):
+        for policy in policies:
+            own = every[every["policy"].isin([policy, NO_LEADERS])].dropna(subset=list(QUANTITIES))
+            if policy not in set(own["policy"]) or own["leaders"].nunique() < 2 or len(own) < 3:
+                continue
+            for quantity in QUANTITIES:
+                line = asdict(fit_line(own["leaders"], own[quantity]))
+                rows.append({"case": case, "policy": policy, "quantity": quantity} | line)
+    columns = ["case", "policy", "quantity", *(each.name for each in fields(Line))]
+    table: pd.DataFrame = require("pandas", "plot").DataFrame(rows, columns=columns)
     return table

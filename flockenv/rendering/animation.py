@@ -5,6 +5,7 @@ import struct
 from collections.abc import Iterable, Iterator
 from io import BytesIO
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +22,7 @@ __all__ = ["save_animation"]
 
 # Pillow's format of each suffix, and the unit in ms in which it stores how long a frame is shown.
 _FORMATS = {".png": ("PNG", 1), ".apng": ("PNG", 1), ".gif": ("GIF", 10)}
+_VIDEO = ".mp4"
 _LONGEST_SIDE = 65_535  # GIF counts in 16 bits
 _SLOWEST, _FASTEST = 0.1, 100.0
 
@@ -36,8 +38,8 @@ def save_animation(
     Parameters
     ----------
     path
-        A name that ends in ``.png`` or ``.apng`` (animated PNG: every color unchanged) or ``.gif``
-        (256 colors a frame).
+        A name that ends in ``.png`` or ``.apng`` (animated PNG: every color unchanged), ``.gif``
+        (256 colors per frame) or ``.mp4`` (H.264, which does not repeat; extra ``video``).
     frames
         Arrays (height, width, 3) of uint8, all of one shape.
     fps
@@ -53,11 +55,14 @@ def save_animation(
     OSError
         If the file cannot be written; what was there before is still there.
     MissingExtraError
-        If the extra ``render`` is not installed.
+        If the extra ``render``, or for video ``video``, is not installed.
     """
     suffix = Path(path).suffix.lower()
+    if suffix == _VIDEO:
+        _save_video(path, frames, _rate(fps))
+        return
     if suffix not in _FORMATS:
-        names = ", ".join(_FORMATS)
+        names = ", ".join((*_FORMATS, _VIDEO))
         raise ParameterError(f"path = {os.fspath(path)!r} is not accepted: a name in {names}")
     name, unit_ms = _FORMATS[suffix]
     images = _images(frames, _rate(fps), unit_ms)
@@ -74,6 +79,28 @@ def save_animation(
         raise ParameterError(f"frames that stand still are not accepted: {accepted}") from error
     with atomic_write(path) as file:
         file.write(content.getbuffer())
+
+
+def _save_video(
+    path: str | os.PathLike[str], frames: Iterable[NDArray[np.uint8]], fps: float
+) -> None:
+    ffmpeg = require("imageio_ffmpeg", "video")
+    shape: tuple[int, ...] | None = None
+    with TemporaryDirectory() as folder:  # The encoder opens names, not files.
+        made = Path(folder, "made.mp4")
+        video = None
+        for each in frames:
+            shape = _checked(each, shape)
+            if video is None:
+                height, width, _ = shape
+                video = ffmpeg.write_frames(str(made), (width, height), fps=fps, macro_block_size=2)
+                video.send(None)
+            video.send(np.ascontiguousarray(each))
+        if video is None:
+            raise ParameterError("frames are none: at least one")
+        video.close()
+        with atomic_write(path) as file:
+            file.write(made.read_bytes())
 
 
 def _rate(fps: Any) -> float:

@@ -1,5 +1,6 @@
 """One table of seed ranges by use: none of the seeds that made a policy is used to judge it."""
 
+import hashlib
 import itertools
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ __all__ = [
     "POLICY_SEEDS",
     "SeedRange",
     "check_evaluation_seeds",
+    "release_seeds",
 ]
 
 FIRST_TRAINING_SEED = 1 << 32
@@ -99,3 +101,28 @@ def check_evaluation_seeds(seeds: Iterable[int]) -> None:
                 f"seed = {shown(seed)} is not accepted: seeds for evaluation are from 0 to "
                 "2^32 - 1, those above are for training"
             )
+
+
+def release_seeds(tag: str, count: int) -> range:
+    """Return the seeds that final tables of a release are made on.
+
+    The first is SHA-256 of the tag, its first eight bytes as a big-endian number, modulo 2^32 less
+    the count: seeds for evaluation that nobody chose.
+
+    Parameters
+    ----------
+    tag
+        Of the release, such as "v0.1.0".
+    count
+        How many seeds.
+
+    Raises
+    ------
+    ParameterError
+        For a count that is not positive, or larger than the range.
+    """
+    if not 1 <= count < FIRST_TRAINING_SEED:
+        raise ParameterError(f"count = {shown(count)} is not accepted: from 1 to 2^32 - 1")
+    number = int.from_bytes(hashlib.sha256(tag.encode()).digest()[:8], "big")
+    first = number % (FIRST_TRAINING_SEED - count)
+    return range(first, first + count)

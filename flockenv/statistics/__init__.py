@@ -5,6 +5,7 @@ correlated samples; a straight line with its test; times of events that did not 
 the Binder cumulant. `structure` and `dwell_times` have files of their own.
 """
 
+from flockenv.statistics.aggregates import interquartile_mean, probability_of_improvement
 from flockenv.statistics.binder_cumulant import binder_cumulant
 from flockenv.statistics.block_bootstrap import (
     block_sums,
@@ -41,11 +42,13 @@ __all__ = [
     "crossed_replicates",
     "dwell_times",
     "fit_line",
+    "interquartile_mean",
     "interval",
     "kaplan_meier",
     "logrank_p",
     "mean_interval",
     "paired_difference",
+    "probability_of_improvement",
     "student_interval",
     "summarize",
     "time_average_interval",

@@ -5,8 +5,10 @@ The mean of few values has Student's interval and that of more a BCa bootstrap (
 """
 
 import math
+import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,7 +28,6 @@ __all__ = [
     "crossed_replicates",
     "interval",
     "mean_interval",
-    "mean_replicates",
     "paired_difference",
     "percentile_ends",
     "student_interval",
@@ -149,15 +150,19 @@ def bootstrap_interval(
     value = float(statistic(*data, axis=-1))
     if min(map(len, data)) < 2:
         return value, math.nan, math.nan
-    result = require("scipy.stats", "plot").bootstrap(
+    bootstrap = partial(
+        require("scipy.stats", "plot").bootstrap,
         data,
         statistic,
         paired=paired,
         confidence_level=CONFIDENCE,
-        n_resamples=_BCA_RESAMPLES,
-        rng=np.random.default_rng(seed),
     )
-    low, high = result.confidence_interval
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")
+        found = bootstrap(n_resamples=_BCA_RESAMPLES, rng=np.random.default_rng(seed))
+    if np.isnan(found.confidence_interval).any():  # To leave out no run changes the statistic.
+        found = bootstrap(n_resamples=0, bootstrap_result=found, method="percentile")
+    low, high = found.confidence_interval
     return value, float(low), float(high)
 
 
@@ -198,18 +203,6 @@ def percentile_ends(
     tail = (1 - CONFIDENCE) / 2
     low, high = np.quantile(values, [tail, 1 - tail], axis=axis)
     return low, high
-
-
-def mean_replicates(values: NDArray[np.float64], seed: int = 0) -> NDArray[np.float64]:
-    """Return the mean of independent values as they are, then of resampled values.
-
-    Returns
-    -------
-    float64 array, shape (RESAMPLES + 1,)
-        As `interval` takes it.
-    """
-    places = np.random.default_rng(seed).integers(0, len(values), (RESAMPLES, len(values)))
-    return np.append(values.mean(), values[places].mean(axis=1))
 
 
 def crossed_replicates(values: NDArray[np.float64], seed: int = 0) -> NDArray[np.float64]:

@@ -1,5 +1,6 @@
 """Doors for data: tracks of real flocks in, recordings out to tables and GSD."""
 
+from flockenv.tracks.guess import guess_layout
 from flockenv.tracks.layout import TrackLayout, layout_beside, read_layout
 from flockenv.tracks.reader import (
     SUFFIXES,
@@ -20,6 +21,7 @@ __all__ = [
     "export",
     "from_movement",
     "from_table",
+    "guess_layout",
     "layout_beside",
     "read_layout",
     "read_tracks",

@@ -19,7 +19,15 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray
 
-__all__ = ["SUFFIXES", "TrackReport", "Tracks", "from_movement", "from_table", "read_tracks"]
+__all__ = [
+    "SUFFIXES",
+    "TrackReport",
+    "Tracks",
+    "from_movement",
+    "from_table",
+    "read_table",
+    "read_tracks",
+]
 
 SUFFIXES = (".csv", ".parquet", ".pq")
 """Endings of files that `read_tracks` takes for tables; arrays end in ``.npz``."""
@@ -132,14 +140,23 @@ def read_tracks(path: str | os.PathLike[str], layout: TrackLayout | None = None)
     try:
         if path.suffix.lower() == ".npz":
             return _from_arrays(read_arrays(path), layout)
-        return from_table(_table(path), layout)
+        return from_table(read_table(path), layout)
     except ParameterError as error:
         raise ParameterError(f"{path}: {error}") from error
     except OSError as error:
         raise ParameterError(f"{path} cannot be read: {error.strerror or error}") from error
 
 
-def _table(path: Path) -> "pd.DataFrame":
+def read_table(path: Path) -> "pd.DataFrame":
+    """Return the rows of a CSV or Parquet file (extra ``plot``).
+
+    Raises
+    ------
+    ParameterError
+        If it is no such table.
+    OSError
+        If it cannot be opened.
+    """
     pandas = require("pandas", "plot")
     if is_special(path):
         raise ParameterError("it is no table but a device, a pipe or a socket")

@@ -67,10 +67,9 @@ ENVIRONMENT_OPTIONS = {
 LONG_WORK = "--out --quiet"
 COMMANDS = {
     "run": f"--preset --params --set --policy --seed --minutes {LONG_WORK}",
-    "compare": f"--pool --policy --episodes {LONG_WORK}",
+    "compare": f"--pool --policy --name --suite --task --episodes {LONG_WORK}",
     "sweep": f"--shard --dry-run --engine {LONG_WORK}",
     "train": f"--set --resume {LONG_WORK}",
-    "evaluate": f"--against --suite --task {LONG_WORK}",
     "replay": "--html --open",
     "presets": "--json",
     "demo": f"--seed {LONG_WORK}",
@@ -178,7 +177,7 @@ def test_commands_keep_their_names_and_options(name):
 
 def test_commands_keep_what_they_accept():
     assert flockenv.runs.workload.Shard.parse("2/3")
-    assert len(flockenv.comparison.suite.tasks_named("v1", [])) == 9
+    assert len(flockenv.comparison.suite.tasks_named("v2")) == 6
 
 
 def test_errors_are_of_their_classes():

@@ -1,7 +1,8 @@
-"""`flockenv analyze`, `export` and `replay` take tracks where they take recordings."""
+"""`flockenv analyze` and `replay` take tracks where they take recordings, and write both."""
 
 import json
 
+import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.image import imread
@@ -18,7 +19,7 @@ def run(tmp_path):
 
 def test_tracks_have_the_numbers_of_the_run_they_are_of(cli, run, tmp_path):
     tracks = tmp_path / "tracks.csv"
-    done = cli("export", str(run), "--out", str(tracks))
+    done = cli("analyze", str(run), "--out", str(tracks))
     assert done.returncode == 0, done.stderr
     assert "tracks.csv" in done.stdout
     assert "tracks.toml" in done.stdout
@@ -50,7 +51,7 @@ def test_nobody_heads_for_a_target_without_leaders(cli, tmp_path):
 
 def test_tracks_play_beside_the_model(cli, run, tmp_path):
     tracks = tmp_path / "tracks.csv"
-    cli("export", str(run), "--out", str(tracks))
+    cli("analyze", str(run), "--out", str(tracks))
     done = cli("replay", str(tracks), str(run), "--html", str(tmp_path / "both.html"))
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "both.html").exists()
@@ -58,27 +59,51 @@ def test_tracks_play_beside_the_model(cli, run, tmp_path):
 
 def test_gsd(cli, run, tmp_path):
     pytest.importorskip("gsd.hoomd")
-    done = cli("export", str(run), "--out", str(tmp_path / "run.gsd"))
+    done = cli("analyze", str(run), "--out", str(tmp_path / "run.gsd"))
     assert done.returncode == 0, done.stderr
     assert "run.toml" not in done.stdout
 
 
 def test_mistakes_are_one_line_with_exit_code_2(cli, run, tmp_path):
     (tmp_path / "alone.csv").write_text("frame,id,x,y,heading\n0,0,0,0,0\n")
+    (tmp_path / "nameless.csv").write_text("frame,who,x,y\n0,0,0,0\n")
     (tmp_path / "layout.toml").write_text('pool = "narrow"\nx = "x_cm"\n')
     for arguments, words in (
-        (["analyze", "alone.csv"], "alone.toml is missing"),
+        (["analyze", "nameless.csv"], "no column looks like 'id'"),
         (["analyze", "alone.csv", "--layout", "layout.toml"], "column 'x_cm' is missing"),
         (["analyze", "absent.npz"], "absent.npz cannot be read"),
         (["analyze", "run.npz", "--out", "run.npz", "--force"], "name another"),
-        (["analyze", "run.npz", "--out", "other.csv"], "ends in .npz"),
-        (["export", "run.npz", "--out", "run.xlsx"], ".csv, .parquet, .gsd"),
-        (["export", "run.npz", "--out", "alone.csv"], "--force overwrites it"),
-        (["export", "run.npz", "--out", "layout.csv"], "layout-tracks.csv, or overwrite it"),
-        (["export", "absent.npz", "--out", "alone.csv"], "absent.npz cannot be read"),
+        (["analyze", "run.npz", "--out", "run.xlsx"], ".npz, .csv, .parquet, .gsd"),
+        (["analyze", "run.npz", "--out", "alone.csv"], "--force overwrites it"),
+        (["analyze", "run.npz", "--out", "layout.csv"], "layout.toml is there already"),
+        (["analyze", "absent.npz", "--out", "new.csv"], "absent.npz cannot be read"),
     ):
         paths = [str(tmp_path / each) if "." in each else each for each in arguments]
         done = cli(*paths)
         assert done.returncode == 2, arguments
         assert words in done.stderr, arguments
         assert "Traceback" not in done.stderr
+
+
+def test_a_table_without_a_description_gets_one_to_check(cli, tmp_path):
+    """Two robots that go around a circle of 90 pixels, as a camera sees it: y points down."""
+    rows = []
+    for frame in range(151):
+        for name, start in (("r1", 0.0), ("r2", np.pi)):
+            angle = start + 0.05 * frame
+            x, y = 300 + 90 * np.cos(angle), 200 + 90 * np.sin(angle)
+            rows.append(f"{frame},{name},{x:.3f},{y:.3f},{np.degrees(angle) + 90:.3f}")
+    (tmp_path / "robots.csv").write_text("\n".join(["frame,robot,x,y,theta", *rows]))
+    done = cli("analyze", tmp_path / "robots.csv", "--json")
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["milling"] == pytest.approx(1.0, abs=0.01)
+    text = (tmp_path / "robots.toml").read_text()
+    for field in ("pool", "center", "cm_per_unit", "y_down", "fps"):
+        assert f"  {field}: " in done.stderr
+        assert any(line.startswith(field) and "# check: " in line for line in text.splitlines())
+    layout = flockenv.tracks.read_layout(tmp_path / "robots.toml")
+    assert (layout.id, layout.heading, layout.heading_unit) == ("robot", "theta", "deg")
+    assert layout.y_down
+    assert layout.center == pytest.approx((300, 200), abs=2)
+    again = cli("analyze", tmp_path / "robots.csv")
+    assert "guess" not in again.stderr, "a description that is there is not written over"

@@ -11,7 +11,7 @@ import pytest
 
 import flockenv
 from flockenv.cli import output
-from flockenv.comparison import report
+from flockenv.comparison import case
 from flockenv.comparison.figure import policy_colors
 from flockenv.errors import ParameterError
 
@@ -79,16 +79,16 @@ def test_a_run_whose_folder_was_taken_away_is_kept_elsewhere(cli, tmp_path, monk
 
 
 def test_a_comparison_whose_folder_was_taken_away_is_kept_elsewhere(cli, tmp_path, monkeypatch):
-    compare_leaders = report.compare_leaders
+    compare_leaders = case.compare_leaders
 
     def meanwhile(*arguments, **options):
         Path("c").write_text("a file by now")
         return compare_leaders(*arguments, **options)
 
-    monkeypatch.setattr(report, "compare_leaders", meanwhile)
-    done = cli("compare", *EPISODES, "--most-leaders", "1", "--policy", "straight ahead")
+    monkeypatch.setattr(case, "compare_leaders", meanwhile)
+    done = cli("compare", *EPISODES, "--leaders", "0-1", "--only", "--policy", "straight ahead")
     assert done.returncode == 2
-    (stored,) = tmp_path.glob("flockenv-*/narrow")
+    (stored,) = tmp_path.glob("flockenv-*/c")
     assert str(stored) in done.stderr.replace("\n", "")
     assert {"runs.csv", "leader_curve.png", "run.toml"} <= {each.name for each in stored.iterdir()}
 
@@ -112,22 +112,13 @@ def test_what_cannot_be_kept_anywhere_says_so(monkeypatch, tmp_path):
         (["run", *TINY, "--params", "X.toml", "--out", "sub/../X.npz"], "--params X.toml"),
         (["run", *TINY, "--params", "link.toml", "--out", "X.npz"], "--params link.toml"),
         (["run", *TINY, "--policy", "p.npz", "--out", "p.npz"], "--policy p.npz"),
-        (
-            ["compare", *EPISODES, "--params", "c/narrow/parameters.toml"],
-            "--params c/narrow/parameters.toml",
-        ),
-        (
-            ["evaluate", "straight ahead", "--params", "c/narrow-bw-1/parameters.toml", *SHORT],
-            "--params c/narrow-bw-1/parameters.toml",
-        ),
+        (["compare", *SHORT, "--params", "c/narrow-bw-1.toml"], "--params c/narrow-bw-1.toml"),
     ],
 )
 def test_what_the_user_gave_is_not_written_over(cli, arguments, given, tmp_path):
     (tmp_path / "sub").mkdir()
-    for folder in ("narrow", "narrow-bw-1"):
-        (tmp_path / "c" / folder).mkdir(parents=True)
-        text = 'n_boats = 5\npool = "narrow"\nbw_s = 1.0\n'
-        (tmp_path / "c" / folder / "parameters.toml").write_text(text)
+    (tmp_path / "c").mkdir()
+    (tmp_path / "c" / "narrow-bw-1.toml").write_text('n_boats = 5\npool = "narrow"\nbw_s = 1.0\n')
     (tmp_path / "X.toml").write_text("n_boats = 5  # my own words\n")
     (tmp_path / "link.toml").hardlink_to(tmp_path / "X.toml")
     size = len(flockenv.envs.observation.observation_entries())
@@ -167,15 +158,13 @@ def test_policies_may_have_any_name(cli, tmp_path, colors_in):
         except OSError:
             pytest.skip("this file system takes UTF-8 names only")
     wanted = [word for name in names for word in ("--policy", name)]
-    done = cli("compare", *EPISODES, "--most-leaders", "1", *wanted)
+    done = cli("compare", *EPISODES, "--leaders", "0-1", "--only", *wanted)
     assert done.returncode == 0, done.stderr
-    assert "x[/b] $a_{ $.npz" in done.stdout.replace("\n", "")
-    (first,) = policy_colors(names[:1]).values()
-    assert first in colors_in(tmp_path / "c" / "narrow" / "leader_curve.png")
-    assert "\ufffd.npz" in (tmp_path / "c" / "narrow" / "run.toml").read_text("utf-8")
-    evaluated = ["--against", names[0], "--leaders", "1"]
-    done = cli("evaluate", names[2], *EPISODES, *evaluated)
-    assert done.returncode == 0, done.stderr
-    assert (tmp_path / "c" / "card.md").read_text("utf-8").startswith("# \ufffd\n")
+    first = "b] $a_{ $"
+    assert "a_{" in done.stdout
+    (color,) = policy_colors([first]).values()
+    assert color in colors_in(tmp_path / "c" / "leader_curve.png")
+    assert "\ufffd" in (tmp_path / "c" / "run.toml").read_text("utf-8")
+    assert (tmp_path / "c" / "card.md").read_text("utf-8").startswith(f"# {first}\n")
     done = cli("run", *TINY, "--set", "n_leaders=1", "--policy", names[2])
     assert done.returncode == 0, done.stderr

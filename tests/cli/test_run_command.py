@@ -4,7 +4,9 @@ import json
 import sys
 from pathlib import Path
 
+import imageio_ffmpeg
 import pytest
+from PIL import Image, ImageSequence
 
 import flockenv
 
@@ -100,9 +102,24 @@ def test_replay_writes_a_page_beside_the_recording(cli, run, tmp_path):
     assert "<title>law (1) and law (2) – flockenv replay</title>" in pair.read_text()
 
 
+def test_replay_draws_a_moving_picture(cli, run, tmp_path):
+    """12 s at 8 times real time last 1.5 s: 19 frames of a GIF, and 38 of a video."""
+    files = [tmp_path / "run.gif", tmp_path / "run.mp4"]
+    done = cli("replay", run, "--gif", files[0], "--mp4", files[1], "--json")
+    assert done.stderr == ""
+    assert json.loads(done.stdout) == {"files": list(map(str, files))}
+    with Image.open(files[0]) as picture:
+        lasting = sum(frame.info["duration"] for frame in ImageSequence.Iterator(picture))
+    assert lasting == pytest.approx(1520, abs=20)
+    frames, seconds = imageio_ffmpeg.count_frames_and_secs(str(files[1]))
+    assert (frames, seconds) == (38, pytest.approx(1.52, abs=0.05))
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
+        (["replay", "{}/good.npz", "--gif", "{}/page.png"], ".gif"),
+        (["replay", "{}/good.npz", "{}/good.npz", "--mp4", "{}/a.mp4"], "show one recording"),
         (["run", "--set", "n_bots=3"], "n_boats"),
         (["run", "--n_boats", "27"], "as in --set n_boats=27"),
         (["run", "--n-boats=27"], "as in --set n_boats=27"),
@@ -171,19 +188,14 @@ def test_models_of_stable_baselines3_steer_with_trust(cli, model, tmp_path):
     assert flockenv.Recording.load(out) == flockenv.simulate(parameters, 3, 12.0, policy=policy)
 
 
-@pytest.mark.parametrize("name", ["compare", "evaluate"])
-def test_models_of_stable_baselines3_are_compared_with_trust(cli, name, model, tmp_path):
+def test_models_of_stable_baselines3_are_compared_with_trust(cli, model, tmp_path):
     short = ["--pool", "narrow", "--episodes", "2", "--minutes", "0.1", "--set", "n_boats=6"]
-    if name == "compare":
-        call = ["compare", "--policy", model, "--policy", "steering law", "--most-leaders", "1"]
-    else:
-        call = ["evaluate", model, "--leaders", "1"]
-    refused = cli(*call, *short, "--out", tmp_path / "out")
+    call = ["compare", "--policy", model, "--leaders", "1", *short, "--out", tmp_path / "out"]
+    refused = cli(*call)
     assert (refused.returncode, "--trust" in refused.stderr) == (2, True)
-    done = cli(*call, *short, "--trust", "--out", tmp_path / "out")
+    done = cli(*call, "--trust")
     assert done.returncode == 0, done.stderr
-    if name == "evaluate":
-        assert "sha256" in (tmp_path / "out" / "card.md").read_text()
+    assert "sha256" in (tmp_path / "out" / "card.md").read_text()
 
 
 def test_a_run_without_leaders_names_no_target(cli, tmp_path):

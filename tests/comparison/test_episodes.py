@@ -9,10 +9,17 @@ import pandas as pd
 import pytest
 
 import flockenv
-from flockenv.comparison import NO_LEADERS, POLICIES, compare_leaders, named_policy
-from flockenv.comparison.report import report
+from flockenv.comparison import (
+    NO_LEADERS,
+    POLICIES,
+    QUANTITIES,
+    Case,
+    compare_leaders,
+    named_policy,
+    report,
+)
 from flockenv.envs.observation import observation_entries
-from flockenv.policies import NetworkPolicy
+from flockenv.policies import NetworkPolicy, StraightAhead
 from flockenv.runs.seeds import POLICY_SEEDS
 
 LAW = {"steering law": POLICIES["steering law"]}
@@ -54,60 +61,57 @@ def test_runs_without_leaders_are_frames_of_the_recording(
     assert runs["signed_order"].item() == pytest.approx(towards[late].mean(), abs=1e-6)
 
 
-def test_the_report_writes_its_files(
-    parameters: flockenv.FlockParameters, tmp_path: object
-) -> None:
-    folder = tmp_path / "new" / "folder"  # type: ignore[operator]
-    result = report(
-        parameters,
-        range(3),
-        dict(list(POLICIES.items())[:3]),
-        range(2),
-        40.0,
-        lambda seconds: None,
-    )
+def test_every_case_is_written(parameters: flockenv.FlockParameters, tmp_path: Path) -> None:
+    folder, policies = tmp_path / "new" / "folder", dict(list(POLICIES.items())[:3])
+    case = Case(name="a", parameters=parameters, leaders=(0, 1, 2), seeds=range(2), episode_s=40.0)
+    result = report([case], list(policies), case.run(policies))
     result.write(folder)
-    assert {each.name for each in folder.iterdir()} == {
-        "differences.csv",
-        "leader_curve.png",
-        "lines.csv",
-        "means.csv",
-        "parameters.toml",
-        "run.toml",
-        "runs.csv",
-    }
-    stored = (folder / "parameters.toml").read_text("utf-8")
+    stored = (folder / "a.toml").read_text("utf-8")
     assert flockenv.FlockParameters.from_toml(stored) == parameters
-    conditions = tomllib.loads((folder / "run.toml").read_text("utf-8"))
-    assert conditions["leaders"] == [0, 1, 2]
-    assert conditions["duration_s"] == 40.0
-    assert conditions["seeds"] == {"first": 0, "last": 1, "number": 2}
-    assert conditions["policies"]["damped law"] == repr(POLICIES["damped law"]())
-    assert conditions["environment"] == {"target": "cw", "control_hz": 10.0}
+    found = tomllib.loads((folder / "run.toml").read_text("utf-8"))["cases"]["a"]
+    assert found["leaders"] == [0, 1, 2]
+    assert found["episode_s"] == 40.0
+    assert found["seeds"] == {"first": 0, "number": 2}
+    assert found["environment"] == {"target": "cw"}
     assert len(result.means) == 1 + 3 * 2
     assert len(result.differences) == 3 * 2
+    assert len(result.lines) == 3 * len(QUANTITIES)
     assert (folder / "leader_curve.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_the_report_reports_the_environment(
-    parameters: flockenv.FlockParameters, tmp_path: Path
-) -> None:
+def test_a_case_says_what_it_is(parameters: flockenv.FlockParameters) -> None:
     options = {"target": "alternate", "dropout_rate": 0.003, "control_hz": 5.0}
-    result = report(parameters, [1], LAW, range(2), 20.0, lambda seconds: None, options)
-    result.write(tmp_path)
+    case = Case(name="a", parameters=parameters, leaders=(1,), seeds=[1], environment=options)
     for words in ("alternating targets", "0.3 % of positions dropped", "control_hz = 5.0"):
-        assert words in result.title()
-    assert "target cw" not in result.title()
-    conditions = tomllib.loads((tmp_path / "run.toml").read_text("utf-8"))
-    assert conditions["environment"] == options
-    stored = (tmp_path / "parameters.toml").read_text("utf-8")
-    assert flockenv.FlockParameters.from_toml(stored) == parameters
+        assert words in case.title()
+    assert "target cw" not in case.title()
+    assert case.flock_hours(3) == pytest.approx(3 * 480 / 3600)
+
+
+def test_targets_are_dealt_out_to_the_seeds(parameters: flockenv.FlockParameters) -> None:
+    """A flock that goes around clockwise has the opposite order towards the other target."""
+    led = parameters.replace(n_leaders=2)
+    opposed = (("cw", "ccw"), ("ccw", "cw"))
+    straight = {"straight ahead": POLICIES["straight ahead"]}
+    orders = []
+    for targets in (opposed, opposed[::-1]):
+        case = Case(
+            name="a",
+            parameters=led,
+            leaders=(2,),
+            seeds=[3, 4],
+            episode_s=40.0,
+            targets=targets,
+        )
+        orders.append(case.run(straight).set_index("seed")["signed_order"].sort_index())
+    # Leaders that never steer move the same, whatever they are told.
+    pd.testing.assert_series_equal(orders[0], -orders[1])
 
 
 @pytest.mark.parametrize(
     ("leaders", "name", "environment", "words"),
     [
-        ([1, 9], "straight ahead", {}, "9 leaders among n_boats = 9 .* `--most-leaders`"),
+        ([1, 9], "straight ahead", {}, "9 leaders among n_boats = 9 .* `--leaders`"),
         ([1], "steering law at every substep", {"target": "alternate"}, "outside"),
     ],
 )
@@ -180,3 +184,31 @@ def test_training_seeds_are_refused(parameters: flockenv.FlockParameters) -> Non
     for seed in (*POLICY_SEEDS["training"].seeds(2), -1):
         with pytest.raises(flockenv.ParameterError, match="for training"):
             compare_leaders(parameters, [0], {}, [0, seed], 10.0)
+
+
+def test_a_policy_for_each_leader(parameters: flockenv.FlockParameters) -> None:
+    """Leaders of which each has the same law move as with that law; others do not."""
+    both = {"leader_0": "damped law", "leader_1": POLICIES["damped law"]}
+    policies = {
+        "one": "damped law",
+        "both": both,
+        "pair": {**both, "leader_1": "straight ahead"},
+    }
+    runs = compare_leaders(parameters, [1, 2], policies, [1, 2], 30.0)
+    orders = {name: own["signed_order"].tolist() for name, own in runs.groupby("policy")}
+    assert orders["both"] == orders["one"]
+    assert orders["pair"][:2] == orders["one"][:2], "with one leader, the first policy steers"
+    assert orders["pair"][2:] != orders["one"][2:]
+    for wrong, words in (
+        ({"leader_1": "damped law"}, "one for each of leader_0, in this order"),
+        ({"leader_0": "damped law"}, "2 leaders are not accepted"),
+        ({**both, "leader_1": Half()}, "control_hz = 5.0 of leader_1"),
+    ):
+        with pytest.raises(flockenv.ParameterError, match=words):
+            compare_leaders(parameters, [2], {"wrong": wrong}, [1], 5.0)
+
+
+class Half(StraightAhead):
+    """Steers at half the rate of others."""
+
+    control_hz = 5.0

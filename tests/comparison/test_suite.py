@@ -1,186 +1,149 @@
-"""Suite v1: frozen tasks, and scores in which the paper's law has 0 and the tuned damped law 1.
+"""Law: a task never changes, and a score is a difference from the tuned law on the same flocks."""
 
-On paper: a policy whose signed order lies a quarter of the way from the law's to the tuned law's in
-every episode has score 1/4, without any uncertainty.
-"""
-
+import hashlib
 import json
+import shlex
+import tomllib
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import flockenv
 from flockenv.comparison import suite
+from flockenv.comparison.report import ComparisonReport
 from flockenv.comparison.suite import (
     EPISODES,
-    REFERENCES,
-    SUITES,
-    Score,
-    Task,
+    REFERENCE,
+    TASKS,
+    aggregate,
     budget_class,
-    run_task,
-    score,
     scores_table,
     tasks_named,
 )
-from flockenv.policies.registry import named_policy
+from flockenv.envs.observation import observation_entries
+from flockenv.errors import ParameterError
+from flockenv.policies import NetworkPolicy
+from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
 
-V1 = {task.name: task for task in SUITES["v1"]}
-EASY = V1["easy-narrow-k1"]
-
-
-def reference(task: Task, name: str) -> Any:
-    return suite._references()[task.name, name]
-
-
-def test_the_easy_task_is_the_registered_environment() -> None:
-    import gymnasium
-
-    with gymnasium.make("flockenv/Circulate-easy-v0") as env:
-        assert env.unwrapped.parameters == EASY.parameters  # type: ignore[attr-defined]
+FIELDS = ("n_boats", "n_leaders", "pool", "bw_s", "target", "scheme", "noise_scheme", "dt_s")
+IMPROVED = "probability of improvement"
+FROZEN = "f9efa0640fa636e7"
+"""Of all that makes the tasks; another digest is another suite."""
 
 
-def test_every_task_has_references() -> None:
-    for task in SUITES["v1"]:
-        law, tuned = (reference(task, name) for name in REFERENCES)
-        assert law.shape == tuned.shape == (EPISODES,)
-        assert np.isfinite([law, tuned]).all()
-        # Otherwise a score would be mostly noise.
-        assert tuned.mean() - law.mean() > 2 * (tuned - law).std() / EPISODES**0.5
-
-
-def test_references_have_scores_0_and_1() -> None:
-    for task in SUITES["v1"]:
-        for place, name in enumerate(REFERENCES):
-            found = score(task, reference(task, name))
-            assert (found.score, found.low, found.high) == pytest.approx((place, place, place))
-
-
-def test_the_score_of_a_known_policy() -> None:
-    law, tuned = (reference(EASY, name) for name in REFERENCES)
-    quarter = score(EASY, law + 0.25 * (tuned - law))
-    assert (quarter.score, quarter.low, quarter.high) == pytest.approx((0.25, 0.25, 0.25))
-    assert quarter.signed_order == pytest.approx(0.75 * law.mean() + 0.25 * tuned.mean())
-    shuffled = score(EASY, np.random.default_rng(1).permutation(tuned))
-    assert shuffled.score == pytest.approx(1.0)
-    assert shuffled.low < 0.9 < 1.1 < shuffled.high
-
-
-FEW = 16
-
-
-@pytest.fixture
-def few(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Tasks of the first episodes alone."""
-    first = {key: values[:FEW] for key, values in suite._references().items()}
-    monkeypatch.setattr(suite, "_references", lambda: first)
-    monkeypatch.setattr(suite, "EPISODES", FEW)
-
-
-@pytest.mark.usefixtures("few")
-def test_references_are_what_the_policies_do() -> None:
-    for task in (EASY, V1["camera-wide-k3"]):
-        found = run_task(task, named_policy(REFERENCES[0], task.pool))
-        assert found == pytest.approx(reference(task, REFERENCES[0]), abs=6e-6)
-    found = run_task(EASY, named_policy(REFERENCES[1], EASY.pool))
-    assert found == pytest.approx(reference(EASY, REFERENCES[1]), abs=6e-6)
-
-
-def test_learned_leaders_are_those_of_the_pool(monkeypatch: pytest.MonkeyPatch) -> None:
-    def run_episodes(parameters: Any, policy: Any, *rest: Any) -> Any:
-        return {"signed_order": np.full(EPISODES, float("wide" in str(policy.provenance)))}
-
-    monkeypatch.setattr(suite, "run_episodes", run_episodes)
-    for name in ("circulate-wide-k1", "circulate-narrow-k1"):
-        task = V1[name]
-        found = run_task(task, named_policy("learned", task.pool))
-        assert set(found) == {float("500" in name)}
-
-
-def test_a_table_of_scores() -> None:
-    table = scores_table("mine", {"a": Score(0.5, 1.2, 1.0, 1.4)})
-    assert table.to_dict("records") == [
-        {
-            "policy": "mine",
-            "task": "a",
-            "signed_order": 0.5,
-            "score": 1.2,
-            "score_low": 1.0,
-            "score_high": 1.4,
-        }
+def test_tasks_never_change() -> None:
+    frozen = [
+        (
+            task.name,
+            {name: str(getattr(task.parameters, name)) for name in FIELDS},
+            task.leaders,
+            (task.seeds[0], len(task.seeds)),
+            task.episode_s,
+            {name: str(value) for name, value in task.environment.items()},
+            task.targets,
+        )
+        for task in TASKS
     ]
+    digest = hashlib.sha256(json.dumps(frozen, sort_keys=True).encode()).hexdigest()
+    assert digest[:16] == FROZEN
 
 
-def test_budgets() -> None:
-    assert [budget_class(hours) for hours in (0.0, 100.0, 100.1, 10_000.0)] == [
-        100,
-        100,
-        1000,
-        10_000,
-    ]
-    for hours in (-1.0, 10_001.0, float("nan")):
-        with pytest.raises(flockenv.ParameterError, match="flock_hours = "):
+def test_the_seeds_are_those_of_the_release_and_judge_policies() -> None:
+    seeds = release_seeds("v0.1.0", EPISODES)
+    # SHA-256 of the tag, written out: 8 bytes modulo 2^32 - 256.
+    assert seeds[0] == int("8c807b66253a6143", 16) % (2**32 - EPISODES)
+    assert all(task.seeds == seeds for task in TASKS)
+    assert all(seed in POLICY_SEEDS["evaluation"].every for seed in seeds)
+    assert release_seeds("v0.2.0", EPISODES)[0] not in seeds
+    with pytest.raises(ParameterError, match="count = 0"):
+        release_seeds("v0.1.0", 0)
+
+
+def test_flocks_that_follow_the_reference_score_nothing() -> None:
+    """Scores: 0 for the reference, and the shift for orders that are shifted."""
+    rng = np.random.default_rng(1)
+    rows = []
+    for case in ("a", "b"):
+        theirs = rng.normal(0.4, 0.2, 200)
+        for name, orders in ((REFERENCE, theirs), ("same", theirs), ("better", theirs + 0.1)):
+            rows += [
+                {"case": case, "policy": name, "seed": seed, "signed_order": order}
+                for seed, order in enumerate(orders)
+            ]
+    result = ComparisonReport((), pd.DataFrame(rows), *[pd.DataFrame()] * 3)
+    found = scores_table(result).set_index(["policy", "task"])
+    for task in ("a", "b", "interquartile mean"):
+        assert found.loc[("same", task), ["score", "score_low"]].tolist() == [0.0, 0.0]
+        assert found.loc[("better", task), "score"] == pytest.approx(0.1)
+    assert found.loc[("same", "probability of improvement"), "score"] == 0.5
+    assert found.loc[("better", "probability of improvement"), "score"] == 1.0
+    assert REFERENCE not in found.index.get_level_values("policy")
+
+
+def test_the_aggregate_is_of_the_middle_and_has_an_interval_that_holds() -> None:
+    # On paper: the middle half of 0, 1, ..., 7 is 2, 3, 4 and 5, whatever the greatest is.
+    tasks = [np.array([0.0, 7e9, 2.0, 4.0]), np.array([1.0, 3.0, 5.0, 6.0])]
+    assert aggregate(tasks).interquartile_mean[0] == 3.5
+    assert aggregate(tasks).improvement[0] == pytest.approx((0.875 + 1.0) / 2)
+    rng = np.random.default_rng(3)
+    covered = 0
+    for _ in range(60):
+        drawn = [rng.normal(0.1 * task, 1.0, 40) for task in range(2)]
+        _, low, high = aggregate(drawn).improvement
+        # P(x > 0) of normal values about 0 and 0.1 is 1/2 and 0.5398.
+        covered += low <= 0.5199 <= high
+    # Binomial with n = 60 and 0.95: 49 or fewer has a chance of about 1e-4.
+    assert covered >= 50
+
+
+def test_classes_of_entries() -> None:
+    fits = {0.0: 100, 100.0: 100, 100.1: 1000, 10_000.0: 10_000}
+    assert {hours: budget_class(hours) for hours in fits} == fits
+    for hours, words in ((None, "missing"), (-1.0, "from 0"), (1e5, "from 0"), (np.nan, "from 0")):
+        with pytest.raises(ParameterError, match=words):
             budget_class(hours)
 
 
-def test_unknown_names() -> None:
-    with pytest.raises(flockenv.ParameterError, match="suite = 'v2' is not accepted: v1"):
-        tasks_named("v2", [])
-    with pytest.raises(flockenv.ParameterError, match="task = 'hard' is not accepted: circulate"):
-        tasks_named("v1", ["hard"])
-    assert tasks_named("v1", ["easy-narrow-k1"]) == [EASY]
+def test_a_shared_policy_cannot_tell_which_leader_is_misinformed() -> None:
+    """Leaders with one policy are exchangeable: which of two told directions wins is chance.
+
+    Exchanged leaders with exchanged targets are the same flock: the signed order towards the
+    target of leader 0 changes its sign.
+    """
+    (task,) = tasks_named("v2", ["misinformed"])
+    assert task.targets == (("cw", "ccw"), ("ccw", "cw"))
+    parameters = task.parameters.replace(n_boats=8, target=("cw", "ccw"))
+    quiet = parameters.replace(c4=0.0)
+    first, other = flockenv.Flock(quiet, 5), flockenv.Flock(quiet.replace(target=("ccw", "cw")), 5)
+    swapped = [1, 0, *range(2, 8)]
+    other.set_state(first.pose[swapped], first.velocity[swapped])
+    for flock in (first, other):
+        flock.advance(5.0)
+    np.testing.assert_allclose(other.pose[swapped], first.pose, atol=1e-6)
 
 
-def test_policies_that_are_refused() -> None:
-    class Often(flockenv.policies.StraightAhead):
-        control_hz = 20.0
-
-    with pytest.raises(flockenv.ParameterError, match="outside of the environment"):
-        run_task(EASY, named_policy("law", EASY.pool))
-    with pytest.raises(flockenv.ParameterError, match="20 times per second is not accepted"):
-        run_task(EASY, Often)
-
-
-SUITE = ["evaluate", "straight ahead", "--suite", "v1", "--task", "easy-narrow-k1"]
-
-
-@pytest.mark.usefixtures("few")
-def test_the_command(cli: Any, tmp_path: Path) -> None:
-    done = cli(*SUITE, "--flock-hours", "150", "--json", "--out", str(tmp_path))
+def test_an_entry_scores_again_by_its_command(cli, tmp_path: Path, monkeypatch) -> None:
+    small = [
+        replace(task, parameters=task.parameters.replace(n_boats=6), seeds=task.seeds[:4])
+        for task in TASKS
+    ]
+    monkeypatch.setattr(suite, "TASKS", tuple(replace(task, episode_s=20.0) for task in small))
+    size, made = len(observation_entries()), {"seed": "7"}
+    NetworkPolicy([np.zeros((size, 1))], [[0.25]], provenance=made).save(tmp_path / "p.npz")
+    words = ["--suite", "v2", "--policy", str(tmp_path / "p.npz"), "--name", "mine"]
+    done = cli("compare", *words, "--flock-hours", "70", "--out", str(tmp_path / "out"))
     assert done.returncode == 0, done.stderr
-    (row,) = json.loads(done.stdout)["scores"]
-    assert (row["policy"], row["task"]) == ("straight ahead", "easy-narrow-k1")
-    assert row["score_low"] < row["score"] < row["score_high"]
-    scores = (tmp_path / "scores.csv").read_text().splitlines()
-    assert scores[0] == "policy,task,signed_order,score,score_low,score_high"
-    episodes = (tmp_path / "episodes.csv").read_text().splitlines()
-    assert len(episodes) == 1 + FEW
-    run = (tmp_path / "run.toml").read_text()
-    assert "budget_flock_hours = 1000" in run
-    assert "flock_hours = 150.0" in run
-
-
-@pytest.mark.parametrize(
-    ("option", "value"),
-    [
-        ("--pool", "narrow"),
-        ("--episodes", "512"),
-        ("--set", "n_boats=9"),
-        ("--minutes", "8"),
-        ("--seed", "0"),
-    ],
-)
-def test_an_altered_task_has_no_score(cli: Any, tmp_path: Path, option: str, value: str) -> None:
-    done = cli(*SUITE, option, value, "--out", str(tmp_path / "out"))
-    assert done.returncode == 2
-    assert f"{option} is not accepted with --suite v1" in " ".join(done.stderr.split())
-    assert not (tmp_path / "out").exists()
-
-
-@pytest.mark.parametrize("option", [("--task", "easy-narrow-k1"), ("--flock-hours", "3")])
-def test_options_of_a_suite_need_one(cli: Any, option: tuple[str, str]) -> None:
-    done = cli("evaluate", "straight ahead", *option)
-    assert done.returncode == 2
-    assert f"{option[0]} is not accepted without --suite" in " ".join(done.stderr.split())
+    assert "mine, interquartile mean: " in done.stdout
+    scores = (tmp_path / "out" / "scores.csv").read_bytes()
+    names = pd.read_csv(tmp_path / "out" / "scores.csv")["task"].tolist()
+    assert names == [*(task.name for task in TASKS), "interquartile mean", IMPROVED]
+    entry = tomllib.loads((tmp_path / "out" / "entry.toml").read_text("utf-8"))
+    assert (entry["name"], entry["flock_hours"], entry["class_flock_hours"]) == ("mine", 70.0, 100)
+    assert entry["configuration"] == made
+    monkeypatch.chdir(tmp_path / "out")
+    done = cli(*shlex.split(entry["command"])[1:], "--out", "again")
+    assert done.returncode == 0, done.stderr
+    assert Path("again", "scores.csv").read_bytes() == scores

@@ -1,0 +1,57 @@
+"""Two roles, written by hand, for the task `misinformed` of suite v2.
+
+    python baselines/misinformed_pair.py
+
+Two leaders are told opposite directions, and only that of leader 0 counts. With one policy for both
+leaders the flock follows either of them as often, and the mean signed order is 0: to exchange the
+leaders together with what they are told changes nothing but the sign of the order. Here leader 0
+follows the tuned law, and leader 1 follows it towards the other direction than the one it is told.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flockenv.comparison import named_policy, report
+from flockenv.comparison.suite import REFERENCE, tasks_named
+from flockenv.envs.observation import observation_entries
+
+_TOLD = [place for place, each in enumerate(observation_entries()) if each.block == "target"]
+
+
+class AgainstWhatItIsTold:
+    """A law towards the other direction than the one in its observation."""
+
+    def __init__(self, law: Any) -> None:
+        self.law = law
+
+    def predict(
+        self, observation: ArrayLike, state: Any = None, episode_start: Any = None
+    ) -> tuple[Any, Any]:
+        """Return the law's rudders for an observation with the opposite target."""
+        seen = np.array(observation, np.float32)
+        seen[..., _TOLD] *= -1.0
+        return self.law.predict(seen, state, episode_start)
+
+    def __repr__(self) -> str:
+        return f"AgainstWhatItIsTold({self.law!r})"
+
+
+def main() -> None:
+    """Print the order with the pair, and with the tuned law for both leaders."""
+    (task,) = tasks_named("v2", ["misinformed"])
+    law = named_policy(REFERENCE, task.parameters.pool)()
+    policies = {
+        "pair": {"leader_0": law, "leader_1": AgainstWhatItIsTold(law)},
+        REFERENCE: law,
+    }
+    result = report([task], list(policies), task.run(policies))
+    for row in result.means.to_dict("records"):
+        ends = f"[{row['signed_order_low']:.3f}, {row['signed_order_high']:.3f}]"
+        print(f"{row['policy']}: {row['signed_order']:.3f} {ends} in {row['runs']} episodes")
+    print(result.in_words())
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,34 @@
+"""What differences in several tasks say together (Agarwal et al. 2021)."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flockenv._io.extras import require
+
+__all__ = ["interquartile_mean", "probability_of_improvement"]
+
+
+def interquartile_mean(*tasks: NDArray[np.float64], axis: int = -1) -> Any:
+    """Return the mean of the middle half of the values of all tasks together.
+
+    A few episodes that went wrong, or very well, do not move it as they move the mean.
+
+    Parameters
+    ----------
+    tasks
+        Values of each task along `axis`.
+    axis
+        The axis of the values.
+    """
+    return require("scipy.stats", "plot").trim_mean(np.concatenate(tasks, axis), 0.25, axis)
+
+
+def probability_of_improvement(*tasks: NDArray[np.float64], axis: int = -1) -> Any:
+    """Return how often a difference is positive, equal ones by half; the mean over the tasks.
+
+    Parameters and the axis are those of `interquartile_mean`, for paired differences.
+    """
+    shares = [((task > 0.0) + 0.5 * (task == 0.0)).mean(axis) for task in tasks]
+    return np.mean(shares, axis=0)
