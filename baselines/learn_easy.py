@@ -53,10 +53,8 @@ def ppo() -> PPO:
 
 def score(policy: Any, venv: LeaderVecEnv) -> dict[str, float]:
     """Return the mean reward per control step of held-out episodes, with its 95 % interval."""
-    returns, lengths = evaluate_flocks(
-        policy, venv, n_eval_episodes=EPISODES, seed=0, return_episode_rewards=True
-    )
-    each = np.array(returns) / np.array(lengths)
+    found = evaluate_flocks(policy, venv, n_eval_episodes=EPISODES, seed=0)
+    each = found.returns / found.lengths
     mean, half = each.mean(), 1.96 * each.std(ddof=1) / np.sqrt(len(each))
     return {"reward": mean, "reward_low": mean - half, "reward_high": mean + half}
 

@@ -9,7 +9,12 @@ require("stable_baselines3", "train")
 
 # ruff: noqa: E402 - after the check above
 from flockenv.sb3.encoders import LeaningExtractor, NeighborSetExtractor, usual_features
-from flockenv.sb3.evaluation import FlockEvalCallback, PerFlock, evaluate_flocks
+from flockenv.sb3.evaluation import (
+    FlockEvalCallback,
+    FlockEvaluation,
+    PerFlock,
+    evaluate_flocks,
+)
 from flockenv.sb3.flock_critic import FlockCriticPolicy, WithFlockFeatures
 from flockenv.sb3.leader_vec_env import LeaderSlot, LeaderVecEnv
 from flockenv.sb3.monitor import FlockMonitor
@@ -18,6 +23,7 @@ from flockenv.sb3.shared_noise import SharedNoisePolicy, shared_noise
 __all__ = [
     "FlockCriticPolicy",
     "FlockEvalCallback",
+    "FlockEvaluation",
     "FlockMonitor",
     "LeaderSlot",
     "LeaderVecEnv",

@@ -1,6 +1,7 @@
 """Evaluation of models on a `LeaderVecEnv` that counts episodes of flocks, not of leaders."""
 
 import warnings
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,8 +15,9 @@ from flockenv.envs.observation import ObservationSpace, seen_space
 from flockenv.policies import ModelPolicy
 from flockenv.policies.base import check_action_mode
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
+from flockenv.statistics import mean_interval
 
-__all__ = ["FlockEvalCallback", "PerFlock", "evaluate_flocks"]
+__all__ = ["FlockEvalCallback", "FlockEvaluation", "PerFlock", "evaluate_flocks"]
 
 
 class PerFlock(VecEnvWrapper):
@@ -78,15 +80,50 @@ class PerFlock(VecEnvWrapper):
         return [wrapped or self.venv.env_is_wrapped(wrapper_class)[0]] * self.num_envs
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class FlockEvaluation:
+    """What episodes of flocks gave; it prints as the mean signed order with its interval.
+
+    Attributes
+    ----------
+    signed_order : float64 array, shape (episodes,)
+        Mean signed order of each episode in the analysis window after its first tenth; NaN for an
+        episode that ends before.
+    returns : float64 array, shape (episodes,)
+        Sum of the rewards of each episode, the mean over a flock's leaders.
+    lengths : int64 array, shape (episodes,)
+        Control steps of each episode.
+    """
+
+    signed_order: NDArray[np.float64]
+    returns: NDArray[np.float64]
+    lengths: NDArray[np.int64]
+
+    @property
+    def mean(self) -> float:
+        """Mean signed order."""
+        return float(self.signed_order.mean())
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Its interval at level `flockenv.statistics.CONFIDENCE`, that of `mean_interval`."""
+        _, low, high = mean_interval(self.signed_order)
+        return low, high
+
+    def __str__(self) -> str:
+        low, high = self.interval
+        count = len(self.signed_order)
+        return f"signed order {self.mean:.3f} [{low:.3f}, {high:.3f}] in {count} episodes"
+
+
 def evaluate_flocks(
     model: Any,
     env: VecEnv,
-    n_eval_episodes: int = 10,
+    n_eval_episodes: int = 64,
     deterministic: bool = True,
     *,
     seed: int | None = None,
-    return_episode_rewards: bool = False,
-) -> Any:
+) -> FlockEvaluation:
     """Evaluate a model as stable-baselines3's `evaluate_policy` does, but count flocks' episodes.
 
     Parameters
@@ -102,14 +139,11 @@ def evaluate_flocks(
         Whether actions are the most probable ones.
     seed
         Seed of the first flock, as in ``LeaderVecEnv.seed``; None: the next episodes.
-    return_episode_rewards
-        Whether to return a number per episode.
 
     Returns
     -------
-    mean, deviation : float
-        Of the episodes' returns, each the mean over a flock's leaders. With
-        `return_episode_rewards` the list of returns and that of lengths in control steps.
+    FlockEvaluation
+        Orders, returns and lengths by episode.
 
     Raises
     ------
@@ -122,13 +156,16 @@ def evaluate_flocks(
     flocks.check_action_mode(model)
     if seed is not None:
         flocks.seed(seed)
-    return evaluate_policy(
-        model,
-        flocks,
-        n_eval_episodes,
-        deterministic,
-        return_episode_rewards=return_episode_rewards,
+    orders: list[float] = []
+
+    def keep(step: dict[str, Any], _: dict[str, Any]) -> None:
+        if step["done"]:
+            orders.append(step["info"]["episode_summary"].get("signed_order", np.nan))
+
+    returns, lengths = evaluate_policy(
+        model, flocks, n_eval_episodes, deterministic, callback=keep, return_episode_rewards=True
     )
+    return FlockEvaluation(np.array(orders), np.array(returns), np.array(lengths))
 
 
 class FlockEvalCallback(EvalCallback):

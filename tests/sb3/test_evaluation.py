@@ -10,6 +10,8 @@ from stable_baselines3.common.evaluation import evaluate_policy  # noqa: E402
 from stable_baselines3.common.monitor import load_results  # noqa: E402
 from stable_baselines3.common.vec_env import VecNormalize  # noqa: E402
 
+from flockenv import FlockParameters  # noqa: E402
+from flockenv.comparison import run_episodes  # noqa: E402
 from flockenv.policies import SteeringLaw  # noqa: E402
 from flockenv.sb3 import (  # noqa: E402
     FlockEvalCallback,
@@ -19,7 +21,8 @@ from flockenv.sb3 import (  # noqa: E402
     evaluate_flocks,
 )
 
-OPTIONS = {"n_boats": 9, "episode_s": 2.0}
+FLOCK = {"n_boats": 9, "pool": "narrow"}
+OPTIONS = {**FLOCK, "episode_s": 2.0}
 
 
 def make(num_flocks=4, n_leaders=3, **options):
@@ -53,33 +56,40 @@ def test_three_leaders_are_one_episode():
         )
     assert len(counted) == 3
     assert len(set(counted)) == 1
-    returns, lengths = evaluate_flocks(
-        SteeringLaw(), venv, n_eval_episodes=3, return_episode_rewards=True
-    )
-    assert len(set(returns)) == 3
-    assert lengths == [20, 20, 20]
+    found = evaluate_flocks(SteeringLaw(), venv, n_eval_episodes=3)
+    assert len(set(found.returns)) == 3
+    assert found.lengths.tolist() == [20, 20, 20]
 
 
 def test_returns_are_means_over_the_flocks_leaders():
     reward = {"signed_order": 1.0, "leader_velocity": 0.5}
     venv = make(n_leaders=[1, 3], reward=reward)
     expected = returns_of(venv, SteeringLaw(), 7)
-    found, _ = evaluate_flocks(
-        SteeringLaw(), venv, n_eval_episodes=4, seed=7, return_episode_rewards=True
-    )
-    np.testing.assert_allclose(found, expected[0], rtol=1e-5)
-    mean, deviation = evaluate_flocks(SteeringLaw(), venv, n_eval_episodes=4, seed=7)
-    assert mean == pytest.approx(expected.mean(), rel=1e-5)
-    assert deviation == pytest.approx(expected.std(), rel=1e-4)
+    found = evaluate_flocks(SteeringLaw(), venv, n_eval_episodes=4, seed=7)
+    np.testing.assert_allclose(found.returns, expected[0], rtol=1e-5)
+
+
+def test_the_order_is_that_of_a_comparison_and_has_an_interval():
+    venv = make(n_leaders=2, episode_s=60.0)
+    found = evaluate_flocks(SteeringLaw(), venv, n_eval_episodes=4, seed=7)
+    parameters = FlockParameters.preset("simulation").replace(**FLOCK, n_leaders=2)
+    expected = run_episodes(parameters, SteeringLaw(), range(7, 11), 60.0)["signed_order"]
+    np.testing.assert_allclose(found.signed_order, expected, atol=1e-9)
+    # Student's quantile for four values is 3.182.
+    half = 3.182446 * found.signed_order.std(ddof=1) / 2
+    assert found.interval == pytest.approx((found.mean - half, found.mean + half))
+    low, high = found.interval
+    text = f"signed order {found.mean:.3f} [{low:.3f}, {high:.3f}] in 4 episodes"
+    assert str(found) == text
 
 
 def test_returns_are_the_environments_own_inside_wrappers():
     venv = make()
     expected = returns_of(venv, SteeringLaw(), 3).mean()
-    mean, _ = evaluate_flocks(
+    found = evaluate_flocks(
         SteeringLaw(), VecNormalize(make(), norm_obs=False), n_eval_episodes=4, seed=3
     )
-    assert mean == pytest.approx(expected, rel=1e-5)
+    assert found.returns.mean() == pytest.approx(expected, rel=1e-5)
 
 
 def test_other_environments_are_refused():

@@ -123,8 +123,8 @@ def test_the_model_steers_wherever_a_policy_does(tmp_path):
     parameters = FlockParameters(n_boats=8, n_leaders=3, pool="narrow")
     found = run_episodes(parameters, model, [0], 10.0)
     assert np.isfinite(found["signed_order"]).all()
-    mean, _ = evaluate_flocks(model, venv, n_eval_episodes=2, seed=0)
-    assert np.isfinite(mean)
+    evaluated = evaluate_flocks(model, venv, n_eval_episodes=2, seed=0)
+    assert np.isfinite(evaluated.returns).all()
     with pytest.raises(ParameterError, match=r"'lean'.*'rudder'"):
         evaluate_flocks(model, WithFlockFeatures(LeaderVecEnv(2, **OPTIONS)))
 
