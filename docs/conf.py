@@ -16,15 +16,18 @@ sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parent / "extensi
 import environment_pages  # noqa: E402
 
 from flockenv.replay import write_replay  # noqa: E402
-from flockenv.replay.demo import demo_runs  # noqa: E402
+from flockenv.replay.demo import demo_runs, live_page  # noqa: E402
 
 environment_pages.write()
 
-# The replay page that index.md shows is written at every build, and copied beside the pages.
-html_extra_path = ["_build/replay"]
-_replay = Path(__file__).parent / html_extra_path[0] / "demo.html"
-_replay.parent.mkdir(parents=True, exist_ok=True)
-write_replay(_replay, demo_runs())
+# What index.md shows: the live page where `make live` has built it, else the replay of two flocks.
+html_extra_path = ["_build/shown"]
+_shown = Path(__file__).parent / html_extra_path[0] / "live.html"
+_shown.parent.mkdir(parents=True, exist_ok=True)
+if (_live := live_page()) is None:
+    write_replay(_shown, demo_runs())
+else:
+    _shown.write_bytes(_live.read_bytes())
 
 project = "flockenv"
 author = "flockenv contributors"

@@ -52,7 +52,7 @@ def page(compiled: bytes) -> str:
     script = joined([*((REPLAY / name).read_text("utf-8") for name in _SHARED), *own])
     thread = joined([(WEB / name).read_text("utf-8") for name in _THREAD])
     style = (REPLAY / "replay.css").read_text("utf-8") + (WEB / "live.css").read_text("utf-8")
-    about = {"version": flockenv.__version__, "format": FORMAT}
+    about = {"version": flockenv.__version__, "format": FORMAT, "opening": None}
     policy = [
         "default-src 'none'",
         f"style-src {digest(style)}",

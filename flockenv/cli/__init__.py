@@ -17,7 +17,6 @@ from flockenv.cli.console import (
 )
 from flockenv.cli.demo import demo
 from flockenv.cli.parameters import refuse_fields_as_options
-from flockenv.cli.play import play
 from flockenv.cli.presets import presets
 from flockenv.cli.replay import replay
 from flockenv.cli.run import run
@@ -50,7 +49,6 @@ COMMANDS = (
     run,
     replay,
     analyze,
-    play,
     compare,
     presets,
     sweep,

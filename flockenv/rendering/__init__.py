@@ -2,6 +2,6 @@
 
 from flockenv.rendering.animation import save_animation
 from flockenv.rendering.frames import frame
-from flockenv.rendering.window import SteeringWindow, Window
+from flockenv.rendering.window import Window
 
-__all__ = ["SteeringWindow", "Window", "frame", "save_animation"]
+__all__ = ["Window", "frame", "save_animation"]

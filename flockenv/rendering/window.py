@@ -9,10 +9,10 @@ import numpy as np
 from flockenv._core import Flock
 from flockenv._io.extras import require
 from flockenv._io.interrupts import end_if_interrupted
-from flockenv.errors import FlockError, ParameterError, shown
+from flockenv.errors import ParameterError, shown
 from flockenv.rendering.frames import renderer
 
-__all__ = ["SteeringWindow", "Window", "require_pygame"]
+__all__ = ["Window", "require_pygame"]
 
 
 def require_pygame() -> Any:
@@ -102,12 +102,8 @@ class Window:
         rows = self._renderer.draw(flock)
         # pygame counts columns first.
         self._pygame.surfarray.blit_array(self._surface, rows.swapaxes(0, 1))
-        self._draw_over(flock)
         self._pygame.display.flip()
         self._drawn = time.perf_counter()
-
-    def _draw_over(self, flock: Flock) -> None:
-        """Add to the frame what only a window shows."""
 
     def _is_waiting(self) -> bool:
         if self.paused:
@@ -125,12 +121,10 @@ class Window:
             if event.type == self._pygame.QUIT:
                 self.close()
                 return
-            if event.type in (self._pygame.KEYDOWN, self._pygame.KEYUP):
-                self._handle_key(event.key, event.type == self._pygame.KEYDOWN)
+            if event.type == self._pygame.KEYDOWN:
+                self._handle_key(event.key)
 
-    def _handle_key(self, key: int, is_down: bool) -> None:
-        if not is_down:
-            return
+    def _handle_key(self, key: int) -> None:
         pygame = self._pygame
         slowest, fastest = self.SPEEDS
         if key == pygame.K_SPACE:
@@ -146,53 +140,3 @@ class Window:
     def _report(self) -> None:
         state = "paused" if self.paused else f"{self.speed:g}×"
         self._pygame.display.set_caption(f"flockenv, {state}")
-
-
-class SteeringWindow(Window):
-    """A window in which the arrow keys steer one boat, which has a ring around it.
-
-    Left and right arrow hold the rudder at +1 (to port, counter-clockwise) and -1; space pauses and
-    continues; + or the up arrow doubles the speed, - or the down arrow halves it.
-
-    Parameters
-    ----------
-    width, height, fps
-        As for `Window`.
-    boat
-        The boat that is steered.
-
-    Raises
-    ------
-    FlockError
-        Where there is no screen, in addition to the errors of `Window`.
-    """
-
-    _RING = (213, 94, 0)
-
-    def __init__(self, width: int, height: int, fps: float, boat: int) -> None:
-        super().__init__(width, height, fps)
-        driver = self._pygame.display.get_driver()
-        if driver == "offscreen" and os.environ.get("SDL_VIDEODRIVER") != driver:
-            self.close()
-            raise FlockError("there is no screen here: a window would be seen by nobody")
-        self._boat = boat
-        self._held: set[int] = set()
-
-    @property
-    def rudder(self) -> float:
-        """The rudder that the keys command: 1, 0 or -1."""
-        pygame = self._pygame
-        return float((pygame.K_LEFT in self._held) - (pygame.K_RIGHT in self._held))
-
-    def _handle_key(self, key: int, is_down: bool) -> None:
-        pygame = self._pygame
-        if key in (pygame.K_LEFT, pygame.K_RIGHT):
-            (self._held.add if is_down else self._held.discard)(key)
-            return
-        faster = {pygame.K_UP: pygame.K_PLUS, pygame.K_DOWN: pygame.K_MINUS}
-        super()._handle_key(faster.get(key, key), is_down)
-
-    def _draw_over(self, flock: Flock) -> None:
-        x, y, reach = self._renderer.place(flock, self._boat)
-        radius = max(1.4 * reach, 6.0)
-        self._pygame.draw.circle(self._surface, self._RING, (x, y), radius, width=2)

@@ -1,15 +1,26 @@
 """The two runs that `flockenv demo`, the README and the docs' home page show, side by side."""
 
+import json
 from collections.abc import Callable
+from pathlib import Path
 from typing import Final
 
 from flockenv.parameters import FlockParameters
 from flockenv.policies.pretrained import LEARNED
 from flockenv.policies.registry import EVERY_SUBSTEP
 from flockenv.recording import Recording
+from flockenv.replay.template import as_script_content
 from flockenv.simulation import simulate
 
-__all__ = ["DEMO_MINUTES", "DEMO_PARAMETERS", "DEMO_POLICIES", "DEMO_SEED", "demo_runs"]
+__all__ = [
+    "DEMO_MINUTES",
+    "DEMO_PARAMETERS",
+    "DEMO_POLICIES",
+    "DEMO_SEED",
+    "demo_runs",
+    "live_demo",
+    "live_page",
+]
 
 DEMO_PARAMETERS: Final = FlockParameters(n_boats=27, n_leaders=4, pool="wide", bw_s=0.3)
 """Four leaders among 27 boats, near the critical noise."""
@@ -41,3 +52,26 @@ def demo_runs(
         )
         for name, policy in DEMO_POLICIES.items()
     }
+
+
+def live_page() -> Path | None:
+    """Return the live page of this checkout; None where `make live` has not built it."""
+    page = Path(__file__).parents[2] / "web" / "live.html"
+    return page if page.is_file() else None
+
+
+def live_demo(page: Path, seed: int = DEMO_SEED) -> str:
+    """Return a live page that opens with the two flocks of the demo.
+
+    Parameters
+    ----------
+    page
+        The live page.
+    seed
+        Seed of both flocks.
+    """
+    p = DEMO_PARAMETERS
+    flock = f"n_boats={p.n_boats}&n_leaders={p.n_leaders}&pool={p.pool}&bw_s={p.bw_s}&seed={seed}"
+    link = f"#lesson=learned&{flock}&beside.leaders=tuned damped law"
+    opening = as_script_content(f'"opening": {json.dumps(link)}')
+    return page.read_text("utf-8").replace('"opening": null', opening, 1)

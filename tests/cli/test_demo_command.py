@@ -1,6 +1,7 @@
 """`flockenv demo`: the two runs of the README, on one page, in one command."""
 
 import json
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -34,7 +35,6 @@ def test_without_a_browser_it_says_where_the_page_is(cli, tmp_path: Path) -> Non
     assert done.returncode == 0
     page = tmp_path / "results" / "demo.html"
     assert page.resolve().as_uri() in done.stderr
-    assert "order towards target" in done.stdout
 
 
 def test_the_page_is_opened_unless_it_is_not_wanted(cli, tmp_path: Path) -> None:
@@ -48,3 +48,20 @@ def test_the_page_is_opened_unless_it_is_not_wanted(cli, tmp_path: Path) -> None
     done = cli.process("demo", *quick, **opened_by)
     assert done.stderr == ""
     assert (tmp_path / "opened").read_text().strip() == (tmp_path / "page.html").as_uri()
+
+
+def test_where_the_live_page_is_built_it_opens_with_the_two_flocks(
+    cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    built = tmp_path / "live.html"
+    built.write_text('<script>{"version": "0", "opening": null}</script>')
+    monkeypatch.setattr("flockenv.replay.demo.live_page", lambda: built)
+    opened = []
+    monkeypatch.setattr(import_module("flockenv.cli.demo"), "open_page", opened.append)
+    done = cli("demo", "--seed", "11", "--out", "page.html")
+    assert "Written to page.html" in done.stdout
+    assert opened == [Path("page.html")]
+    page = Path("page.html").read_text()
+    link = json.loads(page.removeprefix("<script>").removesuffix("</script>"))["opening"]
+    assert "n_boats=27&n_leaders=4&pool=wide&bw_s=0.3&seed=11" in link
+    assert "beside.leaders=" in link

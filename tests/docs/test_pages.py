@@ -79,10 +79,10 @@ def test_files_that_are_named_exist(page):
     assert [name for name in sorted(named) if not (REPOSITORY / name).exists()] == []
 
 
-def test_the_home_page_opens_with_the_replay():
+def test_the_home_page_opens_with_a_flock():
     home = (DOCS / "index.md").read_text()
-    assert home.index('<iframe src="demo.html"') < home.index("```{toctree}")
-    assert 'html_extra_path[0] / "demo.html"' in (DOCS / "conf.py").read_text()
+    assert home.index('<iframe src="live.html"') < home.index("```{toctree}")
+    assert 'html_extra_path[0] / "live.html"' in (DOCS / "conf.py").read_text()
 
 
 def test_every_public_name_has_a_reference():
