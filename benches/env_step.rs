@@ -5,19 +5,19 @@ mod support;
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use flockenv::environment::EnvBatch;
-use flockenv::parameters::Pool;
-use support::{control, environment, warm_batch};
+use flockenv::parameters::{FlockParameters, Pool};
+use support::{control, environment, training, warm_batch};
 
 fn main() {
     divan::main();
 }
 
-fn batch_of_16(pool: Pool, bw_s: f64) -> EnvBatch {
-    warm_batch(&environment(pool, bw_s), 0..16).expect("the settings are accepted")
+fn batch_of_16(parameters: &FlockParameters) -> EnvBatch {
+    warm_batch(parameters, 0..16).expect("the settings are accepted")
 }
 
-fn control_steps(bencher: Bencher, pool: Pool, bw_s: f64) {
-    let mut batch = batch_of_16(pool, bw_s);
+fn control_steps(bencher: Bencher, parameters: &FlockParameters) {
+    let mut batch = batch_of_16(parameters);
     let one_thread = rayon::ThreadPoolBuilder::new()
         .num_threads(1)
         .build()
@@ -28,19 +28,30 @@ fn control_steps(bencher: Bencher, pool: Pool, bw_s: f64) {
 }
 
 #[divan::bench]
-fn five_hundred_boats(bencher: Bencher) {
-    control_steps(bencher, Pool::WIDE, 0.3);
+fn wide(bencher: Bencher) {
+    control_steps(bencher, &environment(Pool::WIDE, 0.3));
 }
 
 #[divan::bench]
 fn narrow(bencher: Bencher) {
-    control_steps(bencher, Pool::NARROW, 0.4);
+    control_steps(bencher, &environment(Pool::NARROW, 0.4));
+}
+
+/// Stepped as for training, where phases switch off the grid of substeps.
+#[divan::bench]
+fn training_wide(bencher: Bencher) {
+    control_steps(bencher, &training(Pool::WIDE, 0.31));
+}
+
+#[divan::bench]
+fn training_narrow(bencher: Bencher) {
+    control_steps(bencher, &training(Pool::NARROW, 0.45));
 }
 
 /// Observations alone, without physics.
 #[divan::bench]
 fn observe(bencher: Bencher) {
-    let mut batch = batch_of_16(Pool::WIDE, 0.3);
+    let mut batch = batch_of_16(&environment(Pool::WIDE, 0.3));
     let mut observations = vec![0.0; batch.rows() * batch.observation_size()];
     bencher.counter(ItemsCount::new(16_u32)).bench_local(|| {
         batch.observe(&mut observations);

@@ -16,7 +16,7 @@ use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use support::scene::Scene;
-use support::{control, environment, warm_batch};
+use support::{control, environment, training, warm_batch};
 
 /// Part by which a count may differ from the one that is pinned: compilers, memcpy of other processors.
 const TOLERANCE: f64 = 0.03;
@@ -57,6 +57,8 @@ fn work(name: &str) -> Option<Work> {
         "jam of 1000" => flock(Scene::Jam, 1000, 0),
         "control step in wide" => Work::Environment(environment(Pool::WIDE, 0.3)),
         "control step in narrow" => Work::Environment(environment(Pool::NARROW, 0.4)),
+        "training control step in wide" => Work::Environment(training(Pool::WIDE, 0.31)),
+        "training control step in narrow" => Work::Environment(training(Pool::NARROW, 0.45)),
         _ => return None,
     })
 }
@@ -65,7 +67,7 @@ fn work(name: &str) -> Option<Work> {
 fn with_posts(parameters: FlockParameters) -> FlockParameters {
     let outer = parameters.pool.outer_radius_cm;
     let posts = (0..300).map(|post| {
-        let (sin, cos) = (std::f64::consts::TAU * f64::from(post) / 300.0).sin_cos();
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(post) / 300.0);
         Disc {
             x_cm: (outer + 1.0) * cos,
             y_cm: (outer + 1.0) * sin,
@@ -79,7 +81,7 @@ fn with_posts(parameters: FlockParameters) -> FlockParameters {
     }
 }
 
-const SCENES: [&str; 9] = [
+const SCENES: [&str; 11] = [
     "jam of 27",
     "jam of 27, 1 relinearization",
     "jam of 27, 2 relinearizations",
@@ -89,6 +91,8 @@ const SCENES: [&str; 9] = [
     "jam of 1000",
     "control step in wide",
     "control step in narrow",
+    "training control step in wide",
+    "training control step in narrow",
 ];
 
 /// Seeds that a count is the mean of.

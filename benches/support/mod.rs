@@ -6,7 +6,7 @@ pub mod scene;
 
 use flockenv::Result;
 use flockenv::environment::{BatchRows, EnvBatch, EnvSettings, ResetRequest};
-use flockenv::parameters::{FlockParameters, Pool, Preset};
+use flockenv::parameters::{FlockParameters, Physics, Pool, Preset};
 use std::hint::black_box;
 use std::ops::Range;
 
@@ -19,6 +19,15 @@ pub fn environment(pool: Pool, bw_s: f64) -> FlockParameters {
         bw_s,
         ..FlockParameters::preset(Preset::Simulation)
     }
+}
+
+/// The same, stepped as for training.
+pub fn training(pool: Pool, bw_s: f64) -> FlockParameters {
+    let mut parameters = environment(pool, bw_s);
+    if let Some((dt_s, relinearizations)) = Physics::Training.stepping() {
+        (parameters.dt_s, parameters.relinearizations) = (dt_s, relinearizations);
+    }
+    parameters
 }
 
 /// A batch with an episode per seed, after 20 s, so that the flocks are where they usually are.

@@ -33,7 +33,7 @@ __all__ = [
 RUNS_FOLDER = "runs"
 """Folder of finished runs, inside a folder of results."""
 
-RESULTS_VERSION = 3
+RESULTS_VERSION = 4
 """Rises whenever the same spec comes to give other numbers: stored runs are then redone."""
 
 _FORMAT = "flockenv run 2"

@@ -65,18 +65,18 @@ impl OrderParameters {
 
     /// Signed order towards a target, Ψ_o·cos(φ_o − φ_target) in [−1, 1]: the reward.
     pub fn signed_order(&self, target: Target) -> f64 {
-        self.psi_o * (self.phi_o - target.sign() * FRAC_PI_2).cos()
+        self.psi_o * libm::cos(self.phi_o - target.sign() * FRAC_PI_2)
     }
 
     /// m = Ψ_o·sin φ_o: distinguishes order (±1) from a jam (0).
     pub fn rotation(&self) -> f64 {
-        self.psi_o * self.phi_o.sin()
+        self.psi_o * libm::sin(self.phi_o)
     }
 
     /// Ψ_o·cos φ_o, the mean over boats of cos φ: 1 in a jam, near 0 for streams along the pool,
     /// also for opposed ones, which cancel in m.
     pub fn outward(&self) -> f64 {
-        self.psi_o * self.phi_o.cos()
+        self.psi_o * libm::cos(self.phi_o)
     }
 }
 
@@ -105,7 +105,7 @@ impl VectorSum {
         let mean = self.sum / self.count;
         VectorMean {
             length: mean.norm(),
-            angle: mean.y.atan2(mean.x),
+            angle: libm::atan2(mean.y, mean.x),
             // Σ_{i<j} v_i·v_j = (|Σv|² − Σ|v|²)/2; 0/0 for one boat.
             pair_mean: (self.sum.norm_squared() - self.squares) / (self.count * (self.count - 1.0)),
         }

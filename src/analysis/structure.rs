@@ -117,7 +117,7 @@ fn chance_below(distance: f64, ra: f64, rb: f64) -> f64 {
         // Both at the center.
         return f64::from(u8::from(distance > 0.0));
     }
-    cosine.clamp(-1.0, 1.0).acos() / PI
+    libm::acos(cosine.clamp(-1.0, 1.0)) / PI
 }
 
 /// Mean over boats and starting samples of the squared displacement after `lag` samples, in cm².
@@ -131,7 +131,9 @@ pub fn mean_square_displacement(samples: &[&[Pose]], lag: usize) -> f64 {
 
 /// Mean over boats and starting samples of cos(α(t + lag) − α(t)): 1 while boats keep their heading.
 pub fn heading_correlation(samples: &[&[Pose]], lag: usize) -> f64 {
-    lagged_mean(samples, lag, |then, now| (now.heading - then.heading).cos())
+    lagged_mean(samples, lag, |then, now| {
+        libm::cos(now.heading - then.heading)
+    })
 }
 
 fn lagged_mean(samples: &[&[Pose]], lag: usize, value: impl Fn(&Pose, &Pose) -> f64) -> f64 {

@@ -113,7 +113,7 @@ impl FreeMotion {
     /// A bound of the spins at which eq. (9) comes to rest, the roots of c1·w³ = (c2·s − c3·w)·u·ẋ with c1 > 0.
     fn fastest_turn(&self, along: f64, rudder: f64) -> f64 {
         let push = along.abs() / self.c1;
-        (self.c3 * push).sqrt() + (self.c2 * rudder.abs() * push).cbrt()
+        (self.c3 * push).sqrt() + libm::cbrt(self.c2 * rudder.abs() * push)
     }
 
     /// Second order over `dt` with drag, heading drive and angular damping centered in the substep:

@@ -14,7 +14,7 @@ pub fn steering_law(misalignment: f64) -> f64 {
 /// β − α of a boat: how far counter-clockwise it has to turn to head along the target's tangent at
 /// its own polar angle θ. Clockwise motion heads along θ − π/2.
 pub fn misalignment(position: Vec2, heading: f64, target: Target) -> f64 {
-    let polar_angle = position.y.atan2(position.x);
+    let polar_angle = libm::atan2(position.y, position.x);
     wrap_angle(polar_angle - target.sign() * FRAC_PI_2 - heading)
 }
 

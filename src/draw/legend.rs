@@ -36,7 +36,7 @@ impl Legend {
         let size = (side / SIDE_OVER_SIZE).max(LEGIBLE_SIZE);
         let x = width / 2.0 - CORNER.0 * size;
         let y = (height / 2.0 - CORNER.1 * size).max(0.0);
-        let fits = x >= 0.0 && x.hypot(y) >= CLEAR * side;
+        let fits = x >= 0.0 && libm::hypotf(x, y) >= CLEAR * side;
         Self {
             typeface: fits.then(|| Typeface::new(size)),
         }

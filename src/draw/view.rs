@@ -84,6 +84,6 @@ fn following(flock: &Flock, size: Vec2) -> (Vec2, f64) {
         ((high - low) / 2.0 + Vec2::repeat(length)).sup(&Vec2::repeat(LEAST_LENGTHS * length));
     let room = Vec2::new(size.x, size.y * (1.0 - 2.0 * LEGEND)) / 2.0;
     let scale = room.component_div(&half).min();
-    let step = (scale.log2() * STEPS).floor() / STEPS;
-    ((low + high) / 2.0, step.exp2())
+    let step = (libm::log2(scale) * STEPS).floor() / STEPS;
+    ((low + high) / 2.0, libm::exp2(step))
 }

@@ -165,7 +165,7 @@ fn grid(canvas: &mut Pixmap, view: &View) {
 pub(super) fn grid_spacing(view: &View) -> f64 {
     let least = LEAST_SPACING / view.scale;
     // Whole powers as text are exact, and print as people write them.
-    let decade = least.log10().floor() as i32;
+    let decade = libm::log10(least).floor() as i32;
     let rounded = |step: u8, decade: i32| format!("{step}e{decade}").parse().unwrap_or(least);
     let steps = [1, 2, 5].map(|step| rounded(step, decade));
     let found = steps.into_iter().find(|&spacing| spacing >= least);
@@ -179,7 +179,7 @@ fn arrow(canvas: &mut Pixmap, center: Point, radius: f32, target: Target) {
     // Pixel rows run down: growing angles are clockwise on the frame.
     let turn = target.sign();
     let at = |angle: f64, radius: f32| {
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = libm::sincos(angle);
         (
             center.x + radius * cos as f32,
             center.y + radius * sin as f32,

@@ -92,7 +92,7 @@ impl ContactCredit {
         if normal == 0 {
             return;
         }
-        let forgetting = (-step_s / MEMORY_S).exp();
+        let forgetting = libm::exp(-step_s / MEMORY_S);
         for turned in self.turned.chunks_exact_mut(normal) {
             for (turned, boat) in turned.iter_mut().zip(self.leaders..) {
                 if *turned == Turned::default() {
@@ -102,7 +102,7 @@ impl ContactCredit {
                 let along = flock.boats[boat].axis.dot(&velocity.linear);
                 let rate = flock.motion.turn_damping(velocity.angular, along);
                 turned.angle = forgetting * (turned.angle + turned.spin * step_s);
-                turned.spin *= (-rate * step_s).exp();
+                turned.spin *= libm::exp(-rate * step_s);
             }
         }
     }
@@ -129,7 +129,7 @@ impl ContactCredit {
                 -target.sign() * orientation.x,
                 target.sign() * orientation.y,
             );
-            let (turned_sin, turned_cos) = turned.angle.sin_cos();
+            let (turned_sin, turned_cos) = libm::sincos(turned.angle);
             cos - (cos * turned_cos - sin * turned_sin)
         });
         LeaderCredit {

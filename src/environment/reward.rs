@@ -218,7 +218,7 @@ impl Reward {
             flock_terms(view, target, self.inverse_speed)
         };
         terms[RewardTerm::LeaderVelocity as usize] = target.sign() * clockwise * self.inverse_speed;
-        terms[RewardTerm::RudderEffort as usize] = -view.rudders[leader].powi(2);
+        terms[RewardTerm::RudderEffort as usize] = -(view.rudders[leader] * view.rudders[leader]);
         terms[RewardTerm::ContactPush as usize] = credit.push;
         terms[RewardTerm::ContactAlignment as usize] = credit.alignment;
         terms[RewardTerm::TouchedOrder as usize] = credit.touched_order;
@@ -230,7 +230,7 @@ impl Reward {
 fn flock_terms(view: &FlockView, target: Target, inverse_speed: f64) -> RewardTerms {
     let mut terms = RewardTerms::default();
     if let Some(order) = view.order {
-        let towards = target.sign() * order.phi_v.sin();
+        let towards = target.sign() * libm::sin(order.phi_v);
         terms[RewardTerm::SignedOrder as usize] = order.signed_order(target);
         terms[RewardTerm::TangentialVelocity as usize] = order.psi_v * towards * inverse_speed;
         terms[RewardTerm::Jam as usize] = -jam(order, inverse_speed);
@@ -240,5 +240,5 @@ fn flock_terms(view: &FlockView, target: Target, inverse_speed: f64) -> RewardTe
 
 /// How jammed the flock is, in [0, 1]: aligned, at the outer wall, and standing.
 fn jam(order: &OrderParameters, inverse_speed: f64) -> f64 {
-    order.psi_o * order.phi_o.cos().max(0.0) * (1.0 - order.psi_v * inverse_speed).max(0.0)
+    order.psi_o * libm::cos(order.phi_o).max(0.0) * (1.0 - order.psi_v * inverse_speed).max(0.0)
 }

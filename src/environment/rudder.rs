@@ -84,7 +84,7 @@ impl RudderSettings {
     pub fn servo(&self, period_s: f64) -> Servo {
         Servo {
             follow: if self.lag_s > 0.0 {
-                1.0 - (-period_s / self.lag_s).exp()
+                1.0 - libm::exp(-period_s / self.lag_s)
             } else {
                 1.0
             },

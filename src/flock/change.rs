@@ -50,7 +50,7 @@ fn moved(poses: &[Pose], old: Pool, new: Pool) -> Vec<Pose> {
     }
     let width = |pool: Pool| pool.outer_radius_cm - pool.inner_radius_cm;
     for Pose { position, .. } in &mut poses {
-        let distance = position.x.hypot(position.y);
+        let distance = libm::hypot(position.x, position.y);
         let share = (distance - old.inner_radius_cm) / width(old);
         *position *= (new.inner_radius_cm + share * width(new)) / distance;
     }

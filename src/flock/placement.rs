@@ -103,7 +103,10 @@ impl Region {
             pool.outer_radius_cm - hull.radius
         } else {
             let area = OPEN_WATER_AREAS * hull.area() * parameters.n_boats as f64;
-            let discs = parameters.discs.iter().map(|disc| disc.radius_cm.powi(2));
+            let discs = parameters
+                .discs
+                .iter()
+                .map(|disc| disc.radius_cm * disc.radius_cm);
             (area / PI + inner * inner + discs.sum::<f64>()).sqrt()
         };
         let mut region = Self {
@@ -124,7 +127,7 @@ impl Region {
 
     fn free_area(&self) -> f64 {
         let (inner, outer) = (self.inner - self.hull.radius, self.outer + self.hull.radius);
-        let (inner, outer) = (inner.max(0.0).powi(2), outer * outer);
+        let (inner, outer) = (inner.max(0.0) * inner.max(0.0), outer * outer);
         PI * (outer - inner) * self.free_share(inner, outer)
     }
 
@@ -138,7 +141,7 @@ impl Region {
         let golden = PI * (3.0 - 5.0_f64.sqrt());
         let free = (0..SURVEYED).filter(|&place| {
             let share = (f64::from(place) + 0.5) / f64::from(SURVEYED);
-            let (sin, cos) = (golden * f64::from(place)).sin_cos();
+            let (sin, cos) = libm::sincos(golden * f64::from(place));
             let place = Vec2::new(cos, sin) * (inner + share * (outer - inner)).sqrt();
             let mut obstacles = self.obstacles.iter();
             obstacles.all(|obstacle| obstacle.distance(place) >= 0.0)
@@ -151,8 +154,8 @@ impl Region {
         let square = rng.random_range(self.inner * self.inner..=self.outer * self.outer);
         let (radius, angle) = (square.sqrt(), rng.random_range(-PI..PI));
         Pose::new(
-            radius * angle.cos(),
-            radius * angle.sin(),
+            radius * libm::cos(angle),
+            radius * libm::sin(angle),
             rng.random_range(-PI..PI),
         )
     }

@@ -33,5 +33,5 @@ impl LapFrame {
 
 /// LAP orientation φ = wrap(θ − α) in (−π, π] (figure 3).
 pub fn orientation(pose: &Pose) -> f64 {
-    wrap_angle(pose.position.y.atan2(pose.position.x) - pose.heading)
+    wrap_angle(libm::atan2(pose.position.y, pose.position.x) - pose.heading)
 }

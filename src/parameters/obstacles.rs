@@ -59,7 +59,7 @@ impl ObstacleRow for Disc {
     }
 
     fn distances(&self) -> (f64, f64) {
-        let center = self.x_cm.hypot(self.y_cm);
+        let center = libm::hypot(self.x_cm, self.y_cm);
         ((center - self.radius_cm).max(0.0), center + self.radius_cm)
     }
 
@@ -91,8 +91,11 @@ impl ObstacleRow for Wall {
         let (x, y) = (self.x1_cm - self.x0_cm, self.y1_cm - self.y0_cm);
         let along = -(self.x0_cm * x + self.y0_cm * y) / (x * x + y * y);
         let along = along.clamp(0.0, 1.0);
-        let nearest = (self.x0_cm + along * x).hypot(self.y0_cm + along * y);
-        let ends = [self.x0_cm.hypot(self.y0_cm), self.x1_cm.hypot(self.y1_cm)];
+        let nearest = libm::hypot(self.x0_cm + along * x, self.y0_cm + along * y);
+        let ends = [
+            libm::hypot(self.x0_cm, self.y0_cm),
+            libm::hypot(self.x1_cm, self.y1_cm),
+        ];
         (nearest, ends[0].max(ends[1]))
     }
 
@@ -116,7 +119,7 @@ impl ObstacleRow for Wall {
 impl Wall {
     /// Its length in cm.
     pub fn length_cm(&self) -> f64 {
-        (self.x1_cm - self.x0_cm).hypot(self.y1_cm - self.y0_cm)
+        libm::hypot(self.x1_cm - self.x0_cm, self.y1_cm - self.y0_cm)
     }
 }
 

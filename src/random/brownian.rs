@@ -1,92 +1,51 @@
 //! Brownian paths that can be read at any time, from keyed normal draws.
 //!
-//! The noise stream is keyed, not consumed: a draw is a function of (seed, cell of time, boat), so two
+//! The noise is keyed, not consumed: a draw is a function of (seed, boat, place in time), so two
 //! policies or two control rates on one seed meet the same noise, and a snapshot needs to hold no
 //! generator.
 
-use super::streams::{Stream, StreamRng};
-use rand::distr::Distribution;
+use super::normal::{Ziggurat, scramble};
+use super::streams::Stream;
 use rand_chacha::rand_core::Rng;
-use rand_distr::StandardNormal;
 
-/// Standard normal draws keyed by (cell, node, boat).
+/// Standard normal draws keyed by (boat, cell, node).
 #[derive(Debug, Clone)]
 struct KeyedNormals {
-    /// At its start.
-    words: StreamRng,
-    tail: StreamRng,
+    /// One a boat.
+    keys: Vec<u64>,
+    ziggurat: Ziggurat,
 }
 
 impl KeyedNormals {
-    fn new(seed: u64) -> Self {
+    fn new(seed: u64, boats: usize) -> Self {
+        let mut words = Stream::Noise.rng(seed);
         Self {
-            words: Stream::Noise.rng(seed),
-            tail: Stream::NoiseTail.rng(seed),
+            keys: (0..boats).map(|_| words.next_u64()).collect(),
+            ziggurat: Ziggurat::new(),
         }
     }
 
-    /// `draws[boat] = N(0, 1)` for (cell, node): one 64-bit word a boat, and a private stretch of
-    /// the tail stream in the 1.2 % of draws where the ziggurat wants more.
-    fn fill(&mut self, cell: u64, node: u32, draws: &mut [f64]) {
-        // A generator that has handed out words fills its buffer again at every change of place: a fresh
-        // copy, only once.
-        let mut words = self.words.clone();
-        words.set_stream(cell);
-        if node > 0 {
-            words.set_word_pos(u128::from(node) << 32);
-        }
-        for (boat, draw) in draws.iter_mut().enumerate() {
-            let place = (u128::from(node) << 28 | boat as u128) << 8;
-            let first = Some(words.next_u64());
-            let mut source = OneWordThenTail {
-                first,
-                tail: &mut self.tail,
-                cell,
-                place,
-            };
-            *draw = StandardNormal.sample(&mut source);
-        }
+    /// N(0, 1) of each boat for (cell, node).
+    #[inline]
+    fn draws(&self, cell: u64, node: u64) -> impl Iterator<Item = f64> {
+        let place = scramble(scramble(cell).wrapping_add(node));
+        let words = self.keys.iter().map(move |key| key.wrapping_add(place));
+        words.map(|word| self.ziggurat.normal(scramble(word)))
     }
 }
 
-/// Hands out one given word, then words from a tail stream that is positioned only if needed.
-struct OneWordThenTail<'a> {
-    first: Option<u64>,
-    tail: &'a mut StreamRng,
-    cell: u64,
-    place: u128,
-}
-
-impl rand_chacha::rand_core::TryRng for OneWordThenTail<'_> {
-    type Error = std::convert::Infallible;
-
-    fn try_next_u32(&mut self) -> Result<u32, Self::Error> {
-        Ok(self.try_next_u64()? as u32)
-    }
-
-    fn try_next_u64(&mut self) -> Result<u64, Self::Error> {
-        if let Some(word) = self.first.take() {
-            return Ok(word);
-        }
-        self.tail.set_stream(self.cell);
-        self.tail.set_word_pos(self.place);
-        self.place += 2;
-        Ok(self.tail.next_u64())
-    }
-
-    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Self::Error> {
-        for chunk in bytes.chunks_mut(8) {
-            chunk.copy_from_slice(&self.try_next_u64()?.to_le_bytes()[..chunk.len()]);
-        }
-        Ok(())
-    }
-}
+/// How often a cell is halved. Below that each time has a draw of its own.
+const HALVINGS: u32 = 10;
 
 /// A Brownian path per boat, readable at any time: the same path however the time axis is cut.
 ///
 /// Time is counted in half ticks. The axis is divided in cells of one full substep; the increment
-/// over a whole cell is one draw, and increments over a part of a cell follow from a Brownian bridge
-/// that is refined by bisection down to the requested time.
+/// over a whole cell is one draw. Inside of a cell the path follows from Brownian bridges: a bisection
+/// down to leaves of 1/1024 of the cell, then one bridge across the leaf with a draw keyed by the time.
+///
+/// The path is a function of time, so increments over parts add up to the whole. Increments have the exact joint
+/// law of Brownian motion while no two of their ends lie inside of the same leaf. The bridges of two such
+/// ends are independent: the variance of the increment between them exceeds its length by at most half a leaf's.
 #[derive(Debug, Clone)]
 pub struct BrownianPaths {
     normals: KeyedNormals,
@@ -94,10 +53,22 @@ pub struct BrownianPaths {
     cell_length: u64,
     /// Cell j covers [j·length − shift, (j + 1)·length − shift).
     shift: u64,
-    /// Scratch: draws of a cell or node, one per boat.
-    draws: Vec<f64>,
+    /// Most increments start where the one before ended.
+    last: Reading,
+    /// Scratch: the paths at both ends of an interval, one value per boat.
     low: Vec<f64>,
     high: Vec<f64>,
+}
+
+/// The paths at a place inside of a cell.
+#[derive(Debug, Clone)]
+struct Reading {
+    /// The cell, and how many half ticks after its start; `None` before anything was read.
+    place: Option<(u64, u64)>,
+    /// Increments since the cell's start, one per boat.
+    path: Vec<f64>,
+    /// Increments over the whole cell, one per boat.
+    whole: Vec<f64>,
 }
 
 /// Half a tick of 1 ns, in seconds.
@@ -109,10 +80,14 @@ impl BrownianPaths {
     pub fn new(seed: u64, boats: usize, cell_length: u64, shift: u64) -> Self {
         let zeros = vec![0.0; boats];
         Self {
-            normals: KeyedNormals::new(seed),
+            normals: KeyedNormals::new(seed, boats),
             cell_length,
             shift,
-            draws: zeros.clone(),
+            last: Reading {
+                place: None,
+                path: zeros.clone(),
+                whole: zeros.clone(),
+            },
             low: zeros.clone(),
             high: zeros,
         }
@@ -127,54 +102,87 @@ impl BrownianPaths {
             let start = cell * self.cell_length;
             let a = from.max(start) - start;
             let b = to.min(start + self.cell_length) - start;
-            self.add_path_value(cell, b, 1.0, increments);
-            self.add_path_value(cell, a, -1.0, increments);
+            if a > 0 {
+                self.read(cell, a);
+                add(increments, -1.0, &self.last.path);
+            }
+            if b < self.cell_length {
+                self.read(cell, b);
+                add(increments, 1.0, &self.last.path);
+            } else if a > 0 {
+                add(increments, 1.0, &self.last.whole);
+            } else {
+                let scale = (self.cell_length as f64 * HALF_TICK_S).sqrt();
+                let draws = self.normals.draws(cell, 0);
+                increments
+                    .iter_mut()
+                    .zip(draws)
+                    .for_each(|(sum, draw)| *sum += scale * draw);
+            }
         }
     }
 
     /// Draws keyed by a time, for noise that is defined a step at a time.
     pub(crate) fn step_draws(&mut self, time: u64, draws: &mut [f64]) {
-        self.normals.fill(time, 0, draws);
+        let found = self.normals.draws(time, 0);
+        draws
+            .iter_mut()
+            .zip(found)
+            .for_each(|(draw, found)| *draw = found);
     }
 
-    /// Adds `sign` times the path's value at `offset` half ticks into a cell, 0 at its start.
-    fn add_path_value(&mut self, cell: u64, offset: u64, sign: f64, sums: &mut [f64]) {
-        if offset == 0 {
+    /// Has `last` be the paths at `offset` half ticks into a cell, which is strictly inside of it.
+    fn read(&mut self, cell: u64, offset: u64) {
+        let Reading { place, path, whole } = &mut self.last;
+        let known = place.replace((cell, offset));
+        if known == Some((cell, offset)) {
             return;
         }
-        let (mut start, mut end, mut node) = (0_u64, self.cell_length, 1_u32);
-        let scale = (end as f64 * HALF_TICK_S).sqrt();
-        self.normals.fill(cell, 0, &mut self.high);
-        if offset == end {
-            sums.iter_mut()
-                .zip(&self.high)
-                .for_each(|(sum, draw)| *sum += sign * scale * draw);
-            return;
+        if known.is_none_or(|(known, _)| known != cell) {
+            let scale = (self.cell_length as f64 * HALF_TICK_S).sqrt();
+            let draws = self.normals.draws(cell, 0);
+            whole
+                .iter_mut()
+                .zip(draws)
+                .for_each(|(whole, draw)| *whole = scale * draw);
         }
-        self.high.iter_mut().for_each(|value| *value *= scale);
-        self.low.fill(0.0);
+        let (low, high) = (&mut self.low, &mut self.high);
+        low.fill(0.0);
+        high.copy_from_slice(whole);
+        let (mut start, mut end, mut node) = (0, self.cell_length, 1_u64);
         loop {
-            let middle = start + (end - start) / 2;
-            self.normals.fill(cell, node, &mut self.draws);
+            // Nodes of the bisection come first, then times.
+            let (middle, key) = if node < 1 << HALVINGS {
+                (start + (end - start) / 2, node)
+            } else {
+                (offset, (1 << HALVINGS) + offset)
+            };
             let (left, right) = ((middle - start) as f64, (end - middle) as f64);
-            let spread = (left * right / (left + right) * HALF_TICK_S).sqrt();
-            for ((draw, low), high) in self.draws.iter_mut().zip(&self.low).zip(&self.high) {
-                *draw = (low * right + high * left) / (left + right) + spread * *draw;
-            }
+            let (to_low, to_high) = (right / (left + right), left / (left + right));
+            let spread = (left * to_low * HALF_TICK_S).sqrt();
+            let ends = low.iter().zip(&*high).zip(self.normals.draws(cell, key));
+            path.iter_mut()
+                .zip(ends)
+                .for_each(|(path, ((low, high), draw))| {
+                    *path = low * to_low + high * to_high + spread * draw;
+                });
             if middle == offset {
-                break;
+                return;
             }
-            let beyond = offset > middle;
-            if beyond {
+            if offset > middle {
                 (start, node) = (middle, 2 * node + 1);
-                std::mem::swap(&mut self.low, &mut self.draws);
+                low.copy_from_slice(path);
             } else {
                 (end, node) = (middle, 2 * node);
-                std::mem::swap(&mut self.high, &mut self.draws);
+                high.copy_from_slice(path);
             }
         }
-        sums.iter_mut()
-            .zip(&self.draws)
-            .for_each(|(sum, value)| *sum += sign * value);
     }
+}
+
+/// Adds `sign` times each value.
+fn add(sums: &mut [f64], sign: f64, values: &[f64]) {
+    sums.iter_mut()
+        .zip(values)
+        .for_each(|(sum, value)| *sum += sign * value);
 }

@@ -16,8 +16,6 @@ pub(crate) enum Stream {
     Placement,
     /// η of eq. (9).
     Noise,
-    /// Further words for the few noise draws that need more than one.
-    NoiseTail,
     /// Tracking drop-outs of the observation.
     Sensing,
     /// Per-boat differences of speed.
@@ -33,7 +31,6 @@ impl Stream {
         match self {
             Self::Placement => b"placement",
             Self::Noise => b"noise",
-            Self::NoiseTail => b"noise-tail",
             Self::Sensing => b"sensing",
             Self::SpeedSpread => b"speed-spread",
             Self::Episode => b"episode",

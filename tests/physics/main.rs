@@ -1,5 +1,9 @@
 //! The laws of the physics, one file per law: each opens with the law it checks and starts with a case
 //! whose answer is known on paper. Slow tests are ignored by default: `cargo test -- --ignored`.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "the machine's own elementary functions check those of the library"
+)]
 
 mod dense_reference;
 mod support;
@@ -30,6 +34,7 @@ mod placement;
 mod published;
 mod pushing;
 mod quantities;
+mod same_bits;
 mod scaling;
 mod sliding;
 mod slivers;

@@ -104,7 +104,7 @@ impl FlockFeatures {
         for leader in leaders {
             for boat in normal {
                 let square = (boat.center - leader.center).norm_squared();
-                let weight = (-self.near * square).exp();
+                let weight = libm::exp(-self.near * square);
                 let values = [1.0, boat.outward, boat.ahead, boat.velocity_ahead];
                 for (sum, value) in sums.iter_mut().zip(values) {
                     *sum += weight * value;

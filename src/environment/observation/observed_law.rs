@@ -62,7 +62,7 @@ impl ObservedLaw {
         // δ = φ − φ_target with φ_target = ±π/2.
         let sin = -target * read(self.cos_orientation);
         let cos = target * read(self.sin_orientation);
-        let mut misalignment = sin.atan2(cos);
+        let mut misalignment = libm::atan2(sin, cos);
         if outward != 0.0 {
             // Outward of the tangent is counter-clockwise for a clockwise target.
             misalignment += target * outward;

@@ -126,7 +126,7 @@ fn order(view: &FlockView) -> [f64; ORDER.len()] {
     let Some(order) = view.order else {
         return [0.0; ORDER.len()];
     };
-    let ((sin_o, cos_o), (sin_v, cos_v)) = (order.phi_o.sin_cos(), order.phi_v.sin_cos());
+    let ((sin_o, cos_o), (sin_v, cos_v)) = (libm::sincos(order.phi_o), libm::sincos(order.phi_v));
     [
         order.psi_o * cos_o,
         order.psi_o * sin_o,

@@ -111,7 +111,7 @@ fn orientation(view: &FlockView, leader: usize, frame: &LapFrame) -> (f64, f64) 
         return (orientation.x, orientation.y);
     }
     let pose = &view.poses[leader];
-    let (sin, cos) = misalignment(pose.position, pose.heading, target).sin_cos();
+    let (sin, cos) = libm::sincos(misalignment(pose.position, pose.heading, target));
     (-towards * sin, towards * cos)
 }
 

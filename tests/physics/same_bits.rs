@@ -1,0 +1,80 @@
+//! The same seed gives the same bits on every machine: no function of its own mathematical library, no width of
+//! its registers or pointers has a part in them.
+//!
+//! On paper: nothing. The numbers are those of an x86-64 machine, and of WebAssembly in Node.
+
+use flockenv::parameters::{FlockParameters, Noise, Pool, Preset};
+use flockenv::{Flock, Result};
+
+/// A hash (FNV-1a) of the poses, velocities and order parameters of 27 boats with three leaders, which follow the
+/// paper's law, after so many seconds.
+fn hash(pool: Pool, bw_s: f64, noise: Noise, seconds: u32) -> Result<u64> {
+    let mut flock = Flock::new(
+        FlockParameters {
+            n_boats: 27,
+            n_leaders: 3,
+            pool,
+            bw_s,
+            noise_scheme: noise,
+            ..FlockParameters::preset(Preset::Simulation)
+        },
+        7,
+    )?;
+    flock.advance(f64::from(seconds), None)?;
+    let order = flock.order_parameters(false)?;
+    let boats = flock.poses().iter().zip(flock.velocities());
+    let numbers = boats.flat_map(|(pose, velocity)| {
+        let (x, v) = (pose.position, velocity.linear);
+        [x.x, x.y, pose.heading, v.x, v.y, velocity.angular]
+    });
+    let order = [
+        order.psi_o,
+        order.phi_o,
+        order.c_o,
+        order.psi_v,
+        order.phi_v,
+        order.c_v,
+    ];
+    let bytes = numbers
+        .chain(order)
+        .flat_map(|number| number.to_bits().to_le_bytes());
+    Ok(bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)
+    }))
+}
+
+#[test]
+fn a_minute_and_ten_minutes_end_in_the_same_bits_on_every_machine() {
+    let (wide, narrow) = ((Pool::WIDE, 0.31), (Pool::NARROW, 0.45));
+    for ((pool, bw_s), noise, after_60_s, after_600_s) in [
+        (
+            wide,
+            Noise::White,
+            0x19b9_7cec_7256_3365,
+            0x91e5_580b_8db5_91b4,
+        ),
+        (
+            wide,
+            Noise::PerStep,
+            0xf59f_d80a_3da7_341b,
+            0x5319_0ae5_29f7_5b05,
+        ),
+        (
+            narrow,
+            Noise::White,
+            0xe590_a851_efa1_c6e0,
+            0xd2b4_1029_9776_7328,
+        ),
+        (
+            narrow,
+            Noise::PerStep,
+            0x1e56_d0a7_770b_d126,
+            0x6201_e4a2_31be_0cea,
+        ),
+    ] {
+        for (seconds, expected) in [(60, after_60_s), (600, after_600_s)] {
+            let found = hash(pool, bw_s, noise, seconds).expect("finite motion");
+            assert_eq!(found, expected, "{noise:?} {seconds} s: {found:#x}");
+        }
+    }
+}
