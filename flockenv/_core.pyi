@@ -8,7 +8,6 @@ from typing_extensions import disjoint_base
 from flockenv.parameters import FlockParameters
 
 __all__ = [
-    "FIRST_PARAMETERS",
     "JAM_ANGLE",
     "ORDERED_WITHIN",
     "TOWARDS_TARGET",
@@ -75,7 +74,6 @@ __version__: str
 TOWARDS_TARGET: float
 JAM_ANGLE: float
 USES_AVX2: bool
-FIRST_PARAMETERS: int
 ORDERED_WITHIN: tuple[float, float]
 
 def preset_names() -> list[str]: ...

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from flockenv import _core
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import OrderSeries
 from flockenv.parameters import FlockParameters
@@ -114,14 +113,7 @@ class RunSpec:
     def to_json(self) -> str:
         """Return the spec as JSON with sorted keys: equal specs, equal text."""
         plain = {each.name: getattr(self, each.name) for each in fields(self)}
-        # Parameters that were added since the first version change no key where they have defaults.
-        parameters, defaults = self.parameters.to_dict(), FlockParameters().to_dict()
-        added = list(parameters)[_core.FIRST_PARAMETERS :]
-        plain["parameters"] = {
-            name: value
-            for name, value in parameters.items()
-            if name not in added or value != defaults[name]
-        }
+        plain["parameters"] = self.parameters.to_dict()
         return json.dumps(plain, sort_keys=True)
 
     @property
@@ -141,7 +133,7 @@ class RunSpec:
 
 
 def execute(spec: RunSpec) -> Recording:
-    """Make a run: a pure function, the same bits in any thread or process of a machine.
+    """Make a run: a pure function, the same bits in any thread, process and machine.
 
     Returns
     -------

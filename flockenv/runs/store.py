@@ -36,7 +36,7 @@ RUNS_FOLDER = "runs"
 RESULTS_VERSION = 4
 """Rises whenever the same spec comes to give other numbers: stored runs are then redone."""
 
-_FORMAT = "flockenv run 2"
+_FORMAT = "flockenv run 1"
 
 
 class StorageError(FlockError, OSError):

@@ -24,7 +24,7 @@ named_choice! {
 pub const LARGEST_LEAN: f64 = 1.2;
 
 /// How actions are read, and how long they are held.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ActionSettings {
     /// What an action stands for.
     pub mode: ActionMode,

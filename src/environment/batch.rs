@@ -1,35 +1,15 @@
 //! Many environments stepped in parallel. Each one's bits are its own: they depend neither on the batch
 //! it is in nor on the number of threads.
 
-use super::averages::FirstAverages;
-use super::credit::{ContactCredit, NoCredit};
-use super::flock_env::{StoredEnv, StoredLeaders};
-use super::options::NamedSettings;
-use super::reward::FirstTerms;
-use super::{Averages, EnvSettings, FlockEnv, ResetRequest, Terms};
+use super::flock_env::StoredEnv;
+use super::{EnvSettings, FlockEnv, ResetRequest};
 use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
 use crate::parallel;
-use crate::parameters::{FirstParameters, FlockParameters};
+use crate::parameters::FlockParameters;
 use crate::sealed_bytes::{Magic, seal, unseal};
 
-const MAGIC: Magic = Magic {
-    now: *b"flocken4",
-    earlier: &[FORMAT_3, FORMAT_2],
-    first: &[*b"flocken1"],
-};
-/// Like format 4, but without the leaders' own sums.
-const FORMAT_3: [u8; 8] = *b"flocken3";
-const FORMAT_2: [u8; 8] = *b"flocken2";
-
-/// What is stored of a batch up to format 3; since then it comes first.
-type StoredBatch<
-    S = NamedSettings,
-    P = FlockParameters,
-    A = Averages,
-    T = Terms,
-    C = Option<ContactCredit>,
-> = (S, Vec<P>, Vec<StoredEnv<A, T, C>>);
+const MAGIC: Magic = *b"flocken1";
 
 /// Where a step writes: one row per leader, flock after flock, and one flag per flock.
 #[derive(Debug)]
@@ -208,9 +188,7 @@ impl EnvBatch {
     pub fn to_bytes(&self) -> Vec<u8> {
         let members: Vec<_> = self.envs.iter().map(FlockEnv::parameters).collect();
         let states: Vec<_> = self.envs.iter().map(FlockEnv::stored).collect();
-        let leaders: Vec<_> = self.envs.iter().map(FlockEnv::stored_leaders).collect();
-        let settings = NamedSettings(self.settings.clone());
-        seal(&MAGIC, &((settings, members, states), leaders))
+        seal(&MAGIC, &(&self.settings, members, states))
     }
 
     /// A batch from its bytes.
@@ -218,47 +196,14 @@ impl EnvBatch {
     /// # Errors
     /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed batch.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        if bytes.starts_with(&MAGIC.now) {
-            let (stored, leaders) = unseal::<(StoredBatch, Vec<StoredLeaders>)>(&MAGIC, bytes)?;
-            let mut batch = Self::of_stored(stored)?;
-            if leaders.len() != batch.envs.len() {
-                return Err(FlockError::Snapshot("the batch is not whole".to_owned()));
-            }
-            for (env, leaders) in batch.envs.iter_mut().zip(leaders) {
-                env.restore_leaders(leaders)?;
-            }
-            Ok(batch)
-        } else if bytes.starts_with(&FORMAT_3) {
-            Self::of_stored(unseal::<StoredBatch>(&MAGIC, bytes)?)
-        } else if bytes.starts_with(&FORMAT_2) {
-            type Stored =
-                StoredBatch<NamedSettings, FlockParameters, Averages, FirstTerms, NoCredit>;
-            Self::of_stored(unseal::<Stored>(&MAGIC, bytes)?)
-        } else {
-            type Stored =
-                StoredBatch<EnvSettings, FirstParameters, FirstAverages, FirstTerms, NoCredit>;
-            Self::of_stored(unseal::<Stored>(&MAGIC, bytes)?)
-        }
-    }
-
-    fn of_stored<S, P, A, T, C>(
-        (settings, members, states): StoredBatch<S, P, A, T, C>,
-    ) -> Result<Self>
-    where
-        S: Into<EnvSettings>,
-        P: Into<FlockParameters>,
-        C: Into<Option<ContactCredit>>,
-        Averages: From<A>,
-        Terms: From<T>,
-    {
-        let settings: EnvSettings = settings.into();
-        let members = members.into_iter().map(Into::into).collect();
-        let mut batch = Self::new(settings.clone(), members)?;
+        let (settings, members, states): (EnvSettings, Vec<_>, Vec<StoredEnv>) =
+            unseal(&MAGIC, bytes)?;
+        let mut batch = Self::new(settings, members)?;
         if states.len() != batch.envs.len() {
             return Err(FlockError::Snapshot("the batch is not whole".to_owned()));
         }
         for (env, stored) in batch.envs.iter_mut().zip(states) {
-            *env = env.restored(&settings, stored)?;
+            *env = env.restored(&batch.settings, stored)?;
         }
         Ok(batch)
     }

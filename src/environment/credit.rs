@@ -139,13 +139,3 @@ impl ContactCredit {
         }
     }
 }
-
-/// What stands for the credit in states of formats 1 and 2, which hold none.
-#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
-pub struct NoCredit;
-
-impl From<NoCredit> for Option<ContactCredit> {
-    fn from(_: NoCredit) -> Self {
-        None
-    }
-}

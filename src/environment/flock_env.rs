@@ -1,29 +1,23 @@
 //! One flock as an environment: an episode after another, each seeded.
 
-use super::credit::ContactCredit;
 use super::episode::StoredEpisode;
 use super::observation::{FlockFeatures, StateObserver};
-use super::statistics::{LeaderSummary, LeaderSums};
-use super::{
-    Autoreset, Averages, EnvSettings, Episode, EpisodeSeeds, EpisodeSummary, ResetRequest, Servo,
-    Terms,
-};
+use super::statistics::LeaderSummary;
+use super::{Autoreset, EnvSettings, Episode, EpisodeSeeds, EpisodeSummary, ResetRequest, Servo};
 use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
 use crate::parameters::FlockParameters;
 
 /// What is stored of an environment.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-pub(crate) struct StoredEnv<A = Averages, T = Terms, C = Option<ContactCredit>> {
+pub(crate) struct StoredEnv {
     seeds: Option<EpisodeSeeds>,
-    episode: Option<StoredEpisode<A, T, C>>,
-    finished: Option<EpisodeSummary<A, T>>,
+    episode: Option<StoredEpisode>,
+    finished: Option<EpisodeSummary>,
+    finished_leaders: Vec<LeaderSummary>,
     final_observation: Vec<f32>,
     final_state: Vec<f32>,
 }
-
-/// What is stored of an environment's leaders: sums of the episode under way, summaries of the last one.
-pub(crate) type StoredLeaders = (Vec<LeaderSums>, Vec<LeaderSummary>);
 
 /// A flock with its episodes.
 #[derive(Debug, Clone)]
@@ -250,48 +244,17 @@ impl FlockEnv {
             seeds: self.seeds,
             episode: self.episode.as_ref().map(Episode::stored),
             finished: self.finished,
+            finished_leaders: self.finished_leaders.clone(),
             final_observation: self.final_observation.clone(),
             final_state: self.final_state.clone(),
         }
-    }
-
-    /// What is stored of its leaders since format 4.
-    pub(crate) fn stored_leaders(&self) -> StoredLeaders {
-        let episode = self.episode.as_ref().map(Episode::stored_leaders);
-        (episode.unwrap_or_default(), self.finished_leaders.clone())
-    }
-
-    /// Puts back what [`Self::stored_leaders`] gave.
-    ///
-    /// # Errors
-    /// [`FlockError::Snapshot`] if it does not belong to such an environment.
-    pub(crate) fn restore_leaders(&mut self, (sums, finished): StoredLeaders) -> Result<()> {
-        match &mut self.episode {
-            Some(episode) => episode.restore_leaders(sums)?,
-            None if sums.is_empty() => {}
-            None => {
-                let message = "the state holds sums of leaders without an episode";
-                return Err(FlockError::Snapshot(message.to_owned()));
-            }
-        }
-        self.finished_leaders = finished;
-        Ok(())
     }
 
     /// The environment as it was stored.
     ///
     /// # Errors
     /// [`FlockError::Snapshot`] if the state does not belong to such an environment.
-    pub(crate) fn restored<A, T, C>(
-        &self,
-        settings: &EnvSettings,
-        stored: StoredEnv<A, T, C>,
-    ) -> Result<Self>
-    where
-        Averages: From<A>,
-        Terms: From<T>,
-        C: Into<Option<ContactCredit>>,
-    {
+    pub(crate) fn restored(&self, settings: &EnvSettings, stored: StoredEnv) -> Result<Self> {
         let whole = self.parameters.n_leaders * settings.observation.size();
         let episode = stored
             .episode
@@ -309,7 +272,8 @@ impl FlockEnv {
         let mut restored = Self::new(settings, self.parameters.clone());
         restored.seeds = stored.seeds;
         restored.episode = episode;
-        restored.finished = stored.finished.map(EpisodeSummary::restored);
+        restored.finished = stored.finished;
+        restored.finished_leaders = stored.finished_leaders;
         restored.final_observation = stored.final_observation;
         restored.final_state = stored.final_state;
         Ok(restored)

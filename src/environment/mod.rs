@@ -23,7 +23,7 @@ pub use episode::Episode;
 pub use flock_env::FlockEnv;
 pub use options::{EnvOption, OPTIONS, OptionValue};
 pub use reset::{ResetRequest, Start};
-pub use reward::{Reward, RewardTerm, RewardTerms, RewardWeights, TERMS, Terms};
+pub use reward::{Reward, RewardTerm, RewardTerms, RewardWeights, TERMS};
 pub use rudder::{RudderSettings, Servo};
 pub use schedule::{EpisodeSchedule, EpisodeSeeds, EpisodeSettings, TargetChoice};
 pub use settings::{Autoreset, EnvSettings};

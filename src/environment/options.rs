@@ -4,11 +4,9 @@
 use super::observation::{Block, ObservationLayout};
 use super::{ActionMode, Autoreset, EnvSettings, RewardTerm, RewardWeights, TERMS, TargetChoice};
 use crate::error::{FlockError, Result};
-use serde::de::Error;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// An option's value as it is given, shown outside and stored.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// An option's value as it is given and shown outside.
+#[derive(Debug, Clone, PartialEq)]
 pub enum OptionValue {
     /// A real number.
     Real(f64),
@@ -211,37 +209,4 @@ declare_options! {
     rudder_rate_per_s: rudder.rate_per_s;
     /// what happens at an episode's end in the vector environment: "next_step", "same_step" or "disabled"
     autoreset_mode: autoreset;
-}
-
-/// Settings as they are stored: by the names of their options, so that a state from before an option was added
-/// has its default.
-#[derive(Debug)]
-pub struct NamedSettings(pub EnvSettings);
-
-impl From<NamedSettings> for EnvSettings {
-    fn from(named: NamedSettings) -> Self {
-        named.0
-    }
-}
-
-impl Serialize for NamedSettings {
-    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        let options = OPTIONS.iter();
-        let named: Vec<_> = options
-            .map(|option| (option.name, (option.get)(&self.0)))
-            .collect();
-        named.serialize(serializer)
-    }
-}
-
-impl<'de> Deserialize<'de> for NamedSettings {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        let mut settings = EnvSettings::default();
-        for (name, value) in Vec::<(String, OptionValue)>::deserialize(deserializer)? {
-            let option = OPTIONS.iter().find(|option| option.name == name);
-            let option = option.ok_or_else(|| D::Error::custom("an unknown option"))?;
-            (option.set)(&mut settings, value).map_err(D::Error::custom)?;
-        }
-        Ok(Self(settings))
-    }
 }

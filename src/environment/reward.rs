@@ -6,7 +6,6 @@ use crate::analysis::OrderParameters;
 use crate::error::{FlockError, Result};
 use crate::geometry::LapFrame;
 use crate::parameters::{FlockParameters, Target, named_choice};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 named_choice! {
     /// A term of the reward.
@@ -90,52 +89,8 @@ impl RewardTerm {
     }
 }
 
-/// Terms as they are stored since format 3: as many as there were then, in the order of [`RewardTerm::ALL`], to
-/// which new ones are appended.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Terms(pub RewardTerms);
-
-impl Serialize for Terms {
-    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        self.0.as_slice().serialize(serializer)
-    }
-}
-
-impl<'de> Deserialize<'de> for Terms {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        Ok(Self::of_earlier(&Vec::deserialize(deserializer)?))
-    }
-}
-
-impl Terms {
-    fn of_earlier(stored: &[f64]) -> Self {
-        let mut terms = Self::default();
-        for (term, value) in terms.0.iter_mut().zip(stored) {
-            *term = *value;
-        }
-        terms
-    }
-}
-
-/// Terms, or their weights, as states of formats 1 and 2 hold them.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-pub struct FirstTerms([f64; 5]);
-
-impl From<FirstTerms> for Terms {
-    fn from(first: FirstTerms) -> Self {
-        Self::of_earlier(&first.0)
-    }
-}
-
-impl From<FirstTerms> for RewardWeights {
-    fn from(first: FirstTerms) -> Self {
-        Self(Terms::from(first).0)
-    }
-}
-
 /// A weight for each term.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[serde(from = "FirstTerms")]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct RewardWeights(pub RewardTerms);
 
 impl Default for RewardWeights {

@@ -17,9 +17,8 @@ named_choice! {
     }
 }
 
-/// The settings of an environment. States of format 1 hold them in this order; what was added since is left out of
-/// it by `#[serde(skip)]`.
-#[derive(Debug, Clone, PartialEq, serde::Deserialize)]
+/// The settings of an environment.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct EnvSettings {
     /// Episodes.
     pub episode: EpisodeSettings,
@@ -34,10 +33,8 @@ pub struct EnvSettings {
     /// What happens at an episode's end.
     pub autoreset: Autoreset,
     /// What actions stand for, and how long they are held.
-    #[serde(skip)]
     pub action: ActionSettings,
     /// Time in s over which rewards are means; `None`: one control step.
-    #[serde(skip)]
     pub reward_horizon_s: Option<f64>,
 }
 

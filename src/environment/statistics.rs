@@ -1,7 +1,7 @@
 //! Sums over an episode, and the summary given at its end.
 
 use super::Averages;
-use super::{EpisodeSchedule, RewardTerms, TERMS, Terms};
+use super::{EpisodeSchedule, RewardTerms, TERMS};
 use crate::analysis::OrderParameters;
 use crate::analysis::collective_state::OrderingWatch;
 use crate::analysis::quantities::Boats;
@@ -16,41 +16,22 @@ pub const ORDERED_WITHIN: [f64; 2] = [PI / 20.0, PI / 4.0];
 
 /// Sums over the control steps of an episode.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
-pub(super) struct EpisodeStatistics<A = Averages, T = Terms> {
-    terms: T,
+pub(super) struct EpisodeStatistics {
+    terms: RewardTerms,
     reward: f64,
     window_steps: u32,
-    averages: A,
+    averages: Averages,
     steps_towards_target: u32,
     ordering: [OrderingWatch; 2],
     clipped: u64,
     observed: u64,
 }
 
-impl<A, T> EpisodeStatistics<A, T> {
-    /// The statistics as a state of any format has them.
-    pub(super) fn restored<B: From<A>>(self) -> EpisodeStatistics<B>
-    where
-        Terms: From<T>,
-    {
-        EpisodeStatistics {
-            terms: self.terms.into(),
-            reward: self.reward,
-            window_steps: self.window_steps,
-            averages: self.averages.into(),
-            steps_towards_target: self.steps_towards_target,
-            ordering: self.ordering,
-            clipped: self.clipped,
-            observed: self.observed,
-        }
-    }
-}
-
 impl EpisodeStatistics {
     /// Adds a leader's terms and reward in one step, as its share of the leaders' mean.
     pub(super) fn add_reward(&mut self, share: f64, terms: &RewardTerms, reward: f64) {
         self.reward += share * reward;
-        for (sum, term) in self.terms.0.iter_mut().zip(terms) {
+        for (sum, term) in self.terms.iter_mut().zip(terms) {
             *sum += share * term;
         }
     }
@@ -99,7 +80,7 @@ impl EpisodeStatistics {
     pub(super) fn summary(&self, schedule: &EpisodeSchedule) -> EpisodeSummary {
         let steps = f64::from(schedule.step);
         let mut terms = [0.0; TERMS];
-        for (mean, sum) in terms.iter_mut().zip(&self.terms.0) {
+        for (mean, sum) in terms.iter_mut().zip(&self.terms) {
             *mean = sum / steps;
         }
         let window = f64::from(self.window_steps);
@@ -108,7 +89,7 @@ impl EpisodeStatistics {
             bw_s: schedule.bw_s,
             steps: schedule.step,
             total_reward: self.reward,
-            terms: Terms(terms),
+            terms,
             averages: self.averages.over(window),
             share_towards_target: f64::from(self.steps_towards_target) / window,
             ordering_times_s: self.ordering.map(|watch| watch.ordering_time_s()),
@@ -151,7 +132,7 @@ pub struct LeaderSummary {
 
 /// The summary of an episode.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct EpisodeSummary<A = Averages, T = Terms> {
+pub struct EpisodeSummary {
     /// Seed of its flock.
     pub flock_seed: u64,
     /// Its backward duration: length of the backward phase in s.
@@ -161,10 +142,10 @@ pub struct EpisodeSummary<A = Averages, T = Terms> {
     /// Sum of the rewards, mean over leaders.
     pub total_reward: f64,
     /// Each reward term, mean over steps and leaders; NaN before the first step.
-    pub terms: T,
+    pub terms: RewardTerms,
     /// Means over the control steps in the analysis window after the first tenth of the episode; NaN
     /// where there is none.
-    pub averages: A,
+    pub averages: Averages,
     /// Part of the same steps in which the signed order exceeds [`TOWARDS_TARGET`].
     pub share_towards_target: f64,
     /// Ordering time (eq. 7) in s since the episode started, with the angle as printed, π/20, and with
@@ -172,26 +153,4 @@ pub struct EpisodeSummary<A = Averages, T = Terms> {
     pub ordering_times_s: [f64; 2],
     /// Part of the observed numbers that were clipped at their bounds.
     pub clip_rate: f64,
-}
-
-impl<A, T> EpisodeSummary<A, T> {
-    /// The summary as a stored state of any version has it: version 0.1.0 wrote NaN for ordering times
-    /// that never came.
-    pub(crate) fn restored<B: From<A>>(self) -> EpisodeSummary<B>
-    where
-        Terms: From<T>,
-    {
-        let or_never = |time: f64| if time.is_nan() { f64::INFINITY } else { time };
-        EpisodeSummary {
-            flock_seed: self.flock_seed,
-            bw_s: self.bw_s,
-            steps: self.steps,
-            total_reward: self.total_reward,
-            terms: self.terms.into(),
-            averages: self.averages.into(),
-            share_towards_target: self.share_towards_target,
-            ordering_times_s: self.ordering_times_s.map(or_never),
-            clip_rate: self.clip_rate,
-        }
-    }
 }

@@ -6,46 +6,21 @@ use crate::clock::Ticks;
 use crate::error::{FlockError, Result};
 use crate::geometry::{Pose, Velocity};
 use crate::integrator::Checkpoint;
-use crate::parameters::{FirstParameters, FlockParameters};
-use crate::sealed_bytes::{Magic, decode, opened, seal, unseal};
+use crate::parameters::FlockParameters;
+use crate::sealed_bytes::{Magic, seal, unseal};
 
-const MAGIC: Magic = Magic {
-    now: *b"flockst3",
-    earlier: &[],
-    first: &[*b"flockst2", FORMAT_1],
-};
-/// Of snapshots that end one number earlier: at the statistics' worst overlap.
-const FORMAT_1: [u8; 8] = *b"flockst1";
+const MAGIC: Magic = *b"flockst1";
 
 /// What a snapshot holds.
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
-struct Snapshot<P = FlockParameters> {
-    parameters: P,
+struct Snapshot {
+    parameters: FlockParameters,
     seed: u64,
     time: Ticks,
     motion: Checkpoint,
 }
 
 impl Snapshot {
-    fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        if bytes.starts_with(&MAGIC.now) {
-            return unseal::<Self>(&MAGIC, bytes)?.checked();
-        }
-        let mut body = opened(&MAGIC, bytes)?.to_vec();
-        if bytes.starts_with(&FORMAT_1) {
-            body.extend(0_f64.to_le_bytes());
-        }
-        let first: Snapshot<FirstParameters> = decode(&body)?;
-        let parameters = first.parameters.into();
-        Self {
-            parameters,
-            seed: first.seed,
-            time: first.time,
-            motion: first.motion,
-        }
-        .checked()
-    }
-
     /// A state that a flock can hold: right sizes, everything finite, indices in range.
     fn checked(self) -> Result<Self> {
         self.parameters.check()?;
@@ -126,7 +101,7 @@ impl Flock {
     /// # Errors
     /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed snapshot.
     pub fn from_snapshot(bytes: &[u8]) -> Result<Self> {
-        let snapshot = Snapshot::from_bytes(bytes)?;
+        let snapshot = unseal::<Snapshot>(&MAGIC, bytes)?.checked()?;
         let mut flock = Self::unplaced(snapshot.parameters, snapshot.seed);
         flock.time = snapshot.time;
         flock.integrator.return_to(&snapshot.motion);

@@ -102,8 +102,8 @@ impl Field {
     }
 }
 
-/// A field's value as it is given, shown outside and stored.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+/// A field's value as it is given and shown outside.
+#[derive(Debug, Clone, PartialEq)]
 pub enum Value {
     /// A whole number.
     Count(usize),

@@ -9,7 +9,7 @@ macro_rules! declare_parameters {
     ($($(#[doc = $doc:literal])+ $name:ident: $type:ty = $default:expr, $unit:literal, $range:expr, $source:literal;)+) => {
         /// Everything that defines a flock. Fields are public to read and to build with;
         /// [`FlockParameters::check`] runs once wherever a flock is made from them.
-        #[derive(Debug, Clone, PartialEq)]
+        #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
         pub struct FlockParameters {
             $($(#[doc = $doc])+ pub $name: $type,)+
         }
@@ -51,7 +51,6 @@ macro_rules! declare_parameters {
     };
 }
 
-// New fields come last: states of earlier versions hold the first ones.
 declare_parameters! {
     /// Number of boats, leaders included (Table 3: n).
     n_boats: usize = 20, "", Range::Within(1.0, Self::MOST_BOATS as f64, "1 to 100000"), "Table 3 (20 to 50)";

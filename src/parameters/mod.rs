@@ -7,7 +7,6 @@ mod named_choice;
 mod obstacles;
 mod pools;
 mod presets;
-mod stored;
 mod targets;
 
 pub use choices::{Noise, Scheme, Solver, Target};
@@ -17,5 +16,4 @@ pub(crate) use named_choice::named_choice;
 pub use obstacles::{Disc, MOST_OBSTACLES, Wall};
 pub use pools::Pool;
 pub use presets::{Physics, Preset};
-pub(crate) use stored::FirstParameters;
 pub use targets::Targets;

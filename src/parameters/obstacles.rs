@@ -10,7 +10,7 @@ pub const MOST_OBSTACLES: usize = 1000;
 const SHORTEST_CM: f64 = 1e-3;
 
 /// A disc that stands in the water.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Disc {
     /// Its center in cm, world axes.
     pub x_cm: f64,
@@ -21,7 +21,7 @@ pub struct Disc {
 }
 
 /// A straight wall without thickness from one point to another.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Wall {
     /// Where it starts, in cm, world axes.
     pub x0_cm: f64,

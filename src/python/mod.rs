@@ -76,10 +76,6 @@ mod _core {
             "ORDERED_WITHIN",
             <(f64, f64)>::from(crate::environment::ORDERED_WITHIN),
         )?;
-        module.add(
-            "FIRST_PARAMETERS",
-            crate::parameters::FlockParameters::FIRST_FIELDS,
-        )?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -36,7 +36,7 @@ pub(super) fn summary_dict<'py>(
     summary: &EpisodeSummary,
 ) -> PyResult<Bound<'py, PyDict>> {
     let terms = PyDict::new(py);
-    for (name, mean) in term_names(py).iter().zip(summary.terms.0) {
+    for (name, mean) in term_names(py).iter().zip(summary.terms) {
         terms.set_item(name, mean)?;
     }
     let dict = PyDict::new(py);

@@ -5,21 +5,22 @@ use crate::environment::credit::ContactCredit;
 use crate::environment::observation::{Camera, CameraState};
 use crate::environment::reset::flock_from;
 use crate::environment::statistics::{EpisodeStatistics, LeaderSums};
-use crate::environment::{Averages, EnvSettings, EpisodeSchedule, Terms};
+use crate::environment::{EnvSettings, EpisodeSchedule, RewardTerms};
 use crate::error::{FlockError, Result};
 use crate::parameters::FlockParameters;
 
 /// What is stored of an episode.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-pub(crate) struct StoredEpisode<A = Averages, T = Terms, C = Option<ContactCredit>> {
+pub(crate) struct StoredEpisode {
     flock: Vec<u8>,
     schedule: EpisodeSchedule,
     rudders: Vec<f64>,
     camera: Option<CameraState>,
-    terms: Vec<T>,
-    statistics: EpisodeStatistics<A, T>,
+    terms: Vec<RewardTerms>,
+    statistics: EpisodeStatistics,
+    leader_sums: Vec<LeaderSums>,
     ended: bool,
-    credit: C,
+    credit: Option<ContactCredit>,
 }
 
 impl Episode {
@@ -30,57 +31,36 @@ impl Episode {
             schedule: self.state.schedule.clone(),
             rudders: self.state.rudders.clone(),
             camera: self.camera.as_ref().map(Camera::state),
-            terms: self.terms.iter().copied().map(Terms).collect(),
+            terms: self.terms.clone(),
             statistics: self.statistics,
+            leader_sums: self.leader_sums.clone(),
             ended: self.ended,
             credit: self.credit.clone(),
         }
-    }
-
-    /// What is stored of its leaders since format 4.
-    pub(crate) fn stored_leaders(&self) -> Vec<LeaderSums> {
-        self.leader_sums.clone()
-    }
-
-    /// Puts back what [`Self::stored_leaders`] gave.
-    ///
-    /// # Errors
-    /// [`FlockError::Snapshot`] if it is of another number of leaders.
-    pub(crate) fn restore_leaders(&mut self, stored: Vec<LeaderSums>) -> Result<()> {
-        if stored.len() != self.leader_sums.len() {
-            return Err(FlockError::Snapshot(
-                "the state holds sums of other leaders".to_owned(),
-            ));
-        }
-        self.leader_sums = stored;
-        Ok(())
     }
 
     /// The episode that was stored, in an environment with these settings and parameters.
     ///
     /// # Errors
     /// [`FlockError::Snapshot`] if it does not belong there.
-    pub(crate) fn restored<A, T, C>(
+    pub(crate) fn restored(
         settings: &EnvSettings,
         parameters: &FlockParameters,
-        stored: StoredEpisode<A, T, C>,
-    ) -> Result<Self>
-    where
-        Averages: From<A>,
-        Terms: From<T>,
-        C: Into<Option<ContactCredit>>,
-    {
+        stored: StoredEpisode,
+    ) -> Result<Self> {
         let (leaders, boats) = (parameters.n_leaders, parameters.n_boats);
         let flock = flock_from(&stored.flock, parameters)?;
-        let credit: Option<ContactCredit> = stored.credit.into();
         let fits = stored.rudders.len() == leaders
             && stored.rudders.iter().all(|rudder| rudder.abs() <= 1.0)
             && stored.terms.len() == leaders
             && stored.schedule.steps == settings.episode.steps()
             && stored.schedule.bw_s == flock.parameters().bw_s
             && stored.schedule.targets() == flock.parameters().target
-            && credit.is_some() == settings.reward.need_credit()
-            && credit.as_ref().is_none_or(|each| each.fits(leaders, boats))
+            && stored.credit.is_some() == settings.reward.need_credit()
+            && stored
+                .credit
+                .as_ref()
+                .is_none_or(|each| each.fits(leaders, boats))
             && stored.camera.is_some() == settings.camera.is_active()
             && stored
                 .camera
@@ -99,10 +79,15 @@ impl Episode {
             camera.set_state(state, leaders);
             camera
         });
-        let terms = stored.terms.into_iter();
-        episode.terms = terms.map(|term| Terms::from(term).0).collect();
-        episode.credit = credit;
-        episode.statistics = stored.statistics.restored();
+        episode.terms = stored.terms;
+        episode.credit = stored.credit;
+        episode.statistics = stored.statistics;
+        if stored.leader_sums.len() != episode.leader_sums.len() {
+            return Err(FlockError::Snapshot(
+                "the state holds sums of other leaders".to_owned(),
+            ));
+        }
+        episode.leader_sums = stored.leader_sums;
         episode.ended = stored.ended;
         Ok(episode)
     }

@@ -78,13 +78,10 @@ pub struct ObservationLayout {
     /// both directions are one task, the clockwise one.
     pub mirror_to_target: bool,
     /// The rudder of the pool's tuned law.
-    #[serde(skip)]
     pub law_rudder: bool,
     /// How many of the nearest obstacles; 0: off.
-    #[serde(skip)]
     pub obstacles: usize,
     /// How many of the nearest fellow leaders; 0: off.
-    #[serde(skip)]
     pub fellow_leaders: usize,
 }
 
