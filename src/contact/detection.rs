@@ -19,6 +19,8 @@ pub struct ContactDetector {
     pub(crate) neighbors: NeighborList,
     obstacles: NearObstacles,
     skin: f64,
+    /// How near something has to be to each boat to count: two boats that are nearer than both together.
+    reaches: Vec<f64>,
     threads: usize,
     /// Contacts found by other threads, part after part of the flock.
     parts: Vec<Vec<Contact>>,
@@ -39,6 +41,7 @@ impl ContactDetector {
             neighbors: NeighborList::default(),
             obstacles: NearObstacles::new(Obstacle::all(parameters)),
             skin,
+            reaches: Vec::new(),
             threads: 1,
             parts: Vec::new(),
         }
@@ -65,18 +68,18 @@ impl ContactDetector {
         self.hull
     }
 
-    /// Gaps that can close within `dt` at these velocities, with room for what contacts add to them.
-    pub fn margin(&self, velocities: &[Velocity], dt: f64) -> f64 {
-        3.0 * self.fastest(velocities) * dt + 1e-3 * self.hull.radius
+    /// No point of a hull moves faster at this velocity.
+    #[inline]
+    pub(crate) fn speed(&self, velocity: &Velocity) -> f64 {
+        velocity.linear.norm_squared().sqrt() + self.hull.half_length * velocity.angular.abs()
     }
 
-    /// No point of a hull moves faster at these velocities.
+    /// The largest of the speeds of hulls at these velocities.
     #[inline]
     fn fastest(&self, velocities: &[Velocity]) -> f64 {
-        let h = self.hull.half_length;
         let mut fastest = 0.0;
         for velocity in velocities {
-            let speed = velocity.linear.norm_squared().sqrt() + h * velocity.angular.abs();
+            let speed = self.speed(velocity);
             if speed > fastest {
                 fastest = speed;
             }
@@ -84,8 +87,44 @@ impl ContactDetector {
         fastest
     }
 
+    /// Fills `contacts` with everything that boats with these velocities can reach within `dt`, with room for what
+    /// contacts add to them: as much as the fastest boat has. Returns a margin within which all of it lies.
+    pub fn detect_moving(
+        &mut self,
+        boats: &[HullPose],
+        velocities: &[Velocity],
+        dt: f64,
+        contacts: &mut Vec<Contact>,
+    ) -> f64 {
+        let fastest = self.fastest(velocities);
+        let room = 0.5 * (fastest * dt + 1e-3 * self.hull.radius);
+        let mut reaches = std::mem::take(&mut self.reaches);
+        reaches.clear();
+        reaches.extend(
+            velocities
+                .iter()
+                .map(|velocity| self.speed(velocity) * dt + room),
+        );
+        self.reaches = reaches;
+        let margin = 3.0 * fastest * dt + 1e-3 * self.hull.radius;
+        self.detect_within_reach(boats, margin, contacts);
+        margin
+    }
+
     /// Fills `contacts` with everything nearer than `margin`, ordered along the pool's polar angle.
     pub fn detect(&mut self, boats: &[HullPose], margin: f64, contacts: &mut Vec<Contact>) {
+        self.reaches.clear();
+        self.reaches.resize(boats.len(), 0.5 * margin);
+        self.detect_within_reach(boats, margin, contacts);
+    }
+
+    /// The same with the reaches at hand, none of which exceeds half the margin.
+    fn detect_within_reach(
+        &mut self,
+        boats: &[HullPose],
+        margin: f64,
+        contacts: &mut Vec<Contact>,
+    ) {
         contacts.clear();
         self.update(boats, margin);
         if self.threads == 1 {
@@ -125,21 +164,21 @@ impl ContactDetector {
         contacts: &mut Vec<Contact>,
     ) {
         // Of a boat and a wall only one moves.
-        let wall_margin = 0.5 * margin;
-        let open = self.open_water(wall_margin);
+        let open = self.open_water(0.5 * margin);
         let has_obstacles = !self.obstacles.obstacles.is_empty();
         for (boat, partners) in self.neighbors.groups(places) {
-            let pose = &boats[boat as usize];
+            let (pose, reach) = (&boats[boat as usize], self.reaches[boat as usize]);
             if !open.contains(&pose.center.norm_squared()) {
-                self.detect_walls(boat, pose, wall_margin, contacts);
+                self.detect_walls(boat, pose, reach, contacts);
             }
             if has_obstacles {
-                self.detect_obstacles(boat, pose, wall_margin, contacts);
+                self.detect_obstacles(boat, pose, reach, contacts);
             }
             for &partner in partners {
                 let (first, second) = (boat.min(partner), boat.max(partner));
                 let (a, b) = (&boats[first as usize], &boats[second as usize]);
-                pair_gaps(a, b, self.hull, margin, |feature, gap| {
+                let near = reach + self.reaches[partner as usize];
+                pair_gaps(a, b, self.hull, near, |feature, gap| {
                     contacts.push(Contact::of_pair(first, second, feature, gap));
                 });
             }

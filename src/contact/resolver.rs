@@ -145,9 +145,10 @@ impl ContactResolver {
         dt: f64,
         statistics: &mut Statistics,
     ) -> bool {
-        let margin = self.detector.margin(velocities, dt);
         let builds_before = self.detector.neighbors.builds();
-        self.detector.detect(boats, margin, &mut self.contacts);
+        let margin = self
+            .detector
+            .detect_moving(boats, velocities, dt, &mut self.contacts);
         let mut smallest = 0.0;
         for contact in &self.contacts {
             if contact.gap.gap < smallest {
@@ -340,7 +341,7 @@ impl ContactResolver {
 
     /// Sets the velocity biases so that the gaps at the substep's end, evaluated where the last solve moves the
     /// boats, open to zero: the normals stay those of the substep's start, along which forces act,
-    /// and so does the factor. Returns the deepest overlap at the substep's end in cm. A shortened
+    /// and so does the factor. What cannot close at these velocities keeps its bias. Returns the deepest overlap at the substep's end in cm. A shortened
     /// substep leaves its share of an overlap from before, which does not count.
     fn relinearize(&mut self, poses: &[Pose], dt: f64) -> f64 {
         let velocities = std::mem::take(&mut self.solver.velocities);
@@ -348,7 +349,9 @@ impl ContactResolver {
         let left_over = 1.0 - dt / dt.max(self.whole_substep_s);
         let mut deepest = 0.0_f64;
         for (k, contact) in self.contacts.iter().enumerate() {
-            if contact.gap.gap >= -self.penetration_slop {
+            let speed = |boat: usize| self.detector.speed(&velocities[boat]);
+            let closing = speed(contact.boat as usize) + contact.second().map_or(0.0, speed);
+            if contact.gap.gap <= closing * dt && contact.gap.gap >= -self.penetration_slop {
                 let end_gap = self.trial.gap(&self.detector, &self.contacts, k)
                     - left_over * contact.gap.gap.min(0.0);
                 deepest = deepest.max(-end_gap);

@@ -104,8 +104,7 @@ impl States {
         let mut contacts: Vec<Contact> = Vec::new();
         self.per_step(|| {
             for (boats, velocities) in self.boats.iter().zip(&self.velocities) {
-                let margin = detector.margin(velocities, STEP_S);
-                detector.detect(boats, margin, black_box(&mut contacts));
+                detector.detect_moving(boats, velocities, STEP_S, black_box(&mut contacts));
             }
         })
     }

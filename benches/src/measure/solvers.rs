@@ -33,9 +33,8 @@ impl Problem {
         let boats: Vec<HullPose> = flock.poses().iter().map(HullPose::new).collect();
         let (free, inertia) = without_contacts(p, &boats, flock.velocities());
         let mut detector = ContactDetector::new(p);
-        let margin = detector.margin(&free, p.dt_s);
         let mut contacts = Vec::new();
-        detector.detect(&boats, margin, &mut contacts);
+        detector.detect_moving(&boats, &free, p.dt_s, &mut contacts);
         let bound = |contact: &Contact| {
             let (gap, spin) = (contact.gap, free[contact.boat as usize].angular);
             let closing = gap.gap / p.dt_s + 0.5 * gap.bend * p.dt_s * spin * spin;
