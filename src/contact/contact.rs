@@ -1,6 +1,6 @@
 //! One place where a hull is near another hull or a wall.
 
-use crate::geometry::{Gap, Hull, HullPose, PairFeature, Vec2, Velocity};
+use crate::geometry::{Feature, Gap, Hull, HullPose, Vec2, Velocity};
 
 /// What a boat is near to.
 #[derive(
@@ -24,9 +24,8 @@ pub struct Contact {
     pub boat: u32,
     /// The other side.
     pub partner: Partner,
-    /// Where on `boat`: 0 towards its stern, 1 towards its bow (at the inner wall and at a disc always
-    /// 0); 2 where two cores cross.
-    pub feature: u8,
+    /// Where on `boat`.
+    pub feature: Feature,
     /// Gap, normal and lever arms at the pose where the contact was found.
     pub gap: Gap,
 }
@@ -38,15 +37,15 @@ pub(crate) fn along_core(boat: &HullPose, normal: Vec2, point: Vec2, radius: f64
 }
 
 /// What identifies a contact from one substep to the next.
-pub type ContactKey = (u32, Partner, u8);
+pub type ContactKey = (u32, Partner, Feature);
 
 impl Contact {
     /// A contact of two boats.
-    pub(crate) fn of_pair(first: u32, second: u32, feature: PairFeature, gap: Gap) -> Self {
+    pub(crate) fn of_pair(first: u32, second: u32, feature: Feature, gap: Gap) -> Self {
         Self {
             boat: first,
             partner: Partner::Boat(second),
-            feature: feature as u8,
+            feature,
             gap,
         }
     }

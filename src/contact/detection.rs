@@ -3,8 +3,8 @@
 use super::near_obstacles::NearObstacles;
 use super::{Contact, Partner};
 use crate::geometry::{
-    Gap, Hull, HullPose, NeighborList, Obstacle, PairFeature, Velocity, inner_wall_gap,
-    outer_wall_gap, pair_gap, pair_gaps,
+    Feature, Gap, Hull, HullPose, NeighborList, Obstacle, Velocity, inner_wall_gap, outer_wall_gap,
+    pair_gap, pair_gaps,
 };
 use crate::parallel;
 use crate::parameters::{FlockParameters, Pool};
@@ -216,12 +216,12 @@ impl ContactDetector {
         if self.pool.has_outer_wall() && distance + self.hull.reach() + margin > outer {
             let ends = if self.hull.half_length > 0.0 { 2 } else { 1 };
             let free = (outer - self.hull.radius - margin).max(0.0);
-            for feature in 0..ends {
-                let end = pose.end(end_side(feature), self.hull.half_length);
+            for (feature, side) in Feature::ENDS.into_iter().zip([-1.0, 1.0]).take(ends) {
+                let end = pose.end(side, self.hull.half_length);
                 if end.norm_squared() < free * free {
                     continue;
                 }
-                let gap = outer_wall_gap(pose, end_side(feature), self.hull, outer);
+                let gap = outer_wall_gap(pose, side, self.hull, outer);
                 if gap.gap < margin {
                     contacts.push(Contact {
                         boat,
@@ -238,7 +238,7 @@ impl ContactDetector {
                 contacts.push(Contact {
                     boat,
                     partner: Partner::InnerWall,
-                    feature: 0,
+                    feature: Feature::Flank,
                     gap,
                 });
             }
@@ -259,7 +259,7 @@ impl ContactDetector {
                 contacts.push(Contact {
                     boat,
                     partner: Partner::Obstacle(number),
-                    feature: feature as u8,
+                    feature,
                     gap,
                 });
             });
@@ -301,35 +301,29 @@ impl ContactDetector {
         match contact.partner {
             Partner::OuterWall => outer_wall_gap(
                 first,
-                end_side(contact.feature),
+                contact.feature.side().unwrap_or(-1.0),
                 self.hull,
                 self.pool.outer_radius_cm,
             ),
             Partner::InnerWall => inner_wall_gap(first, self.hull, self.pool.inner_radius_cm),
-            Partner::Boat(second) => pair_gap(
-                PairFeature::from_code(contact.feature),
-                first,
-                &boats[second as usize],
-                self.hull,
-            ),
+            Partner::Boat(second) => {
+                let second = &boats[second as usize];
+                pair_gap(contact.feature, first, second, self.hull)
+            }
             Partner::Obstacle(number) => {
-                let feature = PairFeature::from_code(contact.feature);
-                self.obstacles.obstacles[number as usize].gap(feature, first, self.hull)
+                let obstacle = &self.obstacles.obstacles[number as usize];
+                obstacle.gap(contact.feature, first, self.hull)
             }
         }
     }
 }
 
-/// Notes a gap under the end of the boat that it is at; crossed cores count for both.
+/// Notes a gap under the end of the boat that it is at; what is at no end counts for both.
 #[inline]
-fn note_end(gaps: &mut [Option<f64>; 2], feature: PairFeature, gap: &Gap) {
+fn note_end(gaps: &mut [Option<f64>; 2], feature: Feature, gap: &Gap) {
     match feature {
-        PairFeature::Stern => gaps[0] = Some(gap.gap),
-        PairFeature::Bow => gaps[1] = Some(gap.gap),
-        PairFeature::Crossed => *gaps = [Some(gap.gap); 2],
+        Feature::Stern => gaps[0] = Some(gap.gap),
+        Feature::Bow => gaps[1] = Some(gap.gap),
+        Feature::Crossed | Feature::Flank => *gaps = [Some(gap.gap); 2],
     }
-}
-
-fn end_side(feature: u8) -> f64 {
-    if feature == 0 { -1.0 } else { 1.0 }
 }

@@ -19,7 +19,9 @@ impl NearObstacles {
     /// Of these obstacles.
     pub(super) fn new(obstacles: Vec<Obstacle>) -> Self {
         Self {
-            has_walls: obstacles.iter().any(|obstacle| !obstacle.is_disc()),
+            has_walls: obstacles
+                .iter()
+                .any(|obstacle| matches!(obstacle, Obstacle::Wall { .. })),
             obstacles,
             ..Self::default()
         }
@@ -53,7 +55,8 @@ impl NearObstacles {
 
 /// Whether an obstacle is nearer than `reach` to a place; first by the circle about it.
 fn is_within(obstacle: &Obstacle, place: Vec2, reach: f64) -> bool {
-    let farthest = obstacle.shape.reach() + reach;
-    (place - obstacle.pose.center).norm_squared() <= farthest * farthest
-        && (obstacle.is_disc() || obstacle.distance(place) <= reach)
+    let (center, radius) = obstacle.circle();
+    let farthest = radius + reach;
+    (place - center).norm_squared() <= farthest * farthest
+        && (matches!(obstacle, Obstacle::Disc { .. }) || obstacle.distance(place) <= reach)
 }

@@ -1,7 +1,7 @@
 //! The boats where a solve would move them, and the gaps there.
 
 use super::{Contact, ContactDetector};
-use crate::geometry::{HullPose, Pose, Velocity};
+use crate::geometry::{Feature, HullPose, Pose, Velocity};
 
 /// Poses at a substep's end, on trial.
 #[derive(Debug, Clone, Default)]
@@ -45,8 +45,10 @@ impl Trial {
     pub(super) fn gap(&self, detector: &ContactDetector, contacts: &[Contact], k: usize) -> f64 {
         let contact = &contacts[k];
         let own = || detector.gap_at(contact, &self.hulls).gap;
-        let (true, 0 | 1) = (contact.has_ends(), contact.feature) else {
-            return own();
+        let end = match contact.feature {
+            Feature::Stern if contact.has_ends() => 0,
+            Feature::Bow if contact.has_ends() => 1,
+            _ => return own(),
         };
         let is_twin = |other: Option<&Contact>| {
             other
@@ -55,7 +57,6 @@ impl Trial {
         let has_twin = is_twin(contacts.get(k + 1))
             || is_twin(k.checked_sub(1).and_then(|before| contacts.get(before)));
         let gaps = detector.end_gaps_at(contact, &self.hulls);
-        let end = usize::from(contact.feature);
         match (gaps[end], gaps[1 - end]) {
             (Some(same), Some(other)) if !has_twin => same.min(other),
             (Some(same), _) => same,

@@ -30,7 +30,7 @@ pub struct LeaderCredit {
 
 /// The credit of a flock's leaders, and its memory.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct ContactCredit {
+pub(super) struct ContactCredit {
     leaders: usize,
     /// (momentum in cm/s, angular velocity in rad/s) given by each leader in the control step.
     given: Vec<(f64, f64)>,
@@ -40,7 +40,7 @@ pub struct ContactCredit {
 
 impl ContactCredit {
     /// Without a memory yet.
-    pub fn new(leaders: usize, boats: usize) -> Self {
+    pub(super) fn new(leaders: usize, boats: usize) -> Self {
         Self {
             leaders,
             given: vec![(0.0, 0.0); leaders],
@@ -49,7 +49,7 @@ impl ContactCredit {
     }
 
     /// Whether a stored credit is one of so many leaders and boats.
-    pub fn fits(&self, leaders: usize, boats: usize) -> bool {
+    pub(super) fn fits(&self, leaders: usize, boats: usize) -> bool {
         self.leaders == leaders
             && self.given.len() == leaders
             && self.turned.len() == leaders * (boats - leaders)

@@ -264,10 +264,19 @@ impl Episode {
     /// Rewards of the control step just taken, with the target that held in it: the first since a decision, or added
     /// to those before.
     fn compute_rewards(&mut self, settings: &EnvSettings, rewards: &mut [f64], is_first: bool) {
+        if is_first {
+            self.terms.fill([0.0; TERMS]);
+            rewards.fill(0.0);
+        }
+        self.pay(settings, rewards);
+        self.note_order(settings);
+    }
+
+    /// Adds each leader's terms and reward.
+    fn pay(&mut self, settings: &EnvSettings, rewards: &mut [f64]) {
         let view = self.state.view();
         let reward = Reward::new(self.state.flock.parameters(), &view);
         let share = 1.0 / rewards.len() as f64;
-        let factor = settings.reward_factor();
         for (leader, (sums, sum)) in self.terms.iter_mut().zip(rewards).enumerate() {
             let credit = self
                 .credit
@@ -277,38 +286,41 @@ impl Episode {
                     each.of(leader, flock, view.targets.of(leader), 1.0 / hz)
                 });
             let terms = reward.terms(&view, leader, &credit);
-            let paid = factor * settings.reward.total(&terms);
+            let paid = settings.reward_factor() * settings.reward.total(&terms);
             self.statistics.add_reward(share, &terms, paid);
             if let Some(own) = self.leader_sums.get_mut(leader) {
                 own.add_reward(paid);
             }
-            if is_first {
-                (*sums, *sum) = (terms, paid);
-            } else {
-                *sum += paid;
-                sums.iter_mut()
-                    .zip(terms)
-                    .for_each(|(sum, term)| *sum += term);
-            }
+            *sum += paid;
+            sums.iter_mut()
+                .zip(terms)
+                .for_each(|(sum, term)| *sum += term);
         }
+    }
+
+    /// Takes note of the order, and of everything that is averaged where the step ends in the analysis window, after
+    /// the first tenth of the episode.
+    fn note_order(&mut self, settings: &EnvSettings) {
+        let Some(order) = &self.state.order else {
+            return;
+        };
         let (flock, schedule) = (&self.state.flock, &self.state.schedule);
-        let counted = 10 * (u64::from(schedule.step) + 1) > u64::from(schedule.steps);
-        if let Some(order) = &self.state.order {
-            let time_s = seconds(settings.episode.time_of(schedule.step + 1));
-            let is_late = 2 * (u64::from(schedule.step) + 1) >= u64::from(schedule.steps);
-            self.statistics.watch_order(order, time_s, is_late);
-            if counted && flock.schedule().in_analysis_window(flock.time()) {
-                let leaders = flock.parameters().n_leaders;
-                let boats = Boats {
-                    hulls: &view.hulls[leaders..],
-                    velocities: &view.velocities[leaders..],
-                    order: *order,
-                };
-                self.statistics.add_window(&boats, view.targets.reference());
-                for (leader, own) in self.leader_sums.iter_mut().enumerate() {
-                    own.add_window(order, view.targets.of(leader));
-                }
-            }
+        let (step, steps) = (u64::from(schedule.step) + 1, u64::from(schedule.steps));
+        let time_s = seconds(settings.episode.time_of(schedule.step + 1));
+        self.statistics
+            .watch_order(order, time_s, 2 * step >= steps);
+        if 10 * step <= steps || !flock.schedule().in_analysis_window(flock.time()) {
+            return;
+        }
+        let (view, leaders) = (self.state.view(), flock.parameters().n_leaders);
+        let boats = Boats {
+            hulls: &view.hulls[leaders..],
+            velocities: &view.velocities[leaders..],
+            order: *order,
+        };
+        self.statistics.add_window(&boats, view.targets.reference());
+        for (leader, own) in self.leader_sums.iter_mut().enumerate() {
+            own.add_window(order, view.targets.of(leader));
         }
     }
 

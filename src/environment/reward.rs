@@ -10,21 +10,27 @@ use crate::parameters::{FlockParameters, Target, named_choice};
 named_choice! {
     /// A term of the reward.
     pub enum RewardTerm ("reward") {
-        /// Ψ_o·cos(φ_o − φ_target) of the normal boats, in [−1, 1].
+        /// psi_o*cos(phi_o - phi_target) of the normal boats, in [-1, 1]; the same for all leaders with one target
         SignedOrder = "signed_order",
-        /// Mean tangential velocity of the normal boats towards the target, over the preferred speed.
+        /// mean tangential velocity of the normal boats towards the target over the preferred speed; the same for all
+        /// leaders with one target
         TangentialVelocity = "tangential_velocity",
-        /// The leader's own tangential velocity towards the target, over the preferred speed.
+        /// the leader's own tangential velocity towards the target over the preferred speed
         LeaderVelocity = "leader_velocity",
-        /// Minus the square of the leader's rudder, in [−1, 0].
+        /// minus the square of the leader's own rudder, in [-1, 0]
         RudderEffort = "rudder_effort",
-        /// Minus the jam: −Ψ_o·max(cos φ_o, 0)·max(1 − Ψ_v/preferred speed, 0), in [−1, 0].
+        /// minus psi_o*max(cos(phi_o), 0)*max(1 - psi_v/preferred speed, 0), in [-1, 0]; the same for all leaders
         Jam = "jam",
-        /// Tangential momentum that the leader's contacts give to normal boats towards the target, in cm/s².
+        /// tangential momentum that the leader's contacts gave to normal boats towards the target, sum of
+        /// impulse*(normal*tangent) over the step's length, in cm/s^2; 0 where no contact_... or touched_order has a
+        /// weight
         ContactPush = "contact_push",
-        /// Angular velocity that they give to normal boats towards the target's tangent, in rad/s².
+        /// angular velocity that the leader's contacts gave to normal boats, each times the sine of the angle that the
+        /// boat has to turn to head along the target, over the step's length, in rad/s^2; 0 as contact_push
         ContactAlignment = "contact_alignment",
-        /// Signed order of the boats that the leader turned lately against what it would be unturned.
+        /// sum over normal boats of cos(d) - cos(d + a), where d is the boat's angle to the target's tangent and a the
+        /// angle that the leader's contacts turned it by: its spin by them decays as eq. (9) damps it, and the angle is
+        /// forgotten within 4 s; 0 as contact_push
         TouchedOrder = "touched_order",
     }
 }
@@ -50,42 +56,6 @@ impl RewardTerm {
             self,
             Self::ContactPush | Self::ContactAlignment | Self::TouchedOrder
         )
-    }
-
-    /// In words, for documentation.
-    pub fn description(self) -> &'static str {
-        match self {
-            Self::SignedOrder => {
-                "psi_o*cos(phi_o - phi_target) of the normal boats, in [-1, 1]; the same for all leaders with one target"
-            }
-            Self::TangentialVelocity => {
-                "mean tangential velocity of the normal boats towards the target over the preferred \
-                 speed; the same for all leaders with one target"
-            }
-            Self::LeaderVelocity => {
-                "the leader's own tangential velocity towards the target over the preferred speed"
-            }
-            Self::RudderEffort => "minus the square of the leader's own rudder, in [-1, 0]",
-            Self::Jam => {
-                "minus psi_o*max(cos(phi_o), 0)*max(1 - psi_v/preferred speed, 0), in [-1, 0]; the \
-                 same for all leaders"
-            }
-            Self::ContactPush => {
-                "tangential momentum that the leader's contacts gave to normal boats towards the target, \
-                 sum of impulse*(normal*tangent) over the step's length, in cm/s^2; 0 where no contact_... or \
-                 touched_order has a weight"
-            }
-            Self::ContactAlignment => {
-                "angular velocity that the leader's contacts gave to normal boats, each times the sine of \
-                 the angle that the boat has to turn to head along the target, over the step's length, in rad/s^2; 0 as \
-                 contact_push"
-            }
-            Self::TouchedOrder => {
-                "sum over normal boats of cos(d) - cos(d + a), where d is the boat's angle to the target's \
-                 tangent and a the angle that the leader's contacts turned it by: its spin by them decays as \
-                 eq. (9) damps it, and the angle is forgotten within 4 s; 0 as contact_push"
-            }
-        }
     }
 }
 

@@ -134,7 +134,11 @@ impl Region {
     /// Part of the water between two squared radii that no disc takes up, found at places spread
     /// evenly along a spiral.
     fn free_share(&self, inner: f64, outer: f64) -> f64 {
-        if self.obstacles.iter().all(|obstacle| !obstacle.is_disc()) {
+        if !self
+            .obstacles
+            .iter()
+            .any(|each| matches!(each, Obstacle::Disc { .. }))
+        {
             return 1.0;
         }
         // The golden angle: every turn of the spiral falls between earlier ones.

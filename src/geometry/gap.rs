@@ -27,25 +27,32 @@ pub struct Gap {
     pub bend: f64,
 }
 
-/// Where on the first hull of a pair a contact is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-#[repr(u8)]
-pub enum PairFeature {
-    /// Towards the first hull's stern.
-    Stern = 0,
-    /// Towards the first hull's bow.
-    Bow = 1,
-    /// The cores cross; the gap is how far they must be moved apart.
-    Crossed = 2,
+/// Where on a hull a contact is.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
+pub enum Feature {
+    /// Towards the stern.
+    Stern,
+    /// Towards the bow.
+    Bow,
+    /// Where the core crosses another one; the gap is how far they must be moved apart.
+    Crossed,
+    /// Anywhere along the hull, at a disc or the inner wall, which it touches once.
+    Flank,
 }
 
-impl PairFeature {
-    /// The feature of a code; any code beyond the two ends counts as crossed.
-    pub(crate) fn from_code(code: u8) -> Self {
-        match code {
-            0 => Self::Stern,
-            1 => Self::Bow,
-            _ => Self::Crossed,
+impl Feature {
+    /// Both ends of a hull.
+    pub const ENDS: [Self; 2] = [Self::Stern, Self::Bow];
+
+    /// Which end it is: −1 at the stern, +1 at the bow; `None` for what is at no end.
+    #[inline]
+    pub fn side(self) -> Option<f64> {
+        match self {
+            Self::Stern => Some(-1.0),
+            Self::Bow => Some(1.0),
+            Self::Crossed | Self::Flank => None,
         }
     }
 }
@@ -170,7 +177,7 @@ pub fn pair_gaps(
     b: &HullPose,
     hull: Hull,
     margin: f64,
-    found: impl FnMut(PairFeature, Gap),
+    found: impl FnMut(Feature, Gap),
 ) {
     capsule_gaps((a, hull), (b, hull), margin, found);
 }
@@ -181,7 +188,7 @@ pub(crate) fn capsule_gaps(
     first: Placed,
     second: Placed,
     margin: f64,
-    mut found: impl FnMut(PairFeature, Gap),
+    mut found: impl FnMut(Feature, Gap),
 ) {
     let ((a, hull_a), (b, hull_b)) = (first, second);
     let reach = hull_a.reach() + hull_b.reach() + margin;
@@ -192,11 +199,11 @@ pub(crate) fn capsule_gaps(
     let pair = Pair::new(first, second);
     let lengths = hull_a.half_length + hull_b.half_length;
     if distance_squared <= lengths * lengths && pair.cores_cross() {
-        found(PairFeature::Crossed, crossed_gap(first, second));
+        found(Feature::Crossed, crossed_gap(first, second));
         return;
     }
     let farthest = hull_a.radius + hull_b.radius + margin;
-    for (feature, side) in [(PairFeature::Stern, -1.0), (PairFeature::Bow, 1.0)] {
+    for (feature, side) in Feature::ENDS.into_iter().zip([-1.0, 1.0]) {
         let Some(touch) = pair.nearest_towards(side) else {
             continue;
         };
@@ -206,7 +213,7 @@ pub(crate) fn capsule_gaps(
         match pair.gap(&touch) {
             Some(gap) => found(feature, gap),
             None => {
-                found(PairFeature::Crossed, crossed_gap(first, second));
+                found(Feature::Crossed, crossed_gap(first, second));
                 return;
             }
         }
@@ -218,18 +225,16 @@ pub(crate) fn capsule_gaps(
 
 /// The gap of a known contact at other poses of its hulls, which have one shape.
 #[inline]
-pub fn pair_gap(feature: PairFeature, a: &HullPose, b: &HullPose, hull: Hull) -> Gap {
+pub fn pair_gap(feature: Feature, a: &HullPose, b: &HullPose, hull: Hull) -> Gap {
     capsule_gap(feature, (a, hull), (b, hull))
 }
 
 /// The gap of a known contact at other poses of its hulls.
 #[inline]
-pub(super) fn capsule_gap(feature: PairFeature, first: Placed, second: Placed) -> Gap {
+pub(super) fn capsule_gap(feature: Feature, first: Placed, second: Placed) -> Gap {
     let pair = Pair::new(first, second);
-    let side = match feature {
-        PairFeature::Stern => -1.0,
-        PairFeature::Bow => 1.0,
-        PairFeature::Crossed => return crossed_gap(first, second),
+    let Some(side) = feature.side() else {
+        return crossed_gap(first, second);
     };
     // Where no end of the group faces the other hull any more, its own end still has a distance.
     let touch = pair

@@ -1,29 +1,33 @@
-//! Obstacles in the water: a disc is a hull of no length, a straight wall a hull of no radius, and neither moves.
+//! Obstacles in the water, which do not move.
 
 use super::gap::capsule_gap;
-use super::{Gap, Hull, HullPose, PairFeature, Vec2, capsule_gaps, inner_wall_gap};
+use super::{Feature, Gap, Hull, HullPose, Vec2, capsule_gaps, inner_wall_gap};
 use crate::parameters::{Disc, FlockParameters, Wall};
 
-/// A disc or a straight wall that stands in the water.
+/// What stands in the water.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Obstacle {
-    /// Where it stands; the axis of a wall points to its end.
-    pub pose: HullPose,
-    /// Its shape.
-    pub shape: Hull,
+pub enum Obstacle {
+    /// A disc.
+    Disc {
+        /// Its center.
+        center: Vec2,
+        /// Its radius in cm.
+        radius: f64,
+    },
+    /// A straight wall without thickness.
+    Wall {
+        /// Its center, and its direction from one end to the other.
+        pose: HullPose,
+        /// Half its length in cm.
+        half_length: f64,
+    },
 }
 
 impl From<&Disc> for Obstacle {
     fn from(disc: &Disc) -> Self {
-        Self {
-            pose: HullPose {
-                center: Vec2::new(disc.x_cm, disc.y_cm),
-                axis: Vec2::new(1.0, 0.0),
-            },
-            shape: Hull {
-                radius: disc.radius_cm,
-                half_length: 0.0,
-            },
+        Self::Disc {
+            center: Vec2::new(disc.x_cm, disc.y_cm),
+            radius: disc.radius_cm,
         }
     }
 }
@@ -35,15 +39,12 @@ impl From<&Wall> for Obstacle {
             Vec2::new(wall.x1_cm, wall.y1_cm),
         );
         let half_length = 0.5 * wall.length_cm();
-        Self {
+        Self::Wall {
             pose: HullPose {
                 center: (start + end) * 0.5,
                 axis: (end - start) * (0.5 / half_length),
             },
-            shape: Hull {
-                radius: 0.0,
-                half_length,
-            },
+            half_length,
         }
     }
 }
@@ -56,37 +57,37 @@ impl Obstacle {
         discs.chain(walls).collect()
     }
 
-    /// Whether it is a disc.
-    #[inline]
-    pub fn is_disc(&self) -> bool {
-        self.shape.half_length == 0.0
+    /// A circle that it lies in: center and radius in cm.
+    pub(crate) fn circle(&self) -> (Vec2, f64) {
+        match self {
+            Self::Disc { center, radius } => (*center, *radius),
+            Self::Wall { pose, half_length } => (pose.center, *half_length),
+        }
     }
 
-    /// The point of its core that is nearest to a place.
-    pub fn nearest_of_core(&self, place: Vec2) -> Vec2 {
-        let h = self.shape.half_length;
-        let along = (place - self.pose.center).dot(&self.pose.axis);
-        self.pose.center + self.pose.axis * along.clamp(-h, h)
+    /// The point of its core, which a disc has at its center, that is nearest to a place, and its radius about that.
+    fn core(&self, place: Vec2) -> (Vec2, f64) {
+        match self {
+            Self::Disc { center, radius } => (*center, *radius),
+            Self::Wall { pose, half_length } => {
+                let along = (place - pose.center).dot(&pose.axis);
+                let along = along.clamp(-half_length, *half_length);
+                (pose.center + pose.axis * along, 0.0)
+            }
+        }
     }
 
     /// The point of its surface that is nearest to a place; the place itself at a disc's very center.
     pub fn nearest(&self, place: Vec2) -> Vec2 {
-        let core = self.nearest_of_core(place);
+        let (core, radius) = self.core(place);
         let away = (place - core).try_normalize(0.0);
-        away.map_or(place, |away| core + away * self.shape.radius)
+        away.map_or(place, |away| core + away * radius)
     }
 
     /// Distance of its surface from a place in cm, negative inside a disc.
     pub fn distance(&self, place: Vec2) -> f64 {
-        (place - self.nearest_of_core(place)).norm() - self.shape.radius
-    }
-
-    /// A boat as seen from the obstacle's center.
-    fn seen(&self, boat: &HullPose) -> HullPose {
-        HullPose {
-            center: boat.center - self.pose.center,
-            axis: boat.axis,
-        }
+        let (core, radius) = self.core(place);
+        (place - core).norm() - radius
     }
 
     /// The contacts of a boat's hull with a gap below `margin`: none, one or, along a wall, two.
@@ -95,37 +96,54 @@ impl Obstacle {
         boat: &HullPose,
         hull: Hull,
         margin: f64,
-        found: &mut dyn FnMut(PairFeature, Gap),
+        found: &mut dyn FnMut(Feature, Gap),
     ) {
-        if self.is_disc() {
-            let gap = inner_wall_gap(&self.seen(boat), hull, self.shape.radius);
-            if gap.gap < margin {
-                found(PairFeature::Stern, gap);
+        match self {
+            Self::Disc { .. } => {
+                let gap = self.gap(Feature::Flank, boat, hull);
+                if gap.gap < margin {
+                    found(Feature::Flank, gap);
+                }
             }
-            return;
+            Self::Wall { pose, half_length } => capsule_gaps(
+                (boat, hull),
+                (pose, wall_hull(*half_length)),
+                margin,
+                |feature, gap| found(feature, beside_wall(feature, gap, hull)),
+            ),
         }
-        capsule_gaps(
-            (boat, hull),
-            (&self.pose, self.shape),
-            margin,
-            |feature, gap| found(feature, beside_wall(feature, gap, hull)),
-        );
     }
 
     /// The gap of a known contact at another pose of the boat.
-    pub fn gap(&self, feature: PairFeature, boat: &HullPose, hull: Hull) -> Gap {
-        if self.is_disc() {
-            return inner_wall_gap(&self.seen(boat), hull, self.shape.radius);
+    pub fn gap(&self, feature: Feature, boat: &HullPose, hull: Hull) -> Gap {
+        match self {
+            Self::Disc { center, radius } => {
+                let seen = HullPose {
+                    center: boat.center - center,
+                    axis: boat.axis,
+                };
+                inner_wall_gap(&seen, hull, *radius)
+            }
+            Self::Wall { pose, half_length } => {
+                let wall = (pose, wall_hull(*half_length));
+                beside_wall(feature, capsule_gap(feature, (boat, hull), wall), hull)
+            }
         }
-        let gap = capsule_gap(feature, (boat, hull), (&self.pose, self.shape));
-        beside_wall(feature, gap, hull)
+    }
+}
+
+/// A wall is a hull of no radius.
+fn wall_hull(half_length: f64) -> Hull {
+    Hull {
+        radius: 0.0,
+        half_length,
     }
 }
 
 /// The gap to a wall, which has no lever arm. Where a wall's end touches the flank, turning the boat either way brings
 /// the flank into it, as at a disc.
-fn beside_wall(feature: PairFeature, gap: Gap, hull: Hull) -> Gap {
-    let is_flank = feature != PairFeature::Crossed && gap.along.abs() < hull.half_length;
+fn beside_wall(feature: Feature, gap: Gap, hull: Hull) -> Gap {
+    let is_flank = feature != Feature::Crossed && gap.along.abs() < hull.half_length;
     Gap {
         arm_j: 0.0,
         bend: if is_flank {

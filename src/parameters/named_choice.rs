@@ -4,15 +4,20 @@
 /// need a feature of the crate.
 macro_rules! named_choice {
     ($(#[$meta:meta])* $visibility:vis enum $type:ident ($field:literal) {
-        $($(#[$variant_meta:meta])* $variant:ident = $name:literal $(if $feature:literal)?,)+
+        $($(#[doc = $doc:literal])+ $variant:ident = $name:literal $(if $feature:literal)?,)+
     }) => {
         $(#[$meta])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-        $visibility enum $type { $($(#[cfg(feature = $feature)])? $(#[$variant_meta])* $variant,)+ }
+        $visibility enum $type { $($(#[cfg(feature = $feature)])? $(#[doc = $doc])+ $variant,)+ }
 
         impl $type {
             /// Every choice, in the order of documentation.
             pub const ALL: &'static [Self] = &[$($(#[cfg(feature = $feature)])? Self::$variant,)+];
+
+            /// What it is, for documentation.
+            pub fn doc(self) -> &'static str {
+                match self { $($(#[cfg(feature = $feature)])? Self::$variant => concat!($($doc),+),)+ }.trim_ascii_start()
+            }
 
             /// The public name.
             pub fn name(self) -> &'static str {

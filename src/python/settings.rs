@@ -213,9 +213,7 @@ pub(crate) fn action_modes() -> Vec<&'static str> {
 #[pyfunction]
 pub(crate) fn reward_terms() -> Vec<(&'static str, &'static str)> {
     let terms = RewardTerm::ALL.iter();
-    terms
-        .map(|term| (term.name(), term.description()))
-        .collect()
+    terms.map(|term| (term.name(), term.doc())).collect()
 }
 
 /// Names as Python strings, to build dictionaries with.

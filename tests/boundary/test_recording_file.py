@@ -134,6 +134,16 @@ def with_arrays(**changes) -> bytes:
         return path.read_bytes()
 
 
+def test_a_file_of_this_version_is_read_and_written_as_the_same_arrays(tmp_path):
+    # If the format changes: raise the version in its name, then write the file again.
+    stored = Path(__file__).parents[1] / "fixtures" / "recording_1.npz"
+    Recording.load(stored).save(tmp_path / "again.npz")
+    with np.load(stored) as before, np.load(tmp_path / "again.npz") as after:
+        assert {*before} == {*after}
+        for name in before:
+            np.testing.assert_array_equal(before[name], after[name], strict=True)
+
+
 @pytest.mark.parametrize("change", [
     {"pose": None},
     {"extra": np.zeros(3)},

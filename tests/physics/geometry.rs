@@ -5,8 +5,8 @@
 
 use crate::support::{H, R, cases, core_distance};
 use flockenv::geometry::{
-    Gap, Hull, HullPose, PairFeature, Pose, Vec2, inner_wall_gap, outer_wall_gap, pair_gap,
-    pair_gaps, resized_gyration_radius_cm,
+    Feature, Gap, Hull, HullPose, Pose, Vec2, inner_wall_gap, outer_wall_gap, pair_gap, pair_gaps,
+    resized_gyration_radius_cm,
 };
 use flockenv::parameters::{FlockParameters, Preset};
 use proptest::prelude::*;
@@ -17,7 +17,7 @@ const HULL: Hull = Hull {
     half_length: H,
 };
 
-fn gaps(a: &Pose, b: &Pose, margin: f64) -> Vec<(PairFeature, Gap)> {
+fn gaps(a: &Pose, b: &Pose, margin: f64) -> Vec<(Feature, Gap)> {
     let mut found = Vec::new();
     pair_gaps(
         &HullPose::new(a),
@@ -103,7 +103,7 @@ fn gaps_known_on_paper() {
     // Crossed at right angles through the middle: out by 2.5 + 10.
     let found = gaps(&a, &Pose::new(0.0, 0.0, FRAC_PI_2), 1.0);
     assert_eq!(found.len(), 1);
-    assert_eq!(found[0].0, PairFeature::Crossed);
+    assert_eq!(found[0].0, Feature::Crossed);
     assert!(near(found[0].1.gap, -12.5));
 }
 
@@ -160,7 +160,7 @@ proptest! {
         prop_assert!(!found.is_empty() && found.len() <= 2);
         let least = found.iter().map(|(_, g)| g.gap).fold(f64::INFINITY, f64::min);
         if distance == 0.0 {
-            prop_assert!(found[0].0 == PairFeature::Crossed && least <= -2.0 * R);
+            prop_assert!(found[0].0 == Feature::Crossed && least <= -2.0 * R);
         } else {
             prop_assert!((least - (distance - 2.0 * R)).abs() < 1e-9, "{least} {distance}");
         }
@@ -171,7 +171,7 @@ proptest! {
 
     #[test]
     fn gaps_do_not_depend_on_who_comes_first(a in pose(), b in pose()) {
-        let order = |mut gaps: Vec<(PairFeature, Gap)>| {
+        let order = |mut gaps: Vec<(Feature, Gap)>| {
             gaps.sort_by(|x, y| x.1.gap.total_cmp(&y.1.gap));
             gaps
         };
@@ -187,7 +187,7 @@ proptest! {
         let step = 1e-5;
         for (feature, gap) in gaps(&a, &b, 20.0) {
             // Curvature is at most 1/distance a unit of displacement squared; near crossing there is none.
-            if feature == PairFeature::Crossed || gap.gap < -9.0 {
+            if feature == Feature::Crossed || gap.gap < -9.0 {
                 continue;
             }
             for direction in 0..3 {

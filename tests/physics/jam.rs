@@ -76,7 +76,7 @@ fn walls_balance_engines_and_drag() {
         let mut carrying = 0;
         for ContactForce { contact, force, .. } in flock.contacts() {
             let boat = &boats[contact.boat as usize];
-            let side = if contact.feature == 0 { -1.0 } else { 1.0 };
+            let side = contact.feature.side().unwrap_or(-1.0);
             walls += force
                 * match contact.partner {
                     Partner::OuterWall => outer_wall_gap(boat, side, hull, 90.0).normal,

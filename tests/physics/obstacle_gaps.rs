@@ -2,7 +2,7 @@
 //! and the distance of segments at random poses.
 
 use crate::support::{H, R, cases, disc_at, segment_distance, wall, wall_ends};
-use flockenv::geometry::{Gap, Hull, HullPose, Obstacle, PairFeature, Pose, Vec2};
+use flockenv::geometry::{Feature, Gap, Hull, HullPose, Obstacle, Pose, Vec2};
 use flockenv::parameters::Wall;
 use proptest::prelude::*;
 
@@ -11,7 +11,7 @@ const HULL: Hull = Hull {
     half_length: H,
 };
 
-fn gaps(boat: &Pose, obstacle: &Obstacle, margin: f64) -> Vec<(PairFeature, Gap)> {
+fn gaps(boat: &Pose, obstacle: &Obstacle, margin: f64) -> Vec<(Feature, Gap)> {
     let mut found = Vec::new();
     obstacle.gaps(&HullPose::new(boat), HULL, margin, &mut |feature, gap| {
         found.push((feature, gap));
@@ -67,7 +67,7 @@ fn gaps_known_on_paper() {
         2.0,
     );
     assert_eq!(found.len(), 1);
-    assert_eq!(found[0].0, PairFeature::Crossed);
+    assert_eq!(found[0].0, Feature::Crossed);
     assert!(near(found[0].1.gap, -(H - 1.0) - R) && near(found[0].1.normal.x, -1.0));
 }
 
@@ -119,7 +119,7 @@ proptest! {
         prop_assert!(!found.is_empty() && found.len() <= 2);
         let least = found.iter().map(|(_, g)| g.gap).fold(f64::INFINITY, f64::min);
         if distance == 0.0 {
-            prop_assert!(found[0].0 == PairFeature::Crossed && least <= -R);
+            prop_assert!(found[0].0 == Feature::Crossed && least <= -R);
         } else {
             prop_assert!((least - (distance - R)).abs() < 1e-9, "{least} {distance}");
         }
@@ -141,7 +141,7 @@ proptest! {
         let (step, obstacle) = (1e-5, Obstacle::from(&w));
         for (feature, gap) in gaps(&a, &obstacle, 20.0) {
             // Curvature is at most 1/distance a unit of displacement squared; near crossing there is none.
-            if feature == PairFeature::Crossed || gap.gap < -4.0 {
+            if feature == Feature::Crossed || gap.gap < -4.0 {
                 continue;
             }
             for direction in 0..3 {

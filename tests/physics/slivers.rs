@@ -17,7 +17,7 @@ const CUTS: [&[f64]; 4] = [
     &[0.333_333_333],
 ];
 
-fn crowd(scheme: Scheme, relinearizations: usize) -> Flock {
+fn crowd(scheme: Scheme, relinearizations: usize, seed: u64) -> Flock {
     let parameters = FlockParameters {
         n_boats: 27,
         n_leaders: 3,
@@ -30,7 +30,7 @@ fn crowd(scheme: Scheme, relinearizations: usize) -> Flock {
         relinearizations,
         ..FlockParameters::preset(Preset::Simulation)
     };
-    Flock::new(parameters, 1).unwrap()
+    Flock::new(parameters, seed).unwrap()
 }
 
 fn fastest(flock: &Flock) -> f64 {
@@ -43,7 +43,7 @@ fn no_sliver_kicks_a_boat() {
     for scheme in VELOCITY_SCHEMES {
         for relinearizations in [0, 1, 2] {
             for cuts in CUTS {
-                let mut flock = crowd(scheme, relinearizations);
+                let mut flock = crowd(scheme, relinearizations, 1);
                 for &duration in cuts.iter().cycle() {
                     flock.advance(duration, None).unwrap();
                     let speed = fastest(&flock);
@@ -60,18 +60,28 @@ fn no_sliver_kicks_a_boat() {
     }
 }
 
+/// The worst overlap in cm of four crowds that are advanced by such steps.
+fn worst_overlap(scheme: Scheme, relinearizations: usize, step_s: f64) -> f64 {
+    let overlaps = (1..=4).map(|seed| {
+        let mut flock = crowd(scheme, relinearizations, seed);
+        while flock.time_s() < 12.0 {
+            flock.advance(step_s, None).unwrap();
+        }
+        flock.statistics().worst_overlap_cm
+    });
+    overlaps.fold(0.0, f64::max)
+}
+
 #[test]
 fn slivers_leave_overlaps_as_small_as_whole_substeps_do() {
     for scheme in VELOCITY_SCHEMES {
-        for (relinearizations, allowed) in [(0, 0.01), (1, 5e-6), (2, 5e-9)] {
-            let mut flock = crowd(scheme, relinearizations);
-            while flock.time_s() < 12.0 {
-                flock.advance(0.02 - NS, None).unwrap();
-            }
-            let overlap = flock.statistics().worst_overlap_cm;
+        // Without relinearization an overlap follows from how fast boats turn, here up to some 0.01 cm.
+        let whole = worst_overlap(scheme, 0, 0.02);
+        for (relinearizations, allowed) in [(0, 1.5 * whole), (1, 5e-6), (2, 5e-9)] {
+            let overlap = worst_overlap(scheme, relinearizations, 0.02 - NS);
             assert!(
                 overlap < allowed,
-                "{scheme:?} {relinearizations}: {overlap} cm"
+                "{scheme:?} {relinearizations}: {overlap} cm, {whole} cm"
             );
         }
     }

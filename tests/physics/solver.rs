@@ -8,7 +8,7 @@ use crate::dense_reference::{Dense, Reference};
 use crate::support::{RHO, cases};
 use flockenv::contact::solver::{ContactSolver, SolveReport};
 use flockenv::contact::{Contact, ContactProblem, InverseInertia, Partner};
-use flockenv::geometry::{Gap, Vec2, Velocity};
+use flockenv::geometry::{Feature, Gap, Vec2, Velocity};
 use flockenv::parameters::Solver;
 use nalgebra::DVector;
 use proptest::prelude::*;
@@ -60,7 +60,7 @@ pub fn contact(boat: u32, second: Option<u32>, angle: f64, arms: (f64, f64)) -> 
     Contact {
         boat,
         partner: second.map_or(Partner::OuterWall, Partner::Boat),
-        feature: 0,
+        feature: Feature::Bow,
         gap: Gap {
             gap: 0.0,
             normal: Vec2::new(angle.cos(), angle.sin()),

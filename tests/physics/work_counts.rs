@@ -138,9 +138,9 @@ fn crowded_scenes_cost_what_they_did() {
     // Chaotic scenes: their counts move by some per cent with the last bits of sine and cosine. A fifth
     // more is a slowdown; less than half is a gain that these numbers should follow.
     for (n, bw, islands, rounds_per_island, rows, contacts, builds) in [
-        (27, 0.0, 6.23, 1.20, 53.9, 51.2, 0.060),
-        (27, 1.0, 6.37, 1.01, 0.32, 8.27, 0.041),
-        (50, 0.0, 6.59, 1.37, 116.0, 104.0, 0.070),
+        (27, 0.0, 6.77, 1.21, 44.8, 50.1, 0.063),
+        (27, 1.0, 6.24, 1.02, 0.835, 8.53, 0.041),
+        (50, 0.0, 6.39, 1.37, 90.9, 96.4, 0.066),
     ] {
         let (s, substeps) = counted(n, bw);
         let found = [
