@@ -1,8 +1,10 @@
 """`flockenv run`."""
 
 import itertools
+import shlex
 from collections.abc import Iterator
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -12,15 +14,9 @@ from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv.cli.console import errors, interruptible, print_json, progress_bar, say
+from flockenv.cli.options import Flocks, Overwriting, Printing, takes
 from flockenv.cli.output import check_file, keep, printable, refuse_overwriting, refuse_present
-from flockenv.cli.parameters import (
-    ChangesOption,
-    FileOption,
-    PresetOption,
-    TrustOption,
-    read_parameters,
-    save_parameters,
-)
+from flockenv.cli.parameters import TrustOption, read_parameters, save_parameters
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import LeaderPolicy
@@ -33,38 +29,36 @@ __all__ = ["DEFAULT_OUT", "in_words", "run", "summary_of"]
 DEFAULT_OUT = Path("results/run.npz")
 
 
-def run(
-    preset: PresetOption = None,
-    params: FileOption = None,
-    changes: ChangesOption = None,
+@dataclass(frozen=True, kw_only=True)
+class RunOptions(Flocks, Overwriting, Printing):
+    """Options of `flockenv run`."""
+
     policy: Annotated[
         str,
         typer.Option(
-            help="How leaders steer: law (eq. 10 at every substep); or at 10 Hz, from what they "
-            "observe, a policy's .npz file, an SB3 model's .zip file (with --trust) or one of: "
+            help="How leaders steer. The paper's law at every substep, or at 10 Hz, from what they "
+            "observe, a policy's file, an SB3 model's .zip file (with --trust) or one of: "
             f"{quoted([*POLICIES, *POOL_POLICIES])}."
         ),
-    ] = EVERY_SUBSTEP,
-    trust: TrustOption = False,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of placement and noise.")] = 0,
-    minutes: Annotated[float, typer.Option(min=0.0, help="Length of the run.")] = 8.0,
-    hz: Annotated[float, typer.Option(help="Samples per second.")] = 10.0,
+    ] = EVERY_SUBSTEP
+    trust: TrustOption = False
+    seed: Annotated[int, typer.Option(min=0, help="Seed of placement and noise.")] = 0
+    minutes: Annotated[float, typer.Option(min=0.0, help="Length of the run.")] = 8.0
+    hz: Annotated[float, typer.Option(help="Samples per second.")] = 10.0
     threads: Annotated[
         int, typer.Option(min=1, max=1024, help="Threads for 200 boats or more; same result.")
-    ] = 1,
+    ] = 1
     contacts: Annotated[
         bool, typer.Option("--contacts/--no-contacts", help="Record contact forces too.")
-    ] = True,
+    ] = True
     out: Annotated[
         Path | None,
         typer.Option(help="The recording. [results/run.npz, numbered where that is taken]"),
-    ] = None,
-    force: Annotated[
-        bool, typer.Option("--force", help="Overwrite files that are there already.")
-    ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no progress.")] = False,
-) -> None:
+    ] = None
+
+
+@takes(RunOptions)
+def run(options: RunOptions) -> None:
     """Run one flock and record it.
 
     Writes the recording, and beside it the exact parameters as TOML, which `--params` reads.
@@ -72,61 +66,78 @@ def run(
 
     Example: `flockenv run --set n_boats=27 --set n_leaders=3 --set bw_s=0.3 --seed 7`
     """
-    parameters = read_parameters(preset, params, changes)
-    wanted = out or DEFAULT_OUT
+    parameters = read_parameters(options.preset, options.params, options.changes)
+    out = _checked_out(options)
+    policy = _policy(options.policy, parameters, options.trust)
+    recording = _recorded(options, parameters, policy)
+    written = _kept(options, out, recording)
+    if written != out:
+        say(f"{out} was written by another command meanwhile.", errors)
+    beside, summary = written.with_suffix(".toml"), summary_of(recording)
+    if options.as_json:
+        files = {"recording": str(written), "parameters": str(beside)}
+        print_json({**files, "seed": options.seed, "policy": options.policy, **summary})
+        return
+    say(f"{parameters.n_boats} boats, seed {options.seed}: {in_words(summary, recording)}")
+    say(f"Written to {written} and {beside}")
+    say(f"See it: flockenv replay {shlex.quote(str(written))}")
+
+
+def _checked_out(options: RunOptions) -> Path:
+    """Return where the recording goes, if it can be written there."""
+    out = options.out
     if out is None:
-        out = DEFAULT_OUT if force else next(filter(_is_free, _numbered(DEFAULT_OUT)))
+        numbered = filter(_is_free, _numbered(DEFAULT_OUT))
+        out = DEFAULT_OUT if options.force else next(numbered)
     if out.suffix != ".npz":
         raise ParameterError(f"--out {out} is not accepted: a name that ends in .npz")
-    leaders = _policy(policy, parameters, trust)
-    beside = out.with_suffix(".toml")
-    for path in (out, beside):
+    written = (out, out.with_suffix(".toml"))
+    for path in written:
         check_file(path)
-    refuse_overwriting(params, "--params", (out, beside))
-    refuse_overwriting(policy, "--policy", (out,))
-    refuse_present((out, beside), force)
-    with interruptible("Nothing was written."), progress_bar(quiet or as_json) as progress:
-        task = progress.add_task("simulating", total=minutes * 60)
-        recording = simulate(
+    refuse_overwriting(options.params, "--params", written)
+    refuse_overwriting(options.policy, "--policy", (out,))
+    refuse_present(written, options.force)
+    return out
+
+
+def _recorded(
+    options: RunOptions, parameters: FlockParameters, policy: LeaderPolicy | str
+) -> Recording:
+    with interruptible("Nothing was written."), progress_bar(options.shows_nothing) as progress:
+        task = progress.add_task("simulating", total=options.minutes * 60)
+        return simulate(
             parameters,
-            seed,
-            minutes * 60,
-            hz,
-            leaders,
-            contacts=contacts,
-            threads=threads,
+            options.seed,
+            options.minutes * 60,
+            options.hz,
+            policy,
+            contacts=options.contacts,
+            threads=options.threads,
             progress=lambda seconds: progress.advance(task, seconds),
         )
-    shown = printable(policy)
-    remark = f"flockenv {recording.version}: seed {seed}, policy {shown}, {minutes:g} min"
 
+
+def _kept(options: RunOptions, out: Path, recording: Recording) -> Path:
+    """Write the recording and its parameters; return where, if the name was taken meanwhile."""
+    policy = printable(options.policy)
+    remark = f"flockenv {recording.version}: seed {options.seed}, policy {policy}, "
+    remark += f"{options.minutes:g} min"
+    wanted = (options.out or DEFAULT_OUT).name
     written: list[Path] = []
 
     def write(path: Path) -> None:
-        # Another command may have taken the name meanwhile.
-        path = path if force else _taken(path.with_name(wanted.name))
+        path = path if options.force else _taken(path.with_name(wanted))
         try:
             recording.save(path)
-            save_parameters(path.with_suffix(".toml"), parameters, remark)
+            save_parameters(path.with_suffix(".toml"), recording.parameters, remark)
         except BaseException:
-            if not force:
+            if not options.force:
                 path.unlink(missing_ok=True)
             raise
         written.append(path)
 
     keep(out, write)
-    if written != [out]:
-        say(f"{out} was written by another command meanwhile.", errors)
-        (out,) = written
-    beside = out.with_suffix(".toml")
-    summary = summary_of(recording)
-    if as_json:
-        files = {"recording": str(out), "parameters": str(beside)}
-        print_json({**files, "seed": seed, "policy": policy, **summary})
-        return
-    say(f"{parameters.n_boats} boats, seed {seed}: {in_words(summary, recording)}")
-    say(f"Written to {out} and {beside}")
-    say(f"See it: flockenv replay {out}")
+    return written[-1]
 
 
 def _numbered(path: Path) -> Iterator[Path]:

@@ -1,13 +1,15 @@
 """`flockenv sweep`."""
 
 import json
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from flockenv._io.atomic_write import atomic_write
 from flockenv.cli.console import print_json, progress_bar, resumable, say
+from flockenv.cli.options import Printing, takes
 from flockenv.cli.output import check_folder, writable
 from flockenv.cli.workload import (
     DryRun,
@@ -20,24 +22,31 @@ from flockenv.cli.workload import (
     show_workload,
     warn,
 )
-from flockenv.runs.executors import named
+from flockenv.runs.executors import Engine, named
 from flockenv.runs.store import RUNS_FOLDER
+
+if TYPE_CHECKING:
+    from flockenv.runs.sweep_spec import SweepSpec
 
 __all__ = ["sweep"]
 
 
-def sweep(
-    spec: Annotated[Path, typer.Argument(help="What to run: a TOML file.")],
-    engine: EngineName = "local",
-    workers: Workers = None,
-    shard: ShardOf = None,
-    dry_run: DryRun = False,
-    out: Annotated[
-        Path | None, typer.Option(help="Folder for results. [results/sweep/NAME]")
-    ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no progress.")] = False,
-) -> None:
+@dataclass(frozen=True, kw_only=True)
+class SweepOptions(Printing):
+    """Options of `flockenv sweep`."""
+
+    spec: Annotated[Path, typer.Argument(help="What to run: a TOML file.")]
+    engine: EngineName = "local"
+    workers: Workers = None
+    shard: ShardOf = None
+    dry_run: DryRun = False
+    out: Annotated[Path | None, typer.Option(help="Folder for results. [results/sweep/NAME]")] = (
+        None
+    )
+
+
+@takes(SweepOptions)
+def sweep(options: SweepOptions) -> None:
     """Run a grid of parameters and seeds, as one table.
 
     Writes `sweep.csv` and `sweep.parquet`, one row per run, which `flockenv.runs.sweep.load_sweep`
@@ -50,33 +59,41 @@ def sweep(
 
     Example: `flockenv sweep docs/sweep-example.toml`
     """
-    from flockenv.runs.sweep import run_sweep
     from flockenv.runs.sweep_spec import read_sweep
 
-    where, part = named(engine), chosen_shard(shard)
-    work = read_sweep(spec)
-    folder = out or Path("results/sweep") / spec.stem
-    if dry_run:
-        show_workload(work.runs, folder / RUNS_FOLDER, part, as_json)
+    engine, part = named(options.engine), chosen_shard(options.shard)
+    work = read_sweep(options.spec)
+    folder = options.out or Path("results/sweep") / options.spec.stem
+    runs = folder / RUNS_FOLDER
+    if options.dry_run:
+        show_workload(work.runs, runs, part, options.as_json)
         return
     check_folder(folder)
-    given = spec.read_bytes()
+    given = options.spec.read_bytes()
     with writable(folder / "sweep.toml") as path, atomic_write(path) as file:
         file.write(given)
     if part is not None:
-        make_shard(work.runs, folder / RUNS_FOLDER, part, where, workers, quiet, as_json)
+        make_shard(work.runs, runs, part, engine, options.workers, options.quiet, options.as_json)
         return
-    with resumable(folder / RUNS_FOLDER), progress_bar(quiet or as_json) as progress:
-        task = progress.add_task(f"{len(work.runs)} runs", total=sum(run.cost for run in work.runs))
+    _whole(options, work, folder, engine)
+
+
+def _whole(options: SweepOptions, work: "SweepSpec", folder: Path, engine: Engine) -> None:
+    """Make all runs that are missing, and the table."""
+    from flockenv.runs.sweep import run_sweep
+
+    runs = work.runs
+    with resumable(folder / RUNS_FOLDER), progress_bar(options.shows_nothing) as progress:
+        task = progress.add_task(f"{len(runs)} runs", total=sum(run.cost for run in runs))
         table = run_sweep(
             work,
             folder,
-            where,
+            engine,
             lambda run: progress.update(task, advance=run.cost),
             warn,
-            workers,
+            options.workers,
         )
-    if as_json:
+    if options.as_json:
         print_json(json.loads(table.to_json(orient="records")))
     else:
         say(f"{len(table)} runs, written to {folder}")

@@ -1,47 +1,71 @@
 """`flockenv train`."""
 
+import shlex
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from rich.progress import Progress
 
 from flockenv.cli.console import interruptible, print_json, progress_bar, say
+from flockenv.cli.options import Printing, takes
 from flockenv.cli.output import check_folder, keep
 from flockenv.cli.parameters import changed_fields
 from flockenv.errors import ParameterError
 
+if TYPE_CHECKING:
+    from flockenv.training import Progress as TrainingProgress
+
 __all__ = ["train"]
 
 
-def train(
-    pool: Annotated[str | None, typer.Option(help="wide or narrow. [wide]")] = None,
-    leaders: Annotated[int | None, typer.Option(help="Leaders of each flock. [3]")] = None,
+@dataclass(frozen=True, kw_only=True)
+class TrainOptions(Printing):
+    """Options of `flockenv train`."""
+
+    pool: Annotated[str | None, typer.Option(help="wide or narrow. [wide]")] = None
+    leaders: Annotated[int | None, typer.Option(help="Leaders of each flock. [3]")] = None
     flock_hours: Annotated[
         float | None, typer.Option(help="When to stop: hours of all flocks together. [1200]")
-    ] = None,
-    seed: Annotated[int | None, typer.Option(help="Number of the training. [0]")] = None,
+    ] = None
+    seed: Annotated[int | None, typer.Option(help="Number of the training. [0]")] = None
     change: Annotated[
         list[str] | None,
         typer.Option(
             "--set", metavar="NAME=VALUE", help="Change an option of the environment; repeatable."
         ),
-    ] = None,
+    ] = None
     ppo: Annotated[
         list[str] | None,
         typer.Option("--ppo", metavar="NAME=VALUE", help="Change an option of PPO; repeatable."),
-    ] = None,
+    ] = None
     episodes: Annotated[
         int, typer.Option(min=2, help="Held-out flocks to compare with the laws in.")
-    ] = 64,
+    ] = 64
     out: Annotated[Path, typer.Option(help="Folder for the model and the run.")] = Path(
         "results/train"
-    ),
+    )
     resume: Annotated[
         bool, typer.Option("--resume", help="Continue from the folder's last checkpoint.")
-    ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the means as JSON.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no progress.")] = False,
-) -> None:
+    ] = False
+
+    def settings(self) -> dict[str, Any]:
+        """Return the settings of the training that were given."""
+        given = {
+            "pool": self.pool,
+            "n_leaders": self.leaders,
+            "flock_hours": self.flock_hours,
+            "seed": self.seed,
+            "environment": changed_fields(self.change or []) or None,
+            "ppo": changed_fields(self.ppo or [], "--ppo") or None,
+        }
+        return {name: value for name, value in given.items() if value is not None}
+
+
+@takes(TrainOptions)
+def train(options: TrainOptions) -> None:
     """Train one policy for all leaders with PPO (extra `train`).
 
     It is `examples/train_leaders.py` with options. Writes `model.zip`, which
@@ -53,38 +77,21 @@ def train(
     """
     from flockenv import training
 
-    changes = {name: changed_fields(given or []) for name, given in (("set", change), ("ppo", ppo))}
-    given = {
-        "pool": pool,
-        "n_leaders": leaders,
-        "flock_hours": flock_hours,
-        "seed": seed,
-        "environment": changes["set"] or None,
-        "ppo": changes["ppo"] or None,
-    }
-    given = {name: value for name, value in given.items() if value is not None}
-    if resume and given.keys() - {"flock_hours"}:
+    given, out = options.settings(), options.out
+    if options.resume and given.keys() - {"flock_hours"}:
         raise ParameterError(
             "--resume takes settings from the folder; only --flock-hours may differ"
         )
     check_folder(out)
-    with interruptible(lambda: _last_checkpoint(out)), progress_bar(quiet or as_json) as bar:
-        task = bar.add_task("start", total=None)
-
-        def report(progress: training.Progress) -> None:
-            if resume and bar.tasks[0].total is None and not (quiet or as_json):
-                bar.console.print(f"Resuming from {out / training.CHECKPOINT}")
-            order = progress.signed_order
-            words = "start" if order is None else f"signed order {order:.3f}"
-            bar.update(task, description=words, completed=progress.samples, total=progress.total)
-
-        if resume:
-            settings = training.stored_settings(out, flock_hours)
-            model = training.resume(out, flock_hours=flock_hours, report=report)
+    with interruptible(lambda: _last_checkpoint(out)), progress_bar(options.shows_nothing) as bar:
+        report = _reporting(options, bar)
+        if options.resume:
+            settings = training.stored_settings(out, options.flock_hours)
+            model = training.resume(out, flock_hours=options.flock_hours, report=report)
         else:
             settings = training.TrainingSettings.from_dict(given)
             model = training.train(settings, out, report)
-    rows = training.compare_with_laws(model, settings, episodes)
+    rows = training.compare_with_laws(model, settings, options.episodes)
     keep(out / "comparison.csv", lambda path: rows.to_csv(path, index=False))
     means = rows.groupby("policy", sort=False)["signed_order"].mean()
     laws = {str(name): float(order) for name, order in means.drop("trained").items()}
@@ -92,15 +99,32 @@ def train(
         out / "curve.png",
         lambda path: training.draw_curve(training.learning_curve(out), laws, path),
     )
-    if as_json:
+    if options.as_json:
         print_json({"signed_order": means.to_dict(), "model": str(out / training.MODEL)})
         return
     for name, order in means.items():
-        say(f"{name}: signed order {order:.3f} in {episodes} held-out flocks")
+        say(f"{name}: signed order {order:.3f} in {options.episodes} held-out flocks")
     say(f"Written to {out}")
+
+
+def _reporting(options: TrainOptions, bar: Progress) -> "Callable[[TrainingProgress], None]":
+    from flockenv import training
+
+    task = bar.add_task("start", total=None)
+
+    def report(progress: "TrainingProgress") -> None:
+        if options.resume and bar.tasks[0].total is None and not options.shows_nothing:
+            bar.console.print(f"Resuming from {options.out / training.CHECKPOINT}")
+        order = progress.signed_order
+        words = "start" if order is None else f"signed order {order:.3f}"
+        bar.update(task, description=words, completed=progress.samples, total=progress.total)
+
+    return report
 
 
 def _last_checkpoint(out: Path) -> str:
     if (out / "checkpoint.zip").exists():
-        return f"The last checkpoint is stored: flockenv train --resume --out {out}"
+        return (
+            f"The last checkpoint is stored: flockenv train --resume --out {shlex.quote(str(out))}"
+        )
     return "There is no checkpoint yet: start again."
