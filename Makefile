@@ -20,6 +20,7 @@ INSTRUCTIONS ?=
 FUZZ_EXAMPLES ?= 2000
 # `make speed-vs-error SPEED_ARGS=--trial`: everything, but too short to mean anything, outside docs.
 SPEED_ARGS ?=
+PAPER_ARGS ?=
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -54,7 +55,7 @@ TEST_EXTRAS := --extra train --extra plot --extra render --extra sweep --extra t
 .PHONY: help setup build compare live test lint format test-rust test-bare test-python coverage test-js test-browser test-live test-wheel test-oldest \
         test-benchmarl test-rllib test-ray test-slurm validate docs wheel audit licenses tables replay-animation publish-check release-check \
         instructions throughput env-benchmarl env-rllib soak fuzz speed-vs-error \
-        lint-benches clean
+        lint-benches paper clean
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-19s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -176,6 +177,10 @@ release-check: audit publish-check docs test-oldest test-wheel ## all of a relea
 validate: $(STAMPS)/test $(CORE) ## the slow tests and the published curves
 	cargo test --locked --features clarabel,draw -- --ignored
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) -m slow --timeout 3600 $(PYTEST_ARGS)
+
+# Goes on where it ended; `make paper PAPER_ARGS="fig14 --workers 1"` makes one figure.
+paper: $(STAMPS)/compare $(CORE) ## make every figure and question of paper/ that has runs missing, or draw it again
+	OMP_NUM_THREADS=1 $(BIN)/python paper/make.py $(PAPER_ARGS)
 
 tables: $(STAMPS)/compare $(CORE) ## fill the tables and draw the curves of README and docs from the committed data
 	$(BIN)/python docs/tables.py

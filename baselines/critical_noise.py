@@ -26,7 +26,6 @@ NOISE_S = {
     "simulation": np.round(np.arange(0.0, 0.91, 0.05), 2),
     "paper": np.round(np.arange(0.0, 0.91, 0.05), 2),
     "experiment": np.round(np.arange(0.4, 2.81, 0.2), 1),
-    "experiment-2026": np.round(np.arange(0.4, 2.81, 0.2), 1),
 }
 POOLS = ("wide", "narrow")
 

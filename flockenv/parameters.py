@@ -112,8 +112,7 @@ class FlockParameters:
         name
             ``"simulation"``: Table 3 with `leapfrog` and white noise, whose statistics do not
             depend on dt. ``"paper"``: Table 3 with the paper's literal scheme and per-step noise.
-            ``"experiment"``: Table 1, with constants fitted to Section 4 by ``flockenv fit``;
-            ``"experiment-2026"``: the same, as an earlier fit of fewer constants had them.
+            ``"experiment"``: Table 1, with constants fitted to Section 4.
 
         Raises
         ------
@@ -139,8 +138,8 @@ class FlockParameters:
 
         The length of the backward phase, in s, at which mean Ψ_o of leaderless runs falls through
         the middle between its ordered and its disordered level; measured by
-        ``baselines/critical_noise.py`` for Table 3's presets in both named pools, for
-        ``"experiment"`` and ``"experiment-2026"`` in ``"narrow"``.
+        ``baselines/critical_noise.py`` for Table 3's presets in both named pools, and for
+        ``"experiment"`` in ``"narrow"``.
 
         Raises
         ------

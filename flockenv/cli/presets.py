@@ -15,7 +15,6 @@ ABOUT = {
     "simulation": "Table 3's boats, with a scheme and a noise whose statistics do not depend on dt",
     "paper": "Table 3's boats, with the paper's own scheme and noise taken literally",
     "experiment": "the boats of Table 1, with constants fitted to Section 4",
-    "experiment-2026": "the same, as an earlier fit of fewer constants had them",
 }
 """What each preset is, in a line."""
 

@@ -11,8 +11,6 @@ named_choice! {
         Paper = "paper",
         /// Table 1, with constants fitted to Section 4, `leapfrog` and white noise.
         Experiment = "experiment",
-        /// `Experiment` as an earlier fit of fewer constants had it, so that its results stay reproducible.
-        Experiment2026 = "experiment-2026",
     }
 }
 
@@ -56,7 +54,7 @@ impl Preset {
     ///
     /// Source: `baselines/critical_noise.py` (8 seeds of 30 minutes every 0.05 s; runs in
     /// `docs/results/critical_noise.csv`; of the experiment every 0.2 s, in
-    /// `docs/results/critical_noise_experiment.csv` and `critical_noise_experiment_2026.csv`), rounded to 0.01 s.
+    /// `docs/results/critical_noise_experiment.csv`), rounded to 0.01 s.
     pub fn critical_bw_s(self, pool: &Pool) -> Option<f64> {
         match (self, pool.name()?) {
             (Self::Simulation, "wide") => Some(0.31),
@@ -64,7 +62,6 @@ impl Preset {
             (Self::Paper, "wide") => Some(0.57),
             (Self::Paper, "narrow") => Some(0.64),
             (Self::Experiment, "narrow") => Some(1.49),
-            (Self::Experiment2026, "narrow") => Some(1.80),
             _ => None,
         }
     }
@@ -89,39 +86,23 @@ impl Preset {
                 noise_scheme = Noise::PerStep, "eq. (9), taken literally";
                 overlap_tolerance_cm = 0.01, "Appendix A";
             },
-            // Fitted by `flockenv fit` (seed 0); docs/experiment_fit.md.
             Self::Experiment => changes! {
                 n_boats = 27, "Table 1";
                 n_leaders = 0, "Table 1 (0 to 4)";
                 pool = Pool::NARROW, "Table 1";
-                speed_cm_s = 17.93, "flockenv fit";
-                reverse_speed_cm_s = 8.2, "flockenv fit";
-                c0 = 0.8263, "flockenv fit";
-                c1 = 0.651, "flockenv fit";
-                c2 = 0.5402, "flockenv fit";
-                c3 = 0.1906, "flockenv fit";
-                c4 = 0.05159, "flockenv fit";
+                speed_cm_s = 17.93, "fitted to Section 4 (docs/model.md)";
+                reverse_speed_cm_s = 8.2, "fitted to Section 4 (docs/model.md)";
+                c0 = 0.8263, "fitted to Section 4 (docs/model.md)";
+                c1 = 0.651, "fitted to Section 4 (docs/model.md)";
+                c2 = 0.5402, "fitted to Section 4 (docs/model.md)";
+                c3 = 0.1906, "fitted to Section 4 (docs/model.md)";
+                c4 = 0.05159, "fitted to Section 4 (docs/model.md)";
                 bw_s = 1.4, "Section 4.2 (figure 5)";
                 leaders_reverse = false, "Section 2.6 (motor on in fw only)";
-                turning_bias = 0.0002426, "flockenv fit";
-                speed_spread_cm_s = 0.983, "flockenv fit";
-                current_gain = 0.04248, "flockenv fit";
-                leader_speed_factor = 1.106, "flockenv fit";
-            },
-            // Fitted by an earlier search of `flockenv fit` (seed 0, 110 trials); docs/model.md and
-            // docs/results/experiment_fit.csv.
-            Self::Experiment2026 => changes! {
-                n_boats = 27, "Table 1";
-                n_leaders = 0, "Table 1 (0 to 4)";
-                pool = Pool::NARROW, "Table 1";
-                speed_cm_s = 15.0, "Table 1 (15 ± 5)";
-                reverse_speed_cm_s = 4.94, "an earlier flockenv fit";
-                c1 = 0.265, "an earlier flockenv fit";
-                c2 = 0.973, "an earlier flockenv fit";
-                c3 = 0.123, "an earlier flockenv fit";
-                c4 = 0.00584, "an earlier flockenv fit";
-                bw_s = 1.4, "Section 4.2 (figure 5)";
-                leaders_reverse = false, "Section 2.6 (motor on in fw only)";
+                turning_bias = 0.0002426, "fitted to Section 4 (docs/model.md)";
+                speed_spread_cm_s = 0.983, "fitted to Section 4 (docs/model.md)";
+                current_gain = 0.04248, "fitted to Section 4 (docs/model.md)";
+                leader_speed_factor = 1.106, "fitted to Section 4 (docs/model.md)";
             },
         }
     }

@@ -85,7 +85,7 @@ def test_presets_in_80_columns(cli):
     assert "…" not in reported.stdout
     for name, about in ABOUT.items():
         assert f"{name}: {about}" in reported.stdout
-    for words in ("gyration_radius_cm", "4.74", "experiment: flockenv fit", "Section 5.2"):
+    for words in ("gyration_radius_cm", "4.74", "experiment: fitted to Section 4", "Section 5.2"):
         assert words in reported.stdout
     text = " ".join(reported.stdout.split())
     for field in dataclasses.fields(flockenv.FlockParameters):

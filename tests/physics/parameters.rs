@@ -36,24 +36,17 @@ fn presets_are_the_tables() {
 
 #[test]
 fn the_experiment_is_narrow() {
-    for preset in [Preset::Experiment, Preset::Experiment2026] {
-        let p = FlockParameters::preset(preset);
-        assert_eq!((p.n_boats, p.n_leaders, p.leaders_reverse), (27, 0, false));
-        assert_eq!(p.pool.name(), Some("narrow"));
-        assert!((10.0..=20.0).contains(&p.speed_cm_s));
-        assert_eq!([p.fw_s, p.nop1_s, p.nop2_s], [2.0, 1.0, 1.0]);
-        assert_eq!((p.scheme, p.noise_scheme), (Scheme::Leapfrog, Noise::White));
-        // Table 1: backing boats turn at 1 ± 0.2 rad/s; where that rate is steady,
-        // c1·w² = c3·v0·c0²/(c0² + w²).
-        let lag = |w: f64| p.c0 * p.c0 / (p.c0 * p.c0 + w * w);
-        let lagged = |w: f64| p.c3 * p.reverse_speed_cm_s * lag(w) - p.c1 * w * w;
-        assert!(lagged(0.8) > 0.0 && lagged(1.2) < 0.0, "{preset:?}");
-    }
-    let earlier = FlockParameters::preset(Preset::Experiment2026);
-    assert_eq!(
-        (earlier.speed_cm_s, earlier.c0, earlier.c3),
-        (15.0, 1.0, 0.123)
-    );
+    let p = FlockParameters::preset(Preset::Experiment);
+    assert_eq!((p.n_boats, p.n_leaders, p.leaders_reverse), (27, 0, false));
+    assert_eq!(p.pool.name(), Some("narrow"));
+    assert!((10.0..=20.0).contains(&p.speed_cm_s));
+    assert_eq!([p.fw_s, p.nop1_s, p.nop2_s], [2.0, 1.0, 1.0]);
+    assert_eq!((p.scheme, p.noise_scheme), (Scheme::Leapfrog, Noise::White));
+    // Table 1: backing boats turn at 1 ± 0.2 rad/s; where that rate is steady,
+    // c1·w² = c3·v0·c0²/(c0² + w²).
+    let lag = |w: f64| p.c0 * p.c0 / (p.c0 * p.c0 + w * w);
+    let lagged = |w: f64| p.c3 * p.reverse_speed_cm_s * lag(w) - p.c1 * w * w;
+    assert!(lagged(0.8) > 0.0 && lagged(1.2) < 0.0);
 }
 
 #[test]

@@ -1,0 +1,212 @@
+"""Intervals over runs, and statements of the paper judged by them: the lines of ``claims.csv``."""
+
+import csv
+import io
+import math
+import warnings
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy import stats
+from study import Options, write
+
+from flockenv.statistics import CONFIDENCE, bootstrap_interval, mean_interval
+
+Interval = tuple[float, float, float]
+"""A value and the ends of its 95 % interval."""
+
+
+def mean(values: Iterable[float]) -> Interval:
+    """Return the mean of independent runs with its interval; NaN for no runs."""
+    found = np.asarray(list(values), float)
+    return mean_interval(found) if len(found) else (math.nan, math.nan, math.nan)
+
+
+def proportion(count: int, of: int) -> Interval:
+    """Return a share of independent runs with the interval of Clopper and Pearson."""
+    if of == 0:
+        return math.nan, math.nan, math.nan
+    ends = stats.binomtest(int(count), int(of)).proportion_ci(CONFIDENCE, method="exact")
+    return count / of, float(ends.low), float(ends.high)
+
+
+def bca(groups: Sequence[Any], statistic: Callable[..., Any]) -> Interval:
+    """Return a statistic of groups of runs with its BCa interval, runs drawn in each group apart.
+
+    Each group is an array of shape (runs, columns). The statistic takes arrays of shape
+    (..., runs, columns) and returns one of shape (...).
+    """
+    arrays = [np.asarray(group, float) for group in groups]
+    if min(map(len, arrays)) < 3:
+        return math.nan, math.nan, math.nan
+
+    def of_places(*places: Any, axis: int) -> Any:
+        return statistic(*(g[np.asarray(p, int)] for g, p in zip(arrays, places, strict=True)))
+
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")  # Draws without spread.
+        return bootstrap_interval([np.arange(len(g)) for g in arrays], of_places, paired=False)
+
+
+HOLDS, FAILS = "holds", "fails"
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A statement of the paper, judged by runs.
+
+    Attributes
+    ----------
+    claim, section
+        The statement, and where it stands.
+    reading
+        Of what runs: preset or scheme and noise, pool, number of boats.
+    quantity
+        What is measured, with its noise.
+    found
+        The value and its interval.
+    runs
+        How many runs it is measured in.
+    least, most
+        The range that the statement claims.
+    """
+
+    claim: str
+    section: str
+    reading: str
+    quantity: str
+    found: Interval
+    runs: int
+    least: float = -math.inf
+    most: float = math.inf
+
+    @property
+    def verdict(self) -> str:
+        """It holds or fails where the whole interval does; otherwise it is open.
+
+        The runs that would decide are estimated from the distance of the value to the nearer bound,
+        since an interval narrows with the root of the number of runs.
+        """
+        value, low, high = self.found
+        if low >= self.least and high <= self.most:
+            return HOLDS
+        if high < self.least or low > self.most:
+            return FAILS
+        if not all(map(math.isfinite, self.found)):
+            return "open: not measured"
+        away = min(abs(value - bound) for bound in (self.least, self.most))
+        outer = [abs(end - value) for end in (low, high)]
+        needed = math.inf if away == 0 else self.runs * (max(outer) / away) ** 2
+        return "open: more than 10000 runs" if needed > 1e4 else f"open: {math.ceil(needed)} runs"
+
+    @property
+    def claimed(self) -> str:
+        """The range as a text."""
+        if self.most == math.inf:
+            return f">= {self.least:g}"
+        return (
+            f"<= {self.most:g}" if self.least == -math.inf else f"{self.least:g} to {self.most:g}"
+        )
+
+
+class Claims(list[Claim]):
+    """Claims of one section about one reading."""
+
+    def __init__(self, section: str, reading: str) -> None:
+        super().__init__()
+        self.section, self.reading = section, reading
+
+    def add(
+        self,
+        claim: str,
+        quantity: str,
+        found: Interval,
+        runs: int,
+        *,
+        least: float = -math.inf,
+        most: float = math.inf,
+        n: str = "",
+    ) -> None:
+        """Add a claim; `n` is added to the reading."""
+        reading = f"{self.reading}, n = {n}" if n else self.reading
+        self.append(Claim(claim, self.section, reading, quantity, found, int(runs), least, most))
+
+    def exists(self, claim: str, quantity: str, count: int, runs: int, *, n: str = "") -> None:
+        """Add the claim that something happens, judged by existence, with its rate beside it.
+
+        It fails where its rate is below one run in twenty.
+        """
+        value, low, high = proportion(count, runs)
+        least = 1e-9 if count else 0.05
+        self.add(
+            claim, quantity, (value, max(low, least * bool(count)), high), runs, least=least, n=n
+        )
+
+
+_COLUMNS = (
+    *("figure", "claim", "section", "reading", "quantity", "claimed"),
+    *("n_runs", "measured", "low", "high", "verdict"),
+)
+
+
+def write_claims(options: Options, figure: str, claims: Iterable[Claim]) -> None:
+    """Replace a figure's lines of ``claims.csv``."""
+    path = options.out / "claims.csv"
+    kept = []
+    if path.exists():
+        with path.open(newline="") as file:
+            kept = [line for line in csv.DictReader(file) if line["figure"] != figure]
+    lines = kept + [
+        dict(
+            zip(
+                _COLUMNS,
+                (
+                    *(figure, each.claim, each.section, each.reading, each.quantity, each.claimed),
+                    *(each.runs, *(f"{value:.3g}" for value in each.found), each.verdict),
+                ),
+                strict=True,
+            )
+        )
+        for each in claims
+    ]
+    file = io.StringIO()
+    writer = csv.DictWriter(file, _COLUMNS, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(sorted(lines, key=lambda line: line["figure"]))
+    write(path, file.getvalue().encode())
+
+
+def critical_bw(levels_s: Sequence[float], groups: Sequence[Any]) -> Interval:
+    """Return the bw in s at which mean Ψ_o falls through the middle between order and disorder.
+
+    Each group is of shape (runs, 2): Ψ_o and |m| of the runs at a level, the last level being
+    disordered. The ordered level is mean Ψ_o where mean |m| is largest. NaN where there is no order
+    to lose: where mean |m| is nowhere 0.5.
+    """
+    arrays = [np.asarray(group, float) for group in groups]
+    if min(map(len, arrays)) < 3 or max(group[:, 1].mean() for group in arrays) < 0.5:
+        return math.nan, math.nan, math.nan
+    return bca(arrays, lambda *drawn: fall(levels_s, drawn))
+
+
+def fall(levels_s: Sequence[float], groups: Sequence[Any]) -> Any:
+    """Return `critical_bw` of groups of shape (..., runs, 2), one value for each draw."""
+    x = np.asarray(levels_s, float)
+    psi_o, abs_m = (
+        np.stack(np.broadcast_arrays(*(each[..., column].mean(-1) for each in groups)))
+        for column in (0, 1)
+    )
+    curves = zip(psi_o.reshape(len(x), -1).T, abs_m.reshape(len(x), -1).T, strict=True)
+    return np.array([_middle(x, *each) for each in curves]).reshape(psi_o.shape[1:])
+
+
+def _middle(x: Any, psi_o: Any, abs_m: Any) -> float:
+    top = int(abs_m.argmax())
+    middle = (psi_o[top] + psi_o[-1]) / 2
+    place = top + int(np.flatnonzero(psi_o[top:] >= middle)[-1])
+    if place == len(x) - 1:
+        return float(x[-1])
+    share = (psi_o[place] - middle) / (psi_o[place] - psi_o[place + 1])
+    return float(x[place] + share * (x[place + 1] - x[place]))

@@ -1,0 +1,87 @@
+"""Figure 15: Ψ_o against noise, n = 20 and 50, without and with leaders."""
+
+import numpy as np
+from claim import Claims, bca, mean, write_claims
+from section5 import HIGH_S, LOW_S, PRESETS, SERIES, STUDY, Evidence, panel_title
+from study import COLORS, Options, curve, main, picture
+
+
+def judge(e: Evidence) -> Claims:
+    """Judge what the paper says of figure 15."""
+    claims = Claims("5.2", e.name)
+    free = e.of(20, 0)
+    if len(free) and free["bw_s"].max() >= HIGH_S:
+        low, high = (e.over(20, 0, "psi_o", *ends) for ends in ((0.0, LOW_S), (HIGH_S, 9.0)))
+        claims.add(
+            "The degree of ordering drops as bw grows",
+            f"mean Ψ_o at bw ≤ {LOW_S:g} s minus that at bw ≥ {HIGH_S:g} s, k = 0; "
+            "read as at least 0.2",
+            mean(low - high),
+            len(free),
+            least=0.2,
+            n="20",
+        )
+    for n, k in SERIES:
+        runs = e.of(n, k)
+        if runs["bw_s"].nunique() > 3:
+            claims.add(
+                f"Order is lost at bw of 0.6 to 0.8 s, {'with' if k else 'without'} leaders",
+                f"critical bw (s), k = {k}",
+                e.critical(n, k),
+                len(runs),
+                least=0.6,
+                most=0.8,
+                n=str(n),
+            )
+    noises = sorted(free["bw_s"].unique())
+    if len(noises) > 3 and np.allclose(np.diff(noises[:9]), 0.1):
+        claims.add(
+            "The transition from order to disorder is smooth",
+            "largest fall of mean Ψ_o within 0.1 s over its whole fall, k = 0; "
+            "read as at most half",
+            bca(
+                e.groups(20, 0, "psi_o"),
+                lambda *drawn: _steepest([group[..., 0].mean(-1) for group in drawn]),
+            ),
+            len(free),
+            most=0.5,
+            n="20",
+        )
+    return claims
+
+
+def _steepest(means: list[np.ndarray]) -> np.ndarray:
+    psi_o = np.stack(np.broadcast_arrays(*means))
+    return np.asarray((psi_o[:-1] - psi_o[1:]).max(0) / (psi_o.max(0) - psi_o.min(0)))
+
+
+def draw(options: Options, evidence: list[Evidence]) -> None:
+    """Draw means with intervals of both presets."""
+    with picture(options, "fig15", height_cm=9.0) as figure:
+        panels = figure.subplots(2, 2, sharex=True, sharey=True)
+        for axes, (n, k) in zip(panels.flat, SERIES, strict=True):
+            for color, marker, e in zip(COLORS, "os", evidence, strict=False):
+                runs = e.of(n, k)
+                groups = runs.groupby("bw_s")["psi_o"]
+                if len(runs):
+                    found = [mean(each) for _, each in groups]
+                    curve(axes, groups.groups, found, color=color, marker=marker, label=e.name)
+                    axes.set_title(panel_title(n, k, runs))
+            axes.axvspan(0.6, 0.8, color="0.9", zorder=0)
+        for axes in panels[1]:
+            axes.set_xlabel("bw (s); shaded: where the paper has order lost")
+        for axes in panels[:, 0]:
+            axes.set_ylabel("mean Ψ_o")
+        panels[0, 0].legend()
+
+
+def script(options: Options) -> None:
+    """Make, judge and draw the runs of both presets."""
+    table = STUDY.results(options)
+    evidence = [Evidence(table, name) for name in PRESETS]
+    write_claims(options, "fig15", [claim for e in evidence for claim in judge(e)])
+    draw(options, evidence)
+
+
+if __name__ == "__main__":
+    main(script)

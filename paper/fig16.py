@@ -1,0 +1,86 @@
+"""Figure 16: C_v against noise, n = 20 and 50, without and with leaders."""
+
+from typing import Any
+
+import numpy as np
+from claim import Claims, bca, mean, write_claims
+from section5 import LOW_S, PRESETS, SERIES, STUDY, Evidence, panel_title
+from study import COLORS, Options, curve, main, picture
+
+
+def judge(e: Evidence) -> Claims:
+    """Judge what the paper says of figure 16, and of density."""
+    claims = Claims("5.2", e.name)
+    few, many = (e.groups(n, 0, "c_v", "abs_m") for n in (20, 50))
+    dense = e.over(50, 0, "c_v", 0.0, LOW_S)
+    if len(dense) and few:
+        claims.add(
+            "50 boats have low C_v at low noise",
+            f"mean C_v of 50 boats at bw ≤ {LOW_S:g} s over the highest of 20 boats, k = 0; "
+            "read as at most half",
+            bca([dense[:, None], *few], lambda low, *sparse: low[..., 0].mean(-1) / _best(sparse)),
+            len(e.of(50, 0, 0.0, LOW_S)),
+            most=0.5,
+            n="50",
+        )
+    led = e.over(50, 10, "c_v", 0.0, LOW_S)
+    if len(led) and len(led) == len(dense):
+        claims.add(
+            "C_v of 50 boats at low noise is lowest without leaders",
+            f"mean C_v with 10 leaders minus without, bw ≤ {LOW_S:g} s (cm²/s²)",
+            mean(led - dense),
+            len(e.of(50, 10, 0.0, LOW_S)),
+            least=0.0,
+            n="50",
+        )
+    if len(many) > 3 and len(few) > 3:
+        for column, name in enumerate(("C_v", "|m|")):
+            claims.add(
+                f"Density lowers the best order that noise can give, by {name}",
+                f"highest mean {name} of any bw, n = 50 minus n = 20, k = 0",
+                bca(
+                    [*many, *few],
+                    lambda *drawn, c=column: (
+                        _best(drawn[: len(many)], c) - _best(drawn[len(many) :], c)
+                    ),
+                ),
+                len(e.of(50, 0)) + len(e.of(20, 0)),
+                most=0.0,
+                n="20, 50",
+            )
+    return claims
+
+
+def _best(groups: Any, column: int = 0) -> Any:
+    return np.stack(np.broadcast_arrays(*(group[..., column].mean(-1) for group in groups))).max(0)
+
+
+def draw(options: Options, evidence: list[Evidence]) -> None:
+    """Draw means with intervals of both presets."""
+    with picture(options, "fig16", height_cm=9.0) as figure:
+        panels = figure.subplots(2, 2, sharex=True, sharey=True)
+        for axes, (n, k) in zip(panels.flat, SERIES, strict=True):
+            for color, marker, e in zip(COLORS, "os", evidence, strict=False):
+                runs = e.of(n, k)
+                groups = runs.groupby("bw_s")["c_v"]
+                if len(runs):
+                    found = [mean(each) for _, each in groups]
+                    curve(axes, groups.groups, found, color=color, marker=marker, label=e.name)
+                    axes.set_title(panel_title(n, k, runs))
+        for axes in panels[1]:
+            axes.set_xlabel("bw (s)")
+        for axes in panels[:, 0]:
+            axes.set_ylabel("mean C_v (cm²/s²)")
+        panels[0, 0].legend()
+
+
+def script(options: Options) -> None:
+    """Make, judge and draw the runs of both presets."""
+    table = STUDY.results(options)
+    evidence = [Evidence(table, name) for name in PRESETS]
+    write_claims(options, "fig16", [claim for e in evidence for claim in judge(e)])
+    draw(options, evidence)
+
+
+if __name__ == "__main__":
+    main(script)

@@ -1,0 +1,93 @@
+"""Figure 17: densities of Ψ_o and φ_o against the number of boats, without noise and leaders."""
+
+import numpy as np
+import pandas as pd
+from claim import Claims, bca, mean, write_claims
+from section5 import PRESETS, STUDY, Evidence
+from study import PHI_EDGES, PSI_EDGES, Options, density_map, histograms, main, picture
+
+_STATE = 0.7
+"""Share of a run's frames from which on the run counts as jammed or as rotating."""
+
+
+def densities(e: Evidence) -> pd.DataFrame:
+    """Return the runs at bw = 0 without leaders."""
+    r = e.runs
+    return r[(r["bw_s"] == 0.0) & (r["n_leaders"] == 0)]
+
+
+def judge(e: Evidence) -> Claims:
+    """Judge what the paper says of figure 17."""
+    claims = Claims("5.2", e.name)
+    runs = densities(e)
+    sizes = runs["n_boats"].unique()
+    if not {20, 50} <= set(sizes):
+        return claims
+    few, many = (runs[runs["n_boats"] == n] for n in (20, 50))
+    claims.add(
+        "Between 20 and 50 boats order gives way to jamming",
+        "share of jammed frames, n = 50 minus n = 20, bw = 0; read as at least 0.3",
+        bca(
+            [many[["jammed"]], few[["jammed"]]],
+            lambda dense, sparse: dense[..., 0].mean(-1) - sparse[..., 0].mean(-1),
+        ),
+        len(many) + len(few),
+        least=0.3,
+        n="20, 50",
+    )
+    between = 1.0 - runs["jammed"] - runs["rotates"]
+    claims.add(
+        "The jamming–order transition is sharp",
+        "share of frames neither jammed nor rotating, all n, bw = 0; read as at most 0.2",
+        mean(between.groupby(runs["seed"]).mean()),
+        len(runs),
+        most=0.2,
+        n="20 to 50",
+    )
+    is_jam = (runs["jammed"] >= _STATE).groupby(runs["n_boats"]).sum()
+    is_rotation = (runs["rotates"] >= _STATE).groupby(runs["n_boats"]).sum()
+    rarer = np.minimum(is_jam, is_rotation)
+    claims.exists(
+        "The jamming–order transition is bistable",
+        "runs in the rarer of jam and rotation (70 % of a run) at the n where most are, bw = 0",
+        rarer.max(),
+        (runs["n_boats"] == rarer.idxmax()).sum(),
+        n=f"{rarer.idxmax():g}",
+    )
+    return claims
+
+
+def draw(options: Options, evidence: list[Evidence]) -> None:
+    """Draw the densities of both presets."""
+    with picture(options, "fig17", height_cm=9.0) as figure:
+        panels = figure.subplots(2, 2, sharex=True)
+        for (top, bottom), e in zip(panels.T, evidence, strict=True):
+            runs = densities(e)
+            if not len(runs):
+                top.set_title(f"{e.name}: no runs yet")
+                continue
+            groups = runs.groupby("n_boats")
+            for axes, column, edges, most in (
+                (top, "psi_histogram", PSI_EDGES, 8.0),
+                (bottom, "phi_histogram", PHI_EDGES, 8.0),
+            ):
+                found = [histograms(each[column]) for _, each in groups]
+                image = density_map(axes, list(groups.groups), edges, found, most)
+            top.set_title(f"{e.name}, bw = 0 ({groups.size().min()} runs each)")
+            bottom.set(xlabel="number of boats n", yticks=[-np.pi / 2, 0, np.pi / 2])
+            bottom.set_yticklabels(["−π/2", "0", "π/2"])
+        panels[0, 0].set_ylabel("Ψ_o")
+        panels[1, 0].set_ylabel("φ_o")
+        figure.colorbar(image, ax=panels, label="density over uniform", extend="max")
+
+
+def script(options: Options) -> None:
+    """Make, judge and draw the runs of both presets."""
+    table = STUDY.results(options)
+    evidence = [Evidence(table, name) for name in PRESETS]
+    write_claims(options, "fig17", [claim for e in evidence for claim in judge(e)])
+    draw(options, evidence)
+
+
+if __name__ == "__main__":
+    main(script)

@@ -1,0 +1,31 @@
+"""Make figures and questions by name, or all of them: `make paper`."""
+
+import itertools
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).parent
+FIGURES = (
+    *("noise_makes_motion", "fig04", "states", "fig05_06", "fig07", "fig08", "fig09", "fig10"),
+    *("fig11", "fig12", "fig14", "fig15", "fig16", "fig17", "worth", "transition", "readings"),
+)
+"""The files of this folder that are run, the shortest first."""
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run each file in a process of its own: names first, then the options of every file."""
+    given = sys.argv[1:] if arguments is None else arguments
+    names = list(itertools.takewhile(lambda text: not text.startswith("-"), given))
+    options = given[len(names) :]
+    unknown = [name for name in names if name not in FIGURES]
+    if unknown:
+        sys.exit(f"Error: {unknown[0]!r} is no figure of this folder: {', '.join(FIGURES)}")
+    for name in names or FIGURES:
+        done = subprocess.run([sys.executable, HERE / f"{name}.py", *options], check=False)
+        if done.returncode:
+            sys.exit(f"{name} did not end well; the same command goes on from there")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,125 @@
+"""The runs of Section 5 in every reading: scheme, noise, tolerance, dt and pool are axes."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from claim import Interval, critical_bw
+from study import SEEDS, Row, Study, order_row, simulated
+
+LEVELS_S = tuple(round(0.1 * place, 1) for place in range(13))
+LOW_S, HIGH_S = 0.2, 1.0
+"""Up to LOW_S the noise is low; from HIGH_S on the flock is disordered."""
+
+_LEAPFROG: Row = {"scheme": "leapfrog", "noise_scheme": "white", "overlap_tolerance_cm": 0.01}
+_PAPER: Row = {"scheme": "paper", "noise_scheme": "per-step", "overlap_tolerance_cm": 0.01}
+READINGS: dict[str, Row] = {
+    name: {"pool": "wide", "dt_s": 0.02} | row
+    for name, row in {
+        "simulation": _LEAPFROG,
+        "paper": _PAPER,
+        "paper, 0.001 cm": _PAPER | {"overlap_tolerance_cm": 0.001},
+        "paper, 0.1 cm": _PAPER | {"overlap_tolerance_cm": 0.1},
+        "paper, white": _PAPER | {"noise_scheme": "white"},
+        "leapfrog, per-step": _LEAPFROG | {"noise_scheme": "per-step"},
+        "paper, narrow": _PAPER | {"pool": "narrow"},
+        "simulation, narrow": _LEAPFROG | {"pool": "narrow"},
+        "paper, 0.003 cm": _PAPER | {"overlap_tolerance_cm": 0.003},
+        "paper, 0.03 cm": _PAPER | {"overlap_tolerance_cm": 0.03},
+        "paper, white, 0.001 cm": _PAPER | {"noise_scheme": "white", "overlap_tolerance_cm": 0.001},
+        "paper, white, 0.1 cm": _PAPER | {"noise_scheme": "white", "overlap_tolerance_cm": 0.1},
+        "paper, dt 0.01 s": _PAPER | {"dt_s": 0.01},
+        "paper, dt 0.05 s": _PAPER | {"dt_s": 0.05},
+        "simulation, dt 0.1 s": _LEAPFROG | {"dt_s": 0.1},
+        "moreau, per-step": _LEAPFROG | {"scheme": "moreau", "noise_scheme": "per-step"},
+    }.items()
+}
+"""Readings by name, the most decisive first. Tolerance counts in the scheme `paper` alone."""
+
+PRESETS = ("simulation", "paper")
+_DENSITIES = (20, 23, 26, 29, 32, 35, 38, 41, 44, 47, 50)
+_FEW_DENSITIES = (20, 30, 40, 50)
+
+
+def design() -> list[Row]:
+    """Return the presets at every noise and density and the other readings at fewer.
+
+    Figures of 20 boats without leaders and jams of 50 come first, of the presets and then of the
+    tolerances: what the paper's headlines hang on.
+    """
+    rows: list[tuple[int, Row]] = []
+    for name, reading in READINGS.items():
+        dense = name in PRESETS
+        noises = LEVELS_S if dense else (0.0, 0.2, *LEVELS_S[4:9], 1.0, 1.2)
+        points = {(20, 0, b): 0 for b in noises} | {(50, 0, 0.0): 0}
+        points |= {(n, 0, 0.0): 3 for n in (_DENSITIES if dense else _FEW_DENSITIES) if n > 20}
+        points |= {(20, 4, b): 2 for b in noises}
+        points |= {(50, k, b): 4 for k in (0, 10) for b in noises if (k, b) != (0, 0.0)}
+        points[50, 0, 0.0] = 0
+        later = 0 if dense else 1 if "cm" in name or name == "paper, white" else 10
+        rows += [
+            (
+                later + tier,
+                {**reading, "n_boats": n, "n_leaders": k, "bw_s": b, "minutes": 30.0, "seed": i},
+            )
+            for (n, k, b), tier in points.items()
+            for i in range(SEEDS)
+        ]
+    return [row for _, row in sorted(rows, key=lambda each: each[0])]
+
+
+def measure(row: Row) -> Row:
+    """Return the order of a run after its first three minutes."""
+    return order_row(simulated(row, sample_hz=4.0))
+
+
+STUDY = Study("section5", design, measure, lambda row: row["bw_s"] in (0.0, 0.2, 0.6, 1.0, 1.2))
+
+
+def reading_of(table: pd.DataFrame, name: str) -> pd.DataFrame:
+    """Return the runs of a reading."""
+    found = table
+    for column, value in READINGS[name].items():
+        found = found[found[column] == value]
+    return found
+
+
+class Evidence:
+    """The runs of a reading, by number of boats and of leaders."""
+
+    def __init__(self, table: pd.DataFrame, name: str) -> None:
+        found = table
+        for column, value in READINGS[name].items():
+            found = found[found[column] == value]
+        self.name, self.runs = name, found.assign(rotates=found["cw"] + found["ccw"])
+
+    def of(self, n: int, k: int, least: float = 0.0, most: float = 9.0) -> pd.DataFrame:
+        """Return the runs of a series at the noises of a range that have all of its seeds."""
+        r = self.runs
+        chosen = r[(r["n_boats"] == n) & (r["n_leaders"] == k)]
+        count = chosen.groupby("bw_s")["seed"].transform("size")
+        return chosen[(count == count.max()) & chosen["bw_s"].between(least - 1e-9, most + 1e-9)]
+
+    def over(self, n: int, k: int, column: str, least: float, most: float = 9.0) -> Any:
+        """Return the mean of a column over the noises of a range, one value per seed."""
+        return self.of(n, k, least, most).groupby("seed")[column].mean().to_numpy()
+
+    def groups(self, n: int, k: int, *columns: str) -> list[Any]:
+        """Return arrays of shape (runs, columns), one per noise."""
+        return [each[list(columns)].to_numpy() for _, each in self.of(n, k).groupby("bw_s")]
+
+    def critical(self, n: int, k: int) -> Interval:
+        """Return the bw at which order is lost; NaN where it was not measured up to disorder."""
+        noises = sorted(self.of(n, k)["bw_s"].unique())
+        if len(noises) < 4 or noises[-1] < HIGH_S:
+            return np.nan, np.nan, np.nan
+        return critical_bw(noises, self.groups(n, k, "psi_o", "abs_m"))
+
+
+SERIES = [(n, k) for n in (20, 50) for k in (0, n // 5)]
+"""Numbers of boats and of leaders: the four panels of figures 14 to 16."""
+
+
+def panel_title(n: int, k: int, runs: pd.DataFrame) -> str:
+    """Return what a panel says of its runs."""
+    return f"n = {n}, k = {k} ({runs.groupby('bw_s').size().max()} runs each)"

@@ -1,0 +1,131 @@
+"""Is the jamming–order transition of first order? Lifetimes of a jam and of a rotating flock.
+
+The rule of the answer stands in transition.md and was committed before the first run.
+"""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from claim import Claims, Interval, bca, mean, proportion, write_claims
+from study import COLORS, Options, main, picture, write
+from transition_runs import STARTED, STUDY
+
+from flockenv.statistics import kaplan_meier
+
+
+def state(row: Mapping[str, Any]) -> str:
+    """Return what a flock does in the last ten minutes of its run."""
+    if abs(row["m"]) >= 0.5:
+        return "rotating"
+    if row["largest"] >= 0.5:
+        return "one jam"
+    return "many jams" if row["in_jams"] >= 0.5 else "neither"
+
+
+def cells(table: pd.DataFrame) -> pd.DataFrame:
+    """Return one line per noise, coverage, size and start: survivors, exits, drift and states."""
+    lines = []
+    by = ["scheme", "c4", "dt_s", "coverage", "n_boats", "start"]
+    for key, runs in table.groupby(by, sort=False):
+        steady = runs.loc[runs["exited"] == 0, "drift_per_h"].dropna()
+        counts = runs.apply(state, axis=1).value_counts().to_dict()
+        line = dict(zip(by, key, strict=True)) | {"runs": len(runs)}
+        line |= {"stay": int((runs["exited"] == 0).sum()), "hours": runs["stayed_min"].sum() / 60}
+        lines.append(line | {"drift_per_h": mean(steady)} | counts)
+    return pd.DataFrame(lines)
+
+
+def doubling(table: pd.DataFrame, start: str) -> Interval:
+    """Return by what the rate of exits is multiplied as the flock doubles, largest over smallest.
+
+    A half exit is added to each size, so that sizes without exits have a rate too.
+    """
+    chosen = table[table["start"] == start]
+    sizes = sorted(chosen["n_boats"].unique())
+    if len(sizes) < 2:
+        return math.nan, math.nan, math.nan
+    groups = [
+        chosen.loc[chosen["n_boats"] == n, ["stayed_min", "exited"]].to_numpy() for n in sizes
+    ]
+    x = np.log2(sizes)
+
+    def factor(*runs: np.ndarray) -> np.ndarray:
+        rates = [(each[..., 1].sum(-1) + 0.5) / each[..., 0].sum(-1) for each in runs]
+        slope = np.tensordot(x - x.mean(), np.log2(rates), 1) / ((x - x.mean()) ** 2).sum()
+        return np.asarray(2.0**slope)
+
+    return bca(groups, factor)
+
+
+def judge(table: pd.DataFrame) -> Claims:
+    """Judge rules 1 and 2 of transition.md, at coverage 0.5 and each noise."""
+    claims = Claims("5.2, left open", "")
+    at_half = table[table["coverage"] == 0.5]
+    for (scheme, c4, dt_s), group in at_half.groupby(["scheme", "c4", "dt_s"], sort=False):
+        noise = "per-step" if scheme == "paper" else "white"
+        claims.reading = f"{scheme}, {noise} c4 = {c4:g}, dt = {dt_s:g} s, coverage 0.5"
+        for start, words in STARTED.items():
+            chosen = group[group["start"] == start]
+            for n, runs in chosen.groupby("n_boats"):
+                claims.add(
+                    f"A flock that starts {words} stays so for two hours",
+                    "share of runs that stay; read as at least half",
+                    proportion((runs["exited"] == 0).sum(), len(runs)),
+                    len(runs),
+                    least=0.5,
+                    n=f"{n:g}",
+                )
+            claims.add(
+                f"The larger a flock that starts {words}, the longer it stays so",
+                "factor of exits per hour for each doubling of n",
+                doubling(group, start),
+                len(chosen),
+                most=1.0,
+                n=", ".join(f"{n:g}" for n in sorted(chosen["n_boats"].unique())),
+            )
+    return claims
+
+
+def draw(options: Options, table: pd.DataFrame) -> None:
+    """Draw how many runs are still in the state they started in, by noise and size."""
+    shown = table[table["coverage"] == 0.5]
+    noises = list(shown.groupby(["scheme", "c4", "dt_s"], sort=False))
+    with picture(options, "transition", height_cm=9.0) as figure:
+        panels = figure.subplots(2, max(len(noises), 1), sharex=True, sharey=True, squeeze=False)
+        for column, ((scheme, c4, dt_s), group) in zip(panels.T, noises, strict=False):
+            for axes, start in zip(column, STARTED, strict=True):
+                chosen = group[group["start"] == start]
+                for color, (n, runs) in zip(COLORS, chosen.groupby("n_boats"), strict=False):
+                    times = runs["stayed_min"].where(runs["exited"] == 1, np.inf)
+                    left = kaplan_meier(times, runs["stayed_min"])
+                    axes.step(
+                        [0.0, *left.time_s, runs["stayed_min"].max()],
+                        [1.0, *left.share, left.share_at(math.inf)],
+                        where="post",
+                        color=color,
+                        label=f"n = {n} ({len(runs)} runs)",
+                    )
+                axes.set_ylim(-0.05, 1.05)
+            title = "literal" if scheme == "paper" else "white"
+            column[0].set_title(f"{title}, c4 = {c4:g}\ndt = {dt_s:g} s")
+            column[1].set_xlabel("time (min)")
+        panels[0, 0].set_ylabel("still in one jam")
+        panels[1, 0].set_ylabel("still rotating")
+        panels[0, 0].legend(loc="lower left", fontsize=6)
+
+
+def script(options: Options) -> None:
+    """Make the map, judge and draw it."""
+    table = STUDY.results(options)
+    write_claims(options, "transition", judge(table))
+    if len(table):
+        draw(options, table)
+        lines = cells(table).to_csv(index=False, float_format="%.3g")
+        write(options.out / "results" / "transition_cells.csv", lines.encode())
+
+
+if __name__ == "__main__":
+    main(script)

@@ -1,0 +1,122 @@
+"""The runs of the transition map: flocks followed from one jam and from rotation."""
+
+import math
+
+import numpy as np
+from scipy import stats
+from study import FIRST_SEED, Row, Study, flock
+
+from flockenv.runs import initial_flock
+from flockenv.statistics.structure import jam_sizes
+
+RUNS = 8
+LITERAL_C4 = 0.1 * math.sqrt(0.02)
+"""White noise as strong as the literal one of Table 3 at dt = 0.02 s, in rad/s^1.5."""
+C4 = (round(LITERAL_C4, 4), 0.1, 0.03, 0.05, 0.02, 0.2)
+COVERAGES = (0.5, 0.3, 0.7, 0.2, 1.0)
+STARTED = {"one-jam": "in one jam", "rotating": "rotating"}
+
+_EVERY_CYCLES = 5
+_HELD = 3
+"""Samples in a row that make an exit: one minute."""
+_AFTER_MIN = 20.0
+
+
+def outer_radius_cm(n_boats: int, coverage: float) -> float:
+    """Return the radius of the pool on whose outer wall n/coverage boats fit in one row.
+
+    They face outward side by side and touch at their sterns, which are 10 cm from the wall.
+    """
+    return 10.0 + 5.0 / math.sin(math.pi * coverage / n_boats)
+
+
+def design() -> list[Row]:
+    """Return the map: the literal noise and the extremes of c4 first, small flocks first."""
+    literal = {"scheme": "paper", "noise_scheme": "per-step", "dt_s": 0.02}
+    white = {"scheme": "leapfrog", "noise_scheme": "white", "dt_s": 0.1}
+    first = [(n, 0.5, white | {"c4": c4}) for c4 in C4[:3] for n in (100, 200)]
+    second = [(n, 0.5, literal | {"c4": 0.1}) for n in (100, 200)]
+    third = [(400, 0.5, white | {"c4": c4}) for c4 in C4[:3]]
+    rest = [
+        (n, coverage, white | {"c4": c4})
+        for n in (100, 200, 400, 800)
+        for coverage in COVERAGES
+        for c4 in C4
+    ]
+    finer = [(n, 0.5, white | {"c4": C4[0], "dt_s": 0.02}) for n in (100, 200)]
+    cells: list[tuple[int, float, Row]] = []
+    for cell in first + second + third + finer + rest:
+        if cell not in cells:
+            cells.append(cell)
+    return [
+        {
+            **noise,
+            "n_boats": n,
+            "coverage": coverage,
+            "start": start,
+            "minutes": 120.0,
+            "seed": seed,
+        }
+        for n, coverage, noise in cells
+        for seed in range(RUNS)
+        for start in STARTED
+    ]
+
+
+def measure(row: Row) -> Row:
+    """Follow a flock without backing until 20 min after it has left its start, or to the end.
+
+    A flock in one jam leaves it when its largest jam has fewer than half of the boats for a minute;
+    a rotating one stops when |m|, averaged over a minute, is below 0.4.
+    """
+    outer = outer_radius_cm(row["n_boats"], row["coverage"])
+    parameters = flock(row, bw_s=0.0, pool=(outer, outer * 97.0 / 180.0))
+    boats = initial_flock(parameters, FIRST_SEED + row["seed"], row["start"])
+    cycle_s = parameters.fw_s + parameters.nop1_s + parameters.nop2_s
+    boats.advance(1.5)  # Into the analysis window.
+    samples: list[tuple[float, float, float, float, float, float]] = []
+    exit_min = math.nan
+    while boats.time_s < 60.0 * row["minutes"]:
+        order = boats.order_parameters()
+        sizes = jam_sizes(parameters, boats.pose[None])[0]
+        minutes = boats.time_s / 60.0
+        largest = sizes.max(initial=0) / parameters.n_boats
+        jams = (sizes.sum() / parameters.n_boats, largest, len(sizes))
+        m, outward = order.psi_o * math.sin(order.phi_o), order.psi_o * math.cos(order.phi_o)
+        samples.append((minutes, m, outward, *jams))
+        last = np.array(samples[-_HELD:])
+        if math.isnan(exit_min) and len(last) == _HELD:
+            left = (
+                (last[:, 4] < 0.5).all()
+                if row["start"] == "one-jam"
+                else abs(last[:, 1].mean()) < 0.4
+            )
+            exit_min = last[0, 0] if left else math.nan
+        if minutes > exit_min + _AFTER_MIN:
+            break
+        boats.advance(_EVERY_CYCLES * cycle_s)
+    return _summary(np.array(samples), exit_min)
+
+
+def _summary(samples: np.ndarray, exit_min: float) -> Row:
+    minutes = samples[:, 0]
+    late = samples[minutes > minutes[-1] - 10.0].mean(axis=0)
+    before = samples[~(minutes >= exit_min)]
+    steady = before[before[:, 0] > 10.0]
+    drift = stats.linregress(steady[:, 0], steady[:, 4]).slope if len(steady) > 10 else math.nan
+    return {
+        "exited": int(math.isfinite(exit_min)),
+        "stayed_min": exit_min if math.isfinite(exit_min) else minutes[-1],
+        "m": late[1],
+        "outward": late[2],
+        "in_jams": late[3],
+        "largest": late[4],
+        "jams": late[5],
+        "largest_before": before[:, 4].mean() if len(before) else math.nan,
+        "drift_per_h": 60.0 * drift,
+    }
+
+
+STUDY = Study(
+    "transition", design, measure, lambda row: row["coverage"] == 0.5 and row["n_boats"] <= 200
+)

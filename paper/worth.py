@@ -1,0 +1,131 @@
+"""What is a leader worth? The flock's response to a few leaders, in units of the paper's law.
+
+The rule of the answer stands in worth.md and was committed before the first run.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from claim import Claims, Interval, bca, mean, write_claims
+from study import COLORS, Options, curve, main, picture
+from worth_runs import LAW, NOISES_S, POLICIES, STUDY
+
+
+def of(table: pd.DataFrame, **values: Any) -> np.ndarray:
+    """Return m and m² of the runs with these values, shape (runs, 2)."""
+    chosen = table
+    for name, value in values.items():
+        chosen = chosen[chosen[name] == value]
+    return chosen[["m", "m_squared"]].to_numpy()
+
+
+def slope(table: pd.DataFrame, policy: str, n_boats: int, bw_s: float) -> Interval:
+    """Return the flock's response per leader, by the fewest leaders that were run."""
+    leaders = {27: 1, 100: 4, 400: 15}[n_boats]
+    runs = of(table, policy=policy, n_boats=n_boats, bw_s=bw_s, leaders=leaders, against=0)
+    value, low, high = mean(runs[:, 0])
+    return value / leaders, low / leaders, high / leaders
+
+
+def worth(table: pd.DataFrame, policy: str, n_boats: int, bw_s: float) -> Interval:
+    """Return a policy's response over that of the law, with as many leaders."""
+    leaders = {27: 1, 100: 4, 400: 15}[n_boats]
+    same = {"n_boats": n_boats, "bw_s": bw_s, "leaders": leaders, "against": 0}
+    groups = [of(table, policy=name, **same) for name in (policy, LAW)]
+    if min(map(len, groups)) < 3:
+        return math.nan, math.nan, math.nan
+    return bca(groups, lambda ours, theirs: ours[..., 0].mean(-1) / theirs[..., 0].mean(-1))
+
+
+def gain(table: pd.DataFrame, bw_s: float) -> Interval:
+    """Return the law's response per leader over n times the variance of m without leaders."""
+    same = {"n_boats": 27, "bw_s": bw_s, "policy": LAW, "against": 0}
+    led, free = of(table, leaders=1, **same), of(table, leaders=0, **same)
+    if min(len(led), len(free)) < 3:
+        return math.nan, math.nan, math.nan
+    return bca([led, free], lambda a, b: a[..., 0].mean(-1) / (27 * b[..., 1].mean(-1)))
+
+
+def judge(table: pd.DataFrame) -> Claims:
+    """Judge worth, additivity and the response against the fluctuations."""
+    claims = Claims("beyond the paper", "simulation (leapfrog, white), wide")
+    for n_boats, bw_s in [(27, bw_s) for bw_s in NOISES_S] + [(100, 0.31), (400, 0.31)]:
+        for policy in POLICIES[1:]:
+            same = {"n_boats": n_boats, "bw_s": bw_s, "against": 0}
+            if len(runs := of(table, policy=policy, **same)):
+                claims.add(
+                    f"A leader by the {policy} policy is worth more than one by the paper's law",
+                    f"m per leader over that of the law, bw = {bw_s:g} s",
+                    worth(table, policy, n_boats, bw_s),
+                    len(runs),
+                    least=1.0,
+                    n=str(n_boats),
+                )
+    same = {"n_boats": 27, "bw_s": NOISES_S[0]}
+    one = of(table, policy=LAW, leaders=1, against=0, **same)
+    for leaders, against, policy in ((2, 1, LAW), (3, 1, LAW), (1, 2, "learned")):
+        both = of(table, policy=policy, leaders=leaders, against=against, **same)
+        ours = of(table, policy=policy, leaders=1, against=0, **same)
+        if min(map(len, (one, both, ours))) < 3:
+            continue
+
+        def difference(met: Any, own: Any, law: Any, k: int = leaders, c: int = against) -> Any:
+            seen, ours, theirs = (each[..., 0].mean(-1) for each in (met, own, law))
+            return (seen - (k * ours - c * theirs)) / theirs
+
+        claims.add(
+            "Two groups with opposite targets respond as q1·k1 − q2·k2",
+            f"m less the sum, in the paper's leaders, {leaders} {policy} against {against} law, "
+            f"bw = {NOISES_S[0]:g} s",
+            bca([both, ours, one], difference),
+            len(both),
+            least=-0.5,
+            most=0.5,
+            n="27",
+        )
+    base = gain(table, NOISES_S[0])[0]
+    for bw_s in NOISES_S[1:]:
+        value, low, high = (each / base for each in gain(table, bw_s))
+        claims.add(
+            "The response follows the fluctuations of leaderless flocks",
+            f"m per leader over n·<m²> at bw = {bw_s:g} s, over the same at {NOISES_S[0]:g} s",
+            (value, low, high),
+            len(of(table, policy=LAW, leaders=1, against=0, n_boats=27, bw_s=bw_s)),
+            least=2 / 3,
+            most=1.5,
+            n="27",
+        )
+    return claims
+
+
+def draw(options: Options, table: pd.DataFrame) -> None:
+    """Draw the response per leader against noise, and the worth of each policy."""
+    with picture(options, "worth") as figure:
+        left, right = figure.subplots(1, 2)
+        noises = sorted(set(NOISES_S) & set(table.loc[table["n_boats"] == 27, "bw_s"]))
+        for place, (policy, color) in enumerate(zip(POLICIES, COLORS, strict=False)):
+            known = [b for b in noises if len(of(table, policy=policy, bw_s=b, leaders=1))]
+            shift = 0.004 * place
+            slopes = [slope(table, policy, 27, b) for b in known]
+            if known:
+                curve(left, np.array(known) + shift, slopes, color=color, label=policy)
+            ratios = [worth(table, policy, 27, b) for b in known]
+            if policy != LAW and known:
+                curve(right, np.array(known) + shift, ratios, color=color)
+        left.set(xlabel="bw (s)", ylabel="m per leader, n = 27")
+        right.axhline(1.0, color=COLORS[0])
+        right.set(xlabel="bw (s)", ylabel="worth in leaders of the paper's law")
+        left.legend()
+
+
+def script(options: Options) -> None:
+    """Make the runs, judge and draw them."""
+    table = STUDY.results(options)
+    write_claims(options, "worth", judge(table))
+    draw(options, table)
+
+
+if __name__ == "__main__":
+    main(script)

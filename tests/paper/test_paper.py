@@ -1,0 +1,123 @@
+"""Every file of paper/ runs as a trial, goes on where it ended, and refuses what it cannot use."""
+
+import csv
+import importlib
+import math
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+pytest.importorskip("matplotlib")
+PAPER = Path(__file__).parents[2] / "paper"
+sys.path.insert(0, str(PAPER))
+make = importlib.import_module("make")
+study = importlib.import_module("study")
+claim = importlib.import_module("claim")
+
+
+@pytest.mark.parametrize("name", make.FIGURES)
+def test_a_trial_of_every_file(name: str, tmp_path: Path) -> None:
+    importlib.import_module(name)
+    study.main(sys.modules[name].script, ["--trial", "--workers", "1", "--out", str(tmp_path)])
+    pictures = list((tmp_path / "pictures").glob("*.png"))
+    assert pictures
+    assert all(picture.stat().st_size > 5000 for picture in pictures)
+    if (tmp_path / "claims.csv").exists():
+        lines = list(csv.DictReader((tmp_path / "claims.csv").read_text().splitlines()))
+        assert lines
+        assert {line["verdict"].partition(":")[0] for line in lines} <= {"holds", "fails", "open"}
+
+
+def _counted(calls: list[int]) -> "study.Study":
+    def measure(row: dict[str, int]) -> dict[str, float]:
+        calls.append(row["seed"])
+        if row["seed"] == 3:
+            raise KeyboardInterrupt
+        return {"twice": 2.0 * row["seed"]}
+
+    return study.Study("counted", lambda: [{"minutes": 1.0, "seed": s} for s in range(5)], measure)
+
+
+def test_a_killed_study_goes_on(tmp_path: Path) -> None:
+    calls: list[int] = []
+    with pytest.raises(KeyboardInterrupt):
+        _counted(calls).results(study.Options(workers=1, out=tmp_path))
+    there = _counted(calls).results(study.Options(out=tmp_path, runs=False))
+    assert set(there["seed"]) == set(calls) - {3} >= {0, 1, 2}
+    again: list[int] = []
+    with pytest.raises(KeyboardInterrupt):
+        _counted(again).results(study.Options(workers=1, out=tmp_path))
+    assert again[0] == 3
+    assert not set(again) & set(there["seed"])
+
+
+def test_a_store_of_another_design(tmp_path: Path) -> None:
+    (tmp_path / "results").mkdir()
+    store = tmp_path / "results" / "counted.csv"
+    store.write_text("length,seed,twice\n1,0,0\n")
+    with pytest.raises(study.StudyError, match="a store of another design"):
+        _counted([]).results(study.Options(out=tmp_path))
+    assert store.read_text() == "length,seed,twice\n1,0,0\n"
+
+
+def test_a_full_disk_leaves_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "claims.csv"
+    path.write_text("before")
+
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(study.os, "fsync", full)
+    with pytest.raises(study.StudyError, match="No space left on device; it is as it was"):
+        study.write(path, b"after")
+    assert path.read_text() == "before"
+    assert [each.name for each in tmp_path.iterdir()] == ["claims.csv"]
+
+
+def test_an_unknown_figure() -> None:
+    done = subprocess.run(
+        [sys.executable, PAPER / "make.py", "fig99"], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 1
+    assert "'fig99' is no figure of this folder: " in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("found", "verdict"),
+    [
+        ((1.0, 0.6, 1.4), "holds"),
+        ((0.0, -0.4, 0.4), "fails"),
+        # Half as wide with four times the runs.
+        ((1.0, 0.0, 2.0), "open: 96 runs"),
+        ((math.nan,) * 3, "open: not measured"),
+    ],
+)
+def test_verdicts(found: tuple[float, float, float], verdict: str) -> None:
+    assert claim.Claim("", "", "", "", found, 24, least=0.5).verdict == verdict
+
+
+def test_existence_has_a_rate() -> None:
+    claims = claim.Claims("", "")
+    for count, runs in ((1, 24), (0, 24), (0, 100)):
+        claims.exists("it happens", "", count, runs)
+    assert [each.verdict.partition(":")[0] for each in claims] == ["holds", "open", "fails"]
+
+
+def test_critical_noise_of_a_straight_fall() -> None:
+    noises = [0.0, 0.1, 0.2, 0.3, 0.4]
+    fall = [0.9, 0.9, 0.6, 0.3, 0.1]
+    groups = [np.full((4, 2), level) for level in fall]
+    # The middle of 0.9 and 0.1 is 0.5, a third of the way from 0.6 to 0.3.
+    assert claim.fall(noises, groups) == pytest.approx(0.2 + 0.1 / 3)
+    jam = [np.array([[level, 0.2]] * 4) for level in fall]
+    assert math.isnan(claim.critical_bw(noises, jam)[0])
+
+
+def test_wall_slots() -> None:
+    transition_runs: ModuleType = importlib.import_module("transition_runs")
+    # Six discs of 5 cm touch around a circle of 10 cm; their hulls' bows are 10 cm further out.
+    assert transition_runs.outer_radius_cm(6, 1.0) == pytest.approx(20.0)
