@@ -17,7 +17,7 @@ import numpy as np
 import pandas as pd
 
 import flockenv
-from flockenv.statistics.structure import largest_cluster
+from flockenv.statistics.structure import structure_series
 from flockenv.tracks import TrackLayout, from_table
 
 QUANTITIES = ("psi_o", "nematic", "milling", "psi_v", "largest_cluster")
@@ -76,7 +76,8 @@ def quantities(run: flockenv.Recording) -> dict[str, np.ndarray]:
     """Return the compared quantities at each time."""
     every = slice(None, None, 5)
     found = {name: getattr(run.order, name)[every] for name in QUANTITIES[:-1]}
-    return found | {"largest_cluster": largest_cluster(run.parameters, run.pose[every])}
+    clusters = structure_series("largest_cluster", run.parameters, run.pose[every])
+    return found | {"largest_cluster": clusters}
 
 
 def main() -> None:

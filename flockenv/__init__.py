@@ -16,15 +16,8 @@ from flockenv.errors import (
     ParameterError,
     SolverError,
 )
-from flockenv.flock import (
-    Contacts,
-    ContactSeries,
-    Flock,
-    OrderParameters,
-    OrderSeries,
-    Statistics,
-    order_series,
-)
+from flockenv.flock import Contacts, ContactSeries, Flock, Statistics
+from flockenv.order import OrderParameters, OrderSeries, order_series
 from flockenv.parameters import FlockParameters
 from flockenv.recording import Recording
 from flockenv.simulation import simulate

@@ -1,65 +1,434 @@
-"""A flock that a program advances, with its contacts, order parameters and statistics.
+"""A flock that a program advances, with its contacts, order parameters and statistics."""
 
-The core computes contacts, order parameters (Section 3.2, in the LAP frame) and statistics of
-substeps.
-"""
+import base64
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any, Self
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
-from flockenv._core import (
-    Contacts,
-    ContactSeries,
-    Flock,
-    OrderParameters,
-    OrderSeries,
-    Statistics,
-)
-from flockenv.errors import ParameterError
+from flockenv.order import OrderParameters
+from flockenv.parameters import FlockParameters
 
-__all__ = [
-    "STATES",
-    "ContactSeries",
-    "Contacts",
-    "Flock",
-    "OrderParameters",
-    "OrderSeries",
-    "Statistics",
-    "order_series",
-]
+__all__ = ["ContactSeries", "Contacts", "Flock", "Statistics"]
 
-STATES = np.array(_core.collective_state_names())
-"""Names of the collective states (Table 2; ordered motion by its direction)."""
+_NOTEBOOK_PIXELS = 400
 
 
-def order_series(pose: ArrayLike, velocity: ArrayLike) -> OrderSeries:
-    """Return the recorded quantities of any boats, robots or animals at each time.
+class _Columns:
+    """Arrays that are equal if all of them are."""
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        columns = (each.name for each in fields(self))  # type: ignore[arg-type]
+        return all(np.array_equal(getattr(self, name), getattr(other, name)) for name in columns)
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+@dataclass(frozen=True, eq=False)
+class Contacts(_Columns):
+    """Contacts and near-contacts of a flock's last substep, c of them.
+
+    Snapshots do not hold them: a flock that was restored or unpickled has none until its next
+    substep, and continues from the same warm-start cache.
+
+    Two nearly parallel hulls, and a hull along the outer wall, touch at two points: two entries.
+
+    Attributes
+    ----------
+    i : int64 array, shape (c,)
+        The boat that the normal pushes.
+    j : int64 array, shape (c,)
+        The other boat, or -1 for the outer wall, -2 for the inner wall, and from -3 downwards the
+        obstacles: the discs in their order, then the walls.
+    gap_cm : float64 array, shape (c,)
+        Distance between the hulls now in cm, negative for overlap.
+    normal : float64 array, shape (c, 2)
+        Unit vector along which boat i is pushed, world axes.
+    force : float64 array, shape (c,)
+        Mean force on boat i along the normal over the last substep in cm/s² (mass 1), at least 0;
+        boat j feels its opposite.
+    point_cm : float64 array, shape (c, 2)
+        Where boat i is pushed: a point of its hull, world axes.
+    """
+
+    i: NDArray[np.int64]
+    j: NDArray[np.int64]
+    gap_cm: NDArray[np.float64]
+    normal: NDArray[np.float64]
+    force: NDArray[np.float64]
+    point_cm: NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.i)
+
+
+@dataclass(frozen=True, eq=False)
+class ContactSeries(_Columns):
+    """Contacts that carried a force, sample after sample: c of them in t samples.
+
+    Attributes
+    ----------
+    count : int64 array, shape (t,)
+        How many each sample has; they follow one another in the other arrays.
+    i, j : int32 array, shape (c,)
+        The boats, as in `Contacts`: j is -1 for the outer wall, -2 for the inner wall, -3 and below
+        for obstacles.
+    normal : float32 array, shape (c, 2)
+        Unit vector along which boat i is pushed, world axes.
+    force : float32 array, shape (c,)
+        Mean force over the substep before the sample in cm/s² (mass 1), above 0.
+    point_cm : float32 array, shape (c, 2)
+        Where boat i is pushed: a point of its hull, world axes.
+    """
+
+    count: NDArray[np.int64]
+    i: NDArray[np.int32]
+    j: NDArray[np.int32]
+    normal: NDArray[np.float32]
+    force: NDArray[np.float32]
+    point_cm: NDArray[np.float32]
+
+    @classmethod
+    def of(cls, samples: Sequence[Contacts]) -> Self:
+        """Return the series of contacts that were looked up sample by sample."""
+        pushing = [sample.force > 0.0 for sample in samples]
+
+        def joined(name: str, dtype: type) -> NDArray[Any]:
+            pairs = zip(samples, pushing, strict=True)
+            parts = [getattr(sample, name)[chosen] for sample, chosen in pairs]
+            return np.concatenate(parts).astype(dtype)
+
+        count = np.array([chosen.sum() for chosen in pushing], np.int64)
+        boats = [joined(name, np.int32) for name in ("i", "j")]
+        return cls(count, *boats, *(joined(name, np.float32) for name in _VECTORS))
+
+    @classmethod
+    def of_columns(cls, columns: Mapping[str, NDArray[Any]]) -> Self:
+        """Return the series with these of its columns, by name; others are left out."""
+        return cls(*(columns[each.name] for each in fields(cls)))
+
+    def at(self, samples: NDArray[np.bool_]) -> "ContactSeries":
+        """Return the contacts of some of the samples, shape (t,)."""
+        chosen = np.repeat(samples, self.count)
+        each = (getattr(self, field.name)[chosen] for field in fields(self)[1:])
+        return ContactSeries(self.count[samples], *each)
+
+
+_VECTORS = ("normal", "force", "point_cm")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Statistics:
+    """Running sums and worst cases since the flock was made or reset; snapshots carry them.
+
+    Attributes
+    ----------
+    substeps : int
+        Substeps taken.
+    solves : int
+        Contact problems solved; substeps without a contact have none.
+    contacts : int
+        Contacts and near-contacts, summed over substeps.
+    islands : int
+        Islands (boats joined by contacts), summed over solves.
+    solver_iterations : int
+        Solver iterations, summed over solves and islands.
+    factored_rows : int
+        Rows of Cholesky factors computed.
+    most_factor_entries : int
+        Most numbers that the Cholesky factors of one solve held.
+    unsolved : int
+        Solves whose constraints contradicted each other or that exceeded their residual.
+    depenetration_passes : int
+        Passes that moved deeply overlapping hulls apart.
+    neighbor_builds : int
+        Substeps that had to rebuild the neighbor list.
+    worst_residual_cm_s : float
+        Largest natural residual of a solve in cm/s.
+    worst_overlap_cm : float
+        Deepest overlap at the start of a substep in cm, positive.
+    displaced_angular_momentum_cm2_s : float
+        Angular momentum about the pool's center that came or went where hulls that overlapped
+        deeply were moved apart, in cm²/s for boats of mass 1: its changes, each positive, summed.
+    """
+
+    substeps: int
+    solves: int
+    contacts: int
+    islands: int
+    solver_iterations: int
+    factored_rows: int
+    most_factor_entries: int
+    unsolved: int
+    depenetration_passes: int
+    neighbor_builds: int
+    worst_residual_cm_s: float
+    worst_overlap_cm: float
+    displaced_angular_momentum_cm2_s: float
+
+
+class Flock:
+    """A flock of boats in a pool.
+
+    Boats are placed at random without overlap, at rest; leaders are boats 0 to k - 1. The same
+    parameters and seed give the same bits on one machine, through snapshots, pickles and copies
+    too. The interpreter lock is released while the flock moves.
 
     Parameters
     ----------
-    pose
-        Shape (t, n, 3): [x, y from the pool's center, heading rad counter-clockwise from x]. Rows
-        of NaN where a boat is not there. Leaders count if they are among the boats.
-    velocity
-        The same shape, in the unit of length of the pose per s.
-
-    Returns
-    -------
-    OrderSeries
-        Section 3.2's order parameters, the nematic order and milling, of the boats that have both a
-        pose and a velocity; NaN where too few have.
+    parameters : FlockParameters
+        Of the flock.
+    seed : int
+        Seed of all random streams, 0 to 2^64 - 1.
 
     Raises
     ------
     ParameterError
-        For other shapes, and for what is no number.
+        If the boats do not fit the pool, and for a seed out of range.
+    InUseError
+        From every method and attribute, while another thread is at work with the flock.
     """
-    try:
-        states = [np.asarray(each, np.float64) for each in (pose, velocity)]
-    except (TypeError, ValueError) as error:
-        raise ParameterError("pose and velocity are not accepted: numbers") from error
-    for name, each in zip(("pose", "velocity"), states, strict=True):
-        if each.ndim != 3:
-            raise ParameterError(f"{name} has shape {each.shape}, expected (t, n, 3)")
-    return _core.order_series(*states)
+
+    __slots__ = ("core",)
+
+    def __init__(self, parameters: FlockParameters, seed: int) -> None:
+        self.core = _core.Flock(parameters, seed)
+
+    @classmethod
+    def of(cls, core: _core.Flock) -> Self:
+        """Return the flock of a simulator in the core."""
+        flock = cls.__new__(cls)
+        flock.core = core
+        return flock
+
+    @classmethod
+    def from_snapshot(cls, snapshot: bytes) -> Self:
+        """Return the flock of a snapshot.
+
+        Raises
+        ------
+        ParameterError
+            For bytes that are no whole, unharmed snapshot.
+        """
+        return cls.of(_core.Flock.from_snapshot(snapshot))
+
+    @classmethod
+    def from_state(cls, parameters: FlockParameters, seed: int, state: Mapping[str, Any]) -> Self:
+        """Return a flock in a given state.
+
+        Parameters
+        ----------
+        parameters
+            Of the flock.
+        seed
+            Seed of all random streams, 0 to 2^64 - 1.
+        state
+            ``pose`` (n, 3) and, if need be, ``velocity`` (n, 3), ``time_s`` and ``allow_overlap``,
+            as in `set_state`.
+
+        Raises
+        ------
+        ParameterError
+            For other keys, a seed out of range and what `set_state` refuses.
+        TypeError
+            For values of the wrong type.
+        """
+        return cls.of(_core.Flock.from_state(parameters, seed, state))
+
+    def reset(self, seed: int) -> None:
+        """Start over with another seed, as a new flock with these parameters.
+
+        Raises
+        ------
+        ParameterError
+            If the boats do not fit the pool; the flock is unchanged then.
+        """
+        self.core.reset(seed)
+
+    @property
+    def parameters(self) -> FlockParameters:
+        """The parameters, with the target that holds now."""
+        return FlockParameters(**self.core.parameters)
+
+    @property
+    def seed(self) -> int:
+        """Seed of all random streams."""
+        return self.core.seed
+
+    @property
+    def pose(self) -> NDArray[np.float64]:
+        """Poses, a copy: (n, 3) [x cm, y cm, heading rad counter-clockwise from x, not wrapped]."""
+        return self.core.pose
+
+    @property
+    def velocity(self) -> NDArray[np.float64]:
+        """Velocities, a copy: (n, 3) [cm/s, cm/s, rad/s].
+
+        With the leapfrog scheme these are means over the last substep.
+        """
+        return self.core.velocity
+
+    @property
+    def time_s(self) -> float:
+        """Time in s."""
+        return self.core.time_s
+
+    @property
+    def in_analysis_window(self) -> bool:
+        """Whether the flock is in the second half of fw or the first half of nop1 now."""
+        return self.core.in_analysis_window
+
+    @property
+    def phase(self) -> str:
+        """Phase that holds from now on: "fw", "nop1", "bw" or "nop2"."""
+        return self.core.phase
+
+    @property
+    def statistics(self) -> Statistics:
+        """What the substeps since the flock was made did."""
+        return Statistics(**self.core.statistics)
+
+    @property
+    def threads(self) -> int:
+        """Threads that the substeps of 200 boats or more are shared out to: 1 to 1024.
+
+        It is 1 by default. The motion is the same, bit for bit. Snapshots and pickles do not hold
+        the number; `restore` and `reset` leave it. There are never more threads than
+        RAYON_NUM_THREADS, or than cores if that is not set.
+        """
+        return self.core.threads
+
+    @threads.setter
+    def threads(self, threads: int) -> None:
+        self.core.threads = threads
+
+    def set_state(
+        self,
+        pose: ArrayLike,
+        velocity: ArrayLike,
+        time_s: float = 0.0,
+        *,
+        allow_overlap: bool = False,
+    ) -> None:
+        """Put the boats somewhere else.
+
+        Parameters
+        ----------
+        pose
+            Shape (n, 3): [x cm, y cm, heading rad].
+        velocity
+            Shape (n, 3): [cm/s, cm/s, rad/s].
+        time_s
+            Time in s, 0 to 1e9.
+        allow_overlap
+            Accept hulls that overlap each other or a wall by more than a hundredth of their radius,
+            which is more than contacts leave; they are moved apart in the next substeps.
+
+        Raises
+        ------
+        ParameterError
+            For wrong shapes, numbers that are not finite, and overlaps; the flock is unchanged
+            then.
+        TypeError
+            For arrays that are not of real numbers.
+        """
+        self.core.set_state(pose, velocity, time_s, allow_overlap)
+
+    def set_target(self, target: str | Sequence[str]) -> None:
+        """Change the direction that the steering law heads for.
+
+        Parameters
+        ----------
+        target
+            "cw" or "ccw", or a list with one per leader.
+
+        Raises
+        ------
+        ParameterError
+            For another name, and a list of another length; the flock is unchanged then.
+        """
+        self.core.set_target(target)
+
+    def advance(self, seconds: float, rudder: ArrayLike | None = None) -> None:
+        """Advance by a duration. Substeps end on multiples of dt_s, on phase switches, at the end.
+
+        Parameters
+        ----------
+        seconds
+            Duration in s, at least 0.
+        rudder
+            Commands of the leaders in [-1, 1], shape (k,), held; positive turns a boat that moves
+            forward counter-clockwise. None: the steering law, eq. (10), at every substep.
+
+        Raises
+        ------
+        ParameterError
+            For a duration or rudder out of range or of a wrong shape; the flock is unchanged then.
+        SolverError
+            If the motion left its range of 1e9 (cm, cm/s, rad, rad/s); poses, velocities and time
+            are those before the call.
+        """
+        self.core.advance(seconds, rudder)
+
+    def steering_law(self) -> NDArray[np.float64]:
+        """Return rudders of the steering law, eq. (10), for where the leaders are now: (k,)."""
+        return self.core.steering_law()
+
+    def order_parameters(self, include_leaders: bool = False) -> OrderParameters:
+        """Return the order parameters of the normal boats, or of all boats, now.
+
+        Raises
+        ------
+        ParameterError
+            If there is no such boat.
+        """
+        return OrderParameters(*self.core.order_parameters(include_leaders))
+
+    def contacts(self) -> Contacts:
+        """Return contacts and near-contacts of the last substep.
+
+        There are none after a state was set or restored, until the next substep.
+        """
+        return Contacts(**self.core.contacts())
+
+    def snapshot(self) -> bytes:
+        """Return the whole state; continuing from it is bit-identical on the same machine."""
+        return self.core.snapshot()
+
+    def restore(self, snapshot: bytes) -> None:
+        """Continue from a snapshot of a flock with the same parameters, the target aside.
+
+        Raises
+        ------
+        ParameterError
+            For bytes that are no whole, unharmed snapshot, or one of a flock with other parameters;
+            the flock is unchanged then.
+        """
+        self.core.restore(snapshot)
+
+    def __copy__(self) -> Self:
+        return self.of(self.core.copy())
+
+    def __deepcopy__(self, memo: Any) -> Self:
+        return self.__copy__()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self).from_snapshot, (self.snapshot(),)
+
+    def __repr__(self) -> str:
+        boats, leaders = (self.core.parameters[name] for name in ("n_boats", "n_leaders"))
+        time_s = repr(self.time_s).removesuffix(".0")
+        return (
+            f"<flockenv.Flock of {boats} boats, {leaders} of them leaders, seed {self.seed}, "
+            f"time {time_s} s>"
+        )
+
+    def _repr_html_(self) -> str:
+        """Return the flock as a picture, for notebooks."""
+        png = base64.b64encode(self.core.png(_NOTEBOOK_PIXELS)).decode("ascii")
+        return f'<img alt="{repr(self).strip("<>")}" src="data:image/png;base64,{png}">'

@@ -3,7 +3,6 @@
 import textwrap
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
-from types import SimpleNamespace
 from typing import Any, Self
 
 import tomli_w
@@ -15,8 +14,7 @@ from flockenv.errors import ParameterError, refuse_unknown
 __all__ = ["FlockParameters"]
 
 _TABLE = {row[0]: row for row in _core.parameter_table()}
-_DEFAULTS = _core.preset_fields("simulation")
-_HULL = frozenset({"boat_radius_cm", "boat_shape"})
+_DEFAULTS = _core.changed_fields("simulation", {})
 
 
 def _declared(name: str) -> Any:
@@ -89,9 +87,8 @@ class FlockParameters:
         # No `asdict`: it copies, and a view of one number can claim petabytes.
         given = {name: getattr(self, name) for name in _NAMES}
         if given["gyration_radius_cm"] is None:
-            rho = _gyration_radius_cm(_DEFAULTS, given)
-            object.__setattr__(self, "gyration_radius_cm", rho)
-        for name, value in _core.checked_fields(self).items():
+            del given["gyration_radius_cm"]
+        for name, value in _core.changed_fields("simulation", given).items():
             object.__setattr__(self, name, value)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -119,7 +116,7 @@ class FlockParameters:
         ParameterError
             For an unknown name.
         """
-        return cls(**_core.preset_fields(name))
+        return cls(**_core.changed_fields(name, {}))
 
     @classmethod
     def preset_sources(cls, name: str) -> dict[str, str]:
@@ -168,7 +165,7 @@ class FlockParameters:
         A hull of another size has a radius of gyration in the same ratio to that of a hull of even
         mass, unless ``gyration_radius_cm`` is among the changes.
         """
-        return type(self)(**_changed(self.to_dict(), changes))
+        return type(self)(**_changed(self, changes))
 
     def to_dict(self) -> dict[str, Any]:
         """Every field by name: numbers, bools, words, tuples for unnamed pools and targets."""
@@ -192,8 +189,7 @@ class FlockParameters:
         if not isinstance(values, Mapping):
             raise TypeError(f"parameters must be a mapping of fields, not {type(values).__name__}")
         changes = {str(name): value for name, value in values.items()}
-        base = _core.preset_fields(changes.pop("preset", "simulation"))
-        return cls(**_changed(base, changes))
+        return cls(**_changed(changes.pop("preset", "simulation"), changes))
 
     def to_toml(self) -> str:
         """Return the parameters as TOML, every field on a line of its own."""
@@ -213,22 +209,13 @@ class FlockParameters:
         return cls.from_dict(read_toml(text, "the text of parameters"))
 
 
-_core.set_parameters_class(FlockParameters)
-
 _NAMES = tuple(each.name for each in fields(FlockParameters))
 
 
-def _changed(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return fields with changes, and with a radius of gyration of the hull's size."""
-    fields = {**base, **changes}
-    if _HULL & changes.keys() and "gyration_radius_cm" not in changes:
-        fields["gyration_radius_cm"] = _gyration_radius_cm(base, fields)
-    return fields
-
-
-def _gyration_radius_cm(base: Mapping[str, Any], fields: Mapping[str, Any]) -> float:
-    hull = {name: fields[name] for name in _HULL}
-    return _core.resized_gyration_radius_cm(SimpleNamespace(**base), **hull)
+def _changed(base: FlockParameters | str, changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return all fields of parameters, or of a preset by name, with some of them changed."""
+    refuse_unknown(changes, _NAMES, "field of FlockParameters")
+    return _core.changed_fields(base, dict(changes))
 
 
 def _attributes() -> str:

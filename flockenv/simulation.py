@@ -1,24 +1,37 @@
 """`simulate`: a seeded run from a random start, recorded."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from flockenv import _core
 from flockenv.errors import ParameterError, shown
+from flockenv.flock import ContactSeries, Flock
+from flockenv.order import OrderSeries
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import LeaderPolicy, check_action_mode, decision_rate
+from flockenv.policies.laws import SteeringLaw
 from flockenv.policies.model import ModelPolicy, as_policy
 from flockenv.policies.registry import named_policy, policy_name
 from flockenv.recording import PHASES, PRECISIONS, Recording
 
 __all__ = ["Change", "LeaderPolicy", "recorded", "simulate"]
 
-Change = tuple[float, str | FlockParameters]
+Change = tuple[float, str | Sequence[str] | FlockParameters]
 """A time in s from the start of a run, and the target, or a list with one per leader, or the
 parameters from then on."""
+
+Schedule = Sequence[tuple[float, Mapping[str, Any]]]
+"""Times in s from the start of a run, and the fields of the parameters that change then."""
+
+Start = bytes | Mapping[str, Any] | Recording
+"""A snapshot, a state, or a recording whose last sample it is."""
+
+Steering = LeaderPolicy | str | None
+"""A policy, its name or its file; None for the steering law at every substep."""
 
 
 def simulate(
@@ -26,13 +39,15 @@ def simulate(
     seed: int,
     duration_s: float,
     sample_hz: float = 10.0,
-    policy: LeaderPolicy | str | None = None,
+    policy: Steering | Mapping[str, Steering] = None,
     *,
     control_hz: float | None = None,
     dtype: DTypeLike = np.float64,
     contacts: bool = False,
     progress: Callable[[float], object] | None = None,
-    start: bytes | Mapping[str, Any] | None = None,
+    start: Start | None = None,
+    schedule: Schedule = (),
+    quantities: Mapping[str, Callable[[Recording], ArrayLike]] | None = None,
     threads: int = 1,
 ) -> Recording:
     """Run a flock and record it: a pure function of its arguments.
@@ -57,10 +72,12 @@ def simulate(
         file; or an object whose ``predict`` maps observations (k, size) to rudders (k,), clipped
         to [-1, 1], such as a model of stable-baselines3. It observes the default layout, or that
         of its attributes ``observation`` and ``mirror_to_target``; a model observes what it was
-        trained on.
+        trained on. A dictionary has one of these for each of ``"leader_0"`` to
+        ``"leader_{k-1}"``; the law then acts at every control step.
     control_hz
         Control steps per second of a policy; None: as many as a model was trained with, where its
-        observation space says so, and otherwise 10.
+        observation space says so, and otherwise 10. Needed where the policies of a dictionary
+        decide at different rates.
     dtype
         float64, or float32 for half the size, which rounds the stored pose and velocity but not
         the run.
@@ -73,7 +90,19 @@ def simulate(
         bytes of `Flock.snapshot`, of a flock with these parameters (the target aside) and this
         seed: under the law the run continues with the same bits. A dictionary with ``pose`` (n, 3)
         and, if need be, ``velocity`` (n, 3), ``time_s`` and ``allow_overlap``, as in
-        `Flock.set_state`.
+        `Flock.set_state`. A recording: its last sample.
+    schedule
+        What changes on the way: pairs of a time in s from the start of the run and a dictionary of
+        the parameters' fields that have other values from then on, after the sample at that time:
+        ``[(60.0, {"bw_s": 0.6}), (120.0, {"bw_s": 0.9})]`` is a ramp. With another pool each boat
+        keeps its angle about the center and its share of the way between the walls. The recording
+        has the parameters of its start.
+    quantities
+        Quantities of your own, by name: functions that take the recording and return an array (t,),
+        a number for each sample. They are kept in its attribute ``quantities``, in its file and in
+        its tables.
+    threads
+        Threads that each substep of 200 boats or more is shared out to; see `Flock.threads`.
 
     Returns
     -------
@@ -85,8 +114,9 @@ def simulate(
     ParameterError
         For arguments out of range, unknown names of policies and pools that a policy is not made
         for, policies whose actions are no rudders, boats that do not fit the pool, a start that
-        this flock cannot have, rudders that are NaN, and a recording of more than 16 GiB; nothing
-        is returned then.
+        this flock cannot have, a schedule that changes n_boats or n_leaders, quantities of another
+        shape or with the name of one that there is, rudders that are NaN, and a recording of more
+        than 16 GiB; nothing is returned then.
     OSError
         If a policy's file cannot be opened.
     TypeError
@@ -94,62 +124,34 @@ def simulate(
     SolverError
         If the motion left its range of 1e9 (cm, cm/s, rad, rad/s).
     """
-    if isinstance(policy, str):
-        named = named_policy(policy, parameters.pool)()
-        policy = None if isinstance(named, str) else named
-    policy = as_policy(policy)
-    if policy is not None and not hasattr(policy, "predict"):
-        raise ParameterError(
-            f"policy = {shown(policy)} is not accepted: None, a policy's name or file, or an "
-            "object with predict"
-        )
-    check_action_mode(policy, "rudder", "in a simulation")
-    if isinstance(policy, ModelPolicy) and parameters.n_leaders > 0:
-        policy.check_leaders(parameters.n_leaders)
-    flock = _core.Flock(parameters, seed) if start is None else _started(parameters, seed, start)
+    if not isinstance(parameters, FlockParameters):
+        raise TypeError(f"parameters must be FlockParameters, not {shown(parameters)}")
+    seats = _seats(policy, parameters)
+    changes = _changes(parameters, schedule)
+    flock = Flock(parameters, seed) if start is None else _started(parameters, seed, start)
     flock.threads = threads
-    return recorded(
+    run = _run(
         flock,
         parameters,
-        duration_s,
-        sample_hz,
-        policy=policy,
-        control_hz=control_hz,
-        dtype=dtype,
-        contacts=contacts,
-        progress=progress,
+        (duration_s, sample_hz),
+        changes,
+        seats,
+        control_hz,
+        dtype,
+        contacts,
+        progress,
     )
-
-
-def _started(
-    parameters: FlockParameters, seed: int, start: bytes | Mapping[str, Any]
-) -> _core.Flock:
-    if not isinstance(start, bytes):
-        if not isinstance(start, Mapping):
-            raise TypeError(
-                "start must be a snapshot (bytes) or a dictionary with pose and perhaps velocity "
-                f"and time_s, not {shown(start)}"
-            )
-        return _core.Flock.from_state(parameters, seed, dict(start))
-    flock = _core.Flock.from_snapshot(start)
-    if flock.parameters.replace(target=parameters.target) != parameters:
-        raise ParameterError("start is a snapshot of a flock with other parameters")
-    if flock.seed != seed:
-        raise ParameterError(
-            f"seed = {shown(seed)} is not accepted: start is a snapshot of {flock.seed}"
-        )
-    flock.set_target(parameters.target)
-    return flock
+    return run if quantities is None else run.with_quantities(quantities)
 
 
 def recorded(
-    flock: _core.Flock,
+    flock: Flock,
     parameters: FlockParameters,
     duration_s: float,
     sample_hz: float,
     *,
     changes: Sequence[Change] = (),
-    policy: LeaderPolicy | None = None,
+    policy: Steering | Mapping[str, Steering] = None,
     control_hz: float | None = None,
     dtype: DTypeLike = np.float32,
     contacts: bool = False,
@@ -167,44 +169,189 @@ def recorded(
         What changes on the way: at each of these times, after the sample at that time, the target
         or all parameters. With another pool each boat keeps its angle about the center and its
         share of the way between the walls.
-    policy
-        None for the steering law at every substep.
-    duration_s, sample_hz, control_hz, dtype, contacts, progress
+    policy, duration_s, sample_hz, control_hz, dtype, contacts, progress
         As for `simulate`, as are the errors.
     """
-    single = bool(_precision(dtype) == np.float32)
-    options = {"single_precision": single, "contacts": contacts}
-    control = None if policy is None else _control(policy, flock.parameters, control_hz)
-    columns = _core.record(flock, duration_s, sample_hz, options, list(changes), control, progress)
-    columns["phase"] = PHASES[columns["phase"]]
+    seats = _seats(policy, flock.parameters)
+    sampling = (duration_s, sample_hz)
+    return _run(flock, parameters, sampling, changes, seats, control_hz, dtype, contacts, progress)
+
+
+def _run(
+    flock: Flock,
+    parameters: FlockParameters,
+    sampling: tuple[float, float],
+    changes: Sequence[Change],
+    seats: Sequence["_Seat"],
+    control_hz: float | None,
+    dtype: DTypeLike,
+    contacts: bool,
+    progress: Callable[[float], object] | None,
+) -> Recording:
+    duration_s, sample_hz = sampling
+    plan = {
+        "sample_hz": sample_hz,
+        "single_precision": bool(_precision(dtype) == np.float32),
+        "contacts": contacts,
+        "changes": list(changes),
+        "control": _control(seats, flock.core.parameters["n_leaders"], control_hz),
+        "progress": progress,
+    }
+    columns = _core.record(flock.core, duration_s, plan)
+    series = columns.pop("contacts", None)
     return Recording(
-        **columns,
+        **columns | {"phase": PHASES[columns["phase"]], "order": OrderSeries(**columns["order"])},
+        contacts=None if series is None else ContactSeries.of_columns(series),
         parameters=parameters,
         seed=flock.seed,
         version=_core.__version__,
-        policy=policy_name(policy),
+        policy="; ".join(seat.title for seat in seats) or policy_name(None),
     )
 
 
-def _control(
-    policy: LeaderPolicy, parameters: FlockParameters, control_hz: float | None
-) -> dict[str, Any]:
-    mirrored = bool(getattr(policy, "mirror_to_target", False))
-    targets = parameters.target if isinstance(parameters.target, tuple) else (parameters.target,)
-    signs = np.array([-1.0 if mirrored and target == "ccw" else 1.0 for target in targets])
-    state = None
+@dataclass
+class _Seat:
+    """A policy with the leaders that it steers, and its state if it is recurrent."""
 
-    def steer(observation: NDArray[np.float32]) -> NDArray[np.float64]:
-        nonlocal state
-        actions, state = policy.predict(observation, state)
-        return signs * np.clip(np.asarray(actions, np.float64).reshape(-1), -1.0, 1.0)
+    policy: LeaderPolicy
+    leaders: list[int]
+    is_alone: bool
+    state: Any = None
+
+    def __post_init__(self) -> None:
+        self.is_mirrored = bool(getattr(self.policy, "mirror_to_target", False))
+        self.observation = dict(getattr(self.policy, "observation", None) or {})
+
+    @property
+    def title(self) -> str:
+        names = ", ".join(f"leader_{leader}" for leader in self.leaders)
+        return ("" if self.is_alone else f"{names}: ") + policy_name(self.policy)
+
+    def rudders(
+        self, observation: NDArray[np.float32], signs: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Return rudders of its leaders, of what all see and the signs of their targets."""
+        actions, self.state = self.policy.predict(observation[self.leaders], self.state)
+        rudders = np.clip(np.asarray(actions, np.float64).reshape(-1), -1.0, 1.0)
+        # A mirrored policy steers as if every target were clockwise.
+        return signs[self.leaders] * rudders if self.is_mirrored else rudders
+
+
+def _seats(policy: Steering | Mapping[str, Steering], parameters: FlockParameters) -> list[_Seat]:
+    """Return who steers whom; nobody for the steering law at every substep."""
+    k = parameters.n_leaders
+    if not isinstance(policy, Mapping):
+        only = _resolved(policy, parameters)
+        seats = [] if only is None else [_Seat(only, [*range(k)], is_alone=True)]
+    else:
+        names = [f"leader_{leader}" for leader in range(k)]
+        if policy.keys() != set(names):
+            accepted = ", ".join(names) or "none, since n_leaders = 0"
+            raise ParameterError(
+                f"policy = {shown(dict(policy))} is not accepted: a policy for each of {accepted}"
+            )
+        # Leaders with one policy are steered at once, as a model of several leaders needs it.
+        by_policy: dict[Any, _Seat] = {}
+        for leader, given in enumerate(policy[name] for name in names):
+            key = given if isinstance(given, str) else id(given)
+            if key not in by_policy:
+                own = _resolved(given, parameters) or SteeringLaw()
+                by_policy[key] = _Seat(own, [], is_alone=False)
+            by_policy[key].leaders.append(leader)
+        seats = list(by_policy.values())
+    for seat in seats:
+        if isinstance(seat.policy, ModelPolicy) and seat.leaders:
+            seat.policy.check_leaders(len(seat.leaders))
+    return seats
+
+
+def _resolved(policy: Steering, parameters: FlockParameters) -> LeaderPolicy | None:
+    """Return a policy by its name or file; None for the steering law at every substep."""
+    if isinstance(policy, str):
+        named = named_policy(policy, parameters.pool)()
+        policy = None if isinstance(named, str) else named
+    policy = as_policy(policy)
+    if policy is not None and not hasattr(policy, "predict"):
+        raise ParameterError(
+            f"policy = {shown(policy)} is not accepted: None, a policy's name or file, or an "
+            "object with predict"
+        )
+    check_action_mode(policy, "rudder", "in a simulation")
+    return policy
+
+
+def _control(
+    seats: Sequence[_Seat], n_leaders: int, control_hz: float | None
+) -> dict[str, Any] | None:
+    if not seats:
+        return None
+    rates = {decision_rate(seat.policy) for seat in seats}
+    if control_hz is None and len(rates) > 1:
+        given = ", ".join(f"{rate:g}" for rate in sorted(rates))
+        raise ParameterError(f"the policies decide {given} times per second: give control_hz")
+
+    def steer(
+        signs: NDArray[np.float64], *observations: NDArray[np.float32]
+    ) -> NDArray[np.float64]:
+        rudders = np.zeros(n_leaders)
+        for seat, observation in zip(seats, observations, strict=True):
+            rudders[seat.leaders] = seat.rudders(observation, signs)
+        return rudders
 
     return {
         "steer": steer,
-        "observation": dict(getattr(policy, "observation", None) or {}),
-        "mirror_to_target": mirrored,
-        "control_hz": decision_rate(policy) if control_hz is None else control_hz,
+        "layouts": [(seat.observation, seat.is_mirrored) for seat in seats],
+        "control_hz": rates.pop() if control_hz is None else control_hz,
     }
+
+
+def _changes(parameters: FlockParameters, schedule: Schedule) -> list[Change]:
+    """Return the changes of a schedule: of the target alone, or of all parameters."""
+    changes: list[Change] = []
+    now = parameters
+    for entry in sorted(_entries(schedule), key=lambda each: each[0]):
+        time_s, fields = entry
+        if sized := {"n_boats", "n_leaders"} & fields.keys():
+            raise ParameterError(
+                f"schedule = {shown(entry)} is not accepted: {sized.pop()} does not change on the "
+                "way"
+            )
+        now = now.replace(**fields)
+        changes.append((time_s, now.target if fields.keys() == {"target"} else now))
+    return changes
+
+
+def _entries(schedule: Schedule) -> list[tuple[float, Mapping[str, Any]]]:
+    accepted = "pairs of a time in s, at least 0, and a dictionary of fields"
+    entries: list[tuple[float, Mapping[str, Any]]] = []
+    for entry in schedule:
+        match entry:
+            case (int() | float() as time_s, Mapping() as fields) if 0.0 <= time_s <= 1e9:
+                entries.append((float(time_s), {str(name): fields[name] for name in fields}))
+            case _:
+                raise ParameterError(f"schedule = {shown(entry)} is not accepted: {accepted}")
+    return entries
+
+
+def _started(parameters: FlockParameters, seed: int, start: Start) -> Flock:
+    if isinstance(start, Recording):
+        start = start.state_at(start.duration_s if len(start) == 0 else float(start.time_s[-1]))
+    if isinstance(start, Mapping):
+        return Flock.from_state(parameters, seed, dict(start))
+    if not isinstance(start, bytes):
+        raise TypeError(
+            "start must be a snapshot (bytes), a dictionary with pose and perhaps velocity and "
+            f"time_s, or a recording, not {shown(start)}"
+        )
+    flock = Flock.from_snapshot(start)
+    if flock.parameters.replace(target=parameters.target) != parameters:
+        raise ParameterError("start is a snapshot of a flock with other parameters")
+    if flock.seed != seed:
+        raise ParameterError(
+            f"seed = {shown(seed)} is not accepted: start is a snapshot of {flock.seed}"
+        )
+    flock.set_target(parameters.target)
+    return flock
 
 
 def _precision(dtype: DTypeLike) -> np.dtype[Any]:

@@ -12,12 +12,12 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
-from flockenv import _core
 from flockenv.cli.console import errors, interruptible, print_json, progress_bar, say
 from flockenv.cli.options import Flocks, Overwriting, Printing, takes
 from flockenv.cli.output import check_file, keep, printable, refuse_overwriting, refuse_present
 from flockenv.cli.parameters import TrustOption, read_parameters, save_parameters
 from flockenv.errors import ParameterError
+from flockenv.order import QUANTITIES, Quantity
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import LeaderPolicy
 from flockenv.policies.registry import EVERY_SUBSTEP, POLICIES, POOL_POLICIES, named_policy, quoted
@@ -173,7 +173,7 @@ def summary_of(recording: Recording) -> dict[str, float | int | None]:
     target = recording.parameters.target
     means = {
         each.name + _suffix(each.unit): _mean(used.order.series(each.name, target))
-        for each in _core.quantities()
+        for each in QUANTITIES
         if each.is_averaged
     }
     return {"samples": len(recording), "samples_in_window": len(used), **means}
@@ -191,7 +191,7 @@ def _mean(values: NDArray[np.float64]) -> float | None:
 
 def in_words(summary: dict[str, float | int | None], recording: Recording) -> str:
     """Return what the summary of a recording says, in one line: its quantities without a unit."""
-    table = {each.name: each for each in _core.quantities()}
+    table = {each.name: each for each in QUANTITIES}
     if recording.parameters.common_target is None:
         del table["signed_order"]
     found = {_word(table[name]): n for name, n in summary.items() if name in table}
@@ -200,6 +200,6 @@ def in_words(summary: dict[str, float | int | None], recording: Recording) -> st
     )
 
 
-def _word(quantity: _core.Quantity) -> str:
+def _word(quantity: Quantity) -> str:
     symbol = quantity.symbol
     return f"mean {symbol}" if "_" in symbol else quantity.label.partition(",")[0]

@@ -7,10 +7,10 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv import _core
 from flockenv.envs.batch import LeaderBatch
 from flockenv.envs.options import EnvOptions
 from flockenv.envs.render_mode import RenderMode
+from flockenv.flock import Flock
 
 __all__ = ["SingleEnvironmentBase"]
 
@@ -56,7 +56,7 @@ class SingleEnvironmentBase:
         return self._batch.episode(0)
 
     @property
-    def flock(self) -> _core.Flock:
+    def flock(self) -> Flock:
         """A copy of the flock in its present state."""
         return self._batch.flock(0)
 

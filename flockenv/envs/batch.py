@@ -12,6 +12,7 @@ from flockenv.envs.observation import flock_feature_space, state_space
 from flockenv.envs.options import EnvOptions, known_reset_options
 from flockenv.envs.reward import TERMS
 from flockenv.errors import ParameterError, shown
+from flockenv.flock import Flock
 from flockenv.parameters import FlockParameters
 
 __all__ = ["LeaderBatch", "at_least_one", "drawn_seed", "leader_summary", "seeds_from"]
@@ -82,11 +83,12 @@ class LeaderBatch:
 
     def final_observation(self, flock: int) -> NDArray[np.float32]:
         """Return the last observation of the episode that ended in the last step."""
-        return self._core.final_observation(flock)
+        return self._core.last_views(flock)[0]
 
     def state(self, flock: int) -> NDArray[np.float32]:
         """Return the global state of a flock."""
-        return self._core.state(flock)
+        state: NDArray[np.float32] = self._core.states()[flock]
+        return state
 
     def states(self) -> NDArray[np.float32]:
         """Return the global state of every flock, a row each."""
@@ -94,19 +96,20 @@ class LeaderBatch:
 
     def final_state(self, flock: int) -> NDArray[np.float32]:
         """Return the last global state of the episode that ended in the last step."""
-        return self._core.final_state(flock)
+        return self._core.last_views(flock)[1]
 
     def final_flock_features(self, flock: int, leader: int = 0) -> NDArray[np.float32]:
         """Return the flock's features for a leader, as the last step ended an episode."""
-        return self._core.final_flock_features(flock, leader)
+        features: NDArray[np.float32] = self._core.last_views(flock)[2][leader]
+        return features
 
     def leader_features(self) -> NDArray[np.float32]:
         """Return the features of its flock for every leader, towards its own target."""
-        return self._core.leader_features()
+        return self._core.flock_features(each_leader=True)
 
     def flock_features(self) -> NDArray[np.float32]:
         """Return the features of every flock, a row each."""
-        return self._core.flock_features()
+        return self._core.flock_features(each_leader=False)
 
     def order_parameters(self) -> NDArray[np.float64]:
         """Return the order parameters of every flock, a row each."""
@@ -114,23 +117,23 @@ class LeaderBatch:
 
     def in_analysis_window(self) -> NDArray[np.bool_]:
         """Return for every flock whether its episode is in the analysis window."""
-        return self._core.in_analysis_window()
+        return self._core.in_analysis_window().ravel()
 
     def rudders(self) -> NDArray[np.float64]:
         """Return every leader's rudder as it stands."""
-        return self._core.rudders()
+        return self._core.rudders().ravel()
 
     def is_running(self, flock: int) -> bool:
         """Return whether an episode is under way."""
         return self._core.is_running(flock)
 
-    def flock(self, flock: int) -> _core.Flock:
+    def flock(self, flock: int) -> Flock:
         """Return a copy of a flock in its present state."""
-        return self._core.flock(flock)
+        return Flock.of(self._core.flock(flock))
 
     def parameters(self, flock: int) -> FlockParameters:
         """Return the parameters of a flock's environment."""
-        return self._core.parameters(flock)
+        return FlockParameters(**self._core.parameters(flock))
 
     def episode(self, flock: int) -> dict[str, Any]:
         """Return target, backward duration, seed and step of a flock's episode."""
@@ -163,7 +166,7 @@ class LeaderBatch:
 
     def reward_terms(self) -> dict[str, NDArray[np.float64]]:
         """Return each term of the last step's reward, one number per row."""
-        return dict(zip(TERMS, self._core.reward_terms(), strict=True))
+        return dict(zip(TERMS, self._core.reward_terms().T, strict=True))
 
 
 def leader_summary(summary: Mapping[str, Any], leader: int) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from flockenv.envs.observation import (
 )
 from flockenv.envs.options import arguments_table
 from flockenv.envs.reward import terms_table
+from flockenv.order import QUANTITIES
 
 __all__ = ["specified"]
 
@@ -64,7 +65,7 @@ velocity (n, 3), time_s and allow_overlap as in `Flock.set_state`) or `snapshot`
 `Flock.snapshot`)."""
 
 _MEANS = ", ".join(
-    f"`{each.name}`" for each in _core.quantities() if each.is_averaged and each.kind != "structure"
+    f"`{each.name}`" for each in QUANTITIES if each.is_averaged and each.kind != "structure"
 )
 
 _END = f"""After `episode_s` the episode is truncated; it never terminates. The `"episode_summary"`

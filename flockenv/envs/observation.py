@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
+from flockenv.flock import Flock
 
 __all__ = [
     "BLOCKS",
@@ -58,7 +59,7 @@ def observation_entries(blocks: Mapping[str, Any] | None = None) -> list[Entry]:
     blocks
         Blocks that differ from `BLOCKS`.
     """
-    return [Entry(*row) for row in _core.observation_table(dict(blocks or {}))]
+    return [Entry(**row) for row in _core.observation_table(dict(blocks or {}))]
 
 
 def neighbor_places(blocks: Mapping[str, Any] | None = None) -> NDArray[np.intp]:
@@ -96,7 +97,7 @@ def observation_version(blocks: Mapping[str, Any] | None = None) -> int:
 
 def flock_feature_entries() -> list[Entry]:
     """Return every feature of a whole flock, in order."""
-    return [Entry(*row) for row in _core.flock_feature_table()]
+    return [Entry(**row) for row in _core.flock_feature_table()]
 
 
 def flock_feature_space() -> "_Box":
@@ -107,7 +108,7 @@ def flock_feature_space() -> "_Box":
 
 def state_entries(n_boats: int) -> list[Entry]:
     """Return every entry of the global state of a flock of this size, in order."""
-    return [Entry(*row) for row in _core.state_table(n_boats)]
+    return [Entry(**row) for row in _core.state_table(n_boats)]
 
 
 def _bounds(entries: Iterable[Entry]) -> NDArray[np.float32]:
@@ -198,7 +199,7 @@ def state_space(n_boats: int) -> _Box:
 
 
 def observe(
-    flock: _core.Flock,
+    flock: Flock,
     observation: Mapping[str, Any] | None = None,
     *,
     mirror_to_target: bool = False,
@@ -228,7 +229,7 @@ def observe(
     ParameterError
         For unknown blocks, and where a block needs normal boats that are not there.
     """
-    return _core.observe(flock, dict(observation or {}), mirror_to_target, rudder)
+    return _core.observe(flock.core, dict(observation or {}), mirror_to_target, rudder)
 
 
 def feature_table(entries: Iterable[Entry]) -> str:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from flockenv._core import Flock
+    from flockenv.flock import Flock
 
 __all__ = ["RENDER_MODES", "RenderMode"]
 

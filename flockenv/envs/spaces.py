@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
-from flockenv.errors import ParameterError
 
 __all__ = ["flat_actions", "joint_action_space", "leader_action_space"]
 
@@ -41,20 +40,4 @@ def flat_actions(
     TypeError
         For anything that is not made of real numbers.
     """
-    oversized = _core.oversized_shape(actions, shape)
-    if oversized is not None:
-        raise ParameterError(f"{name}: shape {oversized} is not accepted, expected {shape}")
-    try:
-        array = np.asarray(actions)
-    except ValueError as error:
-        raise ParameterError(f"{name} must be a rectangular array: {error}") from error
-    if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name} must be real numbers, not of dtype {array.dtype}")
-    if levels is not None and array.dtype.kind == "f":
-        raise ParameterError(
-            f"{name} must be integers, whole numbers from 0 to {levels - 1} that name levels of "
-            f"the rudder, not of dtype {array.dtype}"
-        )
-    if array.shape != shape:
-        raise ParameterError(f"{name}: shape {array.shape} is not accepted, expected {shape}")
-    return array.astype(np.float64).reshape(-1)
+    return _core.flat_actions(actions, shape, levels, name)

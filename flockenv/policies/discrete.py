@@ -56,7 +56,8 @@ class WithLevels:
 
     def _nearest(self, rudders: ArrayLike) -> NDArray[np.int64]:
         array = np.asarray(rudders, np.float64)
-        return _core.nearest_levels(array.ravel(), self.rudder_levels).reshape(array.shape)
+        levels = _core.rudders_of_levels(array.ravel(), self.rudder_levels, are_rudders=True)
+        return levels.astype(np.int64).reshape(array.shape)
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.policy!r}, {self.rudder_levels})"

@@ -148,7 +148,9 @@ class ModelPolicy:
 
     def _rudders(self, actions: NDArray[Any]) -> NDArray[np.float32]:
         if self._levels is not None:
-            actions = _core.level_rudders(actions.astype(np.int64), self._levels)
+            actions = _core.rudders_of_levels(
+                actions.astype(np.float64), self._levels, are_rudders=False
+            )
         rudders: NDArray[np.float32] = np.clip(actions, -1.0, 1.0).astype(np.float32)
         return rudders
 

@@ -1,7 +1,6 @@
 """Runs, sampled at a fixed rate: saved and loaded."""
 
 from flockenv.recording.checks import PHASES, PRECISIONS
-from flockenv.recording.order import RECORDED, RecordedOrder
 from flockenv.recording.recording import DISCARDED_SHARE, Recording
 
-__all__ = ["DISCARDED_SHARE", "PHASES", "PRECISIONS", "RECORDED", "RecordedOrder", "Recording"]
+__all__ = ["DISCARDED_SHARE", "PHASES", "PRECISIONS", "Recording"]

@@ -1,26 +1,31 @@
 """What a recording's arrays must be."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flockenv import _core
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, shown
 from flockenv.flock import ContactSeries
+from flockenv.order import QUANTITIES
 from flockenv.parameters import FlockParameters
 
 __all__ = [
     "CONTACTS",
     "PHASES",
     "PRECISIONS",
+    "TIMES",
     "arrays_equal",
     "check_array",
     "check_contacts",
     "check_ids",
+    "check_quantities",
 ]
 
 PHASES = np.array(_core.phase_names())
+TIMES = ("time_s", "phase", "in_analysis_window")
 PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
 CONTACTS = ("count", "i", "j", "normal", "force", "point_cm")
 """The arrays of a `ContactSeries`, in its order."""
@@ -56,6 +61,23 @@ def check_ids(ids: Any, boats: int) -> None:
         raise ParameterError(f"ids must be an array of str of shape ({boats},)")
     if len(set(ids.tolist())) != boats:
         raise ParameterError("ids must differ from each other")
+
+
+def check_quantities(quantities: Any, times: tuple[int, ...]) -> None:
+    """Refuse quantities of a user's own that are no series, or whose names are taken."""
+    if not isinstance(quantities, Mapping):
+        raise ParameterError(f"quantities = {shown(quantities)} is not accepted: arrays by name")
+    taken = {each.name for each in QUANTITIES} | {*TIMES, "boat", "id", "is_leader"}
+    for name, values in quantities.items():
+        if not isinstance(name, str) or not name.isidentifier() or name in taken:
+            raise ParameterError(
+                f"quantity {shown(name)} is not accepted: an identifier that no quantity or column "
+                "of recordings has"
+            )
+        if not isinstance(values, np.ndarray) or values.dtype != np.float64:
+            raise ParameterError(f"quantity {name!r} must be an array of float64")
+        if values.shape != times:
+            raise ParameterError(f"quantity {name!r} has shape {values.shape}, expected {times}")
 
 
 def arrays_equal(a: NDArray[Any] | None, b: NDArray[Any] | None) -> bool:

@@ -1,11 +1,10 @@
 """Runs, sampled at a fixed rate: saved and loaded."""
 
 import html
-import importlib
 import math
 import os
-from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -14,18 +13,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv.errors import ParameterError, shown
-from flockenv.flock import ContactSeries, Flock, OrderSeries
+from flockenv.flock import ContactSeries, Flock
+from flockenv.order import RECORDED, OrderSeries
 from flockenv.parameters import FlockParameters
 from flockenv.recording.checks import (
-    CONTACTS,
     PHASES,
     PRECISIONS,
     arrays_equal,
     check_array,
     check_contacts,
     check_ids,
+    check_quantities,
 )
-from flockenv.recording.order import ORDER, RECORDED, RecordedOrder
 from flockenv.recording.stored import ARRAYS, OPTIONAL, arrays_of, fields_from
 from flockenv.recording.tables import dataset_of, table_of
 
@@ -56,9 +55,8 @@ class Recording:
         (t, 0, 3) where poses were not kept.
     velocity : array of the same dtype and shape
         [cm/s, cm/s, rad/s]. With the leapfrog scheme these are means over the substep before.
-    order : RecordedOrder
-        Order parameters of the normal boats, made of an `OrderSeries`; NaN only where they are
-        undefined.
+    order : OrderSeries
+        Order parameters of the normal boats, with these times; NaN only where they are undefined.
     parameters : FlockParameters
         What was run.
     seed : int
@@ -78,10 +76,12 @@ class Recording:
     duration_s : float
         When the run ended, in s from time 0; the samples may be a part of it. The time of the last
         sample if not given.
+    quantities : dict of float64 arrays, shape (t,)
+        Quantities of a user's own, by name; see `with_quantities`.
     ids : str array, shape (n,), or None
-        Names of the boats of `from_tracks`, leaders first; None for a simulated flock. Only where
-        they are given, rows of `pose` and `velocity` may be NaN, which stand for boats that are not
-        there, the quantities of too few boats are NaN, and `phase` may be empty: not known.
+        Names of tracked boats, leaders first; None for a simulated flock. Only with them rows of
+        `pose` and `velocity` may be NaN, which stand for boats that are not there, the quantities
+        of too few boats are NaN, and `phase` may be empty: not known.
 
     Raises
     ------
@@ -94,7 +94,7 @@ class Recording:
     in_analysis_window: NDArray[np.bool_]
     pose: NDArray[np.floating[Any]]
     velocity: NDArray[np.floating[Any]]
-    order: RecordedOrder
+    order: OrderSeries
     parameters: FlockParameters
     seed: int
     version: str
@@ -102,6 +102,7 @@ class Recording:
     rudder: NDArray[np.float64] | None = None
     policy: str | None = None
     duration_s: float = math.nan
+    quantities: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
     ids: NDArray[np.str_] | None = None
 
     def __post_init__(self) -> None:
@@ -133,10 +134,11 @@ class Recording:
             undefined = normal_boats < each.least_boats
             options = {"gaps": True} if tracked else {"all_nan": undefined}
             check_array(f"order.{each.name}", values, times, PRECISIONS[:1], **options)
-        object.__setattr__(self, "order", RecordedOrder(self.time_s, self.order))
+        object.__setattr__(self, "order", self.order.at(slice(None), self.time_s))
         seed: Any = self.seed
         if not isinstance(seed, int) or not 0 <= seed < 2**64:
             raise ParameterError(f"seed = {shown(seed)} is not accepted: an int from 0 to 2^64 - 1")
+        check_quantities(self.quantities, times)
         if self.rudder is not None:
             check_array("rudder", self.rudder, (*times, self.parameters.n_leaders), PRECISIONS[:1])
             if (np.abs(self.rudder) > 1.0).any():
@@ -151,8 +153,16 @@ class Recording:
         if not isinstance(other, Recording):
             return NotImplemented
         plain = ("order", "parameters", "seed", "version", "contacts", "policy", "duration_s")
-        return all(getattr(self, name) == getattr(other, name) for name in plain) and all(
-            arrays_equal(getattr(self, name), getattr(other, name)) for name in (*ARRAYS, *OPTIONAL)
+        if any(getattr(self, name) != getattr(other, name) for name in plain):
+            return False
+        own, others = self.quantities, other.quantities
+        return (
+            own.keys() == others.keys()
+            and all(arrays_equal(own[name], others[name]) for name in own)
+            and all(
+                arrays_equal(getattr(self, name), getattr(other, name))
+                for name in (*ARRAYS, *OPTIONAL)
+            )
         )
 
     def __repr__(self) -> str:
@@ -177,6 +187,40 @@ class Recording:
         ParameterError
             For a time outside the recording, and a recording without samples or poses.
         """
+        state = self.state_at(time_s)
+        there = self._there(self._sample_at(time_s))
+        leaders = int(there[: self.parameters.n_leaders].sum())
+        parameters = self.parameters.replace(n_boats=int(there.sum()), n_leaders=leaders)
+        return Flock.from_state(parameters, self.seed, state)
+
+    def state_at(self, time_s: float) -> dict[str, Any]:
+        """Return the state of the boats that are there at the last sample up to a time.
+
+        Returns
+        -------
+        dict
+            ``pose`` (n, 3), ``velocity`` (n, 3), ``time_s`` and ``allow_overlap``, as
+            `Flock.from_state`, ``simulate(start=...)`` and ``reset(options={"state": ...})`` take
+            them.
+
+        Raises
+        ------
+        ParameterError
+            For a time outside the recording, and a recording without samples or poses.
+        """
+        sample = self._sample_at(time_s)
+        there = self._there(sample)
+        if not there.any():
+            raise ParameterError(f"no boat is there at {time_s!r} s")
+        return {
+            "pose": self.pose[sample, there].astype(np.float64),
+            "velocity": np.nan_to_num(self.velocity[sample, there].astype(np.float64)),
+            "time_s": float(self.time_s[sample]),
+            # Single precision leaves overlaps of a rounding, and so do cameras.
+            "allow_overlap": True,
+        }
+
+    def _sample_at(self, time_s: float) -> int:
         if len(self) == 0 or not self.has_poses:
             raise ParameterError("this recording holds no poses, of which a flock is made")
         start, end = self.time_s[0], self.time_s[-1]
@@ -184,20 +228,11 @@ class Recording:
             raise ParameterError(
                 f"time_s = {time_s!r} is not accepted: a time from {start} to {end} s"
             )
-        sample = int(np.searchsorted(self.time_s, time_s, side="right")) - 1
-        there = np.isfinite(self.pose[sample, :, 0])
-        if not there.any():
-            raise ParameterError(f"no boat is there at {time_s!r} s")
-        state = {
-            "pose": self.pose[sample, there].astype(np.float64),
-            "velocity": np.nan_to_num(self.velocity[sample, there].astype(np.float64)),
-            "time_s": float(self.time_s[sample]),
-            # Single precision leaves overlaps of a rounding, and so do cameras.
-            "allow_overlap": True,
-        }
-        leaders = int(there[: self.parameters.n_leaders].sum())
-        parameters = self.parameters.replace(n_boats=int(there.sum()), n_leaders=leaders)
-        return Flock.from_state(parameters, self.seed, state)
+        return int(np.searchsorted(self.time_s, time_s, side="right")) - 1
+
+    def _there(self, sample: int) -> NDArray[np.bool_]:
+        there: NDArray[np.bool_] = np.isfinite(self.pose[sample, :, 0])
+        return there
 
     def to_dataframe(self, *, boats: bool = False) -> "pandas.DataFrame":
         """Return the recording as a table of pandas (extra ``plot``).
@@ -211,7 +246,8 @@ class Recording:
         Returns
         -------
         pandas.DataFrame
-            Columns ``time_s``, ``phase``, ``in_analysis_window``, then the order parameters; or
+            Columns ``time_s``, ``phase``, ``in_analysis_window``, then the order parameters and the
+            quantities of your own; or
             ``boat``, ``is_leader``, ``id`` (of tracked boats), ``x_cm``, ``y_cm``, ``heading_rad``,
             ``velocity_x_cm_s``, ``velocity_y_cm_s`` and ``angular_velocity_rad_s``.
 
@@ -242,74 +278,13 @@ class Recording:
         return dataset_of(self)
 
     def _repr_html_(self) -> str:
-        """Return the replay page in a frame, for notebooks; the text where it does not fit."""
-        # Replays stand downstream of recordings, and nothing else here needs them.
-        replay: Any = importlib.import_module("flockenv.replay")
+        """Return the last sample as a picture, for notebooks; the text if it has no boats."""
+        words = html.escape(repr(self))
         try:
-            return str(replay.inline_replay(self, "recording"))
-        except ParameterError:
-            return f"<code>{html.escape(repr(self))}</code>"
-
-    @classmethod
-    def from_tracks(
-        cls,
-        time_s: ArrayLike,
-        pose: ArrayLike,
-        *,
-        pool: Any,
-        hull: tuple[float, float] = (5.0, 0.5),
-        velocity: ArrayLike | None = None,
-        phase: ArrayLike | None = None,
-        ids: Sequence[str] | None = None,
-        leaders: Sequence[str] = (),
-        target: str | Sequence[str] = "cw",
-        discs: ArrayLike = (),
-        walls: ArrayLike = (),
-    ) -> Self:
-        """Return tracks of real boats, or of anything else that heads somewhere, as a recording.
-
-        It is analyzed, replayed and exported like a simulated one. Quantities at a time are those
-        of the normal boats that have a pose and a velocity then.
-
-        Parameters
-        ----------
-        time_s
-            Times in s, increasing, shape (t,).
-        pose
-            Shape (t, n, 3): [x cm, y cm from the pool's center, heading rad counter-clockwise from
-            x]. Rows of NaN where a boat is not there.
-        pool
-            "narrow", "wide", or the outer and the inner radius in cm; (inf, 0) for none.
-        hull
-            Radius in cm, and half the length of the straight part in radii; (r, 0) is a disc.
-        velocity
-            Shape (t, n, 3) in cm/s, cm/s and rad/s. None: differences of the poses, central ones
-            where a boat is there before and after; a boat that is there for one sample has none.
-        phase
-            "fw", "nop1", "bw" or "nop2" at each time, shape (t,). None: not known, and all samples
-            count as analyzed.
-        ids
-            A name for each boat, shape (n,); "0", "1", … by default.
-        leaders
-            Those of the names that lead. They come first in the recording.
-        target
-            Where they lead, "cw" or "ccw"; the direction that signed order counts towards.
-        discs, walls
-            Obstacles in the pool, as in `FlockParameters`; replay pages show them.
-
-        Raises
-        ------
-        ParameterError
-            For shapes that do not match, rows of which a part is NaN, no pose at all, speeds above
-            10 m/s (in the median of a boat), more than a tenth of the centers outside the pool, and
-            for names that are unknown or there twice.
-        """
-        # Tracks stand downstream of recordings, and nothing else here needs them.
-        tracks: Any = importlib.import_module("flockenv.tracks.assemble")
-        fields = tracks.recording_fields(
-            time_s, pose, pool, hull, velocity, phase, ids, leaders, target, discs, walls
-        )
-        return cls(**fields)
+            picture = self.flock_at(float(self.time_s[-1]))._repr_html_()
+        except (ParameterError, IndexError):
+            return f"<code>{words}</code>"
+        return f"{picture}<br><code>{words}</code>"
 
     @property
     def has_poses(self) -> bool:
@@ -332,17 +307,41 @@ class Recording:
         """
         return self._at(self.in_analysis_window & (self.time_s > after * self.duration_s))
 
+    def with_quantities(self, functions: Mapping[str, Callable[[Self], ArrayLike]]) -> Self:
+        """Return the recording with quantities of your own, kept in `quantities`.
+
+        Parameters
+        ----------
+        functions
+            By name: functions that take the recording and return a number for each sample, shape
+            (t,); NaN where it is undefined.
+
+        Raises
+        ------
+        ParameterError
+            For results of another shape or of no numbers, and names that are no identifiers or that
+            quantities and columns of recordings have.
+        """
+        found = {}
+        for name, function in functions.items():
+            try:
+                found[name] = np.array(function(self), np.float64)
+            except (TypeError, ValueError) as error:
+                raise ParameterError(f"quantity {name!r} is not accepted: numbers") from error
+        return replace(self, quantities={**self.quantities, **found})
+
     def without_poses(self) -> Self:
         """Return the recording without its poses and velocities."""
         return replace(self, pose=self.pose[:, :0], velocity=self.velocity[:, :0])
 
     def _at(self, samples: NDArray[np.bool_]) -> Self:
         columns: dict[str, Any] = {name: getattr(self, name)[samples] for name in ARRAYS}
-        held = OrderSeries(**{name: getattr(self.order, name)[samples] for name in ORDER})
-        order = RecordedOrder(columns["time_s"], held)
-        contacts = None if self.contacts is None else _contacts_at(self.contacts, samples)
+        order = self.order.at(samples)
+        contacts = None if self.contacts is None else self.contacts.at(samples)
         rudder = None if self.rudder is None else self.rudder[samples]
-        return replace(self, **columns, order=order, contacts=contacts, rudder=rudder)
+        own = {name: values[samples] for name, values in self.quantities.items()}
+        columns |= {"order": order, "contacts": contacts, "rudder": rudder, "quantities": own}
+        return replace(self, **columns)
 
     def save(self, path: str | os.PathLike[str], *, compressed: bool = False) -> None:
         """Write the recording to an ``.npz`` file, whole or not at all.
@@ -383,10 +382,3 @@ class Recording:
             return cls(**fields_from(arrays))
         except (ParameterError, TypeError) as error:
             raise ParameterError(f"{path} is no recording of flockenv: {error}") from error
-
-
-def _contacts_at(contacts: ContactSeries, samples: NDArray[np.bool_]) -> ContactSeries:
-    """Return the contacts of some of the samples, shape (t,)."""
-    chosen = np.repeat(samples, contacts.count)
-    each = (getattr(contacts, name)[chosen] for name in CONTACTS[1:])
-    return ContactSeries(contacts.count[samples], *each)

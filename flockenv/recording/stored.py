@@ -7,14 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv.errors import ParameterError
-from flockenv.flock import ContactSeries, OrderSeries
+from flockenv.flock import ContactSeries
+from flockenv.order import ORDER, OrderSeries
 from flockenv.parameters import FlockParameters
-from flockenv.recording.checks import CONTACTS, PRECISIONS, check_array
-from flockenv.recording.order import ORDER
+from flockenv.recording.checks import CONTACTS, PRECISIONS, TIMES, check_array
 
-__all__ = ["ARRAYS", "FORMAT", "OPTIONAL", "TIMES", "arrays_of", "fields_from"]
+__all__ = ["ARRAYS", "FORMAT", "OPTIONAL", "arrays_of", "fields_from"]
 
-TIMES = ("time_s", "phase", "in_analysis_window")
 ARRAYS = (*TIMES, "pose", "velocity")
 OPTIONAL = ("rudder", "ids")
 """Arrays that a recording may lack."""
@@ -22,11 +21,14 @@ OPTIONAL = ("rudder", "ids")
 FORMAT = "flockenv recording 1"
 """What the file of a recording says that it is."""
 
+_OWN = "quantity_"
+
 
 def arrays_of(fields: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
     """Return the arrays of the file of a recording with these fields, by name."""
     arrays = {name: fields[name] for name in ARRAYS}
     arrays |= {f"order_{name}": getattr(fields["order"], name) for name in ORDER}
+    arrays |= {f"{_OWN}{name}": values for name, values in fields["quantities"].items()}
     arrays |= {name: fields[name] for name in OPTIONAL if fields[name] is not None}
     if fields["contacts"] is not None:
         arrays |= {f"contacts_{name}": getattr(fields["contacts"], name) for name in CONTACTS}
@@ -52,7 +54,8 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
     """
     texts = ("format", "version", "parameters", "policy")
     expected = {*ARRAYS, *(f"order_{name}" for name in ORDER), *texts, "seed", "duration_s"}
-    expected |= {*OPTIONAL} & arrays.keys()
+    own = [name for name in arrays if name.startswith(_OWN)]
+    expected |= ({*OPTIONAL} & arrays.keys()) | {*own}
     with_contacts = {f"contacts_{name}" for name in CONTACTS}
     has_contacts = not with_contacts.isdisjoint(arrays)
     expected |= with_contacts if has_contacts else set()
@@ -69,11 +72,12 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
     contacts = (arrays[f"contacts_{name}"] for name in CONTACTS) if has_contacts else None
     return {
         **{name: arrays[name] for name in ARRAYS},
-        "order": OrderSeries(**{name: arrays[f"order_{name}"] for name in ORDER}),
+        "order": OrderSeries(*(arrays[f"order_{name}"] for name in ORDER)),
         "parameters": FlockParameters.from_toml(stored),
         "seed": int(arrays["seed"]),
         "version": version,
         "policy": policy or None,
+        "quantities": {name.removeprefix(_OWN): arrays[name] for name in own},
         "duration_s": float(arrays["duration_s"]),
         **{name: arrays.get(name) for name in OPTIONAL},
         "contacts": None if contacts is None else ContactSeries(*contacts),

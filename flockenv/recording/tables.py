@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv._io.extras import require
-from flockenv.recording.order import ORDER, RECORDED
-from flockenv.recording.stored import TIMES
+from flockenv.order import ORDER, RECORDED
+from flockenv.recording.checks import TIMES
 
 if TYPE_CHECKING:
     import pandas
@@ -34,7 +34,8 @@ def table_of(recording: Any, boats: bool) -> "pandas.DataFrame":
     dataframe: type[pandas.DataFrame] = require("pandas", "plot").DataFrame
     columns: dict[str, NDArray[Any]] = {name: getattr(recording, name) for name in TIMES}
     if not boats:
-        return dataframe(columns | {name: getattr(recording.order, name) for name in ORDER})
+        columns |= {name: getattr(recording.order, name) for name in ORDER}
+        return dataframe(columns | dict(recording.quantities))
     count = recording.pose.shape[1]
     columns = {name: np.repeat(values, count) for name, values in columns.items()}
     columns["boat"] = np.tile(np.arange(count), len(recording))
@@ -52,6 +53,7 @@ def dataset_of(recording: Any) -> "xarray.Dataset":
     boats = np.arange(recording.pose.shape[1])
     by_time = {name: getattr(recording, name) for name in TIMES[1:]}
     by_time |= {name: getattr(recording.order, name) for name in ORDER}
+    by_time |= recording.quantities
     units = {each.name: each.unit or "1" for each in RECORDED} | _UNITS
     attributes = {name: {"units": units[name]} for name in units}
     variables: dict[str, Any] = {

@@ -7,6 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv._core import FrameRenderer
+from flockenv.errors import shown
+from flockenv.flock import Flock
 from flockenv.recording import Recording
 
 __all__ = ["DEFAULT_SIZE", "frame", "renderer"]
@@ -47,7 +49,9 @@ def frame(
     ParameterError
         For a size out of range, and a time outside the recording.
     """
-    return renderer(width, height).draw(flock)
+    if not isinstance(flock, Flock):
+        raise TypeError(f"a frame is of a Flock or a Recording, not of {shown(flock)}")
+    return renderer(width, height).draw(flock.core)
 
 
 @frame.register
@@ -57,7 +61,7 @@ def _frame_of_recording(
     width: int = DEFAULT_SIZE[0],
     height: int = DEFAULT_SIZE[1],
 ) -> NDArray[np.uint8]:
-    return renderer(width, height).draw(recording.flock_at(time_s))
+    return renderer(width, height).draw(recording.flock_at(time_s).core)
 
 
 @lru_cache(maxsize=4)

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from flockenv._core import Flock
 from flockenv._io.extras import require
 from flockenv._io.interrupts import end_if_interrupted
 from flockenv.errors import ParameterError, shown
+from flockenv.flock import Flock
 from flockenv.rendering.frames import renderer
 
 __all__ = ["Window", "require_pygame"]
@@ -99,7 +99,7 @@ class Window:
         return self.is_open
 
     def _draw(self, flock: Flock) -> None:
-        rows = self._renderer.draw(flock)
+        rows = self._renderer.draw(flock.core)
         # pygame counts columns first.
         self._pygame.surfarray.blit_array(self._surface, rows.swapaxes(0, 1))
         self._pygame.display.flip()

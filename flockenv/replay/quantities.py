@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv import _core
+from flockenv.order import QUANTITIES, Quantity
 from flockenv.recording import Recording
 
 __all__ = ["ShownQuantity", "decisive_minute", "shown_quantities"]
@@ -61,14 +61,14 @@ def shown_quantities(recordings: Sequence[Recording]) -> list[ShownQuantity]:
 
     Order towards the target is among them where in any of the recordings leaders have one.
     """
-    table = {each.name: each for each in _core.quantities() if each.kind != "structure"}
+    table = {each.name: each for each in QUANTITIES if each.kind != "structure"}
     has_target = any(each.parameters.common_target is not None for each in recordings)
     first = ["signed_order", "rotation"] if has_target else ["rotation"]
     recorded = [each.name for each in table.values() if each.kind == "recorded"]
     return [_shown(table[name], recordings) for name in (*first, *recorded)]
 
 
-def _shown(entry: _core.Quantity, recordings: Sequence[Recording]) -> ShownQuantity:
+def _shown(entry: Quantity, recordings: Sequence[Recording]) -> ShownQuantity:
     limits = entry.range
 
     def of(recording: Recording) -> NDArray[np.float64]:

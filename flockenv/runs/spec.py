@@ -10,22 +10,20 @@ from typing import Any
 import numpy as np
 
 from flockenv.errors import ParameterError, shown
-from flockenv.flock import OrderSeries
+from flockenv.order import ORDER, OrderSeries
 from flockenv.parameters import FlockParameters
 from flockenv.policies.registry import POOL_POLICIES
-from flockenv.recording import RECORDED, RecordedOrder, Recording
+from flockenv.recording import Recording
 from flockenv.runs.protocols.hysteresis import LOOPS, simulate_loop, simulate_prepared
 from flockenv.runs.protocols.initial_state import STARTS
 from flockenv.runs.protocols.target_switching import simulate_alternating
 from flockenv.simulation import simulate
 
-__all__ = ["KEEP", "ORDER_NAMES", "PROTOCOLS", "RunSpec", "execute"]
+__all__ = ["KEEP", "PROTOCOLS", "RunSpec", "execute"]
 
 KEEP = ("window", "order", "poses")
 """What can be stored of a run: order parameters of the samples in the analysis window after the
 first tenth; of all samples; or these and all poses and velocities."""
-
-ORDER_NAMES = tuple(each.name for each in RECORDED)
 
 
 def _simulated(spec: "RunSpec") -> Recording:
@@ -152,6 +150,6 @@ def execute(spec: RunSpec) -> Recording:
     if spec.keep != "poses":
         run = run.without_poses()
     # A store holds no more digits, and a run from it is the same as a run made now.
-    orders = {name: getattr(run.order, name).astype(np.float32) for name in ORDER_NAMES}
+    orders = {name: getattr(run.order, name).astype(np.float32) for name in ORDER}
     doubles = {name: values.astype(np.float64) for name, values in orders.items()}
-    return replace(run, order=RecordedOrder(run.time_s, OrderSeries(**doubles)))
+    return replace(run, order=OrderSeries(**doubles))

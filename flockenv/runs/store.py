@@ -14,11 +14,11 @@ from flockenv import _core
 from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv._io.interrupts import end_if_interrupted
 from flockenv.errors import FlockError, ParameterError
-from flockenv.flock import OrderSeries
+from flockenv.order import ORDER, OrderSeries
 from flockenv.policies.registry import EVERY_SUBSTEP
-from flockenv.recording import PHASES, RecordedOrder, Recording
+from flockenv.recording import PHASES, Recording
 from flockenv.runs.executors import Engine, local
-from flockenv.runs.spec import ORDER_NAMES, RunSpec, execute
+from flockenv.runs.spec import RunSpec, execute
 
 __all__ = [
     "RESULTS_VERSION",
@@ -166,7 +166,7 @@ def columns(run: Recording) -> dict[str, NDArray[Any]]:
         "time_s": run.time_s,
         "phase": (run.phase[:, None] == PHASES).argmax(axis=1).astype(np.uint8),
         "in_analysis_window": run.in_analysis_window,
-        **{f"order_{name}": getattr(run.order, name).astype(np.float32) for name in ORDER_NAMES},
+        **{f"order_{name}": getattr(run.order, name).astype(np.float32) for name in ORDER},
     }
     if run.has_poses:
         states = {"pose": run.pose, "velocity": run.velocity}
@@ -183,7 +183,7 @@ def _recording(spec: RunSpec, arrays: Mapping[str, NDArray[Any]]) -> Recording:
         "time_s": ((samples,), np.dtype(np.float64)),
         "phase": ((samples,), np.dtype(np.uint8)),
         "in_analysis_window": ((samples,), np.dtype(np.bool_)),
-        **{f"order_{name}": ((samples,), single) for name in ORDER_NAMES},
+        **{f"order_{name}": ((samples,), single) for name in ORDER},
     }
     if spec.keep == "poses":
         state = (samples, spec.parameters.n_boats, 3)
@@ -194,14 +194,14 @@ def _recording(spec: RunSpec, arrays: Mapping[str, NDArray[Any]]) -> Recording:
         raise ParameterError(f"these arrays are missing, unknown or misshapen: {names}")
     if (arrays["phase"] >= len(PHASES)).any():
         raise ParameterError(f"phase is not accepted: places from 0 to {len(PHASES) - 1}")
-    orders = {name: arrays[f"order_{name}"].astype(np.float64) for name in ORDER_NAMES}
+    orders = {name: arrays[f"order_{name}"].astype(np.float64) for name in ORDER}
     return Recording(
         time_s=arrays["time_s"],
         phase=PHASES[arrays["phase"]],
         in_analysis_window=arrays["in_analysis_window"],
         pose=arrays.get("pose", none),
         velocity=arrays.get("velocity", none),
-        order=RecordedOrder(arrays["time_s"], OrderSeries(**orders)),
+        order=OrderSeries(**orders),
         parameters=spec.parameters,
         seed=spec.seed,
         version=_core.__version__,

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockenv import _core
 from flockenv._io.atomic_write import atomic_write, write_csv
 from flockenv._io.extras import require
 from flockenv.errors import FlockError, ParameterError
+from flockenv.order import QUANTITIES
 from flockenv.recording import Recording
 from flockenv.runs.executors import Engine, local
 from flockenv.runs.spec import RunSpec
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["load_sweep", "run_sweep", "summary", "to_xarray"]
 
-_AVERAGED = tuple(each.name for each in _core.quantities() if each.is_averaged)
+_AVERAGED = tuple(each.name for each in QUANTITIES if each.is_averaged)
 
 
 def summary(run: Recording) -> dict[str, float]:

@@ -12,32 +12,36 @@ from flockenv.parameters import FlockParameters
 __all__ = [
     "heading_correlation",
     "jam_sizes",
-    "largest_cluster",
     "mean_square_displacement",
-    "on_outer_wall",
     "pair_distribution",
-    "polarization",
+    "structure_series",
 ]
 
 
-def largest_cluster(parameters: FlockParameters, pose: ArrayLike) -> NDArray[np.float64]:
-    """Return the part of the boats that the largest cluster holds, shape (t,).
-
-    Boats with gaps below 0.5 cm are in one cluster.
+def structure_series(
+    name: str, parameters: FlockParameters, pose: ArrayLike
+) -> NDArray[np.float64]:
+    """Return a quantity of structure at each time, shape (t,); NaN where no boat is there.
 
     Parameters
     ----------
+    name
+        Of the table of quantities: ``"largest_cluster"``, ``"on_outer_wall"`` or
+        ``"polarization"``, which is 1 where all boats point the same way in the axes of the world,
+        wherever they are, and some 0.886/√n where n headings are independent (Vicsek et al. 1995).
+        Unlike Ψ_o, whose orientations are relative to the pool, it is small where boats go around
+        the pool.
     parameters
-        Of the flock: the hull is taken from them.
+        Of the flock: hull and pool are taken from them.
     pose
         Shape (t, n, 3), as in a `Recording`.
 
     Raises
     ------
     ParameterError
-        For another shape, and numbers that are not finite.
+        For another name or shape, and numbers that are not finite.
     """
-    return _core.largest_cluster(parameters, _poses(pose))
+    return _core.structure_series(name, parameters, _poses(pose))
 
 
 def jam_sizes(parameters: FlockParameters, pose: ArrayLike) -> list[NDArray[np.int64]]:
@@ -45,30 +49,10 @@ def jam_sizes(parameters: FlockParameters, pose: ArrayLike) -> list[NDArray[np.i
 
     A jam has at least three boats with gaps below 0.5 cm that face outward within 60°.
 
-    Parameters and errors are those of `largest_cluster`.
+    Parameters and errors are those of `structure_series`.
     """
     found = _core.jam_sizes(parameters, _poses(pose))
     return [np.sort(np.array(sizes, np.int64)) for sizes in found]
-
-
-def on_outer_wall(parameters: FlockParameters, pose: ArrayLike) -> NDArray[np.float64]:
-    """Return the part of the boats within 0.5 cm of the outer wall, shape (t,).
-
-    Parameters and errors are those of `largest_cluster`.
-    """
-    return _core.on_outer_wall(parameters, _poses(pose))
-
-
-def polarization(pose: ArrayLike) -> NDArray[np.float64]:
-    """Return the length of the mean heading in the axes of the world, shape (t,).
-
-    It is 1 where all boats point the same way, wherever they are, and some 0.886/√n where n
-    headings are independent: the polarization of flocks in open space (Vicsek et al. 1995). Unlike
-    Ψ_o, whose orientations are relative to the pool, it is small where boats go around the pool.
-
-    `pose` and errors are those of `largest_cluster`.
-    """
-    return _core.polarization(_poses(pose))
 
 
 def pair_distribution(pose: ArrayLike, edges: ArrayLike) -> NDArray[np.float64]:

@@ -1,5 +1,6 @@
 """Doors for data: tracks of real flocks in, recordings out to tables and GSD."""
 
+from flockenv.tracks.assemble import recording_of
 from flockenv.tracks.guess import guess_layout
 from flockenv.tracks.layout import TrackLayout, layout_beside, read_layout
 from flockenv.tracks.reader import (
@@ -25,4 +26,5 @@ __all__ = [
     "layout_beside",
     "read_layout",
     "read_tracks",
+    "recording_of",
 ]

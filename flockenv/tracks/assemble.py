@@ -8,30 +8,68 @@ from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
 from flockenv.errors import ParameterError, shown
-from flockenv.flock import OrderSeries
+from flockenv.order import OrderSeries, order_series
 from flockenv.parameters import FlockParameters
-from flockenv.recording import PHASES, RECORDED
+from flockenv.recording import PHASES, Recording
 
-__all__ = ["recording_fields", "unwrapped", "velocities"]
+__all__ = ["recording_of", "unwrapped", "velocities"]
 
 _FASTEST_CM_S = 1000.0
 _MOST_OUTSIDE = 0.1
 
 
-def recording_fields(
+def recording_of(
     time_s: ArrayLike,
     pose: ArrayLike,
+    *,
     pool: Any,
-    hull: tuple[float, float],
-    velocity: ArrayLike | None,
-    phase: ArrayLike | None,
-    ids: Sequence[str] | None,
-    leaders: Sequence[str],
-    target: str | Sequence[str],
-    discs: Any,
-    walls: Any,
-) -> dict[str, Any]:
-    """Return the fields of `Recording`, whose `from_tracks` documents parameters and errors."""
+    hull: tuple[float, float] = (5.0, 0.5),
+    velocity: ArrayLike | None = None,
+    phase: ArrayLike | None = None,
+    ids: Sequence[str] | None = None,
+    leaders: Sequence[str] = (),
+    target: str | Sequence[str] = "cw",
+    discs: Any = (),
+    walls: Any = (),
+) -> Recording:
+    """Return tracks of real boats, or of anything else that heads somewhere, as a recording.
+
+    It is analyzed, replayed and exported like a simulated one. Quantities at a time are those
+    of the normal boats that have a pose and a velocity then.
+
+    Parameters
+    ----------
+    time_s
+        Times in s, increasing, shape (t,).
+    pose
+        Shape (t, n, 3): [x cm, y cm from the pool's center, heading rad counter-clockwise from
+        x]. Rows of NaN where a boat is not there.
+    pool
+        "narrow", "wide", or the outer and the inner radius in cm; (inf, 0) for none.
+    hull
+        Radius in cm, and half the length of the straight part in radii; (r, 0) is a disc.
+    velocity
+        Shape (t, n, 3) in cm/s, cm/s and rad/s. None: differences of the poses, central ones
+        where a boat is there before and after; a boat that is there for one sample has none.
+    phase
+        "fw", "nop1", "bw" or "nop2" at each time, shape (t,). None: not known, and all samples
+        count as analyzed.
+    ids
+        A name for each boat, shape (n,); "0", "1", … by default.
+    leaders
+        Those of the names that lead. They come first in the recording.
+    target
+        Where they lead, "cw" or "ccw"; the direction that signed order counts towards.
+    discs, walls
+        Obstacles in the pool, as in `FlockParameters`; replay pages show them.
+
+    Raises
+    ------
+    ParameterError
+        For shapes that do not match, rows of which a part is NaN, no pose at all, speeds above
+        10 m/s (in the median of a boat), more than a tenth of the centers outside the pool, and
+        for names that are unknown or there twice.
+    """
     times = _floats("time_s", time_s)
     if not np.isfinite(times).all() or not (np.diff(times) > 0).all():
         raise ParameterError("time_s must increase, in finite numbers")
@@ -59,18 +97,18 @@ def recording_fields(
     )
     _check_units(poses, motion, parameters)
     phases, analyzed = _phases(phase, times)
-    return {
-        "time_s": times,
-        "phase": phases,
-        "in_analysis_window": analyzed,
-        "pose": poses,
-        "velocity": motion,
-        "order": _order(poses[:, len(leaders) :], motion[:, len(leaders) :]),
-        "parameters": parameters,
-        "seed": 0,
-        "version": _core.__version__,
-        "ids": names,
-    }
+    return Recording(
+        time_s=times,
+        phase=phases,
+        in_analysis_window=analyzed,
+        pose=poses,
+        velocity=motion,
+        order=_order(poses[:, len(leaders) :], motion[:, len(leaders) :]),
+        parameters=parameters,
+        seed=0,
+        version=_core.__version__,
+        ids=names,
+    )
 
 
 def velocities(
@@ -198,5 +236,5 @@ def _order(pose: NDArray[np.float64], velocity: NDArray[np.float64]) -> OrderSer
     """Return the quantities of normal boats; NaN where too few of them are there."""
     if pose.shape[1] == 0:
         undefined = np.full(len(pose), np.nan)
-        return OrderSeries(**{each.name: undefined for each in RECORDED})
-    return _core.order_series(pose, velocity)
+        return OrderSeries(undefined)
+    return order_series(pose, velocity)

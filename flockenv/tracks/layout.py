@@ -22,13 +22,13 @@ class TrackLayout:
     Attributes
     ----------
     pool : str or tuple of float
-        As for `Recording.from_tracks`.
+        As for `recording_of`.
     hull : tuple of float
-        As for `Recording.from_tracks`.
+        As for `recording_of`.
     leaders : tuple of str
         Names of those that lead.
     target : str or tuple of str
-        As for `Recording.from_tracks`.
+        As for `recording_of`.
     frame : str
         Column of frame numbers, or of times in s where `fps` is None.
     fps : float or None

@@ -12,7 +12,7 @@ from flockenv._io.array_file import is_special, read_arrays
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError
 from flockenv.recording import Recording
-from flockenv.tracks.assemble import unwrapped, velocities
+from flockenv.tracks.assemble import recording_of, unwrapped, velocities
 from flockenv.tracks.layout import TrackLayout, layout_beside
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ class Tracks:
     time_s : float64 array, shape (t,)
         Times from the first frame on.
     pose, velocity : float64 array, shape (t, n, 3)
-        As for `Recording.from_tracks`; rows of NaN where a boat is not there, or has no velocity.
+        As for `recording_of`; rows of NaN where a boat is not there, or has no velocity.
     ids : str array, shape (n,)
         Names.
     report : TrackReport
@@ -100,9 +100,9 @@ class Tracks:
     layout: TrackLayout
 
     def to_recording(self) -> Recording:
-        """Return the tracks as a recording; errors are those of `Recording.from_tracks`."""
+        """Return the tracks as a recording; errors are those of `recording_of`."""
         layout = self.layout
-        return Recording.from_tracks(
+        return recording_of(
             self.time_s,
             self.pose,
             pool=layout.pool,
@@ -121,7 +121,7 @@ def read_tracks(path: str | os.PathLike[str], layout: TrackLayout | None = None)
     ----------
     path
         A CSV or Parquet table with one row per frame and boat (extra ``plot``), or an ``.npz`` file
-        of the arrays ``time_s``, ``pose`` (see `Recording.from_tracks`; units and center as in the
+        of the arrays ``time_s``, ``pose`` (see `recording_of`; units and center as in the
         layout) and perhaps ``ids``. Nothing in the file is executed.
     layout
         How tracks lie in it; None for the TOML file beside it, see `layout_beside`.

@@ -4,6 +4,7 @@
 pub mod collective_state;
 mod order_parameters;
 pub mod quantities;
+pub mod samples;
 pub mod structure;
 
 pub use collective_state::CollectiveState;

@@ -29,6 +29,8 @@ pub struct Flock {
     threads: usize,
 }
 
+/// Work between two points at which a long run can be ended: about 30 ms.
+pub(crate) const BOAT_SUBSTEPS_A_PIECE: u64 = 200_000;
 /// Flocks of fewer boats are moved by one thread: the others would wake up too late.
 const SHARED_BOATS: usize = 200;
 const MOST_THREADS: usize = 1024;
@@ -350,6 +352,34 @@ impl Flock {
         let stop = end.min((self.time / dt + substeps) * dt);
         self.advance_to(stop, steering)?;
         Ok(stop == end)
+    }
+
+    /// As [`Self::advance_to`], in pieces between which it asks whether to continue.
+    ///
+    /// # Errors
+    /// As for [`Self::advance_to`], and [`FlockError::Interrupted`] where `keep_going` said no; the flock is unchanged
+    /// then.
+    pub fn advance_while(
+        &mut self,
+        keep_going: KeepGoing,
+        end: Ticks,
+        steering: Steering,
+    ) -> Result<()> {
+        let substeps = seconds(end - self.time) / self.parameters.dt_s;
+        if substeps * self.parameters.n_boats as f64 <= BOAT_SUBSTEPS_A_PIECE as f64 {
+            return self.advance_to(end, steering);
+        }
+        let before = self.clone();
+        loop {
+            let error = match self.advance_towards(end, steering, BOAT_SUBSTEPS_A_PIECE) {
+                Ok(true) => return Ok(()),
+                Ok(false) if keep_going() => continue,
+                Ok(false) => FlockError::Interrupted,
+                Err(error) => error,
+            };
+            *self = before;
+            return Err(error);
+        }
     }
 
     /// Order parameters of the normal boats, or of all.

@@ -1,16 +1,17 @@
 //! `flockenv._core.EnvBatch`: what all environment classes sit on.
 
+use super::arguments::floats;
 use super::exclusive::{Exclusive, interruptible};
 use super::flock::PyFlock;
-use super::parameters::{to_python, written};
-use super::settings::{settings_from, settings_to_dict};
+use super::parameters::to_dict;
 use super::state::request_from;
-use super::summary::{add_leaders, summary_dict};
+use super::summary::{episode_dict, summary_dict};
+use super::value::{options_dict, settings_from};
 use crate::environment::observation::FlockFeatures;
 use crate::environment::{BatchRows, EnvBatch, Episode, FlockEnv, TERMS};
 use crate::error::{FlockError, Result};
-use crate::parameters::{FlockParameters, Value};
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
+use crate::parameters::FlockParameters;
+use numpy::{Element, PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
 
@@ -19,6 +20,13 @@ type Step<'py> = (
     Bound<'py, PyArray2<f32>>,
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<bool>>,
+);
+
+/// Observations (leaders, size), the global state, and features of the flock (leaders, features).
+type Views<'py> = (
+    Bound<'py, PyArray2<f32>>,
+    Bound<'py, PyArray1<f32>>,
+    Bound<'py, PyArray2<f32>>,
 );
 
 /// Many flocks with their episodes, stepped at once; one row per leader, flock after flock.
@@ -30,15 +38,31 @@ impl PyEnvBatch {
         Self(Exclusive::new(batch, "the environment"))
     }
 
-    /// Some numbers of one flock: an array of its own.
-    fn numbers<'py>(
+    /// Numbers of every flock's episode, as rows of so many.
+    fn gathered<'py, T: Element>(
         &self,
         py: Python<'py>,
-        flock: usize,
-        of: fn(&FlockEnv) -> &[f32],
-    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        columns: usize,
+        append: impl Fn(&FlockEnv, &Episode, &mut Vec<T>),
+    ) -> PyResult<Bound<'py, PyArray2<T>>> {
         let batch = self.0.read()?;
-        Ok(PyArray1::from_slice(py, of(env_of(&batch, flock)?)))
+        let mut numbers = Vec::new();
+        for env in batch.envs() {
+            append(env, env.episode().ok_or_else(never_reset)?, &mut numbers);
+        }
+        let rows = numbers.len() / columns;
+        PyArray1::from_vec(py, numbers).reshape([rows, columns])
+    }
+
+    /// Three numbers of every boat: (flocks, boats, 3).
+    fn of_boats<'py>(
+        &self,
+        py: Python<'py>,
+        append: impl Fn(&Episode, &mut Vec<f64>),
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let rows = self.gathered(py, 3, |_, episode, numbers| append(episode, numbers))?;
+        let flocks = self.0.read()?.envs().len();
+        rows.reshape([flocks, rows.len()? / flocks, 3])
     }
 }
 
@@ -56,8 +80,11 @@ fn never_reset() -> FlockError {
     FlockError::Episode("reset has not been called yet".to_owned())
 }
 
-fn matrix<'py>(py: Python<'py>, batch: &EnvBatch) -> Bound<'py, PyArray2<f32>> {
-    PyArray2::zeros(py, [batch.rows(), batch.observation_size()], false)
+/// Appends zeros that `fill` then writes.
+fn appended(numbers: &mut Vec<f32>, count: usize, fill: impl FnOnce(&mut [f32])) {
+    let start = numbers.len();
+    numbers.resize(start + count, 0.0);
+    fill(&mut numbers[start..]);
 }
 
 #[pymethods]
@@ -66,18 +93,6 @@ impl PyEnvBatch {
     fn new(parameters: Vec<FlockParameters>, options: &Bound<'_, PyDict>) -> PyResult<Self> {
         let batch = EnvBatch::new(settings_from(options)?, parameters)?;
         Ok(Self::of(batch))
-    }
-
-    #[getter]
-    fn num_flocks(&self) -> Result<usize> {
-        Ok(self.0.read()?.envs().len())
-    }
-
-    #[getter]
-    fn leaders(&self) -> Result<Vec<usize>> {
-        let batch = self.0.read()?;
-        let envs = batch.envs().iter();
-        Ok(envs.map(|env| env.parameters().n_leaders).collect())
     }
 
     #[getter]
@@ -97,24 +112,21 @@ impl PyEnvBatch {
 
     #[getter]
     fn options<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        settings_to_dict(py, self.0.read()?.settings())
+        options_dict(py, self.0.read()?.settings())
     }
 
-    fn parameters<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Bound<'py, PyAny>> {
+    fn parameters<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Bound<'py, PyDict>> {
         let batch = self.0.read()?;
-        to_python(py, env_of(&batch, flock)?.parameters())
+        to_dict(py, env_of(&batch, flock)?.parameters())
     }
 
-    fn step<'py>(
-        &self,
-        py: Python<'py>,
-        actions: PyReadonlyArray1<'py, f64>,
-    ) -> PyResult<Step<'py>> {
+    /// One decision of every flock. The actions are copied, since other Python threads may write to them meanwhile.
+    fn step<'py>(&self, py: Python<'py>, actions: &Bound<'py, PyAny>) -> PyResult<Step<'py>> {
         let mut batch = self.0.write()?;
         let batch = &mut *batch;
-        // A copy, since other Python threads may write to the array meanwhile.
-        let actions = actions.as_array().to_vec();
-        let observations = matrix(py, batch);
+        let actions = floats(actions, "actions", &[batch.rows()])?;
+        let shape = [batch.rows(), batch.observation_size()];
+        let observations = PyArray2::zeros(py, shape, false);
         let rewards = PyArray1::zeros(py, batch.rows(), false);
         let truncated = PyArray1::zeros(py, batch.envs().len(), false);
         let (mut o, mut r, mut t) = (
@@ -131,24 +143,18 @@ impl PyEnvBatch {
         Ok((observations, rewards, truncated))
     }
 
+    /// Starts episodes: one request per flock, `None` leaves it as it is.
     fn reset(&self, py: Python<'_>, requests: Vec<Option<Bound<'_, PyDict>>>) -> PyResult<()> {
-        let shapes: Vec<_> = {
-            let batch = self.0.read()?;
-            let envs = batch.envs().iter();
-            envs.map(|env| env.parameters().n_boats).collect()
-        };
-        let mut read = Vec::with_capacity(requests.len());
-        for (flock, request) in requests.iter().enumerate() {
-            let boats = shapes.get(flock).copied().unwrap_or_default();
-            let request = request.as_ref().map(|request| request_from(request, boats));
-            read.push(request.transpose()?);
-        }
-        let requested = shapes.iter().zip(&read);
-        let boats = requested.filter_map(|(boats, request)| request.as_ref().map(|_| boats));
-        let boats = boats.sum();
         let mut batch = self.0.write()?;
         let batch = &mut *batch;
-        interruptible(py, boats, |keep_going| batch.reset_while(keep_going, &read))
+        let each = requests.iter().enumerate().map(|(flock, request)| {
+            let boats = batch.envs().get(flock);
+            let boats = boats.map_or(0, |env| env.parameters().n_boats);
+            let request = request.as_ref().map(|request| request_from(request, boats));
+            request.transpose()
+        });
+        let requests: Vec<_> = each.collect::<PyResult<_>>()?;
+        interruptible(py, |keep_going| batch.reset_while(keep_going, &requests))
     }
 
     fn observe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
@@ -156,214 +162,143 @@ impl PyEnvBatch {
         if batch.envs().iter().all(|env| env.episode().is_none()) {
             return Err(never_reset().into());
         }
-        let array = matrix(py, &batch);
+        let array = PyArray2::zeros(py, [batch.rows(), batch.observation_size()], false);
         batch.observe(array.readwrite().as_slice_mut()?);
         Ok(array)
     }
 
-    fn final_observation<'py>(
-        &self,
-        py: Python<'py>,
-        flock: usize,
-    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let batch = self.0.read()?;
-        let numbers = env_of(&batch, flock)?.final_observation();
-        let size = batch.observation_size();
-        PyArray1::from_slice(py, numbers).reshape([numbers.len() / size, size])
-    }
-
-    fn final_state<'py>(
-        &self,
-        py: Python<'py>,
-        flock: usize,
-    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        self.numbers(py, flock, FlockEnv::final_state)
-    }
-
-    /// Features of the flock for a leader at the end of the episode that ended in the last step.
-    #[pyo3(signature = (flock, leader=0))]
-    fn final_flock_features<'py>(
-        &self,
-        py: Python<'py>,
-        flock: usize,
-        leader: usize,
-    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let batch = self.0.read()?;
-        let features = env_of(&batch, flock)?.final_features(leader);
-        Ok(PyArray1::from_slice(py, features))
-    }
-
-    /// Features of its flock for every leader, in the frame of its own target: (rows, features).
-    fn leader_features<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let batch = self.0.read()?;
-        let array = PyArray2::zeros(py, [batch.rows(), FlockFeatures::SIZE], false);
-        let mut numbers = array.readwrite();
-        let mut rest = numbers.as_slice_mut()?;
-        for env in batch.envs() {
-            env.episode().ok_or_else(never_reset)?;
-            let (own, others) = rest.split_at_mut(env.parameters().n_leaders * FlockFeatures::SIZE);
-            env.observe_features(own);
-            rest = others;
-        }
-        drop(numbers);
-        Ok(array)
-    }
-
-    fn state_size(&self, flock: usize) -> PyResult<usize> {
-        let batch = self.0.read()?;
-        Ok(env_of(&batch, flock)?.state_size())
-    }
-
-    fn state<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Bound<'py, PyArray1<f32>>> {
+    /// What the episode that ended in the last step ended with; features are empty after a restore.
+    fn last_views<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Views<'py>> {
         let batch = self.0.read()?;
         let env = env_of(&batch, flock)?;
-        env.episode().ok_or_else(never_reset)?;
-        let array = PyArray1::zeros(py, env.state_size(), false);
-        env.observe_state(array.readwrite().as_slice_mut()?);
-        Ok(array)
+        let rows = |numbers: &[f32], size: usize| {
+            PyArray1::from_slice(py, numbers).reshape([numbers.len() / size, size])
+        };
+        let leaders = 0..env.parameters().n_leaders;
+        let features: Vec<f32> = leaders
+            .flat_map(|leader| env.final_features(leader).to_vec())
+            .collect();
+        Ok((
+            rows(env.final_observation(), batch.observation_size())?,
+            PyArray1::from_slice(py, env.final_state()),
+            rows(&features, FlockFeatures::SIZE)?,
+        ))
+    }
+
+    /// Features of every flock in the frame of its target, (flocks, features), or of each leader's flock in the frame
+    /// of its own, (rows, features).
+    fn flock_features<'py>(
+        &self,
+        py: Python<'py>,
+        each_leader: bool,
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        self.gathered(py, FlockFeatures::SIZE, |env, _, numbers| {
+            let leaders = env.parameters().n_leaders;
+            let rows = if each_leader { leaders } else { 1 };
+            appended(numbers, rows * FlockFeatures::SIZE, |out| {
+                env.observe_features(out);
+            });
+        })
     }
 
     /// Global states of every flock, which have equally many boats: (flocks, state size).
     fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let batch = self.0.read()?;
-        let size = batch.envs().first().map_or(0, FlockEnv::state_size);
-        if batch.envs().iter().any(|env| env.state_size() != size) {
-            return Err(FlockError::parameter("n_boats", "of flocks", "equal numbers").into());
-        }
-        let array = PyArray2::zeros(py, [batch.envs().len(), size], false);
-        let mut numbers = array.readwrite();
-        let rows = numbers.as_slice_mut()?.chunks_exact_mut(size.max(1));
-        for (env, row) in batch.envs().iter().zip(rows) {
-            env.episode().ok_or_else(never_reset)?;
-            env.observe_state(row);
-        }
-        drop(numbers);
-        Ok(array)
+        let size = self
+            .0
+            .read()?
+            .envs()
+            .first()
+            .map_or(1, FlockEnv::state_size);
+        self.gathered(py, size, |env, _, numbers| {
+            appended(numbers, env.state_size(), |out| env.observe_state(out));
+        })
     }
 
-    /// Features of every flock: (flocks, features).
-    fn flock_features<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let batch = self.0.read()?;
-        let array = PyArray2::zeros(py, [batch.envs().len(), FlockFeatures::SIZE], false);
-        let mut numbers = array.readwrite();
-        let rows = numbers
-            .as_slice_mut()?
-            .chunks_exact_mut(FlockFeatures::SIZE);
-        for (env, row) in batch.envs().iter().zip(rows) {
-            env.episode().ok_or_else(never_reset)?;
-            env.observe_features(row);
-        }
-        drop(numbers);
-        Ok(array)
-    }
-
-    /// Reward terms of the last step: (terms, rows).
+    /// Reward terms of the last step: (rows, terms).
     fn reward_terms<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let batch = self.0.read()?;
-        let rows = batch.rows();
-        let mut terms = vec![0.0; TERMS * rows];
-        let mut row = 0;
-        for flock in 0..batch.envs().len() {
-            for own in episode_of(&batch, flock)?.terms() {
-                for (term, &value) in own.iter().enumerate() {
-                    terms[term * rows + row] = value;
-                }
-                row += 1;
-            }
-        }
-        PyArray1::from_vec(py, terms).reshape([TERMS, rows])
+        self.gathered(py, TERMS, |_, episode, numbers| {
+            numbers.extend(episode.terms().iter().flatten());
+        })
     }
 
     /// Order parameters of the normal boats: (flocks, 6) [psi_o, phi_o, c_o, psi_v, phi_v, c_v], NaN
     /// where a flock has none.
     fn order_parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let batch = self.0.read()?;
-        let flocks = batch.envs().len();
-        let mut numbers = Vec::with_capacity(6 * flocks);
-        for flock in 0..flocks {
-            numbers.extend(
-                episode_of(&batch, flock)?
-                    .order()
-                    .map_or([f64::NAN; 6], |o| {
-                        [o.psi_o, o.phi_o, o.c_o, o.psi_v, o.phi_v, o.c_v]
-                    }),
-            );
-        }
-        PyArray1::from_vec(py, numbers).reshape([flocks, 6])
+        self.gathered(py, 6, |_, episode, numbers| {
+            let order = episode.order();
+            numbers.extend(order.map_or([f64::NAN; 6], |o| {
+                [o.psi_o, o.phi_o, o.c_o, o.psi_v, o.phi_v, o.c_v]
+            }));
+        })
     }
 
-    /// Whether each flock is in the analysis window.
-    fn in_analysis_window<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        let batch = self.0.read()?;
-        let flocks = 0..batch.envs().len();
-        let windows: PyResult<Vec<bool>> = flocks
-            .map(|flock| {
-                let flock = episode_of(&batch, flock)?.flock();
-                Ok(flock.schedule().in_analysis_window(flock.time()))
-            })
-            .collect();
-        Ok(PyArray1::from_vec(py, windows?))
+    /// Poses of all boats: (flocks, boats, 3).
+    fn poses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        self.of_boats(py, |episode, numbers| {
+            let poses = episode.flock().poses().iter();
+            numbers.extend(poses.flat_map(|p| [p.position.x, p.position.y, p.heading]));
+        })
     }
 
-    /// Rudders as they stand: (rows,), positive counter-clockwise.
-    fn rudders<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let batch = self.0.read()?;
-        let mut rudders = Vec::with_capacity(batch.rows());
-        for flock in 0..batch.envs().len() {
-            rudders.extend_from_slice(episode_of(&batch, flock)?.rudders());
-        }
-        Ok(PyArray1::from_vec(py, rudders))
+    /// Velocities of all boats: (flocks, boats, 3).
+    fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        self.of_boats(py, |episode, numbers| {
+            let velocities = episode.flock().velocities().iter();
+            numbers.extend(velocities.flat_map(|v| [v.linear.x, v.linear.y, v.angular]));
+        })
+    }
+
+    /// Whether each flock is in the analysis window: (flocks, 1).
+    fn in_analysis_window<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<bool>>> {
+        self.gathered(py, 1, |_, episode, windows| {
+            let flock = episode.flock();
+            windows.push(flock.schedule().in_analysis_window(flock.time()));
+        })
+    }
+
+    /// Rudders as they stand: (rows, 1), positive counter-clockwise.
+    fn rudders<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.gathered(py, 1, |_, episode, rudders| {
+            rudders.extend_from_slice(episode.rudders());
+        })
     }
 
     /// Whether a flock has ever been given a seed.
-    fn is_seeded(&self, flock: usize) -> PyResult<bool> {
-        let batch = self.0.read()?;
-        Ok(env_of(&batch, flock)?.is_seeded())
+    fn is_seeded(&self, flock: usize) -> Result<bool> {
+        Ok(env_of(&*self.0.read()?, flock)?.is_seeded())
     }
 
     /// Whether a flock has an episode under way.
-    fn is_running(&self, flock: usize) -> PyResult<bool> {
+    fn is_running(&self, flock: usize) -> Result<bool> {
         let batch = self.0.read()?;
-        Ok(env_of(&batch, flock)?
-            .episode()
-            .is_some_and(|episode| !episode.has_ended()))
+        let episode = env_of(&batch, flock)?.episode();
+        Ok(episode.is_some_and(|episode| !episode.has_ended()))
     }
 
     /// A copy of a flock.
-    fn flock(&self, flock: usize) -> PyResult<PyFlock> {
+    fn flock(&self, flock: usize) -> Result<PyFlock> {
         let batch = self.0.read()?;
         Ok(PyFlock::of(episode_of(&batch, flock)?.flock().clone()))
     }
 
     /// A flock's target, step, backward duration and seed.
     fn episode<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Bound<'py, PyDict>> {
-        let batch = self.0.read()?;
-        let schedule = episode_of(&batch, flock)?.schedule();
-        let dict = PyDict::new(py);
-        dict.set_item("target", written(&Value::from(&schedule.targets()), py)?)?;
-        dict.set_item("bw_s", schedule.bw_s)?;
-        dict.set_item("flock_seed", schedule.flock_seed)?;
-        dict.set_item("step", schedule.step)?;
-        Ok(dict)
+        episode_dict(py, episode_of(&*self.0.read()?, flock)?.schedule())
     }
 
     /// Summary of the episode under way.
     fn summary<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Bound<'py, PyDict>> {
         let batch = self.0.read()?;
         let episode = episode_of(&batch, flock)?;
-        let dict = summary_dict(py, &episode.summary())?;
-        add_leaders(&dict, &episode.leader_summaries())?;
-        Ok(dict)
+        summary_dict(py, &episode.summary(), &episode.leader_summaries())
     }
 
     /// Summary of the last episode that reached its end.
     fn finished<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Option<Bound<'py, PyDict>>> {
         let batch = self.0.read()?;
         let env = env_of(&batch, flock)?;
-        let dict = env.finished().map(|summary| summary_dict(py, summary));
-        if let Some(Ok(dict)) = &dict {
-            add_leaders(dict, env.finished_leaders())?;
-        }
+        let summary = env.finished();
+        let dict = summary.map(|summary| summary_dict(py, summary, env.finished_leaders()));
         dict.transpose()
     }
 
@@ -380,12 +315,8 @@ impl PyEnvBatch {
         self.0.write()?.restore(state.as_bytes())
     }
 
-    fn __copy__(&self) -> Result<Self> {
-        Ok(Self::of(self.0.read()?.clone()))
-    }
-
     fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Result<Self> {
-        self.__copy__()
+        Ok(Self::of(self.0.read()?.clone()))
     }
 
     fn __reduce__<'py>(

@@ -4,12 +4,11 @@ use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::sync::{PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError};
+use std::sync::{Mutex, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-/// An object that says so, instead of waiting, where another thread is at work with it.
+/// An object that says so, instead of waiting, if another thread is at work with it.
 #[derive(Debug)]
 pub(crate) struct Exclusive<T> {
     object: RwLock<T>,
@@ -30,11 +29,7 @@ impl<T> Exclusive<T> {
     /// # Errors
     /// [`FlockError::InUse`] while another thread changes it.
     pub(crate) fn read(&self) -> Result<RwLockReadGuard<'_, T>> {
-        match self.object.try_read() {
-            Ok(object) => Ok(object),
-            Err(TryLockError::Poisoned(object)) => Ok(PoisonError::into_inner(object)),
-            Err(TryLockError::WouldBlock) => Err(FlockError::InUse(self.name)),
-        }
+        self.unless_in_use(self.object.try_read())
     }
 
     /// The object, to change.
@@ -42,7 +37,11 @@ impl<T> Exclusive<T> {
     /// # Errors
     /// [`FlockError::InUse`] while another thread uses it.
     pub(crate) fn write(&self) -> Result<RwLockWriteGuard<'_, T>> {
-        match self.object.try_write() {
+        self.unless_in_use(self.object.try_write())
+    }
+
+    fn unless_in_use<G>(&self, lock: std::result::Result<G, TryLockError<G>>) -> Result<G> {
+        match lock {
             Ok(object) => Ok(object),
             Err(TryLockError::Poisoned(object)) => Ok(PoisonError::into_inner(object)),
             Err(TryLockError::WouldBlock) => Err(FlockError::InUse(self.name)),
@@ -50,44 +49,40 @@ impl<T> Exclusive<T> {
     }
 }
 
-/// Boats that are placed at once, too fast to interrupt.
-const FEW_BOATS: usize = 1000;
-/// Time between two checks of Python's signals.
+/// Time between two looks at Python's signals.
 const PATIENCE: Duration = Duration::from_millis(20);
 
-/// Work on so many boats, without the interpreter lock, that stops where a signal's handler
-/// raises: it has a thread of its own then, since Python checks signals in this one.
+/// Work without the interpreter lock that ends if a signal's handler raises. It asks now and then whether to keep
+/// going; Python has its signals handled in the calling thread alone, so that this one looks for them whenever it
+/// asks, and the others see what it saw.
 pub(crate) fn interruptible<T: Send>(
     py: Python<'_>,
-    boats: usize,
     work: impl FnOnce(KeepGoing) -> Result<T> + Send,
 ) -> PyResult<T> {
-    if boats <= FEW_BOATS {
-        return Ok(py.detach(|| work(&|| true))?);
-    }
+    let caller = thread::current().id();
+    let looked = Mutex::new(Instant::now());
+    let raised = Mutex::new(None);
     let stopped = AtomicBool::new(false);
-    let (sender, receiver) = channel();
-    thread::scope(|scope| {
-        let stopped = &stopped;
-        scope.spawn(move || {
-            let keep_going = || !stopped.load(Ordering::Relaxed);
-            // Nobody listens any more where the wait has ended with an error.
-            let _ = sender.send(work(&keep_going));
-        });
-        // What comes through a channel is to be had by one thread at a time.
-        let receiver = std::sync::Mutex::new(receiver);
-        loop {
-            let outcome = py.detach(|| {
-                let receiver = receiver.lock().unwrap_or_else(PoisonError::into_inner);
-                receiver.recv_timeout(PATIENCE)
-            });
-            match outcome {
-                Ok(done) => return Ok(done?),
-                Err(RecvTimeoutError::Disconnected) => return Err(FlockError::Interrupted.into()),
-                Err(RecvTimeoutError::Timeout) => py.check_signals().inspect_err(|_| {
-                    stopped.store(true, Ordering::Relaxed);
-                })?,
+    let look = || {
+        let mut looked = looked.lock().unwrap_or_else(PoisonError::into_inner);
+        if looked.elapsed() >= PATIENCE {
+            if let Some(error) = Python::attach(|py| py.check_signals().err()) {
+                *raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+                stopped.store(true, Ordering::Relaxed);
             }
+            *looked = Instant::now();
         }
-    })
+    };
+    let keep_going = || {
+        if thread::current().id() == caller {
+            look();
+        }
+        !stopped.load(Ordering::Relaxed)
+    };
+    let outcome = py.detach(|| work(&keep_going));
+    let raised = raised.into_inner().unwrap_or_else(PoisonError::into_inner);
+    match raised {
+        Some(error) => Err(error),
+        None => Ok(outcome?),
+    }
 }

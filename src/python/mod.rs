@@ -12,12 +12,10 @@ pub(crate) mod order;
 pub(crate) mod parameters;
 pub(crate) mod quantities;
 pub(crate) mod recording;
-pub(crate) mod result;
 pub(crate) mod settings;
 pub(crate) mod state;
-pub(crate) mod statistics;
-pub(crate) mod structure;
 mod summary;
+mod value;
 
 use pyo3::prelude::*;
 
@@ -26,43 +24,39 @@ mod _core {
     use super::*;
 
     #[pymodule_export]
-    use super::arguments::oversized_shape;
+    use super::arguments::flat_actions;
     #[pymodule_export]
     use super::batch::PyEnvBatch;
     #[pymodule_export]
-    use super::contacts::{PyContactSeries, PyContacts, contact_along_cm};
+    use super::contacts::contact_along_cm;
     #[pymodule_export]
     use super::draw::PyFrameRenderer;
     #[pymodule_export]
     use super::flock::PyFlock;
     #[pymodule_export]
     use super::observation::{
-        PyObservedLaw, flock_feature_table, level_rudders, nearest_levels, observation_table,
-        observation_version, observe, state_table, tuned_gains,
+        PyObservedLaw, flock_feature_table, observation_table, observation_version, observe,
+        rudders_of_levels, state_table, tuned_gains,
     };
     #[pymodule_export]
-    use super::order::{PyOrderParameters, PyOrderSeries, collective_state_names, order_series};
+    use super::order::{
+        collective_state_names, collective_states, derived_series, order_columns, ordering_time_s,
+    };
     #[pymodule_export]
     use super::parameters::{
-        checked_fields, critical_bw_s, parameter_table, physics_fields, pool_radii_cm,
-        preset_fields, preset_names, preset_sources, resized_gyration_radius_cm,
-        set_parameters_class,
+        changed_fields, critical_bw_s, parameter_table, physics_fields, pool_radii_cm,
+        preset_names, preset_sources,
     };
     #[pymodule_export]
-    use super::quantities::{PyQuantity, quantities};
+    use super::quantities::{
+        jam_sizes, lagged_motion, lap_orientation, pair_counts, quantities, structure_series,
+    };
     #[pymodule_export]
-    use super::recording::{phase_names, record, sampled_analysis_window, samples_in};
+    use super::recording::{phase_names, record, sampled_analysis_window};
     #[pymodule_export]
     use super::settings::{
-        action_modes, decision_period_of_cycles, env_defaults, env_meanings, held_decisions,
-        reward_terms,
-    };
-    #[pymodule_export]
-    use super::statistics::PyStatistics;
-    #[pymodule_export]
-    use super::structure::{
-        jam_sizes, lagged_motion, lap_orientation, largest_cluster, on_outer_wall, pair_counts,
-        polarization,
+        action_modes, decision_period_of_cycles, env_defaults, env_meanings, reward_terms,
+        whole_steps_in,
     };
 
     #[pymodule_init]

@@ -1,13 +1,13 @@
 //! Observations outside environments: the table, a flock observed, laws evaluated.
 
-use super::arguments::{floats, real, text};
+use super::arguments::{count, floats, real, text, wrong_shape};
 use super::flock::PyFlock;
-use super::settings::{count, layout_from};
+use super::value::layout_from;
 use crate::boat::{Law, TUNED_LAWS};
 use crate::environment::RudderSettings;
 use crate::environment::observation::{
-    BOAT, Entry, FlockView, OBSERVATION_VERSION, ObservationLayout, ObservedLaw, Observer,
-    flock_feature_entries, state_entries,
+    BOAT, Entry, OBSERVATION_VERSION, ObservationLayout, ObservedLaw, flock_feature_entries,
+    observe_flock, state_entries,
 };
 use crate::error::FlockError;
 use crate::flock::Flock;
@@ -20,46 +20,45 @@ use pyo3::types::PyDict;
 #[pyfunction]
 #[pyo3(signature = (blocks=None))]
 pub(crate) fn observation_version(blocks: Option<&Bound<'_, PyAny>>) -> PyResult<u32> {
-    Ok(match blocks {
-        Some(blocks) => layout_from(blocks, false)?.version(),
-        None => OBSERVATION_VERSION,
+    blocks.map_or(Ok(OBSERVATION_VERSION), |blocks| {
+        Ok(layout_from(blocks, false)?.version())
     })
 }
 
-/// (block, count in block, name, unit, scale, low, high, mirrored, meaning).
-type Row = (
-    &'static str,
-    usize,
-    &'static str,
-    &'static str,
-    &'static str,
-    f64,
-    f64,
-    bool,
-    &'static str,
-);
+/// A row of a table: the fields of `flockenv.envs.observation.Entry`.
+#[derive(IntoPyObject)]
+pub(crate) struct Row {
+    block: &'static str,
+    place: usize,
+    name: &'static str,
+    unit: &'static str,
+    scale: &'static str,
+    low: f64,
+    high: f64,
+    mirrored: bool,
+    meaning: &'static str,
+}
 
-fn row(block: &'static str, count: usize, entry: Entry) -> Row {
-    (
+fn row((block, place, entry): (&'static str, usize, Entry)) -> Row {
+    Row {
         block,
-        count,
-        entry.name,
-        entry.unit,
-        entry.scale.description(),
-        entry.low,
-        entry.high,
-        entry.mirrored,
-        entry.meaning,
-    )
+        place,
+        name: entry.name,
+        unit: entry.unit,
+        scale: entry.scale.description(),
+        low: entry.low,
+        high: entry.high,
+        mirrored: entry.mirrored,
+        meaning: entry.meaning,
+    }
 }
 
 /// Every entry of an observation with these blocks, in order.
 #[pyfunction]
 pub(crate) fn observation_table(blocks: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
-    let entries = layout_from(blocks, false)?.entries();
+    let entries = layout_from(blocks, false)?.entries().into_iter();
     Ok(entries
-        .into_iter()
-        .map(|(block, count, entry)| row(block.name(), count, entry))
+        .map(|(block, place, entry)| row((block.name(), place, entry)))
         .collect())
 }
 
@@ -72,23 +71,20 @@ pub(crate) fn state_table(n_boats: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
         return Err(FlockError::parameter("n_boats", n_boats, accepted).into());
     }
     let entries = state_entries(n_boats).into_iter().enumerate();
-    let boats = n_boats * BOAT.len();
-    Ok(entries
-        .map(|(place, entry)| {
-            if place < boats {
-                row("boat", place / BOAT.len(), entry)
-            } else {
-                row("clock", 0, entry)
-            }
-        })
-        .collect())
+    let each = entries.map(|(place, entry)| match place / BOAT.len() {
+        boat if boat < n_boats => ("boat", boat, entry),
+        _ => ("clock", 0, entry),
+    });
+    Ok(each.map(row).collect())
 }
 
 /// Every feature of a whole flock, in order.
 #[pyfunction]
 pub(crate) fn flock_feature_table() -> Vec<Row> {
     let entries = flock_feature_entries().into_iter();
-    entries.map(|(block, entry)| row(block, 0, entry)).collect()
+    entries
+        .map(|(block, entry)| row((block, 0, entry)))
+        .collect()
 }
 
 /// A law, a pool, and names and values of the law's gains.
@@ -114,8 +110,8 @@ pub(crate) fn observe<'py>(
     rudder: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyArray2<f32>>> {
     let flock = flock.read()?;
-    let leaders = flock.parameters().n_leaders;
-    let rudder = rudder.map(|rudder| floats(rudder, "rudder", &[leaders]));
+    let leaders = [flock.parameters().n_leaders];
+    let rudder = rudder.map(|rudder| floats(rudder, "rudder", &leaders));
     let rudder = rudder.transpose()?;
     flock.check_rudder(rudder.as_deref())?;
     let layout = layout_from(blocks, mirror_to_target)?;
@@ -129,28 +125,8 @@ pub(crate) fn observed<'py>(
     layout: ObservationLayout,
     rudders: &[f64],
 ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-    let parameters = flock.parameters();
-    let leaders = parameters.n_leaders;
-    let order = flock.order_parameters(false);
-    let order = if layout.order {
-        Some(order?)
-    } else {
-        order.ok()
-    };
-    let view = FlockView {
-        poses: flock.poses(),
-        hulls: flock.hulls(),
-        velocities: flock.velocities(),
-        leaders,
-        phase: flock.phase(),
-        bw_s: parameters.bw_s,
-        targets: &parameters.target,
-        rudders,
-        order: order.as_ref(),
-    };
-    let array = PyArray2::zeros(py, [leaders, layout.size()], false);
-    Observer::new(layout, parameters)?.observe(&view, array.readwrite().as_slice_mut()?);
-    Ok(array)
+    let shape = [flock.parameters().n_leaders, layout.size()];
+    PyArray1::from_vec(py, observe_flock(flock, layout, rudders)?).reshape(shape)
 }
 
 /// A law as it reads observations of one layout.
@@ -203,69 +179,49 @@ impl PyObservedLaw {
         py: Python<'py>,
         observations: PyReadonlyArray2<'py, f32>,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let rudders = self.of_rows(&observations)?;
-        Ok(PyArray1::from_iter(py, rudders.iter().map(|&s| s as f32)))
-    }
-}
-
-impl PyObservedLaw {
-    fn of_rows(&self, observations: &PyReadonlyArray2<'_, f32>) -> PyResult<Vec<f64>> {
-        let size = self.0.observation_size();
-        let width = observations.as_array().ncols();
+        let (size, width) = (self.0.observation_size(), observations.as_array().ncols());
         if width == 0 || !width.is_multiple_of(size) {
-            return Err(FlockError::Shape {
-                field: "observation",
-                found: format!("(..., {width})"),
-                expected: format!("(..., {size}), the size of the law's own layout"),
-            }
-            .into());
+            let expected = format!("(..., {size}), the size of the law's own layout");
+            return Err(wrong_shape(
+                "observation",
+                format!("(..., {width})"),
+                &expected,
+            ));
         }
         let numbers = observations.as_slice()?;
         if numbers.iter().any(|number| number.is_nan()) {
             return Err(FlockError::parameter("observation", f64::NAN, "numbers").into());
         }
         let rows = numbers.chunks_exact(size);
-        Ok(rows.map(|observation| self.0.rudder(observation)).collect())
+        let rudders = rows.map(|observation| self.0.rudder(observation) as f32);
+        Ok(PyArray1::from_iter(py, rudders))
     }
 }
 
-fn with_levels(rudder_levels: &Bound<'_, PyAny>) -> PyResult<RudderSettings> {
+/// The rudders that numbers of levels stand for, of so many that an environment may have; or the other way round, the
+/// numbers of the levels nearest to rudders.
+#[pyfunction]
+pub(crate) fn rudders_of_levels<'py>(
+    py: Python<'py>,
+    numbers: PyReadonlyArray1<'py, f64>,
+    rudder_levels: &Bound<'py, PyAny>,
+    are_rudders: bool,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let settings = RudderSettings {
         levels: Some(count(rudder_levels, "rudder_levels")?),
         ..RudderSettings::default()
     };
     settings.check()?;
-    Ok(settings)
-}
-
-/// The rudders that numbers of levels stand for, of so many that an environment may have.
-#[pyfunction]
-pub(crate) fn level_rudders<'py>(
-    py: Python<'py>,
-    levels: PyReadonlyArray1<'py, i64>,
-    rudder_levels: &Bound<'py, PyAny>,
-) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let settings = with_levels(rudder_levels)?;
-    let actions = levels.as_array().mapv(|level| level as f64);
-    for &action in &actions {
-        settings.check_action(action)?;
+    let mut numbers = numbers.to_vec()?;
+    for number in &mut numbers {
+        if !are_rudders {
+            settings.check_action(*number)?;
+            *number = settings.command(*number);
+        } else if (-1.0..=1.0).contains(number) {
+            *number = settings.action(*number);
+        } else {
+            return Err(FlockError::parameter("rudder", number, "numbers in [-1, 1]").into());
+        }
     }
-    let rudders = actions.iter().map(|&action| settings.command(action));
-    Ok(PyArray1::from_iter(py, rudders))
-}
-
-/// Numbers of the levels nearest to rudders, of so many that an environment may have.
-#[pyfunction]
-pub(crate) fn nearest_levels<'py>(
-    py: Python<'py>,
-    rudders: PyReadonlyArray1<'py, f64>,
-    rudder_levels: &Bound<'py, PyAny>,
-) -> PyResult<Bound<'py, PyArray1<i64>>> {
-    let settings = with_levels(rudder_levels)?;
-    let rudders = rudders.as_array();
-    if let Some(rudder) = rudders.iter().find(|s| !(-1.0..=1.0).contains(*s)) {
-        return Err(FlockError::parameter("rudder", rudder, "numbers in [-1, 1]").into());
-    }
-    let nearest = rudders.iter().map(|&s| settings.action(s) as i64);
-    Ok(PyArray1::from_iter(py, nearest))
+    Ok(PyArray1::from_vec(py, numbers))
 }

@@ -1,14 +1,14 @@
 //! The loop of `flockenv.simulate`.
 
-use super::arguments::{DurationS, PeriodS, SampleHz, floats, real, same_length, targets};
-use super::contacts::PyContactSeries;
-use super::flock::{BOAT_SUBSTEPS_A_PIECE, PyFlock};
+use super::arguments::{floats, real, same_length, targets};
+use super::flock::PyFlock;
 use super::observation::observed;
-use super::order::PyOrderSeries;
-use super::settings::layout_from;
-use crate::clock::{Ticks, ticks, whole_steps};
+use super::value::layout_from;
+use super::{contacts, order};
+use crate::clock::ticks;
+use crate::environment::observation::ObservationLayout;
 use crate::error::Result;
-use crate::flock::{Change, Flock, Pause, Real, Recorder, Recording, Sampling};
+use crate::flock::{BOAT_SUBSTEPS_A_PIECE, Change, Pause, Real, Recorder, Recording, Sampling};
 use crate::integrator::Phase;
 use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -35,64 +35,45 @@ pub(crate) fn sampled_analysis_window<'py>(
     Ok(PyArray1::from_vec(py, analyzed))
 }
 
-/// How many samples a period has.
-#[pyfunction]
-pub(crate) fn samples_in(period_s: PeriodS, sample_hz: SampleHz) -> Result<u32> {
-    whole_steps("period_s", period_s.0, sample_hz.0, "samples")
-}
-
-/// What of a run is kept besides its states, and how precisely.
+/// What of a run is kept, what changes on the way, and who steers.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct RecordingOptions {
+pub(crate) struct Plan<'py> {
+    sample_hz: Bound<'py, PyAny>,
     single_precision: bool,
     contacts: bool,
+    /// Times in s from the start of the run and what changes then: a target or parameters.
+    changes: Vec<(f64, Bound<'py, PyAny>)>,
+    /// `None`: leaders follow the steering law at every substep.
+    control: Option<Control<'py>>,
+    /// Called now and then with the seconds since the last call.
+    progress: Option<Bound<'py, PyAny>>,
 }
 
-/// What steers at every control step: a function of the leaders' observation (k, size) that returns rudders (k,).
+/// What steers at every control step: a function of the signs of the leaders' targets (k,) and their observations
+/// (k, size), one for each layout, that returns rudders (k,).
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Control<'py> {
     steer: Bound<'py, PyAny>,
-    observation: Bound<'py, PyAny>,
-    mirror_to_target: bool,
+    layouts: Vec<(Bound<'py, PyAny>, bool)>,
     control_hz: Bound<'py, PyAny>,
 }
 
-/// Records a run from where a flock is, which stays there: the fields of a `flockenv.Recording` that a run fills.
-///
-/// `changes` are times in s from the start of the run and what changes then: a target or parameters. Without
-/// `control` leaders follow the steering law.
+/// Records a run from where a flock is, which stays there: the columns of a `flockenv.Recording` that a run fills.
 #[pyfunction]
-#[pyo3(signature = (flock, duration_s, sample_hz, options, changes, control=None, progress=None))]
-#[expect(clippy::too_many_arguments, reason = "as many as a run has")]
 pub(crate) fn record<'py>(
     py: Python<'py>,
     flock: &PyFlock,
-    duration_s: DurationS,
-    sample_hz: SampleHz,
-    options: RecordingOptions,
-    changes: Vec<(f64, Bound<'py, PyAny>)>,
-    control: Option<Control<'py>>,
-    progress: Option<Bound<'py, PyAny>>,
+    duration_s: &Bound<'py, PyAny>,
+    plan: Plan<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let sampling = Sampling::new(duration_s.0, sample_hz.0)?;
-    let changes = changes
-        .into_iter()
-        .map(|(time_s, change)| Ok((ticks(time_s), change_from(&change)?)))
-        .collect::<PyResult<Vec<_>>>()?;
-    let run = Run {
-        flock: flock.read()?.clone(),
-        sampling,
-        contacts: options.contacts,
-        changes,
-        control,
-        progress,
-    };
-    if options.single_precision {
-        run.recorded::<f32>(py)
+    let duration_s = real(duration_s, "duration_s")?;
+    let sampling = Sampling::new(duration_s, real(&plan.sample_hz, "sample_hz")?)?;
+    if plan.single_precision {
+        recorded::<f32>(py, flock, sampling, &plan)
     } else {
-        run.recorded::<f64>(py)
+        recorded::<f64>(py, flock, sampling, &plan)
     }
 }
 
@@ -104,81 +85,88 @@ fn change_from(value: &Bound<'_, PyAny>) -> PyResult<Change> {
     Ok(Change::Parameters(Box::new(value.extract()?)))
 }
 
-struct Run<'py> {
-    flock: Flock,
+fn recorded<'py, T: Real + Element>(
+    py: Python<'py>,
+    flock: &PyFlock,
     sampling: Sampling,
-    contacts: bool,
-    changes: Vec<(Ticks, Change)>,
-    control: Option<Control<'py>>,
-    progress: Option<Bound<'py, PyAny>>,
-}
-
-impl<'py> Run<'py> {
-    fn recorded<T: Real + Element>(self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        const REPORTED_EVERY_S: f64 = 10.0;
-        let boats = self.flock.parameters().n_boats;
-        let leaders = self.flock.parameters().n_leaders;
-        let mut recorder =
-            Recorder::<T>::new(self.flock, self.sampling)?.with_changes(self.changes);
-        if self.contacts {
-            recorder = recorder.with_contacts();
-        }
-        if let Some(control) = &self.control {
-            recorder = recorder.with_control(real(&control.control_hz, "control_hz")?)?;
-        }
-        let mut reported_s = 0.0;
-        loop {
-            let pause = py.detach(|| recorder.run(BOAT_SUBSTEPS_A_PIECE))?;
-            match (pause, &self.control) {
-                (Pause::End, _) => break,
-                (Pause::Control, Some(control)) => steer(py, &mut recorder, control)?,
-                _ => py.check_signals()?,
-            }
-            let since_s = recorder.elapsed_s() - reported_s;
-            if pause == Pause::Work || since_s >= REPORTED_EVERY_S {
-                if let Some(progress) = &self.progress {
-                    progress.call1((since_s,))?;
-                }
-                reported_s += since_s;
-            }
-        }
-        fields(py, recorder.into_recording(), boats, leaders)
+    plan: &Plan<'py>,
+) -> PyResult<Bound<'py, PyDict>> {
+    const REPORTED_EVERY_S: f64 = 10.0;
+    let changes = plan.changes.iter();
+    let changes = changes.map(|(time_s, change)| Ok((ticks(*time_s), change_from(change)?)));
+    let changes = changes.collect::<PyResult<Vec<_>>>()?;
+    let mut recorder = Recorder::<T>::new(flock.read()?.clone(), sampling)?.with_changes(changes);
+    if plan.contacts {
+        recorder = recorder.with_contacts();
     }
+    let mut layouts = Vec::new();
+    if let Some(control) = &plan.control {
+        recorder = recorder.with_control(real(&control.control_hz, "control_hz")?)?;
+        for (blocks, is_mirrored) in &control.layouts {
+            layouts.push(layout_from(blocks, *is_mirrored)?);
+        }
+    }
+    let mut reported_s = 0.0;
+    loop {
+        let pause = py.detach(|| recorder.run(BOAT_SUBSTEPS_A_PIECE))?;
+        match (pause, &plan.control) {
+            (Pause::End, _) => break,
+            (Pause::Control, Some(control)) => steer(py, &mut recorder, &control.steer, &layouts)?,
+            _ => py.check_signals()?,
+        }
+        let since_s = recorder.elapsed_s() - reported_s;
+        if pause == Pause::Work || since_s >= REPORTED_EVERY_S {
+            if let Some(progress) = &plan.progress {
+                progress.call1((since_s,))?;
+            }
+            reported_s += since_s;
+        }
+    }
+    columns(py, recorder.into_recording())
 }
 
 fn steer<T: Real>(
     py: Python<'_>,
     recorder: &mut Recorder<T>,
-    control: &Control<'_>,
+    steer: &Bound<'_, PyAny>,
+    layouts: &[ObservationLayout],
 ) -> PyResult<()> {
-    let layout = layout_from(&control.observation, control.mirror_to_target)?;
-    let observation = observed(py, recorder.flock(), layout, recorder.rudder())?;
-    let rudder = control.steer.call1((observation,))?;
-    let leaders = recorder.flock().parameters().n_leaders;
-    Ok(recorder.steer(floats(&rudder, "rudder", &[leaders])?)?)
+    let (flock, held) = (recorder.flock(), recorder.rudder());
+    let parameters = flock.parameters();
+    let leaders = 0..parameters.n_leaders;
+    let signs = leaders.map(|leader| parameters.target.of(leader).sign());
+    let mut arguments = vec![PyArray1::from_iter(py, signs).into_any()];
+    for layout in layouts {
+        arguments.push(observed(py, flock, *layout, held)?.into_any());
+    }
+    let rudder = steer.call1(PyTuple::new(py, arguments)?)?;
+    let rudder = floats(&rudder, "rudder", &[parameters.n_leaders])?;
+    Ok(recorder.steer(rudder)?)
 }
 
-fn fields<T: Element>(
-    py: Python<'_>,
-    recording: Recording<T>,
-    boats: usize,
-    leaders: usize,
-) -> PyResult<Bound<'_, PyDict>> {
-    let samples = recording.time_s.len();
-    let phases = recording.phase.iter().map(|phase| phase.index() as u8);
-    let rows = |numbers| PyArray1::from_vec(py, numbers).reshape([samples, boats, 3]);
-    let fields = PyDict::new(py);
-    fields.set_item("phase", PyArray1::from_iter(py, phases))?;
-    fields.set_item("order", PyOrderSeries::of(py, &recording.order))?;
-    fields.set_item("time_s", PyArray1::from_vec(py, recording.time_s))?;
-    let window = PyArray1::from_vec(py, recording.in_analysis_window);
-    fields.set_item("in_analysis_window", window)?;
-    fields.set_item("pose", rows(recording.pose)?)?;
-    fields.set_item("velocity", rows(recording.velocity)?)?;
-    let rudder = PyArray1::from_vec(py, recording.rudder).reshape([samples, leaders])?;
-    fields.set_item("rudder", rudder)?;
-    let contacts = recording.contacts.as_ref();
-    let contacts = contacts.map(|samples| PyContactSeries::recorded(py, samples));
-    fields.set_item("contacts", contacts.transpose()?)?;
-    Ok(fields)
+fn columns<T: Element>(py: Python<'_>, run: Recording<T>) -> PyResult<Bound<'_, PyDict>> {
+    let samples = run.time_s.len();
+    let rows = |numbers: Vec<T>| {
+        let boats = numbers.len() / (3 * samples.max(1));
+        PyArray1::from_vec(py, numbers).reshape([samples, boats, 3])
+    };
+    let leaders = run.rudder.len() / samples.max(1);
+    let rudder = PyArray1::from_vec(py, run.rudder).reshape([samples, leaders])?;
+    let phases = run.phase.iter().map(|phase| phase.index() as u8);
+    let columns = PyDict::new(py);
+    columns.set_item("phase", PyArray1::from_iter(py, phases))?;
+    columns.set_item("order", order::columns(py, &run.order)?)?;
+    columns.set_item("time_s", PyArray1::from_vec(py, run.time_s))?;
+    let window = PyArray1::from_vec(py, run.in_analysis_window);
+    columns.set_item("in_analysis_window", window)?;
+    columns.set_item("pose", rows(run.pose)?)?;
+    columns.set_item("velocity", rows(run.velocity)?)?;
+    columns.set_item("rudder", rudder)?;
+    if let Some(samples) = &run.contacts {
+        let each = contacts::columns::<i32, f32>(py, &samples.contacts, |x| x as f32)?;
+        let count = samples.count.iter().map(|&count| count as i64);
+        each.set_item("count", PyArray1::from_iter(py, count))?;
+        columns.set_item("contacts", each)?;
+    }
+    Ok(columns)
 }

@@ -1,6 +1,6 @@
 //! States of flocks as dictionaries and arrays, and requests of episodes that start in them.
 
-use super::arguments::{floats, lone_text, real, text, texts, truth, whole, wrong_type};
+use super::arguments::{Texts, floats, real, text, texts, truth, whole, wrong_type};
 use crate::environment::{ResetRequest, Start, TargetChoice};
 use crate::error::FlockError;
 use crate::flock::State;
@@ -90,8 +90,8 @@ pub(crate) fn request_from(options: &Bound<'_, PyDict>, boats: usize) -> PyResul
 
 fn target_choice(value: &Bound<'_, PyAny>) -> PyResult<TargetChoice> {
     Ok(match texts(value, "target")? {
-        Some(names) => TargetChoice::each(&names)?,
-        None => TargetChoice::named(&lone_text(value, "target")?)?,
+        Texts::One(name) => TargetChoice::named(&name)?,
+        Texts::Each(names) => TargetChoice::each(&names)?,
     })
 }
 

@@ -74,7 +74,7 @@ def test_series_of_different_lengths_are_refused():
 def test_arguments_and_attributes_that_are_unknown_are_named():
     with pytest.raises(TypeError, match="'psi'"):
         OrderParameters(psi=1.0)
-    with pytest.raises(TypeError, match="two values of 'psi_o'"):
+    with pytest.raises(TypeError, match="multiple values for argument 'psi_o'"):
         OrderSeries(np.ones(2), psi_o=np.ones(2))
     with pytest.raises(AttributeError, match="no attribute 'psi'"):
         _ = OrderParameters(1.0).psi

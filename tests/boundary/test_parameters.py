@@ -37,7 +37,7 @@ def test_paper_preset_differs_in_scheme_noise_and_bw():
 
 
 def test_fields_are_those_of_the_core_and_described():
-    assert list(_core.preset_fields("simulation")) == NAMES
+    assert list(_core.changed_fields("simulation", {})) == NAMES
     for field in dataclasses.fields(FlockParameters):
         assert field.metadata["doc"].endswith(".")
         assert f"{field.name} : " in FlockParameters.__doc__

@@ -22,8 +22,7 @@ NAMES = {
     "FlockParameters": "preset presets replace to_dict from_dict to_toml from_toml",
     "Flock": "set_state pose velocity time_s phase advance order_parameters contacts statistics "
     "snapshot restore",
-    "Recording": "time_s phase pose velocity order save load from_tracks to_dataframe to_xarray "
-    "analyzed",
+    "Recording": "time_s phase pose velocity order save load to_dataframe to_xarray analyzed",
     "OrderParameters": "psi_o phi_o c_o psi_v phi_v c_v",
     "OrderSeries": "psi_o phi_o c_o psi_v phi_v c_v plot",
     "Contacts": "gap_cm normal force",
@@ -42,7 +41,7 @@ SIGNATURES = {
 #: Arguments that are given by name, in any place.
 NAMED = {
     "simulate": "start",
-    "Recording.from_tracks": "time_s pose pool hull velocity phase ids",
+    "tracks.recording_of": "time_s pose pool hull velocity phase ids",
     "Recording.analyzed": "after",
     "policies.load": "pool",
 }

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv import FlockParameters, ParameterError, Recording, _core
+from flockenv import FlockParameters, ParameterError, Recording, order_series
+from flockenv.order import QUANTITIES
 from flockenv.replay.quantities import shown_quantities
 from flockenv.runs.spec import RunSpec, execute
 from flockenv.runs.sweep import summary
 
-TABLE = _core.quantities()
+TABLE = QUANTITIES
 RECORDED = [each.name for each in TABLE if each.kind == "recorded"]
 AVERAGED = [each.name for each in TABLE if each.is_averaged]
 PARAMETERS = FlockParameters(n_boats=5, n_leaders=1, pool="narrow")
@@ -35,9 +36,9 @@ def test_a_flock_and_its_recording_have_the_same_values(run):
 
 
 def test_plain_arrays_have_the_values_of_the_recording(run):
-    assert _core.order_series(run.pose[:, 1:], run.velocity[:, 1:]) == run.order
+    assert order_series(run.pose[:, 1:], run.velocity[:, 1:]) == run.order
     with pytest.raises(ParameterError, match="velocity"):
-        _core.order_series(run.pose, run.velocity[:, 1:])
+        order_series(run.pose, run.velocity[:, 1:])
 
 
 def test_nematic_order_and_milling_from_their_definitions(run):

@@ -16,7 +16,7 @@ from flockenv import (
     ParameterError,
     simulate,
 )
-from flockenv.recording import RECORDED
+from flockenv.order import RECORDED
 
 PARAMETERS = FlockParameters(n_boats=5, n_leaders=1, pool="narrow")
 RUN = simulate(PARAMETERS, seed=3, duration_s=1.0)

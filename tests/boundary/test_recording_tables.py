@@ -9,7 +9,7 @@ import pytest
 
 import flockenv
 from flockenv._io.extras import MissingExtraError
-from flockenv.recording import RECORDED
+from flockenv.order import RECORDED
 
 PARAMETERS = flockenv.FlockParameters(n_boats=5, n_leaders=2, pool="narrow")
 ORDER = ["psi_o", "phi_o", "c_o", "psi_v", "phi_v", "c_v"]
@@ -81,7 +81,7 @@ def test_what_is_drawn_without_names_has_no_unit(run):
 
 def test_a_quantity_that_is_none_is_not_drawn(run):
     for name in ("psi", "largest_cluster"):
-        with pytest.raises(flockenv.ParameterError, match=f"quantity '{name}' is not .*psi_o"):
+        with pytest.raises(flockenv.ParameterError, match=f"quantity = '{name}' is not .*psi_o"):
             run.order.plot(name)
     with pytest.raises(flockenv.ParameterError, match="target"):
         run.order.plot(target="up")

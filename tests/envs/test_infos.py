@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv import _core
+from flockenv import order
 
 SMALL = {"n_boats": 6, "n_leaders": 2}
 QUANTITIES = [
     each.name
-    for each in _core.quantities()
+    for each in order.QUANTITIES
     if each.is_averaged and each.kind in ("recorded", "derived")
 ]
-RECORDED = [each.name for each in _core.quantities() if each.kind == "recorded"]
+RECORDED = order.ORDER
 WINDOW_MEANS = {*QUANTITIES, "share_towards_target"}
 
 

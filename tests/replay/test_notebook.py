@@ -4,8 +4,6 @@ import base64
 import html
 import io
 import re
-import subprocess
-import sys
 
 import matplotlib.image
 import numpy as np
@@ -58,18 +56,10 @@ def test_what_fits_no_page_is_refused(monkeypatch):
         inline_replay(run, "run")
 
 
-def test_a_recording_in_a_notebook_is_its_page(monkeypatch):
+def test_a_recording_in_a_notebook_is_the_picture_of_its_end():
     run = flockenv.simulate(PARAMETERS, 7, 1.0)
-    assert run._repr_html_() == inline_replay(run, "recording")
-    monkeypatch.setattr(page, "MOST_INLINE_BYTES", 110_000)
-    assert run._repr_html_() == f"<code>{html.escape(repr(run))}</code>"
-
-
-def test_showing_a_recording_is_all_that_needs_replays():
-    source = (
-        "import sys, flockenv; assert 'flockenv.replay' not in sys.modules;"
-        "run = flockenv.simulate(flockenv.FlockParameters(), 1, 1.0);"
-        "assert 'flockenv.replay' not in sys.modules;"
-        "assert run._repr_html_().startswith('<iframe')"
-    )
-    subprocess.run([sys.executable, "-c", source], check=True)
+    words = f"<code>{html.escape(repr(run))}</code>"
+    assert run._repr_html_() == f"{run.flock_at(1.0)._repr_html_()}<br>{words}"
+    assert run.without_poses()._repr_html_() == words
+    none = run.analyzed(1.0)
+    assert none._repr_html_() == f"<code>{html.escape(repr(none))}</code>"

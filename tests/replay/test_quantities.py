@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv import _core
-from flockenv.flock import OrderSeries
+from flockenv.order import ORDER, OrderSeries
 from flockenv.replay.quantities import decisive_minute, shown_quantities
 
 PARAMETERS = flockenv.FlockParameters(n_boats=4, n_leaders=1, target="cw")
@@ -22,8 +21,7 @@ def with_signed_order(recording: flockenv.Recording, values) -> flockenv.Recordi
     """The recording with this signed order: Ψ_o its size, φ_o along or against the target."""
     values = np.asarray(values, float)
     phi = np.where(values < 0, -np.pi / 2, np.pi / 2)
-    names = [each.name for each in _core.quantities() if each.kind == "recorded"]
-    columns = {name: getattr(recording.order, name) for name in names}
+    columns = {name: getattr(recording.order, name) for name in ORDER}
     order = OrderSeries(**columns | {"psi_o": np.abs(values), "phi_o": phi})
     return dataclasses.replace(recording, order=order)
 
@@ -65,10 +63,9 @@ def test_without_a_minute_or_normal_boats_it_is_the_start(constant):
 
 def test_order_towards_the_target_comes_first_where_there_are_leaders(constant):
     free = flockenv.simulate(PARAMETERS.replace(n_leaders=0), 1, 1.0)
-    fields = [each.name for each in _core.quantities() if each.kind == "recorded"]
     keys = [each.key for each in shown_quantities([constant])]
-    assert keys == ["signed_order", "rotation", *fields]
-    assert [each.key for each in shown_quantities([free])] == ["rotation", *fields]
+    assert keys == ["signed_order", "rotation", *ORDER]
+    assert [each.key for each in shown_quantities([free])] == ["rotation", *ORDER]
     assert shown_quantities([free, constant])[0].key == "signed_order"
 
 

@@ -12,9 +12,10 @@ import pytest
 
 import flockenv
 from flockenv._io.interrupts import noted_interrupts
+from flockenv.order import ORDER
 from flockenv.runs import store as run_store
 from flockenv.runs.executors import local
-from flockenv.runs.spec import KEEP, ORDER_NAMES, RunSpec, execute
+from flockenv.runs.spec import KEEP, RunSpec, execute
 from flockenv.runs.store import RunStore, StorageError, StoreWarning, run_missing
 
 
@@ -46,7 +47,7 @@ def test_a_kept_run_comes_back(
         frames = recording.in_analysis_window & (recording.time_s > 3.0)
         assert loaded.analyzed() == loaded
     assert (loaded.time_s == recording.time_s[frames]).all()
-    for name in ORDER_NAMES:
+    for name in ORDER:
         single = getattr(recording.order, name)[frames].astype(np.float32)
         assert (getattr(loaded.order, name) == single).all()
     if keep == "poses":

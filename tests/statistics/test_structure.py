@@ -1,6 +1,7 @@
 """Law: structure measures of recorded boats are the core's; shapes are checked."""
 
 import itertools
+from functools import partial
 
 import numpy as np
 import pytest
@@ -14,8 +15,12 @@ POSE = np.array([[[60.0, 0.0, 0.0], [60.0, 10.2, 0.0], [-82.4, 0.0, np.pi]]] * 4
 
 
 def test_clusters_and_the_wall_are_shares_of_the_boats():
-    assert structure.largest_cluster(PARAMETERS, POSE) == pytest.approx([2 / 3] * 4)
-    assert structure.on_outer_wall(PARAMETERS, POSE) == pytest.approx([1 / 3] * 4)
+    assert structure.structure_series("largest_cluster", PARAMETERS, POSE) == pytest.approx(
+        [2 / 3] * 4
+    )
+    assert structure.structure_series("on_outer_wall", PARAMETERS, POSE) == pytest.approx(
+        [1 / 3] * 4
+    )
 
 
 def test_jams_are_boats_in_touch_that_face_outward():
@@ -31,10 +36,11 @@ def test_jams_are_boats_in_touch_that_face_outward():
 
 def test_polarization_is_the_length_of_the_mean_heading():
     # Two boats head along x and one against it.
-    assert structure.polarization(POSE) == pytest.approx([1 / 3] * 4)
+    polarization = partial(structure.structure_series, "polarization", PARAMETERS)
+    assert polarization(POSE) == pytest.approx([1 / 3] * 4)
     absent = POSE.copy()
     absent[1, 2], absent[2] = np.nan, np.nan
-    assert structure.polarization(absent) == pytest.approx([1 / 3, 1, np.nan, 1 / 3], nan_ok=True)
+    assert polarization(absent) == pytest.approx([1 / 3, 1, np.nan, 1 / 3], nan_ok=True)
 
 
 def test_displacement_and_turns_by_lag():
@@ -67,12 +73,15 @@ def test_pairs_that_cannot_be_are_nan():
 @pytest.mark.parametrize("pose", [np.zeros((3, 3)), np.zeros((2, 3, 2)), np.zeros((2, 0, 3))])
 def test_other_shapes_are_refused(pose):
     with pytest.raises(flockenv.ParameterError, match="pose"):
-        structure.on_outer_wall(PARAMETERS, pose)
+        structure.structure_series("on_outer_wall", PARAMETERS, pose)
     with pytest.raises(flockenv.ParameterError, match="pose"):
         structure.mean_square_displacement(pose, [1])
 
 
 def test_other_arguments_are_refused():
+    for name in ("psi_o", "signed_order", "clusters"):
+        with pytest.raises(flockenv.ParameterError, match=name):
+            structure.structure_series(name, PARAMETERS, POSE)
     for edges in ([1.0], [2.0, 1.0], [0.0, np.nan]):
         with pytest.raises(flockenv.ParameterError, match="edges"):
             structure.pair_distribution(POSE, edges)
@@ -87,7 +96,7 @@ def test_states_and_ordering_times_of_a_recording():
     ordered = np.char.startswith(states, "ordered")
     assert (run.order.psi_o[ordered] > 0.8).all()
     assert (run.order.off_tangent()[ordered] < np.pi / 4).all()
-    clusters = structure.largest_cluster(run.parameters, run.pose)
+    clusters = structure.structure_series("largest_cluster", run.parameters, run.pose)
     clustering = run.order.states(15.0, clusters) == "clustering"
     assert (states[clustering] == "disordered").all()
     printed = run.order.ordering_time(run.time_s)

@@ -46,7 +46,7 @@ def test_order_parameters_of_a_camera_are_those_of_the_run(seen):
 
 def test_boats_that_are_all_there_have_the_very_order_parameters(seen):
     truth = seen.truth
-    found = flockenv.Recording.from_tracks(
+    found = flockenv.tracks.recording_of(
         truth.time_s, truth.pose, pool="narrow", velocity=truth.velocity, phase=truth.phase,
         leaders=("0", "1"),
     )  # fmt: skip

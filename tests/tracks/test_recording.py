@@ -9,8 +9,8 @@ import flockenv
 from flockenv.recording import Recording
 from flockenv.rendering import frame
 from flockenv.replay import write_replay
-from flockenv.statistics.structure import largest_cluster, on_outer_wall
-from flockenv.tracks import from_table
+from flockenv.statistics.structure import structure_series
+from flockenv.tracks import from_table, recording_of
 
 from .conftest import LAYOUT
 
@@ -63,10 +63,11 @@ def test_structure_leaves_out_boats_that_are_not_there(tracked):
     missing = ~np.isfinite(tracked.pose[..., 0])
     sample = int((missing.sum(axis=1) == 1).argmax())
     there = tracked.pose[sample : sample + 1, ~missing[sample]]
-    for function in (largest_cluster, on_outer_wall):
-        assert function(parameters, tracked.pose)[sample] == function(parameters, there)[0]
+    for name in ("largest_cluster", "on_outer_wall"):
+        whole, alone = (structure_series(name, parameters, pose) for pose in (tracked.pose, there))
+        assert whole[sample] == alone[0]
     nobody = np.full((1, 20, 3), np.nan)
-    assert np.isnan(largest_cluster(parameters, nobody)).all()
+    assert np.isnan(structure_series("largest_cluster", parameters, nobody)).all()
 
 
 def test_it_is_played_beside_the_model(tracked, seen, tmp_path):
@@ -80,7 +81,7 @@ def test_it_is_played_beside_the_model(tracked, seen, tmp_path):
 def test_phases_that_are_known_have_their_analysis_window():
     phase = ["fw"] * 4 + ["nop1"] * 2 + ["bw"] * 2
     pose = np.full((8, 2, 3), 90.0) * [1, 0, 0]
-    recording = Recording.from_tracks(np.arange(8.0), pose, pool="narrow", phase=phase)
+    recording = recording_of(np.arange(8.0), pose, pool="narrow", phase=phase)
     assert recording.in_analysis_window.tolist() == [False] * 2 + [True] * 3 + [False] * 3
 
 
@@ -112,12 +113,12 @@ def test_mistakes_are_named(changes, words):
         "pool": "narrow",
     }
     with pytest.raises(flockenv.ParameterError, match=re.escape(words)):
-        Recording.from_tracks(**(given | changes))
+        recording_of(**(given | changes))
 
 
 def test_tracks_may_have_obstacles_in_their_pool(tmp_path):
     pose = np.full((3, 2, 3), 70.0) * [1, 0, 0]
-    recording = Recording.from_tracks(
+    recording = recording_of(
         np.arange(3.0), pose, pool="narrow", discs=[(0, 70, 5)], walls=np.array([[-60, 0, -80, 0]])
     )
     assert recording.parameters.discs == ((0.0, 70.0, 5.0),)

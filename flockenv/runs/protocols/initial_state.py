@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv.errors import ParameterError
+from flockenv.flock import Flock
 from flockenv.parameters import FlockParameters
 
 __all__ = ["STARTS", "initial_flock"]
@@ -26,7 +27,7 @@ _ROOM = 1.001
 """Distance of boats in a jam, over that at which their hulls touch."""
 
 
-def initial_flock(parameters: FlockParameters, seed: int, start: str) -> _core.Flock:
+def initial_flock(parameters: FlockParameters, seed: int, start: str) -> Flock:
     """Return a flock in an initial state of that name.
 
     Boats of one jam stand side by side, the seed deciding where on the wall; the others keep the
@@ -49,7 +50,7 @@ def initial_flock(parameters: FlockParameters, seed: int, start: str) -> _core.F
     """
     if start not in STARTS:
         raise ParameterError(f"start = {start!r} is not accepted: {', '.join(STARTS)}")
-    flock = _core.Flock(parameters, seed)
+    flock = Flock(parameters, seed)
     pose, velocity = flock.pose, np.zeros((parameters.n_boats, 3))
     outward = np.arctan2(pose[:, 1], pose[:, 0])
     pose[:, 2] = outward

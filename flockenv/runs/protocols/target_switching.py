@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv.errors import ParameterError
+from flockenv.flock import Flock
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import LeaderPolicy
 from flockenv.recording import Recording
@@ -65,11 +66,11 @@ def simulate_alternating(
         raise ParameterError(
             "a policy with mirror_to_target = True is not accepted: targets change"
         )
-    samples = _core.samples_in(period_s, sample_hz)
+    samples = _core.whole_steps_in("period_s", period_s, sample_hz)
     stretches = int(duration_s / period_s) + 1 if math.isfinite(duration_s) else 0
     changes = [
         (stretch * samples / sample_hz, TARGETS[stretch % len(TARGETS)])
         for stretch in range(stretches)
     ]
-    flock = _core.Flock(parameters, seed)
+    flock = Flock(parameters, seed)
     return recorded(flock, parameters, duration_s, sample_hz, changes=changes, policy=policy)

@@ -20,6 +20,6 @@ pub use flock_features::{FlockFeatures, flock_feature_entries};
 pub use layout::{Block, OBSERVATION_VERSION, ObservationLayout, state_entries};
 pub use leader_law::LeaderLaw;
 pub use observed_law::ObservedLaw;
-pub use observer::Observer;
 pub(crate) use observer::StateObserver;
+pub use observer::{Observer, observe_flock};
 pub use view::FlockView;

@@ -7,8 +7,41 @@ use super::nearest_obstacles::NearestObstacles;
 use super::view::{FlockView, Scaling, own, phase};
 use super::{LeaderLaw, ObservationLayout, state_entries};
 use crate::error::Result;
+use crate::flock::Flock;
 use crate::geometry::{LapFrame, Vec2, cross};
 use crate::parameters::FlockParameters;
+
+/// What the leaders of a flock observe without an environment, one after another, given the rudders as they stand.
+///
+/// # Errors
+/// As for [`Observer::new`], and [`crate::FlockError::Parameter`] where the layout has the order of no boat.
+pub fn observe_flock(
+    flock: &Flock,
+    layout: ObservationLayout,
+    rudders: &[f64],
+) -> Result<Vec<f32>> {
+    let parameters = flock.parameters();
+    let order = flock.order_parameters(false);
+    let order = if layout.order {
+        Some(order?)
+    } else {
+        order.ok()
+    };
+    let view = FlockView {
+        poses: flock.poses(),
+        hulls: flock.hulls(),
+        velocities: flock.velocities(),
+        leaders: parameters.n_leaders,
+        phase: flock.phase(),
+        bw_s: parameters.bw_s,
+        targets: &parameters.target,
+        rudders,
+        order: order.as_ref(),
+    };
+    let mut out = vec![0.0; parameters.n_leaders * layout.size()];
+    Observer::new(layout, parameters)?.observe(&view, &mut out);
+    Ok(out)
+}
 
 /// Writes observations of one flock's leaders.
 #[derive(Debug, Clone)]

@@ -1,0 +1,345 @@
+"""Order parameters and the other recorded quantities, at one time and at many (Section 3.2).
+
+The core computes them in the LAP frame; its table of quantities names them.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, make_dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from flockenv import _core
+from flockenv._io.extras import require
+from flockenv.errors import ParameterError, shown
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = [
+    "ORDER",
+    "QUANTITIES",
+    "RECORDED",
+    "STATES",
+    "OrderParameters",
+    "OrderSeries",
+    "Quantity",
+    "order_series",
+]
+
+STATES = np.array(_core.collective_state_names())
+"""Names of the collective states (Table 2; ordered motion by its direction)."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """An entry of the table of quantities.
+
+    Attributes
+    ----------
+    name, label, symbol, unit
+        Its name in recordings and tables, what it is in a few words, symbol and unit (empty for
+        none).
+    meaning, source
+        What it is, with its sign; and where it is defined.
+    range
+        Least and greatest value, if there are such.
+    least_boats
+        Fewer boats leave it undefined (NaN).
+    is_averaged
+        Whether its mean over a run is shown; the mean of an angle is not.
+    kind
+        ``"recorded"``: kept with every sample of a recording; ``"derived"``: follows from recorded
+        ones and the target direction; ``"structure"``: computed from poses on request.
+    """
+
+    name: str
+    label: str
+    symbol: str
+    unit: str
+    meaning: str
+    source: str
+    range: tuple[float, float] | None
+    least_boats: int
+    is_averaged: bool
+    kind: str
+
+    @property
+    def title(self) -> str:
+        """Label, symbol and unit, as axes show them."""
+        symbol = f" {self.symbol}" if self.symbol else ""
+        return f"{self.label}{symbol}{f' [{self.unit}]' if self.unit else ''}"
+
+
+QUANTITIES = tuple(Quantity(**entry) for entry in _core.quantities())
+"""The table of quantities."""
+
+RECORDED = tuple(each for each in QUANTITIES if each.kind == "recorded")
+"""The quantities that are recorded with every sample."""
+
+ORDER = tuple(each.name for each in RECORDED)
+"""Their names."""
+
+if TYPE_CHECKING:
+
+    class _Recorded:
+        def __init__(self, *values: Any, **named: Any) -> None: ...
+
+        def __getattr__(self, name: str) -> Any: ...
+
+else:
+    _Recorded = make_dataclass(
+        "_Recorded", [(name, Any, field(default=math.nan)) for name in ORDER], frozen=True, eq=False
+    )
+
+
+class OrderParameters(_Recorded):
+    """Alignment of a set of boats at one time: a float for each recorded quantity of the table.
+
+    LAP angles count clockwise from the outward radial: 0 is jammed outward, +π/2 clockwise. Values
+    that are not given are NaN, which equals NaN.
+    """
+
+    def _values(self) -> tuple[float | None, ...]:
+        values = (getattr(self, name) for name in ORDER)
+        return tuple(None if math.isnan(value) else value for value in values)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, OrderParameters):
+            return NotImplemented
+        return self._values() == other._values()
+
+    def __hash__(self) -> int:
+        return hash(self._values())
+
+
+@dataclass(frozen=True, eq=False)
+class OrderSeries(_Recorded):
+    """Order parameters one after another: the fields of `OrderParameters` as float64 arrays (t,).
+
+    All are NaN if there is no boat to take them of; ``c_o`` and ``c_v`` are NaN for a single boat.
+    Columns that are not given are NaN. Series are equal if their columns are.
+
+    Attributes
+    ----------
+    time_s : float64 array, shape (t,), or None
+        Times in s: those of a recording.
+    """
+
+    time_s: NDArray[np.float64] | None = field(default=None, repr=False, kw_only=True)
+
+    if TYPE_CHECKING:
+
+        def __init__(self, *values: Any, **named: Any) -> None: ...
+
+    def __post_init__(self) -> None:
+        lengths = [len(column) for column in self.columns() if np.ndim(column)]
+        for name in ORDER:
+            if not np.ndim(getattr(self, name)):
+                undefined = np.full(lengths[0] if lengths else 0, np.nan)
+                object.__setattr__(self, name, undefined)
+
+    def columns(self) -> tuple[NDArray[np.float64], ...]:
+        """Return the columns, in the order of the table."""
+        return tuple(getattr(self, name) for name in ORDER)
+
+    def at(self, samples: Any, time_s: NDArray[np.float64] | None = None) -> "OrderSeries":
+        """Return the series at some of its samples, an index of NumPy, and at those times."""
+        return OrderSeries(*(column[samples] for column in self.columns()), time_s=time_s)
+
+    def __len__(self) -> int:
+        return len(self.columns()[0])
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, OrderSeries):
+            return NotImplemented
+        pairs = zip(self.columns(), other.columns(), strict=True)
+        return all(np.array_equal(mine, theirs, equal_nan=True) for mine, theirs in pairs)
+
+    def __getitem__(self, index: int) -> OrderParameters:
+        return OrderParameters(*(float(column[index]) for column in self.columns()))
+
+    def _orders(self) -> dict[str, NDArray[np.float64]]:
+        return {name: self._column(name) for name in ("psi_o", "phi_o", "psi_v")}
+
+    def _column(self, name: str) -> NDArray[np.float64]:
+        try:
+            return np.ascontiguousarray(getattr(self, name), np.float64)
+        except (TypeError, ValueError) as error:
+            raise ParameterError(f"{name} is not accepted: numbers") from error
+
+    def series(self, name: str, target: str | Sequence[str] = "cw") -> NDArray[np.float64]:
+        """Return the values of a recorded or derived quantity, shape (t,).
+
+        Parameters
+        ----------
+        name
+            Its name in the table of quantities.
+        target
+            Direction that signed quantities count towards, "cw" or "ccw"; of a list the first.
+
+        Raises
+        ------
+        ParameterError
+            For an unknown name or target.
+        """
+        known = {each.name: each for each in QUANTITIES if each.kind != "structure"}
+        if name not in known:
+            raise ParameterError(f"quantity = {shown(name)} is not accepted: {', '.join(known)}")
+        if known[name].kind == "recorded":
+            if not {*([target] if isinstance(target, str) else target)} <= {"cw", "ccw"}:
+                raise ParameterError(f"target = {shown(target)} is not accepted: 'cw' or 'ccw'")
+            column: NDArray[np.float64] = getattr(self, name)
+            return column
+        return _core.derived_series(name, self._orders(), target)
+
+    def signed_order(self, target: str | Sequence[str]) -> NDArray[np.float64]:
+        """Return Ψ_o·cos(φ_o - φ_target) in [-1, 1], shape (t,), for target "cw" or "ccw".
+
+        Of a list of targets the first counts.
+
+        Raises
+        ------
+        ParameterError
+            For an unknown target.
+        """
+        return self.series("signed_order", target)
+
+    def rotation(self) -> NDArray[np.float64]:
+        """Return Ψ_o·sin φ_o in [-1, 1], shape (t,): ±1 for rotation in order, 0 for a jam."""
+        return self.series("rotation")
+
+    def outward(self) -> NDArray[np.float64]:
+        """Return Ψ_o·cos φ_o in [-1, 1], shape (t,): 1 for a jam, 0 for streams along the pool.
+
+        It is the mean of cos φ over boats, so that opposed streams do not cancel as in `rotation`.
+        """
+        return self.series("outward")
+
+    def off_tangent(self) -> NDArray[np.float64]:
+        """Return ||φ_o| - π/2| in [0, π/2] rad, shape (t,): 0 for boats along the pool."""
+        return self.series("off_tangent")
+
+    def states(
+        self, speed_cm_s: float, largest_cluster: NDArray[np.float64] | None = None
+    ) -> NDArray[np.str_]:
+        """Return the collective state at each time (Table 2), shape (t,).
+
+        Meant for times in the analysis window. ``"ordered cw"`` and ``"ordered ccw"``: Ψ_o above
+        0.8, φ_o within π/4 of ±π/2, Ψ_v at least a quarter of the preferred speed. ``"jamming"``:
+        Ψ_o above 0.8, φ_o within π/4 of 0, Ψ_v below that. ``"disordered"``: Ψ_o below 0.5.
+        ``"clustering"``: the same, with at least three quarters of the boats in one cluster.
+        ``"between"``: none of these.
+
+        Parameters
+        ----------
+        speed_cm_s
+            Preferred forward speed of the boats.
+        largest_cluster
+            Part of the boats in the largest cluster at each time, shape (t,), the quantity of that
+            name. None: no state is called clustering.
+
+        Raises
+        ------
+        ParameterError
+            For an array of another length.
+        """
+        orders = self._orders()
+        if largest_cluster is None:
+            largest_cluster = np.zeros(len(orders["psi_o"]))
+        return STATES[_core.collective_states(orders, speed_cm_s, largest_cluster)]
+
+    def ordering_time(self, time_s: NDArray[np.float64], within: float = math.pi / 20.0) -> float:
+        """Return the ordering time τ of a run, eq. (7), in s; infinite if the run does not order.
+
+        It is the first time at which Ψ_o > 0.8 and ||φ_o| - π/2| < `within`, if mean Ψ_o over the
+        second half of the run exceeds 0.8.
+
+        Parameters
+        ----------
+        time_s
+            Times of the series, shape (t,).
+        within
+            Angle in rad: π/20 as printed, or a wider one.
+
+        Raises
+        ------
+        ParameterError
+            For times of another length.
+        """
+        return _core.ordering_time_s(self._orders(), time_s, within)
+
+    def plot(
+        self, *names: str, target: str | Sequence[str] = "cw", ax: "Axes | None" = None
+    ) -> "Axes":
+        """Draw quantities against time (extra ``plot``): of the series of a recording.
+
+        Parameters
+        ----------
+        names
+            Recorded and derived quantities of the table, such as "psi_v" or "signed_order". None:
+            the recorded ones that have no unit and lie within known bounds.
+        target
+            Direction that signed quantities count towards, "cw" or "ccw".
+        ax
+            Axes of matplotlib to draw into. None: those of a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            With one labeled line per quantity; time in s.
+
+        Raises
+        ------
+        ParameterError
+            For an unknown name or target, and for a series without times.
+        MissingExtraError
+            If matplotlib is not installed.
+        """
+        pyplot = require("matplotlib.pyplot", "plot")
+        if self.time_s is None:
+            raise ParameterError("this series has no times: that of a recording does")
+        if not names:
+            names = tuple(each.name for each in RECORDED if each.range and not each.unit)
+        columns = {name: self.series(name, target) for name in names}
+        axes: Axes = pyplot.subplots()[1] if ax is None else ax
+        titles = {each.name: each.title for each in QUANTITIES}
+        for name, values in columns.items():
+            axes.plot(self.time_s, values, label=titles[name], linewidth=1.0)
+        axes.set_xlabel("time [s]")
+        axes.legend()
+        return axes
+
+
+def order_series(pose: ArrayLike, velocity: ArrayLike) -> OrderSeries:
+    """Return the recorded quantities of any boats, robots or animals at each time.
+
+    Parameters
+    ----------
+    pose
+        Shape (t, n, 3): [x, y from the pool's center, heading rad counter-clockwise from x]. Rows
+        of NaN where a boat is not there. Leaders count if they are among the boats.
+    velocity
+        The same shape, in the unit of length of the pose per s.
+
+    Returns
+    -------
+    OrderSeries
+        Section 3.2's order parameters, the nematic order and milling, of the boats that have both a
+        pose and a velocity; NaN where too few have.
+
+    Raises
+    ------
+    ParameterError
+        For other shapes, and for what is no number.
+    """
+    try:
+        states = [np.asarray(each, np.float64) for each in (pose, velocity)]
+    except (TypeError, ValueError) as error:
+        raise ParameterError("pose and velocity are not accepted: numbers") from error
+    for name, each in zip(("pose", "velocity"), states, strict=True):
+        if each.ndim != 3:
+            raise ParameterError(f"{name} has shape {each.shape}, expected (t, n, 3)")
+    return OrderSeries(**_core.order_columns(*states))
