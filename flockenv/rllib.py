@@ -1,9 +1,18 @@
-"""`LeadersModule`: one network for every leader behind the joint interface of a flock."""
+"""RLlib's module of leaders that share one network, for the native vector environment.
+
+Needs the extra ``ray``: ``pip install flockenv[ray] torch``.
+"""
 
 from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
+from flockenv._io.extras import require
+
+require("ray.rllib", "ray")
+require("torch", "train")
+
+# ruff: noqa: E402 - after the check above
 import gymnasium
 import torch
 from ray.rllib.core.columns import Columns

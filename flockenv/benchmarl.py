@@ -1,10 +1,20 @@
-"""`LeadersTask`: the tasks of BenchMARL, their configurations, and the policies of its learners."""
+"""The tasks of BenchMARL: many flocks behind TorchRL, and the policies that its learners find.
+
+Needs the extra ``benchmarl``: ``pip install flockenv[benchmarl]``. ``python -m flockenv.benchmarl
+task=flockenv/lean algorithm=mappo`` is BenchMARL's own command with these tasks.
+"""
 
 import copy
+import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from flockenv._io.extras import require
+
+require("benchmarl", "benchmarl")
+
+# ruff: noqa: E402 - after the check above
 import torch
 from benchmarl.environments import task_config_registry
 from benchmarl.environments.common import Task, TaskClass
@@ -20,9 +30,9 @@ from flockenv.policies import NetworkPolicy
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.torchrl import GROUP, STATES, LeadersEnv
 
-__all__ = ["CONF", "LeadersTask", "LeadersTaskClass", "network_policy", "register"]
+__all__ = ["CONF", "LeadersTask", "LeadersTaskClass", "network_policy"]
 
-CONF = Path(__file__).parent / "conf"
+CONF = Path(__file__).parent / "benchmarl_tasks"
 """The folder of the configurations, as Hydra searches it: ``task/flockenv/NAME.yaml``."""
 
 _ENV_NAME = "flockenv"
@@ -145,10 +155,10 @@ class LeadersTask(Task):
         return task
 
 
-def register() -> None:
-    """Make the tasks known to BenchMARL by name, once: ``flockenv/leaders`` and so on."""
-    for name, task in LeadersTask.__members__.items():
-        task_config_registry[f"{_ENV_NAME}/{name.lower()}"] = task
+# By name they are known to BenchMARL: ``flockenv/leaders`` and so on.
+task_config_registry.update(
+    {f"{_ENV_NAME}/{name.lower()}": task for name, task in LeadersTask.__members__.items()}
+)
 
 
 def network_policy(
@@ -195,3 +205,10 @@ def network_policy(
         squashed=getattr(algorithm, "use_tanh_normal", False),
         provenance=provenance,
     )
+
+
+if __name__ == "__main__":
+    from benchmarl.run import hydra_experiment
+
+    sys.argv.append(f"hydra.searchpath=[file://{CONF}]")
+    hydra_experiment()

@@ -1,9 +1,17 @@
-"""`LeadersEnv`: TorchRL's environment over one batch of flocks, its leaders a group of agents."""
+"""TorchRL's environment over one batch of flocks, its leaders a group of agents.
+
+Needs the extra ``torchrl``: ``pip install flockenv[torchrl]``.
+"""
 
 from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+from flockenv._io.extras import require
+
+require("torchrl", "torchrl")
+
+# ruff: noqa: E402 - after the check above
 import gymnasium
 import numpy as np
 import torch
