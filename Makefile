@@ -14,6 +14,9 @@ THROUGHPUT_ARGS ?=
 SOAK_ARGS ?=
 # `make publish-check PUBLISH_ARGS=--allow-dirty`: with changes that are not committed.
 PUBLISH_ARGS ?=
+# Which of those that `make help` names `make test-other` and `make bench` run.
+OTHER ?= benchmarl
+BENCH ?= throughput
 # `make instructions INSTRUCTIONS=--strict`: fails where there is no valgrind.
 INSTRUCTIONS ?=
 # Of each kind of hostile input in `make fuzz`.
@@ -52,7 +55,7 @@ TEST_EXTRAS := --extra train --extra plot --extra render --extra sweep --extra t
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help setup build compare live test lint format test-rust test-bare test-python coverage test-js test-browser test-live test-wheel test-oldest \
+.PHONY: help test-pages test-other bench setup build compare live test lint format test-rust test-python coverage test-js test-browser test-live test-wheel test-oldest \
         test-benchmarl test-rllib test-ray test-slurm validate docs wheel audit licenses tables replay-animation publish-check release-check \
         instructions throughput env-benchmarl env-rllib soak fuzz speed-vs-error \
         lint-benches paper clean
@@ -69,10 +72,9 @@ setup: $(STAMPS)/test
 
 build: $(CORE) ## build the simulator and install the package, editable, into .venv
 
-lint: $(STAMPS)/test $(CORE) ## formatting, clippy without and with all features, Rust module cycles, ruff, import layers, mypy, stubs, spelling
+lint: $(STAMPS)/test $(CORE) ## formatting, clippy, Rust module cycles, ruff, import layers, mypy, stubs, spelling
 	cargo fmt --check
 	$(BIN)/ruff format --check
-	cargo clippy --locked --all-targets -- -D warnings
 	PYO3_PYTHON="$(CURDIR)/$(BIN)/python" cargo clippy --locked --all-targets --features python -- -D warnings
 	$(BIN)/python tests/modules/cycles.py src
 	$(BIN)/ruff check
@@ -89,32 +91,34 @@ format: $(STAMPS)/test ## format the Rust and Python sources
 test-rust: ## the physics alone, no Python
 	cargo test --locked --features clarabel,draw
 
-# Of this `make lint` compiles every test; running them builds the crate once more.
-test-bare: ## the physics without any feature
-	cargo test --locked
-
 # One thread for each worker's linear algebra, or the workers fight over the cores. Tests of one file share what
 # it prepares.
 test-python: $(STAMPS)/test $(CORE) ## the Python package
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist loadfile $(PYTEST_ARGS)
 
 # Where rustup cannot fetch LLVM's tools, or there is none, LLVM_COV and LLVM_PROFDATA name those of another install.
-coverage: $(STAMPS)/coverage $(CORE) ## which lines the tests run, of the package and of the physics
+# Which lines the tests run, of the package and of the physics.
+coverage: $(STAMPS)/coverage $(CORE)
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist loadfile --cov=flockenv --cov-report=term:skip-covered $(PYTEST_ARGS)
 	cargo llvm-cov --locked
 
 fuzz: $(STAMPS)/test $(CORE) ## hostile parameters, options, states, files and command lines, for minutes
 	OMP_NUM_THREADS=1 FUZZ_EXAMPLES=$(FUZZ_EXAMPLES) $(BIN)/python -m pytest -n $(JOBS) --timeout 1800 tests/fuzz $(PYTEST_ARGS)
 
-test-browser: $(STAMPS)/browser $(CORE) ## the replay page, clicked and read in headless Chromium
+test-pages: test-js test-browser test-live ## the replay page and the live page: scripts in Node, clicks in headless Chromium
+
+# The replay page, clicked and read in headless Chromium.
+test-browser: $(STAMPS)/browser $(CORE)
 	@tests/browser/need_chromium.sh
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m browser tests/browser $(PYTEST_ARGS)
 
-test-live: live $(STAMPS)/browser ## the live page: its bits against the native ones, and every control in headless Chromium
+# The live page: its bits against the native ones, and every control in headless Chromium.
+test-live: live $(STAMPS)/browser
 	@tests/browser/need_chromium.sh
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m live tests/web tests/browser $(PYTEST_ARGS)
 
-test-js: $(JS_TESTS)/node_modules ## the pages' scripts: style, and unit tests, with Node
+# The pages' scripts: style, and unit tests, with Node.
+test-js: $(JS_TESTS)/node_modules
 	cd $(JS_TESTS) && npm run lint && npm test
 
 # The crate itself needs nothing of this; without rustup, another toolchain's cargo and target will do.
@@ -122,7 +126,8 @@ live: $(CORE) ## the live page: the simulator compiled to WebAssembly, in one fi
 	@rustup target add wasm32-unknown-unknown || rustc --print target-libdir --target wasm32-unknown-unknown
 	$(BIN)/python web/build.py
 
-wheel: $(STAMPS)/venv ## the wheel and the source distribution, into dist
+# The wheel and the source distribution, into dist.
+wheel: $(STAMPS)/venv
 	rm -rf dist
 	$(BIN)/maturin build --release --locked --out dist
 	$(BIN)/maturin sdist --out dist
@@ -156,12 +161,16 @@ audit: $(STAMPS)/audit ## licenses, sources and known vulnerabilities of what th
 	$(UV) pip compile --quiet --universal pyproject.toml $(AUDIT_EXTRAS) --output-file $(STAMPS)/requirements.txt
 	$(BIN)/pip-audit $(AUDIT) --disable-pip --no-deps --requirement $(STAMPS)/requirements.txt
 
-licenses: ## collect the notices of the crates that are compiled in, into LICENSES
+# Collect the notices of the crates that are compiled in, into LICENSES.
+licenses:
 	cargo about --version || cargo install --locked cargo-about --features cli
 	cargo about generate --locked --all-features about.hbs --output-file LICENSES/crates.txt
 
 # Nothing is uploaded. Before the first release there is no tag to compare with.
-publish-check: ## the crate as it would be published: its files, built alone; and its API against the last release
+# The crate as it would be published: its files, built alone; and its API against the last release.
+publish-check:
+	cargo clippy --locked --all-targets -- -D warnings
+	cargo test --locked
 	cargo publish --dry-run --locked $(PUBLISH_ARGS)
 	@base="$${SEMVER_BASELINE:-$$(git describe --tags --abbrev=0 --match 'v*' 2> /dev/null)}"; \
 	if [ -z "$$base" ]; then echo "NOT RUN: cargo semver-checks, for want of a release; SEMVER_BASELINE=COMMIT names another."; else \
@@ -186,7 +195,8 @@ tables: $(STAMPS)/compare $(CORE) ## fill the tables and draw the curves of READ
 	$(BIN)/python docs/tables.py
 	$(BIN)/python docs/leader_curves.py
 
-replay-animation: $(STAMPS)/browser $(CORE) ## photograph the replay page into docs/replay.webp
+# Photograph the replay page into docs/replay.webp.
+replay-animation: $(STAMPS)/browser $(CORE)
 	@tests/browser/need_chromium.sh
 	$(BIN)/python docs/replay_animation.py
 
@@ -203,42 +213,54 @@ env-benchmarl: $(STAMPS)/test
 	  pytest pytest-timeout --excludes requirements-excluded.txt
 	VIRTUAL_ENV="$(CURDIR)/.venv-benchmarl" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
 
-test-rllib: env-rllib ## RLlib on the vector environment and on the parallel one, in .venv-rllib
+test-other: test-$(OTHER) ## OTHER=rllib, benchmarl, ray or slurm: what needs an environment of its own
+
+# RLlib on the vector environment and on the parallel one, in .venv-rllib.
+test-rllib: env-rllib
 	OMP_NUM_THREADS=1 .venv-rllib/bin/python -m pytest -m rllib tests/rllib $(PYTEST_ARGS)
 
-test-benchmarl: env-benchmarl ## the tasks of BenchMARL and its learners, in .venv-benchmarl
+# The tasks of BenchMARL and its learners, in .venv-benchmarl.
+test-benchmarl: env-benchmarl
 	OMP_NUM_THREADS=1 .venv-benchmarl/bin/python -m pytest -m "benchmarl or not benchmarl" tests/benchmarl \
 	  tests/torchrl $(PYTEST_ARGS)
 
 # Ray core without RLlib pins nothing, but what it starts outlives a test that fails: kept apart.
-test-ray: $(STAMPS)/test ## the ray engine on a real local Ray, in .venv-ray
+# The ray engine on a real local Ray, in .venv-ray.
+test-ray: $(STAMPS)/test
 	$(PYTHON) -m venv .venv-ray
 	VIRTUAL_ENV="$(CURDIR)/.venv-ray" $(BIN)/uv pip install -r pyproject.toml --extra plot --extra sweep "ray>=2.40" \
 	  hypothesis pytest pytest-timeout
 	VIRTUAL_ENV="$(CURDIR)/.venv-ray" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
 	.venv-ray/bin/python -m pytest -m ray tests/runs/test_executors.py tests/cluster
 
-test-slurm: $(STAMPS)/test $(CORE) ## the recipe for Slurm on a real one of one node, started here (Linux, root)
+# The recipe for Slurm on a real one of one node, started here (Linux, root).
+test-slurm: $(STAMPS)/test $(CORE)
 	@tests/need.sh "munged slurmctld slurmd sbatch" "slurm-wlm munge"
 	$(BIN)/python -m pytest -m slurm tests/cluster $(PYTEST_ARGS)
 
-throughput: $(STAMPS)/test $(CORE) env-rllib env-benchmarl ## measure speed beside VMAS, MPE2 and the learners' interfaces
+bench: $(BENCH) ## BENCH=throughput, soak, instructions or speed-vs-error (minutes; on a machine that does nothing else)
+
+# Measure speed beside VMAS, MPE2 and the learners' interfaces.
+throughput: $(STAMPS)/test $(CORE) env-rllib env-benchmarl
 	$(PYTHON) -m venv .venv-peers
 	VIRTUAL_ENV="$(CURDIR)/.venv-peers" $(BIN)/uv pip install vmas mpe2 "torch>=2.5" \
 	  --excludes requirements-excluded.txt
 	$(BIN)/python benches/throughput.py $(THROUGHPUT_ARGS)
 	$(BIN)/python benches/learners.py $(THROUGHPUT_ARGS)
 
-soak: $(STAMPS)/test $(CORE) ## ten million control steps with random rudders (minutes)
+# Ten million control steps with random rudders (minutes).
+soak: $(STAMPS)/test $(CORE)
 	$(BIN)/python benches/soak.py $(SOAK_ARGS)
 
 # Counts hold on a busy machine, unlike times. INSTRUCTIONS=--write writes new ones.
-instructions: ## count instructions of substeps and control steps, compare with benches/instructions.csv
+# Count instructions of substeps and control steps, compare with benches/instructions.csv.
+instructions:
 	@tests/need.sh valgrind valgrind || true
 	cargo bench --locked --bench instructions -- $(INSTRUCTIONS)
 
 # Timed parts run one after another, the rest on all cores. Measure on a machine that does nothing else.
-speed-vs-error: $(STAMPS)/compare $(STAMPS)/peers ## measure speed and error against other engines, into docs (minutes)
+# Measure speed and error against other engines, into docs (minutes).
+speed-vs-error: $(STAMPS)/compare $(STAMPS)/peers
 	cargo build --release --manifest-path benches/Cargo.toml
 	rm -rf $(SPEED_DOCS)/speed_vs_error && mkdir -p $(SPEED_DOCS)/speed_vs_error
 	$(SPEED) $(SPEED_ARGS) $(SPEED_DOCS)/speed_vs_error speed profile solvers parts
@@ -249,7 +271,8 @@ speed-vs-error: $(STAMPS)/compare $(STAMPS)/peers ## measure speed and error aga
 		overlap slide wall_push momentum horizon order
 	$(BIN)/python benches/report $(SPEED_DOCS)/speed_vs_error $(SPEED_FILES)
 
-lint-benches: ## formatting and clippy of the comparison with other engines
+# Formatting and clippy of the comparison with other engines.
+lint-benches:
 	cargo fmt --check --manifest-path benches/Cargo.toml
 	cargo clippy --release --all-targets --manifest-path benches/Cargo.toml -- -D warnings
 
