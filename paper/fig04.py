@@ -9,7 +9,7 @@ from states import STATES
 from study import Options, Row, main, picture, simulated
 
 import flockenv
-from flockenv.statistics.structure import largest_cluster
+from flockenv.statistics.structure import structure_series
 
 _TITLES = ("jamming", "clustering", "ordered motion", "disordered motion")
 _NOISE_S = (0.4, 1.6, 1.0, 2.8)
@@ -29,7 +29,7 @@ def clearest(state: str, bw_s: float, minutes: float) -> tuple[flockenv.Recordin
         run = simulated(row, sample_hz=2.0)
         used = np.flatnonzero(run.in_analysis_window)
         clusters = np.zeros(len(run.time_s))
-        clusters[used] = largest_cluster(run.parameters, run.pose[used])
+        clusters[used] = structure_series("largest_cluster", run.parameters, run.pose[used])
         names = run.order.states(run.parameters.speed_cm_s, clusters)[used]
         worth = {"clustering": clusters[used], "disordered": -run.order.psi_o[used]}.get(
             state, run.order.psi_o[used]

@@ -8,7 +8,7 @@ import pandas as pd
 from study import Row
 
 import flockenv
-from flockenv.statistics.structure import largest_cluster
+from flockenv.statistics.structure import structure_series
 
 _STAYS = 3
 """Cycles in a row for which a series stays above a level that it has reached."""
@@ -18,7 +18,7 @@ def cycles(run: flockenv.Recording) -> pd.DataFrame:
     """Return means over each analysis window, and its most frequent state."""
     used = np.flatnonzero(run.in_analysis_window)
     clusters = np.zeros(len(run.time_s))
-    clusters[used] = largest_cluster(run.parameters, run.pose[used])
+    clusters[used] = structure_series("largest_cluster", run.parameters, run.pose[used])
     states = run.order.states(run.parameters.speed_cm_s, clusters)[used]
     window = np.cumsum(np.diff(run.time_s[used], prepend=-10.0) > 1.0)
     order = run.order
