@@ -15,7 +15,7 @@ READING = "experiment (leapfrog, white), narrow, n = 27"
 
 
 def design() -> list[Row]:
-    """Return runs of 8 minutes, the length of the paper's, all setups of a seed together."""
+    """Return runs of 8 minutes, the length of the paper's, those without leaders first."""
     return [
         {
             "preset": "experiment",
@@ -25,8 +25,8 @@ def design() -> list[Row]:
             "minutes": 8.0,
             "seed": seed,
         }
+        for leaders, target in (SETUPS[name] for name in (FREE, CW, CCW))
         for seed in range(SEEDS)
-        for leaders, target in SETUPS.values()
         for bw_s in LEVELS_S
     ]
 
