@@ -16,7 +16,8 @@ import { download, recordingOf, runOfFile } from "./share.mjs";
 const CHARTS = ["psi_o", "rotation", "signed_order"];
 /** Seconds of the charts before and after the present. */
 const REACH = 60;
-const TRAIL_SECONDS = 10;
+/** How long trails are, in s, and in all boats together: they take most of the time in which many boats are drawn. */
+const [TRAIL_SECONDS, TRAIL_BOAT_SECONDS] = [10, 270];
 /** How long the simulator may compute for one frame, in ms. */
 const FRAME_WORK = 12;
 /** How often, in ms, words and numbers that nobody reads faster are written. */
@@ -500,7 +501,8 @@ export class LivePage {
     }
     const start = performance.now();
     const boat = this.hovered ?? this.pinned;
-    const options = { trailSeconds: TRAIL_SECONDS, forceScale: byId("forces").checked ? FORCE : null, boat, palette: this.palette };
+    const trailSeconds = Math.min(TRAIL_SECONDS, TRAIL_BOAT_SECONDS / this.runs[0].boats);
+    const options = { trailSeconds, forceScale: byId("forces").checked ? FORCE : null, boat, palette: this.palette };
     for (const panel of this.panels.filter(({ canvas }) => canvas.clientWidth > 0)) {
       panel.show(this.time, options);
       if (this.pinned !== null && !this.isYours) {
