@@ -52,13 +52,13 @@ def load_recording(path: Path, layout: Path | None = None, *, quiet: bool = Fals
     ParameterError
         If the file cannot be read, is damaged, or neither; the message names it.
     """
-    from flockenv.tracks import SUFFIXES, read_layout, read_tracks
+    from flockenv.tracks import SUFFIXES, load_tracks, read_layout
 
     if layout is not None or path.suffix.lower() in SUFFIXES:
         beside = path.with_suffix(".toml")
         if layout is None and path.exists() and not beside.exists():
             _guess(path, beside)
-        tracks = read_tracks(path, None if layout is None else read_layout(layout))
+        tracks = load_tracks(path, None if layout is None else read_layout(layout))
         if not quiet:
             say(f"{printable(path)}: {tracks.report}", errors)
         return tracks.to_recording()

@@ -9,6 +9,7 @@ from flockenv.tracks.reader import (
     Tracks,
     from_movement,
     from_table,
+    load_tracks,
     read_tracks,
 )
 from flockenv.tracks.writer import EXPORTS, export
@@ -24,6 +25,7 @@ __all__ = [
     "from_table",
     "guess_layout",
     "layout_beside",
+    "load_tracks",
     "read_layout",
     "read_tracks",
     "recording_of",

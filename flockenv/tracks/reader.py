@@ -25,6 +25,7 @@ __all__ = [
     "Tracks",
     "from_movement",
     "from_table",
+    "load_tracks",
     "read_table",
     "read_tracks",
 ]
@@ -114,8 +115,16 @@ class Tracks:
         )
 
 
-def read_tracks(path: str | os.PathLike[str], layout: TrackLayout | None = None) -> Tracks:
-    """Read tracks from a file.
+def read_tracks(path: str | os.PathLike[str], layout: TrackLayout | None = None) -> Recording:
+    """Read tracks from a file as a recording, which is analyzed and replayed like a simulated one.
+
+    Parameters are those of `load_tracks`, errors also those of `recording_of`.
+    """
+    return load_tracks(path, layout).to_recording()
+
+
+def load_tracks(path: str | os.PathLike[str], layout: TrackLayout | None = None) -> Tracks:
+    """Read tracks from a file as arrays, with the report of what was left out.
 
     Parameters
     ----------

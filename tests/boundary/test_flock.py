@@ -3,10 +3,8 @@
 import contextlib
 import copy
 import math
-import os
 import pickle
 import signal
-import threading
 
 import numpy as np
 import pytest
@@ -240,17 +238,15 @@ def test_motion_that_explodes_is_a_solver_error_and_undone(parameters):
     assert np.array_equal(flock.pose, pose)
 
 
-def test_a_signal_stops_a_long_advance_and_undoes_it(flock):
+def test_a_signal_stops_a_long_advance_and_undoes_it(flock, signaled_in_the_core):
     def stop(number, frame):
         raise InterruptedError
 
     flock.advance(1.0)
     before = flock.snapshot()
     usual = signal.signal(signal.SIGUSR1, stop)
-    timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGUSR1))
-    timer.start()
     try:
-        with pytest.raises(InterruptedError):
+        with pytest.raises(InterruptedError), signaled_in_the_core(signal.SIGUSR1):
             flock.advance(1e8)
     finally:
         signal.signal(signal.SIGUSR1, usual)

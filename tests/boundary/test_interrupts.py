@@ -1,7 +1,6 @@
 """Law: Ctrl-C ends long work at once, as a `KeyboardInterrupt`, and leaves everything as it was."""
 
 import signal
-import threading
 
 import pytest
 
@@ -10,15 +9,6 @@ from flockenv import Flock, FlockParameters
 
 #: Nearly as many boats as the pool holds: placing them takes seconds.
 CROWD = FlockParameters(n_boats=5000, pool=(560.0, 10.0))
-
-
-@pytest.fixture
-def pressed():
-    """Ctrl-C, 0.3 s from now."""
-    timer = threading.Timer(0.3, signal.raise_signal, [signal.SIGINT])
-    timer.start()
-    yield
-    timer.cancel()
 
 
 @pytest.mark.parametrize(
@@ -30,6 +20,6 @@ def pressed():
         lambda: flockenv.LeadersVectorEnv(3, params=CROWD.replace(n_leaders=1)).reset(seed=1),
     ],
 )
-def test_placement_can_be_interrupted(work, pressed):
-    with pytest.raises(KeyboardInterrupt):
+def test_placement_can_be_interrupted(work, signaled_in_the_core):
+    with pytest.raises(KeyboardInterrupt), signaled_in_the_core(signal.SIGINT):
         work()

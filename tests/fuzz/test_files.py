@@ -84,7 +84,7 @@ KINDS = {
     ),
     "arrays of tracks": (
         lambda path: np.savez(path, time_s=RUN.time_s, pose=RUN.pose),
-        lambda path: read_tracks(path, TrackLayout(pool="narrow", wrapped=False)).to_recording(),
+        lambda path: read_tracks(path, TrackLayout(pool="narrow", wrapped=False)),
         lambda found: np.array_equal(found.pose, RUN.pose),
     ),
     "parameters": (

@@ -185,14 +185,14 @@ def test_files_with_their_layout_beside_them(seen, tmp_path):
     seen.table.to_parquet(tmp_path / "tracks.parquet", index=False)
     expected = from_table(seen.table, LAYOUT).to_recording()
     for name in ("tracks.csv", "tracks.parquet"):
-        assert read_tracks(tmp_path / name).to_recording() == expected
+        assert read_tracks(tmp_path / name) == expected
 
 
 def test_arrays(seen, tmp_path):
     truth = seen.truth
     np.savez(tmp_path / "tracks.npz", time_s=truth.time_s, pose=truth.pose)
     layout = TrackLayout(pool="narrow", leaders=("0", "1"), wrapped=False)
-    found = read_tracks(tmp_path / "tracks.npz", layout).to_recording()
+    found = read_tracks(tmp_path / "tracks.npz", layout)
     assert np.array_equal(found.pose, truth.pose)
     assert (found.order.psi_o == truth.order.psi_o).all()
     np.savez(tmp_path / "other.npz", position=truth.pose)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv.tracks import export, from_table, read_tracks
+from flockenv.tracks import export, from_table, load_tracks, read_tracks
 
 from .conftest import LAYOUT, PARAMETERS
 
@@ -13,7 +13,7 @@ from .conftest import LAYOUT, PARAMETERS
 def test_tables_are_read_back(seen, tmp_path, suffix):
     written = export(seen.truth, tmp_path / f"run{suffix}")
     assert [path.name for path in written] == [f"run{suffix}", "run.toml"]
-    found = read_tracks(written[0])
+    found = load_tracks(written[0])
     recording = found.to_recording()
     assert found.report.samples == seen.truth.pose[..., 0].size
     assert np.allclose(recording.time_s, seen.truth.time_s, atol=1e-12)
@@ -24,7 +24,7 @@ def test_tables_are_read_back(seen, tmp_path, suffix):
 
 def test_tracked_boats_keep_their_names(seen, tmp_path):
     tracked = from_table(seen.table, LAYOUT).to_recording()
-    again = read_tracks(export(tracked, tmp_path / "run.csv")[0]).to_recording()
+    again = read_tracks(export(tracked, tmp_path / "run.csv")[0])
     assert again.ids.tolist() == tracked.ids.tolist()
     assert np.allclose(again.pose, tracked.pose, atol=1e-9, equal_nan=True)
 
