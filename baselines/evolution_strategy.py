@@ -21,10 +21,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from provenance import provenance_of
 
 import flockenv
 from flockenv._io.array_file import read_arrays, write_arrays
-from flockenv._io.provenance import provenance_of
 from flockenv.policies import NetworkPolicy
 from flockenv.runs.seeds import POLICY_SEEDS
 

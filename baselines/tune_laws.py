@@ -21,12 +21,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import tomli_w
+from provenance import provenance_of
 from rich.progress import Progress
 
 import flockenv
 from flockenv._io.atomic_write import write_csv, write_text
 from flockenv._io.extras import require
-from flockenv._io.provenance import provenance_of
 from flockenv.comparison import run_episodes
 from flockenv.policies import DampedLaw, SignCorrectedLaw
 from flockenv.runs.seeds import POLICY_SEEDS

@@ -4,7 +4,7 @@ import platform
 import subprocess
 from pathlib import Path
 
-from flockenv import _core
+import flockenv
 
 __all__ = ["commit", "provenance_of"]
 
@@ -14,7 +14,7 @@ def commit() -> str:
 
     Only a checkout knows its commit: an installed package has its version.
     """
-    root = Path(__file__).parents[2]
+    root = Path(__file__).parents[1]
     if not (root / ".git").exists():
         return "unknown"
 
@@ -37,7 +37,7 @@ def provenance_of(
     hours = {} if flock_hours is None else {"flock_hours": f"{flock_hours:.6g}"}
     return {
         "command": command,
-        "flockenv": _core.__version__,
+        "flockenv": flockenv.__version__,
         "commit": commit(),
         "python": platform.python_version(),
         "seed": str(seed),
