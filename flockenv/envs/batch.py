@@ -115,6 +115,14 @@ class LeaderBatch:
         """Return the order parameters of every flock, a row each."""
         return self._core.order_parameters()
 
+    def poses(self) -> NDArray[np.float64]:
+        """Return the poses of all boats, shape (flocks, n, 3)."""
+        return self._core.poses()
+
+    def velocities(self) -> NDArray[np.float64]:
+        """Return the velocities of all boats, shape (flocks, n, 3)."""
+        return self._core.velocities()
+
     def in_analysis_window(self) -> NDArray[np.bool_]:
         """Return for every flock whether its episode is in the analysis window."""
         return self._core.in_analysis_window().ravel()

@@ -1,14 +1,14 @@
 """`LeadersVectorEnv`: many flocks behind Gymnasium's vector interface, stepped at once in Rust."""
 
 import copy
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Self
 
 import gymnasium
 import numpy as np
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
 from flockenv.envs.docs import specified
@@ -16,10 +16,13 @@ from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.options import EnvOptions
 from flockenv.envs.render_mode import RenderMode
 from flockenv.envs.spaces import flat_actions, joint_action_space
-from flockenv.errors import ParameterError
+from flockenv.errors import EpisodeError, ParameterError
 from flockenv.rendering.frames import DEFAULT_SIZE
 
-__all__ = ["LeadersVectorEnv"]
+__all__ = ["LeadersVectorEnv", "Reward"]
+
+Reward = Callable[["LeadersVectorEnv"], ArrayLike]
+"""A reward of a user's own: of the environment after its step."""
 
 
 @specified
@@ -64,6 +67,14 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
     {general_sum} In `reset` a tuple has one target per leader, since a list has one option per
     flock.
 
+    With opposite targets that mean says little: `leader_rewards()` returns each leader's own.
+
+    `reward` may also be a function of this environment, which `step` calls once the flocks have
+    moved and which returns rewards (num_envs,), or (num_envs, k) for each leader. It looks at
+    `poses()`, `velocities()`, `order_parameters()`, `reward_terms()` and the like. The summary of
+    an episode has no `total_reward` then. A flock that starts anew in the same step has nothing
+    left to look at: `autoreset_mode="same_step"` is refused.
+
     {reward_table}
 
     ## Starting state
@@ -104,6 +115,14 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
     ) -> None:
         self.autoreset_mode = _autoreset_mode(autoreset_mode)
         num_envs = at_least_one(num_envs, "num_envs")
+        self._reward: Reward | None = None
+        if callable(options.get("reward")):
+            self._reward, options["reward"] = options["reward"], {}
+            if self.autoreset_mode == AutoresetMode.SAME_STEP:
+                raise ParameterError(
+                    "reward = a function is not accepted with autoreset_mode 'same_step': "
+                    "'next_step' or 'disabled'"
+                )
         parsed = EnvOptions.parse(options)
         self.num_envs = num_envs
         self.num_leaders = parsed.parameters.n_leaders
@@ -126,6 +145,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         self.single_state_space = self._batch.state_space
         self.flock_feature_space = self._batch.flock_feature_space
         self._actions_shape = (num_envs, self.num_leaders)
+        self._rewards: NDArray[np.float64] | None = None
 
     def reset(
         self,
@@ -190,20 +210,43 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         Raises
         ------
         ParameterError
-            For NaN and wrong shapes; nothing has moved then.
+            For NaN and wrong shapes; nothing has moved then. For rewards of a function that have
+            another shape or are not finite; the flocks have moved then.
         EpisodeError
             Before the first reset, and after an episode's end with ``"disabled"``.
         """
         flat = flat_actions(actions, self._actions_shape, self._batch.settings["rudder_levels"])
+        flocks = range(self.num_envs) if self._reward is not None else ()
+        over = [flock for flock in flocks if not self._batch.is_running(flock)]
         observations, rewards, truncated = self._batch.step(flat)
+        self._rewards = rewards.reshape(self._actions_shape)
+        if self._reward is not None:
+            self._rewards = self._valued(self._reward(self))
+            # A step that only starts the next episode is worth nothing.
+            self._rewards[over] = 0.0
         infos = self._end_infos(truncated) if truncated.any() else {}
         return (
             self._shaped(observations),
-            rewards.reshape(self._actions_shape).mean(axis=1),
+            self._rewards.mean(axis=1),
             np.zeros(self.num_envs, np.bool_),
             truncated,
             infos,
         )
+
+    def _valued(self, rewards: ArrayLike) -> NDArray[np.float64]:
+        """Return a function's rewards by leader, shape (num_envs, k)."""
+        try:
+            found = np.array(rewards, np.float64)
+        except (TypeError, ValueError) as error:
+            raise ParameterError("the function of reward must return numbers") from error
+        if found.shape == (self.num_envs,):
+            found = np.repeat(found[:, None], self.num_leaders, axis=1)
+        if found.shape != self._actions_shape or not np.isfinite(found).all():
+            raise ParameterError(
+                f"the function of reward returned shape {found.shape}, expected finite numbers of "
+                f"shape ({self.num_envs},) or {self._actions_shape}"
+            )
+        return found
 
     def _shaped(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
         return rows.reshape(self.num_envs, -1)
@@ -212,6 +255,8 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         infos: dict[str, Any] = {}
         for flock in np.flatnonzero(truncated).tolist():
             info = self._batch.end_info(flock)
+            if self._reward is not None:
+                info["episode_summary"].pop("total_reward", None)
             if self.autoreset_mode == AutoresetMode.SAME_STEP:
                 last = self._batch.final_observation(flock).reshape(-1)
                 infos = self._add_info(infos, {"final_obs": last, "final_info": info}, flock)
@@ -237,6 +282,26 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         return {
             name: rows.reshape(self._actions_shape).mean(axis=1) for name, rows in terms.items()
         }
+
+    def leader_rewards(self) -> NDArray[np.float64]:
+        """Return each leader's own reward of the last step, shape (num_envs, k).
+
+        Raises
+        ------
+        EpisodeError
+            Before the first step.
+        """
+        if self._rewards is None:
+            raise EpisodeError("leader_rewards was called before the first step")
+        return self._rewards.copy()
+
+    def poses(self) -> NDArray[np.float64]:
+        """Return all poses, shape (num_envs, n, 3): [x cm, y cm, heading rad], leaders first."""
+        return self._batch.poses()
+
+    def velocities(self) -> NDArray[np.float64]:
+        """Return all velocities, shape (num_envs, n, 3): [cm/s, cm/s, rad/s], leaders first."""
+        return self._batch.velocities()
 
     def order_parameters(self) -> NDArray[np.float64]:
         """Return order parameters of the normal boats now.

@@ -1,0 +1,79 @@
+"""Law: the vector environment gives each leader's reward, all boats' states, and takes a reward."""
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv import EpisodeError, LeadersVectorEnv, ParameterError
+
+SMALL = {"n_boats": 8, "n_leaders": 2, "pool": "narrow", "episode_s": 0.5}
+ACTIONS = np.array([[0.5, -0.5], [1.0, 0.0], [0.0, 0.0]])
+
+
+def started(**options) -> LeadersVectorEnv:
+    env = LeadersVectorEnv(3, **SMALL, **options)
+    env.reset(seed=4)
+    return env
+
+
+def test_opposed_leaders_have_opposite_rewards_of_their_own():
+    env = started(target=["cw", "ccw"])
+    with pytest.raises(EpisodeError, match="before the first step"):
+        env.leader_rewards()
+    _, rewards, *_ = env.step(ACTIONS)
+    own = env.leader_rewards()
+    assert rewards == pytest.approx(np.zeros(3), abs=1e-15)
+    assert own[:, 0] == pytest.approx(-own[:, 1], abs=1e-12)
+    assert np.abs(own).max() > 0.01
+
+
+def test_states_are_those_of_the_flocks():
+    env = started()
+    env.step(ACTIONS)
+    assert env.poses().shape == env.velocities().shape == (3, 8, 3)
+    for place in range(3):
+        flock = flockenv.Flock(env._batch.parameters(place), 4 + place)
+        flock.advance(0.1, ACTIONS[place])
+        assert np.array_equal(env.poses()[place], flock.pose)
+        assert np.array_equal(env.velocities()[place], flock.velocity)
+
+
+def closeness(env: LeadersVectorEnv) -> np.ndarray:
+    pose = env.poses()
+    return -np.hypot(pose[:, 0, 0] - pose[:, 1, 0], pose[:, 0, 1] - pose[:, 1, 1])
+
+
+def test_a_function_of_the_environment_is_its_reward():
+    env, plain = started(reward=closeness), started()
+    for _ in range(4):
+        observations, rewards, *_ = env.step(ACTIONS)
+        assert np.array_equal(observations, plain.step(ACTIONS)[0])
+        assert np.array_equal(rewards, closeness(plain))
+        assert np.array_equal(env.leader_rewards(), np.stack([closeness(plain)] * 2, axis=1))
+    *_, truncated, infos = env.step(ACTIONS)
+    assert truncated.all()
+    assert "total_reward" not in infos["episode_summary"]
+    # The next step starts the next episode.
+    assert not env.step(ACTIONS)[1].any()
+    assert env.step(ACTIONS)[1].all()
+
+
+def test_a_function_may_value_each_leader():
+    env = started(reward=lambda env: env.poses()[:, :2, 0])
+    _, rewards, *_ = env.step(ACTIONS)
+    assert np.array_equal(env.leader_rewards(), env.poses()[:, :2, 0])
+    assert rewards == pytest.approx(env.poses()[:, :2, 0].mean(axis=1))
+
+
+@pytest.mark.parametrize(
+    "returned", [np.zeros(2), np.zeros((3, 3)), np.full(3, np.nan), 1.0, ["a", "b", "c"], None]
+)
+def test_rewards_that_are_none_are_refused(returned):
+    env = started(reward=lambda env: returned)
+    with pytest.raises(ParameterError, match="the function of reward"):
+        env.step(ACTIONS)
+
+
+def test_a_function_needs_the_end_of_an_episode_to_look_at():
+    with pytest.raises(ParameterError, match="same_step"):
+        LeadersVectorEnv(2, autoreset_mode="same_step", reward=closeness, **SMALL)
