@@ -63,7 +63,7 @@ def tune(law: str, pool: str, options: argparse.Namespace, progress: Progress) -
     middle, widths = np.array(list(ranges.values())).T
     # The search needs two coordinates at least; for a law with one gain the second has no effect.
     first = np.zeros(max(2, len(ranges)))
-    search = require("cmaes", "fit").CMA(mean=first, sigma=0.5, seed=options.seed)
+    search = require("cmaes", "search").CMA(mean=first, sigma=0.5, seed=options.seed)
     parameters, rows = flock_parameters(pool, options), []
 
     def gains(place: np.ndarray) -> dict[str, float]:
