@@ -6,7 +6,7 @@
 Runs of the simulator are seen by a camera: positions in whole pixels, headings with an error,
 detections that fail, and names that are exchanged between boats that are close to each other. The
 tracks are read as anybody's would be (`flockenv.tracks`), and the quantities of the normal boats
-are compared with those of the run. `make tables` shows the errors in docs/tracks.md.
+are compared with those of the run. docs/tracks.md shows the errors.
 """
 
 import argparse
@@ -99,12 +99,11 @@ def main() -> None:
             errors = {
                 each: float(np.abs(found[each] - expected[each]).mean()) for each in QUANTITIES
             }
-            left_out = {"jumps": tracks.report.jumps, "broken": tracks.report.broken}
-            rows.append({"camera": name, "seed": seed, **errors, **left_out})
-    table = pd.DataFrame(rows)
+            rows.append({"camera": name, **errors})
+    means = pd.DataFrame(rows).groupby("camera", sort=False).mean().reset_index()
     options.out.parent.mkdir(parents=True, exist_ok=True)
-    table.to_csv(options.out, index=False, float_format="%.6g", lineterminator="\n")
-    print(table.groupby("camera", sort=False)[[*QUANTITIES]].mean().to_string())
+    means.to_csv(options.out, index=False, float_format="%.2g", lineterminator="\n")
+    print(means.to_string(index=False))
     print(f"written to {options.out}")
 
 

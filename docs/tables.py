@@ -180,27 +180,6 @@ def parameters() -> str:
     return markdown(["field", "unit", *presets, "accepted", "meaning"], body)
 
 
-# --- tracks ---------------------------------------------------------------------------------------
-
-
-def track_errors() -> str:
-    """Return the mean absolute errors of what tracks of a camera say of a flock."""
-    file = "results/track_errors.csv"
-    names = {
-        "psi_o": "Ψ_o",
-        "nematic": "Ψ_n",
-        "milling": "M",
-        "psi_v": "Ψ_v [cm/s]",
-        "largest_cluster": "largest cluster",
-    }
-    body = []
-    for camera in dict.fromkeys(row["camera"] for row in rows(file)):
-        runs = rows(file, camera=camera)
-        means = (sum(float(row[name]) for row in runs) / len(runs) for name in names)
-        body.append([camera, *(f"{mean:.2g}" for mean in means)])
-    return markdown(["camera", *names.values()], body)
-
-
 TABLES: dict[str, Callable[[], str]] = {
     "parameters": parameters,
     "easy": easy,
@@ -210,7 +189,6 @@ TABLES: dict[str, Callable[[], str]] = {
     "leader-motion": leader_motion,
     "strong-wide": strong_wide,
     "other-scenes": other_scenes,
-    "track-errors": track_errors,
     **TRAINING_TABLES,
 }
 """How each table is made."""
