@@ -47,9 +47,11 @@ STUDY = Study("section4", design, measure)
 
 
 def setup(table: pd.DataFrame, name: str) -> pd.DataFrame:
-    """Return the runs of a setup."""
+    """Return the runs of a setup, of the seeds that have been run at every noise."""
     leaders, target = SETUPS[name]
-    return table[(table["n_leaders"] == leaders) & (table["target"] == target)]
+    found = table[(table["n_leaders"] == leaders) & (table["target"] == target)]
+    noises = found.groupby("seed")["bw_s"].transform("size")
+    return found[noises == noises.max()]
 
 
 def within(runs: pd.DataFrame, least: float, most: float = 9.0) -> pd.DataFrame:

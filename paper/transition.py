@@ -45,7 +45,7 @@ def doubling(table: pd.DataFrame, start: str) -> Interval:
     """
     chosen = table[table["start"] == start]
     sizes = sorted(chosen["n_boats"].unique())
-    if len(sizes) < 2:
+    if len(sizes) < 3:
         return math.nan, math.nan, math.nan
     groups = [
         chosen.loc[chosen["n_boats"] == n, ["stayed_min", "exited"]].to_numpy() for n in sizes
@@ -78,6 +78,16 @@ def judge(table: pd.DataFrame) -> Claims:
                     least=0.5,
                     n=f"{n:g}",
                 )
+                stayed = runs.loc[runs["exited"] == 0, "drift_per_h"].dropna()
+                if start == "one-jam" and len(stayed):
+                    claims.add(
+                        "A jam that stays does not shrink",
+                        "drift of the largest jam's share of the boats in the runs that stay (1/h)",
+                        mean(stayed),
+                        len(stayed),
+                        least=-0.05,
+                        n=f"{n:g}",
+                    )
             claims.add(
                 f"The larger a flock that starts {words}, the longer it stays so",
                 "factor of exits per hour for each doubling of n",

@@ -30,11 +30,14 @@ def slope(table: pd.DataFrame, policy: str, n_boats: int, bw_s: float) -> Interv
 
 
 def worth(table: pd.DataFrame, policy: str, n_boats: int, bw_s: float) -> Interval:
-    """Return a policy's response over that of the law, with as many leaders."""
+    """Return a policy's response over that of the law, with as many leaders.
+
+    NaN where the interval of the law's response includes 0.
+    """
     leaders = {27: 1, 100: 4, 400: 15}[n_boats]
     same = {"n_boats": n_boats, "bw_s": bw_s, "leaders": leaders, "against": 0}
     groups = [of(table, policy=name, **same) for name in (policy, LAW)]
-    if min(map(len, groups)) < 3:
+    if min(map(len, groups)) < 3 or not mean(groups[1][:, 0])[1] > 0.0:
         return math.nan, math.nan, math.nan
     return bca(groups, lambda ours, theirs: ours[..., 0].mean(-1) / theirs[..., 0].mean(-1))
 
