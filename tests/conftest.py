@@ -19,7 +19,13 @@ import pytest
 FUZZ_EXAMPLES = os.environ.get("FUZZ_EXAMPLES")
 
 # A busy machine makes an example slow, not wrong. What `make fuzz` finds becomes an @example.
-hypothesis.settings.register_profile("fixed", deadline=None, derandomize=True)
+hypothesis.settings.register_profile(
+    "fixed",
+    deadline=None,
+    derandomize=True,
+    # A busy machine is slow; that is no fault of an example.
+    suppress_health_check=[hypothesis.HealthCheck.too_slow],
+)
 hypothesis.settings.register_profile(
     "fuzz",
     max_examples=int(FUZZ_EXAMPLES or 60),
