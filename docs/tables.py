@@ -14,9 +14,7 @@ from committed_data import (
     DIFFERENCES,
     MEANS,
     POOLS,
-    Row,
     difference,
-    interval,
     markdown,
     one,
     order,
@@ -84,28 +82,6 @@ def leaders_of(pool: str, policies: Sequence[str]) -> str:
     return markdown(["leaders", *policies, "learned minus tuned damped law"], body)
 
 
-def other_scenes() -> str:
-    """Return the order with three leaders in scenes that no search has used."""
-    scenes = {
-        "`wide`, bw = 0.15 s": ("less-noise", "wide-bw-0.15"),
-        "`wide`, bw = 0.25 s": ("less-noise", "wide-bw-0.25"),
-        "`wide`, alternating target": ("alternating-wide", "wide-bw-0.31"),
-        "`wide`, 0.3 % of positions dropped": ("drop-outs-wide", "wide-bw-0.31"),
-        "`narrow`, alternating target": ("alternating-narrow", "narrow-bw-0.45"),
-        "`narrow`, 0.3 % of positions dropped": ("drop-outs-narrow", "narrow-bw-0.45"),
-    }
-    body = []
-    for title, (comparison, scene) in scenes.items():
-        mean = one(MEANS, comparison=comparison, scene=scene, policy="learned")
-        gains = [
-            one(DIFFERENCES, comparison=comparison, scene=scene, policy="learned", reference=law)
-            for law in ("steering law", "tuned damped law")
-        ]
-        body.append([title, mean["runs"], order(mean), *(difference(row) for row in gains)])
-    header = ["scene", "episodes", "learned", "minus the paper's law", "minus the tuned damped law"]
-    return markdown(header, body)
-
-
 def strong_wide() -> str:
     """Return the order in wide with more than the boats' rudder, for the same policies."""
     policies = ("tuned damped law", "learned")
@@ -148,22 +124,6 @@ def leader_motion() -> str:
     return markdown(header, body)
 
 
-def easy() -> str:
-    """Return what PPO reached in the easy environment, per seed, beside fixed policies."""
-
-    def reward(row: Row) -> str:
-        return interval(row, "reward", "reward_low", "reward_high")
-
-    body = [[row["policy"], "", "", reward(row)] for row in rows("easy/curve.csv", seed="")]
-    curves = rows("easy/curve.csv", policy="PPO")
-    for seed in sorted({row["seed"] for row in curves}):
-        own = [row for row in curves if row["seed"] == seed]
-        for row in (own[0], own[len(own) // 2], own[-1]):
-            cpu = f"{float(row['cpu_s']):.0f} s"
-            body.append([f"PPO, seed {seed}", row["samples"], cpu, reward(row)])
-    return markdown(("policy", "samples", "processor time", "reward per control step"), body)
-
-
 def parameters() -> str:
     """Return what the core declares of each parameter, with the values of the presets."""
     presets = {name: FlockParameters.preset(name).to_dict() for name in FlockParameters.presets()}
@@ -182,13 +142,11 @@ def parameters() -> str:
 
 TABLES: dict[str, Callable[[], str]] = {
     "parameters": parameters,
-    "easy": easy,
     "leader-count": leader_count,
     "leaders-wide": lambda: leaders_of("wide", ("steering law", "tuned damped law", "learned")),
     "leaders-narrow": lambda: leaders_of("narrow", ("steering law", "tuned damped law", "learned")),
     "leader-motion": leader_motion,
     "strong-wide": strong_wide,
-    "other-scenes": other_scenes,
     **TRAINING_TABLES,
 }
 """How each table is made."""

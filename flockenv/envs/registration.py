@@ -9,18 +9,22 @@ __all__ = ["EASY_ID", "ENVIRONMENTS", "ENV_ID", "register"]
 
 ENV_ID = "flockenv/Leaders-v0"
 
-EASY_ID = "flockenv/Circulate-easy-v0"
+EASY_ID = "flockenv/Order-easy-v0"
 
 ENVIRONMENTS: Mapping[str, Mapping[str, Any]] = {
     ENV_ID: {},
-    # One leader among few boats, paid for its own motion at once: baselines/learn_easy.py.
+    # Few boats and many leaders, so that samples show the order: baselines/learn_easy.py.
     EASY_ID: {
-        "n_boats": 9,
-        "n_leaders": 1,
+        "n_boats": 10,
+        "n_leaders": 4,
         "pool": "narrow",
-        "control_hz": 5.0,
-        "episode_s": 60.0,
-        "reward": {"leader_velocity": 1.0},
+        "bw_s": 0.3,
+        "target": "random",
+        "mirror_to_target": True,
+        "control_hz": 2.5,
+        "episode_s": 120.0,
+        "reward": {"signed_order": 1.0},
+        "physics": "training",
     },
 }
 """Registered ids, and the options in which each differs from the defaults."""

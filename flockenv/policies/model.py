@@ -213,12 +213,20 @@ def load_model(
     OSError
         If the file cannot be opened.
     ParameterError
-        If the model cannot be made from the file, or was not trained on an environment here.
+        If the model cannot be made from the file, was trained in `VecNormalize`, or was not trained
+        on an environment here.
     """
     saving = require("stable_baselines3.common.save_util", "train")
     try:
         with zipfile.ZipFile(path) as archive:
             stored = json.loads(archive.read("data"))
+        # Written by trainings in VecNormalize alone.
+        if stored.get("_last_original_obs") is not None:
+            raise ParameterError(
+                "it was trained in VecNormalize, and its file does not hold how observations were "
+                "normalized: steer with the model in memory, or train without it, as observations "
+                "are scaled already"
+            )
         # Schedules, buffers and the like need not be read, let alone executed.
         skipped = dict.fromkeys(stored.keys() - set(_NEEDED))
         data, weights, _ = saving.load_from_zip_file(path, device="cpu", custom_objects=skipped)
@@ -227,6 +235,8 @@ def load_model(
         model.set_training_mode(False)
     except OSError:
         raise
+    except ParameterError as error:
+        raise ParameterError(f"{path} is not accepted: {error}") from error
     # The file's own code may raise anything.
     except Exception as error:
         raise ParameterError(

@@ -18,6 +18,7 @@ EXECUTED = {
     "docs/start.md": ["python", "sh"],
     "docs/api/flock.md": ["python"],
     "docs/extend/policy.md": ["python"],
+    "docs/train_in_four_minutes.md": ["python", "sh"],
     "docs/train_with_sb3.md": ["python", "sh"],
     "docs/other_learners.md": ["python"],
     "docs/tracks.md": ["python", "sh"],
@@ -32,7 +33,7 @@ NO_FILES_YET = {
     "baselines/suite",
     "docs/suite/v2.csv",
     "docs/_build/html",
-    "flockenv/Circulate-easy-v0",
+    "flockenv/Order-easy-v0",
     "flockenv/Leaders-v0",
     "flockenv/leaders",
     "flockenv/lean",
@@ -57,9 +58,29 @@ def run_shell(cli):
     return run
 
 
+@pytest.fixture
+def _minutes_in_seconds(monkeypatch):
+    """Let trainings on the pages take three rollouts, and comparisons two flocks each."""
+    from stable_baselines3 import PPO
+
+    from flockenv import comparison
+
+    learn, compare = PPO.learn, comparison.compare_leaders
+
+    def compared(*arguments, **options):
+        return compare(*arguments, **{**options, "seeds": range(2)})
+
+    monkeypatch.setattr(
+        PPO, "learn", lambda model, samples: learn(model, 3 * model.n_steps * model.n_envs)
+    )
+    monkeypatch.setattr(comparison, "compare_leaders", compared)
+
+
 @pytest.mark.parametrize("page", EXECUTED)
-def test_blocks_run(page, tmp_path, monkeypatch, run_shell):
+def test_blocks_run(page, tmp_path, monkeypatch, run_shell, request):
     monkeypatch.chdir(tmp_path)
+    if page == "docs/train_in_four_minutes.md":
+        request.getfixturevalue("_minutes_in_seconds")
     parsers = {"python": PythonCodeBlockParser(), "sh": CodeBlockParser("sh", run_shell)}
     chosen = [parsers[language] for language in EXECUTED[page]]
     document = Document.parse(str(REPOSITORY / page), SkipParser(), *chosen)

@@ -29,5 +29,5 @@ def test_pages_have_their_sections_in_order():
     for text in found.values():
         places = [text.index(f"\n## {section}\n") for section in SECTIONS]
         assert places == sorted(places)
-        assert 'gymnasium.make("flockenv:flockenv/Circulate-easy-v0")' in text
+        assert 'gymnasium.make("flockenv:flockenv/Order-easy-v0")' in text
         assert "{" not in text.replace("{'", "").replace("{k-1}", "").replace('{"reset_mask', "")

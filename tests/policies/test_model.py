@@ -229,3 +229,13 @@ def test_normalized_observations_are_normalized_wherever_it_steers():
     rows = venv.normalize_obs(observations.reshape(2, -1))
     np.testing.assert_allclose(rudders, model.predict(rows, deterministic=True)[0][:, 0])
     assert np.abs(rudders - model.predict(observations.reshape(2, -1))[0][:, 0]).max() > 1e-3
+
+
+def test_files_of_models_in_vec_normalize_are_refused(tmp_path):
+    model = PPO("MlpPolicy", VecNormalize(rows_env()), n_steps=8, batch_size=8, device="cpu")
+    model.learn(32).save(tmp_path / "model.zip")
+    with pytest.raises(ParameterError, match="was trained in VecNormalize, and its file does not"):
+        flockenv.policies.load(tmp_path / "model.zip", trust=True)
+    plain = PPO("MlpPolicy", rows_env(), n_steps=8, batch_size=8, device="cpu")
+    plain.learn(32).save(tmp_path / "plain.zip")
+    assert flockenv.policies.load(tmp_path / "plain.zip", trust=True).leaders == 1
