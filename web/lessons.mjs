@@ -3,7 +3,7 @@
 import { element } from "../flockenv/replay/words.mjs";
 
 const NOISE = "#lesson=noise&preset=experiment&n_boats=27&seed=1&speed=16";
-const OPPOSED = "#lesson=opposed&n_boats=27&n_leaders=4&bw_s=0.3&seed=2&speed=16";
+const OPPOSED = "#lesson=opposed&n_boats=27&n_leaders=4&bw_s=0.3&seed=5&speed=16";
 
 export const LESSONS = [
   {
@@ -18,15 +18,15 @@ export const LESSONS = [
     name: "leaders",
     title: "One leader or four",
     link: "#lesson=leaders&n_boats=27&n_leaders=1&bw_s=0.3&seed=7&beside.n_leaders=4&speed=16",
-    words: "Leaders (amber) head clockwise by the paper's law, and the others know nothing of them: one leader is on the " +
-      "left, four are on the right. Compare the order towards the target, which is 1 if all normal boats circle clockwise.",
+    words: "Leaders (amber) head clockwise by the paper's law, and the others know nothing of them: the first " +
+      "flock has one leader, the second four. Compare the order towards the target, which is 1 if all normal boats circle clockwise.",
   },
   {
     name: "learned",
     title: "Learned or law",
     link: "#lesson=learned&n_boats=27&n_leaders=4&bw_s=0.3&seed=7&beside.leaders=tuned damped law&speed=16",
-    words: "Both flocks start from the same places with the same noise, and each has four leaders. Those on the left " +
-      "follow the paper's law, and those on the right a law that was tuned for this pool.",
+    words: "Both flocks start from the same places with the same noise, and each has four leaders. Those of the " +
+      "first follow the paper's law, and those of the second a law that was tuned for this pool.",
   },
   {
     name: "forces",
@@ -39,8 +39,8 @@ export const LESSONS = [
     name: "opposed",
     title: "Opposed leaders",
     link: `${OPPOSED}&target=cw,cw,ccw,ccw`,
-    words: `Two leaders head clockwise (amber) and two counter-clockwise (pink), and the flock is torn between them. With ` +
-      `[three against one](${OPPOSED}&target=cw,cw,cw,ccw) this flock goes with the three.`,
+    words: "Two leaders head clockwise (amber) and two counter-clockwise (pink), and within twenty minutes this flock goes " +
+      `counter-clockwise on average. With [three against one](${OPPOSED}&target=cw,cw,cw,ccw) it goes clockwise, with the three.`,
   },
 ];
 
