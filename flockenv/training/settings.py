@@ -33,7 +33,7 @@ _OWN = ("policy", "env", "seed", "_init_setup_model")
 class TrainingSettings:
     """Settings of PPO with one policy shared by all leaders; checked once, to and from TOML.
 
-    Leaders lean by a linear function of the block ``lean_features``, and all leaders of a flock
+    Leaders lean by a linear function of what they observe, and all leaders of a flock
     explore by the same perturbed weights, which are held for a minute or two
     (`flockenv.sb3.SharedNoisePolicy`).
 
