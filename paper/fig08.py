@@ -114,7 +114,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
                 axes.step(x, y, where="post", color=color, label=f"bw = {bw_s:g} s")
             axes.set(title=f"{name} ({runs['seed'].nunique()} runs each)", xlabel="time (min)")
         panels[0].set(ylabel="share of runs not yet ordered", ylim=(-0.03, 1.03))
-        panels[0].legend()
+        panels[1].legend(loc="upper right", ncols=2)
 
 
 def script(options: Options) -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 from claim import Claims, bca, critical_bw, fall, mean, write_claims
-from section4 import CCW, CW, FREE, READING, SETUPS, STUDY, at, over, setup, within
+from section4 import CCW, CW, FREE, READING, SETUPS, STUDY, at, judged, over, setup, within
 from study import PHI_EDGES, Options, density_map, histograms, main, picture
 
 
@@ -12,7 +12,8 @@ def judge(table: pd.DataFrame) -> Claims:
     claims = Claims("4.3", READING)
     by = {name: setup(table, name) for name in SETUPS}
     free = by[FREE]
-    for name, runs in by.items():
+    for name in judged(table):
+        runs = by[name]
         high = within(runs, 2.1)
         claims.add(
             "φ_o is close to uniform at high noise",
@@ -33,7 +34,9 @@ def judge(table: pd.DataFrame) -> Claims:
             least=lost[1],
             most=lost[2],
         )
-    for name, way in ((CCW, "ccw"), (CW, "cw")):
+    ways_of = {CCW: "ccw", CW: "cw"}
+    for name in judged(table)[1:]:
+        way = ways_of[name]
         ways = by[name].groupby("seed")[["cw", "ccw"]].sum()
         ways = ways[ways.sum(axis=1) > 0]
         claims.add(
@@ -88,7 +91,8 @@ def draw(options: Options, table: pd.DataFrame) -> None:
             runs = setup(table, name)
             found = [histograms(runs.loc[runs["bw_s"] == b, "phi_histogram"]) for b in noises]
             image = density_map(axes, noises, PHI_EDGES, found, 6.0)
-            axes.set(title=name, xlabel="bw (s)", yticks=[-np.pi / 2, 0, np.pi / 2])
+            axes.set_title(f"{name} ({len(runs) // len(noises)} runs each)")
+            axes.set(xlabel="bw (s)", yticks=[-np.pi / 2, 0, np.pi / 2])
             axes.set_yticklabels(["−π/2", "0", "π/2"])
         panels[0].set_ylabel("φ_o")
         figure.colorbar(image, ax=list(panels), label="density over uniform", extend="max")

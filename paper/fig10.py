@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from claim import Claims, bca, fall, mean, write_claims
-from section4 import CW, FREE, READING, SETUPS, STUDY, at, over, setup, within
+from section4 import CW, FREE, READING, SETUPS, STUDY, at, judged, over, setup, within
 from study import COLORS, Options, curve, main, picture
 
 _BANDS = {"low": (0.4, 0.8), "medium": (1.0, 1.6), "high": (1.8, 2.8)}
@@ -16,7 +16,8 @@ def judge(table: pd.DataFrame) -> Claims:
     claims = Claims("4.3, 6", READING)
     by = {name: setup(table, name) for name in SETUPS}
     free, led = by[FREE], by[CW]
-    for name, runs in by.items():
+    for name in judged(table):
+        runs = by[name]
         claims.add(
             "Ψ_o is near 1 in the ordered state at low noise",
             f"mean Ψ_o, bw 0.4 to 1.0 s, {name}; read as at least 0.9",

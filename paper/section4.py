@@ -54,6 +54,12 @@ def setup(table: pd.DataFrame, name: str) -> pd.DataFrame:
     return found[noises == noises.max()]
 
 
+def judged(table: pd.DataFrame) -> list[str]:
+    """Return the setups that as many seeds have been run of as of the one with the most."""
+    seeds = {name: setup(table, name)["seed"].nunique() for name in SETUPS}
+    return [name for name, count in seeds.items() if count == max(seeds.values())]
+
+
 def within(runs: pd.DataFrame, least: float, most: float = 9.0) -> pd.DataFrame:
     """Return the runs at noises of a range."""
     return runs[runs["bw_s"].between(least - 1e-9, most + 1e-9)]
