@@ -1,0 +1,53 @@
+"""Law: a flock has the same bits in WebAssembly as in the native build."""
+
+import base64
+import json
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import flockenv
+
+pytestmark = pytest.mark.live
+
+WASM = "web/target/wasm32-unknown-unknown/release/flockenv_web.wasm"
+MINUTE_S = 60.0
+
+
+def ends_in_node(root: Path, requests: list[str], duration_s: float) -> list[dict]:
+    runs = [{"request": each, "samples": round(10 * duration_s)} for each in requests]
+    done = subprocess.run(
+        ["node", root / "tests/web/run_core.mjs"],
+        input=json.dumps({"wasm": str(root / WASM), "runs": runs}),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return json.loads(done.stdout)
+
+
+def numbers(text: str) -> np.ndarray:
+    return np.frombuffer(base64.b64decode(text), np.float64).reshape(-1, 3)
+
+
+@pytest.mark.parametrize(
+    ("policy", "changes"),
+    [
+        ("law", {}),
+        ("tuned damped law", {}),
+        ("law", {"scheme": "moreau", "noise_scheme": "per-step"}),
+        ("law", {"pool": "narrow", "speed_spread_cm_s": 1.0, "current_gain": 0.1}),
+    ],
+)
+def test_a_minute_of_27_boats_with_leaders(policy, changes, pytestconfig):
+    fields = {"n_boats": 27, "n_leaders": 3, "bw_s": 0.3, **changes}
+    parameters = flockenv.FlockParameters(**fields)
+    native = flockenv.simulate(parameters, 7, MINUTE_S, policy=policy)
+    lines = [f"{name}={value}" for name, value in fields.items()]
+    request = "\n".join([*lines, "seed=7", f"leaders={policy}"])
+    (end,) = ends_in_node(pytestconfig.rootpath, [request], MINUTE_S)
+    assert end["samples"] == len(native)
+    assert np.array_equal(numbers(end["pose"]), native.pose[-1])
+    assert np.array_equal(numbers(end["velocity"]), native.velocity[-1])
