@@ -9,7 +9,7 @@ generation steer the same episode, so that they differ by their weights alone. T
 are replaced by ranks, and Adam follows the estimated gradient (Salimans et al. 2017). An
 interrupted command goes on from its last generation. The result is a policy file:
 
-    flockenv compare --policy "steering law" --policy results/evolution/policy.npz
+    flockenv compare --policy "paper's law" --policy results/evolution/policy.npz
 """
 
 import argparse

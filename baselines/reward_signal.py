@@ -1,6 +1,6 @@
 """Measure how clearly samples show the policy gradient, before a training is spent on a reward.
 
-    python baselines/reward_signal.py --pool narrow --from "straight ahead" --to "tuned damped law"
+    python baselines/reward_signal.py --pool narrow --from "straight ahead" --to "tuned law"
     python baselines/reward_signal.py --pool wide --action-mode lean --shared --hold-s 24
 
 Leaders explore about the mean action of one policy: a = mu(s) + sigma * e. Along the direction d(s)
@@ -141,7 +141,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--leaders", type=int, default=3)
     parser.add_argument("--action-mode", choices=("rudder", "lean"), default="rudder")
     parser.add_argument("--from", dest="start", help="[straight ahead; 0 for leans]")
-    parser.add_argument("--to", help="[tuned damped law; 1 for leans]")
+    parser.add_argument("--to", help="[tuned law; 1 for leans]")
     parser.add_argument("--horizon", type=float, nargs="+", default=[8.0, 30.0], help="in s")
     parser.add_argument("--deviation", type=float, default=0.3, help="of the exploration")
     parser.add_argument("--hold-s", type=float, default=0.0, help="time that a noise is held")
@@ -155,7 +155,7 @@ def main(arguments: list[str] | None = None) -> None:
         parser.error("--flocks is even and at least 4")
     leans = options.action_mode == "lean"
     options.start = options.start or ("0" if leans else "straight ahead")
-    options.to = options.to or ("1" if leans else "tuned damped law")
+    options.to = options.to or ("1" if leans else "tuned law")
     rows = measured(options)
     options.out.parent.mkdir(parents=True, exist_ok=True)
     with options.out.open("w", encoding="utf-8", newline="") as file:

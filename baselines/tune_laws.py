@@ -1,4 +1,4 @@
-"""Tune the gains of the closed-form laws on training seeds.
+"""Tune the gains of the damped law on training seeds.
 
     python baselines/tune_laws.py                            # both laws in both pools, half an hour
     python baselines/tune_laws.py --law "damped law" --pool narrow --generations 10
@@ -28,12 +28,11 @@ import flockenv
 from flockenv._io.atomic_write import write_csv, write_text
 from flockenv._io.extras import require
 from flockenv.comparison import run_episodes
-from flockenv.policies import DampedLaw, SignCorrectedLaw
+from flockenv.policies import DampedLaw
 from flockenv.runs.seeds import POLICY_SEEDS
 
 #: Law and its gains, each with the middle and the width (in factors of e) of the first generation.
 LAWS: dict[str, tuple[Any, dict[str, tuple[float, float]]]] = {
-    "sign-corrected law": (SignCorrectedLaw, {"gain": (6.0 / math.pi, 1.0)}),
     "damped law": (
         DampedLaw,
         {
@@ -61,8 +60,7 @@ def tune(law: str, pool: str, options: argparse.Namespace, progress: Progress) -
     """Return the gains found, having written every candidate."""
     make, ranges = LAWS[law]
     middle, widths = np.array(list(ranges.values())).T
-    # The search needs two coordinates at least; for a law with one gain the second has no effect.
-    first = np.zeros(max(2, len(ranges)))
+    first = np.zeros(len(ranges))
     search = require("cmaes", "search").CMA(mean=first, sigma=0.5, seed=options.seed)
     parameters, rows = flock_parameters(pool, options), []
 

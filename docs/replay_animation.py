@@ -19,7 +19,7 @@ from flockenv.replay import write_replay
 
 PARAMETERS = flockenv.FlockParameters(n_boats=27, n_leaders=4, pool="wide", bw_s=0.3)
 SEED, DURATION_S = 7, 480.0
-POLICIES = {"steering law": None, "learned": named_policy("learned", PARAMETERS.pool)()}
+POLICIES = {"paper's law": None, "learned": named_policy("learned", PARAMETERS.pool)()}
 SIZE = (1160, 816)
 # The picture ends below the charts.
 CROP = (0, 0, 1160, 798)

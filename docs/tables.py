@@ -49,7 +49,7 @@ def filled(text: str) -> str:
 def leader_count() -> str:
     """Return what `make compare` prints."""
     file = "leaders/leader_count.csv"
-    policies = ("steering law", "tuned damped law", "learned")
+    policies = ("paper's law", "tuned law", "learned")
     columns = [(pool, policy) for pool in POOLS for policy in policies]
     none = {pool: order(one(file, pool=pool, policy="no leaders", leaders="0")) for pool in POOLS}
     body = [
@@ -61,7 +61,7 @@ def leader_count() -> str:
     ]
     slopes = [one(file, pool=pool, policy=name, leaders="slope") for pool, name in columns]
     body.append(["slope per leader", *(f"{float(row['signed_order']):.3f}" for row in slopes)])
-    titles = {"steering law": "paper's law"}
+    titles = {"paper's law": "paper's law"}
     header = [f"`{pool}`: {titles[name]}" if name in titles else name for pool, name in columns]
     return markdown(["leaders", *header], body)
 
@@ -75,16 +75,16 @@ def leaders_of(pool: str, policies: Sequence[str]) -> str:
             DIFFERENCES,
             comparison=pool,
             policy="learned",
-            reference="tuned damped law",
+            reference="tuned law",
             leaders=k,
         )
         body.append([k, *(order(row) for row in means), difference(added)])
-    return markdown(["leaders", *policies, "learned minus tuned damped law"], body)
+    return markdown(["leaders", *policies, "learned minus tuned law"], body)
 
 
 def strong_wide() -> str:
     """Return the order in wide with more than the boats' rudder, for the same policies."""
-    policies = ("tuned damped law", "learned")
+    policies = ("tuned law", "learned")
     body = []
     for times, comparison in ((1, "wide"), (2, "rudder-2"), (10, "rudder-10")):
         known = {"comparison": comparison, "scene": "wide-bw-0.31", "leaders": "3"}
@@ -143,8 +143,8 @@ def parameters() -> str:
 TABLES: dict[str, Callable[[], str]] = {
     "parameters": parameters,
     "leader-count": leader_count,
-    "leaders-wide": lambda: leaders_of("wide", ("steering law", "tuned damped law", "learned")),
-    "leaders-narrow": lambda: leaders_of("narrow", ("steering law", "tuned damped law", "learned")),
+    "leaders-wide": lambda: leaders_of("wide", ("paper's law", "tuned law", "learned")),
+    "leaders-narrow": lambda: leaders_of("narrow", ("paper's law", "tuned law", "learned")),
     "leader-motion": leader_motion,
     "strong-wide": strong_wide,
     **TRAINING_TABLES,

@@ -15,6 +15,7 @@ __all__ = [
     "FlockError",
     "FrameRenderer",
     "InUseError",
+    "Law",
     "ObservedLaw",
     "ParameterError",
     "SolverError",
@@ -34,6 +35,7 @@ __all__ = [
     "jam_sizes",
     "lagged_motion",
     "lap_orientation",
+    "lean_feature_names",
     "observation_table",
     "observation_version",
     "observe",
@@ -53,7 +55,6 @@ __all__ = [
     "sampled_analysis_window",
     "state_table",
     "structure_series",
-    "tuned_gains",
     "whole_steps_in",
 ]
 
@@ -111,7 +112,7 @@ def observation_version(blocks: dict[str, Any] | None = None) -> int: ...
 def observation_table(blocks: dict[str, Any]) -> list[dict[str, Any]]: ...
 def state_table(n_boats: int) -> list[dict[str, Any]]: ...
 def flock_feature_table() -> list[dict[str, Any]]: ...
-def tuned_gains() -> list[tuple[str, str, list[tuple[str, float]]]]: ...
+def lean_feature_names() -> list[str]: ...
 def observe(
     flock: Flock,
     blocks: dict[str, Any],
@@ -120,17 +121,25 @@ def observe(
 ) -> _Singles: ...
 
 @final
-class ObservedLaw:
-    def __new__(
-        cls,
-        name: str,
-        gains: dict[str, float],
-        blocks: dict[str, Any],
-        mirror_to_target: bool = False,
-    ) -> Self: ...
+class Law:
+    @staticmethod
+    def names() -> list[str]: ...
+    @staticmethod
+    def named(name: str, pool: str | None = None) -> Law: ...
+    @staticmethod
+    def damped(gain: float, backward_gain: float, damping: float) -> Law: ...
+    @staticmethod
+    def from_json(text: str) -> Law: ...
+    def to_json(self) -> str: ...
     @property
-    def observation_size(self) -> int: ...
-    def rudders(self, observations: _Singles) -> _Singles: ...
+    def gains(self) -> list[tuple[str, float]]: ...
+    def __eq__(self, value: object, /) -> bool: ...
+    def __ne__(self, value: object, /) -> bool: ...
+
+@final
+class ObservedLaw:
+    def __new__(cls, law: Law, blocks: dict[str, Any], mirror_to_target: bool = False) -> Self: ...
+    def actions(self, observations: _Singles) -> _Singles: ...
 
 @final
 class EnvBatch:

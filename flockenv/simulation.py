@@ -12,8 +12,8 @@ from flockenv.errors import ParameterError, shown
 from flockenv.flock import ContactSeries, Flock
 from flockenv.order import OrderSeries
 from flockenv.parameters import FlockParameters
-from flockenv.policies.base import LeaderPolicy, check_action_mode, decision_rate
-from flockenv.policies.laws import SteeringLaw
+from flockenv.policies.base import LeaderPolicy, check_action_mode, control_rate, decision_rate
+from flockenv.policies.laws import LawPolicy, SteeringLaw
 from flockenv.policies.model import ModelPolicy, as_policy
 from flockenv.policies.registry import named_policy, policy_name
 from flockenv.recording import PHASES, PRECISIONS, Recording
@@ -31,7 +31,7 @@ Start = bytes | Mapping[str, Any] | Recording
 """A snapshot, a state, or a recording whose last sample it is."""
 
 Steering = LeaderPolicy | str | None
-"""A policy, its name or its file; None for the steering law at every substep."""
+"""A policy, its name or its file; None for the paper's law at every substep."""
 
 
 def simulate(
@@ -67,9 +67,9 @@ def simulate(
         Samples per second, taken at 0, 1/sample_hz, 2/sample_hz … Substeps end on samples: rates of
         which 1/dt_s is no multiple change the course of the run within its numerical error.
     policy
-        How leaders steer: None or "law" for the steering law, eq. (10), at every substep; the name
-        of another policy, such as "learned" or "damped law", or the path of a policy's ``.npz``
-        file; or an object whose ``predict`` maps observations (k, size) to rudders (k,), clipped
+        How leaders steer: None for the paper's law, eq. (10), at every substep; the name of
+        another policy, such as "learned" or "damped law", or the path of a policy's file; or an
+        object whose ``predict`` maps observations (k, size) to rudders (k,), clipped
         to [-1, 1], such as a model of stable-baselines3. It observes the default layout, or that
         of its attributes ``observation`` and ``mirror_to_target``; a model observes what it was
         trained on. A dictionary has one of these for each of ``"leader_0"`` to
@@ -238,7 +238,7 @@ class _Seat:
 
 
 def _seats(policy: Steering | Mapping[str, Steering], parameters: FlockParameters) -> list[_Seat]:
-    """Return who steers whom; nobody for the steering law at every substep."""
+    """Return who steers whom; nobody for the paper's law at every substep."""
     k = parameters.n_leaders
     if not isinstance(policy, Mapping):
         only = _resolved(policy, parameters)
@@ -266,7 +266,7 @@ def _seats(policy: Steering | Mapping[str, Steering], parameters: FlockParameter
 
 
 def _resolved(policy: Steering, parameters: FlockParameters) -> LeaderPolicy | None:
-    """Return a policy by its name or file; None for the steering law at every substep."""
+    """Return a policy by its name or file; None for the paper's law at every substep."""
     if isinstance(policy, str):
         named = named_policy(policy, parameters.pool)()
         policy = None if isinstance(named, str) else named
@@ -276,7 +276,6 @@ def _resolved(policy: Steering, parameters: FlockParameters) -> LeaderPolicy | N
             f"policy = {shown(policy)} is not accepted: None, a policy's name or file, or an "
             "object with predict"
         )
-    check_action_mode(policy, "rudder", "in a simulation")
     return policy
 
 
@@ -285,6 +284,13 @@ def _control(
 ) -> dict[str, Any] | None:
     if not seats:
         return None
+    first = seats[0].policy
+    if isinstance(first, LawPolicy) and seats[0].is_alone:
+        # The core steers by a law alone, and holds its leans.
+        rate = control_rate(first) if control_hz is None else control_hz
+        return {"steer": first.law, "layouts": [], "control_hz": rate}
+    for seat in seats:
+        check_action_mode(seat.policy, "rudder", "in a simulation")
     rates = {decision_rate(seat.policy) for seat in seats}
     if control_hz is None and len(rates) > 1:
         given = ", ".join(f"{rate:g}" for rate in sorted(rates))

@@ -12,7 +12,7 @@ from flockenv.comparison import named_policy
 RUNS = 64
 DENSITY_BOATS = 27
 LAW = "law"
-POLICIES = (LAW, "learned", "tuned damped law", "damped law")
+POLICIES = (LAW, "learned", "tuned law", "damped law")
 NOISES_S = (0.31, 0.4, 0.2, 0.5)
 """The critical noise of 27 boats in the wide pool first."""
 

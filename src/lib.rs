@@ -61,6 +61,7 @@ pub mod geometry;
 pub mod integrator;
 mod parallel;
 pub mod parameters;
+pub mod policies;
 pub mod random;
 mod sealed_bytes;
 

@@ -23,8 +23,8 @@ const CHOICES = [
 
 /** How leaders may steer, in words. */
 export const LEADERS = {
-  law: "the paper's law",
-  "tuned damped law": "the tuned law",
+  "paper's law at every substep": "the paper's law",
+  "tuned law": "the tuned law",
   learned: "pretrained leaders",
   you: "you",
 };
@@ -32,8 +32,8 @@ export const LEADERS = {
 /** What may run beside a flock: what of it differs, and in words. */
 const BESIDE_CHOICES = [
   ["", "nothing"],
-  ["leaders=law", "the paper's law"],
-  ["leaders=tuned damped law", "the tuned law"],
+  ["leaders=paper's law at every substep", "the paper's law"],
+  ["leaders=tuned law", "the tuned law"],
   ["n_leaders=0", "no leaders"],
   ["n_leaders=1", "one leader"],
   ["n_leaders=4", "four leaders"],

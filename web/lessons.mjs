@@ -24,7 +24,7 @@ export const LESSONS = [
   {
     name: "learned",
     title: "Learned or law",
-    link: "#lesson=learned&n_boats=27&n_leaders=4&bw_s=0.3&seed=7&beside.leaders=tuned damped law&speed=16",
+    link: "#lesson=learned&n_boats=27&n_leaders=4&bw_s=0.3&seed=7&beside.leaders=tuned law&speed=16",
     words: "Both flocks start from the same places with the same noise, and each has four leaders. Those of the " +
       "first follow the paper's law, and those of the second a law that was tuned for this pool.",
   },

@@ -106,7 +106,7 @@ export class LivePage {
       wanted.flock.target = Number(value) > 1 ? opposedTargets(Number(value)) : "cw";
     }
     if (wanted.flock.leaders === "you" && !wanted.beside) {
-      wanted.beside = { leaders: "law" };
+      wanted.beside = { leaders: "paper's law at every substep" };
     }
     if (name === "leaders" && value !== "you" && base.flock.leaders === "you") {
       wanted.beside = null;
@@ -183,7 +183,7 @@ export class LivePage {
     const parameters = Object.fromEntries(lines.get("value"));
     const fields = place === 0 ? wanted.flock : { ...wanted.flock, ...wanted.beside };
     const leaders = Number(parameters.n_leaders);
-    const steering = LEADERS[fields.leaders ?? "law"] ?? fields.leaders;
+    const steering = LEADERS[fields.leaders ?? "paper's law at every substep"] ?? fields.leaders;
     const name = leaders === 0 ? "no leaders" : `${leaders} leader${leaders > 1 ? "s" : ""}, ${steering}`;
     return this.#described(text, { name, seed: fields.seed ?? "0", version: this.about.version });
   }
@@ -235,7 +235,7 @@ export class LivePage {
     const { flock, beside } = this.shown;
     const target = this.values.target.includes(",") ? "opposed" : this.values.target;
     const differs = Object.entries(beside ?? {}).map(([name, value]) => `${name}=${value}`).join(" ");
-    return { ...this.values, target, preset: flock.preset ?? "simulation", leaders: flock.leaders ?? "law", beside: differs };
+    return { ...this.values, target, preset: flock.preset ?? "simulation", leaders: flock.leaders ?? "paper's law at every substep", beside: differs };
   }
 
   get isYours() {
@@ -368,7 +368,7 @@ export class LivePage {
     const [run] = this.runs;
     const { kinds, about } = this;
     const recorded = this.quantities.filter(({ kind }) => kind === "recorded").map(({ key }) => key);
-    const bytes = recordingOf(run, { ...about, kinds, recorded, policy: this.shown.flock.leaders ?? "law" });
+    const bytes = recordingOf(run, { ...about, kinds, recorded, policy: this.shown.flock.leaders ?? "paper's law at every substep" });
     download(bytes, "flock.npz");
     this.say(`The recording holds ${fixed(run.time[run.sampleAt(run.changedAt)], 1)} to ${fixed(run.end, 1)} s; flockenv.Recording.load reads it.`);
   }
@@ -564,7 +564,7 @@ export class LivePage {
     const seconds = 480;
     const { flock } = this.shown;
     const isYours = flock.leaders === "you";
-    const same = isYours ? { ...flock, leaders: "law" } : flock;
+    const same = isYours ? { ...flock, leaders: "paper's law at every substep" } : flock;
     byId("command").value = commandLine(same, seconds);
     byId("python").value = pythonText(same, seconds, this.kinds);
     byId("same").textContent = isYours ? "Your own rudders are in the recording alone: these run the law in your place." : "";

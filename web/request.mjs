@@ -76,8 +76,8 @@ export function commandLine(flock, seconds) {
     const isList = value.includes(",") || value.includes(";");
     words.push(`--set ${isList ? `'${name}=${listed(value)}'` : `${name}=${value}`}`);
   }
-  const policy = flock.leaders ?? "law";
-  words.push(...(policy === "law" ? [] : [`--policy '${policy}'`]), `--seed ${flock.seed ?? 0}`, `--minutes ${seconds / 60}`);
+  const policy = flock.leaders ?? "paper's law at every substep";
+  words.push(...(policy === "paper's law at every substep" ? [] : [`--policy "${policy}"`]), `--seed ${flock.seed ?? 0}`, `--minutes ${seconds / 60}`);
   return words.join(" ");
 }
 
@@ -93,7 +93,7 @@ function listed(value) {
 export function pythonText(flock, seconds, kinds) {
   const changes = Object.entries(flock).filter(([name]) => isOwn(name))
     .map(([name, value]) => `${name}=${pythonValue(value, kinds[name])}`);
-  const policy = flock.leaders && flock.leaders !== "law" ? `, policy="${flock.leaders}"` : "";
+  const policy = flock.leaders && flock.leaders !== "paper's law at every substep" ? `, policy="${flock.leaders}"` : "";
   return [
     "import flockenv",
     "",

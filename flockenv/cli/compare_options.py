@@ -18,7 +18,7 @@ from flockenv.policies.registry import FILES
 
 __all__ = ["REFERENCES", "CompareOptions", "cases_of", "is_file", "own_policies"]
 
-REFERENCES = ("learned", "tuned damped law", "steering law")
+REFERENCES = ("learned", "tuned law", "paper's law")
 """What policies are compared with, unless `--only` is given."""
 
 _BOATS = 27

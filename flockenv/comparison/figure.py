@@ -19,15 +19,13 @@ COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 
 POLICY_COLORS: Mapping[str, str] = {
     NO_LEADERS: "#555555",
-    "steering law": "#0072b2",
-    "tuned damped law": "#e69f00",
+    "paper's law": "#0072b2",
+    "tuned law": "#e69f00",
     "learned": "#009e73",
     "damped law": "#56b4e9",
-    "steering law at every substep": "#332288",
+    "paper's law at every substep": "#332288",
     "straight ahead": "#882255",
     "random rudders": "#ddcc77",
-    "tuned sign-corrected law": "#aa4499",
-    "sign-corrected law": "#44aa99",
 }
 """The color that a named policy has in every figure."""
 

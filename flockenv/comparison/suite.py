@@ -55,7 +55,7 @@ EPISODES = 256
 BUDGETS_H = (100, 1_000, 10_000)
 """Classes of entries: flock-hours that training and search may have simulated."""
 
-REFERENCE = "tuned damped law"
+REFERENCE = "tuned law"
 """The policy from which scores are differences."""
 
 _SEEDS = release_seeds("v0.1.0", EPISODES)

@@ -2,21 +2,18 @@
 
 from flockenv.policies.constant import RandomRudders, StraightAhead
 from flockenv.policies.discrete import WithLevels
-from flockenv.policies.laws import DampedLaw, ObservedPolicy, SignCorrectedLaw, SteeringLaw
-from flockenv.policies.leaning_law import HiddenUnits, LeaningLaw
+from flockenv.policies.laws import DampedLaw, LawPolicy, LeaningLaw, SteeringLaw
 from flockenv.policies.model import ModelPolicy
 from flockenv.policies.network import NetworkPolicy
-from flockenv.policies.pretrained import load
+from flockenv.policies.registry import load
 
 __all__ = [
     "DampedLaw",
-    "HiddenUnits",
+    "LawPolicy",
     "LeaningLaw",
     "ModelPolicy",
     "NetworkPolicy",
-    "ObservedPolicy",
     "RandomRudders",
-    "SignCorrectedLaw",
     "SteeringLaw",
     "StraightAhead",
     "WithLevels",

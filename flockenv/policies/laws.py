@@ -1,30 +1,36 @@
-"""Policies that need no learning. Their formulas live in the Rust core."""
+"""Laws of leaders. Their formulas live in the Rust core, which also steers by them alone."""
 
+import json
 import math
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+import os
+from collections.abc import Mapping
+from hashlib import sha256
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flockenv import _core
+from flockenv._io.array_file import is_special
+from flockenv._io.atomic_write import write_text
+from flockenv.errors import ParameterError, shown
 from flockenv.policies.base import RowPolicy
 
-__all__ = [
-    "LAWS",
-    "DampedLaw",
-    "ObservedPolicy",
-    "SignCorrectedLaw",
-    "SteeringLaw",
-    "stacked_rudders",
-]
+__all__ = ["LEAN_FEATURES", "DampedLaw", "LawPolicy", "LeaningLaw", "SteeringLaw"]
+
+LEAN_FEATURES: tuple[str, ...] = tuple(_core.lean_feature_names())
+"""The features of a lean, in the order of the observation's block ``lean_features``."""
+
+_LARGEST_FILE = 1 << 20
 
 
-class ObservedPolicy(RowPolicy):
-    """A closed-form law evaluated from observations, with the interface of an SB3 policy.
+class LawPolicy(RowPolicy):
+    """A law evaluated from observations, with the interface of an SB3 policy.
 
     Parameters
     ----------
+    law
+        The core's law, which runs without Python where nothing but the law steers.
     observation, mirror_to_target
         Layout of the observations, as in the environments' options of those names.
 
@@ -34,43 +40,34 @@ class ObservedPolicy(RowPolicy):
         If a block that the law reads is switched off.
     """
 
-    _law: str
-
     def __init__(
-        self,
-        gains: Mapping[str, float],
-        observation: Mapping[str, Any] | None,
-        mirror_to_target: bool,
+        self, law: _core.Law, observation: Mapping[str, Any] | None, mirror_to_target: bool
     ) -> None:
         super().__init__(observation, mirror_to_target)
-        self.gains = dict(gains)
-        self._core = _core.ObservedLaw(self._law, self.gains, self.observation, mirror_to_target)
+        self.law = law
+        self._observed = _core.ObservedLaw(law, self.observation, mirror_to_target)
 
-    def observing(self, observation: Mapping[str, Any], mirror_to_target: bool) -> "ObservedPolicy":
-        """Return the same law for another layout of the observations."""
-        return _rebuilt(type(self), self.gains, dict(observation), mirror_to_target)
+    @property
+    def gains(self) -> dict[str, float]:
+        """The gains by name; none in the paper's law."""
+        return dict(self.law.gains)
 
     def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
-        return self._core.rudders(rows)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _rebuilt, (type(self), self.gains, self.observation, self.mirror_to_target)
+        return self._observed.actions(rows)
 
     def __repr__(self) -> str:
         gains = ", ".join(f"{name}={value:g}" for name, value in self.gains.items())
         return f"{type(self).__name__}({gains})"
 
 
-def _rebuilt(
-    kind: type[ObservedPolicy],
-    gains: dict[str, float],
-    observation: dict[str, Any],
-    mirror_to_target: bool,
-) -> ObservedPolicy:
-    return kind(**gains, observation=observation, mirror_to_target=mirror_to_target)  # type: ignore[arg-type]
+def _observing(
+    kind: Any, gains: tuple[float, ...], observation: dict[str, Any], mirror_to_target: bool
+) -> Any:
+    """Return a law from its pickle."""
+    return kind(*gains, observation=observation, mirror_to_target=mirror_to_target)
 
 
-class SteeringLaw(ObservedPolicy):
+class SteeringLaw(LawPolicy):
     """The paper's law, eq. (10): s = clamp(6·wrap(β - α)/π, -1, 1).
 
     β is the tangential heading of the target direction at the leader's own position. The
@@ -80,59 +77,47 @@ class SteeringLaw(ObservedPolicy):
     Parameters
     ----------
     observation, mirror_to_target
-        Layout of the observations; see `ObservedPolicy`.
+        Layout of the observations; see `LawPolicy`.
     """
 
-    _law = "steering"
+    _name = "paper's law"
 
     def __init__(
         self, *, observation: Mapping[str, Any] | None = None, mirror_to_target: bool = False
     ) -> None:
-        super().__init__({}, observation, mirror_to_target)
+        super().__init__(_core.Law.named(self._name), observation, mirror_to_target)
+
+    def observing(self, observation: Mapping[str, Any], mirror_to_target: bool) -> Self:
+        """Return the same law for another layout of the observations."""
+        return type(self)(observation=observation, mirror_to_target=mirror_to_target)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _observing, (type(self), (), self.observation, self.mirror_to_target)
 
 
-class SignCorrectedLaw(ObservedPolicy):
-    """s = sign(u·x˙)·clamp(gain·wrap(β - α), -1, 1): a rudder works in reverse when backing.
+class DampedLaw(LawPolicy):
+    """A law that steers well when backing, too, and counters the turning that makes boats spin.
 
-    Parameters
-    ----------
-    gain
-        Rudder per rad of misalignment; 6/π in eq. (10).
-    observation, mirror_to_target
-        Layout of the observations; see `ObservedPolicy`.
-    """
-
-    _law = "sign_corrected"
-
-    def __init__(
-        self,
-        gain: float = 6.0 / math.pi,
-        *,
-        observation: Mapping[str, Any] | None = None,
-        mirror_to_target: bool = False,
-    ) -> None:
-        super().__init__({"gain": gain}, observation, mirror_to_target)
-
-
-class DampedLaw(ObservedPolicy):
-    """As `SignCorrectedLaw`, and when backing counters the turning that makes boats spin.
-
-    Forward: s = clamp(gain·wrap(β - α), -1, 1). Backward:
-    s = clamp(-backward_gain·wrap(β - α) + damping·α˙, -1, 1).
+    Forward: s = clamp(gain·wrap(β - α), -1, 1). Backward, where a rudder works in reverse:
+    s = clamp(-backward_gain·wrap(β - α) + damping·α˙, -1, 1). The *tuned law* is this one with the
+    gains that were tuned in the pool.
 
     Parameters
     ----------
     gain
-        Rudder per rad of misalignment while moving forward.
+        Rudder per rad of misalignment while moving forward; 6/π in eq. (10).
     backward_gain
         Rudder per rad of misalignment while moving backward.
     damping
         Rudder per rad/s of angular velocity while moving backward.
     observation, mirror_to_target
-        Layout of the observations; see `ObservedPolicy`.
-    """
+        Layout of the observations; see `LawPolicy`.
 
-    _law = "damped"
+    Raises
+    ------
+    ParameterError
+        For gains that are not finite.
+    """
 
     def __init__(
         self,
@@ -143,36 +128,202 @@ class DampedLaw(ObservedPolicy):
         observation: Mapping[str, Any] | None = None,
         mirror_to_target: bool = False,
     ) -> None:
-        gains = {"gain": gain, "backward_gain": backward_gain, "damping": damping}
-        super().__init__(gains, observation, mirror_to_target)
+        law = _core.Law.damped(gain, backward_gain, damping)
+        super().__init__(law, observation, mirror_to_target)
+
+    @classmethod
+    def tuned(cls, pool: str) -> Self:
+        """Return the tuned law of a named pool.
+
+        Raises
+        ------
+        ParameterError
+            For other pools.
+        """
+        return cls(*dict(_core.Law.named("tuned law", pool).gains).values())
+
+    def observing(self, observation: Mapping[str, Any], mirror_to_target: bool) -> Self:
+        """Return the same law for another layout of the observations."""
+        gains = self.gains.values()
+        return type(self)(*gains, observation=observation, mirror_to_target=mirror_to_target)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        plain = type(self), tuple(self.gains.values())
+        return _observing, (*plain, self.observation, self.mirror_to_target)
 
 
-def stacked_rudders(
-    laws: Sequence[ObservedPolicy], rows: NDArray[np.float32]
-) -> NDArray[np.float32]:
-    """Return the rudders of several laws, each for observations of its own.
+class LeaningLaw(LawPolicy):
+    """The damped law about a heading that leans outward of the target's tangent.
+
+    The lean is bias + Σ weight·feature in rad, bounded to ±1.2 rad, where the features are those of
+    the observation's block ``lean_features``: standardized, in the frame of the target.
 
     Parameters
     ----------
-    laws
-        The laws.
-    rows
-        Shape (laws, leaders, observation size), float32.
+    pool
+        Name of the pool that it is for, as whose usual values its features are standardized.
+    bias
+        Lean in rad where every feature has its usual value.
+    weights
+        Rad per standard deviation of a feature, by its name in `LEAN_FEATURES`; 0 for those left
+        out.
+    gains
+        The gains of the damped law, by name; None: those tuned in the pool.
+    bound
+        What keeps a lean within ±1.2 rad: ``"tanh"``, or ``"clip"``.
+    decision_period_s
+        For how many s a lean is held, a whole number of control steps; None: one control step. The
+        gains have to be the tuned ones then, and the policy's actions are leans, for environments
+        with ``action_mode="lean"`` and this ``decision_period_s``.
+    judged
+        How well it leads: ``signed_order``, its 95 % ``interval``, ``n_boats``, ``n_leaders``,
+        ``bw_s``, ``episode_s``, and the first and the last of the ``seeds``.
+    provenance
+        Its provenance: short texts by name.
 
-    Returns
-    -------
-    numpy.ndarray
-        Shape (laws, leaders), float32: what `predict` of each law returns.
+    Raises
+    ------
+    ParameterError
+        For pools that have no lean features, unknown names, numbers that are not finite, and leans
+        that are held with other gains.
     """
-    rudders = np.empty(rows.shape[:2], np.float32)
-    for place, (law, each) in enumerate(zip(laws, rows, strict=True)):
-        rudders[place] = law._core.rudders(each)
-    return rudders
+
+    def __init__(
+        self,
+        pool: str,
+        bias: float,
+        weights: Mapping[str, float],
+        *,
+        gains: Mapping[str, float] | None = None,
+        bound: str = "tanh",
+        decision_period_s: float | None = None,
+        judged: Mapping[str, Any] | None = None,
+        provenance: Mapping[str, str] | None = None,
+    ) -> None:
+        if gains is None:
+            gains = dict(_core.Law.named("tuned law", pool).gains)
+        values = {
+            "format": 1,
+            "pool": pool,
+            "judged": judged,
+            "gains": dict(gains),
+            "bound": bound,
+            "decision_period_s": decision_period_s,
+            "bias": bias,
+            "weights": dict.fromkeys(LEAN_FEATURES, 0.0) | dict(weights),
+            "provenance": dict(provenance or {}),
+        }
+        self._read(_json(values))
+
+    @classmethod
+    def from_json(cls, text: str) -> Self:
+        """Return the law of a JSON text, as `to_json` gives it.
+
+        Raises
+        ------
+        ParameterError
+            For a text that is no whole law.
+        """
+        law = cls.__new__(cls)
+        law._read(text)
+        return law
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """Read a law from its JSON file, in which nothing is executed.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be opened.
+        ParameterError
+            For a file that is no whole law.
+        """
+        if is_special(path):
+            raise ParameterError(f"{path} is no policy but a device, a pipe or a socket")
+        with open(path, "rb") as file:
+            content = file.read(_LARGEST_FILE + 1)
+        if len(content) > _LARGEST_FILE:
+            raise ParameterError(f"{path} is no policy: it is larger than {_LARGEST_FILE} bytes")
+        try:
+            return cls.from_json(content.decode())
+        except ValueError as error:
+            raise ParameterError(f"{path} is no whole policy: {error}") from error
+
+    @classmethod
+    def learned(cls, pool: str) -> Self:
+        """Return the pretrained leaders of a named pool.
+
+        Raises
+        ------
+        ParameterError
+            For other pools.
+        """
+        return cls.from_json(_core.Law.named("learned", pool).to_json())
+
+    def _read(self, text: str) -> None:
+        law = _core.Law.from_json(text)
+        self._values: dict[str, Any] = json.loads(law.to_json())
+        self.decision_period_s = self._values.get("decision_period_s")
+        self.action_mode = "rudder" if self.decision_period_s is None else "lean"
+        others = dict.fromkeys(("phase", "target", "neighbors", "order"), False) | {"neighbors": 0}
+        layout = {"own": self.action_mode == "rudder", **others, "lean_features": True}
+        super().__init__(law, layout, mirror_to_target=True)
+
+    def to_json(self) -> str:
+        """Return the law as a JSON text, from which `from_json` makes the same bits."""
+        return self.law.to_json()
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the law to a JSON file, whole or not at all.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be written; what was there before is still there.
+        """
+        write_text(path, self.to_json() + "\n")
+
+    @property
+    def pool(self) -> str:
+        """Name of the pool that it is for."""
+        return str(self._values["pool"])
+
+    @property
+    def bias(self) -> float:
+        """Lean in rad where every feature has its usual value."""
+        return float(self._values["bias"])
+
+    @property
+    def weights(self) -> dict[str, float]:
+        """Rad per standard deviation of each feature."""
+        return dict(self._values["weights"])
+
+    @property
+    def judged(self) -> dict[str, Any] | None:
+        """How well it leads, and by which flocks that was judged."""
+        return self._values.get("judged")
+
+    @property
+    def provenance(self) -> dict[str, str]:
+        """Its provenance."""
+        return dict(self._values.get("provenance", {}))
+
+    @property
+    def digest(self) -> str:
+        """The first digits of the SHA-256 of its numbers, whatever made or judged them."""
+        numbers = {**self._values, "judged": None, "provenance": None}
+        return f"sha256:{sha256(json.dumps(numbers, sort_keys=True).encode()).hexdigest()[:12]}"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return LeaningLaw.from_json, (self.to_json(),)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.pool!r}, bias={self.bias:.3g}, 29 weights)"
 
 
-LAWS: Mapping[str, Callable[..., ObservedPolicy]] = {
-    "steering law": SteeringLaw,
-    "sign-corrected law": SignCorrectedLaw,
-    "damped law": DampedLaw,
-}
-"""The closed-form laws by name."""
+def _json(values: dict[str, Any]) -> str:
+    try:
+        return json.dumps(values, allow_nan=False, default=float)
+    except (TypeError, ValueError) as error:
+        raise ParameterError(f"a law of {shown(values)} is not accepted: {error}") from error

@@ -1,7 +1,10 @@
 """Learned policies: small networks in an ``.npz`` file, evaluated with NumPy alone."""
 
+import hashlib
+import json
 import math
-from collections.abc import Mapping, Sequence
+import os
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Self
 
 import gymnasium
@@ -9,23 +12,35 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
-from flockenv._io.npz_header import array_of, entry_of
-from flockenv.envs.observation import BLOCKS, ObservationSpace, observation_entries
+from flockenv._io.array_file import write_arrays
+from flockenv._io.npz_header import array_of, entry_of, read_headed
+from flockenv.envs.observation import BLOCKS, ObservationSpace, observation_version
 from flockenv.errors import ParameterError, refuse_unknown, shown
-from flockenv.policies.encoders import (
-    ACTIVATIONS,
-    ENCODERS,
-    Encoder,
-    checked_activation,
-    checked_layers,
-)
-from flockenv.policies.files import PROVENANCE, StoredPolicy
+from flockenv.policies.base import RowPolicy, numbers
 
 __all__ = ["ACTIVATIONS", "NetworkPolicy"]
 
+FORMAT = "flockenv policy 1"
+"""First entry of every network's file."""
 
-class NetworkPolicy(StoredPolicy):
+_LARGEST_FILE = 5 << 20
+
+
+def _relu(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    return np.maximum(values, np.float32(0.0))
+
+
+ACTIVATIONS: Mapping[str, Callable[[NDArray[np.float32]], NDArray[np.float32]]] = {
+    "tanh": np.tanh,
+    "relu": _relu,
+}
+"""What may stand between two layers."""
+
+
+class NetworkPolicy(RowPolicy):
     """A fully connected network from one leader's observation to its rudder, shared by all leaders.
+
+    A row's output does not depend on the other rows of its batch.
 
     Parameters
     ----------
@@ -41,12 +56,6 @@ class NetworkPolicy(StoredPolicy):
     action_mode, decision_period_s
         What the output stands for, and for how long it is held: the environments' options of those
         names.
-    encoder
-        What the first layer takes in place of the observation; None: the observation itself. Its
-        layout has to be the policy's.
-    squashed
-        Whether the last layer's output goes through a hyperbolic tangent, where it is clipped
-        otherwise.
     provenance
         Where it comes from: any short texts by name, such as the command, the seed and the samples.
 
@@ -67,12 +76,11 @@ class NetworkPolicy(StoredPolicy):
         mirror_to_target: bool = False,
         action_mode: str = "rudder",
         decision_period_s: float | None = None,
-        encoder: Encoder | None = None,
-        squashed: bool = False,
         provenance: Mapping[str, str] | None = None,
     ) -> None:
         super().__init__(observation, mirror_to_target)
         refuse_unknown((action_mode,), _core.action_modes(), "action mode")
+        refuse_unknown((activation,), ACTIVATIONS, "activation")
         if decision_period_s is not None and not 0.0 < decision_period_s < math.inf:
             raise ParameterError(
                 f"decision_period_s = {decision_period_s!r} is not accepted: a positive time in s"
@@ -81,21 +89,7 @@ class NetworkPolicy(StoredPolicy):
         self.decision_period_s = None if decision_period_s is None else float(decision_period_s)
         self.activation = activation
         self.provenance = {str(name): str(text) for name, text in (provenance or {}).items()}
-        self.squashed = bool(squashed)
-        self._encoder = encoder
-        size = self._size
-        if encoder is not None:
-            if not isinstance(encoder, Encoder):
-                raise ParameterError(f"encoder = {shown(encoder)} is not accepted: an Encoder")
-            encoder.check(self.observation, self.mirror_to_target)
-            if encoder.names != [each.name for each in observation_entries(self.observation)]:
-                raise ParameterError(
-                    f"encoder is not accepted with observation = {self.observation!r}: it reads "
-                    f"another layout, of {len(encoder.names)} numbers"
-                )
-            size = encoder.size
-        self._layers = checked_layers(weights, biases, size, "layer", outputs=1)
-        checked_activation(activation)
+        self._layers = _checked_layers(weights, biases, self._size)
 
     @classmethod
     def from_module(
@@ -158,11 +152,6 @@ class NetworkPolicy(StoredPolicy):
         )
 
     @property
-    def encoder(self) -> Encoder | None:
-        """What the first layer takes in place of the observation."""
-        return self._encoder
-
-    @property
     def weights(self) -> list[NDArray[np.float32]]:
         """Copies of the layers' matrices, shape (inputs, outputs)."""
         return [weight.copy() for weight, _ in self._layers]
@@ -172,95 +161,115 @@ class NetworkPolicy(StoredPolicy):
         """Copies of the layers' biases, shape (outputs,)."""
         return [bias.copy() for _, bias in self._layers]
 
-    def last_inputs(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Return what the last layer takes, shape (rows, inputs), for rows of observations.
-
-        Raises
-        ------
-        ParameterError
-            If the shape of `rows` is not (rows, numbers of one leader's observation).
-        """
-        if rows.ndim != 2 or rows.shape[1] != self._size:
-            raise ParameterError(
-                f"rows with shape {rows.shape} are not accepted: (rows, {self._size})"
-            )
-        between = ACTIVATIONS[self.activation]
-        values = rows if self._encoder is None else self._encoder(rows)
-        for weight, bias in self._layers[:-1]:
-            values = between(values @ weight + bias)
-        return values
-
     def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
-        weight, bias = self._layers[-1]
-        outputs = self.last_inputs(rows) @ weight + bias
-        rudders: NDArray[np.float32] = (
-            np.tanh(outputs) if self.squashed else np.clip(outputs, -1.0, 1.0)
-        )
-        return rudders[:, 0]
+        between, values = ACTIVATIONS[self.activation], rows
+        for place, (weight, bias) in enumerate(self._layers):
+            # Input by input: the sums of a matrix product depend on how many rows there are.
+            sums = np.repeat(bias[None].astype(np.float64), len(rows), axis=0)
+            for column, each in enumerate(weight.astype(np.float64)):
+                sums += values[:, column, None] * each
+            values = sums.astype(np.float32)
+            if place < len(self._layers) - 1:
+                values = between(values)
+        return np.clip(values, -1.0, 1.0)[:, 0]
 
     def _contents(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+        """Return the header of a file, without the provenance, and its arrays."""
         header = {
             "observation": self.observation,
             "mirror_to_target": self.mirror_to_target,
             "activation": self.activation,
+            "action_mode": self.action_mode,
+            "decision_period_s": self.decision_period_s,
             "layers": len(self._layers),
-            PROVENANCE: self.provenance,
         }
-        # Only where they differ from the default, so that files and digests of rudders stay.
-        if self.action_mode != "rudder":
-            header["action_mode"] = self.action_mode
-        if self.decision_period_s is not None:
-            header["decision_period_s"] = self.decision_period_s
-        if self.squashed:
-            header["squashed"] = True
         arrays: dict[str, NDArray[Any]] = {}
-        if self._encoder is not None:
-            header["encoder"] = self._encoder.kind
-            encoder_header, arrays = self._encoder.contents()
-            header |= encoder_header
         for place, (weight, bias) in enumerate(self._layers):
             arrays |= {f"weight_{place}": weight, f"bias_{place}": bias}
         return header, arrays
 
-    @classmethod
-    def from_file(cls, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Self:
-        """Return the policy of a file's header and arrays.
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the policy to an ``.npz`` file, whole or not at all.
 
         Raises
         ------
-        ParameterError
-            For entries that are missing or not as `save` writes them.
+        OSError
+            If the file cannot be written; what was there before is still there.
         """
-        places = range(entry_of(header, "layers", int))
-        return cls(
-            [array_of(arrays, f"weight_{place}") for place in places],
-            [array_of(arrays, f"bias_{place}") for place in places],
-            entry_of(header, "activation", str),
-            observation=entry_of(header, "observation", dict),
-            mirror_to_target=entry_of(header, "mirror_to_target", bool),
-            encoder=_encoder_of(header, arrays),
-            provenance=entry_of(header, PROVENANCE, dict),
-            **_action_of(header),
-        )
+        header, arrays = self._contents()
+        version = observation_version(self.observation)
+        whole = {"format": FORMAT, "observation_version": version, **header}
+        text = json.dumps({**whole, "made": self.provenance}, sort_keys=True)
+        write_arrays(path, {"header": np.array(text), **arrays})
+
+    @property
+    def digest(self) -> str:
+        """The first digits of the SHA-256 of layout and numbers, whatever made them."""
+        header, arrays = self._contents()
+        whole = hashlib.sha256(json.dumps(header, sort_keys=True).encode())
+        for name in sorted(arrays):
+            array = np.ascontiguousarray(arrays[name])
+            whole.update(f"{name} {array.shape} {array.dtype.str}".encode() + array.tobytes())
+        return f"sha256:{whole.hexdigest()[:12]}"
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """Read a network from its ``.npz`` file, in which nothing is executed.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be opened.
+        ParameterError
+            For a file that is no whole network, or was made for another version of the observation.
+        """
+        if os.path.getsize(path) > _LARGEST_FILE:
+            raise ParameterError(f"{path} is no policy: it is larger than {_LARGEST_FILE} bytes")
+        header, arrays = read_headed(path, "policy", FORMAT, most_bytes=_LARGEST_FILE)
+        try:
+            places = range(entry_of(header, "layers", int))
+            period = header.get("decision_period_s")
+            return cls(
+                [array_of(arrays, f"weight_{place}") for place in places],
+                [array_of(arrays, f"bias_{place}") for place in places],
+                entry_of(header, "activation", str),
+                observation=entry_of(header, "observation", dict),
+                mirror_to_target=entry_of(header, "mirror_to_target", bool),
+                action_mode=entry_of(header, "action_mode", str),
+                decision_period_s=period and entry_of(header, "decision_period_s", float),
+                provenance=entry_of(header, "made", dict),
+            )
+        except (TypeError, ValueError) as error:
+            raise ParameterError(f"{path} is no whole policy: {error}") from error
 
     def __repr__(self) -> str:
-        first = [] if self._encoder is None else [f"{self._encoder.kind} {self._encoder.size}"]
-        sizes = [self._size, *first, *(len(bias) for _, bias in self._layers)]
+        sizes = [self._size, *(len(bias) for _, bias in self._layers)]
         return f"{type(self).__name__}({'-'.join(map(str, sizes))}, {self.activation})"
 
 
-def _action_of(header: Mapping[str, Any]) -> dict[str, Any]:
-    kinds = {"action_mode": str, "decision_period_s": float, "squashed": bool}
-    return {name: entry_of(header, name, kind) for name, kind in kinds.items() if name in header}
-
-
-def _encoder_of(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Encoder | None:
-    if "encoder" not in header:
-        return None
-    kind = entry_of(header, "encoder", str)
-    if kind not in ENCODERS:
-        raise ParameterError(f"encoder = {kind!r} is not accepted: one of {', '.join(ENCODERS)}")
-    return ENCODERS[kind].from_contents(header, arrays, entry_of(header, "observation", dict))
+def _checked_layers(
+    weights: Sequence[ArrayLike], biases: Sequence[ArrayLike], size: int
+) -> list[tuple[NDArray[np.float32], NDArray[np.float32]]]:
+    """Return layers from so many inputs to one output, as float32."""
+    if len(weights) != len(biases) or len(weights) == 0:
+        raise ParameterError(
+            f"{len(weights)} weights and {len(biases)} biases are not accepted: one of each a layer"
+        )
+    layers, inputs = [], size
+    for place, (weight, bias) in enumerate(zip(weights, biases, strict=True)):
+        matrix = numbers(f"weights of layer {place}", weight, np.float32)
+        vector = numbers(f"biases of layer {place}", bias, np.float32)
+        wanted = 1 if place == len(weights) - 1 else vector.size
+        if matrix.shape != (inputs, wanted) or vector.shape != (wanted,) or wanted == 0:
+            raise ParameterError(
+                f"layer {place} has weights {matrix.shape} and biases {vector.shape}, which is "
+                f"not accepted: ({inputs}, {wanted}) and ({wanted},)"
+            )
+        if not (np.isfinite(matrix).all() and np.isfinite(vector).all()):
+            raise ParameterError(f"layer {place} holds numbers that are not finite")
+        layers.append((matrix, vector))
+        inputs = wanted
+    return layers
 
 
 #: Names of torch's activations, and of layers that leave the mean as it is.

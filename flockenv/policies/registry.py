@@ -1,51 +1,123 @@
-"""Policies by name: closed-form laws, what is tuned or trained for a pool, and files."""
+"""Policies by name: laws, what is tuned or trained for a pool, and files."""
 
+import os
 from collections.abc import Callable, Mapping
-from functools import partial
 from typing import Any
 
 from flockenv.errors import ParameterError, nearest
 from flockenv.policies.base import LeaderPolicy
 from flockenv.policies.constant import RandomRudders, StraightAhead
-from flockenv.policies.laws import LAWS
-from flockenv.policies.pretrained import LEARNED, TUNED_GAINS, learned, load, tuned_law
+from flockenv.policies.laws import DampedLaw, LawPolicy, LeaningLaw, SteeringLaw
+from flockenv.policies.model import ModelPolicy, is_model_file, load_model
+from flockenv.policies.network import NetworkPolicy
 
 __all__ = [
     "EVERY_SUBSTEP",
     "FILES",
+    "LAWS",
+    "LEARNED",
     "POLICIES",
+    "POOLS",
     "POOL_POLICIES",
+    "load",
     "named_policy",
     "policy_name",
     "quoted",
 ]
 
-FILES = (".npz", ".zip")
-"""How the files of policies end: learned ones of this package, and models of stable-baselines3."""
+FILES = (".json", ".npz", ".zip")
+"""How the files of policies end: laws, networks, and models of stable-baselines3."""
 
-EVERY_SUBSTEP = "law"
-"""Stands for the paper's law evaluated at every substep, from the pose: what `simulate` does."""
+EVERY_SUBSTEP = "paper's law at every substep"
+"""The paper's law evaluated at every substep, from the pose: what `simulate` does without a policy.
+"paper's law" is evaluated at every decision, from the observation, as other policies are."""
+
+LEARNED = "learned"
+"""Name of the pretrained leaders, which are others in each pool."""
+
+POOLS = ("wide", "narrow")
+"""The pools for which laws were tuned and leaders were trained."""
+
+LAWS: Mapping[str, Callable[..., LawPolicy]] = {
+    "paper's law": SteeringLaw,
+    "damped law": DampedLaw,
+}
+"""Laws by name that are the same in every pool."""
 
 POLICIES: Mapping[str, Callable[[], LeaderPolicy | str]] = {
     **LAWS,
-    "steering law at every substep": lambda: EVERY_SUBSTEP,
+    EVERY_SUBSTEP: lambda: EVERY_SUBSTEP,
     "straight ahead": StraightAhead,
     "random rudders": RandomRudders,
 }
 """Policies by name that are the same in every pool."""
 
 POOL_POLICIES: Mapping[str, Callable[[Any], LeaderPolicy]] = {
-    **{f"tuned {law}": partial(tuned_law, law) for law in TUNED_GAINS},
-    LEARNED: learned,
+    "tuned law": lambda pool: DampedLaw.tuned(_named(pool)),
+    LEARNED: lambda pool: LeaningLaw.learned(_named(pool)),
 }
 """Policies by name, each tuned or trained for a pool."""
 
+_LARGEST_FILE = 1 << 20
 _LONGEST_NAME = 200
 
-_ALSO_CALLED = {
-    EVERY_SUBSTEP: "steering law at every substep",
-    "steering law, every substep": "steering law at every substep",
-}
+
+def _named(pool: Any) -> str:
+    if not isinstance(pool, str) or pool not in POOLS:
+        raise ParameterError(
+            f"pool = {pool!r} is not accepted: tuned and learned leaders are for {', '.join(POOLS)}"
+        )
+    return pool
+
+
+def load(
+    path: str | os.PathLike[str], *, pool: str | None = None, trust: bool = False
+) -> LeaningLaw | NetworkPolicy | ModelPolicy:
+    """Return the learned leaders of a pool, or a policy from its file.
+
+    Nothing in a ``.json`` or ``.npz`` file is ever executed. A model's ``.zip`` file of
+    stable-baselines3 holds pickled objects, and **reading it executes whatever code the file
+    holds**: trust only files whose origin you know.
+
+    Parameters
+    ----------
+    path
+        ``"learned"`` for the leaders that come with the package, a law's ``.json`` file, a
+        network's ``.npz`` file, or the ``.zip`` file of a model that was trained with
+        stable-baselines3 (needs the extra ``train``).
+    pool
+        With ``"learned"``, and then needed: the named pool that the leaders were trained in.
+    trust
+        Whether a model's ``.zip`` file may execute the code in it.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be opened.
+    ParameterError
+        If the file is no policy, is damaged, or was made for other features or another version of
+        the observation; for a model's file without `trust`; for a pool without learned leaders.
+    MissingExtraError
+        For a model's file without the extra ``train``.
+    """
+    if path == LEARNED:
+        return LeaningLaw.learned(_named(pool))
+    if pool is not None:
+        raise ParameterError(
+            f"pool = {pool!r} is not accepted with the file {os.fspath(path)!r}: a pool chooses "
+            f"among the policies called {LEARNED!r}"
+        )
+    if is_model_file(path):
+        if not trust:
+            raise ParameterError(
+                f"{path} holds a model with pickled objects, and reading it executes the code in "
+                "it: if you know where it comes from, say so with trust=True (on the command line "
+                "--trust)"
+            )
+        return load_model(path)
+    if os.fspath(path).endswith(".json"):
+        return LeaningLaw.load(path)
+    return NetworkPolicy.load(path)
 
 
 def named_policy(name: str, pool: Any, *, trust: bool = False) -> Callable[[], LeaderPolicy | str]:
@@ -54,7 +126,7 @@ def named_policy(name: str, pool: Any, *, trust: bool = False) -> Callable[[], L
     Parameters
     ----------
     name
-        A name in `POLICIES` or `POOL_POLICIES`, `EVERY_SUBSTEP`, or a path.
+        A name in `POLICIES` or `POOL_POLICIES`, or a path.
     pool
         The flock's pool.
     trust
@@ -68,7 +140,6 @@ def named_policy(name: str, pool: Any, *, trust: bool = False) -> Callable[[], L
     OSError
         If the file cannot be opened.
     """
-    name = _ALSO_CALLED.get(name, name)
     if name in POLICIES:
         return POLICIES[name]
     if name in POOL_POLICIES:
@@ -80,18 +151,18 @@ def named_policy(name: str, pool: Any, *, trust: bool = False) -> Callable[[], L
     names = [*POLICIES, *POOL_POLICIES]
     parts = [part.strip() for part in name.split(",")]
     near = nearest(name, names)
-    if len(parts) > 1 and set(parts) <= {*names, *_ALSO_CALLED}:
+    if len(parts) > 1 and set(parts) <= {*names}:
         hint = "policies are named one by one (on the command line, repeat the option)"
     else:
         hint = f"did you mean {near!r}?" if near else f"there are {quoted(names)}"
-    raise ParameterError(f"{name!r} is no policy and no .npz or .zip file: {hint}")
+    raise ParameterError(f"{name!r} is no policy and no .json, .npz or .zip file: {hint}")
 
 
 def policy_name(policy: LeaderPolicy | str | None) -> str:
     """Return the name under which recordings hold a policy.
 
-    That is "law" for the steering law at every substep, and otherwise what the policy prints as,
-    or its class where that is no name. A policy's ``digest`` follows, if it has one.
+    That is `EVERY_SUBSTEP` without a policy, and otherwise what the policy prints as, or its class
+    where that is no name. A policy's ``digest`` follows, if it has one.
     """
     if policy is None or isinstance(policy, str):
         return policy or EVERY_SUBSTEP

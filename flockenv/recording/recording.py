@@ -70,7 +70,7 @@ class Recording:
     contacts : ContactSeries or None
         Contacts that carried a force, if they were recorded.
     policy : str or None
-        What steered the leaders: "law" for eq. (10) at every substep, otherwise the policy's name,
+        What steered the leaders: "paper's law at every substep", otherwise the policy's name,
         which for a learned one ends in the first digits of its SHA-256; None where that is not
         known, as in files of version 0.1.0.
     duration_s : float

@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from flockenv.parameters import FlockParameters
-from flockenv.policies.pretrained import LEARNED
-from flockenv.policies.registry import EVERY_SUBSTEP
+from flockenv.policies.registry import EVERY_SUBSTEP, LEARNED
 from flockenv.recording import Recording
 from flockenv.replay.template import as_script_content
 from flockenv.simulation import simulate
@@ -72,6 +71,6 @@ def live_demo(page: Path, seed: int = DEMO_SEED) -> str:
     """
     p = DEMO_PARAMETERS
     flock = f"n_boats={p.n_boats}&n_leaders={p.n_leaders}&pool={p.pool}&bw_s={p.bw_s}&seed={seed}"
-    link = f"#lesson=learned&{flock}&beside.leaders=tuned damped law"
+    link = f"#lesson=learned&{flock}&beside.leaders=tuned law"
     opening = as_script_content(f'"opening": {json.dumps(link)}')
     return page.read_text("utf-8").replace('"opening": null', opening, 1)

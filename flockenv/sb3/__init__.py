@@ -8,7 +8,6 @@ from flockenv._io.extras import require
 require("stable_baselines3", "train")
 
 # ruff: noqa: E402 - after the check above
-from flockenv.sb3.encoders import LeaningExtractor, NeighborSetExtractor, usual_features
 from flockenv.sb3.evaluation import (
     FlockEvalCallback,
     FlockEvaluation,
@@ -27,12 +26,9 @@ __all__ = [
     "FlockMonitor",
     "LeaderSlot",
     "LeaderVecEnv",
-    "LeaningExtractor",
-    "NeighborSetExtractor",
     "PerFlock",
     "SharedNoisePolicy",
     "WithFlockFeatures",
     "evaluate_flocks",
     "shared_noise",
-    "usual_features",
 ]

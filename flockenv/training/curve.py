@@ -90,7 +90,7 @@ def compare_with_laws(model: Any, settings: TrainingSettings, episodes: int) -> 
     flocks = FlockParameters.preset("simulation").replace(**settings.flocks())
     policies = {
         "paper's law": SteeringLaw,
-        "tuned law": named_policy("tuned damped law", settings.pool),
+        "tuned law": named_policy("tuned law", settings.pool),
         "trained": lambda: model,
     }
     return compare_leaders(flocks, [settings.n_leaders], policies, range(episodes), _EPISODE_S)

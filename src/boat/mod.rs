@@ -4,4 +4,4 @@ mod free_motion;
 mod steering;
 
 pub use free_motion::{Drive, FreeMotion, FreeVelocity};
-pub use steering::{DAMPED_LAW, Law, TUNED_LAWS, misalignment, steering_law};
+pub use steering::{Course, DampedLaw, misalignment, steering_law};

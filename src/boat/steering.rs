@@ -1,8 +1,8 @@
-//! Steering laws of leaders: the paper's fixed one, eq. (10), and closed forms beyond it.
+//! Steering laws of leaders: the paper's, eq. (10), and the damped law, which also steers well when backing.
 
 use crate::error::{FlockError, Result};
 use crate::geometry::{Vec2, wrap_angle};
-use crate::parameters::{Pool, Target};
+use crate::parameters::Target;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Rudder command of eq. (10): s = clamp(6·(β − α)/π, −1, 1), with β − α wrapped into (−π, π];
@@ -18,107 +18,89 @@ pub fn misalignment(position: Vec2, heading: f64, target: Target) -> f64 {
     wrap_angle(polar_angle - target.sign() * FRAC_PI_2 - heading)
 }
 
-/// A steering law. Misalignment δ = β − α is how far counter-clockwise the leader has to turn to head
-/// along the target's tangent, wrapped into (−π, π].
+/// What a steering law reads of a leader.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Law {
-    /// Eq. (10): s = clamp(6·δ/π, −1, 1).
-    Steering,
-    /// s = sign(u·ẋ)·clamp(gain·δ, −1, 1): a rudder works in reverse on a boat that moves backward.
-    SignCorrected {
-        /// Rudder per rad of misalignment; 6/π in eq. (10).
-        gain: f64,
-    },
-    /// Forward as `SignCorrected`; backward s = clamp(−backward_gain·δ + damping·α̇, −1, 1), which also
-    /// counters the turning that makes backing boats spin.
-    Damped {
-        /// Rudder per rad of misalignment while moving forward.
-        gain: f64,
-        /// Rudder per rad of misalignment while moving backward.
-        backward_gain: f64,
-        /// Rudder per rad/s of angular velocity while moving backward.
-        damping: f64,
-    },
+pub struct Course {
+    /// How far counter-clockwise the leader has to turn to head where it should, in rad, in any turn.
+    pub misalignment: f64,
+    /// Velocity along the heading, in any unit: its sign counts.
+    pub forward: f64,
+    /// Angular velocity in rad/s, counter-clockwise.
+    pub angular: f64,
+}
+
+/// Forward s = clamp(gain·δ, −1, 1), where δ is the misalignment. Backward, where a rudder works in reverse,
+/// s = clamp(−backward_gain·δ + damping·α̇, −1, 1), which also counters the turning that makes backing boats spin.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DampedLaw {
+    /// Rudder per rad of misalignment while moving forward.
+    pub gain: f64,
+    /// Rudder per rad of misalignment while moving backward.
+    pub backward_gain: f64,
+    /// Rudder per rad/s of angular velocity while moving backward.
+    pub damping: f64,
 }
 
 /// The gain of eq. (10) in 1/rad: full rudder from 30° of misalignment on.
-pub(crate) const PAPER_GAIN: f64 = 6.0 / PI;
+const PAPER_GAIN: f64 = 6.0 / PI;
 
 /// The damped law where nothing has been tuned: eq. (10)'s gain in both directions.
-pub const DAMPED_LAW: Law = Law::Damped {
-    gain: PAPER_GAIN,
-    backward_gain: PAPER_GAIN,
-    damping: 3.0,
-};
-
-/// Laws with the gains tuned in a named pool: (name of the law, pool, law).
-///
-/// Source: `python baselines/tune_laws.py` (seed 0) for three leaders among 27 boats at each pool's critical
-/// noise, on training seeds.
-pub const TUNED_LAWS: [(&str, &str, Law); 4] = [
-    (
-        "sign-corrected law",
-        "wide",
-        Law::SignCorrected { gain: 1.91 },
-    ),
-    (
-        "sign-corrected law",
-        "narrow",
-        Law::SignCorrected { gain: 0.957 },
-    ),
-    (
-        "damped law",
-        "wide",
-        Law::Damped {
-            gain: 1.42,
-            backward_gain: 3.28,
-            damping: 17.0,
-        },
-    ),
-    (
-        "damped law",
-        "narrow",
-        Law::Damped {
-            gain: 3.02,
-            backward_gain: 4.1,
-            damping: 35.6,
-        },
-    ),
-];
-
-/// The damped law of each pool in which it has been tuned.
-fn tuned_damped() -> impl Iterator<Item = (&'static str, Law)> {
-    let tuned = TUNED_LAWS.into_iter();
-    tuned.filter_map(|(_, pool, law)| matches!(law, Law::Damped { .. }).then_some((pool, law)))
-}
-
-impl Law {
-    /// Names and values of the gains.
-    pub fn gains(&self) -> Vec<(&'static str, f64)> {
-        match *self {
-            Self::Steering => Vec::new(),
-            Self::SignCorrected { gain } => vec![("gain", gain)],
-            Self::Damped {
-                gain,
-                backward_gain,
-                damping,
-            } => vec![
-                ("gain", gain),
-                ("backward_gain", backward_gain),
-                ("damping", damping),
-            ],
+impl Default for DampedLaw {
+    fn default() -> Self {
+        Self {
+            gain: PAPER_GAIN,
+            backward_gain: PAPER_GAIN,
+            damping: 3.0,
         }
     }
+}
 
-    /// The damped law with the gains tuned in a pool; `None` for pools in which it has not been tuned.
-    pub(crate) fn tuned_damped(pool: &Pool) -> Option<Self> {
-        let pool = pool.name()?;
-        tuned_damped().find_map(|(of, law)| (of == pool).then_some(law))
+impl DampedLaw {
+    /// The tuned law: the damped law with the gains tuned in a pool, by the pool's name.
+    ///
+    /// Source: `python baselines/tune_laws.py` (seed 0) for three leaders among 27 boats at each pool's critical
+    /// noise, on training seeds.
+    pub const TUNED: [(&str, Self); 2] = [
+        (
+            "wide",
+            Self {
+                gain: 1.42,
+                backward_gain: 3.28,
+                damping: 17.0,
+            },
+        ),
+        (
+            "narrow",
+            Self {
+                gain: 3.02,
+                backward_gain: 4.1,
+                damping: 35.6,
+            },
+        ),
+    ];
+
+    /// The tuned law of a pool, by its name, if it has one, which the value of some setting asks for.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] names setting and value for pools in which the law has not been tuned.
+    pub fn tuned(setting: &'static str, value: &str, pool: Option<&str>) -> Result<Self> {
+        let mut tuned = Self::TUNED.into_iter();
+        let found = tuned.find(|(name, _)| Some(*name) == pool);
+        found.map(|(_, law)| law).ok_or_else(|| {
+            let pools = Self::TUNED.map(|(name, _)| name).join(" and ");
+            let accepted = format!("the damped law is tuned in the pools {pools} alone");
+            FlockError::parameter(setting, value, accepted)
+        })
     }
 
-    /// The pools in which the damped law has been tuned.
-    pub(crate) fn tuned_damped_pools() -> impl Iterator<Item = &'static str> {
-        tuned_damped().map(|(pool, _)| pool)
+    /// Names and values of the gains.
+    pub fn gains(&self) -> [(&'static str, f64); 3] {
+        [
+            ("gain", self.gain),
+            ("backward_gain", self.backward_gain),
+            ("damping", self.damping),
+        ]
     }
 
     /// Checks the gains.
@@ -126,39 +108,21 @@ impl Law {
     /// # Errors
     /// [`FlockError::Parameter`] for gains that are not finite.
     pub fn check(&self) -> Result<()> {
-        match self
-            .gains()
-            .into_iter()
-            .find(|(_, value)| value.is_nan() || value.abs() > 1e9)
-        {
+        let mut gains = self.gains().into_iter();
+        match gains.find(|(_, value)| value.is_nan() || value.abs() > 1e9) {
             Some((name, value)) => Err(FlockError::parameter(name, value, "a finite number")),
             None => Ok(()),
         }
     }
 
-    /// The rudder in [−1, 1] for a misalignment in rad, a velocity along the heading (its sign counts)
-    /// and an angular velocity in rad/s, counter-clockwise.
-    pub fn rudder(&self, misalignment: f64, forward: f64, angular: f64) -> f64 {
-        let backing = forward < 0.0;
-        match *self {
-            Self::Steering => steering_law(misalignment),
-            Self::SignCorrected { gain } => {
-                let turn = (gain * wrap_angle(misalignment)).clamp(-1.0, 1.0);
-                if backing { -turn } else { turn }
-            }
-            Self::Damped {
-                gain,
-                backward_gain,
-                damping,
-            } => {
-                let misalignment = wrap_angle(misalignment);
-                let rudder = if backing {
-                    damping * angular - backward_gain * misalignment
-                } else {
-                    gain * misalignment
-                };
-                rudder.clamp(-1.0, 1.0)
-            }
-        }
+    /// The rudder in [−1, 1] on a course.
+    pub fn rudder(&self, course: &Course) -> f64 {
+        let misalignment = wrap_angle(course.misalignment);
+        let rudder = if course.forward < 0.0 {
+            self.damping * course.angular - self.backward_gain * misalignment
+        } else {
+            self.gain * misalignment
+        };
+        rudder.clamp(-1.0, 1.0)
     }
 }

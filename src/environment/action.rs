@@ -1,6 +1,6 @@
 //! What an action stands for: a rudder, or a heading that a steering law steers to; and how long it is held.
 
-use crate::boat::{DAMPED_LAW, Law};
+use crate::boat::DampedLaw;
 use crate::clock::{seconds, whole_steps};
 use crate::error::{FlockError, Result};
 use crate::integrator::PhaseSchedule;
@@ -14,8 +14,8 @@ named_choice! {
         Rudder = "rudder",
         /// Any heading: its angle outward of the target's tangent over π. The damped law steers to it.
         Heading = "heading",
-        /// A heading about the tangent: its angle outward over [`LARGEST_LEAN`]. The pool's tuned damped law
-        /// steers to it, and 0 is that law itself.
+        /// A heading about the tangent: its angle outward over [`LARGEST_LEAN`]. The pool's tuned law steers to it,
+        /// and 0 is that law itself.
         Lean = "lean",
     }
 }
@@ -88,11 +88,13 @@ impl ActionSettings {
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for leans in a pool in which the law has not been tuned.
-    pub fn steering_law(&self, parameters: &FlockParameters) -> Result<Option<Law>> {
+    pub fn steering_law(&self, parameters: &FlockParameters) -> Result<Option<DampedLaw>> {
         match self.mode {
             ActionMode::Rudder => Ok(None),
-            ActionMode::Heading => Ok(Some(DAMPED_LAW)),
-            ActionMode::Lean => tuned_law("action_mode", "\"lean\"", parameters).map(Some),
+            ActionMode::Heading => Ok(Some(DampedLaw::default())),
+            ActionMode::Lean => {
+                DampedLaw::tuned("action_mode", "\"lean\"", parameters.pool.name()).map(Some)
+            }
         }
     }
 
@@ -104,23 +106,4 @@ impl ActionSettings {
             ActionMode::Lean => LARGEST_LEAN * action,
         }
     }
-}
-
-/// The damped law tuned for the parameters' pool, which some setting needs.
-///
-/// # Errors
-/// [`FlockError::Parameter`] for other pools.
-pub(crate) fn tuned_law(
-    setting: &'static str,
-    value: &str,
-    parameters: &FlockParameters,
-) -> Result<Law> {
-    Law::tuned_damped(&parameters.pool).ok_or_else(|| {
-        let pools: Vec<_> = Law::tuned_damped_pools().collect();
-        let accepted = format!(
-            "the damped law is tuned in the pools {} alone",
-            pools.join(" and ")
-        );
-        FlockError::parameter(setting, value, accepted)
-    })
 }

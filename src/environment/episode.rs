@@ -5,11 +5,12 @@ mod stored;
 pub(crate) use stored::StoredEpisode;
 
 use super::credit::{ContactCredit, LeaderCredit};
-use super::observation::{Camera, FlockFeatures, FlockView, LeaderLaw, Observer, StateObserver};
+use super::observation::{Camera, CourseView, FlockFeatures, FlockView, Observer, StateObserver};
 use super::statistics::{EpisodeStatistics, LeaderSummary, LeaderSums};
 use super::{EnvSettings, EpisodeSchedule, EpisodeSummary, Reward, RewardTerms, Servo, TERMS};
 use crate::analysis::OrderParameters;
 use crate::analysis::quantities::Boats;
+use crate::boat::DampedLaw;
 use crate::clock::seconds;
 use crate::error::Result;
 use crate::flock::Flock;
@@ -50,7 +51,7 @@ pub struct Episode {
     observer: Observer,
     camera: Option<Camera>,
     /// The law that steers to a heading, where actions stand for one.
-    law: Option<LeaderLaw>,
+    law: Option<(DampedLaw, CourseView)>,
     /// Commands of the control step under way.
     commands: Vec<f64>,
     /// What the leaders' contacts do, where a reward asks for it.
@@ -71,7 +72,7 @@ impl Episode {
         let parameters = flock.parameters();
         let (leaders, boats) = (parameters.n_leaders, parameters.n_boats);
         let law = settings.action.steering_law(parameters)?;
-        let law = law.map(|law| LeaderLaw::new(law, parameters)).transpose()?;
+        let law = law.map(|law| Ok((law, CourseView::new(parameters)?)));
         let credit = settings.reward.need_credit();
         let camera = settings.camera.is_active().then(|| {
             let (poses, velocities) = (flock.poses(), flock.velocities());
@@ -85,7 +86,7 @@ impl Episode {
         });
         Ok(Self {
             observer: Observer::new(settings.observation, parameters)?,
-            law,
+            law: law.transpose()?,
             commands: vec![0.0; leaders],
             credit: credit.then(|| ContactCredit::new(leaders, boats)),
             camera,
@@ -225,7 +226,11 @@ impl Episode {
             let value = settings.rudder.command(action);
             let mirrored = mirror_to.is_some_and(|targets| targets.of(leader).sign() < 0.0);
             *command = match &self.law {
-                Some(law) => law.rudder(&view, leader, settings.action.angle(value)),
+                Some((law, courses)) => {
+                    let angle = settings.action.angle(value);
+                    let rudder = law.rudder(&courses.course(&view, leader, angle));
+                    f64::from(rudder as f32)
+                }
                 None if mirrored => -value,
                 None => value,
             };

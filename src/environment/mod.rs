@@ -15,7 +15,6 @@ mod schedule;
 mod settings;
 mod statistics;
 
-pub(crate) use action::tuned_law;
 pub use action::{ActionMode, ActionSettings, LARGEST_LEAN};
 pub use averages::Averages;
 pub use batch::{BatchRows, EnvBatch};

@@ -183,7 +183,7 @@ declare_options! {
     episode_s: episode.episode_s;
     /// control steps per second
     control_hz: episode.control_hz;
-    /// what an action in [-1, 1] stands for: "rudder"; "heading", the angle outward of the target's tangent over pi, to which the damped law steers; or "lean", that angle over 1.2 rad, to which the pool's tuned damped law steers, so that 0 is that law
+    /// what an action in [-1, 1] stands for: "rudder"; "heading", the angle outward of the target's tangent over pi, to which the damped law steers; or "lean", that angle over 1.2 rad, to which the pool's tuned law steers, so that 0 is that law
     action_mode: action.mode;
     /// time in s from one decision to the next, a whole number of control steps, through which a step holds its action; None: one control step
     decision_period_s: action.decision_period_s;

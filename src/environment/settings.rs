@@ -1,6 +1,6 @@
 //! Everything about an environment that is not the flock's own parameters.
 
-use super::observation::{CameraSettings, ObservationLayout};
+use super::observation::{Block, CameraSettings, ObservationLayout, Observer};
 use super::{ActionSettings, EpisodeSettings, RewardWeights, RudderSettings};
 use crate::error::{FlockError, Result};
 use crate::parameters::{FlockParameters, named_choice};
@@ -72,19 +72,21 @@ impl EnvSettings {
         self.camera.check()?;
         self.rudder.check()?;
         self.action.check(parameters, self.episode.control_hz)?;
-        self.observation.law(parameters)?;
+        Observer::new(self.observation, parameters)?;
         if let Some(horizon) = self.reward_horizon_s
             && !(horizon > 0.0 && horizon <= 1e6)
         {
             let accepted = "a positive time of at most 1e6 s, or none";
             return Err(FlockError::parameter("reward_horizon_s", horizon, accepted));
         }
-        if self.observation.order && parameters.n_leaders == parameters.n_boats {
-            return Err(FlockError::parameter(
-                "observation order",
-                true,
-                "order parameters are of the normal boats and need n_boats > n_leaders",
-            ));
+        for block in [Block::Order, Block::LeanFeatures] {
+            if self.observation.has(block) && parameters.n_leaders == parameters.n_boats {
+                return Err(FlockError::parameter(
+                    block.option(),
+                    true,
+                    "order parameters are of the normal boats and need n_boats > n_leaders",
+                ));
+            }
         }
         self.reward.check(parameters)
     }

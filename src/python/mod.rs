@@ -7,6 +7,7 @@ pub(crate) mod draw;
 pub(crate) mod error;
 pub(crate) mod exclusive;
 pub(crate) mod flock;
+pub(crate) mod law;
 pub(crate) mod observation;
 pub(crate) mod order;
 pub(crate) mod parameters;
@@ -34,9 +35,11 @@ mod _core {
     #[pymodule_export]
     use super::flock::PyFlock;
     #[pymodule_export]
+    use super::law::{PyLaw, PyObservedLaw, lean_feature_names};
+    #[pymodule_export]
     use super::observation::{
-        PyObservedLaw, flock_feature_table, observation_table, observation_version, observe,
-        rudders_of_levels, state_table, tuned_gains,
+        flock_feature_table, observation_table, observation_version, observe, rudders_of_levels,
+        state_table,
     };
     #[pymodule_export]
     use super::order::{

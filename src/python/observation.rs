@@ -1,20 +1,18 @@
 //! Observations outside environments: the table, a flock observed, laws evaluated.
 
-use super::arguments::{count, floats, real, text, wrong_shape};
+use super::arguments::{count, floats};
 use super::flock::PyFlock;
 use super::value::layout_from;
-use crate::boat::{Law, TUNED_LAWS};
 use crate::environment::RudderSettings;
 use crate::environment::observation::{
-    BOAT, Entry, OBSERVATION_VERSION, ObservationLayout, ObservedLaw, flock_feature_entries,
-    observe_flock, state_entries,
+    BOAT, Entry, OBSERVATION_VERSION, ObservationLayout, flock_feature_entries, observe_flock,
+    state_entries,
 };
 use crate::error::FlockError;
 use crate::flock::Flock;
 use crate::parameters::FlockParameters;
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
 /// Version of an observation with these blocks, the newest where none are given.
 #[pyfunction]
@@ -87,18 +85,6 @@ pub(crate) fn flock_feature_table() -> Vec<Row> {
         .collect()
 }
 
-/// A law, a pool, and names and values of the law's gains.
-type Tuned = (&'static str, &'static str, Vec<(&'static str, f64)>);
-
-/// The gains tuned for each law and pool.
-#[pyfunction]
-pub(crate) fn tuned_gains() -> Vec<Tuned> {
-    let tuned = TUNED_LAWS.iter();
-    tuned
-        .map(|(name, pool, law)| (*name, *pool, law.gains()))
-        .collect()
-}
-
 /// What the leaders of a flock observe now: (k, size) float32. `rudder`: as the rudders stand.
 #[pyfunction]
 #[pyo3(signature = (flock, blocks, mirror_to_target=false, rudder=None))]
@@ -127,75 +113,6 @@ pub(crate) fn observed<'py>(
 ) -> PyResult<Bound<'py, PyArray2<f32>>> {
     let shape = [flock.parameters().n_leaders, layout.size()];
     PyArray1::from_vec(py, observe_flock(flock, layout, rudders)?).reshape(shape)
-}
-
-/// A law as it reads observations of one layout.
-#[pyclass(name = "ObservedLaw", module = "flockenv._core", frozen)]
-pub struct PyObservedLaw(ObservedLaw);
-
-#[pymethods]
-impl PyObservedLaw {
-    /// A law by name, with its gains.
-    #[new]
-    #[pyo3(signature = (name, gains, blocks, mirror_to_target=false))]
-    fn new(
-        name: &Bound<'_, PyAny>,
-        gains: &Bound<'_, PyDict>,
-        blocks: &Bound<'_, PyAny>,
-        mirror_to_target: bool,
-    ) -> PyResult<Self> {
-        let gain = |name: &'static str| -> PyResult<f64> {
-            let value = gains.get_item(name)?;
-            value.map_or(Ok(f64::NAN), |value| real(&value, name))
-        };
-        let law = match text(name, "law")?.as_str() {
-            "steering" => Law::Steering,
-            "sign_corrected" => Law::SignCorrected {
-                gain: gain("gain")?,
-            },
-            "damped" => Law::Damped {
-                gain: gain("gain")?,
-                backward_gain: gain("backward_gain")?,
-                damping: gain("damping")?,
-            },
-            other => {
-                let accepted = "\"steering\", \"sign_corrected\" or \"damped\"";
-                return Err(FlockError::parameter("law", format!("{other:?}"), accepted).into());
-            }
-        };
-        let layout = layout_from(blocks, mirror_to_target)?;
-        Ok(Self(ObservedLaw::new(law, &layout)?))
-    }
-
-    /// How many numbers an observation has.
-    #[getter]
-    fn observation_size(&self) -> usize {
-        self.0.observation_size()
-    }
-
-    /// Rudders for observations (rows, size), or for a flat row of whole observations.
-    fn rudders<'py>(
-        &self,
-        py: Python<'py>,
-        observations: PyReadonlyArray2<'py, f32>,
-    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let (size, width) = (self.0.observation_size(), observations.as_array().ncols());
-        if width == 0 || !width.is_multiple_of(size) {
-            let expected = format!("(..., {size}), the size of the law's own layout");
-            return Err(wrong_shape(
-                "observation",
-                format!("(..., {width})"),
-                &expected,
-            ));
-        }
-        let numbers = observations.as_slice()?;
-        if numbers.iter().any(|number| number.is_nan()) {
-            return Err(FlockError::parameter("observation", f64::NAN, "numbers").into());
-        }
-        let rows = numbers.chunks_exact(size);
-        let rudders = rows.map(|observation| self.0.rudder(observation) as f32);
-        Ok(PyArray1::from_iter(py, rudders))
-    }
 }
 
 /// The rudders that numbers of levels stand for, of so many that an environment may have; or the other way round, the

@@ -2,14 +2,18 @@
 
 use super::arguments::{floats, real, same_length, targets};
 use super::flock::PyFlock;
+use super::law::PyLaw;
 use super::observation::observed;
 use super::value::layout_from;
 use super::{contacts, order};
 use crate::clock::ticks;
 use crate::environment::observation::ObservationLayout;
 use crate::error::Result;
-use crate::flock::{BOAT_SUBSTEPS_A_PIECE, Change, Pause, Real, Recorder, Recording, Sampling};
+use crate::flock::{
+    BOAT_SUBSTEPS_A_PIECE, Change, Flock, Pause, Real, Recorder, Recording, Sampling,
+};
 use crate::integrator::Phase;
+use crate::policies::Pilot;
 use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyString, PyTuple};
@@ -50,8 +54,8 @@ pub(crate) struct Plan<'py> {
     progress: Option<Bound<'py, PyAny>>,
 }
 
-/// What steers at every control step: a function of the signs of the leaders' targets (k,) and their observations
-/// (k, size), one for each layout, that returns rudders (k,).
+/// What steers at every control step: a law, or a function of the signs of the leaders' targets (k,) and their
+/// observations (k, size), one for each layout, that returns rudders (k,).
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Control<'py> {
@@ -106,9 +110,13 @@ fn recorded<'py, T: Real + Element>(
             layouts.push(layout_from(blocks, *is_mirrored)?);
         }
     }
+    let mut pilot = pilot_of(plan, recorder.flock())?;
     let mut reported_s = 0.0;
     loop {
-        let pause = py.detach(|| recorder.run(BOAT_SUBSTEPS_A_PIECE))?;
+        let pause = py.detach(|| match &mut pilot {
+            Some(pilot) => pilot.run(&mut recorder, BOAT_SUBSTEPS_A_PIECE),
+            None => recorder.run(BOAT_SUBSTEPS_A_PIECE),
+        })?;
         match (pause, &plan.control) {
             (Pause::End, _) => break,
             (Pause::Control, Some(control)) => steer(py, &mut recorder, &control.steer, &layouts)?,
@@ -123,6 +131,19 @@ fn recorded<'py, T: Real + Element>(
         }
     }
     columns(py, recorder.into_recording())
+}
+
+/// The pilot of a run that a law controls.
+fn pilot_of(plan: &Plan<'_>, flock: &Flock) -> PyResult<Option<Pilot>> {
+    let Some(control) = &plan.control else {
+        return Ok(None);
+    };
+    let Ok(law) = control.steer.cast::<PyLaw>() else {
+        return Ok(None);
+    };
+    let hz = real(&control.control_hz, "control_hz")?;
+    let law = law.get().law().clone();
+    Ok(Some(Pilot::new(law, flock.parameters(), hz)?))
 }
 
 fn steer<T: Real>(

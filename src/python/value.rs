@@ -175,10 +175,8 @@ fn option_written(value: OptionValue, py: Python<'_>) -> PyResult<Bound<'_, PyAn
 
 /// A layout from its blocks and whether it is mirrored.
 pub(super) fn layout_from(blocks: &Bound<'_, PyAny>, mirror: bool) -> PyResult<ObservationLayout> {
-    let mut layout = ObservationLayout {
-        mirror_to_target: mirror,
-        ..ObservationLayout::default()
-    };
+    let mut layout = ObservationLayout::default();
+    layout.mirror_to_target = mirror;
     for (block, repeats) in blocks_from(blocks)? {
         layout.repeat(block, repeats);
     }

@@ -34,10 +34,10 @@ def test_it_climbs(script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
         return {"signed_order": np.full(len(seeds), score)}
 
     monkeypatch.setattr(script, "run_episodes", known)
-    arguments = ["--law", "sign-corrected law", "--pool", "narrow", "--generations", "25"]
+    arguments = ["--pool", "narrow", "--generations", "25"]
     script.main([*TINY, *arguments, "--out", str(tmp_path)])
     found = tomllib.loads((tmp_path / "gains.toml").read_text())
-    assert found["sign-corrected law"]["narrow"]["gain"] == pytest.approx(7.0, rel=0.05)
+    assert found["damped law"]["narrow"]["gain"] == pytest.approx(7.0, rel=0.05)
 
 
 def test_seeds_are_for_training(script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -100,7 +100,7 @@ def test_contacts_that_cannot_be_are_refused(change):
 
 
 def test_the_law_by_name_is_no_policy():
-    assert simulate(PARAMETERS, 3, 1.0, policy="law") == RUN
+    assert simulate(PARAMETERS, 3, 1.0, policy="paper's law at every substep") == RUN
 
 
 @pytest.mark.parametrize(

@@ -202,7 +202,7 @@ def test_what_steered_is_recorded():
     learned = flockenv.policies.load("learned", pool="narrow")
     tuned = flockenv.policies.DampedLaw(gain=2.0)
     named = {
-        "law": None,
+        "paper's law at every substep": None,
         repr(tuned): tuned,
         "Waiting": Waiting(),
         f"{learned!r} {learned.digest}": learned,
@@ -216,8 +216,8 @@ def test_what_steered_is_recorded():
 
 def test_the_digest_is_that_of_the_numbers(tmp_path):
     policy = flockenv.policies.load("learned", pool="narrow")
-    policy.save(tmp_path / "copy.npz")
-    copied = flockenv.policies.load(tmp_path / "copy.npz")
+    policy.save(tmp_path / "copy.json")
+    copied = flockenv.policies.load(tmp_path / "copy.json")
     assert copied.digest == policy.digest
     assert flockenv.policies.load("learned", pool="wide").digest != policy.digest
 

@@ -131,7 +131,7 @@ def test_it_opens_and_plays_without_a_network_or_a_complaint(open_live):
     assert [url for url in requested if not url.startswith(("file:", "data:", "blob:"))] == []
 
 
-@pytest.mark.parametrize("policy", ["law", "tuned damped law"])
+@pytest.mark.parametrize("policy", ["paper's law at every substep", "tuned law"])
 def test_its_numbers_are_those_of_python(open_live, policy):
     live = open_live().go(f"{FLOCK}&leaders={policy}")
     live.run_to(10.0)
@@ -199,10 +199,10 @@ def test_choices(live, name, value, field, expected, continues):
 
 
 def test_leaders_steer_as_they_are_told(live):
-    live.choose("#leaders", "tuned damped law")
-    assert live.script("return page.shown.flock.leaders") == "tuned damped law"
+    live.choose("#leaders", "tuned law")
+    assert live.script("return page.shown.flock.leaders") == "tuned law"
     live.choose("#pool", "180,0")
-    assert "the tuned law is for the pools that have a name" in live.status()
+    assert "this law is for the pools that have a name" in live.status()
     # What was refused is not shown.
     assert live.find("#pool").get_attribute("value") == "wide"
     assert live.parameters()["pool"] == "wide"
@@ -214,7 +214,7 @@ def test_a_second_flock_runs_beside(live):
         live.choose("#beside", value)
         assert live.parameters(1)["n_leaders"] == leaders
         assert live.script("return page.runs.map((run) => run.end)") == [0, 0]
-    live.choose("#beside", "leaders=tuned damped law")
+    live.choose("#beside", "leaders=tuned law")
     live.run_to(20.0)
     assert np.array_equal(live.rows("time_s", 0), live.rows("time_s", 1))
     first, second = live.rows("pose", 0), live.rows("pose", 1)
@@ -257,7 +257,7 @@ def test_the_arrow_keys_steer_one_leader(live):
 def test_a_thumb_steers_on_a_phone(open_live):
     from selenium.webdriver.common.action_chains import ActionChains
 
-    live = open_live(PHONE).go(f"{FLOCK}&leaders=you&beside.leaders=law")
+    live = open_live(PHONE).go(f"{FLOCK}&leaders=you&beside.leaders=paper's law at every substep")
     thumb = live.find("#thumb")
     # In reach wherever the page is scrolled.
     for top in (0, 400):

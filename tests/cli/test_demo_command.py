@@ -24,7 +24,7 @@ def test_both_runs_are_those_of_simulate(cli, page_runs, tmp_path: Path) -> None
     names = ("paper's law", "learned")
     assert page_runs(tmp_path / reported["html"]) == [(name, "7", 601, 27) for name in names]
     assert list(reported["runs"]) == ["paper's law", "learned"]
-    for name, policy in (("paper's law", "law"), ("learned", "learned")):
+    for name, policy in (("paper's law", None), ("learned", "learned")):
         run = flockenv.simulate(DEMO_PARAMETERS, 7, 60.0, policy=policy)
         late = run.in_analysis_window & (run.time_s > 6.0)
         assert reported["runs"][name]["signed_order"] == run.order.signed_order("cw")[late].mean()

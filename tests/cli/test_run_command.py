@@ -33,7 +33,7 @@ def test_the_parameters_beside_it_run_it_again(cli, run, tmp_path):
     done = cli("run", "--params", toml, "--minutes", "0.2", "--seed", "7", "--out", again)
     assert done.returncode == 0, done.stderr
     assert flockenv.Recording.load(again) == flockenv.Recording.load(run)
-    assert "seed 7, policy law" in toml.read_text()
+    assert "seed 7, policy paper's law at every substep" in toml.read_text()
 
 
 def test_json_is_all_that_is_printed(cli, tmp_path):

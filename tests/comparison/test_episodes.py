@@ -22,7 +22,7 @@ from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy, StraightAhead
 from flockenv.runs.seeds import POLICY_SEEDS
 
-LAW = {"steering law": POLICIES["steering law"]}
+LAW = {"paper's law": POLICIES["paper's law"]}
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +35,7 @@ def test_one_row_for_each_policy_number_and_seed(parameters: flockenv.FlockParam
     runs = compare_leaders(parameters, [0, 1, 2], LAW, [5, 6], 40.0, seconds.append)
     assert runs["leaders"].tolist() == [0, 0, 1, 1, 2, 2]
     assert runs["seed"].tolist() == [5, 6] * 3
-    assert runs["policy"].unique().tolist() == [NO_LEADERS, "steering law"]
+    assert runs["policy"].unique().tolist() == [NO_LEADERS, "paper's law"]
     assert runs["psi_o"].between(0, 1).all()
     assert (runs["signed_order"].abs() <= runs["psi_o"] + 1e-12).all()
     assert sum(seconds) == pytest.approx(6 * 40.0)
@@ -112,7 +112,7 @@ def test_targets_are_dealt_out_to_the_seeds(parameters: flockenv.FlockParameters
     ("leaders", "name", "environment", "words"),
     [
         ([1, 9], "straight ahead", {}, "9 leaders among n_boats = 9 .* `--leaders`"),
-        ([1], "steering law at every substep", {"target": "alternate"}, "outside"),
+        ([1], "paper's law at every substep", {"target": "alternate"}, "outside"),
     ],
 )
 def test_what_cannot_be_compared_is_refused_first(
@@ -135,8 +135,8 @@ def test_policies_by_name_and_by_file(tmp_path: Path) -> None:
     learned.save(tmp_path / "left.npz")
     assert repr(named_policy(str(tmp_path / "left.npz"), "narrow")()) == repr(learned)
     assert named_policy("damped law", (90.0, 20.0)) is POLICIES["damped law"]
-    with pytest.raises(flockenv.ParameterError, match="did you mean 'steering law'"):
-        named_policy("stering law", "narrow")
+    with pytest.raises(flockenv.ParameterError, match="did you mean \"paper's law"):
+        named_policy("papers law", "narrow")
 
 
 def test_leaders_that_never_steer_are_rudders_of_zero(parameters: flockenv.FlockParameters) -> None:
@@ -150,7 +150,7 @@ def test_leaders_that_never_steer_are_rudders_of_zero(parameters: flockenv.Flock
 def test_the_law_at_every_substep_is_what_simulate_does(
     parameters: flockenv.FlockParameters,
 ) -> None:
-    name = "steering law at every substep"
+    name = "paper's law at every substep"
     runs = compare_leaders(parameters, [2], {name: POLICIES[name]}, [3], 60.0)
     env = flockenv.LeadersVectorEnv(1, params=parameters.replace(n_leaders=2))
     _, infos = env.reset(seed=[3])

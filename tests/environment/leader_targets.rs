@@ -3,7 +3,7 @@
 use crate::support::{Written, batch, parameters, seeded, settings, step};
 use flockenv::Flock;
 use flockenv::environment::RewardWeights;
-use flockenv::environment::observation::{CameraSettings, FlockFeatures};
+use flockenv::environment::observation::{Block, CameraSettings, FlockFeatures};
 use flockenv::environment::{ActionMode, EnvBatch, EnvSettings, ResetRequest, TargetChoice};
 use flockenv::parameters::Target::{self, Clockwise, CounterClockwise};
 use flockenv::parameters::{FlockParameters, Targets};
@@ -75,7 +75,7 @@ fn a_leader_sees_and_is_rewarded_as_if_its_target_were_everybodys() {
     compare(|_| ());
     compare(|own| own.observation.mirror_to_target = true);
     compare(|own| {
-        own.observation.law_rudder = true;
+        own.observation.repeat(Block::LawRudder, 1);
         own.camera = CameraSettings {
             dropout_rate: 0.3,
             delay_frames: 1,

@@ -8,5 +8,6 @@ mod batches;
 mod episodes;
 mod leader_targets;
 mod observations;
+mod pilots;
 mod stored_states;
 mod support;

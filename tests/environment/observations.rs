@@ -1,9 +1,9 @@
 //! Observations stay inside their bounds, the table describes them, and eq. (10) can be read from them.
 
 use crate::support::{batch, settings, step};
-use flockenv::boat::Law;
 use flockenv::environment::EnvSettings;
-use flockenv::environment::observation::{Block, ObservationLayout, ObservedLaw};
+use flockenv::environment::observation::{Block, ObservationLayout};
+use flockenv::policies::{Law, ObservedLaw};
 
 #[test]
 fn layout_adds_up() {
@@ -12,11 +12,9 @@ fn layout_adds_up() {
     assert_eq!(layout.size(), 8 + 6 + 1 + 6 * 8 + 4);
     assert_eq!(layout.offset(Block::Target), Some(14));
     assert_eq!(layout.place(Block::Order, "mean_sin_orientation"), Some(64));
-    let few = ObservationLayout {
-        phase: false,
-        neighbors: 0,
-        ..layout
-    };
+    let mut few = layout;
+    few.repeat(Block::Phase, 0);
+    few.repeat(Block::Neighbors, 0);
     assert_eq!(few.offset(Block::Target), Some(8));
     assert_eq!(few.offset(Block::Neighbors), None);
     assert_eq!(few.offset(Block::Order), Some(9));
@@ -50,7 +48,7 @@ fn steering_law_can_be_read_from_the_observation() {
         let mut own = settings(4000);
         own.observation.mirror_to_target = mirror_to_target;
         own.episode.target = flockenv::environment::TargetChoice::Alternate;
-        let law = ObservedLaw::new(Law::Steering, &own.observation).unwrap();
+        let law = ObservedLaw::new(Law::Paper, &own.observation).unwrap();
         let mut batch = batch(EnvSettings { ..own }, &[4], 3);
         let size = batch.observation_size();
         let mut worst: f64 = 0.0;
@@ -60,7 +58,7 @@ fn steering_law_can_be_read_from_the_observation() {
             let episode = batch.envs()[0].episode().unwrap();
             let reflected = mirror_to_target && episode.schedule().target().sign() < 0.0;
             for (leader, row) in written.observations.chunks_exact(size).enumerate() {
-                actions[leader] = law.rudder(row);
+                actions[leader] = law.action(row);
                 let expected = episode.flock().steering_law(leader);
                 let expected = if reflected { -expected } else { expected };
                 worst = worst.max((actions[leader] - expected).abs());
@@ -72,11 +70,8 @@ fn steering_law_can_be_read_from_the_observation() {
 
 #[test]
 fn laws_name_a_block_that_is_off() {
-    let without = ObservationLayout {
-        own: false,
-        ..ObservationLayout::default()
-    };
-    let message = ObservedLaw::new(Law::Steering, &without)
+    let without = ObservationLayout::of(&[Block::Target]);
+    let message = ObservedLaw::new(Law::Paper, &without)
         .unwrap_err()
         .to_string();
     assert!(message.contains("own"), "{message}");

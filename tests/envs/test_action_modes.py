@@ -13,7 +13,6 @@ from flockenv.envs.single import LeadersEnv
 from flockenv.envs.vector import LeadersVectorEnv
 from flockenv.errors import ParameterError
 from flockenv.policies import DampedLaw, NetworkPolicy, WithLevels
-from flockenv.policies.pretrained import TUNED_GAINS, tuned_law
 
 POOLS = ("wide", "narrow")
 
@@ -40,8 +39,7 @@ def same(one, other):
 @pytest.mark.parametrize("target", ["cw", "ccw"])
 def test_a_lean_of_zero_is_the_tuned_law(pool, mirror, target):
     options = {"pool": pool, "mirror_to_target": mirror, "target": target}
-    law = tuned_law("damped law", pool)
-    law = DampedLaw(**law.gains, mirror_to_target=mirror)
+    law = DampedLaw.tuned(pool).observing({}, mirror)
     assert same(rolled(60, 0.0, action_mode="lean", **options), rolled(60, policy=law, **options))
 
 
@@ -228,7 +226,7 @@ def test_a_leaning_policy_is_compared_in_its_own_action_mode(tmp_path):
     read = flockenv.policies.load(tmp_path / "lean.npz")
     assert (read.action_mode, read.decision_period_s) == ("lean", 0.5)
     zero = NetworkPolicy([np.zeros((67, 1))], [[0.0]], action_mode="lean", decision_period_s=0.5)
-    law = run_episodes(parameters, tuned_law("damped law", "narrow"), [0, 1], 20.0)
+    law = run_episodes(parameters, DampedLaw.tuned("narrow"), [0, 1], 20.0)
     leaning = run_episodes(parameters, zero, [0, 1], 20.0)
     np.testing.assert_array_equal(leaning["signed_order"], law["signed_order"])
     assert not np.array_equal(
@@ -247,7 +245,7 @@ def test_levels_stand_for_leans_too():
 def test_the_law_rudder_is_observed(pool):
     env = LeadersVectorEnv(2, n_boats=9, n_leaders=2, pool=pool, observation={"law_rudder": True})
     seen, _ = env.reset(seed=0)
-    law = DampedLaw(**TUNED_GAINS["damped law"][pool], observation={"law_rudder": True})
+    law = DampedLaw.tuned(pool).observing({"law_rudder": True}, False)
     for _ in range(50):
         rudders = law.predict(seen)[0]
         np.testing.assert_array_equal(seen.reshape(2, 2, -1)[..., -1], rudders)

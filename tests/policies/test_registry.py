@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv.policies.registry import EVERY_SUBSTEP, POLICIES, POOL_POLICIES, named_policy, quoted
+from flockenv import _core
+from flockenv.policies.registry import POLICIES, POOL_POLICIES, named_policy, quoted
 
 REPOSITORY = Path(__file__).parents[2]
 PARAMETERS = flockenv.FlockParameters(n_boats=6, n_leaders=2, pool="narrow")
@@ -25,19 +26,12 @@ def test_names_steer_as_the_policies_they_stand_for(name: str) -> None:
 def test_learned_leaders_are_loaded_by_name_and_by_file() -> None:
     for pool in ("wide", "narrow"):
         named = flockenv.policies.load("learned", pool=pool)
-        assert repr(named) == repr(named_policy("learned", pool)())
-        file = REPOSITORY / "baselines" / "policies" / f"{pool}.npz"
-        assert repr(named) == repr(flockenv.policies.load(file))
-        assert named.provenance == flockenv.policies.load(file).provenance
-
-
-def test_learned_leaders_have_one_home() -> None:
-    home = REPOSITORY / "flockenv" / "policies" / "learned"
-    files = sorted(home.glob("*.npz"))
-    assert [each.stem for each in files] == ["narrow", "wide"]
-    for each in files:
-        assert (REPOSITORY / "baselines" / "policies" / each.name).samefile(each)
-        assert (REPOSITORY / "baselines" / "policies" / f"{each.stem}.md").is_file()
+        assert named.law == named_policy("learned", pool)().law
+        file = REPOSITORY / "baselines" / "policies" / f"{pool}.json"
+        assert named.to_json() == flockenv.policies.load(file).to_json()
+        assert named.judged["seeds"] == [0, 511]
+        assert {"command", "seed", "commit", "samples"} <= named.provenance.keys()
+        assert "baselines/" in named.provenance["command"]
 
 
 def test_a_pool_without_learned_leaders_says_which_have_some() -> None:
@@ -56,9 +50,9 @@ def test_a_pool_without_learned_leaders_says_which_have_some() -> None:
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("stering law", "did you mean 'steering law'"),
+        ("papers law", 'did you mean "paper\'s law"'),
         ("damped law, learned", "one by one"),
-        ("steering law, every substep, learned", "did you mean"),
+        ("paper's law at every substep, learned", "one by one"),
         ("nobody", quoted([*POLICIES, *POOL_POLICIES])),
     ],
 )
@@ -68,10 +62,16 @@ def test_unknown_names_are_reported_with_what_there_is(name: str, words: str) ->
     assert words in str(reported.value)
 
 
-def test_no_name_holds_a_comma_and_older_names_are_known() -> None:
+def test_no_name_holds_a_comma() -> None:
     assert not [name for name in (*POLICIES, *POOL_POLICIES) if "," in name]
-    for name in (EVERY_SUBSTEP, "steering law, every substep"):
-        assert named_policy(name, "narrow")() == EVERY_SUBSTEP
+
+
+def test_the_core_has_the_same_laws_by_name() -> None:
+    for name in _core.Law.names():
+        assert named_policy(name, "narrow")().law == _core.Law.named(name, "narrow")
+    assert not {*_core.Law.names()} - {*POLICIES, *POOL_POLICIES}
+    with pytest.raises(flockenv.ParameterError, match="one of paper's law, damped law"):
+        _core.Law.named("law")
 
 
 def test_the_command_line_knows_names_in_any_folder(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv.policies.pretrained import learned, tuned_law
+from flockenv.policies import DampedLaw, NetworkPolicy, load
 from flockenv.runs.protocols.target_switching import second_halves, simulate_alternating, target_at
 
 PARAMETERS = flockenv.FlockParameters.preset("experiment").replace(n_boats=9, n_leaders=9, bw_s=0.4)
@@ -56,14 +56,15 @@ def test_another_policy_steers_both_ways():
     )
     assert np.array_equal(law.pose[0], straight.pose[0])
     assert not np.array_equal(law.pose, straight.pose)
-    damped = tuned_law("damped law", "narrow")
-    run = simulate_alternating(parameters, 2, 240.0, period_s=120.0, policy=damped)
-    check_leaders_turn_round_after_two_minutes(run)
+    for policy in (DampedLaw.tuned("narrow"), load("learned", pool="narrow")):
+        run = simulate_alternating(parameters, 2, 240.0, period_s=120.0, policy=policy)
+        check_leaders_turn_round_after_two_minutes(run)
 
 
 def test_a_policy_that_sees_a_mirrored_flock_is_refused():
+    policy = NetworkPolicy([np.zeros((67, 1))], [[0.5]], mirror_to_target=True)
     with pytest.raises(flockenv.ParameterError, match="with mirror_to_target"):
-        simulate_alternating(PARAMETERS, 5, 12.0, policy=learned("narrow"))
+        simulate_alternating(PARAMETERS, 5, 12.0, policy=policy)
 
 
 @pytest.mark.parametrize("period_s", [0.0, 0.05, 1.234])

@@ -7,9 +7,9 @@ import { commandLine, linkTo, pythonText, readLink, requestOfToml, requestsOf, t
 const FIELDS = ["n_boats", "n_leaders", "pool", "bw_s", "target", "dt_s", "discs"];
 
 test("parameters of one flock, of a second beside it, and the rest", () => {
-  const wanted = readLink("#preset=paper&n_boats=27&pool=180,0&beside.leaders=tuned damped law&speed=max&lesson=noise", FIELDS);
+  const wanted = readLink("#preset=paper&n_boats=27&pool=180,0&beside.leaders=tuned law&speed=max&lesson=noise", FIELDS);
   assert.deepEqual(wanted.flock, { preset: "paper", n_boats: "27", pool: "180,0" });
-  assert.deepEqual(wanted.beside, { leaders: "tuned damped law" });
+  assert.deepEqual(wanted.beside, { leaders: "tuned law" });
   assert.deepEqual(wanted.other, { speed: "max", lesson: "noise" });
   assert.deepEqual(wanted.ignored, []);
 });
@@ -43,7 +43,7 @@ test("long texts are cut", () => {
 });
 
 test("what is shown makes a link that asks for it", () => {
-  const shown = { flock: { preset: "experiment", n_boats: "27", target: "cw,ccw" }, beside: { leaders: "tuned damped law" }, other: { speed: "8" } };
+  const shown = { flock: { preset: "experiment", n_boats: "27", target: "cw,ccw" }, beside: { leaders: "tuned law" }, other: { speed: "8" } };
   const { ignored, ...wanted } = readLink(linkTo(shown), FIELDS);
   assert.deepEqual(wanted, shown);
   assert.deepEqual(ignored, []);
@@ -51,14 +51,14 @@ test("what is shown makes a link that asks for it", () => {
 
 test("requests are a line for each parameter, those of the second flock with its own", () => {
   assert.deepEqual(requestsOf({ flock: { n_boats: "27" }, beside: null }), ["n_boats=27"]);
-  assert.deepEqual(requestsOf({ flock: { n_boats: "27", leaders: "law" }, beside: { leaders: "you" } }),
-    ["n_boats=27\nleaders=law", "n_boats=27\nleaders=you"]);
+  assert.deepEqual(requestsOf({ flock: { n_boats: "27", leaders: "paper's law at every substep" }, beside: { leaders: "you" } }),
+    ["n_boats=27\nleaders=paper's law at every substep", "n_boats=27\nleaders=you"]);
 });
 
 test("the same flock as a command", () => {
   assert.equal(commandLine({}, 480), "flockenv run --seed 0 --minutes 8");
-  assert.equal(commandLine({ preset: "paper", n_boats: "27", pool: "180,0", leaders: "tuned damped law", seed: "7" }, 60),
-    "flockenv run --preset paper --set n_boats=27 --set 'pool=[180, 0]' --policy 'tuned damped law' --seed 7 --minutes 1");
+  assert.equal(commandLine({ preset: "paper", n_boats: "27", pool: "180,0", leaders: "tuned law", seed: "7" }, 60),
+    "flockenv run --preset paper --set n_boats=27 --set 'pool=[180, 0]' --policy \"tuned law\" --seed 7 --minutes 1");
 });
 
 test("the same flock in Python", () => {

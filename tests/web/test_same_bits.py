@@ -36,7 +36,7 @@ def numbers(text: str) -> np.ndarray:
     ("policy", "changes"),
     [
         ("law", {}),
-        ("tuned damped law", {}),
+        ("tuned law", {}),
         ("law", {"scheme": "moreau", "noise_scheme": "per-step"}),
         ("law", {"pool": "narrow", "speed_spread_cm_s": 1.0, "current_gain": 0.1}),
     ],

@@ -73,4 +73,6 @@ def test_command_and_python_name_the_same_flock(flock, expected, pytestconfig, t
     assert recording.parameters == wanted
     assert recording.seed == int(flock.get("seed", "0"))
     assert recording.duration_s == 90.0
-    assert recording.policy.startswith("Damped" if "leaders" in flock else "law")
+    assert recording.policy.startswith(
+        "Damped" if "leaders" in flock else "paper's law at every substep"
+    )

@@ -187,8 +187,7 @@ impl Live {
                 }),
         );
         self.taken += 1;
-        let held = self.rudder.as_deref().unwrap_or_default();
-        if let Some(rudder) = self.leaders.decide(flock, held, self.yours) {
+        if let Ok(Some(rudder)) = self.leaders.decide(flock, self.yours) {
             self.rudder = Some(rudder);
         }
     }

@@ -55,7 +55,7 @@ impl Request {
         Ok(Self {
             parameters,
             seed,
-            leaders: find("leaders").unwrap_or("law").to_owned(),
+            leaders: find("leaders").unwrap_or("paper's law at every substep").to_owned(),
         })
     }
 }

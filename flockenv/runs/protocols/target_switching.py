@@ -11,6 +11,7 @@ from flockenv.errors import ParameterError
 from flockenv.flock import Flock
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import LeaderPolicy
+from flockenv.policies.laws import LawPolicy
 from flockenv.recording import Recording
 from flockenv.simulation import recorded
 
@@ -62,7 +63,8 @@ def simulate_alternating(
     SolverError
         If the motion left its range.
     """
-    if getattr(policy, "mirror_to_target", False):
+    # A law that steers in the core sees the target that holds.
+    if getattr(policy, "mirror_to_target", False) and not isinstance(policy, LawPolicy):
         raise ParameterError(
             "a policy with mirror_to_target = True is not accepted: targets change"
         )

@@ -98,7 +98,7 @@ pub struct Entry {
 }
 
 impl Entry {
-    const fn new(
+    pub(super) const fn new(
         name: &'static str,
         unit: &'static str,
         scale: Scale,
@@ -117,7 +117,7 @@ impl Entry {
         }
     }
 
-    const fn odd(self) -> Self {
+    pub(super) const fn odd(self) -> Self {
         Self {
             mirrored: true,
             ..self
@@ -125,90 +125,12 @@ impl Entry {
     }
 }
 
-const UNIT: (f64, f64) = (-1.0, 1.0);
-const FLAG: (f64, f64) = (0.0, 1.0);
-const TWICE: (f64, f64) = (-2.0, 2.0);
+pub(super) const UNIT: (f64, f64) = (-1.0, 1.0);
+pub(super) const FLAG: (f64, f64) = (0.0, 1.0);
+pub(super) const TWICE: (f64, f64) = (-2.0, 2.0);
 const SQUARE: (f64, f64) = (0.0, 4.0);
 const PRODUCT: (f64, f64) = (-2.2, 2.2);
 const SEVERAL: (f64, f64) = (-40.0, 40.0);
-
-/// The leader itself.
-#[rustfmt::skip]
-pub(super) const OWN: [Entry; 8] = [
-    Entry::new("radial_position", "cm", Scale::Radial, (-1.1, 1.1), "distance from the pool's center"),
-    Entry::new("cos_orientation", "", Scale::Plain, UNIT, "cosine of the LAP orientation: 1 heads at the outer wall"),
-    Entry::new("sin_orientation", "", Scale::Plain, UNIT, "sine of the LAP orientation: 1 heads clockwise").odd(),
-    Entry::new("outward_velocity", "cm/s", Scale::Speed, TWICE, "velocity away from the pool's center"),
-    Entry::new("clockwise_velocity", "cm/s", Scale::Speed, TWICE, "tangential velocity, positive clockwise").odd(),
-    Entry::new("forward_velocity", "cm/s", Scale::Speed, TWICE, "velocity along the heading; a rudder works in reverse where it is negative"),
-    Entry::new("clockwise_spin", "rad/s", Scale::AngularVelocity, TWICE, "angular velocity, positive clockwise").odd(),
-    Entry::new("rudder", "", Scale::Plain, UNIT, "the rudder as it stands, positive turns counter-clockwise when moving forward").odd(),
-];
-
-/// Where in the cycle the flock is.
-#[rustfmt::skip]
-pub(super) const PHASE: [Entry; 6] = [
-    Entry::new("fw", "", Scale::Plain, FLAG, "1 in the forward phase"),
-    Entry::new("nop1", "", Scale::Plain, FLAG, "1 in the drift after it"),
-    Entry::new("bw", "", Scale::Plain, FLAG, "1 in the backward phase"),
-    Entry::new("nop2", "", Scale::Plain, FLAG, "1 in the drift after that"),
-    Entry::new("time_left", "s", Scale::TimeLeft, (0.0, 2.0), "time until the phase ends"),
-    Entry::new("bw_duration", "s", Scale::Second, (0.0, 4.0), "length of the backward phase, which sets the noise"),
-];
-
-/// The direction to lead in.
-#[rustfmt::skip]
-pub(super) const TARGET: [Entry; 1] = [
-    Entry::new("target", "", Scale::Plain, UNIT, "+1 clockwise, -1 counter-clockwise").odd(),
-];
-
-/// One neighbor; all zero where there are fewer boats than places.
-#[rustfmt::skip]
-pub(super) const NEIGHBOR: [Entry; 8] = [
-    Entry::new("present", "", Scale::Plain, FLAG, "1 where there is such a neighbor"),
-    Entry::new("outward_distance", "cm", Scale::Length, (-4.0, 4.0), "its center, seen from the leader along the leader's outward axis"),
-    Entry::new("clockwise_distance", "cm", Scale::Length, (-4.0, 4.0), "the same along the leader's clockwise axis").odd(),
-    Entry::new("cos_relative_heading", "", Scale::Plain, UNIT, "cosine of the angle between the headings"),
-    Entry::new("sin_relative_heading", "", Scale::Plain, UNIT, "its sine: positive where the neighbor heads clockwise of the leader").odd(),
-    Entry::new("outward_velocity", "cm/s", Scale::Speed, TWICE, "its velocity along the leader's outward axis"),
-    Entry::new("clockwise_velocity", "cm/s", Scale::Speed, TWICE, "its velocity along the leader's clockwise axis").odd(),
-    Entry::new("is_leader", "", Scale::Plain, FLAG, "1 for a leader"),
-];
-
-/// Order parameters of the normal boats, as vectors in LAP axes.
-#[rustfmt::skip]
-pub(super) const ORDER: [Entry; 4] = [
-    Entry::new("mean_cos_orientation", "", Scale::Plain, UNIT, "mean orientation, outward part: psi_o*cos(phi_o)"),
-    Entry::new("mean_sin_orientation", "", Scale::Plain, UNIT, "mean orientation, clockwise part: psi_o*sin(phi_o)").odd(),
-    Entry::new("mean_outward_velocity", "cm/s", Scale::Speed, TWICE, "mean velocity, outward part: psi_v*cos(phi_v)"),
-    Entry::new("mean_clockwise_velocity", "cm/s", Scale::Speed, TWICE, "mean velocity, clockwise part: psi_v*sin(phi_v)").odd(),
-];
-
-/// What the tuned law would do.
-#[rustfmt::skip]
-pub(super) const LAW_RUDDER: [Entry; 1] = [
-    Entry::new("law_rudder", "", Scale::Plain, UNIT, "rudder of the pool's tuned damped law, which reads what the leader sees of itself").odd(),
-];
-
-/// One obstacle; all zero where there are fewer than places.
-#[rustfmt::skip]
-pub(super) const OBSTACLE: [Entry; 4] = [
-    Entry::new("there", "", Scale::Plain, FLAG, "1 where there is such an obstacle"),
-    Entry::new("outward_distance", "cm", Scale::Length, (-4.0, 4.0), "its nearest point, seen from the leader's center along the leader's outward axis"),
-    Entry::new("clockwise_distance", "cm", Scale::Length, (-4.0, 4.0), "the same along the leader's clockwise axis").odd(),
-    Entry::new("gap", "cm", Scale::Length, (-1.0, 4.0), "distance between the leader's hull and the obstacle, negative for overlap"),
-];
-
-/// One fellow leader; all zero where there are fewer than places.
-#[rustfmt::skip]
-pub(super) const FELLOW_LEADER: [Entry; 6] = [
-    Entry::new("fellow", "", Scale::Plain, FLAG, "1 where there is such a leader"),
-    Entry::new("cos_angle", "", Scale::Plain, UNIT, "cosine of the angle along the ring, at the pool's center, from the observing leader to it"),
-    Entry::new("sin_angle", "", Scale::Plain, UNIT, "its sine: positive where it is clockwise").odd(),
-    Entry::new("radial_distance", "cm", Scale::Length, (-4.0, 4.0), "how much farther than the observing leader it is from the pool's center"),
-    Entry::new("cos_orientation", "", Scale::Plain, UNIT, "cosine of its LAP orientation, in its own LAP frame"),
-    Entry::new("sin_orientation", "", Scale::Plain, UNIT, "its sine: 1 heads clockwise").odd(),
-];
 
 /// One boat of the global state.
 #[rustfmt::skip]

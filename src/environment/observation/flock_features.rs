@@ -1,8 +1,9 @@
 //! Features of a whole flock that depend neither on the order of boats nor on absolute angles, for critics that see
 //! everything. All are in the frame of the target: "ahead" is along it, whichever direction it is.
 
-use super::entry::{ANGULAR_VELOCITY_SCALE, CLOCK, Entry, GROUP, NEAR_LEADERS, PHASE, Scale};
-use super::view::{FlockView, Scaling, phase};
+use super::blocks::{PHASE, phase};
+use super::entry::{ANGULAR_VELOCITY_SCALE, CLOCK, Entry, GROUP, NEAR_LEADERS, Scale};
+use super::view::{FlockView, Scaling};
 use crate::geometry::{LapFrame, Vec2};
 use crate::parameters::{FlockParameters, Target};
 

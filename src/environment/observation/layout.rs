@@ -1,12 +1,8 @@
 //! The entries that a leader observes, in order.
 
-use super::entry::{
-    BOAT, CLOCK, Entry, FELLOW_LEADER, LAW_RUDDER, NEIGHBOR, OBSTACLE, ORDER, OWN, PHASE, TARGET,
-};
-use crate::boat::Law;
-use crate::environment::tuned_law;
+use super::blocks::{Block, PHASE, TARGET};
+use super::entry::{BOAT, CLOCK, Entry};
 use crate::error::{FlockError, Result};
-use crate::parameters::{FlockParameters, named_choice};
 
 /// Newest version of the observation: of the entries, their order, scales and bounds. A policy belongs to the one of
 /// its layout.
@@ -15,93 +11,37 @@ pub const OBSERVATION_VERSION: u32 = 2;
 /// The most neighbors, the most obstacles and the most fellow leaders that a leader may observe.
 pub(crate) const MOST_NEIGHBORS: usize = 64;
 
-named_choice! {
-    /// A part of the observation that can be switched off.
-    pub enum Block ("observation") {
-        /// The leader itself.
-        Own = "own",
-        /// Where in the fw-nop-bw-nop cycle the flock is.
-        Phase = "phase",
-        /// The direction to lead the flock in.
-        Target = "target",
-        /// The nearest boats.
-        Neighbors = "neighbors",
-        /// Order parameters of the normal boats.
-        Order = "order",
-        /// The rudder of the pool's tuned law.
-        LawRudder = "law_rudder",
-        /// The nearest obstacles.
-        Obstacles = "obstacles",
-        /// The nearest fellow leaders, at any distance.
-        FellowLeaders = "fellow_leaders",
-    }
-}
-
-impl Block {
-    /// Whether the block may occur more than once, as that of a neighbor does.
-    pub fn is_counted(self) -> bool {
-        matches!(
-            self,
-            Self::Neighbors | Self::Obstacles | Self::FellowLeaders
-        )
-    }
-
-    /// What messages call the choice of this block.
-    pub fn option(self) -> &'static str {
-        match self {
-            Self::Own => "observation own",
-            Self::Phase => "observation phase",
-            Self::Target => "observation target",
-            Self::Neighbors => "observation neighbors",
-            Self::Order => "observation order",
-            Self::LawRudder => "observation law_rudder",
-            Self::Obstacles => "observation obstacles",
-            Self::FellowLeaders => "observation fellow_leaders",
-        }
-    }
-}
-
 /// Which blocks are on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct ObservationLayout {
-    /// The leader itself.
-    pub own: bool,
-    /// The phase.
-    pub phase: bool,
-    /// The target direction.
-    pub target: bool,
-    /// How many of the nearest boats; 0: off.
-    pub neighbors: usize,
-    /// Order parameters.
-    pub order: bool,
+    repeats: [usize; Block::COUNT],
     /// Whether observation and action are reflected where the target is counter-clockwise, so that
     /// both directions are one task, the clockwise one.
     pub mirror_to_target: bool,
-    /// The rudder of the pool's tuned law.
-    pub law_rudder: bool,
-    /// How many of the nearest obstacles; 0: off.
-    pub obstacles: usize,
-    /// How many of the nearest fellow leaders; 0: off.
-    pub fellow_leaders: usize,
 }
 
 impl Default for ObservationLayout {
     fn default() -> Self {
         Self {
-            own: true,
-            phase: true,
-            target: true,
-            neighbors: 6,
-            order: true,
+            repeats: Block::DEFAULT,
             mirror_to_target: false,
-            law_rudder: false,
-            obstacles: 0,
-            fellow_leaders: 0,
         }
     }
 }
 
 impl ObservationLayout {
+    /// A layout of these blocks alone, each once.
+    pub fn of(blocks: &[Block]) -> Self {
+        let mut layout = Self {
+            repeats: [0; Block::COUNT],
+            mirror_to_target: false,
+        };
+        for &block in blocks {
+            layout.repeat(block, 1);
+        }
+        layout
+    }
+
     /// Checks the layout.
     ///
     /// # Errors
@@ -109,106 +49,75 @@ impl ObservationLayout {
     pub fn check(&self) -> Result<()> {
         for &block in Block::ALL {
             let repeats = self.repeats(block);
-            if repeats > MOST_NEIGHBORS {
-                let accepted = format!("0 (off) to {MOST_NEIGHBORS}");
+            let most = if block.is_counted() {
+                MOST_NEIGHBORS
+            } else {
+                1
+            };
+            if repeats > most {
+                let accepted = format!("0 (off) to {most}");
                 return Err(FlockError::parameter(block.option(), repeats, accepted));
             }
         }
         if self.size() == 0 {
-            return Err(FlockError::parameter(
-                "observation",
-                "no block",
-                "at least one of own, phase, target, neighbors, order, law_rudder, obstacles and fellow_leaders",
-            ));
+            let names: Vec<_> = Block::ALL.iter().map(|block| block.name()).collect();
+            let accepted = format!("at least one of {}", names.join(", "));
+            return Err(FlockError::parameter("observation", "no block", accepted));
         }
         Ok(())
     }
 
     /// The version of the observation that has this layout: 1 without obstacles and fellow leaders.
     pub fn version(&self) -> u32 {
-        if self.obstacles > 0 || self.fellow_leaders > 0 {
+        if self.has(Block::Obstacles) || self.has(Block::FellowLeaders) {
             OBSERVATION_VERSION
         } else {
             1
         }
     }
 
-    /// The law whose rudder is observed, if it is.
-    ///
-    /// # Errors
-    /// [`FlockError::Parameter`] in a pool in which it has not been tuned.
-    pub fn law(&self, parameters: &FlockParameters) -> Result<Option<Law>> {
-        self.law_rudder
-            .then(|| tuned_law("observation law_rudder", "true", parameters))
-            .transpose()
-    }
-
-    /// The entries of a block; those of a counted block are one neighbor's, obstacle's or leader's.
-    pub(crate) fn entries_of(block: Block) -> &'static [Entry] {
-        match block {
-            Block::Own => &OWN,
-            Block::Phase => &PHASE,
-            Block::Target => &TARGET,
-            Block::Neighbors => &NEIGHBOR,
-            Block::Order => &ORDER,
-            Block::LawRudder => &LAW_RUDDER,
-            Block::Obstacles => &OBSTACLE,
-            Block::FellowLeaders => &FELLOW_LEADER,
-        }
+    /// Whether a block is on.
+    pub fn has(&self, block: Block) -> bool {
+        self.repeats(block) > 0
     }
 
     /// How often a block occurs: 0 or 1, or the number of neighbors, obstacles or fellow leaders.
     pub fn repeats(&self, block: Block) -> usize {
-        match block {
-            Block::Own => usize::from(self.own),
-            Block::Phase => usize::from(self.phase),
-            Block::Target => usize::from(self.target),
-            Block::Neighbors => self.neighbors,
-            Block::Order => usize::from(self.order),
-            Block::LawRudder => usize::from(self.law_rudder),
-            Block::Obstacles => self.obstacles,
-            Block::FellowLeaders => self.fellow_leaders,
-        }
+        self.repeats[block as usize]
     }
 
     /// Has a block occur so often: 0 or 1, or the number of neighbors, obstacles or fellow leaders.
     pub fn repeat(&mut self, block: Block, repeats: usize) {
-        match block {
-            Block::Own => self.own = repeats > 0,
-            Block::Phase => self.phase = repeats > 0,
-            Block::Target => self.target = repeats > 0,
-            Block::Neighbors => self.neighbors = repeats,
-            Block::Order => self.order = repeats > 0,
-            Block::LawRudder => self.law_rudder = repeats > 0,
-            Block::Obstacles => self.obstacles = repeats,
-            Block::FellowLeaders => self.fellow_leaders = repeats,
-        }
+        self.repeats[block as usize] = if block.is_counted() {
+            repeats
+        } else {
+            repeats.min(1)
+        };
+    }
+
+    pub(super) fn all_repeats(&self) -> &[usize; Block::COUNT] {
+        &self.repeats
     }
 
     /// Where a block starts, if it is on.
     pub fn offset(&self, wanted: Block) -> Option<usize> {
-        let mut offset = 0;
-        for &block in Block::ALL {
-            if block == wanted {
-                return (self.repeats(block) > 0).then_some(offset);
-            }
-            offset += self.repeats(block) * Self::entries_of(block).len();
-        }
-        None
+        let before = Block::ALL.iter().take(wanted as usize);
+        let sizes = before.map(|&block| self.repeats(block) * block.entries().len());
+        self.has(wanted).then(|| sizes.sum())
     }
 
     /// Where an entry of a block stands, if the block is on; the first neighbor's for `Neighbors`.
     pub fn place(&self, block: Block, name: &str) -> Option<usize> {
-        let entries = Self::entries_of(block);
-        let place = entries.iter().position(|entry| entry.name == name)?;
+        let mut entries = block.entries().iter();
+        let place = entries.position(|entry| entry.name == name)?;
         self.offset(block).map(|offset| offset + place)
     }
 
     /// Size of the observation of one leader.
     pub fn size(&self) -> usize {
-        Block::ALL
-            .iter()
-            .map(|&block| self.repeats(block) * Self::entries_of(block).len())
+        let blocks = Block::ALL.iter();
+        blocks
+            .map(|&block| self.repeats(block) * block.entries().len())
             .sum()
     }
 
@@ -218,9 +127,8 @@ impl ObservationLayout {
             .iter()
             .flat_map(|&block| (0..self.repeats(block)).map(move |count| (block, count)))
             .flat_map(|(block, count)| {
-                Self::entries_of(block)
-                    .iter()
-                    .map(move |entry| (block, count, *entry))
+                let entries = block.entries().iter();
+                entries.map(move |entry| (block, count, *entry))
             })
             .collect()
     }

@@ -1,10 +1,9 @@
 //! A flock as it is observed, and how physical values become observed ones.
 
-use super::entry::{Entry, OWN, PHASE};
+use super::entry::Entry;
 use crate::analysis::OrderParameters;
-use crate::boat::misalignment;
-use crate::clock::seconds;
-use crate::geometry::{HullPose, LapFrame, Pose, Velocity};
+use crate::flock::Flock;
+use crate::geometry::{HullPose, Pose, Velocity};
 use crate::integrator::PhaseMoment;
 use crate::parameters::{FlockParameters, Targets};
 
@@ -29,6 +28,24 @@ pub struct FlockView<'a> {
     pub rudders: &'a [f64],
     /// Order parameters of the normal boats; `None` where there is none.
     pub order: Option<&'a OrderParameters>,
+}
+
+impl<'a> FlockView<'a> {
+    /// A flock as it is, given the rudders as they stand and the order parameters of its normal boats.
+    pub fn new(flock: &'a Flock, rudders: &'a [f64], order: Option<&'a OrderParameters>) -> Self {
+        let parameters = flock.parameters();
+        Self {
+            poses: flock.poses(),
+            hulls: flock.hulls(),
+            velocities: flock.velocities(),
+            leaders: parameters.n_leaders,
+            phase: flock.phase(),
+            bw_s: parameters.bw_s,
+            targets: &parameters.target,
+            rudders,
+            order,
+        }
+    }
 }
 
 /// Scales, offsets and bounds of a row of numbers, ready to apply.
@@ -81,45 +98,4 @@ impl Scaling {
         }
         clipped
     }
-}
-
-/// The leader itself, in the order of [`OWN`].
-pub(super) fn own(view: &FlockView, leader: usize, frame: &LapFrame) -> [f64; OWN.len()] {
-    let (pose, velocity) = (&view.poses[leader], &view.velocities[leader]);
-    let (cos, sin) = orientation(view, leader, frame);
-    let lap_velocity = frame.components(velocity.linear);
-    [
-        pose.position.norm(),
-        cos,
-        sin,
-        lap_velocity.x,
-        lap_velocity.y,
-        view.hulls[leader].axis.dot(&velocity.linear),
-        -velocity.angular,
-        view.rudders.get(leader).copied().unwrap_or_default(),
-    ]
-}
-
-/// Cosine and sine of the LAP orientation φ. Where the heading is opposite to the target's, to rounding, they
-/// come by way of the steering law's own misalignment δ = φ − φ_target: its jump at δ = ±π then has the same
-/// sign for whoever reads the observation.
-fn orientation(view: &FlockView, leader: usize, frame: &LapFrame) -> (f64, f64) {
-    let orientation = frame.components(view.hulls[leader].axis);
-    let target = view.targets.of(leader);
-    let towards = target.sign();
-    if orientation.x.abs() > 1e-9 || towards * orientation.y > 0.0 {
-        return (orientation.x, orientation.y);
-    }
-    let pose = &view.poses[leader];
-    let (sin, cos) = libm::sincos(misalignment(pose.position, pose.heading, target));
-    (-towards * sin, towards * cos)
-}
-
-/// Where in the cycle the flock is, in the order of [`PHASE`].
-pub(super) fn phase(view: &FlockView) -> [f64; PHASE.len()] {
-    let mut entries = [0.0; PHASE.len()];
-    entries[view.phase.phase.index()] = 1.0;
-    entries[4] = seconds(view.phase.left);
-    entries[5] = view.bw_s;
-    entries
 }

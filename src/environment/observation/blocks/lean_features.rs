@@ -1,0 +1,222 @@
+//! What the lean of a leader depends on: numbers of its view, mirrored to the target and standardized.
+
+use super::super::entry::{Entry, Scale};
+use super::super::view::{FlockView, Scaling};
+use super::neighbors::{NEIGHBOR, Neighbors};
+use super::order::{ORDER, Order};
+use super::own::{OWN, Own};
+use super::phase::{PHASE, Phase};
+use super::{Seen, WriteBlock};
+use crate::error::{FlockError, Result};
+use crate::parameters::FlockParameters;
+
+/// How many numbers there are.
+pub const LEAN_FEATURES: usize = 29;
+
+/// The pools in which the features are standardized.
+const POOLS: [&str; 2] = ["wide", "narrow"];
+
+/// A number that the lean depends on.
+struct Feature {
+    name: &'static str,
+    /// Mean and standard deviation in each of [`POOLS`].
+    usual: [(f64, f64); POOLS.len()],
+    meaning: &'static str,
+}
+
+/// Standardized features are bounded by this; beyond are flocks far from those that were measured.
+const BOUND: f64 = 20.0;
+
+/// The features. Their usual values are those of three leaders among 27 boats whom the tuned law steers at each pool's
+/// critical noise, after 20 s (a least deviation of 0.05 for one that hardly varies).
+#[rustfmt::skip]
+const FEATURES: [Feature; LEAN_FEATURES] = [
+    feature("radial_position", [(0.77958703, 0.3927907), (0.38378146, 0.6506614)], "distance from the pool's center, -1 at the inner and 1 at the outer wall"),
+    feature("outward_velocity", [(0.006915828, 0.09161808), (0.0029166117, 0.14120841)], "velocity away from the center over the preferred speed"),
+    feature("clockwise_velocity", [(0.32546502, 0.31028074), (0.22737168, 0.32366183)], "velocity towards the target over the preferred speed"),
+    feature("forward_velocity", [(0.33450502, 0.3062338), (0.25260776, 0.32313827)], "velocity along the heading over the preferred speed"),
+    feature("near_outer_wall", [(0.2749842, 0.15736848), (0.16224986, 0.16723132)], "how much the radial position exceeds 0.6"),
+    feature("mean_cos_orientation", [(0.29308504, 0.10698857), (0.13457997, 0.12661627)], "mean orientation of the normal boats, outward part"),
+    feature("mean_sin_orientation", [(0.29194993, 0.30551064), (0.24358068, 0.22284192)], "the same, towards the target: the signed order"),
+    feature("mean_outward_velocity", [(0.0047155544, 0.057355236), (0.0019270346, 0.051377654)], "mean velocity of the normal boats over the preferred speed, outward part"),
+    feature("mean_clockwise_velocity", [(0.11824586, 0.1787373), (0.09045448, 0.13475148)], "the same, towards the target"),
+    feature("near", [(1.8629588, 1.0343264), (3.2381356, 0.9444781)], "sum over the normal boats among the six nearest of w = exp(-d^2/2), d their distance over 6 boat radii"),
+    feature("near_outward", [(-0.2572417, 0.6187044), (-0.71995515, 1.0882382)], "the same of w times the outward part of d"),
+    feature("near_ahead", [(0.37357002, 0.77000934), (0.42892686, 0.8944364)], "the same of w times the part of d towards the target"),
+    feature("near_opposed", [(0.45983633, 0.56821364), (1.1899537, 0.73591256)], "the same of w times o = (1 - cos)/2 of the angle between the headings"),
+    feature("near_turned", [(-0.40924382, 0.62842774), (-0.17122212, 1.0243492)], "the same of w times t = the sine of that angle, positive towards the target"),
+    feature("near_outward_velocity", [(-0.0354873, 0.20366889), (-0.038502537, 0.34501216)], "the same of w times the outward velocity over the preferred speed"),
+    feature("near_clockwise_velocity", [(0.3500997, 0.58770716), (0.31224063, 0.6643874)], "the same of w times the velocity towards the target over the preferred speed"),
+    feature("opposed_outward", [(-0.11047497, 0.33810177), (-0.2950035, 0.53181046)], "the same of w times o times the outward part of d"),
+    feature("opposed_ahead", [(0.052445494, 0.34723946), (0.094845355, 0.47088295)], "the same of w times o times the part of d towards the target"),
+    feature("turned_outward", [(-0.023802476, 0.30633375), (-0.10435423, 0.47644502)], "the same of w times t times the outward part of d"),
+    feature("turned_ahead", [(0.011867728, 0.43169528), (0.17430395, 0.61722195)], "the same of w times t times the part of d towards the target"),
+    feature("leaders", [(0.30498353, 0.42026863), (0.46581307, 0.55233985)], "sum over the leaders among the six nearest of exp(-d^2/8)"),
+    feature("leaders_outward", [(-0.058921587, 0.24014547), (-0.08986758, 0.3166352)], "the same times the outward part of d"),
+    feature("leaders_ahead", [(0.041072473, 0.52494305), (0.06270636, 0.52750385)], "the same times the part of d towards the target"),
+    feature("cos_orientation", [(0.12526937, 0.2072357), (0.07111309, 0.34482118)], "cosine of the leader's LAP orientation"),
+    feature("sin_orientation", [(0.94523215, 0.21885419), (0.8571048, 0.3760487)], "its sine, positive towards the target"),
+    feature("clockwise_spin", [(0.01386493, 0.061017614), (0.02126557, 0.12919016)], "angular velocity over 2 rad/s, positive in the sense of the target's circulation"),
+    feature("fw", [(0.46666667, 0.49888766), (0.45, 0.4974937)], "1 in the forward phase"),
+    feature("bw", [(0.06666667, 0.24944383), (0.1, 0.3)], "1 in the backward phase"),
+    feature("bw_duration", [(0.31, 0.05), (0.45, 0.05)], "length of the backward phase in s"),
+];
+
+const fn feature(
+    name: &'static str,
+    usual: [(f64, f64); POOLS.len()],
+    meaning: &'static str,
+) -> Feature {
+    Feature {
+        name,
+        usual,
+        meaning,
+    }
+}
+
+/// The features as entries of an observation. They are the same for both targets, so that mirroring changes none.
+pub(super) const ENTRIES: [Entry; LEAN_FEATURES] = {
+    let bounds = (-BOUND, BOUND);
+    let mut entries = [Entry::new("", "", Scale::Plain, bounds, ""); LEAN_FEATURES];
+    let mut place = 0;
+    while place < LEAN_FEATURES {
+        let Feature { name, meaning, .. } = FEATURES[place];
+        entries[place] = Entry::new(name, "", Scale::Plain, bounds, meaning);
+        place += 1;
+    }
+    entries
+};
+
+/// The neighbors that the features look at.
+const SEEN_NEIGHBORS: usize = 6;
+/// Where they start in the view, where the order parameters do, and where those end.
+const NEIGHBORS: usize = OWN.len() + PHASE.len();
+const ORDERS: usize = NEIGHBORS + SEEN_NEIGHBORS * NEIGHBOR.len();
+const VIEW: usize = ORDERS + ORDER.len();
+
+/// Works out lean features, with its memory.
+#[derive(Debug, Clone)]
+pub struct LeanFeatures {
+    usual: [(f64, f64); LEAN_FEATURES],
+    scaling: Scaling,
+    neighbors: Neighbors,
+    order: Order,
+    physical: Vec<f64>,
+}
+
+impl LeanFeatures {
+    /// Names of the features, in order.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        FEATURES.iter().map(|feature| feature.name)
+    }
+
+    /// For checked parameters, standardized as is usual in a pool.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for pools in which they are not.
+    pub fn standardized(parameters: &FlockParameters, pool: Option<&str>) -> Result<Self> {
+        let place = Self::check_pool(pool)?;
+        let neighbors = NEIGHBOR.iter().cycle();
+        let neighbors = neighbors.take(SEEN_NEIGHBORS * NEIGHBOR.len());
+        let entries = OWN.iter().chain(&PHASE).chain(neighbors).chain(&ORDER);
+        Ok(Self {
+            usual: FEATURES.map(|feature| feature.usual[place]),
+            scaling: Scaling::new(entries.copied(), parameters),
+            neighbors: Neighbors::new(parameters)?,
+            order: Order::new(parameters)?,
+            physical: Vec::with_capacity(VIEW),
+        })
+    }
+
+    /// Checks that the features are standardized in a pool, and returns its place.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`].
+    pub(crate) fn check_pool(pool: Option<&str>) -> Result<usize> {
+        let place = POOLS.iter().position(|name| Some(*name) == pool);
+        place.ok_or_else(|| {
+            let pools = POOLS.join(" and ");
+            let accepted = format!("lean features are standardized in the pools {pools} alone");
+            FlockError::parameter("pool", pool.unwrap_or("without a name"), accepted)
+        })
+    }
+
+    /// The features of a leader as observed. Leaders come one after another, from 0.
+    pub fn observed(&mut self, view: &FlockView, leader: usize) -> [f32; LEAN_FEATURES] {
+        self.standard(&Seen::new(view, leader))
+            .map(|value| value.clamp(-BOUND, BOUND) as f32)
+    }
+
+    fn standard(&mut self, seen: &Seen) -> [f64; LEAN_FEATURES] {
+        let mut values = features(&self.view(seen));
+        for (value, (mean, deviation)) in values.iter_mut().zip(self.usual) {
+            *value = (*value - mean) / deviation;
+        }
+        values
+    }
+
+    /// The blocks own, phase, neighbors and order as observed, mirrored to the target.
+    fn view(&mut self, seen: &Seen) -> [f64; VIEW] {
+        self.physical.clear();
+        Own.write(seen, 1, &mut self.physical);
+        Phase.write(seen, 1, &mut self.physical);
+        self.neighbors
+            .write(seen, SEEN_NEIGHBORS, &mut self.physical);
+        self.order.write(seen, 1, &mut self.physical);
+        let mut row = [0.0; VIEW];
+        let mirrored = seen.view.targets.of(seen.leader).sign() < 0.0;
+        self.scaling.write(&self.physical, mirrored, &mut row);
+        row.map(f64::from)
+    }
+}
+
+impl WriteBlock for LeanFeatures {
+    fn new(parameters: &FlockParameters) -> Result<Self> {
+        Self::standardized(parameters, parameters.pool.name())
+    }
+
+    fn write(&mut self, seen: &Seen, _repeats: usize, physical: &mut Vec<f64>) {
+        physical.extend(self.standard(seen));
+    }
+}
+
+/// The features of a view, in their order: some of its numbers, and sums over the neighbors that are there. Normal boats
+/// count with exp(-d²/2), leaders with exp(-d²/8), where d is their distance in 6 boat radii.
+fn features(view: &[f64; VIEW]) -> [f64; LEAN_FEATURES] {
+    let [radial, cos, sin, outward, clockwise, forward, spin] =
+        [0, 1, 2, 3, 4, 5, 6].map(|place| view[place]);
+    let [fw, bw, bw_duration] = [0, 2, 5].map(|place| view[OWN.len() + place]);
+    let mut near = [0.0; 11];
+    let mut leaders = [0.0; 3];
+    for neighbor in view[NEIGHBORS..ORDERS].chunks_exact(NEIGHBOR.len()) {
+        let &[present, x, y, cos, turned, vx, vy, is_leader] = neighbor else {
+            continue;
+        };
+        let square = x * x + y * y;
+        if is_leader > 0.0 {
+            add(
+                &mut leaders,
+                present * libm::exp(-square / 8.0),
+                [1.0, x, y],
+            );
+        } else {
+            let opposed = (1.0 - cos) / 2.0;
+            let (ox, oy, tx, ty) = (opposed * x, opposed * y, turned * x, turned * y);
+            let terms = [1.0, x, y, opposed, turned, vx, vy, ox, oy, tx, ty];
+            add(&mut near, present * libm::exp(-square / 2.0), terms);
+        }
+    }
+    let mut found = [0.0; LEAN_FEATURES];
+    found[..5].copy_from_slice(&[radial, outward, clockwise, forward, (radial - 0.6).max(0.0)]);
+    found[5..9].copy_from_slice(&view[ORDERS..]);
+    found[9..20].copy_from_slice(&near);
+    found[20..23].copy_from_slice(&leaders);
+    found[23..].copy_from_slice(&[cos, sin, spin, fw, bw, bw_duration]);
+    found
+}
+
+fn add<const N: usize>(sums: &mut [f64; N], weight: f64, terms: [f64; N]) {
+    for (sum, term) in sums.iter_mut().zip(terms) {
+        *sum += weight * term;
+    }
+}

@@ -1,0 +1,139 @@
+//! The blocks of an observation. Each has a file with its entries and what writes their physical values, and is
+//! declared here: `mod` and one line of [`declare_blocks`].
+
+mod fellow_leaders;
+mod law_rudder;
+mod lean_features;
+mod neighbors;
+mod obstacles;
+mod order;
+mod own;
+mod phase;
+mod target;
+
+pub use lean_features::{LEAN_FEATURES, LeanFeatures};
+pub(crate) use own::{OWN, own};
+pub(crate) use phase::{PHASE, phase};
+pub(crate) use target::TARGET;
+
+use super::entry::Entry;
+use super::view::FlockView;
+use crate::error::Result;
+use crate::geometry::LapFrame;
+use crate::parameters::{FlockParameters, named_choice};
+
+/// A flock as one of its leaders sees it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Seen<'a> {
+    /// The flock.
+    pub view: &'a FlockView<'a>,
+    /// The leader. Leaders come one after another, from 0.
+    pub leader: usize,
+    /// The leader's outward and clockwise axes.
+    pub frame: LapFrame,
+}
+
+impl<'a> Seen<'a> {
+    /// The flock as that leader sees it.
+    pub(super) fn new(view: &'a FlockView<'a>, leader: usize) -> Self {
+        Self {
+            view,
+            leader,
+            frame: LapFrame::at(view.poses[leader].position),
+        }
+    }
+}
+
+/// What writes the physical values of a block, with its memory.
+trait WriteBlock: Sized {
+    /// For checked parameters.
+    ///
+    /// # Errors
+    /// [`crate::FlockError::Parameter`] for flocks that the block is not made for.
+    fn new(parameters: &FlockParameters) -> Result<Self>;
+
+    /// Adds the values of a block that occurs so often, in the order of its entries.
+    fn write(&mut self, seen: &Seen, repeats: usize, physical: &mut Vec<f64>);
+}
+
+/// Declares blocks in the order of an observation: name, entries, writer, how often each occurs by default and whether
+/// it may occur more than once, as that of a neighbor does.
+macro_rules! declare_blocks {
+    ($($(#[doc = $doc:literal])+ $block:ident = $name:literal:
+        $module:ident::{$entries:ident, $writer:ident}, $default:literal $counted:ident;)+) => {
+        named_choice! {
+            /// A part of the observation that can be switched off.
+            pub enum Block ("observation") { $($(#[doc = $doc])+ $block = $name,)+ }
+        }
+
+        impl Block {
+            /// How many blocks there are.
+            pub(super) const COUNT: usize = Self::ALL.len();
+
+            /// How often each occurs by default.
+            pub(super) const DEFAULT: [usize; Self::COUNT] = [$($default),+];
+
+            /// Whether the block may occur more than once, as that of a neighbor does.
+            pub fn is_counted(self) -> bool {
+                match self { $(Self::$block => declare_blocks!(@ $counted),)+ }
+            }
+
+            /// What messages call the choice of this block.
+            pub fn option(self) -> &'static str {
+                match self { $(Self::$block => concat!("observation ", $name),)+ }
+            }
+
+            /// Its entries; those of a counted block are one neighbor's, obstacle's or leader's.
+            pub(crate) fn entries(self) -> &'static [Entry] {
+                match self { $(Self::$block => &$module::$entries,)+ }
+            }
+        }
+
+        /// The writers of the blocks that are on, with how often each occurs.
+        #[derive(Debug, Clone)]
+        pub(super) struct Writers { $($module: Option<(usize, $module::$writer)>,)+ }
+
+        impl Writers {
+            /// For checked parameters and how often each block occurs.
+            ///
+            /// # Errors
+            /// [`crate::FlockError::Parameter`] for flocks that one of the blocks is not made for.
+            pub(super) fn new(repeats: &[usize; Block::COUNT], parameters: &FlockParameters) -> Result<Self> {
+                Ok(Self { $($module: match repeats[Block::$block as usize] {
+                    0 => None,
+                    count => Some((count, $module::$writer::new(parameters)?)),
+                },)+ })
+            }
+
+            /// Adds the physical values of all blocks.
+            pub(super) fn write(&mut self, seen: &Seen, physical: &mut Vec<f64>) {
+                $(if let Some((repeats, writer)) = &mut self.$module {
+                    writer.write(seen, *repeats, physical);
+                })+
+            }
+        }
+    };
+    (@ counted) => { true };
+    (@ once) => { false };
+}
+
+declare_blocks! {
+    /// The leader itself.
+    Own = "own": own::{OWN, Own}, 1 once;
+    /// Where in the fw-nop-bw-nop cycle the flock is.
+    Phase = "phase": phase::{PHASE, Phase}, 1 once;
+    /// The direction to lead in.
+    Target = "target": target::{TARGET, Target}, 1 once;
+    /// The nearest boats.
+    Neighbors = "neighbors": neighbors::{NEIGHBOR, Neighbors}, 6 counted;
+    /// Order parameters of the normal boats.
+    Order = "order": order::{ORDER, Order}, 1 once;
+    /// The rudder of the pool's tuned law.
+    LawRudder = "law_rudder": law_rudder::{LAW_RUDDER, LawRudder}, 0 once;
+    /// The nearest obstacles.
+    Obstacles = "obstacles": obstacles::{OBSTACLE, NearestObstacles}, 0 counted;
+    /// The nearest fellow leaders, at any distance.
+    FellowLeaders = "fellow_leaders": fellow_leaders::{FELLOW_LEADER, FellowLeaders}, 0 counted;
+    /// What the lean of a leader depends on, mirrored to the target and standardized.
+    LeanFeatures = "lean_features": lean_features::{ENTRIES, LeanFeatures}, 0 once;
+}

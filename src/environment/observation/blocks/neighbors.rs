@@ -1,0 +1,52 @@
+//! The nearest boats.
+
+use super::super::entry::{Entry, FLAG, Scale, TWICE, UNIT};
+use super::super::nearest::Nearest;
+use super::{Seen, WriteBlock};
+use crate::error::Result;
+use crate::geometry::cross;
+use crate::parameters::FlockParameters;
+
+/// One neighbor; all zero where there are fewer boats than places.
+#[rustfmt::skip]
+pub(super) const NEIGHBOR: [Entry; 8] = [
+    Entry::new("present", "", Scale::Plain, FLAG, "1 where there is such a neighbor"),
+    Entry::new("outward_distance", "cm", Scale::Length, (-4.0, 4.0), "its center, seen from the leader along the leader's outward axis"),
+    Entry::new("clockwise_distance", "cm", Scale::Length, (-4.0, 4.0), "the same along the leader's clockwise axis").odd(),
+    Entry::new("cos_relative_heading", "", Scale::Plain, UNIT, "cosine of the angle between the headings"),
+    Entry::new("sin_relative_heading", "", Scale::Plain, UNIT, "its sine: positive where the neighbor heads clockwise of the leader").odd(),
+    Entry::new("outward_velocity", "cm/s", Scale::Speed, TWICE, "its velocity along the leader's outward axis"),
+    Entry::new("clockwise_velocity", "cm/s", Scale::Speed, TWICE, "its velocity along the leader's clockwise axis").odd(),
+    Entry::new("is_leader", "", Scale::Plain, FLAG, "1 for a leader"),
+];
+
+/// Writes [`NEIGHBOR`] for the nearest boats, nearest first.
+#[derive(Debug, Clone)]
+pub(super) struct Neighbors(Nearest);
+
+impl WriteBlock for Neighbors {
+    fn new(_parameters: &FlockParameters) -> Result<Self> {
+        Ok(Self(Nearest::default()))
+    }
+
+    fn write(&mut self, seen: &Seen, repeats: usize, physical: &mut Vec<f64>) {
+        let (view, own) = (seen.view, &seen.view.hulls[seen.leader]);
+        let filled = physical.len() + repeats * NEIGHBOR.len();
+        for boat in self.0.of_leader(view.hulls, seen.leader, repeats) {
+            let other = &view.hulls[boat];
+            let distance = seen.frame.components(other.center - own.center);
+            let velocity = seen.frame.components(view.velocities[boat].linear);
+            physical.extend([
+                1.0,
+                distance.x,
+                distance.y,
+                own.axis.dot(&other.axis),
+                -cross(own.axis, other.axis),
+                velocity.x,
+                velocity.y,
+                f64::from(u8::from(boat < view.leaders)),
+            ]);
+        }
+        physical.resize(filled, 0.0);
+    }
+}

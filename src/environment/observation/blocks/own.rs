@@ -1,0 +1,68 @@
+//! The leader itself.
+
+use super::super::entry::{Entry, Scale, TWICE, UNIT};
+use super::super::view::FlockView;
+use super::{Seen, WriteBlock};
+use crate::boat::misalignment;
+use crate::error::Result;
+use crate::geometry::LapFrame;
+use crate::parameters::FlockParameters;
+
+/// The leader itself.
+#[rustfmt::skip]
+pub(crate) const OWN: [Entry; 8] = [
+    Entry::new("radial_position", "cm", Scale::Radial, (-1.1, 1.1), "distance from the pool's center"),
+    Entry::new("cos_orientation", "", Scale::Plain, UNIT, "cosine of the LAP orientation: 1 heads at the outer wall"),
+    Entry::new("sin_orientation", "", Scale::Plain, UNIT, "sine of the LAP orientation: 1 heads clockwise").odd(),
+    Entry::new("outward_velocity", "cm/s", Scale::Speed, TWICE, "velocity away from the pool's center"),
+    Entry::new("clockwise_velocity", "cm/s", Scale::Speed, TWICE, "tangential velocity, positive clockwise").odd(),
+    Entry::new("forward_velocity", "cm/s", Scale::Speed, TWICE, "velocity along the heading; a rudder works in reverse where it is negative"),
+    Entry::new("clockwise_spin", "rad/s", Scale::AngularVelocity, TWICE, "angular velocity, positive clockwise").odd(),
+    Entry::new("rudder", "", Scale::Plain, UNIT, "the rudder as it stands, positive turns counter-clockwise when moving forward").odd(),
+];
+
+/// Writes [`OWN`].
+#[derive(Debug, Clone)]
+pub(super) struct Own;
+
+impl WriteBlock for Own {
+    fn new(_parameters: &FlockParameters) -> Result<Self> {
+        Ok(Self)
+    }
+
+    fn write(&mut self, seen: &Seen, _repeats: usize, physical: &mut Vec<f64>) {
+        physical.extend(own(seen.view, seen.leader, &seen.frame));
+    }
+}
+
+/// The leader itself, in the order of [`OWN`].
+pub(crate) fn own(view: &FlockView, leader: usize, frame: &LapFrame) -> [f64; OWN.len()] {
+    let (pose, velocity) = (&view.poses[leader], &view.velocities[leader]);
+    let (cos, sin) = orientation(view, leader, frame);
+    let lap_velocity = frame.components(velocity.linear);
+    [
+        pose.position.norm(),
+        cos,
+        sin,
+        lap_velocity.x,
+        lap_velocity.y,
+        view.hulls[leader].axis.dot(&velocity.linear),
+        -velocity.angular,
+        view.rudders.get(leader).copied().unwrap_or_default(),
+    ]
+}
+
+/// Cosine and sine of the LAP orientation φ. Where the heading is opposite to the target's, to rounding, they
+/// come by way of the steering law's own misalignment δ = φ − φ_target: its jump at δ = ±π then has the same
+/// sign for whoever reads the observation.
+fn orientation(view: &FlockView, leader: usize, frame: &LapFrame) -> (f64, f64) {
+    let orientation = frame.components(view.hulls[leader].axis);
+    let target = view.targets.of(leader);
+    let towards = target.sign();
+    if orientation.x.abs() > 1e-9 || towards * orientation.y > 0.0 {
+        return (orientation.x, orientation.y);
+    }
+    let pose = &view.poses[leader];
+    let (sin, cos) = libm::sincos(misalignment(pose.position, pose.heading, target));
+    (-towards * sin, towards * cos)
+}

@@ -1,0 +1,26 @@
+//! The direction to lead in.
+
+use super::super::entry::{Entry, Scale, UNIT};
+use super::{Seen, WriteBlock};
+use crate::error::Result;
+use crate::parameters::FlockParameters;
+
+/// The direction to lead in.
+#[rustfmt::skip]
+pub(crate) const TARGET: [Entry; 1] = [
+    Entry::new("target", "", Scale::Plain, UNIT, "+1 clockwise, -1 counter-clockwise").odd(),
+];
+
+/// Writes [`TARGET`].
+#[derive(Debug, Clone)]
+pub(super) struct Target;
+
+impl WriteBlock for Target {
+    fn new(_parameters: &FlockParameters) -> Result<Self> {
+        Ok(Self)
+    }
+
+    fn write(&mut self, seen: &Seen, _repeats: usize, physical: &mut Vec<f64>) {
+        physical.push(seen.view.targets.of(seen.leader).sign());
+    }
+}

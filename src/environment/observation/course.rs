@@ -1,0 +1,99 @@
+//! What steering laws read of a leader, rounded as observations are: from an observation, or from a flock in view.
+
+use super::blocks::{Block, OWN, TARGET, own};
+use super::view::{FlockView, Scaling};
+use super::{ANGULAR_VELOCITY_SCALE, ObservationLayout};
+use crate::boat::Course;
+use crate::error::{FlockError, Result};
+use crate::geometry::LapFrame;
+use crate::parameters::FlockParameters;
+
+/// Where a leader's course stands in observations of one layout.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CourseReader {
+    cos_orientation: usize,
+    sin_orientation: usize,
+    forward_velocity: usize,
+    clockwise_spin: usize,
+    /// `None` where the observation is mirrored, so that the target is always clockwise.
+    target: Option<usize>,
+}
+
+impl CourseReader {
+    /// For observations of a checked layout.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] if a block that the laws read is switched off.
+    pub fn new(layout: &ObservationLayout) -> Result<Self> {
+        let place = |block: Block, name: &str| {
+            layout.place(block, name).ok_or_else(|| {
+                let accepted = "the steering laws read this block; switch it on";
+                FlockError::parameter("observation", format!("{}: off", block.name()), accepted)
+            })
+        };
+        Ok(Self {
+            cos_orientation: place(Block::Own, "cos_orientation")?,
+            sin_orientation: place(Block::Own, "sin_orientation")?,
+            forward_velocity: place(Block::Own, "forward_velocity")?,
+            clockwise_spin: place(Block::Own, "clockwise_spin")?,
+            target: if layout.mirror_to_target {
+                None
+            } else {
+                Some(place(Block::Target, "target")?)
+            },
+        })
+    }
+
+    /// The course about a heading so many rad outward of the target's tangent, in the observation's own sense where it
+    /// is mirrored.
+    pub fn course(&self, observation: &[f32], outward: f64) -> Course {
+        let read = |place: usize| f64::from(observation[place]);
+        let target = self.target.map_or(1.0, read);
+        // δ = φ − φ_target with φ_target = ±π/2.
+        let sin = -target * read(self.cos_orientation);
+        let cos = target * read(self.sin_orientation);
+        let mut misalignment = libm::atan2(sin, cos);
+        if outward != 0.0 {
+            // Outward of the tangent is counter-clockwise for a clockwise target.
+            misalignment += target * outward;
+        }
+        Course {
+            misalignment,
+            forward: read(self.forward_velocity),
+            angular: -ANGULAR_VELOCITY_SCALE * read(self.clockwise_spin),
+        }
+    }
+}
+
+/// Reads leaders' courses from a flock in view, with the bits of one who reads them from observations.
+#[derive(Debug, Clone)]
+pub struct CourseView {
+    reader: CourseReader,
+    scaling: Scaling,
+}
+
+impl CourseView {
+    /// For checked parameters.
+    ///
+    /// # Errors
+    /// None: the layout has what the laws read.
+    pub fn new(parameters: &FlockParameters) -> Result<Self> {
+        let layout = ObservationLayout::of(&[Block::Own, Block::Target]);
+        let entries = layout.entries().into_iter().map(|(_, _, entry)| entry);
+        Ok(Self {
+            reader: CourseReader::new(&layout)?,
+            scaling: Scaling::new(entries, parameters),
+        })
+    }
+
+    /// The course of a leader about a heading so many rad outward of its target's tangent, counter-clockwise positive.
+    pub fn course(&self, view: &FlockView, leader: usize, outward: f64) -> Course {
+        let frame = LapFrame::at(view.poses[leader].position);
+        let mut physical = [0.0; OWN.len() + TARGET.len()];
+        physical[..OWN.len()].copy_from_slice(&own(view, leader, &frame));
+        physical[OWN.len()] = view.targets.of(leader).sign();
+        let mut observed = [0.0; OWN.len() + TARGET.len()];
+        self.scaling.write(&physical, false, &mut observed);
+        self.reader.course(&observed, outward)
+    }
+}

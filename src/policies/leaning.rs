@@ -1,0 +1,216 @@
+//! The leaning law: a heading that leans outward of the target's tangent, linearly in what a leader sees.
+
+use crate::boat::DampedLaw;
+use crate::environment::LARGEST_LEAN;
+use crate::environment::observation::{LEAN_FEATURES, LeanFeatures};
+use crate::error::{FlockError, Result};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::collections::BTreeMap;
+
+/// How a lean is kept within ±[`LARGEST_LEAN`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Bound {
+    /// By a hyperbolic tangent.
+    Tanh,
+    /// Cut off beyond.
+    Clip,
+}
+
+/// How well a law leads, and how that was judged.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Judged {
+    /// Mean signed order of the flocks.
+    pub signed_order: f64,
+    /// 95 % interval of that mean.
+    pub interval: [f64; 2],
+    /// Boats of each flock, the leaders among them.
+    pub n_boats: usize,
+    /// Leaders of each flock.
+    pub n_leaders: usize,
+    /// Backward duration in s.
+    pub bw_s: f64,
+    /// Length of an episode in s.
+    pub episode_s: f64,
+    /// First and last seed, one for each flock.
+    pub seeds: [u64; 2],
+}
+
+/// The damped law about a heading that leans outward of the target's tangent: by bias + Σ weight·feature in rad, where
+/// the features are the standardized lean features.
+///
+/// As it is stored: JSON, with the weights by the names of their features.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LeaningLaw {
+    format: Format,
+    /// Name of the pool that it is for, as whose usual values its features are standardized.
+    pub pool: String,
+    /// How it was judged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub judged: Option<Judged>,
+    /// The damped law that steers to the heading.
+    pub gains: DampedLaw,
+    /// How the lean is bounded.
+    pub bound: Bound,
+    /// For how many s a lean is held, a whole number of control steps; `None`: one control step. Leans that are held are
+    /// steered to with the gains tuned in the pool, as by the action mode "lean".
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub decision_period_s: Option<f64>,
+    /// Lean in rad where every feature has its usual value.
+    pub bias: f64,
+    /// Rad per standard deviation of each feature.
+    #[serde(with = "by_feature")]
+    pub weights: [f64; LEAN_FEATURES],
+    /// Its provenance: short texts by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub provenance: BTreeMap<String, String>,
+}
+
+/// The only format so far.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Format;
+
+const FORMAT: u32 = 1;
+
+impl Serialize for Format {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        FORMAT.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Format {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        match u32::deserialize(deserializer)? {
+            FORMAT => Ok(Self),
+            other => Err(serde::de::Error::custom(format!(
+                "format = {other} is not accepted: this version of flockenv reads format {FORMAT}"
+            ))),
+        }
+    }
+}
+
+mod by_feature {
+    use super::*;
+    use serde::de::Error;
+    use serde::ser::SerializeMap;
+
+    pub(super) fn serialize<S: Serializer>(
+        weights: &[f64; LEAN_FEATURES],
+        serializer: S,
+    ) -> std::result::Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(LEAN_FEATURES))?;
+        for (name, weight) in LeanFeatures::names().zip(weights) {
+            map.serialize_entry(name, weight)?;
+        }
+        map.end()
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> std::result::Result<[f64; LEAN_FEATURES], D::Error> {
+        let mut given = BTreeMap::<String, f64>::deserialize(deserializer)?;
+        let mut weights = [0.0; LEAN_FEATURES];
+        for (weight, name) in weights.iter_mut().zip(LeanFeatures::names()) {
+            let found = given.remove(name);
+            let missing =
+                || D::Error::custom(format!("weights have no {name}: one per lean feature"));
+            *weight = found.ok_or_else(missing)?;
+        }
+        match given.pop_first() {
+            None => Ok(weights),
+            Some((name, _)) => Err(D::Error::custom(format!(
+                "weights have {name:?}, which is no lean feature: {}",
+                LeanFeatures::names().collect::<Vec<_>>().join(", ")
+            ))),
+        }
+    }
+}
+
+/// The pretrained leaders, by the name of their pool.
+const LEARNED: [(&str, &str); 2] = [
+    ("wide", include_str!("learned/wide.json")),
+    ("narrow", include_str!("learned/narrow.json")),
+];
+
+impl LeaningLaw {
+    /// The law of a JSON text.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for text that is no law, and for what [`Self::check`] refuses.
+    pub fn from_json(text: &str) -> Result<Self> {
+        let law: Self = serde_json::from_str(text).map_err(|error| {
+            FlockError::parameter("policy", error, "a leaning law as JSON, of finite numbers")
+        })?;
+        law.check()?;
+        Ok(law)
+    }
+
+    /// The law as a JSON text, which [`Self::from_json`] reads to the same bits.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for what [`Self::check`] refuses.
+    pub fn to_json(&self) -> Result<String> {
+        self.check()?;
+        let text = serde_json::to_string_pretty(self);
+        text.map_err(|error| FlockError::parameter("policy", error, "what JSON can hold"))
+    }
+
+    /// The pretrained leaders of a pool, by its name, if it has one.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for pools without any.
+    pub fn learned(pool: Option<&str>) -> Result<Self> {
+        let found = LEARNED.iter().find(|(name, _)| Some(*name) == pool);
+        let (_, text) = found.ok_or_else(|| {
+            let pools = LEARNED.map(|(name, _)| name).join(" and ");
+            let accepted = format!("leaders have been trained in the pools {pools} alone");
+            FlockError::parameter("law", "learned", accepted)
+        })?;
+        Self::from_json(text)
+    }
+
+    /// Checks its numbers.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for numbers that are not finite, pools whose features are not standardized, and leans that
+    /// are held with other gains than those tuned in the pool.
+    pub fn check(&self) -> Result<()> {
+        self.gains.check()?;
+        LeanFeatures::check_pool(Some(&self.pool))?;
+        let weights = LeanFeatures::names().zip(self.weights);
+        for (name, value) in weights.chain([("bias", self.bias)]) {
+            if value.is_nan() || value.abs() > 1e9 {
+                return Err(FlockError::parameter(name, value, "a finite number"));
+            }
+        }
+        let Some(period) = self.decision_period_s else {
+            return Ok(());
+        };
+        let is_tuned = DampedLaw::TUNED.contains(&(self.pool.as_str(), self.gains));
+        if !is_tuned {
+            let accepted = "none with gains other than those tuned in the pool";
+            return Err(FlockError::parameter("decision_period_s", period, accepted));
+        }
+        if !(period > 0.0 && period <= 1e6) {
+            let accepted = "a positive time in s, or none";
+            return Err(FlockError::parameter("decision_period_s", period, accepted));
+        }
+        Ok(())
+    }
+
+    /// The lean over [`LARGEST_LEAN`] for standardized features, in [−1, 1], with the precision of actions.
+    pub fn action(&self, features: &[f32]) -> f32 {
+        let terms = self.weights.iter().zip(features);
+        let lean: f64 = terms.fold(self.bias, |lean, (weight, &feature)| {
+            lean + weight * f64::from(feature)
+        });
+        let action = lean / LARGEST_LEAN;
+        let bounded = match self.bound {
+            Bound::Tanh => libm::tanh(action),
+            Bound::Clip => action.clamp(-1.0, 1.0),
+        };
+        bounded as f32
+    }
+}

@@ -1,0 +1,64 @@
+//! Laws evaluated from what leaders observe.
+
+use super::Law;
+use crate::environment::LARGEST_LEAN;
+use crate::environment::observation::{Block, CourseReader, LEAN_FEATURES, ObservationLayout};
+use crate::error::{FlockError, Result};
+
+/// A law that reads observations of one layout.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObservedLaw {
+    law: Law,
+    size: usize,
+    /// `None` where the law's actions are leans, to which the environment steers.
+    courses: Option<CourseReader>,
+    /// Where the lean features start, if the law looks at them.
+    features: Option<usize>,
+}
+
+impl ObservedLaw {
+    /// A law for observations of a checked layout.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] if a block that the law reads is switched off.
+    pub fn new(law: Law, layout: &ObservationLayout) -> Result<Self> {
+        law.check()?;
+        let features = layout.offset(Block::LeanFeatures);
+        if law.leans() && features.is_none() {
+            let accepted = "a leaning law reads this block; switch it on";
+            let off = "lean_features: off";
+            return Err(FlockError::parameter("observation", off, accepted));
+        }
+        let holds = matches!(&law, Law::Leaning(law) if law.decision_period_s.is_some());
+        let courses = (!holds).then(|| CourseReader::new(layout)).transpose()?;
+        Ok(Self {
+            size: layout.size(),
+            courses,
+            features: features.filter(|_| law.leans()),
+            law,
+        })
+    }
+
+    /// How many numbers an observation has.
+    pub fn observation_size(&self) -> usize {
+        self.size
+    }
+
+    /// The action for one observation, in the observation's own sense where it is mirrored: a rudder, or a lean where the
+    /// law holds leans. It depends on nothing else, such as other observations of a batch.
+    pub fn action(&self, observation: &[f32]) -> f64 {
+        let lean = match (&self.law, self.features) {
+            (Law::Leaning(law), Some(place)) => {
+                f64::from(law.action(&observation[place..place + LEAN_FEATURES]))
+            }
+            _ => 0.0,
+        };
+        match &self.courses {
+            Some(courses) => {
+                let course = courses.course(observation, LARGEST_LEAN * lean);
+                self.law.rudder(&course)
+            }
+            None => lean,
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! Leaders of a flock that follow a law by themselves.
+
+use super::Law;
+use crate::clock::whole_steps;
+use crate::environment::LARGEST_LEAN;
+use crate::environment::observation::{CourseView, FlockView, LeanFeatures};
+use crate::error::Result;
+use crate::flock::{Flock, Pause, Real, Recorder};
+use crate::parameters::FlockParameters;
+
+/// Steers the leaders of one flock by a law, once per control step.
+#[derive(Debug, Clone)]
+pub struct Pilot {
+    law: Law,
+    /// Control steps from one lean to the next.
+    period: u32,
+    /// Control steps since the last lean.
+    held: u32,
+    /// How far each leader's heading leans outward, in rad.
+    leans: Vec<f64>,
+    views: Views,
+}
+
+/// What looks at flocks with some parameters.
+#[derive(Debug, Clone)]
+struct Views {
+    parameters: FlockParameters,
+    courses: CourseView,
+    features: Option<LeanFeatures>,
+}
+
+impl Views {
+    fn new(law: &Law, parameters: &FlockParameters) -> Result<Self> {
+        let features = match law {
+            Law::Leaning(law) => Some(LeanFeatures::standardized(parameters, Some(&law.pool))?),
+            Law::Paper | Law::Damped(_) => None,
+        };
+        Ok(Self {
+            courses: CourseView::new(parameters)?,
+            features,
+            parameters: parameters.clone(),
+        })
+    }
+}
+
+impl Pilot {
+    /// For a flock with these checked parameters that has so many control steps per second.
+    ///
+    /// # Errors
+    /// [`crate::FlockError::Parameter`] for a law that [`Law::check`] refuses, or whose decisions are no whole number of
+    /// control steps apart.
+    pub fn new(law: Law, parameters: &FlockParameters, control_hz: f64) -> Result<Self> {
+        law.check()?;
+        let period = match &law {
+            Law::Leaning(law) => law.decision_period_s,
+            Law::Paper | Law::Damped(_) => None,
+        };
+        let period = period
+            .map(|period| whole_steps("decision_period_s", period, control_hz, "control steps"));
+        Ok(Self {
+            period: period.transpose()?.unwrap_or(1),
+            held: 0,
+            leans: vec![0.0; parameters.n_leaders],
+            views: Views::new(&law, parameters)?,
+            law,
+        })
+    }
+
+    /// The leaders' rudders for the control step that starts now, positive counter-clockwise.
+    ///
+    /// # Errors
+    /// As for [`Self::new`], where the flock has other parameters than before.
+    pub fn rudders(&mut self, flock: &Flock) -> Result<Vec<f64>> {
+        if *flock.parameters() != self.views.parameters {
+            self.views = Views::new(&self.law, flock.parameters())?;
+        }
+        let order = match self.views.features {
+            Some(_) => flock.order_parameters(false).ok(),
+            None => None,
+        };
+        let view = FlockView::new(flock, &[], order.as_ref());
+        if self.held == 0 {
+            self.lean(&view);
+        }
+        self.held = (self.held + 1) % self.period;
+        let leans = self.leans.iter().enumerate();
+        let courses = leans.map(|(leader, &lean)| self.views.courses.course(&view, leader, lean));
+        Ok(courses.map(|course| self.law.rudder(&course)).collect())
+    }
+
+    fn lean(&mut self, view: &FlockView) {
+        if let (Law::Leaning(law), Some(features)) = (&self.law, &mut self.views.features) {
+            for (leader, lean) in self.leans.iter_mut().enumerate() {
+                let seen = features.observed(view, leader);
+                *lean = LARGEST_LEAN * f64::from(law.action(&seen));
+            }
+        }
+    }
+
+    /// Continues a run with control steps for about so many substeps times boats, or to its end.
+    ///
+    /// # Errors
+    /// As for [`Recorder::run`] and [`Self::rudders`].
+    pub fn run<T: Real>(
+        &mut self,
+        recorder: &mut Recorder<T>,
+        boat_substeps: u64,
+    ) -> Result<Pause> {
+        let mut left = boat_substeps;
+        loop {
+            let before = recorder.flock().statistics().substeps;
+            let pause = recorder.run(left)?;
+            if pause != Pause::Control {
+                return Ok(pause);
+            }
+            recorder.steer(self.rudders(recorder.flock())?)?;
+            let substeps = recorder.flock().statistics().substeps - before;
+            let boats = recorder.flock().parameters().n_boats as u64;
+            left = left.saturating_sub(substeps * boats);
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Laws of leaders, as they steer by themselves and as they read observations.
+
+use super::value::layout_from;
+use crate::boat::DampedLaw;
+use crate::environment::observation::LeanFeatures;
+use crate::error::{FlockError, Result};
+use crate::policies::{Law, LeaningLaw, ObservedLaw};
+use numpy::{PyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+
+/// A law that leaders follow.
+#[pyclass(name = "Law", module = "flockenv._core", frozen, eq)]
+#[derive(PartialEq)]
+pub struct PyLaw(Law);
+
+impl PyLaw {
+    /// The law.
+    pub(crate) fn law(&self) -> &Law {
+        &self.0
+    }
+}
+
+#[pymethods]
+impl PyLaw {
+    /// The names of the laws that have one.
+    #[staticmethod]
+    fn names() -> Vec<&'static str> {
+        Law::NAMES.to_vec()
+    }
+
+    /// The law of a name, where it needs one in a pool of this name.
+    #[staticmethod]
+    #[pyo3(signature = (name, pool=None))]
+    fn named(name: &str, pool: Option<&str>) -> Result<Self> {
+        Law::named(name, pool).map(Self)
+    }
+
+    /// The damped law with these gains.
+    #[staticmethod]
+    fn damped(gain: f64, backward_gain: f64, damping: f64) -> Result<Self> {
+        let law = DampedLaw {
+            gain,
+            backward_gain,
+            damping,
+        };
+        law.check()?;
+        Ok(Self(Law::Damped(law)))
+    }
+
+    /// The leaning law of a JSON text.
+    #[staticmethod]
+    fn from_json(text: &str) -> Result<Self> {
+        LeaningLaw::from_json(text).map(|law| Self(Law::Leaning(Box::new(law))))
+    }
+
+    /// A leaning law as a JSON text.
+    fn to_json(&self) -> Result<String> {
+        match &self.0 {
+            Law::Leaning(law) => law.to_json(),
+            Law::Paper | Law::Damped(_) => {
+                let accepted = "a leaning law: only those are stored";
+                Err(FlockError::parameter("law", "without weights", accepted))
+            }
+        }
+    }
+
+    /// Names and values of its gains.
+    #[getter]
+    fn gains(&self) -> Vec<(&'static str, f64)> {
+        match &self.0 {
+            Law::Paper => Vec::new(),
+            Law::Damped(law) => law.gains().to_vec(),
+            Law::Leaning(law) => law.gains.gains().to_vec(),
+        }
+    }
+}
+
+/// Names of the lean features, in order.
+#[pyfunction]
+pub(crate) fn lean_feature_names() -> Vec<&'static str> {
+    LeanFeatures::names().collect()
+}
+
+/// A law as it reads observations of one layout.
+#[pyclass(name = "ObservedLaw", module = "flockenv._core", frozen)]
+pub struct PyObservedLaw(ObservedLaw);
+
+#[pymethods]
+impl PyObservedLaw {
+    #[new]
+    #[pyo3(signature = (law, blocks, mirror_to_target=false))]
+    fn new(law: &PyLaw, blocks: &Bound<'_, PyAny>, mirror_to_target: bool) -> PyResult<Self> {
+        let layout = layout_from(blocks, mirror_to_target)?;
+        Ok(Self(ObservedLaw::new(law.0.clone(), &layout)?))
+    }
+
+    /// Actions for observations (rows, size): float32, one per row.
+    fn actions<'py>(
+        &self,
+        py: Python<'py>,
+        observations: PyReadonlyArray2<'py, f32>,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let size = self.0.observation_size();
+        let width = observations.as_array().ncols();
+        if width != size {
+            return Err(FlockError::Shape {
+                field: "observation",
+                found: format!("(..., {width})"),
+                expected: format!("(..., {size}), the size of the law's own layout"),
+            }
+            .into());
+        }
+        let numbers = observations.as_slice()?;
+        if numbers.iter().any(|number| number.is_nan()) {
+            return Err(FlockError::parameter("observation", f64::NAN, "numbers").into());
+        }
+        let rows = numbers.chunks_exact(size);
+        let actions = rows.map(|observation| self.0.action(observation) as f32);
+        Ok(PyArray1::from_iter(py, actions))
+    }
+}

@@ -1,0 +1,80 @@
+//! Leaders that follow a law by themselves do what the environment's do, given the law's actions: bit for bit.
+
+use crate::support::{parameters, seeded, step};
+use flockenv::Flock;
+use flockenv::environment::observation::{Block, ObservationLayout};
+use flockenv::environment::{ActionMode, EnvBatch, EnvSettings, TargetChoice};
+use flockenv::parameters::{Target, Targets};
+use flockenv::policies::{Law, LeaningLaw, ObservedLaw, Pilot};
+
+/// The learned law, holding its leans for so long with the tuned gains.
+fn holding(period_s: f64) -> Law {
+    let Ok(Law::Damped(gains)) = Law::named("tuned law", Some("narrow")) else {
+        panic!("the law is tuned in this pool");
+    };
+    let mut law = LeaningLaw::learned(Some("narrow")).unwrap();
+    law.gains = gains;
+    law.decision_period_s = Some(period_s);
+    Law::Leaning(Box::new(law))
+}
+
+fn laws() -> Vec<(Law, Option<f64>)> {
+    let named = Law::NAMES.iter();
+    let mut laws: Vec<_> = named
+        .map(|name| (Law::named(name, Some("narrow")).unwrap(), None))
+        .collect();
+    laws.push((holding(0.5), Some(0.5)));
+    laws
+}
+
+#[test]
+fn a_pilot_and_an_environment_with_the_laws_actions_are_the_same() {
+    for (law, period) in laws() {
+        for (target, mirror) in [(Target::Clockwise, true), (Target::CounterClockwise, true)] {
+            let blocks = [Block::Own, Block::LeanFeatures];
+            let mut settings = EnvSettings {
+                observation: ObservationLayout::of(&blocks),
+                ..EnvSettings::default()
+            };
+            settings.observation.mirror_to_target = mirror;
+            settings.episode.target = TargetChoice::Each(vec![target; 3]);
+            settings.action.decision_period_s = period;
+            if period.is_some() {
+                settings.action.mode = ActionMode::Lean;
+            }
+            let observed = ObservedLaw::new(law.clone(), &settings.observation).unwrap();
+            let size = settings.observation.size();
+            let mut batch = EnvBatch::new(settings, vec![parameters(3)]).unwrap();
+            batch.reset(&[seeded(5)]).unwrap();
+            let mut flock = batch.envs()[0].episode().unwrap().flock().clone();
+            assert_eq!(flock.parameters().target, Targets::Each(vec![target; 3]));
+            let mut pilot = Pilot::new(law.clone(), flock.parameters(), 10.0).unwrap();
+
+            let mut rows = vec![0.0; 3 * size];
+            batch.observe(&mut rows);
+            let decisions = 60;
+            for _ in 0..decisions {
+                let rows_of = rows.chunks_exact(size);
+                let actions: Vec<_> = rows_of.map(|row| observed.action(row)).collect();
+                rows = step(&mut batch, &actions).unwrap().observations;
+            }
+            let steps = period.map_or(1, |period| (10.0 * period) as u32);
+            for _ in 0..decisions * steps {
+                let rudders = pilot.rudders(&flock).unwrap();
+                flock.advance(0.1, Some(&rudders)).unwrap();
+            }
+            let env: &Flock = batch.envs()[0].episode().unwrap().flock();
+            assert_eq!(flock.time(), env.time());
+            assert_eq!(flock.poses(), env.poses(), "{law:?}");
+        }
+    }
+}
+
+#[test]
+fn a_law_is_stored_to_the_bit() {
+    for pool in ["wide", "narrow"] {
+        let law = LeaningLaw::learned(Some(pool)).unwrap();
+        let again = LeaningLaw::from_json(&law.to_json().unwrap()).unwrap();
+        assert_eq!(law, again);
+    }
+}
