@@ -17,7 +17,7 @@ pub struct State {
     pub velocities: Vec<Velocity>,
     /// The flock's time in s.
     pub time_s: f64,
-    /// Whether hulls may overlap.
+    /// Whether hulls may overlap by more than a hundredth of their radius, which is more than contacts leave.
     pub allow_overlap: bool,
 }
 
@@ -38,9 +38,14 @@ impl Flock {
         Ok(flock)
     }
 
+    /// Overlap in cm that a given state may have: more than contacts leave, so that a flock's own states are accepted.
+    fn overlap_of_contacts(&self) -> f64 {
+        0.01 * self.parameters.boat_radius_cm
+    }
+
     /// Refuses boats that overlap an obstacle by more than the contacts leave of themselves.
     pub(super) fn refuse_overlapped_obstacles(&self) -> Result<()> {
-        let allowed = 0.01 * self.parameters.boat_radius_cm;
+        let allowed = self.overlap_of_contacts();
         refuse_overlap(&mut self.integrator.clone(), allowed, |contact| {
             matches!(contact.partner, Partner::Obstacle(_))
         })
@@ -84,7 +89,7 @@ impl Flock {
         let mut integrator = self.integrator.clone();
         integrator.place(poses, velocities);
         if !allow_overlap {
-            refuse_overlap(&mut integrator, ROUNDING, |_| true)?;
+            refuse_overlap(&mut integrator, self.overlap_of_contacts(), |_| true)?;
         }
         (self.integrator, self.time) = (integrator, time);
         Ok(())
@@ -101,9 +106,6 @@ fn time_from(time_s: f64) -> Result<Ticks> {
         "a finite time of at least 0 s, at most 1e9 s",
     ))
 }
-
-/// Overlap in cm that a given state may have: rounding of poses that are meant to touch.
-const ROUNDING: f64 = 1e-9;
 
 /// Refuses contacts that overlap by more than `allowed`, of those that count.
 fn refuse_overlap(

@@ -52,6 +52,23 @@ def test_schedules_that_cannot_be_are_refused(schedule, words):
         simulate(PARAMETERS, 3, 2.0, schedule=schedule)
 
 
+def test_the_state_of_a_jam_is_a_start():
+    jam = simulate(PARAMETERS.replace(n_boats=27, bw_s=0.0), 3, 30.0)
+    state = jam.state_at(30.0)
+    del state["allow_overlap"]
+    run = simulate(jam.parameters, 3, 1.0, start=state)
+    assert np.array_equal(run.pose[0], jam.pose[-1])
+    # Two hulls of radius 5 cm side by side, 0.06 and 0.04 cm into each other.
+    pair = PARAMETERS.replace(n_boats=2, n_leaders=0)
+    for overlap_cm in (0.06, 0.04):
+        pose = [[70.0, 0.0, 0.0], [70.0, 10.0 - overlap_cm, 0.0]]
+        if overlap_cm < 0.05:
+            assert simulate(pair, 3, 0.1, start={"pose": pose}).pose[0].tolist() == pose
+        else:
+            with pytest.raises(ParameterError, match=r"boats \d and \d overlap"):
+                simulate(pair, 3, 0.1, start={"pose": pose})
+
+
 @pytest.mark.parametrize("dtype", ["float64", "float32"])
 def test_a_run_goes_on_from_where_another_ended(dtype):
     first = simulate(PARAMETERS.replace(n_boats=27, bw_s=0.0), 3, 30.0, dtype=dtype)
