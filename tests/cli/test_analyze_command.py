@@ -13,7 +13,7 @@ import flockenv
 @pytest.fixture
 def run(tmp_path):
     parameters = flockenv.FlockParameters(n_boats=6, n_leaders=1, pool="narrow")
-    flockenv.simulate(parameters, 1, 20.0).save(tmp_path / "run.npz")
+    flockenv.simulate(parameters, 2, 20.0).save(tmp_path / "run.npz")
     return tmp_path / "run.npz"
 
 

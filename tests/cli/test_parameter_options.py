@@ -59,9 +59,9 @@ def test_lists_of_words_need_no_quotes(change):
     ("changes", "words"),
     [
         (["n_bots=3"], "did you mean 'n_boats'"),
-        (["n_boats"], "FIELD=VALUE"),
-        (["=3"], "FIELD=VALUE"),
-        (["n_boats="], "FIELD=VALUE"),
+        (["n_boats"], "NAME=VALUE"),
+        (["=3"], "NAME=VALUE"),
+        (["n_boats="], "NAME=VALUE"),
         (["n_boats=3", "n_boats=4"], "n_boats twice"),
         (["n_boats=three"], "n_boats"),
         (["n_boats=-1"], "n_boats"),

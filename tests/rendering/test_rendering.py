@@ -251,7 +251,7 @@ def test_a_constant_picture_longer_than_the_format_can_say(tmp_path, name, longe
 @pytest.mark.parametrize(
     ("name", "frames", "fps", "error"),
     [
-        ("run.mp4", [np.zeros((4, 4, 3), np.uint8)], 10, flockenv.ParameterError),
+        ("run.avi", [np.zeros((4, 4, 3), np.uint8)], 10, flockenv.ParameterError),
         ("run.gif", [], 10, flockenv.ParameterError),
         ("run.gif", [np.zeros((4, 4, 3), np.uint8)], 0, flockenv.ParameterError),
         ("run.gif", [np.zeros((4, 4, 3), np.uint8)], float("nan"), flockenv.ParameterError),
