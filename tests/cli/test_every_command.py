@@ -178,7 +178,7 @@ def test_a_pool_of_ones_own(cli, tmp_path):
 
 
 def test_a_table_in_80_columns(cli, tmp_path):
-    own = tmp_path / "a_policy_with_a_rather_long_name_of_its_own.npz"
+    own = tmp_path / "a_policy_with_a_rather_long_name_of_its_own.json"
     flockenv.policies.load("learned", pool="narrow").save(own)
     for columns in ("80", "200"):
         words = ["compare", *TINY, "-q", "--out", tmp_path / "out", "--policy", str(own)]
