@@ -35,10 +35,13 @@ def numbers(text: str) -> np.ndarray:
 @pytest.mark.parametrize(
     ("policy", "changes"),
     [
-        ("law", {}),
+        ("paper's law at every substep", {}),
         ("tuned law", {}),
-        ("law", {"scheme": "moreau", "noise_scheme": "per-step"}),
-        ("law", {"pool": "narrow", "speed_spread_cm_s": 1.0, "current_gain": 0.1}),
+        ("paper's law at every substep", {"scheme": "moreau", "noise_scheme": "per-step"}),
+        (
+            "paper's law at every substep",
+            {"pool": "narrow", "speed_spread_cm_s": 1.0, "current_gain": 0.1},
+        ),
     ],
 )
 def test_a_minute_of_27_boats_with_leaders(policy, changes, pytestconfig):
