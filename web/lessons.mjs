@@ -2,7 +2,7 @@
 
 import { element } from "../flockenv/replay/words.mjs";
 
-const NOISE = "#lesson=noise&preset=experiment&n_boats=27&seed=1&speed=16";
+const NOISE = "#lesson=noise&preset=experiment&n_boats=27&seed=2&speed=16";
 const OPPOSED = "#lesson=opposed&n_boats=27&n_leaders=4&bw_s=0.3&seed=5&speed=16";
 
 export const LESSONS = [
