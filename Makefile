@@ -92,9 +92,9 @@ test-rust: ## the physics alone, no Python
 	cargo test --locked --features clarabel,draw
 
 # One thread for each worker's linear algebra, or the workers fight over the cores. Tests of one file share what
-# it prepares.
+# it prepares. A worker that dies is not replaced: pytest-xdist would wait for ever for what the dead one had left.
 test-python: $(STAMPS)/test $(CORE) ## the Python package
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist loadfile $(PYTEST_ARGS)
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist loadfile --max-worker-restart 0 $(PYTEST_ARGS)
 
 # Where rustup cannot fetch LLVM's tools, or there is none, LLVM_COV and LLVM_PROFDATA name those of another install.
 # Which lines the tests run, of the package and of the physics.

@@ -151,10 +151,12 @@ def test_a_command_that_is_interrupted_keeps_the_runs_under_way(
 ) -> None:
     store, made = RunStore(tmp_path), []
     specs = [RunSpec(parameters=spec.parameters, seed=seed, duration_s=30.0) for seed in range(9)]
+    once = iter([signal.SIGINT])  # Two runs are made at a time, and a second press ends the process.
 
     def pressed(spec: RunSpec) -> flockenv.Recording:
         made.append(spec)
-        signal.raise_signal(signal.SIGINT)
+        for number in once:
+            signal.raise_signal(number)
         return execute(spec)
 
     monkeypatch.setattr(run_store, "execute", pressed)
