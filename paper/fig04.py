@@ -12,7 +12,7 @@ import flockenv
 from flockenv.statistics.structure import structure_series
 
 _TITLES = ("jamming", "clustering", "ordered motion", "disordered motion")
-_NOISE_S = (0.4, 1.6, 1.0, 2.8)
+_NOISE_S = (0.4, 1.4, 1.0, 2.8)
 """Where each state is looked for: the noises at which Table 2 has it."""
 _RUNS = 8
 _ENDS = np.array([-1.0, 1.0])

@@ -63,7 +63,8 @@ def judge(table: pd.DataFrame) -> Claims:
     def share(text: str, states: list[str], ends: tuple[float, float], **claimed: float) -> None:
         runs = within(table, *ends)
         each = runs[states].sum(axis=1).groupby(runs["seed"]).mean()
-        what = f"share of cycles, bw {ends[0]:g} to {ends[1]:g} s; read as {claimed}"
+        words = " and ".join(f"at {name} {bound:g}" for name, bound in claimed.items())
+        what = f"share of cycles, bw {ends[0]:g} to {ends[1]:g} s; read as {words}"
         claims.add(text, what, mean(each), len(runs), **claimed)
 
     share("Jamming occurs sometimes at low noise", ["jamming"], (0.4, 0.8), least=0.005, most=0.5)
@@ -111,19 +112,20 @@ def judge(table: pd.DataFrame) -> Claims:
         (at19["turns"] > 0).sum(),
         len(at19),
     )
-    onset = within(table, 0.8, 1.4).dropna(subset="lead_s")
+    runs = within(table, 0.8, 1.4).dropna(subset="lead_s")
+    onset = runs.groupby("seed").mean(numeric_only=True)
     claims.add(
         "Orientations signal the coming order earlier than velocities",
         "time by which Ψ_o is halfway to order before Ψ_v (s), bw 0.8 to 1.4 s",
         mean(onset["lead_s"]),
-        len(onset),
+        len(runs),
         least=0.0,
     )
     claims.add(
         "Velocities change more abruptly than orientations",
         "rise of Ψ_v minus that of Ψ_o, from 10 to 90 % (s), bw 0.8 to 1.4 s",
         mean(onset["rise_v_s"] - onset["rise_o_s"]),
-        len(onset),
+        len(runs),
         most=0.0,
     )
     return claims
