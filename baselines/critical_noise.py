@@ -19,7 +19,7 @@ import pandas as pd
 from rich.progress import track
 
 import flockenv
-from flockenv.runs.executors import local
+from flockenv.runs.executors import finished
 from flockenv.statistics.intervals import percentile_ends
 
 NOISE_S = {
@@ -75,7 +75,7 @@ def main(arguments: list[str] | None = None) -> None:
         order = order_of_run(parameters, seed, options.minutes)
         return {"preset": preset, "pool": pool, "bw_s": bw_s, "seed": seed, **order}
 
-    found = dict(track(local(run, cells), "simulating", total=len(cells)))
+    found = dict(track(finished(run, cells), "simulating", total=len(cells)))
     rows = [found[place] for place in range(len(cells))]
     runs = pd.DataFrame(rows)
     options.out.parent.mkdir(parents=True, exist_ok=True)

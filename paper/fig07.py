@@ -7,9 +7,9 @@ from section4 import READING
 from study import COLORS, SEEDS, Options, Row, Study, flock, main, picture, seed_of
 
 import flockenv
-from flockenv.runs import simulate_alternating
 
 NOISES_S = (1.8, 1.4)
+_SWITCHES = [(240.0, {"target": "cw"}), (480.0, {"target": "ccw"}), (720.0, {"target": "cw"})]
 
 
 def design() -> list[Row]:
@@ -24,7 +24,10 @@ def design() -> list[Row]:
 
 def run_of(row: Row) -> flockenv.Recording:
     """Return the run of a row: CCW, CW, CCW, CW."""
-    return simulate_alternating(flock(row), seed_of(row), 60.0 * row["minutes"], 5.0)
+    parameters, duration_s = flock(row, target="ccw"), 60.0 * row["minutes"]
+    return flockenv.simulate(
+        parameters, seed_of(row), duration_s, 5.0, dtype=np.float32, schedule=_SWITCHES
+    )
 
 
 def measure(row: Row) -> Row:

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 from scipy import stats
+from starts import one_jam, rotating
 from study import FIRST_SEED, Row, Study, flock
 
-from flockenv.runs import initial_flock
 from flockenv.statistics.structure import jam_sizes
 
 RUNS = 8
@@ -15,6 +15,7 @@ LITERAL_C4 = 0.1 * math.sqrt(0.02)
 C4 = (round(LITERAL_C4, 4), 0.1, 0.03, 0.05, 0.02, 0.2)
 COVERAGES = (0.5, 0.3, 0.7, 0.2, 1.0)
 STARTED = {"one-jam": "in one jam", "rotating": "rotating"}
+_STARTS = {"one-jam": one_jam, "rotating": rotating}
 
 _EVERY_CYCLES = 5
 _HELD = 3
@@ -71,7 +72,7 @@ def measure(row: Row) -> Row:
     """
     outer = outer_radius_cm(row["n_boats"], row["coverage"])
     parameters = flock(row, bw_s=0.0, pool=(outer, outer * 97.0 / 180.0))
-    boats = initial_flock(parameters, FIRST_SEED + row["seed"], row["start"])
+    boats = _STARTS[row["start"]](parameters, FIRST_SEED + row["seed"])
     cycle_s = parameters.fw_s + parameters.nop1_s + parameters.nop2_s
     boats.advance(1.5)  # Into the analysis window.
     samples: list[tuple[float, float, float, float, float, float]] = []

@@ -26,7 +26,7 @@ from flockenv.runs.executors import Engine, named
 from flockenv.runs.store import RUNS_FOLDER
 
 if TYPE_CHECKING:
-    from flockenv.runs.sweep_spec import SweepSpec
+    from flockenv.runs.sweep import SweepSpec
 
 __all__ = ["sweep"]
 
@@ -59,7 +59,7 @@ def sweep(options: SweepOptions) -> None:
 
     Example: `flockenv sweep docs/sweep-example.toml`
     """
-    from flockenv.runs.sweep_spec import read_sweep
+    from flockenv.runs.sweep import read_sweep
 
     engine, part = named(options.engine), chosen_shard(options.shard)
     work = read_sweep(options.spec)

@@ -25,9 +25,7 @@ __all__ = [
     "warn",
 ]
 
-EngineName = Annotated[
-    str, typer.Option("--engine", help="Where to run: local, joblib, joblib:BACKEND or ray.")
-]
+EngineName = Annotated[str, typer.Option("--engine", help="Where to run: local or ray.")]
 Workers = Annotated[
     int | None, typer.Option(min=1, help="Runs at a time. [every core that this process may use]")
 ]

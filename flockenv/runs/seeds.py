@@ -1,7 +1,6 @@
 """One table of seed ranges by use: none of the seeds that made a policy is used to judge it."""
 
 import hashlib
-import itertools
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
@@ -94,8 +93,7 @@ def check_evaluation_seeds(seeds: Iterable[int]) -> None:
         For a seed out of range.
     """
     # Of a range the ends are enough, however long it is.
-    ends = (seeds[:1], seeds[-1:]) if isinstance(seeds, range) else (seeds,)
-    for seed in itertools.chain(*ends):
+    for seed in (*seeds[:1], *seeds[-1:]) if isinstance(seeds, range) else seeds:
         if not 0 <= seed < FIRST_TRAINING_SEED:
             raise ParameterError(
                 f"seed = {shown(seed)} is not accepted: seeds for evaluation are from 0 to "

@@ -1,23 +1,16 @@
-"""Finished runs on disk: each stored whole under the hash of its spec, so that work resumes."""
+"""Finished runs on disk: each a recording under the hash of its spec, so that work resumes."""
 
 import os
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from contextlib import closing
 from pathlib import Path
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from flockenv import _core
-from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv._io.interrupts import end_if_interrupted
 from flockenv.errors import FlockError, ParameterError
-from flockenv.order import ORDER, OrderSeries
-from flockenv.policies.registry import EVERY_SUBSTEP
-from flockenv.recording import PHASES, Recording
-from flockenv.runs.executors import Engine, local
+from flockenv.recording import Recording
+from flockenv.runs.executors import Engine, finished, threads
 from flockenv.runs.spec import RunSpec, execute
 
 __all__ = [
@@ -26,7 +19,6 @@ __all__ = [
     "RunStore",
     "StorageError",
     "StoreWarning",
-    "columns",
     "run_missing",
 ]
 
@@ -35,8 +27,6 @@ RUNS_FOLDER = "runs"
 
 RESULTS_VERSION = 4
 """Rises whenever the same spec comes to give other numbers: stored runs are then redone."""
-
-_FORMAT = "flockenv run 1"
 
 
 class StorageError(FlockError, OSError):
@@ -52,21 +42,18 @@ def _warn(message: str) -> None:
 
 
 class RunStore:
-    """A folder of finished runs.
+    """A folder of finished runs, each the file of a recording, there whole or not at all.
 
-    A run lies in ``<first two digits>/<key>.npz`` (see `RunSpec.key`), written under a temporary
-    name and then renamed: it is there whole or not at all. With it lie the spec, the version of
-    flockenv and `RESULTS_VERSION`. An hour at 10 Hz takes 0.4 MB of the analysis window, 1.3 MB of
-    all samples, and the poses and velocities of 20 boats 17 MB more.
+    A run lies in ``<version>/<first two digits>/<key>.npz`` (see `RunSpec.key`), where the version
+    is that of flockenv and `RESULTS_VERSION`: runs of other versions count as missing.
 
     Parameters
     ----------
     folder
         Where; made with the first run.
     notify
-        Called with a line of text for each stored run that cannot be used: of another version or
-        damaged. Such a file is moved to ``set_aside`` and the run counts as missing. By default a
-        `StoreWarning`.
+        Called with a line of text for each damaged file. It is renamed to end in ``.damaged``, and
+        its run counts as missing. By default a `StoreWarning`.
     """
 
     def __init__(
@@ -77,7 +64,8 @@ class RunStore:
 
     def path(self, spec: RunSpec) -> Path:
         """Return where the run of a spec is or would be stored."""
-        return self.folder / spec.key[:2] / f"{spec.key}.npz"
+        version = f"{_core.__version__}-{RESULTS_VERSION}"
+        return self.folder / version / spec.key[:2] / f"{spec.key}.npz"
 
     def save(self, spec: RunSpec, run: Recording) -> None:
         """Keep the finished run of a spec.
@@ -87,17 +75,10 @@ class RunStore:
         StorageError
             If it cannot be written, for example to a full disk.
         """
-        texts = {
-            "format": _FORMAT,
-            "version": _core.__version__,
-            "results_version": str(RESULTS_VERSION),
-            "spec": spec.to_json(),
-        }
-        arrays = columns(run) | {name: np.array(text) for name, text in texts.items()}
         path = self.path(spec)
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            write_arrays(path, arrays)
+            run.save(path, compressed=True)
         except OSError as error:
             raise StorageError(
                 f"{path} cannot be written ({error.strerror or error}); the runs finished before "
@@ -110,115 +91,29 @@ class RunStore:
         Raises
         ------
         StorageError
-            If the file is there but cannot be read, for example for want of permission.
+            If the file is there but can neither be read nor renamed.
         """
         path = self.path(spec)
         if not path.exists():
             return None
         try:
-            return _read(path, spec)
-        except FlockError as error:
-            self._set_aside(path, str(error))
+            run = Recording.load(path)
+            if (run.parameters, run.seed) != (spec.parameters, spec.seed):
+                raise ParameterError(f"{path} holds another run than its name says")
+        except ParameterError as error:
+            aside = path.with_suffix(".damaged")
+            path.replace(aside)
+            self._notify(f"{error}; it is done again, and the old file is now {aside}")
             return None
         except OSError as error:
             raise StorageError(f"{path} cannot be read: {error.strerror or error}") from error
-
-    def _set_aside(self, path: Path, reason: str) -> None:
-        folder = self.folder / "set_aside"
-        try:
-            folder.mkdir(exist_ok=True)
-            number = 1
-            while (target := folder / f"{path.name}.{number}").exists():
-                number += 1
-            path.rename(target)
-        except OSError as error:
-            raise StorageError(f"{path} cannot be used ({reason}) nor moved: {error}") from error
-        self._notify(f"{reason}; it is done again, and the old file is now {target}")
-
-
-def _read(path: Path, spec: RunSpec) -> Recording:
-    arrays = read_arrays(path)
-    found = {name: _text(arrays, name) for name in ("format", "version", "results_version", "spec")}
-    ours = {
-        "format": _FORMAT,
-        "version": _core.__version__,
-        "results_version": str(RESULTS_VERSION),
-    }
-    for name, value in ours.items():
-        if found[name] != value:
-            raise ParameterError(f"{path} is of another version ({name} {found[name]!r})")
-    if found["spec"] != spec.to_json():
-        raise ParameterError(f"{path} holds another run than its name says")
-    try:
-        return _recording(spec, arrays)
-    except ParameterError as error:
-        raise ParameterError(f"{path} is damaged: {error}") from error
-
-
-def columns(run: Recording) -> dict[str, NDArray[Any]]:
-    """Return the arrays that a store keeps of a run, by name.
-
-    They are ``time_s`` (float64), ``phase`` (uint8, its place in the cycle fw, nop1, bw, nop2),
-    ``in_analysis_window``, ``order_<name>`` (float32), and ``pose`` and ``velocity`` (float32)
-    where the run has them.
-    """
-    arrays = {
-        "time_s": run.time_s,
-        "phase": (run.phase[:, None] == PHASES).argmax(axis=1).astype(np.uint8),
-        "in_analysis_window": run.in_analysis_window,
-        **{f"order_{name}": getattr(run.order, name).astype(np.float32) for name in ORDER},
-    }
-    if run.has_poses:
-        states = {"pose": run.pose, "velocity": run.velocity}
-        arrays |= {name: array.astype(np.float32) for name, array in states.items()}
-    return arrays
-
-
-def _recording(spec: RunSpec, arrays: Mapping[str, NDArray[Any]]) -> Recording:
-    """Return the run of a spec that has these `columns`, or raise a `ParameterError`."""
-    samples = np.size(arrays.get("time_s", ()))
-    none = np.zeros((samples, 0, 3), np.float32)
-    single = np.dtype(np.float32)
-    layout: dict[str, tuple[tuple[int, ...], np.dtype[Any]]] = {
-        "time_s": ((samples,), np.dtype(np.float64)),
-        "phase": ((samples,), np.dtype(np.uint8)),
-        "in_analysis_window": ((samples,), np.dtype(np.bool_)),
-        **{f"order_{name}": ((samples,), single) for name in ORDER},
-    }
-    if spec.keep == "poses":
-        state = (samples, spec.parameters.n_boats, 3)
-        layout |= {"pose": (state, single), "velocity": (state, single)}
-    found = {name: (array.shape, array.dtype) for name, array in arrays.items()}
-    if found != layout:
-        names = sorted(n for n in found.keys() | layout if found.get(n) != layout.get(n))
-        raise ParameterError(f"these arrays are missing, unknown or misshapen: {names}")
-    if (arrays["phase"] >= len(PHASES)).any():
-        raise ParameterError(f"phase is not accepted: places from 0 to {len(PHASES) - 1}")
-    orders = {name: arrays[f"order_{name}"].astype(np.float64) for name in ORDER}
-    return Recording(
-        time_s=arrays["time_s"],
-        phase=PHASES[arrays["phase"]],
-        in_analysis_window=arrays["in_analysis_window"],
-        pose=arrays.get("pose", none),
-        velocity=arrays.get("velocity", none),
-        order=OrderSeries(**orders),
-        parameters=spec.parameters,
-        seed=spec.seed,
-        version=_core.__version__,
-        policy=EVERY_SUBSTEP,
-        duration_s=spec.duration_s,
-    )
-
-
-def _text(arrays: dict[str, NDArray[Any]], name: str) -> str:
-    array = arrays.pop(name, None)
-    return str(array) if array is not None and array.shape == () else ""
+        return run
 
 
 def run_missing(
     specs: Iterable[RunSpec],
     store: RunStore,
-    engine: Engine = local,
+    engine: Engine = threads,
     progress: Callable[[RunSpec], None] = lambda spec: None,
     workers: int | None = None,
 ) -> dict[RunSpec, FlockError]:
@@ -232,7 +127,8 @@ def run_missing(
         Where finished runs are stored. A full disk ends the work, and costs only the runs under
         way; so does Ctrl-C outside of a command, which itself waits for them.
     engine
-        Where to run, one of `flockenv.runs.executors.ENGINES`. The results are the same on each.
+        Where to run, one of `flockenv.runs.executors.ENGINES`, or another function that makes an
+        executor. The results are the same on each.
     progress
         Called with each spec once its run is there.
     workers
@@ -256,7 +152,7 @@ def run_missing(
             progress(spec)
     missing.sort(key=lambda spec: -spec.cost)
     failures = {}
-    with closing(engine(_attempt, missing, workers)) as outcomes:
+    with closing(finished(_attempt, missing, workers, engine)) as outcomes:
         for place, outcome in outcomes:
             if isinstance(outcome, Recording):
                 store.save(missing[place], outcome)

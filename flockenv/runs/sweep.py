@@ -1,7 +1,14 @@
-"""Sweeps: any grid of parameters and seeds, resumable, as one table."""
+"""Sweeps: any grid of parameters and seeds, resumable, as one table.
 
+`docs/sweep.md` describes the TOML file of a sweep. Its fields are those of `FlockParameters`, a
+field in a grid is a list, also of one value, and all grids name the same fields.
+"""
+
+import itertools
+import math
 import os
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -9,20 +16,141 @@ import numpy as np
 
 from flockenv._io.atomic_write import atomic_write, write_csv
 from flockenv._io.extras import require
-from flockenv.errors import FlockError, ParameterError
+from flockenv._io.toml import read_toml_file
+from flockenv.errors import FlockError, ParameterError, refuse_unknown
 from flockenv.order import QUANTITIES
+from flockenv.parameters import FlockParameters
 from flockenv.recording import Recording
-from flockenv.runs.executors import Engine, local
+from flockenv.runs.executors import Engine, threads
 from flockenv.runs.spec import RunSpec
 from flockenv.runs.store import RUNS_FOLDER, RunStore, StorageError, run_missing
-from flockenv.runs.sweep_spec import SweepSpec
 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["load_sweep", "run_sweep", "summary", "to_xarray"]
+__all__ = [
+    "MOST_RUNS",
+    "SweepSpec",
+    "load_sweep",
+    "read_sweep",
+    "run_sweep",
+    "summary",
+    "to_xarray",
+]
 
+MOST_RUNS = 1_000_000
+"""A sweep of more runs is refused: it is a mistake in a list, or needs to be split."""
+
+_KEYS = ("preset", "minutes", "seeds", "sample_hz", "policy", "keep", "fixed", "grid")
 _AVERAGED = tuple(each.name for each in QUANTITIES if each.is_averaged)
+_COLUMNS = (
+    "frames",
+    *(f"{name}_{kind}" for name in _AVERAGED for kind in ("mean", "std")),
+    "failure",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class SweepSpec:
+    """A checked sweep.
+
+    Attributes
+    ----------
+    axes : tuple of str
+        The fields that vary, in the file's order.
+    runs : tuple of RunSpec
+        For each combination one run a seed, in the order of combinations, then seeds.
+    """
+
+    axes: tuple[str, ...]
+    runs: tuple[RunSpec, ...]
+
+
+def read_sweep(path: str | os.PathLike[str]) -> SweepSpec:
+    """Read and check a sweep's file; every value is checked before anything runs.
+
+    Raises
+    ------
+    ParameterError
+        For a file that cannot be read or is no TOML, unknown keys and fields (with the nearest
+        name), axes that are no lists, and values that `FlockParameters` or `RunSpec` refuse. The
+        message names the file.
+    """
+    values = read_toml_file(path, str(path))
+    try:
+        return _parse(values)
+    except (FlockError, TypeError) as error:
+        raise ParameterError(f"{path}: {error}") from error
+
+
+def _parse(values: Mapping[str, Any]) -> SweepSpec:
+    known = FlockParameters.__dataclass_fields__
+    for key in values:
+        if key not in _KEYS and key in known:
+            raise ParameterError(
+                f"{key!r} is no key of a sweep: it is a field of the parameters, which belongs "
+                "under [fixed] or [[grid]]"
+            )
+    refuse_unknown(values, _KEYS, "key of a sweep")
+    fixed, grids, seeds = values.get("fixed", {}), _grids(values), _seeds(values.get("seeds"))
+    if not isinstance(fixed, dict):
+        raise ParameterError(f"fixed = {fixed!r} is not accepted: a table [fixed]")
+    axes = tuple(grids[0])
+    for name in axes:
+        if name in fixed:
+            raise ParameterError(f"{name!r} is both under [fixed] and in a grid")
+    refuse_unknown([*fixed, *axes], known, "field of FlockParameters")
+    count = len(seeds) * sum(math.prod(map(len, grid.values())) for grid in grids)
+    if count > MOST_RUNS:
+        raise ParameterError(f"the sweep has {count} runs; at most {MOST_RUNS} are accepted")
+    base = FlockParameters.from_dict({"preset": values.get("preset", "simulation"), **fixed})
+    flocks = dict.fromkeys(
+        base.replace(**dict(zip(axes, point, strict=True)))
+        for grid in grids
+        for point in itertools.product(*(grid[axis] for axis in axes))
+    )
+    run = {
+        "duration_s": 60.0 * _number("minutes", values.get("minutes")),
+        "sample_hz": _number("sample_hz", values.get("sample_hz", 10)),
+        **{name: values[name] for name in ("policy", "keep") if name in values},
+    }
+    runs = tuple(RunSpec(parameters=each, seed=seed, **run) for each in flocks for seed in seeds)
+    return SweepSpec(axes, runs)
+
+
+def _grids(values: Mapping[str, Any]) -> list[dict[str, list[Any]]]:
+    grids = values.get("grid")
+    grids = [grids] if isinstance(grids, dict) else grids
+    if not isinstance(grids, list) or not grids or not all(isinstance(g, dict) for g in grids):
+        raise ParameterError("grid is missing: a table [[grid]] of fields and lists of values")
+    for grid in grids:
+        for name, axis in grid.items():
+            if not isinstance(axis, list) or not axis:
+                raise ParameterError(
+                    f"{name} = {axis!r} is not accepted in a grid: a list of one or more values "
+                    "(a field that does not vary belongs under [fixed])"
+                )
+        if grid.keys() != grids[0].keys():
+            different = ", ".join(sorted(grid.keys() ^ grids[0].keys()))
+            raise ParameterError(f"all grids must name the same fields; these differ: {different}")
+    return grids
+
+
+def _seeds(seeds: Any) -> tuple[int, ...]:
+    if isinstance(seeds, int) and not isinstance(seeds, bool) and 1 <= seeds <= MOST_RUNS:
+        return tuple(range(seeds))
+    if isinstance(seeds, list) and seeds and len(set(map(repr, seeds))) == len(seeds):
+        return tuple(seeds)
+    raise ParameterError(
+        f"seeds = {seeds!r} is not accepted: how many (1 to {MOST_RUNS}), or a list of different "
+        "seeds"
+    )
+
+
+def _number(name: str, value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ParameterError(f"{name} = {value!r} is not accepted: a number")
+    return float(value)
 
 
 def summary(run: Recording) -> dict[str, float]:
@@ -37,10 +165,9 @@ def summary(run: Recording) -> dict[str, float]:
         Ψ_o·sin φ_o. NaN where undefined.
     """
     used = run.analyzed()
-    order, target = used.order, run.parameters.target
     row: dict[str, float] = {"frames": len(used)}
     for name in _AVERAGED:
-        series = order.series(name, target)
+        series = used.order.series(name, run.parameters.target)
         row[f"{name}_mean"] = float(series.mean()) if len(series) else np.nan
         row[f"{name}_std"] = float(series.std()) if len(series) else np.nan
     return row
@@ -49,7 +176,7 @@ def summary(run: Recording) -> dict[str, float]:
 def run_sweep(
     sweep: SweepSpec,
     folder: str | os.PathLike[str],
-    engine: Engine = local,
+    engine: Engine = threads,
     progress: Callable[[RunSpec], None] = lambda spec: None,
     notify: Callable[[str], None] | None = None,
     workers: int | None = None,
@@ -64,14 +191,10 @@ def run_sweep(
         Of `read_sweep`.
     folder
         Where.
-    engine
-        Where to run, one of `flockenv.runs.executors.ENGINES`.
-    progress
-        Called with each spec once its run is there.
     notify
         See `RunStore`.
-    workers
-        How many runs at a time; every core that this process may use by default.
+    engine, progress, workers
+        See `run_missing`.
 
     Returns
     -------
@@ -91,53 +214,34 @@ def run_sweep(
     runs = folder / RUNS_FOLDER
     store = RunStore(runs, notify) if notify else RunStore(runs)
     failures = run_missing(sweep.runs, store, engine, progress, workers)
-    table: pd.DataFrame = pandas.DataFrame(
-        [
-            {**_point(sweep, spec), "seed": spec.seed, **_outcome(spec, store, failures)}
-            for spec in sweep.runs
-        ]
-    )
-    _write(table, folder)
-    return table
-
-
-def _point(sweep: SweepSpec, spec: RunSpec) -> dict[str, Any]:
-    values = {name: getattr(spec.parameters, name) for name in sweep.axes}
-    return {
-        name: _one_word(value) if isinstance(value, tuple) else value
-        for name, value in values.items()
-    }
-
-
-def _one_word(value: tuple[Any, ...]) -> str:
-    # A pool is a name or a pair of radii, a target a word or several: a column of both would be of
-    # no type.
-    if all(isinstance(each, str) for each in value):
-        return ",".join(value)
-    if all(isinstance(each, float) for each in value):
-        return "x".join(f"{radius:g}" for radius in value)
-    return repr(value)
-
-
-def _outcome(
-    spec: RunSpec, store: RunStore, failures: Mapping[RunSpec, FlockError]
-) -> dict[str, Any]:
-    if spec in failures:
-        missing = {f"{name}_{kind}": np.nan for name in _AVERAGED for kind in ("mean", "std")}
-        return {"frames": 0, **missing, "failure": str(failures[spec])}
-    run = store.load(spec)
-    if run is None:
-        raise FlockError(f"{store.path(spec)} has been lost since it was written")
-    return {**summary(run), "failure": ""}
-
-
-def _write(table: "pd.DataFrame", folder: Path) -> None:
+    rows = []
+    for spec in sweep.runs:
+        fields = {name: _one_word(getattr(spec.parameters, name)) for name in sweep.axes}
+        run, failure = store.load(spec), str(failures.get(spec, ""))
+        if run is None and not failure:
+            raise FlockError(f"{store.path(spec)} has been lost since it was written")
+        found: dict[str, Any] = {"frames": 0} if run is None else summary(run)
+        rows.append({**fields, "seed": spec.seed, **found, "failure": failure})
+    table: pd.DataFrame = pandas.DataFrame(rows, columns=[*sweep.axes, "seed", *_COLUMNS])
     try:
         write_csv(folder / "sweep.csv", table)
         with atomic_write(folder / "sweep.parquet") as file:
             table.to_parquet(file, index=False)
     except OSError as error:
         raise StorageError(f"{folder} cannot be written: {error.strerror or error}") from error
+    return table
+
+
+def _one_word(value: Any) -> Any:
+    # A pool is a name or a pair of radii, a target a word or several: a column of both would be of
+    # no type.
+    if not isinstance(value, tuple):
+        return value
+    if all(isinstance(each, str) for each in value):
+        return ",".join(value)
+    if all(isinstance(each, float) for each in value):
+        return "x".join(f"{radius:g}" for radius in value)
+    return repr(value)
 
 
 def load_sweep(path: str | os.PathLike[str]) -> "pd.DataFrame":

@@ -50,7 +50,7 @@ class Shard:
         ParameterError
             For any other text, and as for the class.
         """
-        found = re.fullmatch(r"\s*(\d{1,9})\s*/\s*(\d{1,9})\s*", text, re.ASCII)
+        found = re.fullmatch(r"(\d{1,9})/(\d{1,9})", text, re.ASCII)
         if found is None:
             raise ParameterError(
                 f"shard {text!r} is not accepted: a number and how many there are, such as 3/8"
@@ -74,13 +74,13 @@ class Workload:
     runs : int
         Different runs.
     stored : int
-        Those of them that have a file in the store. Whether the file is whole and of this version
-        shows when it is read.
+        Those of them that have a file in the store. Whether the file is whole shows when it is
+        read.
     flock_hours : float
         Simulated hours of the runs that have none.
     core_hours : float or None
         What these take on one core of this machine, extrapolated from trial runs of a minute; None
-        where those of a protocol could not be made.
+        where those of a policy could not be made.
     """
 
     runs: int
@@ -90,7 +90,7 @@ class Workload:
 
 
 def measure_workload(specs: Iterable[RunSpec], store: RunStore) -> Workload:
-    """Return how much there is to be done, measured by trial runs of some of them.
+    """Return how much there is to be done, measured by a trial run for each policy.
 
     Parameters
     ----------
@@ -106,43 +106,27 @@ def measure_workload(specs: Iterable[RunSpec], store: RunStore) -> Workload:
     """
     specs = list(dict.fromkeys(specs))
     missing = [spec for spec in specs if not store.path(spec).exists()]
-    core_seconds = _core_seconds(missing)
+    by_policy: dict[str, list[RunSpec]] = {}
+    for spec in missing:
+        by_policy.setdefault(spec.policy, []).append(spec)
+    seconds = [_core_seconds(each) for each in by_policy.values()]
+    known = [each for each in seconds if each is not None]
     return Workload(
         runs=len(specs),
         stored=len(specs) - len(missing),
         flock_hours=sum(spec.duration_s for spec in missing) / 3600,
-        core_hours=None if core_seconds is None else core_seconds / 3600,
+        core_hours=sum(known) / 3600 if len(known) == len(seconds) else None,
     )
 
 
 def _core_seconds(specs: Sequence[RunSpec]) -> float | None:
-    """Return the processor time of runs; None if none of them could be tried.
-
-    Each protocol is tried with its smallest and its largest flock. A run takes the rate of the
-    trial with its protocol that is nearer in size, in s per unit of `RunSpec.cost`.
-    """
-    seconds = 0.0
-    for protocol in dict.fromkeys(spec.protocol for spec in specs):
-        by_size = sorted((spec for spec in specs if spec.protocol == protocol), key=_size)
-        trials = {_size(spec): spec for spec in (by_size[0], by_size[-1])}
-        found = {size: _rate(spec) for size, spec in trials.items()}
-        rates = {size: rate for size, rate in found.items() if rate is not None}
-        if not rates:
-            return None
-        for spec in by_size:
-            seconds += spec.cost * rates[min(rates, key=lambda size: abs(size - _size(spec)))]
-    return seconds
-
-
-def _size(spec: RunSpec) -> float:
-    return spec.cost / spec.duration_s
-
-
-def _rate(spec: RunSpec) -> float | None:
-    trial = replace(spec, duration_s=min(_TRIAL_S, spec.duration_s))
+    """Return the processor time of runs, by a trial of the one in the middle of their costs."""
+    middle = sorted(specs, key=lambda spec: spec.cost)[len(specs) // 2]
+    trial = replace(middle, duration_s=min(_TRIAL_S, middle.duration_s))
     start = time.process_time()
     try:
         execute(trial)
     except FlockError:
         return None
-    return (time.process_time() - start) / trial.cost
+    rate = (time.process_time() - start) / trial.cost
+    return rate * sum(spec.cost for spec in specs)

@@ -10,7 +10,7 @@ import flockenv
 from flockenv import Flock, FlockError, FlockParameters, ParameterError, Recording, simulate
 from flockenv.cli.parameters import read_parameters
 from flockenv.runs.spec import RunSpec
-from flockenv.runs.sweep_spec import read_sweep
+from flockenv.runs.sweep import read_sweep
 
 DISCS = ((30.0, 0.0, 8.0), (-30.0, 10.0, 3.5))
 WALLS = ((-60.0, 40.0, 0.0, 40.0),)

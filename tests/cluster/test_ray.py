@@ -5,9 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from flockenv.runs.executors import named
-from flockenv.runs.sweep import run_sweep
-from flockenv.runs.sweep_spec import read_sweep
+from flockenv.runs.executors import finished, named
+from flockenv.runs.sweep import read_sweep, run_sweep
 
 pytestmark = pytest.mark.ray
 
@@ -33,15 +32,15 @@ def test_a_sweep_outlives_a_node(two_nodes, tmp_path: Path) -> None:
     cluster, node = two_nodes
     (tmp_path / "spec.toml").write_text(SPEC)
     sweep = read_sweep(tmp_path / "spec.toml")
-    finished = []
+    made = []
 
     def kill_a_node(spec) -> None:
-        finished.append(spec)
-        if len(finished) == 3:
+        made.append(spec)
+        if len(made) == 3:
             cluster.remove_node(node, allow_graceful=False)
 
     run_sweep(sweep, tmp_path / "ray", named("ray"), kill_a_node)
-    assert len(finished) == len(sweep.runs)
+    assert len(made) == len(sweep.runs)
     run_sweep(sweep, tmp_path / "local")
     for name in ("sweep.csv", "sweep.parquet"):
         assert (tmp_path / "ray" / name).read_bytes() == (tmp_path / "local" / name).read_bytes()
@@ -54,7 +53,8 @@ def started(item: tuple[str, int]) -> int:
 
 
 def test_few_items_are_in_flight(two_nodes, tmp_path: Path) -> None:
-    results = named("ray")(started, [(str(tmp_path), number) for number in range(40)])
+    items = [(str(tmp_path), number) for number in range(40)]
+    results = finished(started, items, engine=named("ray"))
     found = [next(results)]
     time.sleep(2.0)
     # Two for each of two cores, although nothing else keeps the cluster busy.

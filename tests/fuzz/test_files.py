@@ -4,7 +4,6 @@ writer leaves half a file."""
 import io
 import json
 import os
-import warnings
 import zipfile
 from functools import cache
 from pathlib import Path
@@ -24,8 +23,8 @@ from flockenv.policies import NetworkPolicy, load
 from flockenv.rendering import save_animation
 from flockenv.replay import write_replay
 from flockenv.runs.spec import RunSpec, execute
-from flockenv.runs.store import RunStore, StoreWarning
-from flockenv.runs.sweep_spec import read_sweep
+from flockenv.runs.store import RunStore
+from flockenv.runs.sweep import read_sweep
 from flockenv.tracks import TrackLayout, read_tracks
 
 FUZZ = settings.get_profile("fuzz")
@@ -46,21 +45,6 @@ bw_s = [0.0, 0.2]
 """
 
 
-def load_run(path: Path):
-    """The stored run, or None if it was set aside with a warning."""
-    store = RunStore(path.parent / "store")
-    target = store.path(SPEC)
-    target.parent.mkdir(parents=True)
-    target.write_bytes(path.read_bytes())
-    with warnings.catch_warnings(record=True) as reported:
-        warnings.simplefilter("always", StoreWarning)
-        found = store.load(SPEC)
-    assert (found is None) == (not target.exists()) == bool(reported)
-    if found is None:
-        raise ParameterError(str(reported[0].message))
-    return found
-
-
 def same_policy(found) -> bool:
     return found.weights[0].tobytes() == POLICY.weights[0].tobytes()
 
@@ -69,14 +53,6 @@ def same_policy(found) -> bool:
 KINDS = {
     "recording": (RUN.save, Recording.load, lambda found: found == RUN),
     "policy": (POLICY.save, load, same_policy),
-    "stored run": (
-        lambda path: (
-            (Path(path).parent / "made").mkdir()
-            or Path(path).write_bytes(stored(Path(path).parent / "made"))
-        ),
-        load_run,
-        lambda found: found == RESULT,
-    ),
     "sweep": (
         lambda path: Path(path).write_text(SWEEP),
         read_sweep,
@@ -94,13 +70,7 @@ KINDS = {
     ),
 }
 kinds = st.sampled_from(sorted(KINDS))
-archives = st.sampled_from(["recording", "policy", "stored run", "arrays of tracks"])
-
-
-def stored(folder: Path) -> bytes:
-    store = RunStore(folder)
-    store.save(SPEC, RESULT)
-    return store.path(SPEC).read_bytes()
+archives = st.sampled_from(["recording", "policy", "arrays of tracks"])
 
 
 @cache
@@ -211,7 +181,7 @@ def replaced(blob: bytes, changes) -> bytes:
         st.integers(0, 40), st.one_of(st.none(), st.sampled_from(HOSTILE_ARRAYS)), min_size=1
     ),
 )
-@example("stored run", {0: np.array(1.0)})
+@example("recording", {0: np.array(1.0)})
 def test_archives_with_foreign_arrays(kind, changes):
     found = read(kind, replaced(written(kind), changes))
     assert not TRAP.exists()

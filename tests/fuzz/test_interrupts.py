@@ -44,4 +44,4 @@ def test_wherever_ctrl_c_comes_no_file_is_left(presses, tmp_path):
         assert not list(tmp_path.rglob("*.tmp"))
     subprocess.run(command, check=True, timeout=120)
     assert len(load_sweep(tmp_path / "out")) == 80
-    assert not list(tmp_path.rglob("set_aside"))
+    assert not list(tmp_path.rglob("*.damaged"))

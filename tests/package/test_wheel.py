@@ -19,7 +19,6 @@ REPOSITORY = Path(__file__).parents[2]
 DIST = REPOSITORY / "dist"
 CORE = {"flockenv", "gymnasium", "numpy", "pettingzoo", "rich", "tomli-w", "typer"}
 OPTIONAL = {
-    "joblib",
     "matplotlib",
     "pandas",
     "pyarrow",
