@@ -1,7 +1,7 @@
 """Tune the gains of the damped law on training seeds.
 
-    python baselines/tune_laws.py                            # both laws in both pools, half an hour
-    python baselines/tune_laws.py --law "damped law" --pool narrow --generations 10
+    python baselines/tune_laws.py                            # both pools, half an hour
+    python baselines/tune_laws.py --pool narrow --generations 10
 
 The search is CMA-ES (Hansen's covariance matrix adaptation, from the package cmaes) over logarithms
 of the gains. A candidate's score is the mean signed order of its episodes. All candidates of a
@@ -16,7 +16,6 @@ import shlex
 import sys
 import time
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -31,16 +30,11 @@ from flockenv.comparison import run_episodes
 from flockenv.policies import DampedLaw
 from flockenv.runs.seeds import POLICY_SEEDS
 
-#: Law and its gains, each with the middle and the width (in factors of e) of the first generation.
-LAWS: dict[str, tuple[Any, dict[str, tuple[float, float]]]] = {
-    "damped law": (
-        DampedLaw,
-        {
-            "gain": (6.0 / math.pi, 1.0),
-            "backward_gain": (6.0 / math.pi, 1.0),
-            "damping": (6.0, 1.0),
-        },
-    ),
+#: Gains, each with the middle and the width (in factors of e) of the first generation.
+RANGES: dict[str, tuple[float, float]] = {
+    "gain": (6.0 / math.pi, 1.0),
+    "backward_gain": (6.0 / math.pi, 1.0),
+    "damping": (6.0, 1.0),
 }
 POOLS = ("wide", "narrow")
 
@@ -56,39 +50,37 @@ def flock_parameters(pool: str, options: argparse.Namespace) -> flockenv.FlockPa
     )
 
 
-def tune(law: str, pool: str, options: argparse.Namespace, progress: Progress) -> dict[str, float]:
+def tune(pool: str, options: argparse.Namespace, progress: Progress) -> dict[str, float]:
     """Return the gains found, having written every candidate."""
-    make, ranges = LAWS[law]
-    middle, widths = np.array(list(ranges.values())).T
-    first = np.zeros(len(ranges))
+    middle, widths = np.array(list(RANGES.values())).T
+    first = np.zeros(len(RANGES))
     search = require("cmaes", "search").CMA(mean=first, sigma=0.5, seed=options.seed)
     parameters, rows = flock_parameters(pool, options), []
 
     def gains(place: np.ndarray) -> dict[str, float]:
-        values = middle * np.exp(widths * place[: len(ranges)])
-        return {name: float(f"{value:.3g}") for name, value in zip(ranges, values, strict=True)}
+        values = middle * np.exp(widths * place)
+        return {name: float(f"{value:.3g}") for name, value in zip(RANGES, values, strict=True)}
 
-    task = progress.add_task(f"{law}, {pool}", total=options.generations)
+    task = progress.add_task(pool, total=options.generations)
     for generation in range(options.generations):
         start = generation * options.episodes
         seeds = POLICY_SEEDS["law tuning"].seeds(options.episodes, options.seed, start)
         reported = []
         for _ in range(search.population_size):
             place = search.ask()
-            policy = make(**gains(place))
+            policy = DampedLaw(**gains(place))
             found = run_episodes(parameters, policy, seeds, options.minutes * 60.0)
             score = float(found["signed_order"].mean())
             rows.append({"generation": generation, **gains(place), "signed_order": score})
             reported.append((place, -score))
         search.tell(reported)
-        write_csv(options.out / f"{law.replace(' ', '-')}-{pool}.csv", pd.DataFrame(rows))
+        write_csv(options.out / f"damped-law-{pool}.csv", pd.DataFrame(rows))
         progress.advance(task)
     return gains(search.mean)
 
 
 def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--law", choices=LAWS, action="append", help="[both]")
     parser.add_argument("--pool", choices=POOLS, action="append", help="[both]")
     parser.add_argument("--leaders", type=int, default=3)
     parser.add_argument("--generations", type=int, default=10)
@@ -102,15 +94,14 @@ def main(arguments: list[str] | None = None) -> None:
         parser.error("generations and episodes are at least 1")
     given = sys.argv[1:] if arguments is None else arguments
     command = shlex.join(["python", "baselines/tune_laws.py", *given])
-    start, tuned = time.perf_counter(), {}
+    start, tuned = time.perf_counter(), dict[str, dict[str, float]]()
     options.out.mkdir(parents=True, exist_ok=True)
     with Progress(disable=options.quiet) as progress:
-        for law in options.law or LAWS:
-            for pool in options.pool or POOLS:
-                tuned.setdefault(law, {})[pool] = tune(law, pool, options, progress)
+        for pool in options.pool or POOLS:
+            tuned[pool] = tune(pool, options, progress)
     wall_s = time.perf_counter() - start
     provenance = provenance_of(command, seed=options.seed, samples=0, wall_s=wall_s)
-    write_text(options.out / "gains.toml", tomli_w.dumps({**tuned, "made": provenance}))
+    write_text(options.out / "gains.toml", tomli_w.dumps({"damped law": tuned, "made": provenance}))
     print(tomli_w.dumps(tuned))
     print(f"written to {options.out}")
 

@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 from flockenv import _core
 from flockenv._io.array_file import is_special
 from flockenv._io.atomic_write import write_text
+from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError, shown
-from flockenv.policies.base import RowPolicy
+from flockenv.policies.base import CONTROL_HZ, RowPolicy, control_rate
+from flockenv.policies.model import ModelPolicy
 
 __all__ = ["LEAN_FEATURES", "DampedLaw", "LawPolicy", "LeaningLaw", "SteeringLaw"]
 
@@ -214,6 +216,66 @@ class LeaningLaw(LawPolicy):
             "provenance": dict(provenance or {}),
         }
         self._read(_json(values))
+
+    @classmethod
+    def from_model(
+        cls,
+        model: Any,
+        pool: str,
+        *,
+        judged: Mapping[str, Any] | None = None,
+        provenance: Mapping[str, str] | None = None,
+    ) -> Self:
+        """Return the law that a model of stable-baselines3 has learned, which needs no torch.
+
+        Parameters
+        ----------
+        model
+            A model such as ``PPO`` whose actions are leans, trained on `LeaderVecEnv` with
+            ``mirror_to_target=True`` and the observation's block ``lean_features`` alone. Its
+            actor is linear (``net_arch={"pi": [], ...}``).
+        pool
+            Name of the pool that it was trained in.
+        judged, provenance
+            As of `LeaningLaw`.
+
+        Raises
+        ------
+        ParameterError
+            For models that observe, decide or act in another way, that were trained in
+            ``VecNormalize``, and whose weights are not finite.
+        """
+        policy, seen = getattr(model, "policy", model), ModelPolicy(model)
+        entries = [entry.name for entry in observation_entries(seen.observation)]
+        normalized = getattr(model, "get_vec_normalize_env", lambda: None)()
+        hidden = len(getattr(getattr(policy, "mlp_extractor", None), "policy_net", ()))
+        for refused, words in (
+            (seen.action_mode != "lean", f"actions of action_mode {seen.action_mode!r}"),
+            (entries != [*LEAN_FEATURES], f"{len(entries)} numbers observed"),
+            (not seen.mirror_to_target, "a view that is not mirrored to the target"),
+            (control_rate(seen) != CONTROL_HZ, f"{control_rate(seen):g} control steps per second"),
+            (seen.leaders != 1, f"{seen.leaders} leaders at once"),
+            (normalized is not None, "VecNormalize around its environment"),
+            (hidden or not hasattr(policy, "action_net"), "an actor of more than one layer"),
+        ):
+            if refused:
+                raise ParameterError(
+                    f"a model with {words} is not accepted as a leaning law: leans that are linear "
+                    f"in the {len(LEAN_FEATURES)} lean features, mirrored to the target"
+                )
+        weights, bias = (
+            _core.largest_lean() * each.detach().cpu().double().numpy().ravel()
+            for each in (policy.action_net.weight, policy.action_net.bias)
+        )
+        return cls(
+            pool,
+            bias.item(),
+            dict(zip(LEAN_FEATURES, weights.tolist(), strict=True)),
+            bound="tanh" if policy.squash_output else "clip",
+            decision_period_s=seen.decision_period_s,
+            judged=judged,
+            provenance=provenance,
+        )
 
     @classmethod
     def from_json(cls, text: str) -> Self:

@@ -25,6 +25,15 @@ _TIMES_S: Mapping[str, Mapping[str, float]] = {
     "wide": {"episode": 480.0, "discount": 200.0, "advantage": 80.0, "hold": 120.0},
     "narrow": {"episode": 240.0, "discount": 60.0, "advantage": 27.0, "hold": 60.0},
 }
+#: The lean features alone, by which leaders lean.
+_OBSERVATION: Mapping[str, Any] = {
+    "own": False,
+    "phase": False,
+    "target": False,
+    "neighbors": 0,
+    "order": False,
+    "lean_features": True,
+}
 #: What `TrainingSettings` itself gives to PPO.
 _OWN = ("policy", "env", "seed", "_init_setup_model")
 
@@ -33,8 +42,8 @@ _OWN = ("policy", "env", "seed", "_init_setup_model")
 class TrainingSettings:
     """Settings of PPO with one policy shared by all leaders; checked once, to and from TOML.
 
-    Leaders lean by a linear function of what they observe, and all leaders of a flock
-    explore by the same perturbed weights, which are held for a minute or two
+    Leaders lean by a linear function of the lean features, and all leaders of a flock explore by
+    the same perturbed weights, which are held for a minute or two
     (`flockenv.sb3.SharedNoisePolicy`).
 
     Attributes
@@ -62,7 +71,7 @@ class TrainingSettings:
 
     pool: str = "wide"
     n_leaders: int = 3
-    flock_hours: float = 1200.0
+    flock_hours: float = 1600.0
     num_flocks: int = 128
     seed: int = 0
     environment: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
@@ -102,8 +111,9 @@ class TrainingSettings:
             **self.flocks(),
             "target": "random",
             "mirror_to_target": True,
+            "observation": _OBSERVATION,
             "action_mode": "lean",
-            "decision_period_s": 1.0,
+            "decision_period_s": 2.0,
             "episode_s": times["episode"],
             "reward_horizon_s": times["discount"],
             "physics": "training",
@@ -124,7 +134,7 @@ class TrainingSettings:
             "n_steps": n_steps,
             "batch_size": max(2, n_steps * venv.num_envs // 8),
             "n_epochs": 4,
-            "learning_rate": LinearSchedule(1.5e-3, 1e-4, 1.0),
+            "learning_rate": LinearSchedule(2e-3, 1e-5, 1.0),
             "gamma": 1.0 - 1.0 / (times["discount"] * hz),
             "gae_lambda": 1.0 - 1.0 / (times["advantage"] * hz),
             "use_sde": True,
@@ -133,7 +143,7 @@ class TrainingSettings:
         }
         policy = {
             **shared_noise(venv, times["hold"]),
-            "net_arch": {"pi": [], "vf": [128, 128]},
+            "net_arch": {"pi": [], "vf": [64, 64]},
             "log_std_init": -2.6,
             "squash_output": bool(options["use_sde"]),
             **(options.pop("policy_kwargs", None) or {}),

@@ -2,6 +2,7 @@
 
 use super::value::layout_from;
 use crate::boat::DampedLaw;
+use crate::environment::LARGEST_LEAN;
 use crate::environment::observation::LeanFeatures;
 use crate::error::{FlockError, Result};
 use crate::policies::{Law, LeaningLaw, ObservedLaw};
@@ -79,6 +80,12 @@ impl PyLaw {
 #[pyfunction]
 pub(crate) fn lean_feature_names() -> Vec<&'static str> {
     LeanFeatures::names().collect()
+}
+
+/// The lean in rad that an action of 1 stands for.
+#[pyfunction]
+pub(crate) fn largest_lean() -> f64 {
+    LARGEST_LEAN
 }
 
 /// A law as it reads observations of one layout.

@@ -35,7 +35,7 @@ mod _core {
     #[pymodule_export]
     use super::flock::PyFlock;
     #[pymodule_export]
-    use super::law::{PyLaw, PyObservedLaw, lean_feature_names};
+    use super::law::{PyLaw, PyObservedLaw, largest_lean, lean_feature_names};
     #[pymodule_export]
     use super::observation::{
         flock_feature_table, observation_table, observation_version, observe, rudders_of_levels,

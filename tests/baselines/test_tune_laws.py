@@ -16,14 +16,14 @@ def test_it_keeps_every_candidate(script, tmp_path: Path, capsys) -> None:
     found = tomllib.loads((tmp_path / "one" / "gains.toml").read_text())
     again = tomllib.loads((tmp_path / "other" / "gains.toml").read_text())
     assert found["made"]["command"].startswith("python baselines/tune_laws.py --episodes 2")
-    for law, (_, ranges) in script.LAWS.items():
-        for pool in script.POOLS:
-            assert found[law][pool].keys() == ranges.keys()
-            assert found[law][pool] == again[law][pool]
-            table = pd.read_csv(tmp_path / "one" / f"{law.replace(' ', '-')}-{pool}.csv")
-            assert list(table) == ["generation", *ranges, "signed_order"]
-            assert table["generation"].nunique() == 2
-            assert np.isfinite(table["signed_order"]).all()
+    for pool in script.POOLS:
+        gains = found["damped law"][pool]
+        assert gains.keys() == script.RANGES.keys()
+        assert gains == again["damped law"][pool]
+        table = pd.read_csv(tmp_path / "one" / f"damped-law-{pool}.csv")
+        assert list(table) == ["generation", *script.RANGES, "signed_order"]
+        assert table["generation"].nunique() == 2
+        assert np.isfinite(table["signed_order"]).all()
 
 
 def test_it_climbs(script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
