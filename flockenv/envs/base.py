@@ -79,8 +79,7 @@ class SingleEnvironmentBase:
     def render(self) -> NDArray[np.uint8] | None:
         """Return a frame, (height, width, 3) uint8, where `render_mode` is "rgb_array".
 
-        With "human" every reset and step shows itself in a window (see `rendering.Window` for its
-        keys), and nothing is returned.
+        With "human" every reset and step shows itself in a window, and nothing is returned.
         """
         return None if self.render_mode is None else self._render_mode.render(self.flock)
 

@@ -263,9 +263,6 @@ WRITERS = {
     "GIF": lambda path: save_animation(
         path.with_suffix(".gif"), [np.zeros((9, 9, 3), np.uint8)], 5.0
     ),
-    "PNG": lambda path: save_animation(
-        path.with_suffix(".png"), [np.zeros((9, 9, 3), np.uint8)], 5.0
-    ),
 }
 
 
@@ -316,8 +313,7 @@ def test_animations(frames, fps, name):
             assert not any(Path(folder).iterdir())
             return
         (path,) = Path(folder).iterdir()
-        head = path.read_bytes()[:8]
-        assert head[:6] == b"GIF89a" or head == b"\x89PNG\r\n\x1a\n"
+        assert path.read_bytes()[:6] == b"GIF89a"
 
 
 def test_the_largest_flock_still_answers():

@@ -1,8 +1,6 @@
 """Law: pictures are a function of the flock alone, in every interface, and need no display."""
 
 import copy
-import subprocess
-import sys
 import warnings
 from concurrent.futures import ThreadPoolExecutor
 
@@ -58,15 +56,6 @@ def test_a_frame_of_a_recording_is_that_of_its_flock():
         frame("run.npz")
 
 
-def test_a_returned_frame_is_never_written_to_again():
-    scene = flock()
-    first = rendering.frame(scene, 100, 100)
-    before = first.copy()
-    scene.advance(3.0)
-    rendering.frame(scene, 100, 100)
-    np.testing.assert_array_equal(first, before)
-
-
 def test_frames_may_be_drawn_in_several_threads():
     scenes = [flock(n_boats=n, pool=pool) for n in (3, 8) for pool in ("wide", "narrow")]
     alone = [rendering.frame(scene, 160, 120) for scene in scenes]
@@ -86,7 +75,7 @@ def test_a_frame_without_leaders_shows_no_target():
     np.testing.assert_array_equal(*pictures)
 
 
-@pytest.mark.parametrize("size", [(63, 100), (100, 4097), (-1, 100), (2**40, 100)])
+@pytest.mark.parametrize("size", [(63, 100), (100, 4097), (2**40, 100)])
 def test_wrong_sizes(size):
     with pytest.raises(flockenv.ParameterError, match=r"width|height"):
         rendering.frame(flock(), *size)
@@ -114,19 +103,12 @@ def test_faces_show_the_same_flock():
         env.reset(seed=5)
     picture, frames = single.render(), vector.render()
     assert picture.shape == (120, 160, 3)
+    np.testing.assert_array_equal(picture, rendering.frame(single.unwrapped.flock, 160, 120))
     np.testing.assert_array_equal(picture, parallel.render())
     assert isinstance(frames, tuple)
     assert len(frames) == 2
     np.testing.assert_array_equal(picture, frames[0])
     assert (frames[0] != frames[1]).any()
-
-
-def test_faces_agree_with_the_flock_and_the_default_size():
-    env = flockenv.LeadersEnv(render_mode="rgb_array", **SHORT)
-    env.reset(seed=5)
-    picture = env.render()
-    assert picture.shape == (600, 600, 3)
-    np.testing.assert_array_equal(picture, rendering.frame(env.flock))
 
 
 def test_rendering_changes_nothing():
@@ -138,22 +120,6 @@ def test_rendering_changes_nothing():
         for env in (seen, unseen):
             env.step([0.5, -0.5])
     assert seen.get_state() == unseen.get_state()
-
-
-def test_before_a_reset_and_after_the_end():
-    env = flockenv.parallel_env(render_mode="rgb_array", **SMALL)
-    with pytest.raises(flockenv.EpisodeError):
-        env.render()
-    env.reset(seed=0)
-    while env.agents:
-        env.step({agent: [0.0] for agent in env.agents})
-    assert env.render().shape == (120, 160, 3)
-
-
-def test_without_a_render_mode_nothing_is_drawn():
-    for env in (flockenv.LeadersEnv(**SHORT), flockenv.LeadersVectorEnv(2, **SHORT)):
-        env.reset(seed=0)
-        assert env.render() is None
 
 
 @pytest.mark.parametrize(
@@ -199,99 +165,40 @@ def test_gymnasium_records_a_video(tmp_path):
     clip.close()
 
 
-@pytest.mark.parametrize("suffix", [".gif", ".png", ".apng"])
-def test_animation_files(tmp_path, suffix):
-    scene, frames = flock(), []
-    for _ in range(4):
-        frames.append(rendering.frame(scene, 120, 100))
-        scene.advance(0.5)
-    path = tmp_path / f"run{suffix}"
-    rendering.save_animation(path, iter(frames), fps=10)
-    with PIL.Image.open(path) as file:
-        assert file.n_frames == 4
-        assert file.info["loop"] == 0
-        for index, frame in enumerate(frames):
-            file.seek(index)
-            shown = np.asarray(file.convert("RGB"))
-            error = np.abs(shown.astype(float) - frame).mean()
-            assert error == 0.0 if suffix != ".gif" else error < 2.0
-        assert file.info["duration"] == 100
-    assert [each.name for each in tmp_path.iterdir()] == [path.name]
-
-
 def plain(level):
     return np.full((30, 40, 3), level, np.uint8)
 
 
-@pytest.mark.parametrize(
-    ("suffix", "durations"), [(".gif", [30, 40, 30, 70]), (".png", [33, 34, 33, 67])]
-)
-def test_animations_keep_time_and_few_colors(tmp_path, suffix, durations):
-    # 33.3 ms a frame in whole ms (PNG) or hundredths of a second (GIF); two equal frames are one.
-    path = tmp_path / f"run{suffix}"
-    levels = [7, 200, 90, 13, 13]
+def test_animations_keep_time_and_few_colors(tmp_path):
+    # 33.3 ms a frame in whole hundredths of a second; two equal frames are one.
+    path, levels = tmp_path / "run.gif", [7, 200, 90, 13, 13]
     rendering.save_animation(path, map(plain, levels), fps=30)
     with PIL.Image.open(path) as file:
-        assert file.n_frames == 4
-        for index, duration in enumerate(durations):
+        assert (file.n_frames, file.info["loop"]) == (4, 0)
+        for index, duration in enumerate([30, 40, 30, 70]):
             file.seek(index)
             assert file.info["duration"] == duration
             assert file.convert("RGB").getpixel((20, 10)) == (levels[index],) * 3
 
 
-@pytest.mark.parametrize(("name", "longest"), [("run.gif", 65), ("run.png", 6)])
-def test_a_constant_picture_longer_than_the_format_can_say(tmp_path, name, longest):
-    rendering.save_animation(tmp_path / name, [plain(1), *[plain(2)] * longest], 0.1)
-    before = (tmp_path / name).read_bytes()
-    with pytest.raises(flockenv.ParameterError, match="stand still"):
-        rendering.save_animation(tmp_path / name, [plain(1), *[plain(2)] * (longest + 1)], 0.1)
-    assert (tmp_path / name).read_bytes() == before
-
-
 @pytest.mark.parametrize(
-    ("name", "frames", "fps", "error"),
+    ("name", "frames", "fps", "words"),
     [
-        ("run.avi", [np.zeros((4, 4, 3), np.uint8)], 10, flockenv.ParameterError),
-        ("run.gif", [], 10, flockenv.ParameterError),
-        ("run.gif", [np.zeros((4, 4, 3), np.uint8)], 0, flockenv.ParameterError),
-        ("run.gif", [np.zeros((4, 4, 3), np.uint8)], float("nan"), flockenv.ParameterError),
-        ("run.gif", [np.zeros((4, 4, 3), np.uint8)], "fast", TypeError),
-        ("run.png", [np.zeros((4, 4, 3), np.float64)], 10, TypeError),
-        ("run.png", [np.zeros((4, 4), np.uint8)], 10, TypeError),
-        ("run.png", [np.zeros((4, 4, 4), np.uint8)], 10, flockenv.ParameterError),
-        ("run.png", [None], 10, TypeError),
-        ("run.gif", [np.zeros((4, 0, 3), np.uint8)], 10, flockenv.ParameterError),
-        ("run.png", [np.zeros((65_536, 1, 3), np.uint8)], 10, flockenv.ParameterError),
-        ("run.png", [np.zeros((4, 4, 3), np.uint8)], 101, flockenv.ParameterError),
-        ("run.png", [np.zeros((4, 4, 3), np.uint8)], True, TypeError),
-        (
-            "run.png",
-            [np.zeros((4, 4, 3), np.uint8), np.zeros((4, 5, 3), np.uint8)],
-            10,
-            flockenv.ParameterError,
-        ),
+        ("run.avi", [plain(1)], 10, "a name in .gif, .mp4"),
+        ("run.gif", [], 10, "at least one"),
+        ("run.gif", [plain(1)], float("nan"), "fps"),
+        ("run.gif", [plain(1)], "fast", "fps"),
+        ("run.gif", [plain(1), plain(1).astype(float)], 10, "of uint8"),
+        ("run.gif", [None], 10, "of uint8"),
+        ("run.gif", [plain(1)[..., [0, 1, 2, 2]]], 10, "expected"),
+        ("run.gif", [np.zeros((65_536, 1, 3), np.uint8)], 10, "65535"),
+        ("run.mp4", [plain(1), plain(1)[1:]], 10, "expected"),
     ],
 )
-def test_animations_that_cannot_be(tmp_path, name, frames, fps, error):
+def test_animations_that_cannot_be(tmp_path, name, frames, fps, words):
     path = tmp_path / name
     path.write_bytes(b"what was there before")
-    with pytest.raises(error):
+    with pytest.raises((flockenv.ParameterError, TypeError), match=words):
         rendering.save_animation(path, frames, fps)
     assert path.read_bytes() == b"what was there before"
     assert len(list(tmp_path.iterdir())) == 1
-
-
-def test_frames_in_any_memory_layout(tmp_path):
-    frame = rendering.frame(flock(), 64, 80)
-    for name, each in (("a.png", frame), ("b.png", np.asfortranarray(frame))):
-        rendering.save_animation(tmp_path / name, [each, each], 10)
-    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
-
-
-def test_import_needs_no_drawing():
-    code = (
-        "import sys, flockenv; flockenv.LeadersEnv().reset(seed=0); "
-        "loaded = {'pygame', 'moviepy', 'PIL'} & set(sys.modules); "
-        "sys.exit(str(loaded) if loaded else 0)"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True)
