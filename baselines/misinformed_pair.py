@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flockenv.comparison import named_policy, report
+from flockenv.comparison import ComparisonReport
 from flockenv.comparison.suite import REFERENCE, tasks_named
 from flockenv.envs.observation import observation_entries
+from flockenv.policies.registry import named_policy
 
 _TOLD = [place for place, each in enumerate(observation_entries()) if each.block == "target"]
 
@@ -46,7 +47,7 @@ def main() -> None:
         "pair": {"leader_0": law, "leader_1": AgainstWhatItIsTold(law)},
         REFERENCE: law,
     }
-    result = report([task], list(policies), task.run(policies))
+    result = ComparisonReport([task], list(policies), task.run(policies))
     for row in result.means.to_dict("records"):
         ends = f"[{row['signed_order_low']:.3f}, {row['signed_order_high']:.3f}]"
         print(f"{row['policy']}: {row['signed_order']:.3f} {ends} in {row['runs']} episodes")

@@ -1,5 +1,5 @@
 """`python -m flockenv`: the command line."""
 
-from flockenv_command import main
+from flockenv.cli import main
 
 main()

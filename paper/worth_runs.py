@@ -7,7 +7,7 @@ import numpy as np
 from study import FIRST_SEED, Row, Study, flock
 
 import flockenv
-from flockenv.comparison import named_policy
+from flockenv.policies.registry import named_policy
 
 RUNS = 64
 DENSITY_BOATS = 27

@@ -73,19 +73,18 @@ def page_runs():
 
 @pytest.fixture
 def colors_in() -> Callable[[Path], set[str]]:
-    """Return the colors of policies that are in the picture of a comparison."""
+    """Return the references, and the colors of other policies, in the picture of a comparison."""
 
     def found(path: Path) -> set[str]:
         from matplotlib.colors import to_rgb
         from matplotlib.image import imread
 
-        from flockenv.comparison.figure import POLICY_COLORS, policy_colors
+        from flockenv.comparison.figure import COLORS, OWN_COLORS
 
-        # Letters and axes have the gray of flocks without leaders.
-        every = set(policy_colors([*POLICY_COLORS, "another"]).values()) - {"#555555"}
         pixels = imread(path)[..., :3]
-        near = {color: abs(pixels - to_rgb(color)).max(axis=-1) < 0.02 for color in every}
-        return {color for color, pixels in near.items() if pixels.sum() > 500}
+        named = {**COLORS, **{color: color for color in OWN_COLORS}}
+        near = {n: abs(pixels - to_rgb(c)).max(axis=-1) < 0.02 for n, c in named.items()}
+        return {name for name, pixels in near.items() if pixels.sum() > 500}
 
     return found
 

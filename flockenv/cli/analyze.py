@@ -6,24 +6,13 @@ from typing import Annotated
 
 import typer
 
+from flockenv._io.atomic_write import atomic_write
 from flockenv.cli.console import print_json, say
 from flockenv.cli.options import Overwriting, Printing, takes
-from flockenv.cli.output import (
-    check_file,
-    load_recording,
-    printable,
-    refuse_overwriting,
-    refuse_present,
-    writable,
-)
-from flockenv.cli.run import in_words, summary_of
+from flockenv.cli.output import in_words, load_recording, prepare, printable, summary_of
 from flockenv.errors import ParameterError
-from flockenv.recording import Recording
 
 __all__ = ["analyze"]
-
-_RECORDING = ".npz"
-_GSD = ".gsd"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,58 +47,32 @@ def analyze(options: AnalyzeOptions) -> None:
 
     Example: `flockenv analyze tracks.csv --plot order.png --out run.gsd`
     """
-    out = options.out
-    _check_ending(out)
-    written = [path for path in (options.plot, out, _beside(out)) if path is not None]
-    for path in written:
-        check_file(path)
-    refuse_overwriting(options.file, "FILE", written)
-    refuse_present(written, options.force)
-    recording = load_recording(options.file, options.layout, quiet=options.quiet)
-    if options.plot is not None:
-        _draw(recording, options.plot)
-    if out is not None:
-        _write(recording, out)
-    summary = summary_of(recording)
-    if options.as_json:
-        print_json({**summary, "files": [printable(path) for path in written]})
-        return
-    boats = recording.parameters.n_boats
-    say(f"{boats} boats, {printable(options.file)}: {in_words(summary, recording)}")
-    if written:
-        say(f"Written to {' and '.join(map(printable, written))}")
+    from flockenv.tracks import EXPORTS, export
 
-
-def _check_ending(out: Path | None) -> None:
-    from flockenv.tracks import EXPORTS
-
-    endings = (_RECORDING, *EXPORTS)
+    out, plot, endings = options.out, options.plot, (".npz", *EXPORTS)
     if out is not None and out.suffix.lower() not in endings:
         raise ParameterError(
             f"--out {out} is not accepted: a name that ends in {', '.join(endings)}"
         )
-
-
-def _beside(out: Path | None) -> Path | None:
-    """Return the layout that is written beside a table."""
-    if out is None or out.suffix.lower() in (_RECORDING, _GSD):
-        return None
-    return out.with_suffix(".toml")
-
-
-def _draw(recording: Recording, path: Path) -> None:
-    axes = recording.order.plot(target=recording.parameters.target)
-    figure = axes.get_figure(root=True)
-    assert figure is not None
-    with writable(path):
-        figure.savefig(path)
-
-
-def _write(recording: Recording, out: Path) -> None:
-    from flockenv.tracks import export
-
-    with writable(out):
-        if out.suffix.lower() == _RECORDING:
-            recording.save(out)
-        else:
-            export(recording, out)
+    is_table = out is not None and out.suffix.lower() not in (".npz", ".gsd")
+    beside = out.with_suffix(".toml") if out is not None and is_table else None
+    written = [path for path in (plot, out, beside) if path is not None]
+    recording = load_recording(options.file, options.layout, quiet=options.quiet)
+    prepare(*written, overwrites=options.force)
+    if plot is not None:
+        figure = recording.order.plot(target=recording.parameters.target).get_figure(root=True)
+        assert figure is not None
+        with atomic_write(plot) as file:
+            figure.savefig(file, format=plot.suffix.removeprefix("."))
+    if out is not None and out.suffix.lower() == ".npz":
+        recording.save(out)
+    elif out is not None:
+        export(recording, out)
+    if options.as_json:
+        files = [printable(path) for path in written]
+        print_json({**summary_of(recording), "files": files})
+        return
+    boats = recording.parameters.n_boats
+    say(f"{boats} boats, {printable(options.file)}: {in_words(recording)}")
+    if written:
+        say(f"Written to {' and '.join(map(printable, written))}")

@@ -4,34 +4,104 @@ import json
 import shlex
 import sys
 from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Annotated, Any
+
+import typer
 
 from flockenv._io.atomic_write import write_csv, write_text
 from flockenv._io.extras import require
-from flockenv.cli.compare_options import (
-    REFERENCES,
-    CompareOptions,
-    cases_of,
-    is_file,
-    own_policies,
-)
-from flockenv.cli.console import console, errors, finished_in, print_json, progress_bar, say
-from flockenv.cli.options import takes
-from flockenv.cli.output import check_folder, keep, printable, refuse_overwriting
-from flockenv.comparison.suite import REFERENCE
+from flockenv.cli.console import console, errors, print_json, progress, say
+from flockenv.cli.options import Flocks, Printing, TrustOption, takes
+from flockenv.cli.output import prepare, printable
+from flockenv.cli.parameters import changed_fields, given_fields, read_parameters
+from flockenv.comparison.case import Case
+from flockenv.comparison.episodes import steering
+from flockenv.comparison.report import ComparisonReport
+from flockenv.comparison.suite import REFERENCE, scores_table, tasks_named
 from flockenv.errors import ParameterError
+from flockenv.parameters import FlockParameters
+from flockenv.policies.registry import FILES, POOLS, named_policy
 
-if TYPE_CHECKING:
-    import pandas as pd
+__all__ = ["REFERENCES", "compare"]
 
-    from flockenv.comparison.case import Case
-    from flockenv.comparison.report import ComparisonReport
+REFERENCES = ("learned", "tuned law", "paper's law")
+"""What policies are compared with, unless `--only` is given."""
 
-__all__ = ["compare"]
+_BOATS = 27
+_MOST_LEADERS = 64
 
-Policies = dict[str, dict[str, Any]]
-"""What steers, as `compare_leaders` takes it, by case and by name."""
+
+class PoolChoice(StrEnum):
+    """Pools of a comparison."""
+
+    BOTH = "both"
+    WIDE = "wide"
+    NARROW = "narrow"
+
+
+@dataclass(frozen=True, kw_only=True)
+class CompareOptions(Flocks, Printing):
+    """Options of `flockenv compare`."""
+
+    policy: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Policy of yours, repeatable: a name, the file of a learned one, the .zip file "
+            "of an SB3 model (with --trust), or one per leader, as in leader_0=a.npz,leader_1=law."
+        ),
+    ] = None
+    name: Annotated[
+        list[str] | None,
+        typer.Option(help="What a policy of yours is called; once for each. [its file's name]"),
+    ] = None
+    only: Annotated[bool, typer.Option("--only", help=f"Leave out {', '.join(REFERENCES)}.")] = (
+        False
+    )
+    trust: TrustOption = False
+    pool: Annotated[
+        PoolChoice | None, typer.Option(help="Which pool. [both, or that of the parameters]")
+    ] = None
+    bw_s: Annotated[
+        list[float] | None,
+        typer.Option(help="Noise: backward duration in s, repeatable. [critical]"),
+    ] = None
+    leaders: Annotated[
+        str | None, typer.Option(metavar="NUMBERS", help="As in 0-4 or 1,3. [0-4; 1-4 with --env]")
+    ] = None
+    env: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=VALUE",
+            help="Option of the environment, repeatable, as in target=alternate.",
+        ),
+    ] = None
+    episodes: Annotated[int, typer.Option(min=2, help="Seeds for each case.")] = 64
+    minutes: Annotated[
+        float | None,
+        typer.Option(min=0.0, help="Length of an episode. [8; 16 for target=alternate]"),
+    ] = None
+    seed: Annotated[int, typer.Option(min=0, help="First seed.")] = 0
+    suite: Annotated[
+        str | None, typer.Option(help="Score the policies on the frozen tasks of a suite: v2.")
+    ] = None
+    task: Annotated[
+        list[str] | None, typer.Option(help="Of the suite, one task, repeatable. [every task]")
+    ] = None
+    full: Annotated[
+        bool, typer.Option("--full", help="Print differences and straight lines too.")
+    ] = False
+    out: Annotated[Path, typer.Option(help="Folder for tables and pictures.")] = Path(
+        "results/compare"
+    )
+
+
+_OF_FLOCKS = (
+    *("preset", "params", "changes", "pool", "bw_s"),
+    *("leaders", "env", "episodes", "minutes", "seed", "only"),
+)
 
 
 @takes(CompareOptions)
@@ -44,67 +114,68 @@ def compare(options: CompareOptions) -> None:
     (seeds, policies, environment), the parameters of each case, which `--params` reads, and the
     card of your first policy, `card.md`.
 
-    With `--suite v2` policies are scored on frozen tasks: `scores.csv`, and `entry.toml` for yours.
+    With `--suite v2` policies are scored on frozen tasks: `scores.csv`.
 
     Example: `flockenv compare --policy mine.npz --name mine --pool narrow --leaders 0-3`
     """
     for package in ("matplotlib", "pandas", "scipy"):  # All of them before hours of runs.
         require(package, "plot")
-    cases, own = cases_of(options), own_policies(options)
+    cases, own = _tasks(options) if options.suite else _flocks(options), _own_policies(options)
     policies = {case.name: _policies(case.parameters.pool, own, options) for case in cases}
-    check_folder(options.out)
-    written = [options.out / f"{case.name}.toml" for case in cases]
-    refuse_overwriting(options.params, "--params", written)
-    for given in filter(is_file, own.values()):
-        refuse_overwriting(given, "--policy", written)
+    prepare(options.out / "runs.csv")
     result = _compared(options, cases, policies)
-    scores = _scores(options, result, own, policies) if options.suite else None
     if own:
-        _write_card(options, result, next(iter(own)), policies)
-    _print(options, result, scores)
+        name = next(iter(own))
+        pool = cases[0].parameters.pool
+        policy = steering(policies[cases[0].name][name], pool)
+        write_text(options.out / "card.md", result.card(name, policy))
+    tables = {"means": result.means, "differences": result.differences}
+    if options.suite:
+        tables["scores"] = scores_table(result)
+        write_csv(options.out / "scores.csv", tables["scores"], float_format="%.4f")
+    if options.as_json:
+        print_json({n: json.loads(table.to_json(orient="records")) for n, table in tables.items()})
+        return
+    console.print(result.table())
+    for row in tables["scores"].to_dict("records") if options.suite else []:
+        ends = f"{row['score']:+.3f} [{row['score_low']:+.3f}, {row['score_high']:+.3f}]"
+        say(f"{row['policy']}, {row['task']}: {ends}")
+    if options.full:
+        say(result.in_words())
+    say(f"Written to {options.out}")
 
 
 def _compared(
-    options: CompareOptions, cases: "list[Case]", policies: Policies
-) -> "ComparisonReport":
+    options: CompareOptions, cases: list[Case], policies: dict[str, dict[str, Any]]
+) -> ComparisonReport:
     """Run the cases and return their report; it is written whenever a case is finished."""
-    from flockenv.comparison.report import joined, report
-
     names = list(dict.fromkeys(name for each in policies.values() for name in each))
-    conditions = {"command": printable(shlex.join(["flockenv", *sys.argv[1:]]))}
+    command = printable(shlex.join(["flockenv", *sys.argv[1:]]))
     shown = {
-        case.name: {name: str(steers) for name, steers in _made(case, policies).items()}
+        case.name: {
+            name: str(steering(policy, case.parameters.pool))
+            for name, policy in policies[case.name].items()
+        }
         for case in cases
     }
-    finished: dict[str, Any] = {}
-    with finished_in(options.out, finished), progress_bar(options.shows_nothing) as progress:
-        hours = sum(case.flock_hours(len(policies[case.name])) for case in cases)
-        bar = progress.add_task("simulating", total=3600 * hours)
+    conditions = {"command": command, "policies": shown}
+    hours = sum(case.flock_hours(len(policies[case.name])) for case in cases)
+    finished: list[Any] = []
+    with progress("simulating", 3600 * hours, options.shows_nothing) as advance:
         for case in cases:
-            runs = case.run(policies[case.name], lambda seconds: progress.advance(bar, seconds))
-            every = joined([*finished.values(), runs])
-            done = cases[: len(finished) + 1]
-            result = report(done, names, every, {**conditions, "policies": shown})
-            keep(options.out, result.write)
-            finished[case.name] = runs
+            finished.append(case.run(policies[case.name], advance))
+            runs = require("pandas", "plot").concat(finished, ignore_index=True)
+            result = ComparisonReport(cases[: len(finished)], names, runs, conditions)
+            result.write(options.out)
     return result
-
-
-def _made(case: "Case", policies: Policies) -> dict[str, Any]:
-    from flockenv.comparison.episodes import steering
-
-    pool = case.parameters.pool
-    return {name: steering(policy, pool) for name, policy in policies[case.name].items()}
 
 
 def _policies(pool: Any, own: Mapping[str, Any], options: CompareOptions) -> dict[str, Any]:
     """Return the policies of a case by name, the user's first; those not for its pool are told."""
     found = {name: _read(given, pool, options.trust) for name, given in own.items()}
-    if options.suite:
-        return found | {REFERENCE: _read(REFERENCE, pool, options.trust)}
-    for name in () if options.only else REFERENCES:
+    for name in (REFERENCE,) if options.suite else () if options.only else REFERENCES:
         try:
-            found.setdefault(name, _read(name, pool, options.trust))
+            found.setdefault(name, named_policy(name, pool))
         except ParameterError as error:
             say(f"Left out, {name}: {error}", errors)
     if not found:
@@ -113,8 +184,6 @@ def _policies(pool: Any, own: Mapping[str, Any], options: CompareOptions) -> dic
 
 
 def _read(given: Any, pool: Any, trust: bool) -> Any:
-    from flockenv.policies.registry import named_policy
-
     if isinstance(given, Mapping):
         return {leader: _read(each, pool, trust) for leader, each in given.items()}
     try:
@@ -123,46 +192,100 @@ def _read(given: Any, pool: Any, trust: bool) -> Any:
         raise ParameterError(f"--policy {given} cannot be read: {error.strerror}") from error
 
 
-def _scores(
-    options: CompareOptions, result: "ComparisonReport", own: Mapping[str, Any], policies: Policies
-) -> "pd.DataFrame":
-    """Write the scores, and an entry if the first policy is a file; return the scores."""
-    from flockenv.comparison.suite import scores_table, write_entry
-
-    scores = scores_table(result)
-    path = options.out / "scores.csv"
-    keep(path, lambda path: write_csv(path, scores, float_format="%.4f"))
-    name, given = next(iter(own.items()), ("", None))
-    hours = options.flock_hours
-    if is_file(given) and hours is not None:
-        provenance = getattr(_made(result.cases[0], policies)[name], "provenance", {})
-        entry = (name, Path(given), hours, provenance)
-        keep(options.out / "entry.toml", lambda path: write_entry(path.parent, *entry))
-    return scores
+def _tasks(options: CompareOptions) -> list[Case]:
+    """Return the tasks of a suite; refuse options that would make another task of one."""
+    defaults = CompareOptions()
+    for name in _OF_FLOCKS:
+        if getattr(options, name) != getattr(defaults, name):
+            option = {"changes": "--set"}.get(name, f"--{name.replace('_', '-')}")
+            raise ParameterError(
+                f"{option} is not accepted with --suite {options.suite}, whose tasks fix it: there "
+                "is no score of an altered task"
+            )
+    return tasks_named(str(options.suite), options.task or ())
 
 
-def _write_card(
-    options: CompareOptions, result: "ComparisonReport", name: str, policies: Policies
-) -> None:
-    from flockenv.comparison.model_card import model_card
+def _flocks(options: CompareOptions) -> list[Case]:
+    """Return a case for each pool and backward duration."""
+    if options.task:
+        raise ParameterError("--task is not accepted without --suite")
+    environment = changed_fields(options.env or (), "--env")
+    alternates = environment.get("target") == "alternate"
+    minutes = options.minutes if options.minutes is not None else 16.0 if alternates else 8.0
+    return [
+        Case(
+            name=f"{_pool_name(parameters.pool)}-bw-{parameters.bw_s!r}",
+            parameters=parameters,
+            leaders=_numbers(options.leaders or ("1-4" if environment else "0-4")),
+            seeds=range(options.seed, options.seed + options.episodes),
+            episode_s=60.0 * minutes,
+            environment=environment,
+        )
+        for parameters in dict.fromkeys(_parameters(options))
+    ]
 
-    policy = _made(result.cases[0], policies)[name]
-    card = model_card(name, policy, result, result.conditions["command"])
-    keep(options.out / "card.md", lambda path: write_text(path, card))
+
+def _numbers(text: str) -> tuple[int, ...]:
+    """Return the numbers of leaders that a text such as ``0-2,4`` names."""
+    found: set[int] = set()
+    for part in text.split(","):
+        first, _, last = (each.strip() for each in part.partition("-"))
+        ends = (first, last or first)
+        if not all(each.isdecimal() for each in ends) or int(ends[0]) > int(ends[1]):
+            raise ParameterError(f"--leaders {text} is not accepted: numbers, as in 0-4 or 1,3")
+        if int(ends[1]) > _MOST_LEADERS:
+            raise ParameterError(f"--leaders {text} is not accepted: at most {_MOST_LEADERS}")
+        found.update(range(int(ends[0]), int(ends[1]) + 1))
+    return tuple(sorted(found))
 
 
-def _print(
-    options: CompareOptions, result: "ComparisonReport", scores: "pd.DataFrame | None"
-) -> None:
-    if options.as_json:
-        tables = {"means": result.means, "differences": result.differences, "scores": scores}
-        found = {name: table for name, table in tables.items() if table is not None}
-        print_json({n: json.loads(table.to_json(orient="records")) for n, table in found.items()})
-        return
-    console.print(result.table())
-    for row in [] if scores is None else scores.to_dict("records"):
-        ends = f"{row['score']:+.3f} [{row['score_low']:+.3f}, {row['score_high']:+.3f}]"
-        say(f"{row['policy']}, {row['task']}: {ends}")
-    if options.full:
-        say(result.in_words())
-    say(f"Written to {options.out}")
+def _parameters(options: CompareOptions) -> list[FlockParameters]:
+    """Return the parameters for each pool and backward duration.
+
+    Fields that neither the file nor a change names are the preset's, except for 27 boats, both
+    pools, and the critical noise of each pool. `--pool` and `--bw-s` count before all of them.
+    """
+    given = given_fields(options.preset, options.params, options.changes)
+    if "n_leaders" in changed_fields(options.changes or ()):
+        raise ParameterError("--set n_leaders is not accepted: numbers of leaders are --leaders")
+    if isinstance(given.get("target"), list):
+        raise ParameterError(
+            f"target = {given['target']!r} is not accepted: leaders, of which there are several "
+            "numbers here, have one target: cw or ccw"
+        )
+    base = read_parameters(options.preset, options.params, options.changes)
+    base = base.replace(n_boats=given.get("n_boats", _BOATS))
+    if options.pool is None:
+        pools = [base.pool] if "pool" in given else POOLS
+    else:
+        pools = POOLS if options.pool == PoolChoice.BOTH else [options.pool.value]
+    found = []
+    for pool in pools:
+        levels = options.bw_s or ([base.bw_s] if "bw_s" in given else [])
+        preset = given.get("preset", "simulation")
+        for bw_s in levels or [FlockParameters.critical_bw_s(preset, pool)]:
+            found.append(base.replace(pool=pool, bw_s=bw_s))
+    return found
+
+
+def _pool_name(pool: str | tuple[float, float]) -> str:
+    """Return the name of a flock's pool in the names of files."""
+    return pool if isinstance(pool, str) else f"{pool[0]:g}x{pool[1]:g}"
+
+
+def _own_policies(options: CompareOptions) -> dict[str, Any]:
+    """Return the user's policies by name: as given, or a dictionary of these by leader."""
+    given, names = options.policy or [], options.name or []
+    if names and len(names) != len(given):
+        raise ParameterError(f"--name was given {len(names)} times for {len(given)} policies")
+    own: dict[str, Any] = {}
+    for place, text in enumerate(given):
+        is_each = text.startswith("leader_")
+        is_file = text.endswith(FILES) and not is_each
+        name = printable(names[place] if names else Path(text).stem if is_file else text)
+        if name in own or (name in REFERENCES and text != name):
+            name = printable(text)
+        if name in own:
+            raise ParameterError(f"--policy {text} is given twice: another --name tells them apart")
+        own[name] = changed_fields(text.split(","), "--policy") if is_each else text
+    return own

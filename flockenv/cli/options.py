@@ -9,9 +9,17 @@ from typing import Annotated, Any, TypeVar, get_type_hints
 
 import typer
 
-__all__ = ["Flocks", "Overwriting", "Printing", "takes"]
+__all__ = ["Flocks", "Overwriting", "Printing", "TrustOption", "takes"]
 
 Options = TypeVar("Options")
+
+TrustOption = Annotated[
+    bool,
+    typer.Option(
+        "--trust",
+        help="Read .zip files of stable-baselines3 models, which executes the code in them.",
+    ),
+]
 
 
 def takes(options: type[Options]) -> Callable[[Callable[[Options], None]], Callable[..., None]]:

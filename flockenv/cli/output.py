@@ -1,29 +1,19 @@
-"""Input and output files of the commands."""
+"""Input and output files of the commands, and the line that sums up a recording."""
 
 import os
 import sys
 import webbrowser
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from shutil import rmtree
-from tempfile import TemporaryFile, gettempdir, mkdtemp
+from tempfile import TemporaryFile
+
+import numpy as np
 
 from flockenv.cli.console import errors, say
 from flockenv.errors import ParameterError
+from flockenv.order import QUANTITIES
 from flockenv.recording import Recording
 
-__all__ = [
-    "check_file",
-    "check_folder",
-    "keep",
-    "load_recording",
-    "open_page",
-    "printable",
-    "refuse_overwriting",
-    "refuse_present",
-    "writable",
-]
+__all__ = ["in_words", "load_recording", "open_page", "prepare", "printable", "summary_of"]
 
 
 def printable(name: str | os.PathLike[str]) -> str:
@@ -52,177 +42,81 @@ def load_recording(path: Path, layout: Path | None = None, *, quiet: bool = Fals
     ParameterError
         If the file cannot be read, is damaged, or neither; the message names it.
     """
-    from flockenv.tracks import SUFFIXES, load_tracks, read_layout
+    from flockenv.tracks import SUFFIXES, guess_layout, load_tracks, read_layout
 
-    if layout is not None or path.suffix.lower() in SUFFIXES:
-        beside = path.with_suffix(".toml")
-        if layout is None and path.exists() and not beside.exists():
-            _guess(path, beside)
-        tracks = load_tracks(path, None if layout is None else read_layout(layout))
-        if not quiet:
-            say(f"{printable(path)}: {tracks.report}", errors)
-        return tracks.to_recording()
-    try:
-        return Recording.load(path)
-    except OSError as error:
-        raise ParameterError(f"{path} cannot be read: {error.strerror}") from error
-
-
-def _guess(path: Path, beside: Path) -> None:
-    """Write a description of tracks that have none, and say what in it to check."""
-    from flockenv.tracks import guess_layout
-
-    _, doubts = guess_layout(path)
-    say(f"{printable(path)} has no description; {printable(beside)} is a guess. Check:", errors)
-    for name, meaning in doubts.items():
-        say(f"  {name}: {meaning}", errors)
-
-
-def check_folder(folder: Path, option: str = "--out") -> None:
-    """Check, before long work, that files can be written into a folder, or where it will be made.
-
-    Nothing is made and nothing removed: other commands may be at work in the same folder.
-
-    Raises
-    ------
-    ParameterError
-        If the folder cannot be made, or no file in it.
-    """
-    try:
-        with TemporaryFile(dir=_nearest(folder)):
-            pass
-    except OSError as error:
-        raise ParameterError(f"{option} {folder} cannot be written: {error.strerror}") from error
-
-
-def _nearest(folder: Path) -> Path:
-    """Return the folder, or the nearest one above it that is there."""
-    for each in (folder, *folder.parents):
+    if layout is None and path.suffix.lower() not in SUFFIXES:
         try:
-            each.lstat()
-        except FileNotFoundError:
-            continue
-        return each
-    return folder
+            return Recording.load(path)
+        except OSError as error:
+            raise ParameterError(f"{path} cannot be read: {error.strerror}") from error
+    beside = path.with_suffix(".toml")
+    if layout is None and path.exists() and not beside.exists():
+        _, doubts = guess_layout(path)
+        say(f"{printable(path)} has no description; {printable(beside)} is a guess. Check:", errors)
+        for name, meaning in doubts.items():
+            say(f"  {name}: {meaning}", errors)
+    tracks = load_tracks(path, None if layout is None else read_layout(layout))
+    if not quiet:
+        say(f"{printable(path)}: {tracks.report}", errors)
+    return tracks.to_recording()
 
 
-def check_file(path: Path, option: str = "--out") -> None:
-    """Check, before long work, that a file can be written; leaves nothing behind.
-
-    Raises
-    ------
-    ParameterError
-        If it is a folder, or its folder takes no files.
-    """
-    if path.is_dir():
-        raise ParameterError(f"{option} {path} cannot be written: it is a folder")
-    check_folder(path.parent, f"{option} {path}: folder")
-
-
-def refuse_overwriting(
-    given: str | os.PathLike[str] | None, option: str, written: Iterable[Path]
-) -> None:
-    """Check that a file which the user has given is none of those that will be written.
+def prepare(*paths: Path, overwrites: bool = True) -> None:
+    """Make the folders of files that will be written, before long work.
 
     Raises
     ------
     ParameterError
-        If it is one of them; the message names `option`, by which it was given.
+        For a file that cannot be written, or is there already and would not be overwritten.
     """
-    if given is None or not os.path.exists(given):
-        return
-    for path in written:
-        if path.exists() and path.samefile(given):
-            raise ParameterError(
-                f"{option} {given} is where results would be written: name another --out"
-            )
-
-
-def refuse_present(written: Iterable[Path], force: bool) -> None:
-    """Refuse to write over files that are there, unless that was asked for.
-
-    Raises
-    ------
-    ParameterError
-        For the first of them.
-    """
-    for path in written:
-        if path.exists() and not force:
-            raise ParameterError(f"{path} is there already: --force overwrites it")
-
-
-def keep(path: Path, write: Callable[[Path], object]) -> None:
-    """Write the results of finished work; where that cannot be done, somewhere else.
-
-    A full disk or a folder that was taken away costs no run: results go into a new folder of the
-    current one, of the system's for temporary files, or of the user's home.
-
-    Parameters
-    ----------
-    path
-        Where they should go; folders above it are made.
-    write
-        Writes them to a path: the file or folder itself, and what lies beside it.
-
-    Raises
-    ------
-    ParameterError
-        If they had to be written somewhere else, or could not be written at all; the message says
-        where they are.
-    """
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write(path)
-    except OSError as error:
-        failed = f"{path} cannot be written: {error.strerror or error}"
-        for folder in (Path(), Path(gettempdir()), Path(os.path.expanduser("~"))):
-            refuge = _written_in(folder, path.name, write)
-            if refuge is not None:
-                raise ParameterError(f"{failed}; the results are stored in {refuge}") from error
-        raise ParameterError(
-            f"{failed}, and no other folder can be written; nothing is stored"
-        ) from error
-
-
-def _written_in(folder: Path, name: str, write: Callable[[Path], object]) -> Path | None:
-    """Write results into a new folder of another one; return where they are, or None."""
-    try:
-        aside = mkdtemp(prefix="flockenv-", dir=folder)
-    except OSError:
-        return None
-    try:
-        write(Path(aside, name))
-    except OSError:
-        rmtree(aside, ignore_errors=True)
-        return None
-    return Path(aside, name).absolute()
-
-
-@contextmanager
-def writable(path: Path) -> Iterator[Path]:
-    """Make a file's folder, and turn failures to write it into a named error.
-
-    Raises
-    ------
-    ParameterError
-        If the file or its folder cannot be written.
-    """
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        yield path
-    except OSError as error:
-        raise ParameterError(f"{path} cannot be written: {error.strerror}") from error
+    for path in paths:
+        try:
+            if path.is_dir():
+                raise ParameterError(f"{path} cannot be written: it is a folder")
+            if path.exists() and not overwrites:
+                raise ParameterError(f"{path} is there already: --force overwrites it")
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with TemporaryFile(dir=path.parent):
+                pass
+        except OSError as error:
+            raise ParameterError(f"{path} cannot be written: {error.strerror}") from error
 
 
 def open_page(page: Path) -> None:
     """Open a page in a browser; where there is none that can show it, say where the page is."""
-    displays = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
-    # A browser in the terminal would take it over, and run none of the page's scripts.
-    has_display = not sys.platform.startswith("linux") or any(map(os.environ.get, displays))
     address = page.resolve().as_uri()
-    try:
-        is_open = has_display and webbrowser.open(address)
-    except webbrowser.Error:
-        is_open = False
-    if not is_open:
+    # A browser in the terminal would take it over, and run none of the page's scripts.
+    displays = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
+    has_display = sys.platform != "linux" or any(map(os.environ.get, displays))
+    if not (has_display and webbrowser.open(address)):
         say(f"No browser was found here. Open this page in one: {address}", errors)
+
+
+def summary_of(recording: Recording) -> dict[str, float | int | None]:
+    """Return the means of the averaged quantities by name: `Recording.analyzed`'s, None if unknown.
+
+    ``samples`` and ``samples_in_window`` say of how many samples there are and were used.
+    """
+    used = recording.analyzed()
+    found: dict[str, float | int | None] = {
+        "samples": len(recording),
+        "samples_in_window": len(used),
+    }
+    for each in QUANTITIES:
+        if each.is_averaged:
+            values = used.order.series(each.name, recording.parameters.target)
+            defined = values[np.isfinite(values)]
+            found[each.name] = float(defined.mean()) if len(defined) else None
+    return found
+
+
+def in_words(recording: Recording) -> str:
+    """Return the means of a recording's quantities without a unit, in one line."""
+    words = []
+    for name, mean in summary_of(recording).items():
+        each = next((each for each in QUANTITIES if each.name == name and not each.unit), None)
+        has_target = recording.parameters.common_target is not None
+        if each is not None and (has_target or name != "signed_order"):
+            called = f"mean {each.symbol}" if "_" in each.symbol else each.label.partition(",")[0]
+            words.append(f"{called} {'undefined' if mean is None else f'{mean:.3f}'}")
+    return ", ".join(words)

@@ -9,9 +9,9 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
-from flockenv.cli.console import interruptible, print_json, progress_bar, say
+from flockenv.cli.console import print_json, progress, say
 from flockenv.cli.options import Printing, takes
-from flockenv.cli.output import check_file, load_recording, open_page, printable, writable
+from flockenv.cli.output import load_recording, open_page, prepare, printable
 from flockenv.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -19,8 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["replay"]
 
-_FPS = 12.5
-_VIDEO_FPS = 25.0
+_FPS = {".gif": 12.5, ".mp4": 25.0}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,33 +61,39 @@ def replay(options: ReplayOptions) -> None:
     Tracks of real flocks are described by a TOML file beside them, see `docs/tracks.md`.
     Play, scrub, change the speed; trails, contact forces, a boat's numbers under the pointer, and
     order parameters in step with the picture. Two recordings play side by side. `--gif` and `--mp4`
-    write a moving picture instead (extra `render`).
+    write a moving picture instead (extras `render`, `video`).
 
     Example: `flockenv replay law.npz learned.npz --html law_and_learned.html`
     """
-    if options.gif is not None or options.mp4 is not None:
-        _pictures(options)
-    else:
+    for path, end in ((options.html, ".html"), (options.gif, ".gif"), (options.mp4, ".mp4")):
+        if path is not None and path.suffix.lower() != end:
+            raise ParameterError(f"--{end[1:]} {path} is not accepted: a name that ends in {end}")
+    pictures = [path for path in (options.gif, options.mp4) if path is not None]
+    if not pictures:
         _page(options)
+    elif options.second is not None or options.html is not None:
+        raise ParameterError("--gif and --mp4 show one recording, and are written without --html")
+    else:
+        _pictures(options, pictures)
 
 
 def _page(options: ReplayOptions) -> None:
     # The page's code is not needed by any other command.
     from flockenv.replay import write_replay
 
-    paths = [options.first] if options.second is None else [options.first, options.second]
-    titles = _titles(paths, options.name or [])
-    page = options.first.with_suffix(".html") if options.html is None else options.html
-    _check(page, "--html", (".html", ".htm"))
-    with interruptible("Nothing was written."), progress_bar(options.shows_nothing) as progress:
-        task = progress.add_task("writing the page", total=len(paths) + 1)
-        recordings = {}
-        for title, path in zip(titles, paths, strict=True):
-            recordings[title] = load_recording(path, quiet=options.shows_nothing)
-            progress.advance(task)
-        with writable(page):
-            written = write_replay(page, recordings)
-        progress.advance(task)
+    paths = [path for path in (options.first, options.second) if path is not None]
+    names = options.name or [path.stem for path in paths]
+    if len(names) != len(paths):
+        raise ParameterError(f"--name was given {len(names)} times for {len(paths)} recordings")
+    if len(set(names)) < len(names):
+        names = [f"{name} ({place})" for place, name in enumerate(names, 1)]
+    page = options.html or options.first.with_suffix(".html")
+    prepare(page)
+    recordings = {
+        printable(name): load_recording(path, quiet=options.shows_nothing)
+        for name, path in zip(names, paths, strict=True)
+    }
+    written = write_replay(page, recordings)
     if options.as_json:
         print_json({"html": str(page), "bytes": written.size, "every": written.every})
     else:
@@ -98,37 +103,23 @@ def _page(options: ReplayOptions) -> None:
         open_page(page)
 
 
-def _pictures(options: ReplayOptions) -> None:
+def _pictures(options: ReplayOptions, paths: list[Path]) -> None:
     """Write the first recording as a GIF, a video, or both."""
     from flockenv.rendering import save_animation
 
-    if options.second is not None or options.html is not None:
-        raise ParameterError("--gif and --mp4 show one recording, and are written without --html")
-    kinds = ((options.gif, "--gif", ".gif", _FPS), (options.mp4, "--mp4", ".mp4", _VIDEO_FPS))
-    wanted = [(path, option, end, fps) for path, option, end, fps in kinds if path is not None]
-    for path, option, end, _ in wanted:
-        _check(path, option, (end,))
+    prepare(*paths)
     recording = load_recording(options.first, quiet=options.shows_nothing)
-    with interruptible("Nothing was written."), progress_bar(options.shows_nothing) as progress:
-        times = {fps: _times(recording, options, fps) for *_, fps in wanted}
-        task = progress.add_task("drawing", total=sum(len(each) for each in times.values()))
-        for path, _, _, fps in wanted:
-            frames = _frames(recording, times[fps], lambda: progress.advance(task))
-            with writable(path):
-                save_animation(path, frames, fps)
-    files = [printable(path) for path, *_ in wanted]
+    for path in paths:
+        fps = _FPS[path.suffix.lower()]
+        lasting_s = min(options.seconds, recording.duration_s / options.speed)
+        steps_s = np.arange(max(1, round(lasting_s * fps))) * options.speed / fps
+        times = recording.time_s[0] + np.minimum(steps_s, recording.duration_s)
+        with progress("drawing", len(times), options.shows_nothing) as advance:
+            save_animation(path, _frames(recording, times, advance), fps)
     if options.as_json:
-        print_json({"files": files})
+        print_json({"files": list(map(printable, paths))})
     else:
-        say(f"Written to {' and '.join(files)}")
-
-
-def _times(recording: "Recording", options: ReplayOptions, fps: float) -> NDArray[np.float64]:
-    """Return the times of the frames, from the start of the recording."""
-    lasting = min(options.seconds, recording.duration_s / options.speed)
-    steps = np.arange(max(1, round(lasting * fps))) * options.speed / fps
-    times: NDArray[np.float64] = recording.time_s[0] + np.minimum(steps, recording.duration_s)
-    return times
+        say(f"Written to {' and '.join(map(printable, paths))}")
 
 
 def _frames(
@@ -139,19 +130,3 @@ def _frames(
     for time_s in times.tolist():
         yield frame(recording, time_s)
         drawn()
-
-
-def _check(path: Path, option: str, endings: tuple[str, ...]) -> None:
-    if path.suffix.lower() not in endings:
-        raise ParameterError(f"{option} {path} is not accepted: a name that ends in {endings[0]}")
-    check_file(path, option)
-
-
-def _titles(paths: list[Path], names: list[str]) -> list[str]:
-    if names and len(names) != len(paths):
-        raise ParameterError(f"--name was given {len(names)} times for {len(paths)} recordings")
-    titles = [printable(name) for name in names or [path.stem for path in paths]]
-    if len(set(titles)) < len(titles) and len(set(paths)) == len(paths) and not names:
-        return [printable(path) for path in paths]
-    # The same file or name twice is shown twice.
-    return [f"{t} ({k + 1})" if titles.count(t) > 1 else t for k, t in enumerate(titles)]

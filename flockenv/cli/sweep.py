@@ -1,32 +1,20 @@
 """`flockenv sweep`."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from flockenv._io.atomic_write import atomic_write
-from flockenv.cli.console import print_json, progress_bar, resumable, say
+from flockenv._io.atomic_write import write_text
+from flockenv.cli.console import errors, print_json, progress, say, warn
 from flockenv.cli.options import Printing, takes
-from flockenv.cli.output import check_folder, writable
-from flockenv.cli.workload import (
-    DryRun,
-    EngineName,
-    ShardOf,
-    Workers,
-    chosen_shard,
-    end_if_failed,
-    make_shard,
-    show_workload,
-    warn,
-)
-from flockenv.runs.executors import Engine, named
-from flockenv.runs.store import RUNS_FOLDER
-
-if TYPE_CHECKING:
-    from flockenv.runs.sweep import SweepSpec
+from flockenv.cli.output import prepare
+from flockenv.runs.executors import named
+from flockenv.runs.spec import RunSpec
+from flockenv.runs.store import RUNS_FOLDER, RunStore, run_missing
+from flockenv.runs.workload import Shard, measure_workload
 
 __all__ = ["sweep"]
 
@@ -36,10 +24,24 @@ class SweepOptions(Printing):
     """Options of `flockenv sweep`."""
 
     spec: Annotated[Path, typer.Argument(help="What to run: a TOML file.")]
-    engine: EngineName = "local"
-    workers: Workers = None
-    shard: ShardOf = None
-    dry_run: DryRun = False
+    engine: Annotated[
+        str,
+        typer.Option("--engine", help="Where to run: local or ray."),
+    ] = "local"
+    workers: Annotated[
+        int | None,
+        typer.Option(min=1, help="Runs at a time. [every core that this process may use]"),
+    ] = None
+    shard: Annotated[
+        str | None,
+        typer.Option(
+            "--shard", metavar="I/N", help="Make the I-th of N shares of the runs, no more."
+        ),
+    ] = None
+    dry_run: Annotated[
+        bool,
+        typer.Option("--dry-run", help="Print how many runs there are and what they take."),
+    ] = False
     out: Annotated[Path | None, typer.Option(help="Folder for results. [results/sweep/NAME]")] = (
         None
     )
@@ -59,42 +61,58 @@ def sweep(options: SweepOptions) -> None:
 
     Example: `flockenv sweep docs/sweep-example.toml`
     """
-    from flockenv.runs.sweep import read_sweep
+    from flockenv.runs.sweep import read_sweep, run_sweep
 
-    engine, part = named(options.engine), chosen_shard(options.shard)
+    engine = named(options.engine)
+    shard = None if options.shard is None else Shard.parse(options.shard)
     work = read_sweep(options.spec)
+    runs = list(dict.fromkeys(work.runs))
+    if shard is not None:
+        runs = shard.runs_of(runs)
     folder = options.out or Path("results/sweep") / options.spec.stem
-    runs = folder / RUNS_FOLDER
+    store = RunStore(folder / RUNS_FOLDER, warn)
     if options.dry_run:
-        show_workload(work.runs, runs, part, options.as_json)
+        _show_workload(options, runs, store)
         return
-    check_folder(folder)
-    given = options.spec.read_bytes()
-    with writable(folder / "sweep.toml") as path, atomic_write(path) as file:
-        file.write(given)
-    if part is not None:
-        make_shard(work.runs, runs, part, engine, options.workers, options.quiet, options.as_json)
-        return
-    _whole(options, work, folder, engine)
+    copy = folder / "sweep.toml"
+    prepare(copy)
+    write_text(copy, options.spec.read_text("utf-8"))
+    total = sum(run.cost for run in runs)
+    with progress(f"{len(runs)} runs", total, options.shows_nothing, ends=False) as advance:
 
+        def finished(run: RunSpec) -> None:
+            advance(run.cost)
 
-def _whole(options: SweepOptions, work: "SweepSpec", folder: Path, engine: Engine) -> None:
-    """Make all runs that are missing, and the table."""
-    from flockenv.runs.sweep import run_sweep
-
-    runs = work.runs
-    with resumable(folder / RUNS_FOLDER), progress_bar(options.shows_nothing) as progress:
-        task = progress.add_task(f"{len(runs)} runs", total=sum(run.cost for run in runs))
-        table = run_sweep(
-            work,
-            folder,
-            engine,
-            lambda run: progress.update(task, advance=run.cost),
-            warn,
-            options.workers,
-        )
-    if options.as_json:
-        print_json(json.loads(table.to_json(orient="records")))
+        if shard is not None:
+            failures = run_missing(runs, store, engine, finished, options.workers)
+        else:
+            table = run_sweep(work, folder, engine, finished, warn, options.workers)
+    if shard is not None:
+        for run, error in failures.items():
+            warn(f"the run of seed {run.seed} failed: {error}")
+        failed, where = len(failures), "see the warnings"
+        found = {"shard": str(shard), "runs": len(runs), "failed": failed}
+        done = f"Shard {shard}: {len(runs) - failed} of {len(runs)} runs are stored. "
+        done += "When all shards have ended, the same command without --shard writes the table."
     else:
-        say(f"{len(table)} runs, written to {folder}")
-    end_if_failed(int((table["failure"] != "").sum()), len(table), "see the column failure")
+        failed, where = int((table["failure"] != "").sum()), "see the column failure"
+        found = json.loads(table.to_json(orient="records"))
+        done = f"{len(runs)} runs, written to {folder}"
+    if options.as_json:
+        print_json(found)
+    else:
+        say(done)
+    if failed:
+        say(f"{failed} of {len(runs)} runs failed: {where}", errors)
+        raise typer.Exit(1)
+
+
+def _show_workload(options: SweepOptions, runs: list[RunSpec], store: RunStore) -> None:
+    """Print how many runs there are, how many of them are stored, and what the others take."""
+    work = measure_workload(runs, store)
+    if options.as_json:
+        print_json(asdict(work))
+        return
+    hours = "an unknown number of" if work.core_hours is None else f"{work.core_hours:.2g}"
+    say(f"{work.runs} runs, {work.stored} of them stored")
+    say(f"The others: {work.flock_hours:.4g} flock-hours, about {hours} core-hours here")

@@ -1,17 +1,14 @@
 """`flockenv train`."""
 
-import shlex
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.progress import Progress
 
-from flockenv.cli.console import interruptible, print_json, progress_bar, say
+from flockenv._io.atomic_write import write_csv
+from flockenv.cli.console import errors, print_json, progress, say
 from flockenv.cli.options import Printing, takes
-from flockenv.cli.output import check_folder, keep
 from flockenv.cli.parameters import changed_fields
 from flockenv.errors import ParameterError
 
@@ -71,7 +68,8 @@ def train(options: TrainOptions) -> None:
     It is `examples/train_leaders.py` with options. Writes `model.zip`, which
     `flockenv compare --policy` takes with `--trust`, `settings.toml`, a checkpoint, the episodes of
     the training, `curve.png`, and `comparison.csv`: the signed order of the trained leaders, the
-    paper's law and the tuned law in held-out flocks.
+    paper's law and the tuned law in held-out flocks. With `--resume` an interrupted training goes
+    on from the checkpoint.
 
     Example: `flockenv train --pool wide --leaders 3 --flock-hours 60`
     """
@@ -82,49 +80,30 @@ def train(options: TrainOptions) -> None:
         raise ParameterError(
             "--resume takes settings from the folder; only --flock-hours may differ"
         )
-    check_folder(out)
-    with interruptible(lambda: _last_checkpoint(out)), progress_bar(options.shows_nothing) as bar:
-        report = _reporting(options, bar)
+    with progress("training", 1.0, options.shows_nothing, ends=False) as advance:
+        shown = 0.0
+
+        def report(now: "TrainingProgress") -> None:
+            nonlocal shown
+            share, order = now.samples / now.total, now.signed_order
+            advance(share - shown, None if order is None else f"signed order {order:.3f}")
+            shown = share
+
         if options.resume:
+            say(f"Resuming from {out / training.CHECKPOINT}", errors)
             settings = training.stored_settings(out, options.flock_hours)
             model = training.resume(out, flock_hours=options.flock_hours, report=report)
         else:
             settings = training.TrainingSettings.from_dict(given)
             model = training.train(settings, out, report)
     rows = training.compare_with_laws(model, settings, options.episodes)
-    keep(out / "comparison.csv", lambda path: rows.to_csv(path, index=False))
+    write_csv(out / "comparison.csv", rows)
     means = rows.groupby("policy", sort=False)["signed_order"].mean()
     laws = {str(name): float(order) for name, order in means.drop("trained").items()}
-    keep(
-        out / "curve.png",
-        lambda path: training.draw_curve(training.learning_curve(out), laws, path),
-    )
+    training.draw_curve(training.learning_curve(out), laws, out / "curve.png")
     if options.as_json:
         print_json({"signed_order": means.to_dict(), "model": str(out / training.MODEL)})
         return
     for name, order in means.items():
         say(f"{name}: signed order {order:.3f} in {options.episodes} held-out flocks")
     say(f"Written to {out}")
-
-
-def _reporting(options: TrainOptions, bar: Progress) -> "Callable[[TrainingProgress], None]":
-    from flockenv import training
-
-    task = bar.add_task("start", total=None)
-
-    def report(progress: "TrainingProgress") -> None:
-        if options.resume and bar.tasks[0].total is None and not options.shows_nothing:
-            bar.console.print(f"Resuming from {options.out / training.CHECKPOINT}")
-        order = progress.signed_order
-        words = "start" if order is None else f"signed order {order:.3f}"
-        bar.update(task, description=words, completed=progress.samples, total=progress.total)
-
-    return report
-
-
-def _last_checkpoint(out: Path) -> str:
-    if (out / "checkpoint.zip").exists():
-        return (
-            f"The last checkpoint is stored: flockenv train --resume --out {shlex.quote(str(out))}"
-        )
-    return "There is no checkpoint yet: start again."

@@ -35,8 +35,6 @@ class Case:
     targets : tuple
         Targets that are dealt out to the seeds in turn, each as in the parameters; none: that of
         the parameters. The signed order counts towards the target of leader 0.
-    meaning : str
-        What it asks of leaders.
     """
 
     name: str
@@ -46,7 +44,6 @@ class Case:
     episode_s: float = 480.0
     environment: Mapping[str, Any] = field(default_factory=dict)
     targets: tuple[Any, ...] = ()
-    meaning: str = ""
 
     def flock_hours(self, policies: int) -> float:
         """Return the hours of simulated time that a number of policies takes."""
@@ -63,33 +60,35 @@ class Case:
         Errors are those of `compare_leaders`.
         """
         targets = self.targets or (self.parameters.target,)
-        parts = []
-        for place, target in enumerate(targets):
-            parameters = self.parameters.replace(target=target)
-            seeds = self.seeds[place :: len(targets)]
-            options = self.environment
-            parts.append(
-                compare_leaders(
-                    parameters, self.leaders, policies, seeds, self.episode_s, progress, options
-                )
+        parts = [
+            compare_leaders(
+                self.parameters.replace(target=target),
+                self.leaders,
+                policies,
+                self.seeds[place :: len(targets)],
+                self.episode_s,
+                progress,
+                self.environment,
             )
+            for place, target in enumerate(targets)
+        ]
         runs: pd.DataFrame = require("pandas", "plot").concat(parts, ignore_index=True)
         runs.insert(0, "case", self.name)
         return runs
 
+    def described(self) -> dict[str, Any]:
+        """Return all that it consists of but the parameters, as TOML can say it."""
+        return {
+            "leaders": list(self.leaders),
+            "seeds": {"first": self.seeds[0], "number": len(self.seeds)},
+            "episode_s": self.episode_s,
+            "environment": {"target": self.parameters.target, **self.environment},
+        }
+
     def title(self) -> str:
         """Return the parameters and the options in one line."""
-        parameters, options = self.parameters, dict(self.environment)
-        target = options.pop("target", parameters.target)
-        dropped = options.pop("dropout_rate", 0.0)
-        bw_s = options.pop("bw_s", None)
-        parts = [
-            f"{parameters.n_boats} boats",
-            f"pool {parameters.pool}",
-            f"bw = {parameters.bw_s:g} s" if bw_s is None else f"bw from {bw_s[0]} to {bw_s[1]} s",
-            "alternating targets" if target == "alternate" else f"target {target}",
-            *([f"{100 * dropped:.3g} % of positions dropped"] if dropped else []),
-            *(f"{name} = {value}" for name, value in options.items()),
-            f"{parameters.scheme} + {parameters.noise_scheme}",
-        ]
-        return ", ".join(parts)
+        flock = self.parameters
+        options = {"bw_s": flock.bw_s, "target": flock.target, **self.environment}
+        parts = [f"{flock.n_boats} boats, pool {flock.pool}"]
+        parts += [f"{name} = {value}" for name, value in options.items()]
+        return ", ".join([*parts, f"{flock.scheme} + {flock.noise_scheme}"])

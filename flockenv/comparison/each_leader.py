@@ -14,20 +14,13 @@ __all__ = ["EachLeader"]
 
 
 class EachLeader:
-    """A policy of its own for each leader, as one policy.
+    """A policy of its own for each leader, as one policy with the attributes of all of them.
 
     Parameters
     ----------
     policies
         A policy for each of ``"leader_0"``, ``"leader_1"`` and so on, in this order. Flocks with
         fewer leaders have the first ones.
-
-    Attributes
-    ----------
-    policies : list
-        The policies.
-    observation, mirror_to_target, control_hz, action_mode, decision_period_s
-        The environments' options of those names, which are the same for all policies.
 
     Raises
     ------
@@ -42,59 +35,43 @@ class EachLeader:
                 f"policies for {', '.join(map(shown, policies)) or 'no leader'} are not accepted: "
                 f"one for each of {', '.join(wanted)}, in this order"
             )
-        self.policies = list(policies.values())
-        ways = [_way(each) for each in self.policies]
-        for leader, way in zip(wanted, ways, strict=True):
-            for name, value in way.items():
-                if value != ways[0][name]:
+        self._policies = list(policies.values())
+        ways = {leader: _way(each) for leader, each in policies.items()}
+        for name, first in ways["leader_0"].items():
+            for leader, way in ways.items():
+                if way[name] != first:
                     raise ParameterError(
-                        f"{name} = {shown(value)} of {leader} is not accepted beside "
-                        f"{shown(ways[0][name])} of leader_0: policies of one flock observe and "
-                        "act in the same way"
+                        f"{name} = {shown(way[name])} of {leader} is not accepted beside "
+                        f"{shown(first)} of leader_0: policies of one flock observe and act in the "
+                        "same way"
                     )
-        self.observation: dict[str, Any] = ways[0]["observation"]
-        self.mirror_to_target: bool = ways[0]["mirror_to_target"]
-        self.control_hz: float = ways[0]["control_hz"]
-        self.action_mode: str = ways[0]["action_mode"]
-        self.decision_period_s: float | None = ways[0]["decision_period_s"]
+            setattr(self, name, first)
 
     def check_leaders(self, k: int) -> None:
-        """Refuse a flock with more leaders than there are policies.
-
-        Raises
-        ------
-        ParameterError
-            For such a flock.
-        """
-        if k > len(self.policies):
+        """Refuse a flock with more leaders than there are policies."""
+        if k > len(self._policies):
             raise ParameterError(
-                f"{k} leaders are not accepted by policies for {len(self.policies)} of them"
+                f"{k} leaders are not accepted by policies for {len(self._policies)} of them"
             )
 
     def predict(
-        self,
-        observation: ArrayLike,
-        state: Any = None,
-        episode_start: Any = None,
-        deterministic: bool = True,
+        self, observation: ArrayLike, state: Any = None, episode_start: Any = None
     ) -> tuple[NDArray[np.float32], Any]:
         """Return every leader's action by its own policy, and the states of all of them."""
         array = np.asarray(observation, np.float32)
-        size = len(observation_entries(self.observation))
+        size = len(observation_entries(getattr(self, "observation", {})))
         k = leaders_observed(array, size)
         rows = array.reshape(*array.shape[:-1], k, size)
         states = [None] * k if state is None else list(state)
         actions = []
-        for place, policy in enumerate(self.policies[:k]):
-            action, states[place] = policy.predict(
-                np.ascontiguousarray(rows[..., place, :]), states[place], episode_start
-            )
+        for place, policy in enumerate(self._policies[:k]):
+            own = np.ascontiguousarray(rows[..., place, :])
+            action, states[place] = policy.predict(own, states[place], episode_start)
             actions.append(np.asarray(action, np.float32).reshape(*array.shape[:-1], 1))
         return np.concatenate(actions, axis=-1), states
 
     def __repr__(self) -> str:
-        named = (f"leader_{place}: {each!r}" for place, each in enumerate(self.policies))
-        return f"{{{', '.join(named)}}}"
+        return str({f"leader_{place}": each for place, each in enumerate(self._policies)})
 
 
 def _way(policy: Any) -> dict[str, Any]:

@@ -4,10 +4,13 @@ import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
+from functools import cached_property
+from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import tomli_w
+from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
@@ -28,38 +31,83 @@ from flockenv.statistics import (
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["ComparisonReport", "joined", "report"]
+__all__ = ["ComparisonReport"]
+
+_TABLES = ("runs", "means", "differences", "lines")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class ComparisonReport:
-    """What policies reached in some cases.
+    """What policies reached in some cases (extra ``plot``).
 
     Attributes
     ----------
-    cases : tuple of Case
+    cases : sequence of Case
         The cases.
+    policies : sequence of str
+        Names, those first whose differences from the others are wanted.
     runs : pandas.DataFrame
-        One row per episode, of `Case.run`.
-    means : pandas.DataFrame
-        One row for each case, policy and number of leaders: means with intervals, the share of the
-        episodes that ordered, and the median time to it (infinite where none did).
-    differences : pandas.DataFrame
-        How much signed order each policy has beyond each one after it, its ``reference``, seed by
-        seed, for each case and number of leaders; empty for a single policy.
-    lines : pandas.DataFrame
-        The line of each quantity over the number of leaders, by case and policy, over all its
-        episodes and those without leaders; empty for a single number of leaders.
+        One row per episode: the rows of `Case.run` of all cases.
     conditions : dict
-        What else the numbers depend on: the command, and the policies of each case as they print.
+        What else the numbers depend on.
     """
 
-    cases: tuple[Case, ...]
+    cases: Sequence[Case]
+    policies: Sequence[str]
     runs: "pd.DataFrame"
-    means: "pd.DataFrame"
-    differences: "pd.DataFrame"
-    lines: "pd.DataFrame"
     conditions: Mapping[str, Any] = field(default_factory=dict)
+
+    @cached_property
+    def means(self) -> "pd.DataFrame":
+        """Means with intervals by case, policy and number of leaders.
+
+        Beside them ``ordered``, the share of the episodes that ordered, and the median time to it
+        (infinite where none did).
+        """
+        by, times = ["case", "policy", "leaders"], list(ORDERING_TIMES)
+        means = summarize(self.runs, by, list(QUANTITIES))
+        came = self.runs[[*by, *times]].replace(math.inf, math.nan).groupby(by, sort=False)
+        columns = came[times].median().fillna(math.inf)
+        columns["ordered"] = came["ordering_time_wide_s"].count() / came.size()
+        merged: pd.DataFrame = means.merge(columns.reset_index(), on=by, validate="one_to_one")
+        return merged
+
+    @cached_property
+    def differences(self) -> "pd.DataFrame":
+        """How much signed order each policy has beyond each one after it, its ``reference``.
+
+        Seed by seed, for each case and number of leaders; empty for a single policy.
+        """
+        rows = []
+        led = self.runs[self.runs["leaders"] > 0]
+        for (case, k), own in led.groupby(["case", "leaders"], sort=False):
+            orders = own.pivot_table(
+                index="seed", columns="policy", values="signed_order", dropna=False
+            )
+            for policy, reference in itertools.combinations(self.policies, 2):
+                if {policy, reference} <= set(orders):
+                    found = asdict(paired_difference(orders[policy], orders[reference]))
+                    names = {"case": case, "policy": policy, "reference": reference, "leaders": k}
+                    rows.append(names | found)
+        return _table(rows, ["case", "policy", "reference", "leaders"], Difference)
+
+    @cached_property
+    def lines(self) -> "pd.DataFrame":
+        """The line of each quantity over the number of leaders, by case and policy.
+
+        Over all its episodes and those without leaders; empty for a single number of leaders.
+        """
+        rows = []
+        for case, every in self.runs.groupby("case", sort=False):
+            for policy in self.policies:
+                own = every[every["policy"].isin([policy, NO_LEADERS])].dropna(
+                    subset=list(QUANTITIES)
+                )
+                if policy in set(own["policy"]) and own["leaders"].nunique() > 1 and len(own) > 2:
+                    for quantity in QUANTITIES:
+                        line = asdict(fit_line(own["leaders"], own[quantity]))
+                        rows.append({"case": case, "policy": policy, "quantity": quantity} | line)
+        return _table(rows, ["case", "policy", "quantity"], Line)
 
     def write(self, folder: Path) -> None:
         """Write the comparison into a folder, which is made.
@@ -74,36 +122,25 @@ class ComparisonReport:
             If one cannot be written; each is whole or as it was before.
         """
         folder.mkdir(parents=True, exist_ok=True)
-        for name in ("runs", "means", "differences", "lines"):
+        for name in _TABLES:
             write_csv(folder / f"{name}.csv", getattr(self, name))
-        write_text(folder / "run.toml", tomli_w.dumps(self._provenance()))
+        cases = {case.name: case.described() for case in self.cases}
+        conditions = {"flockenv": __version__, **self.conditions, "cases": cases}
+        write_text(folder / "run.toml", tomli_w.dumps(conditions))
         for case in self.cases:
-            header = f"# flockenv {__version__}: the flock; seeds, policies and options in run.toml"
-            text = f"{header}\n{case.parameters.to_toml()}"
-            write_text(folder / f"{case.name}.toml", text)
+            header = f"# flockenv {__version__}: case {case.name}; policies and options in run.toml"
+            write_text(folder / f"{case.name}.toml", f"{header}\n{case.parameters.to_toml()}")
         if len(self.lines) > 0:
             from flockenv.comparison.figure import leader_curve
 
             titles = {case.name: case.title() for case in self.cases}
             leader_curve(self.means, folder / "leader_curve.png", runs=self.runs, titles=titles)
 
-    def _provenance(self) -> dict[str, Any]:
-        cases = {
-            case.name: {
-                "leaders": list(case.leaders),
-                "seeds": {"first": case.seeds[0], "number": len(case.seeds)},
-                "episode_s": case.episode_s,
-                "environment": {"target": case.parameters.target, **case.environment},
-            }
-            for case in self.cases
-        }
-        return {"flockenv": __version__, **self.conditions, "cases": cases}
-
     def table(self) -> Table:
         """Return the mean signed orders as a table: rows are numbers of leaders."""
-        runs = self.means["runs"].max()
         table = Table(title="signed order of the normal boats", title_justify="left", box=None)
         table.padding, table.pad_edge = (0, 1, 0, 0), False  # Four policies fit into 80 columns.
+        runs = self.means["runs"].max()
         table.caption = f"± half the {CONFIDENCE:.0%} interval of the mean over {runs} episodes"
         table.caption_justify = "left"
         table.add_column("", overflow="fold")
@@ -113,22 +150,23 @@ class ComparisonReport:
             table.add_column(Text(name), min_width=12, overflow="fold")
         for case in self.cases:
             own = self.means[self.means["case"] == case.name]
-            name = case.name
+            title = case.name
             for k in sorted(own["leaders"].unique()):
                 found = own[own["leaders"] == k].set_index("policy")
                 # Flocks without leaders are the same for all policies.
                 names = policies if k > 0 else [NO_LEADERS]
                 cells = [_plus_minus(found.loc[name]) for name in names if name in found.index]
-                table.add_row(Text(name), str(k), *cells)
-                name = ""
+                table.add_row(Text(title), str(k), *cells)
+                title = ""
         return table
 
     def in_words(self) -> str:
         """Return the differences and the lines, one per line of text."""
         differences = [
             f"{row['case']}, {row['policy']} minus {row['reference']}, k = {row['leaders']}: "
-            f"{row['mean']:+.3f} [{row['low']:+.3f}, {row['high']:+.3f}], d = {row['effect']:.2f}"
-            for row in self.differences.to_dict("records")
+            f"{row['mean']:+.3f} [{row['low']:+.3f}, {row['high']:+.3f}]"
+            + ("" if math.isnan(row["effect"]) else f", d = {row['effect']:.2f}")
+            for row in self.differences.dropna(subset=["mean"]).to_dict("records")
         ]
         names = [each.name for each in fields(Line)]
         lines = [
@@ -138,94 +176,33 @@ class ComparisonReport:
         ]
         return "\n".join(differences + lines)
 
+    def card(self, name: str, policy: Any) -> str:
+        """Return a policy's model card as Markdown: its provenance and its comparison."""
+        lines = [f"# {name}", "", f"The policy is `{policy!r}`.", ""]
+        lines += [f"- {key}: `{text}`" for key, text in _provenance(policy).items()]
+        made = f"`{self.conditions.get('command', '')}` made this with flockenv {__version__}."
+        lines += ["", "## Comparison", "", made, ""]
+        lines += [
+            f"- {case.name}: {case.title()}; {len(case.seeds)} episodes of {case.episode_s:g} s"
+            for case in self.cases
+        ]
+        printed = StringIO()
+        Console(file=printed, width=120).print(self.table())
+        text = "\n".join(line.rstrip() for line in printed.getvalue().splitlines())
+        return "\n".join([*lines, "", "```text", text, "", self.in_words(), "```", ""])
+
+
+def _provenance(policy: Any) -> Mapping[str, str]:
+    found: Mapping[str, str] | None = getattr(policy, "provenance", None)
+    return found or {}
+
 
 def _plus_minus(row: Mapping[str, Any]) -> str:
     half = (row["signed_order_high"] - row["signed_order_low"]) / 2
-    return f"{row['signed_order']:.3f} ±{half:.3f}"
+    return "unknown" if math.isnan(half) else f"{row['signed_order']:.3f} ±{half:.3f}"
 
 
-def report(
-    cases: Sequence[Case],
-    policies: Sequence[str],
-    runs: "pd.DataFrame",
-    conditions: Mapping[str, Any] | None = None,
-) -> ComparisonReport:
-    """Return what the episodes of some cases say.
-
-    Parameters
-    ----------
-    cases, runs
-        The cases, and the rows of `Case.run` of all of them.
-    policies
-        Names, those first whose differences from the others are wanted.
-    conditions
-        What else the numbers depend on.
-
-    Raises
-    ------
-    MissingExtraError
-        Without the extra ``plot``.
-    """
-    return ComparisonReport(
-        tuple(cases),
-        runs,
-        _means(runs),
-        _differences(runs, policies),
-        _lines(runs, policies),
-        conditions or {},
-    )
-
-
-def joined(tables: "Sequence[pd.DataFrame]") -> "pd.DataFrame":
-    """Return the rows of several tables as one."""
-    table: pd.DataFrame = require("pandas", "plot").concat(tables, ignore_index=True)
-    return table
-
-
-def _means(runs: "pd.DataFrame") -> "pd.DataFrame":
-    by, times = ["case", "policy", "leaders"], list(ORDERING_TIMES)
-    means = summarize(runs, by, list(QUANTITIES))
-    came = runs[[*by, *times]].replace(math.inf, math.nan).groupby(by, sort=False)
-    columns = came[times].median().fillna(math.inf)
-    columns["ordered"] = came["ordering_time_wide_s"].count() / came.size()
-    merged: pd.DataFrame = means.merge(columns.reset_index(), on=by, validate="one_to_one")
-    return merged
-
-
-def _differences(runs: "pd.DataFrame", policies: Sequence[str]) -> "pd.DataFrame":
-    """Return what each policy has beyond each one after it, seed by seed."""
-    rows = []
-    for (case, k), own in runs[runs["leaders"] > 0].groupby(["case", "leaders"], sort=False):
-        orders = own.pivot_table(
-            index="seed", columns="policy", values="signed_order", dropna=False
-        )
-        for policy, reference in itertools.combinations(policies, 2):
-            if {policy, reference} <= set(orders):
-                found = asdict(paired_difference(orders[policy], orders[reference]))
-                names = {"case": case, "policy": policy, "reference": reference, "leaders": k}
-                rows.append(names | found)
-    columns = [
-        "case",
-        "policy",
-        "reference",
-        "leaders",
-        *(each.name for each in fields(Difference)),
-    ]
-    table: pd.DataFrame = require("pandas", "plot").DataFrame(rows, columns=columns)
-    return table
-
-
-def _lines(runs: "pd.DataFrame", policies: Sequence[str]) -> "pd.DataFrame":
-    """Return the line of each quantity over the number of leaders, by case and policy."""
-    rows = []
-    for case, every in runs.groupby("case", sort=False):
-        for policy in policies:
-            own = every[every["policy"].isin([policy, NO_LEADERS])].dropna(subset=list(QUANTITIES))
-            if policy not in set(own["policy"]) or own["leaders"].nunique() < 2 or len(own) < 3:
-                continue
-            for quantity in QUANTITIES:
-                line = asdict(fit_line(own["leaders"], own[quantity]))
-                rows.append({"case": case, "policy": policy, "quantity": quantity} | line)
-    columns = ["case", "policy", "quantity", *(each.name for each in fields(Line))]
+def _table(rows: list[dict[str, Any]], keys: list[str], kind: type[Any]) -> "pd.DataFrame":
+    columns = [*keys, *(each.name for each in fields(kind))]
     table: pd.DataFrame = require("pandas", "plot").DataFrame(rows, columns=columns)
     return table

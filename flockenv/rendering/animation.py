@@ -52,7 +52,8 @@ def save_animation(
     if write is None:
         names = ", ".join(writers)
         raise ParameterError(f"path = {os.fspath(path)!r} is not accepted: a name in {names}")
-    if not isinstance(fps, int | float) or not _SLOWEST <= fps <= _FASTEST:
+    rate: Any = fps
+    if not isinstance(rate, int | float) or not _SLOWEST <= rate <= _FASTEST:
         accepted = f"{_SLOWEST} to {_FASTEST:.0f} frames per second"
         raise ParameterError(f"fps = {shown(fps)} is not accepted: {accepted}")
     content = write(_checked(frames), fps)
@@ -102,9 +103,10 @@ def _checked(frames: Iterable[Any]) -> Iterator[NDArray[np.uint8]]:
             raise ParameterError(
                 f"a frame of {width} × {height} pixels is not accepted: 1 to 65535"
             )
-        shape = shape or (height, width, 3)
-        if frame.shape != shape:
-            raise ParameterError(f"frame has shape {frame.shape}, expected {shape}")
+        expected = (height, width, 3) if shape is None else shape
+        if frame.shape != expected:
+            raise ParameterError(f"frame has shape {frame.shape}, expected {expected}")
+        shape = expected
         yield np.ascontiguousarray(frame)
     if shape is None:
         raise ParameterError("frames are none: at least one")

@@ -72,7 +72,6 @@ def test_mistakes_are_one_line_with_exit_code_2(cli, run, tmp_path):
         (["analyze", "nameless.csv"], "no column looks like 'id'"),
         (["analyze", "alone.csv", "--layout", "layout.toml"], "column 'x_cm' is missing"),
         (["analyze", "absent.npz"], "absent.npz cannot be read"),
-        (["analyze", "run.npz", "--out", "run.npz", "--force"], "name another"),
         (["analyze", "run.npz", "--out", "run.xlsx"], ".npz, .csv, .parquet, .gsd"),
         (["analyze", "run.npz", "--out", "alone.csv"], "--force overwrites it"),
         (["analyze", "run.npz", "--out", "layout.csv"], "layout.toml is there already"),

