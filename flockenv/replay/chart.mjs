@@ -146,15 +146,19 @@ export class Chart {
   }
 }
 
-/** What stands above a chart: the series' words, and its value in each run at a time. */
-export function legendOf(runs, quantity, time) {
+/** What stands above a chart: the series' words, its value in each run at a time, and `hasMeans` its mean so far. */
+export function legendOf(runs, quantity, time, hasMeans = false) {
   const parts = runs.map((run, place) => {
     const part = element("span", "value");
     if (runs.length > 1) {
       part.title = run.name;
       part.append(element("span", `swatch run-${place + 1}`), element("span", "unseen", `${run.name} `));
     }
-    part.append(element("b", "", fixed(run.value(quantity.key, run.sampleAt(time)), quantity.decimals)));
+    const sample = run.sampleAt(time);
+    part.append(element("b", "", fixed(run.value(quantity.key, sample), quantity.decimals)));
+    if (hasMeans) {
+      part.append(element("span", "faint mean", ` mean ${fixed(run.meanUpTo(quantity.key, sample), quantity.decimals)}`));
+    }
     return part;
   });
   return [element("span", "", caption(quantity)), ...parts];

@@ -27,6 +27,27 @@ function leaderKey(run) {
   });
 }
 
+/** Chooses which of two runs a narrow window shows; `show` draws it. */
+export function runSwitch(runs, show) {
+  const group = element("div", "switch");
+  group.setAttribute("role", "group");
+  group.setAttribute("aria-label", "The run that is shown");
+  const buttons = runs.map((run, place) => {
+    const button = element("button", "wide");
+    button.type = "button";
+    button.append(element("span", `swatch run-${place + 1}`), run.name);
+    button.addEventListener("click", () => { choose(place); show(); });
+    return button;
+  });
+  const choose = (chosen) => {
+    document.body.dataset.shown = String(chosen);
+    buttons.forEach((button, place) => { button.setAttribute("aria-pressed", String(place === chosen)); });
+  };
+  group.append(...buttons);
+  choose(Number(document.body.dataset.shown ?? 0));
+  return group;
+}
+
 /** A run's canvas with everything around it. */
 export class Panel {
   constructor(run, place, several) {
@@ -133,6 +154,9 @@ export class Panel {
 
   show(time, options) {
     const { run } = this;
+    if (this.canvas.clientWidth === 0) {
+      return;
+    }
     const sample = run.sampleAt(time);
     this.root.dataset.sample = String(sample);
     this.scene.draw(time, options);

@@ -3,7 +3,7 @@
 import { Chart, legendOf } from "./chart.mjs";
 import { forceScale } from "./forces.mjs";
 import { linkTo, readLink } from "./link.mjs";
-import { Panel, parameterTable } from "./panel.mjs";
+import { Panel, parameterTable, runSwitch } from "./panel.mjs";
 import { span } from "./run.mjs";
 import { colors } from "./scene.mjs";
 import { caption, fixed } from "./words.mjs";
@@ -14,6 +14,16 @@ const FAR = 10;
 const MINUTE = 60;
 /** How often, in ms, the link follows while the page plays: browsers refuse more than some 100 in half a minute. */
 const LINK_EVERY = 1000;
+
+/** What to watch. */
+function watchWords(runs) {
+  const towards = "rotation is 1 if all circle clockwise, and −1 if all circle counter-clockwise";
+  if (runs.some(({ target }) => target !== null)) {
+    return "Watch whether the blue boats come to circle with the amber leaders: the order towards the target is 1 if all do, and " +
+      "−1 if all circle the other way.";
+  }
+  return `Watch ${runs.some(({ leaders }) => leaders > 0) ? "which leaders the blue boats follow" : "whether the boats come to circle together"}: ${towards}.`;
+}
 
 export class Player {
   /** `moment` in s is where the page opens unless its link says otherwise. */
@@ -32,8 +42,10 @@ export class Player {
     this.palette = colors();
     this.forceScale = forceScale(runs);
     this.panels = runs.map((run, place) => new Panel(run, place, runs.length > 1));
-    document.getElementById("runs").append(...this.panels.map((panel) => panel.root));
     document.body.classList.toggle("pair", runs.length > 1);
+    document.getElementById("watch").textContent = watchWords(runs);
+    const several = runs.length > 1 ? [runSwitch(runs, () => this.request())] : [];
+    document.getElementById("runs").append(...several, ...this.panels.map((panel) => panel.root));
     const seek = (time) => this.seek(time);
     this.charts = [
       new Chart(document.getElementById("detail"), runs, 30, seek),
@@ -266,6 +278,6 @@ export class Player {
     scrub.style.setProperty("--done", `${(100 * (this.time - this.start)) / (this.end - this.start || 1)}%`);
     clock.textContent = `${fixed(this.#sampled(this.time), 1)} s of ${fixed(this.end, 1)} s`;
     scrub.setAttribute("aria-valuetext", clock.textContent);
-    this.controls.legend.replaceChildren(...legendOf(this.runs, chosen, this.time));
+    this.controls.legend.replaceChildren(...legendOf(this.runs, chosen, this.time, true));
   }
 }

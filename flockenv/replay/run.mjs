@@ -83,6 +83,25 @@ export class Run {
     return this.columns.get(key)?.at(sample);
   }
 
+  /** Mean of a series up to a sample, in the analysis windows where there are any; undefined where there is no series. */
+  meanUpTo(key, sample) {
+    const column = this.columns.get(key);
+    if (!column) {
+      return undefined;
+    }
+    this.means ??= new Map();
+    if (!this.means.has(key)) {
+      const means = new Float64Array(this.length);
+      for (let [k, sum, count] = [0, 0, 0]; k < this.length; k += 1) {
+        const isCounted = this.phases.length === 0 || this.inWindow(k);
+        [sum, count] = isCounted ? [sum + column.at(k), count + 1] : [sum, count];
+        means[k] = sum / count;
+      }
+      this.means.set(key, means);
+    }
+    return this.means.get(key)[sample];
+  }
+
   phase(sample) {
     return this.phases[this.columns.get("phase").at(sample)];
   }

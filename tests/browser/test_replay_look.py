@@ -13,7 +13,6 @@ NORMAL, LEADER, FORCE = (0x00, 0x72, 0xB2), (0xF0, 0xA2, 0x02), (0xC2, 0x18, 0x5
 
 def test_boats_are_drawn_where_they_are(page, law):
     page.choose("#trails", "0")
-    page.click("#forces")
     for share in (0.2, 0.6):
         page.click_at("#scrub", share)
         page.press("ARROW_LEFT")
@@ -34,6 +33,7 @@ def test_forces_are_drawn_where_hulls_touch(page, law):
         if 10.0 < law.contacts.force[c] < 60.0
     ]
     k, c = strong[len(strong) // 2]
+    page.click("#forces")
     page.script("player.seek(arguments[0])", law.time_s[k])
     page.wait_until_drawn()
     # A bar starts where hulls touch, and lies on the boat that is pushed.
@@ -47,6 +47,8 @@ def test_forces_are_drawn_where_hulls_touch(page, law):
 
 def test_a_forces_drawn_length_reports_its_size(page, law):
     page.choose("#trails", "0")
+    page.click("#forces")
+    page.wait_until_drawn()
     hull_px = 2 * law.parameters.boat_radius_cm * page.script("return player.panels[0].scene.scale")
     scale = page.script("return player.forceScale")
     assert page.text(".force-key", 0) == f"force {scale:g} cm/s²"
@@ -127,6 +129,29 @@ def test_a_boats_card_covers_no_words(open_page, pages, name, size):
                 return corners.filter((each) => each.right > card.left && each.left < card.right
                     && each.bottom > card.top && each.top < card.bottom).length""")
             assert covered == 0, f"boat {boat} at {time_s} s"
+
+
+def test_two_runs_have_their_charts_above_the_fold(open_page, pages):
+    page = open_page(pages / "two.html", size=(1280, 800))
+    assert (
+        page.script("return document.getElementById('charts').getBoundingClientRect().bottom") < 800
+    )
+
+
+def test_a_phone_shows_one_of_two_runs(open_page, pages):
+    page = open_page(pages / "two.html", size=(390, 844))
+    assert not page.find("#forces").is_selected()
+    for shown in (1, 0):
+        page.click(f".switch button:nth-child({shown + 1})")
+        page.wait_until_drawn()
+        seen = [page.find("canvas", run).is_displayed() for run in (0, 1)]
+        assert seen == [shown == 0, shown == 1]
+        assert (
+            page.script(
+                "return document.querySelectorAll('.run canvas')[arguments[0]].width", shown
+            )
+            > 300
+        )
 
 
 def test_nothing_is_aimed_at_without_leaders(open_page, parameters, tmp_path):

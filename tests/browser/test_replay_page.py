@@ -12,6 +12,8 @@ from flockenv.replay import MOST_BYTES, inline_replay, write_replay
 from flockenv.replay import page as replay_page
 from flockenv.replay.quantities import ShownQuantity, decisive_minute
 
+from .conftest import LAST_DIGIT, number
+
 pytestmark = pytest.mark.browser
 
 
@@ -151,6 +153,16 @@ def test_two_runs_side_by_side(pair, law, damped):
     assert pair.time() == 120.0
     assert pair.number(".time", 1) == 90.0
     pair.check(damped, 1)
+
+
+def test_it_says_what_to_watch_and_the_means_so_far(pair, law, damped):
+    assert "the order towards the target is 1 if all do" in pair.text("#watch")
+    pair.press("END")
+    for place, recording in enumerate((law, damped)):
+        seen = recording.in_analysis_window
+        signed = recording.order.signed_order("cw")[seen]
+        shown = pair.driver.find_elements("css selector", "#legend .mean")[place].text
+        assert number(shown.removeprefix("mean ")) == pytest.approx(signed.mean(), abs=LAST_DIGIT)
 
 
 def test_recorded_words_are_not_run(open_page, law, tmp_path):

@@ -70,6 +70,16 @@ test("a value is that of the sample, and undefined where there is no such series
   assert.equal(runOf().value("milling", 2), undefined);
 });
 
+test("a mean so far is that of the analysis windows, or of all samples where there is none", () => {
+  const run = runOf();
+  assert.ok(Number.isNaN(run.meanUpTo("psi_o", 0)));
+  assert.deepEqual([1, 2].map((sample) => run.meanUpTo("psi_o", sample)), [0.5, 0.5]);
+  assert.equal(run.meanUpTo("nothing", 2), undefined);
+  const tracks = runOf();
+  tracks.phases = [];
+  assert.deepEqual([0, 1, 2].map((sample) => tracks.meanUpTo("psi_o", sample)), [0.25, 0.375, 0.5]);
+});
+
 test("runs together start with the first and end with the last", () => {
   const later = runOf();
   later.time = Float64Array.of(2, 3, 4);
