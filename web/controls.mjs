@@ -3,37 +3,48 @@
 import { element, plain } from "../flockenv/replay/words.mjs";
 import { MOST_NOISE } from "./order_map.mjs";
 
-/** Parameter, words, least, most, step. */
-const SLIDERS = [
-  ["n_boats", "boats", 2, 300, 1],
-  ["n_leaders", "leaders", 0, 8, 1],
-  ["bw_s", "backward duration (s)", 0, MOST_NOISE, 0.05],
-  ["c4", "angular noise", 0, 0.5, 0.01],
-  ["boat_shape", "hull shape", 0, 2, 0.05],
-];
+/** Parameter, words, least, most, step; those that everybody needs, and more. */
+const SLIDERS = {
+  sliders: [
+    ["n_boats", "boats", 2, 300, 1],
+    ["n_leaders", "leaders", 0, 8, 1],
+    ["bw_s", "backward duration (s)", 0, MOST_NOISE, 0.05],
+  ],
+  "more-sliders": [
+    ["c4", "angular noise", 0, 0.5, 0.01],
+    ["boat_shape", "hull shape", 0, 2, 0.05],
+  ],
+};
 
 /** Parameter, words, accepted values with their words. */
-const CHOICES = [
-  ["preset", "preset", [["simulation"], ["paper"], ["experiment"]]],
-  ["pool", "pool", [["wide"], ["narrow"], ["180,0", "dish"], ["inf,0", "open water"]]],
-  ["target", "target", [["cw", "clockwise"], ["ccw", "counter-clockwise"], ["opposed", "opposed"]]],
-  ["scheme", "scheme", [["leapfrog"], ["moreau"], ["paper"]]],
-  ["noise_scheme", "noise", [["white"], ["per-step"]]],
-];
+const CHOICES = {
+  choices: [
+    ["pool", "pool", [["wide"], ["narrow"], ["180,0", "dish"], ["inf,0", "open water"]]],
+    ["target", "target", [["cw", "clockwise"], ["ccw", "counter-clockwise"], ["opposed", "opposed"]]],
+  ],
+  "more-choices": [
+    ["preset", "preset", [["simulation"], ["paper"], ["experiment"]]],
+    ["scheme", "scheme", [["leapfrog"], ["moreau"], ["paper"]]],
+    ["noise_scheme", "noise", [["white"], ["per-step"]]],
+  ],
+};
 
 /** How leaders may steer, in words. */
 export const LEADERS = {
   "paper's law at every substep": "the paper's law",
   "tuned law": "the tuned law",
-  learned: "pretrained leaders",
+  learned: "the pretrained policy",
   you: "you",
 };
+/** How each of several leaders may steer, in words. */
+const OWN = { "paper's law": "the paper's law", "tuned law": "the tuned law", learned: "pretrained" };
 
 /** What may run beside a flock: what of it differs, and in words. */
 const BESIDE_CHOICES = [
   ["", "nothing"],
   ["leaders=paper's law at every substep", "the paper's law"],
   ["leaders=tuned law", "the tuned law"],
+  ["leaders=learned", "the pretrained policy"],
   ["n_leaders=0", "no leaders"],
   ["n_leaders=1", "one leader"],
   ["n_leaders=4", "four leaders"],
@@ -44,19 +55,25 @@ export function opposedTargets(leaders) {
   return Array.from({ length: leaders }, (_, k) => (k < leaders / 2 ? "cw" : "ccw")).join(",");
 }
 
+/** A policy for each of so many leaders: those of a list, or the one policy; one for all where there are not several. */
+export function policiesOf(policy, leaders) {
+  const given = policy.split(",").map((name) => (Object.hasOwn(OWN, name) ? name : "paper's law"));
+  return leaders > 1 ? Array.from({ length: leaders }, (_, k) => given[k] ?? given.at(-1)).join(",") : given[0];
+}
+
 export class Controls {
   /** `meanings`: what the simulator says of each parameter; `change` gets a name and a value. */
   constructor(meanings, policies, change) {
     Object.assign(this, { meanings, change, inputs: new Map() });
-    const sliders = document.getElementById("sliders");
-    for (const [name, words, low, high, step] of SLIDERS) {
-      sliders.append(this.#slider(name, words, { low, high, step }));
+    const byId = (id) => document.getElementById(id);
+    for (const [id, sliders] of Object.entries(SLIDERS)) {
+      byId(id).append(...sliders.map(([name, words, low, high, step]) => this.#slider(name, words, { low, high, step })));
     }
-    const choices = document.getElementById("choices");
     const known = Object.entries(LEADERS).filter(([name]) => policies.includes(name));
-    choices.append(this.#choice("leaders", "leaders steer by", known), this.#choice("beside", "beside it", BESIDE_CHOICES));
-    for (const [name, words, options] of CHOICES) {
-      choices.append(this.#choice(name, words, options));
+    byId("choices").append(this.#choice("leaders", "leaders steer by", [...known, ["each", "each its own"]]),
+      this.#choice("beside", "beside it", BESIDE_CHOICES));
+    for (const [id, choices] of Object.entries(CHOICES)) {
+      byId(id).append(...choices.map(([name, words, options]) => this.#choice(name, words, options)));
     }
   }
 
@@ -93,10 +110,26 @@ export class Controls {
     return label;
   }
 
-  /** Shows these values. */
+  /** Shows these values, and a choice for each leader that has a policy of its own. */
   show(values) {
+    const own = values.leaders.includes(",") ? values.leaders.split(",") : [];
     for (const [name, set] of this.inputs) {
-      set(values[name] ?? "");
+      set(name === "leaders" && own.length > 0 ? "each" : values[name] ?? "");
     }
+    const each = document.getElementById("each");
+    if (each.childElementCount !== own.length) {
+      each.replaceChildren(...own.map((_, leader) => this.#ownChoice(each, leader)));
+    }
+    own.forEach((policy, leader) => { each.children[leader].querySelector("select").value = policy; });
+  }
+
+  #ownChoice(each, leader) {
+    const label = element("label", "", `leader ${leader} `);
+    const select = element("select");
+    select.append(...Object.entries(OWN).map(([value, shown]) => new Option(shown, value)));
+    const chosen = () => Array.from(each.querySelectorAll("select"), ({ value }) => value).join(",");
+    select.addEventListener("change", () => this.change("leaders", chosen()));
+    label.append(select);
+    return label;
   }
 }

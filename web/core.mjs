@@ -3,8 +3,8 @@
 /** Names of the columns that a flock fills, in their order. */
 export const COLUMNS = ["time_s", "phase", "in_analysis_window", "pose", "velocity", "rudder", "series",
   "contacts", "observation"];
-/** Numbers of a contact: two boats (−1 for a wall), place along the core, direction, force. */
-export const CONTACT = 5;
+/** Numbers of a contact: two boats (−1 for a wall), place along the core, direction as a vector, force. */
+export const CONTACT = 6;
 
 /** The longest sentence, in letters: values may have hundreds of digits. */
 const LONGEST_SENTENCE = 250;
@@ -27,6 +27,11 @@ export class Core {
   static async load(bytes) {
     const { instance } = await WebAssembly.instantiate(bytes, {});
     return new Core(instance.exports);
+  }
+
+  /** Bytes of the simulator's memory. */
+  get memory() {
+    return this.exports.memory.buffer.byteLength;
   }
 
   /** What there is: presets, fields, quantities … */

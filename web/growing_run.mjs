@@ -135,8 +135,8 @@ export class GrowingRun extends Run {
     const known = this.latestContacts.findLast(({ time }) => time <= this.time[sample] + 1e-9);
     const numbers = known && this.time[sample] - known.time < 0.5 ? known.numbers : [];
     return Array.from({ length: numbers.length / CONTACT }, (_, k) => {
-      const [i, j, along, angle, force] = numbers.subarray(k * CONTACT, (k + 1) * CONTACT);
-      return { i, j, along, angle, force };
+      const [i, j, along, x, y, force] = numbers.subarray(k * CONTACT, (k + 1) * CONTACT);
+      return { i, j, along, angle: Math.atan2(y, x), force };
     });
   }
 }

@@ -10,36 +10,36 @@ export const LESSONS = [
     name: "noise",
     title: "Noise makes motion",
     link: `${NOISE}&bw_s=0`,
-    words: `These boats have no leaders and no rule to align, they only bump into each other; if they never back up ([0 s](${NOISE}&bw_s=0)), they ` +
-      `jam at the wall. Backing up for [1 s](${NOISE}&bw_s=1) of each cycle turns them enough to circle together, and backing up ` +
-      `for [2.8 s](${NOISE}&bw_s=2.8) turns them so much that no direction lasts.`,
+    words: "No boat leads and none looks at the others: they only bump. Each time they back up they turn at random, and this " +
+      `noise decides: [without it](${NOISE}&bw_s=0) they jam at the wall, with [0.6 s](${NOISE}&bw_s=0.6) or ` +
+      `[1 s](${NOISE}&bw_s=1) of it in each cycle they come to circle together, and with [2.8 s](${NOISE}&bw_s=2.8) they never agree.`,
   },
   {
     name: "leaders",
     title: "One leader or four",
     link: "#lesson=leaders&n_boats=27&n_leaders=1&bw_s=0.3&seed=7&beside.n_leaders=4&speed=16",
-    words: "Leaders (amber) head clockwise by the paper's law, and the others know nothing of them: the first " +
-      "flock has one leader, the second four. Compare the order towards the target, which is 1 if all normal boats circle clockwise.",
+    words: "Leaders (amber) steer clockwise round the ring; the others cannot tell them from any boat that bumps into them. " +
+      "Compare one leader with four: the order towards the target is 1 if all others circle clockwise, and −1 if all circle the other way.",
   },
   {
     name: "learned",
     title: "Learned or law",
-    link: "#lesson=learned&n_boats=27&n_leaders=4&bw_s=0.3&seed=7&beside.leaders=tuned law&speed=16",
-    words: "Both flocks start from the same places with the same noise, and each has four leaders. Those of the " +
-      "first follow the paper's law, and those of the second a law that was tuned for this pool.",
+    link: "#lesson=learned&n_boats=27&n_leaders=4&bw_s=0.3&seed=7&beside.leaders=learned&speed=16",
+    words: "Both flocks have four leaders, and start from the same places with the same noise. The leaders of the first follow the " +
+      "paper's law, those of the second learned by trial and error which way to head: compare the mean order towards the target.",
   },
   {
     name: "forces",
     title: "Contacts and forces",
     link: "#lesson=forces&pool=narrow&n_boats=27&n_leaders=3&bw_s=0.1&seed=3&speed=1&boat=0&forces=1",
-    words: "A bar is the push of a contact on a boat, and there is nothing else by which a boat notices others. Touch a boat " +
-      "to see the local frame that its angle φ is measured in, and below, for a leader, all that it observes.",
+    words: "A bar is the push that a boat gets where it touches another or a wall, and boats notice nothing else of each other. " +
+      "Touch a boat to see the local frame that its angle φ is measured in, and an amber one, a leader, to see all that it observes.",
   },
   {
     name: "opposed",
     title: "Opposed leaders",
     link: `${OPPOSED}&target=cw,cw,ccw,ccw`,
-    words: "Two leaders head clockwise (amber) and two counter-clockwise (pink), and within twenty minutes this flock goes " +
+    words: "Two leaders steer clockwise (amber) and two counter-clockwise (pink), and within twenty minutes this flock goes " +
       `counter-clockwise on average. With [three against one](${OPPOSED}&target=cw,cw,cw,ccw) it goes clockwise, with the three.`,
   },
 ];

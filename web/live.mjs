@@ -1,10 +1,10 @@
 // The page: flocks that the simulator moves, their pictures and series, and everything that a visitor may do.
 
 import { Chart, legendOf } from "../flockenv/replay/chart.mjs";
-import { Panel, parameterTable } from "../flockenv/replay/panel.mjs";
+import { Panel, parameterTable, runSwitch } from "../flockenv/replay/panel.mjs";
 import { colors } from "../flockenv/replay/scene.mjs";
 import { element, fixed } from "../flockenv/replay/words.mjs";
-import { Controls, LEADERS, opposedTargets } from "./controls.mjs";
+import { Controls, LEADERS, opposedTargets, policiesOf } from "./controls.mjs";
 import { byKind } from "./core.mjs";
 import { GrowingRun } from "./growing_run.mjs";
 import { drawLapFrame } from "./lap_frame.mjs";
@@ -27,6 +27,8 @@ const LINK_AFTER = 1000;
 export const OPENING = LESSONS[0].link;
 /** Force, in cm/s², that a bar as long as a hull is wide stands for. */
 const FORCE = 20;
+/** The number of no boat. */
+const NO_BOAT = 1e6;
 /** Fields whose change makes another flock of a map's. */
 const NOT_ON_MAP = new Set(["bw_s", "seed", "target"]);
 
@@ -96,6 +98,8 @@ export class LivePage {
     } else if (name === "preset") {
       const { n_boats, n_leaders, seed, leaders } = { ...this.values, ...wanted.flock };
       wanted.flock = { preset: value, n_boats, n_leaders, ...(seed && { seed }), ...(leaders && { leaders }) };
+    } else if (name === "leaders" && value === "each") {
+      wanted.flock.leaders = policiesOf(base.flock.leaders ?? "", Number(this.values.n_leaders));
     } else if (name === "target") {
       wanted.flock.target = value === "opposed" ? opposedTargets(Number(this.values.n_leaders)) : value;
     } else {
@@ -104,6 +108,9 @@ export class LivePage {
     const targets = wanted.flock.target ?? this.values.target;
     if (name === "n_leaders" && targets.includes(",")) {
       wanted.flock.target = Number(value) > 1 ? opposedTargets(Number(value)) : "cw";
+    }
+    if (name === "n_leaders" && wanted.flock.leaders?.includes(",")) {
+      wanted.flock.leaders = policiesOf(wanted.flock.leaders, Number(value));
     }
     if (wanted.flock.leaders === "you" && !wanted.beside) {
       wanted.beside = { leaders: "paper's law at every substep" };
@@ -183,7 +190,8 @@ export class LivePage {
     const parameters = Object.fromEntries(lines.get("value"));
     const fields = place === 0 ? wanted.flock : { ...wanted.flock, ...wanted.beside };
     const leaders = Number(parameters.n_leaders);
-    const steering = LEADERS[fields.leaders ?? "paper's law at every substep"] ?? fields.leaders;
+    const policy = fields.leaders ?? "paper's law at every substep";
+    const steering = policy.includes(",") ? "each its own" : LEADERS[policy] ?? policy;
     const name = leaders === 0 ? "no leaders" : `${leaders} leader${leaders > 1 ? "s" : ""}, ${steering}`;
     return this.#described(text, { name, seed: fields.seed ?? "0", version: this.about.version });
   }
@@ -213,7 +221,7 @@ export class LivePage {
     for (const panel of this.panels) {
       panel.onBoat((boat) => { this.hovered = boat; }, (boat) => this.pin(boat === this.pinned ? null : boat));
     }
-    byId("runs").replaceChildren(...this.panels.map(({ root }) => root));
+    byId("runs").replaceChildren(...(isPair ? [runSwitch(this.runs, () => this.show())] : []), ...this.panels.map(({ root }) => root));
     byId("signed").hidden = this.runs.every(({ target }) => target === null);
     for (const [chart] of this.charts) {
       chart.runs = this.runs;
@@ -306,7 +314,7 @@ export class LivePage {
     document.addEventListener("dragover", (event) => event.preventDefault());
     document.addEventListener("drop", (event) => {
       event.preventDefault();
-      this.open(event.dataTransfer.files[0]);
+      this.open(event.dataTransfer?.files[0]);
     });
     new ResizeObserver(() => this.show()).observe(byId("runs"));
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
@@ -407,7 +415,22 @@ export class LivePage {
     } else {
       this.other.boat = String(boat);
     }
+    this.observed = null;
     this.show();
+    if (boat !== null && !this.playing && !this.recorded) {
+      this.#look(boat);
+    }
+  }
+
+  /** Asks what a boat observes, where no time passes. */
+  async #look(boat) {
+    await this.#attempt(async () => {
+      const { taken } = await this.simulator.ask("look", { boat });
+      if (boat === this.pinned) {
+        this.observed = taken[0].observation;
+        this.show();
+      }
+    });
   }
 
   seek(time) {
@@ -468,10 +491,11 @@ export class LivePage {
     }
     this.advancing = true;
     const { runs } = this;
-    const question = { samples, milliseconds: FRAME_WORK, boat: this.pinned ?? 1e6, rudder: this.rudder };
+    const question = { samples, milliseconds: FRAME_WORK, boat: this.pinned ?? NO_BOAT, rudder: this.rudder };
     await this.#attempt(async () => {
-      const { taken, milliseconds } = await this.simulator.ask("advance", question);
+      const { taken, milliseconds, memory } = await this.simulator.ask("advance", question);
       this.costs.simulating += milliseconds;
+      this.costs.memory = memory;
       // The flocks may have become others meanwhile.
       if (runs === this.runs) {
         taken.forEach((each, place) => {
@@ -503,9 +527,9 @@ export class LivePage {
     const boat = this.hovered ?? this.pinned;
     const trailSeconds = Math.min(TRAIL_SECONDS, TRAIL_BOAT_SECONDS / this.runs[0].boats);
     const options = { trailSeconds, forceScale: byId("forces").checked ? FORCE : null, boat, palette: this.palette };
-    for (const panel of this.panels.filter(({ canvas }) => canvas.clientWidth > 0)) {
+    for (const panel of this.panels) {
       panel.show(this.time, options);
-      if (this.pinned !== null && !this.isYours) {
+      if (this.pinned !== null && !this.isYours && panel.canvas.clientWidth > 0) {
         drawLapFrame(panel.scene, this.pinned);
       }
     }
@@ -547,14 +571,14 @@ export class LivePage {
     const isLeader = this.pinned !== null && this.pinned < this.runs[0].leaders && !this.recorded;
     byId("observes").hidden = !isLeader;
     if (!isLeader || !byId("observes").open || this.observed?.length !== this.entries.length) {
+      byId("observation").replaceChildren();
       return;
     }
     const table = element("table");
     this.entries.forEach(([block, count, name, , meaning], place) => {
       const row = element("tr");
-      row.title = meaning;
       row.append(element("th", "", block === "neighbors" ? `neighbor ${Number(count) + 1}: ${name}` : name),
-        element("td", "", fixed(this.observed[place], 2, true)));
+        element("td", "", fixed(this.observed[place], 2, true)), element("td", "faint", meaning));
       table.append(row);
     });
     byId("observation").replaceChildren(table);

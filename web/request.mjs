@@ -78,7 +78,8 @@ export function commandLine(flock, seconds) {
   }
   const policy = flock.leaders ?? "paper's law at every substep";
   words.push(...(policy === "paper's law at every substep" ? [] : [`--policy "${policy}"`]), `--seed ${flock.seed ?? 0}`, `--minutes ${seconds / 60}`);
-  return words.join(" ");
+  // A flock whose leaders have policies of their own is no command.
+  return policy.includes(",") ? "" : words.join(" ");
 }
 
 /** A list as TOML has it; a row of numbers that ends in a semicolon is one of several. */
@@ -93,7 +94,10 @@ function listed(value) {
 export function pythonText(flock, seconds, kinds) {
   const changes = Object.entries(flock).filter(([name]) => isOwn(name))
     .map(([name, value]) => `${name}=${pythonValue(value, kinds[name])}`);
-  const policy = flock.leaders && flock.leaders !== "paper's law at every substep" ? `, policy="${flock.leaders}"` : "";
+  const { leaders = "paper's law at every substep" } = flock;
+  const each = leaders.split(",").map((name, leader) => `"leader_${leader}": "${name}"`);
+  const steering = each.length > 1 ? `{${each.join(", ")}}` : `"${leaders}"`;
+  const policy = leaders === "paper's law at every substep" ? "" : `, policy=${steering}`;
   return [
     "import flockenv",
     "",

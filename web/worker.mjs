@@ -54,10 +54,15 @@ const ANSWERS = {
         }
       }
     }
+    return { ...ANSWERS.look({ boat }), milliseconds: performance.now() - start, memory: core.memory };
+  },
+
+  /** The contacts, and what a boat observes, as they are now. */
+  look({ boat }) {
     for (const flock of shown.keys()) {
       core.look(flock, boat);
     }
-    return { taken: taken(shown.length), milliseconds: performance.now() - start };
+    return { taken: taken(shown.length) };
   },
 };
 

@@ -71,6 +71,6 @@ def live_demo(page: Path, seed: int = DEMO_SEED) -> str:
     """
     p = DEMO_PARAMETERS
     flock = f"n_boats={p.n_boats}&n_leaders={p.n_leaders}&pool={p.pool}&bw_s={p.bw_s}&seed={seed}"
-    link = f"#lesson=learned&{flock}&beside.leaders=tuned law"
+    link = f"#lesson=learned&{flock}&beside.leaders={LEARNED}"
     opening = as_script_content(f'"opening": {json.dumps(link)}')
     return page.read_text("utf-8").replace('"opening": null', opening, 1)

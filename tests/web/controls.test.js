@@ -1,8 +1,8 @@
-// Law: opposed leaders are two halves, and a lesson's sentences are words and links to flocks that the page shows.
+// Law: opposed leaders are two halves, leaders with policies of their own have one each, and a lesson's sentences are words and links to flocks that the page shows.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { opposedTargets } from "../../web/controls.mjs";
+import { opposedTargets, policiesOf } from "../../web/controls.mjs";
 import { readLink } from "../../web/request.mjs";
 import { LESSONS } from "../../web/lessons.mjs";
 
@@ -12,6 +12,13 @@ test("opposed leaders are two halves, the larger one clockwise", () => {
   assert.equal(opposedTargets(2), "cw,ccw");
   assert.equal(opposedTargets(3), "cw,cw,ccw");
   assert.equal(opposedTargets(4), "cw,cw,ccw,ccw");
+});
+
+test("each leader has a policy, the last one's if no other is known", () => {
+  assert.equal(policiesOf("paper's law at every substep", 3), "paper's law,paper's law,paper's law");
+  assert.equal(policiesOf("learned,tuned law", 3), "learned,tuned law,tuned law");
+  assert.equal(policiesOf("learned,tuned law", 1), "learned");
+  assert.equal(policiesOf("you", 2), "paper's law,paper's law");
 });
 
 test("every link of a lesson is followed whole, and stays in its lesson", () => {

@@ -16,7 +16,7 @@ function samples(times, orders, inWindow) {
     velocity: Float64Array.from(times.flatMap(() => [3, 4, 0.5, 0, 0, 0])),
     rudder: Float64Array.from(times, (time) => time / 10),
     series: Float64Array.from(orders.flatMap((order) => [order, order / 2])),
-    contacts: Float64Array.of(0, 1, 2.5, 0, 15),
+    contacts: Float64Array.of(0, 1, 2.5, 1, 0, 15),
   };
 }
 

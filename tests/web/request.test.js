@@ -71,6 +71,12 @@ test("the same flock in Python", () => {
   ].join("\n"));
 });
 
+test("leaders with policies of their own are no command, and a dictionary in Python", () => {
+  const flock = { n_leaders: "2", leaders: "learned,paper's law" };
+  assert.equal(commandLine(flock, 60), "");
+  assert.match(pythonText(flock, 60, { n_leaders: "count" }), /policy=\{"leader_0": "learned", "leader_1": "paper's law"\}\)\n$/);
+});
+
 test("parameters as TOML are read back as the request that they came from", () => {
   const kinds = { n_boats: "count", pool: "pool", bw_s: "real", leaders_reverse: "flag", target: "choices", discs: "rows" };
   const values = { n_boats: "27", pool: "inf,0", bw_s: "1e-7", leaders_reverse: "true", target: "cw,ccw", discs: "1,2,3;4,5,6.5" };

@@ -37,6 +37,9 @@ def numbers(text: str) -> np.ndarray:
     [
         ("paper's law at every substep", {}),
         ("tuned law", {}),
+        ("learned", {}),
+        # A policy of its own for each leader; one of them mirrors a counter-clockwise target.
+        ("learned,paper's law,tuned law", {"target": "ccw"}),
         ("paper's law at every substep", {"scheme": "moreau", "noise_scheme": "per-step"}),
         (
             "paper's law at every substep",
@@ -47,7 +50,8 @@ def numbers(text: str) -> np.ndarray:
 def test_a_minute_of_27_boats_with_leaders(policy, changes, pytestconfig):
     fields = {"n_boats": 27, "n_leaders": 3, "bw_s": 0.3, **changes}
     parameters = flockenv.FlockParameters(**fields)
-    native = flockenv.simulate(parameters, 7, MINUTE_S, policy=policy)
+    each = {f"leader_{k}": name for k, name in enumerate(policy.split(","))}
+    native = flockenv.simulate(parameters, 7, MINUTE_S, policy=each if len(each) > 1 else policy)
     lines = [f"{name}={value}" for name, value in fields.items()]
     request = "\n".join([*lines, "seed=7", f"leaders={policy}"])
     (end,) = ends_in_node(pytestconfig.rootpath, [request], MINUTE_S)

@@ -1,15 +1,16 @@
-//! How leaders steer on the page: a policy, and one leader that the visitor may steer.
+//! How leaders steer on the page: one policy for all, one that the visitor steers, or a policy for each.
 
-use flockenv::environment::observation::{FlockView, ObservationLayout, Observer};
+use flockenv::environment::observation::{Block, ObservationLayout, observe_flock};
 use flockenv::parameters::FlockParameters;
-use flockenv::policies::{Law, Pilot};
+use flockenv::policies::{Law, ObservedLaw, Pilot};
 use flockenv::{Flock, FlockError, Result};
 
 /// The paper's law at every substep, by the name that the command line has for it.
 pub(crate) const EVERY_SUBSTEP: &str = "paper's law at every substep";
 
 /// The policies, by the names that the command line has for them; `you` is the visitor.
-pub(crate) const POLICIES: [&str; 5] = [EVERY_SUBSTEP, "paper's law", "tuned law", "learned", "you"];
+pub(crate) const POLICIES: [&str; 5] =
+    [EVERY_SUBSTEP, "paper's law", "tuned law", "learned", "you"];
 
 /// Decisions per second of all policies but the law at every substep.
 pub(crate) const CONTROL_HZ: f64 = 10.0;
@@ -22,38 +23,57 @@ pub(crate) enum Leaders {
     Law(Pilot),
     /// By the paper's law, but for leader 0, whose rudder is the visitor's.
     You(Pilot),
+    /// Each by a law of its own, from what it observes.
+    Each(Vec<Observing>),
+}
+
+/// A leader's own law.
+pub(crate) struct Observing {
+    law: ObservedLaw,
+    layout: ObservationLayout,
 }
 
 impl Leaders {
-    /// The policy of this name.
+    /// The policy of this name, or the policies whose names commas separate, one for each leader.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for unknown names, and flocks that the policy is not made for.
     pub fn named(name: &str, parameters: &FlockParameters) -> Result<Self> {
-        let refuse = |accepted: &str| FlockError::parameter("leaders", name, accepted);
-        let law = match name {
-            EVERY_SUBSTEP => return Ok(Self::EverySubstep),
+        if name.contains(',') {
+            return Self::each(&name.split(',').collect::<Vec<_>>(), parameters);
+        }
+        match name {
+            EVERY_SUBSTEP => Ok(Self::EverySubstep),
             "you" if parameters.n_leaders == 0 => {
-                return Err(refuse("at least one leader, whom you steer"));
+                Err(refused(name, "at least one leader, whom you steer"))
             }
-            "you" => Law::Paper,
-            _ if !POLICIES.contains(&name) => return Err(refuse(&POLICIES.join(", "))),
-            _ => Law::named(name, parameters.pool.name())
-                .map_err(|_| refuse("this law is for the pools that have a name"))?,
-        };
-        let pilot = Pilot::new(law, parameters, CONTROL_HZ)?;
-        Ok(if name == "you" {
-            Self::You(pilot)
-        } else {
-            Self::Law(pilot)
-        })
+            "you" => Pilot::new(Law::Paper, parameters, CONTROL_HZ).map(Self::You),
+            _ => Pilot::new(law(name, parameters)?, parameters, CONTROL_HZ).map(Self::Law),
+        }
     }
 
-    /// The rudders from now on; `None` for the law at every substep.
+    fn each(names: &[&str], parameters: &FlockParameters) -> Result<Self> {
+        if names.len() != parameters.n_leaders {
+            let accepted = format!("one policy for each of {} leaders", parameters.n_leaders);
+            return Err(refused(&names.join(","), &accepted));
+        }
+        let own = names.iter().map(|name| {
+            let law = law(name, parameters)?;
+            let mut layout = ObservationLayout::default();
+            // As in Python, leaning laws look at lean features, and see each target as the clockwise one.
+            layout.mirror_to_target = matches!(law, Law::Leaning(_));
+            layout.repeat(Block::LeanFeatures, usize::from(layout.mirror_to_target));
+            let law = ObservedLaw::new(law, &layout)?;
+            Ok(Observing { law, layout })
+        });
+        own.collect::<Result<_>>().map(Self::Each)
+    }
+
+    /// The rudders from now on, given those until now; `None` for the law at every substep.
     ///
     /// # Errors
-    /// As for [`Pilot::rudders`].
-    pub fn decide(&mut self, flock: &Flock, yours: f64) -> Result<Option<Vec<f64>>> {
+    /// As for [`Pilot::rudders`] and [`observe_flock`].
+    pub fn decide(&mut self, flock: &Flock, held: &[f64], yours: f64) -> Result<Option<Vec<f64>>> {
         match self {
             Self::EverySubstep => Ok(None),
             Self::Law(pilot) => pilot.rudders(flock).map(Some),
@@ -62,24 +82,49 @@ impl Leaders {
                 rudders[0] = yours;
                 Ok(Some(rudders))
             }
+            Self::Each(own) => {
+                let own = own.iter().enumerate();
+                own.map(|(leader, own)| own.rudder(flock, held, leader))
+                    .collect::<Result<_>>()
+                    .map(Some)
+            }
         }
     }
+}
+
+impl Observing {
+    fn rudder(&self, flock: &Flock, held: &[f64], leader: usize) -> Result<f64> {
+        let (all, size) = (observe_flock(flock, self.layout, held)?, self.layout.size());
+        let action = self.law.action(&all[leader * size..][..size]);
+        let sign = flock.parameters().target.of(leader).sign();
+        Ok(if self.layout.mirror_to_target {
+            sign * action
+        } else {
+            action
+        })
+    }
+}
+
+fn refused(name: &str, accepted: &str) -> FlockError {
+    FlockError::parameter("leaders", name, accepted)
+}
+
+/// The law of a name that the page has, but for [`EVERY_SUBSTEP`].
+fn law(name: &str, parameters: &FlockParameters) -> Result<Law> {
+    if !POLICIES[1..4].contains(&name) {
+        return Err(refused(name, &POLICIES.join(", ")));
+    }
+    let found = Law::named(name, parameters.pool.name());
+    found.map_err(|_| refused(name, "this law is for the pools that have a name"))
 }
 
 /// What a leader observes by default.
 ///
 /// # Errors
-/// Those of [`Observer::new`].
+/// Those of [`observe_flock`].
 pub(crate) fn observed(flock: &Flock, rudders: &[f64], leader: usize) -> Result<Vec<f64>> {
     let layout = ObservationLayout::default();
-    let mut observer = Observer::new(layout, flock.parameters())?;
-    let mut all = vec![0.0; layout.size() * flock.parameters().n_leaders];
-    let order = flock.order_parameters(false).ok();
-    let view = FlockView::new(flock, rudders, order.as_ref());
-    observer.observe(&view, &mut all);
-    let own = all
-        .chunks_exact(layout.size())
-        .nth(leader)
-        .unwrap_or_default();
-    Ok(own.iter().map(|&number| f64::from(number)).collect())
+    let all = observe_flock(flock, layout, rudders)?;
+    let own = all.chunks_exact(layout.size()).nth(leader);
+    Ok(own.unwrap_or_default().iter().map(|&x| x.into()).collect())
 }

@@ -14,7 +14,7 @@ const LONGEST_S: f64 = 1e9;
 
 /// Numbers of the samples since they were last taken: time in s, phase (0 to 3), whether it is analyzed, poses,
 /// velocities, rudders, quantities; then the contacts that carry a force now (boats, −1 for a wall; place along the
-/// core in cm; direction in rad; force in cm/s²), and what a leader observes now.
+/// core in cm; direction as a vector; force in cm/s²), and what a leader observes now.
 pub(crate) type Columns = [Vec<f64>; 9];
 
 /// The quantities of a sample, in the order of the table.
@@ -27,7 +27,6 @@ pub(crate) fn quantities() -> impl Iterator<Item = &'static Quantity> {
 pub(crate) struct Live {
     flock: Flock,
     leaders: Leaders,
-    policy: String,
     rudder: Option<Vec<f64>>,
     yours: f64,
     sampling: Sampling,
@@ -45,7 +44,6 @@ impl Live {
         let mut live = Self {
             flock: Flock::new(request.parameters, request.seed)?,
             leaders,
-            policy: request.leaders,
             rudder: None,
             yours: 0.0,
             sampling: Sampling::new(LONGEST_S, CONTROL_HZ)?,
@@ -53,7 +51,7 @@ impl Live {
             columns: Columns::default(),
         };
         live.start_steering();
-        live.sample();
+        live.sample()?;
         Ok(live)
     }
 
@@ -83,7 +81,7 @@ impl Live {
             *self = Self::new(request)?;
             return Ok(false);
         }
-        (self.leaders, self.policy) = (leaders, request.leaders);
+        self.leaders = leaders;
         self.start_steering();
         Ok(true)
     }
@@ -118,7 +116,7 @@ impl Live {
     /// Takes up to so many samples within about so many substeps times boats, and returns how many.
     ///
     /// # Errors
-    /// [`FlockError::Solver`] if numbers left their range.
+    /// [`FlockError::Solver`] if numbers left their range, and those of [`Leaders::decide`].
     pub fn advance(&mut self, samples: u32, boat_substeps: u64) -> Result<u32> {
         let start = self.flock.statistics().substeps;
         let boats = self.parameters().n_boats as u64;
@@ -134,7 +132,7 @@ impl Live {
                 .flock
                 .advance_towards(end, steering, boat_substeps - done)?
             {
-                self.sample();
+                self.sample()?;
                 taken += 1;
             }
         }
@@ -142,7 +140,8 @@ impl Live {
     }
 
     /// Takes a sample, then has the leaders decide.
-    fn sample(&mut self) {
+    fn sample(&mut self) -> Result<()> {
+        let now = self.rudders();
         let flock = &self.flock;
         let [
             time,
@@ -165,12 +164,7 @@ impl Live {
         for velocity in flock.velocities() {
             velocities.extend([velocity.linear.x, velocity.linear.y, velocity.angular]);
         }
-        match &self.rudder {
-            Some(held) => rudders.extend(held),
-            None => {
-                rudders.extend((0..flock.parameters().n_leaders).map(|k| flock.steering_law(k)))
-            }
-        }
+        rudders.extend(&now);
         let (recorded, order) = (
             flock.recorded(false).ok(),
             flock.order_parameters(false).ok(),
@@ -187,9 +181,19 @@ impl Live {
                 }),
         );
         self.taken += 1;
-        if let Ok(Some(rudder)) = self.leaders.decide(flock, self.yours) {
-            self.rudder = Some(rudder);
-        }
+        self.rudder = self.leaders.decide(flock, &now, self.yours)?;
+        Ok(())
+    }
+
+    /// The leaders' rudders as they stand.
+    fn rudders(&self) -> Vec<f64> {
+        let law = || {
+            let leaders = 0..self.parameters().n_leaders;
+            leaders
+                .map(|leader| self.flock.steering_law(leader))
+                .collect()
+        };
+        self.rudder.clone().unwrap_or_else(law)
     }
 
     /// Fills the columns of contacts and of what a leader observes.
@@ -197,9 +201,8 @@ impl Live {
     /// # Errors
     /// Those of the observer.
     pub fn look(&mut self, boat: usize) -> Result<()> {
-        let held = self.rudder.as_deref().unwrap_or_default();
         let seen = if boat < self.parameters().n_leaders {
-            observed(&self.flock, held, boat)?
+            observed(&self.flock, &self.rudders(), boat)?
         } else {
             Vec::new()
         };
@@ -211,12 +214,12 @@ impl Live {
                 Partner::OuterWall | Partner::InnerWall | Partner::Obstacle(_) => -1.0,
             };
             let normal = contact.gap.normal;
-            let direction = normal.y.atan2(normal.x);
             contacts.extend([
                 f64::from(contact.boat),
                 partner,
                 contact.gap.along,
-                direction,
+                normal.x,
+                normal.y,
                 each.force,
             ]);
         }

@@ -1,5 +1,6 @@
 //! What the page asks for: parameters by name, a seed, and how leaders steer.
 
+use crate::leaders::EVERY_SUBSTEP;
 use flockenv::geometry::resized_gyration_radius_cm;
 use flockenv::parameters::{Field, FlockParameters, Kind, Preset, Value};
 use flockenv::{FlockError, Result};
@@ -55,7 +56,7 @@ impl Request {
         Ok(Self {
             parameters,
             seed,
-            leaders: find("leaders").unwrap_or("paper's law at every substep").to_owned(),
+            leaders: find("leaders").unwrap_or(EVERY_SUBSTEP).to_owned(),
         })
     }
 }
