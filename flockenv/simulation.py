@@ -18,11 +18,7 @@ from flockenv.policies.model import ModelPolicy, as_policy
 from flockenv.policies.registry import named_policy, policy_name
 from flockenv.recording import PHASES, PRECISIONS, Recording
 
-__all__ = ["Change", "LeaderPolicy", "recorded", "simulate"]
-
-Change = tuple[float, str | Sequence[str] | FlockParameters]
-"""A time in s from the start of a run, and the target, or a list with one per leader, or the
-parameters from then on."""
+__all__ = ["simulate"]
 
 Schedule = Sequence[tuple[float, Mapping[str, Any]]]
 """Times in s from the start of a run, and the fields of the parameters that change then."""
@@ -130,76 +126,20 @@ def simulate(
     changes = _changes(parameters, schedule)
     flock = Flock(parameters, seed) if start is None else _started(parameters, seed, start)
     flock.threads = threads
-    run = _run(
-        flock,
-        parameters,
-        (duration_s, sample_hz),
-        changes,
-        seats,
-        control_hz,
-        dtype,
-        contacts,
-        progress,
-    )
-    return run if quantities is None else run.with_quantities(quantities)
-
-
-def recorded(
-    flock: Flock,
-    parameters: FlockParameters,
-    duration_s: float,
-    sample_hz: float,
-    *,
-    changes: Sequence[Change] = (),
-    policy: Steering | Mapping[str, Steering] = None,
-    control_hz: float | None = None,
-    dtype: DTypeLike = np.float32,
-    contacts: bool = False,
-    progress: Callable[[float], object] | None = None,
-) -> Recording:
-    """Record a run from where a flock is; the flock itself stays there.
-
-    Parameters
-    ----------
-    flock
-        Where the run starts.
-    parameters
-        What the recording says of the run.
-    changes
-        What changes on the way: at each of these times, after the sample at that time, the target
-        or all parameters. With another pool each boat keeps its angle about the center and its
-        share of the way between the walls.
-    policy, duration_s, sample_hz, control_hz, dtype, contacts, progress
-        As for `simulate`, as are the errors.
-    """
-    seats = _seats(policy, flock.parameters)
-    sampling = (duration_s, sample_hz)
-    return _run(flock, parameters, sampling, changes, seats, control_hz, dtype, contacts, progress)
-
-
-def _run(
-    flock: Flock,
-    parameters: FlockParameters,
-    sampling: tuple[float, float],
-    changes: Sequence[Change],
-    seats: Sequence["_Seat"],
-    control_hz: float | None,
-    dtype: DTypeLike,
-    contacts: bool,
-    progress: Callable[[float], object] | None,
-) -> Recording:
-    duration_s, sample_hz = sampling
+    precision = np.dtype(dtype)
+    if precision not in PRECISIONS:
+        raise ParameterError(f"dtype = {precision} is not accepted: float64 or float32")
     plan = {
         "sample_hz": sample_hz,
-        "single_precision": bool(_precision(dtype) == np.float32),
+        "single_precision": bool(precision == np.float32),
         "contacts": contacts,
-        "changes": list(changes),
-        "control": _control(seats, flock.core.parameters["n_leaders"], control_hz),
+        "changes": changes,
+        "control": _control(seats, parameters.n_leaders, control_hz),
         "progress": progress,
     }
     columns = _core.record(flock.core, duration_s, plan)
     series = columns.pop("contacts", None)
-    return Recording(
+    run = Recording(
         **columns | {"phase": PHASES[columns["phase"]], "order": OrderSeries(**columns["order"])},
         contacts=None if series is None else ContactSeries.of_columns(series),
         parameters=parameters,
@@ -207,6 +147,7 @@ def _run(
         version=_core.__version__,
         policy="; ".join(seat.title for seat in seats) or policy_name(None),
     )
+    return run if quantities is None else run.with_quantities(quantities)
 
 
 @dataclass
@@ -311,32 +252,29 @@ def _control(
     }
 
 
-def _changes(parameters: FlockParameters, schedule: Schedule) -> list[Change]:
+def _changes(
+    parameters: FlockParameters, schedule: Schedule
+) -> list[tuple[float, str | tuple[str, ...] | FlockParameters]]:
     """Return the changes of a schedule: of the target alone, or of all parameters."""
-    changes: list[Change] = []
-    now = parameters
-    for entry in sorted(_entries(schedule), key=lambda each: each[0]):
-        time_s, fields = entry
-        if sized := {"n_boats", "n_leaders"} & fields.keys():
-            raise ParameterError(
-                f"schedule = {shown(entry)} is not accepted: {sized.pop()} does not change on the "
-                "way"
-            )
-        now = now.replace(**fields)
-        changes.append((time_s, now.target if fields.keys() == {"target"} else now))
-    return changes
-
-
-def _entries(schedule: Schedule) -> list[tuple[float, Mapping[str, Any]]]:
-    accepted = "pairs of a time in s, at least 0, and a dictionary of fields"
-    entries: list[tuple[float, Mapping[str, Any]]] = []
     for entry in schedule:
         match entry:
             case (int() | float() as time_s, Mapping() as fields) if 0.0 <= time_s <= 1e9:
-                entries.append((float(time_s), {str(name): fields[name] for name in fields}))
+                if sized := {"n_boats", "n_leaders"} & fields.keys():
+                    raise ParameterError(
+                        f"schedule = {shown(entry)} is not accepted: {sized.pop()} does not change "
+                        "on the way"
+                    )
             case _:
-                raise ParameterError(f"schedule = {shown(entry)} is not accepted: {accepted}")
-    return entries
+                raise ParameterError(
+                    f"schedule = {shown(entry)} is not accepted: pairs of a time in s, at least 0, "
+                    "and a dictionary of fields"
+                )
+    changes: list[tuple[float, str | tuple[str, ...] | FlockParameters]] = []
+    now = parameters
+    for time_s, fields in sorted(schedule, key=lambda each: each[0]):
+        now = now.replace(**fields)
+        changes.append((float(time_s), now.target if fields.keys() == {"target"} else now))
+    return changes
 
 
 def _started(parameters: FlockParameters, seed: int, start: Start) -> Flock:
@@ -358,10 +296,3 @@ def _started(parameters: FlockParameters, seed: int, start: Start) -> Flock:
         )
     flock.set_target(parameters.target)
     return flock
-
-
-def _precision(dtype: DTypeLike) -> np.dtype[Any]:
-    precision: np.dtype[Any] = np.dtype(dtype)
-    if precision not in PRECISIONS:
-        raise ParameterError(f"dtype = {precision} is not accepted: float64 or float32")
-    return precision

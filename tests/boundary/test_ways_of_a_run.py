@@ -41,6 +41,8 @@ def test_a_schedule_changes_fields_at_its_times():
         ([(1.0, {"n_boats": 11})], "n_boats does not change"),
         ([(1.0, {"bw": 1.0})], "'bw' is no field.*'bw_s'"),
         ([(1.0, {"bw_s": -1.0})], "bw_s"),
+        ([(1.0, {"target": "left"})], "target"),
+        ([(1.0, {"pool": (20.0, 15.0)})], "n_boats"),
         ([(-1.0, {"bw_s": 1.0})], "a time in s"),
         ([(float("nan"), {"bw_s": 1.0})], "a time in s"),
         ([{"bw_s": 1.0}], "a time in s"),
