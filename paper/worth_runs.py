@@ -9,7 +9,8 @@ from study import FIRST_SEED, Row, Study, flock
 import flockenv
 from flockenv.policies.registry import named_policy
 
-RUNS = 64
+RUNS, MORE_RUNS = 64, 256
+"""Seeds of every line, and of those of 27 boats."""
 DENSITY_BOATS = 27
 LAW = "law"
 POLICIES = (LAW, "learned", "tuned law", "damped law")
@@ -41,8 +42,10 @@ def design() -> list[Row]:
             "minutes": 24.0,
             "seed": seed,
         }
+        for first, last in ((0, RUNS), (RUNS, MORE_RUNS))
         for n_boats, bw_s, leaders, policy, against in cells
-        for seed in range(RUNS)
+        if last == RUNS or n_boats == DENSITY_BOATS
+        for seed in range(first, last)
     ]
 
 
