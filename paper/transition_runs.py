@@ -32,11 +32,17 @@ def outer_radius_cm(n_boats: int, coverage: float) -> float:
 
 
 def design() -> list[Row]:
-    """Return the map: the literal noise and the extremes of c4 first, small flocks first."""
+    """Return the map: the literal noise and the extremes of c4 first, small flocks first.
+
+    At a coverage of 0.5 rotation ends within minutes, so that fewer boats at the wall come next.
+    """
     literal = {"scheme": "paper", "noise_scheme": "per-step", "dt_s": 0.02}
     white = {"scheme": "leapfrog", "noise_scheme": "white", "dt_s": 0.1}
     first = [(n, 0.5, white | {"c4": c4}) for c4 in C4[:3] for n in (100, 200)]
     second = [(n, 0.5, literal | {"c4": 0.1}) for n in (100, 200)]
+    less = [
+        (n, share, white | {"c4": c4}) for share in (0.3, 0.2) for c4 in C4[:3] for n in (100, 200)
+    ]
     third = [(400, 0.5, white | {"c4": c4}) for c4 in C4[:3]]
     rest = [
         (n, coverage, white | {"c4": c4})
@@ -46,7 +52,7 @@ def design() -> list[Row]:
     ]
     finer = [(n, 0.5, white | {"c4": C4[0], "dt_s": 0.02}) for n in (100, 200)]
     cells: list[tuple[int, float, Row]] = []
-    for cell in first + second + third + finer + rest:
+    for cell in first + second + less + third + finer + rest:
         if cell not in cells:
             cells.append(cell)
     return [
