@@ -46,7 +46,7 @@ def ppo(seed: int) -> PPO:
         batch_size=4096,
         n_epochs=6,
         gamma=0.99,
-        policy_kwargs={"log_std_init": -0.5},
+        policy_kwargs={"log_std_init": -0.5, "net_arch": [32, 32]},
         seed=seed,
         device="cpu",
     )
@@ -124,11 +124,12 @@ def draw(rows: list[dict[str, Any]], path: Path) -> None:
 def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seeds", nargs="+", type=int, default=[0, 1, 2, 3, 4])
-    parser.add_argument("--samples", type=int, default=3_400_000)
+    parser.add_argument("--samples", type=int, default=4_500_000)
     parser.add_argument("--out", type=Path, default=Path("results/easy"))
     options = parser.parse_args(arguments)
     options.out.mkdir(parents=True, exist_ok=True)
-    found = {name: orders(law(mirror_to_target=True), EPISODES) for name, law in LAWS.items()}
+    layout = {name: OPTIONS[name] for name in ("observation", "mirror_to_target")}
+    found = {name: orders(law(**layout), EPISODES) for name, law in LAWS.items()}
     rows: list[dict[str, Any]] = [{"policy": n, **interval(each)} for n, each in found.items()]
     for seed in options.seeds:
         rows += learn(seed, options.samples, found["paper's law"])

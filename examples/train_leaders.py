@@ -13,7 +13,7 @@ from flockenv.policies import LeaningLaw
 from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
 from flockenv.sb3 import FlockMonitor, LeaderVecEnv, SharedNoisePolicy, shared_noise
 
-seed, hours, tests = map(int, sys.argv[1:] + ["0", "1600", "512"][len(sys.argv) - 1 :])
+seed, hours, tests = map(int, sys.argv[1:] + ["0", "2000", "512"][len(sys.argv) - 1 :])
 out, flock = f"results/train_leaders/{seed}", {"pool": "wide", "n_boats": 27, "bw_s": 0.31}
 off = {"own": False, "phase": False, "target": False, "neighbors": 0, "order": False}
 task = {"observation": {**off, "lean_features": True}, "mirror_to_target": True}
@@ -23,7 +23,7 @@ env = FlockMonitor(LeaderVecEnv(128, n_leaders=3, **flock, **task), f"{out}/0", 
 policy = {**shared_noise(env, hold_s=120.0), "log_std_init": -2.6, "squash_output": True}
 policy |= {"net_arch": {"pi": [], "vf": [64, 64]}}
 ppo = {"n_steps": 120, "batch_size": 5760, "n_epochs": 4, "gamma": 0.99, "gae_lambda": 0.975}
-ppo |= {"learning_rate": lambda left: 2e-3 * left, "use_sde": True, "device": "cpu"}
+ppo |= {"learning_rate": lambda left: 1.5e-3 * left, "use_sde": True, "device": "cpu"}
 model = PPO(SharedNoisePolicy, env, policy_kwargs=policy, seed=seed, **ppo)
 env.seed(POLICY_SEEDS["training"].seeds(1, run=seed)[0])
 model.policy.log_std.requires_grad_(False)  # the exploration stays as wide as it starts

@@ -25,7 +25,7 @@ class TrainOptions(Printing):
     pool: Annotated[str | None, typer.Option(help="wide or narrow. [wide]")] = None
     leaders: Annotated[int | None, typer.Option(help="Leaders of each flock. [3]")] = None
     flock_hours: Annotated[
-        float | None, typer.Option(help="When to stop: hours of all flocks together. [1600]")
+        float | None, typer.Option(help="When to stop: hours of all flocks together. [2000]")
     ] = None
     seed: Annotated[int | None, typer.Option(help="Number of the training. [0]")] = None
     change: Annotated[

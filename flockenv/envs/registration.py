@@ -13,7 +13,8 @@ EASY_ID = "flockenv/Order-easy-v0"
 
 ENVIRONMENTS: Mapping[str, Mapping[str, Any]] = {
     ENV_ID: {},
-    # Few boats and many leaders, so that samples show the order: baselines/learn_easy.py.
+    # Few boats, many leaders and few numbers observed, so that samples show the order:
+    # baselines/learn_easy.py.
     EASY_ID: {
         "n_boats": 10,
         "n_leaders": 4,
@@ -21,6 +22,7 @@ ENVIRONMENTS: Mapping[str, Mapping[str, Any]] = {
         "bw_s": 0.3,
         "target": "random",
         "mirror_to_target": True,
+        "observation": {"neighbors": 0, "target": False},
         "control_hz": 2.5,
         "episode_s": 120.0,
         "reward": {"signed_order": 1.0},

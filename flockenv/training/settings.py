@@ -71,7 +71,7 @@ class TrainingSettings:
 
     pool: str = "wide"
     n_leaders: int = 3
-    flock_hours: float = 1600.0
+    flock_hours: float = 2000.0
     num_flocks: int = 128
     seed: int = 0
     environment: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
@@ -134,7 +134,7 @@ class TrainingSettings:
             "n_steps": n_steps,
             "batch_size": max(2, n_steps * venv.num_envs // 8),
             "n_epochs": 4,
-            "learning_rate": LinearSchedule(2e-3, 1e-5, 1.0),
+            "learning_rate": LinearSchedule(1.5e-3, 0.0, 1.0),
             "gamma": 1.0 - 1.0 / (times["discount"] * hz),
             "gae_lambda": 1.0 - 1.0 / (times["advantage"] * hz),
             "use_sde": True,

@@ -40,4 +40,6 @@ def test_the_easy_environment_tells_good_leaders_from_bad():
             total += rewards / 300
         return total.mean()
 
-    assert mean_reward(DampedLaw()) > mean_reward(RandomRudders()) + 0.1
+    options = ENVIRONMENTS[EASY_ID]
+    layout = {name: options[name] for name in ("observation", "mirror_to_target")}
+    assert mean_reward(DampedLaw(**layout)) > mean_reward(RandomRudders(**layout)) + 0.1
