@@ -25,10 +25,10 @@ spin and destroys order, the more the longer it lasts (Tarcai et al. 2011). A fe
 leaders, have a rudder. The task is to make the *normal* boats circulate in the target direction."""
 
 _FIRST = """`flockenv/Order-easy-v0` is the environment to start with: ten boats, four of which lead
-and are rewarded for the order of the others. Plain PPO passes the paper's law within two minutes of processor time,
-which docs/train_in_four_minutes.md shows. The other interfaces take the same options:
-`gymnasium.spec("flockenv/Order-easy-v0").kwargs`. The ids are registered by `import flockenv`;
-`gymnasium.make("flockenv:flockenv/Order-easy-v0")` imports it by itself."""
+and are rewarded for the order of the others. Plain PPO passes the paper's law within two minutes of
+processor time, which docs/train_in_four_minutes.md shows. The other interfaces take the same
+options: `gymnasium.spec("flockenv/Order-easy-v0").kwargs`. The ids are registered by
+`import flockenv`; `gymnasium.make("flockenv:flockenv/Order-easy-v0")` imports it by itself."""
 
 _RUDDER = """A rudder is held for a control step. A positive rudder turns a boat that moves forward
 counter-clockwise, and works in reverse on a boat that moves backward. Numbers beyond ±1 are
