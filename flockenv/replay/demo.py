@@ -11,29 +11,18 @@ from flockenv.recording import Recording
 from flockenv.replay.template import as_script_content
 from flockenv.simulation import simulate
 
-__all__ = [
-    "DEMO_MINUTES",
-    "DEMO_PARAMETERS",
-    "DEMO_POLICIES",
-    "DEMO_SEED",
-    "demo_runs",
-    "live_demo",
-    "live_page",
-]
+__all__ = ["DEMO_PARAMETERS", "DEMO_POLICIES", "demo_runs", "live_demo", "live_page"]
 
 DEMO_PARAMETERS: Final = FlockParameters(n_boats=27, n_leaders=4, pool="wide", bw_s=0.3)
 """Four leaders among 27 boats, near the critical noise."""
-
-DEMO_SEED = 7
-DEMO_MINUTES = 8.0
 
 DEMO_POLICIES: Final = {"paper's law": EVERY_SUBSTEP, "learned": LEARNED}
 """How the leaders steer, by the name that a run has on the page."""
 
 
 def demo_runs(
-    seed: int = DEMO_SEED,
-    minutes: float = DEMO_MINUTES,
+    seed: int = 7,
+    minutes: float = 8.0,
     progress: Callable[[float], object] | None = None,
 ) -> dict[str, Recording]:
     """Return the runs of `DEMO_PARAMETERS` by name, both from the same initial state.
@@ -59,7 +48,7 @@ def live_page() -> Path | None:
     return page if page.is_file() else None
 
 
-def live_demo(page: Path, seed: int = DEMO_SEED) -> str:
+def live_demo(page: Path, seed: int) -> str:
     """Return a live page that opens with the two flocks of the demo.
 
     Parameters

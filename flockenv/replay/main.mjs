@@ -5,7 +5,7 @@ import { Player } from "./player.mjs";
 import { Run } from "./run.mjs";
 
 async function start() {
-  const { runs: described, quantities, moment, plays } = JSON.parse(document.getElementById("data").textContent);
+  const { runs: described, quantities, moment } = JSON.parse(document.getElementById("data").textContent);
   const runs = await Promise.all(described.map(async (run) => new Run(run, await unpack(run.data))));
   window.player = new Player(runs, quantities, moment.time_s);
   const thinned = Math.max(...runs.map((run) => run.every));
@@ -13,7 +13,7 @@ async function start() {
     `${moment.words} ${thinned > 1 ? `Every ${thinned}th sample is shown. ` : ""}` +
     "Between samples boats are drawn on straight lines. Click a boat to keep its numbers.";
   document.body.dataset.ready = "true";
-  if (plays && !matchMedia("(prefers-reduced-motion: reduce)").matches) {
+  if (!matchMedia("(prefers-reduced-motion: reduce)").matches) {
     window.player.toggle();
   }
 }

@@ -18,19 +18,15 @@ from flockenv import _core
 from flockenv._io.atomic_write import atomic_write
 from flockenv.errors import ParameterError
 from flockenv.flock import ContactSeries
-from flockenv.parameters import FlockParameters
 from flockenv.recording import PHASES, Recording
 from flockenv.replay.packing import Packer
-from flockenv.replay.quantities import ShownQuantity, decisive_minute, shown_quantities
+from flockenv.replay.quantities import decisive_minute, series_of, shown_quantities
 from flockenv.replay.template import as_script_content, digest, filled, joined
 
-__all__ = ["MOST_BYTES", "MOST_INLINE_BYTES", "Replay", "inline_replay", "write_replay"]
+__all__ = ["MOST_BYTES", "Replay", "write_replay"]
 
 MOST_BYTES = 10_000_000
 """Size that no page exceeds: of longer runs it shows fewer samples per second."""
-
-MOST_INLINE_BYTES = 2_000_000
-"""Size that no page inside a notebook exceeds: notebooks keep what they show."""
 
 # In the order in which one needs another; on the page they are one script.
 _SCRIPTS = (
@@ -47,8 +43,6 @@ _SCRIPTS = (
 )
 # What a page takes without its runs, at most.
 _SCRIPT_BYTES = 100_000
-# What a page's own quotation marks and angle brackets grow by inside an attribute, at most.
-_ESCAPES = 100_000
 _THINNING = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 _MOST_RUNS = 2
 _MOST_SAMPLES = 400_000
@@ -113,82 +107,53 @@ def write_replay(
         raise ParameterError(f"a {kind} is not accepted: a recording, or recordings by their names")
     if not 1 <= len(recordings) <= _MOST_RUNS:
         raise ParameterError(f"{len(recordings)} recordings are not accepted: 1 or {_MOST_RUNS}")
-    page, every = replay_page(recordings, MOST_BYTES)
+    for name, recording in recordings.items():
+        if len(recording) == 0 or not recording.has_poses:
+            raise ParameterError(f"recording {name!r} is not accepted: samples with their poses")
+    page, every = _fitting_page(recordings)
     with atomic_write(path) as file:
         file.write(page)
     return Replay(len(page), every)
 
 
-def inline_replay(recording: Recording, name: str) -> str:
-    """Return a replay as an HTML element for a notebook: a page of its own, paused, in a frame.
-
-    The frame is sandboxed: its script reaches neither the notebook nor the network. It takes at
-    most `MOST_INLINE_BYTES`, in which longer runs show fewer samples.
-
-    Raises
-    ------
-    ParameterError
-        If the recording is too large to be shown at all.
-    """
-    page, _ = replay_page({name: recording}, MOST_INLINE_BYTES - _ESCAPES, plays=False)
-    return (
-        f'<iframe sandbox="allow-scripts" title="Replay of {html.escape(name)}" '
-        'style="width: 100%; height: 640px; max-height: 90vh; border: 0" '
-        f'srcdoc="{html.escape(page.decode())}"></iframe>'
-    )
-
-
-def replay_page(
-    recordings: Mapping[str, Recording], most_bytes: int, *, plays: bool = True
-) -> tuple[bytes, int]:
-    """Return a page of at most this size in bytes, and which of the samples it shows.
-
-    Raises
-    ------
-    ParameterError
-        If the recordings are too large to be shown at all.
-    """
+def _fitting_page(recordings: Mapping[str, Recording]) -> tuple[bytes, int]:
+    """Return a page of at most `MOST_BYTES`, and which of the samples it shows."""
     longest = max(len(recording) for recording in recordings.values())
     # Samples that are further apart compress no better: nothing is packed that cannot fit.
     least_every = max(1.0, longest / _MOST_SAMPLES)
-    for name, recording in recordings.items():
-        if len(recording) == 0 or not recording.has_poses:
-            raise ParameterError(f"recording {name!r} is not accepted: samples with their poses")
     for every in _THINNING:
         if every < least_every:
             continue
-        page = _page(recordings, every, plays).encode()
-        if len(page) <= most_bytes:
+        page = _page(recordings, every).encode()
+        if len(page) <= MOST_BYTES:
             return page, every
-        least_every = every * (len(page) - _SCRIPT_BYTES) / most_bytes
+        least_every = every * (len(page) - _SCRIPT_BYTES) / MOST_BYTES
     raise ParameterError(
-        f"the recordings do not fit a page of {most_bytes} bytes, not even one in {_THINNING[-1]} "
+        f"the recordings do not fit a page of {MOST_BYTES} bytes, not even one in {_THINNING[-1]} "
         "samples: record fewer boats or a shorter run"
     )
 
 
-def _page(recordings: Mapping[str, Recording], every: int, plays: bool) -> str:
+def _page(recordings: Mapping[str, Recording], every: int) -> str:
     time_s, words = decisive_minute(list(recordings.values()))
     quantities = shown_quantities(list(recordings.values()))
     data = {
         "runs": [_run(name, each, every, quantities) for name, each in recordings.items()],
-        "quantities": [each.described() for each in quantities],
+        "quantities": quantities,
         "moment": {"time_s": time_s, "words": words},
-        "plays": plays,
     }
-    style, script = _read("replay.css"), _script()
+    style, script = _read("replay.css"), joined(map(_read, _SCRIPTS))
+    policy = (
+        "default-src 'none'",
+        f"style-src {digest(style)}",
+        f"script-src {digest(script)}",
+        "img-src data:",
+        "base-uri 'none'",
+        "form-action 'none'",
+    )
     parts = {
         "title": html.escape(" and ".join(recordings)),
-        "policy": "; ".join(
-            (
-                "default-src 'none'",
-                f"style-src {digest(style)}",
-                f"script-src {digest(script)}",
-                "img-src data:",
-                "base-uri 'none'",
-                "form-action 'none'",
-            )
-        ),
+        "policy": "; ".join(policy),
         "style": style,
         "script": script,
         "data": as_script_content(json.dumps(data, separators=(",", ":"), allow_nan=False)),
@@ -201,26 +166,28 @@ def _read(name: str) -> str:
     return resources.files("flockenv.replay").joinpath(name).read_text("utf-8")
 
 
-@cache
-def _script() -> str:
-    return joined(map(_read, _SCRIPTS))
-
-
 def _run(
-    name: str, recording: Recording, every: int, quantities: list[ShownQuantity]
+    name: str, recording: Recording, every: int, quantities: list[dict[str, Any]]
 ) -> dict[str, Any]:
     parameters = recording.parameters
-    return {
+    outer_cm, inner_cm = _core.pool_radii_cm(parameters.pool)
+    target = parameters.common_target
+    described = {
         "name": name,
         "seed": str(recording.seed),
         "version": recording.version,
         "parameters": {key: str(value) for key, value in parameters.to_dict().items()},
         "boats": parameters.n_boats,
         "leaders": parameters.n_leaders,
-        "target": parameters.common_target,
-        **_opposed_targets(parameters),
+        "target": target,
         "bw_s": parameters.bw_s,
-        "lengths": _lengths(parameters),
+        "lengths": {
+            # JSON has no infinity: open water has no outer wall.
+            "outer_radius_cm": outer_cm if math.isfinite(outer_cm) else None,
+            "inner_radius_cm": inner_cm,
+            "hull_radius_cm": parameters.boat_radius_cm,
+            "hull_half_length_cm": parameters.boat_shape * parameters.boat_radius_cm,
+        },
         "discs": parameters.discs,
         "walls": parameters.walls,
         # Of tracks the phases may be unknown.
@@ -230,27 +197,12 @@ def _run(
         "every": every,
         "data": _series(recording, every, quantities),
     }
+    if parameters.n_leaders > 0 and target is None:  # They head against each other.
+        described["targets"] = list(parameters.target)
+    return described
 
 
-def _opposed_targets(parameters: FlockParameters) -> dict[str, list[str]]:
-    """Return each leader's target where they head against each other."""
-    if parameters.n_leaders == 0 or parameters.common_target is not None:
-        return {}
-    return {"targets": list(parameters.target)}
-
-
-def _lengths(parameters: FlockParameters) -> dict[str, float | None]:
-    outer, inner = _core.pool_radii_cm(parameters.pool)
-    return {
-        # JSON has no infinity: open water has no outer wall.
-        "outer_radius_cm": outer if math.isfinite(outer) else None,
-        "inner_radius_cm": inner,
-        "hull_radius_cm": parameters.boat_radius_cm,
-        "hull_half_length_cm": parameters.boat_shape * parameters.boat_radius_cm,
-    }
-
-
-def _series(recording: Recording, every: int, quantities: list[ShownQuantity]) -> str:
+def _series(recording: Recording, every: int, quantities: list[dict[str, Any]]) -> str:
     shown = slice(None, None, every)
     packer = Packer()
     packer.add("time_s", recording.time_s[shown], 0.0005)
@@ -274,9 +226,10 @@ def _series(recording: Recording, every: int, quantities: list[ShownQuantity]) -
     if recording.rudder is not None:
         packer.add_plain("rudder", recording.rudder[shown], _RUDDER)
     for quantity in quantities:
-        values = quantity.of(recording)[shown]
+        values = series_of(recording, quantity["key"])[shown]
         if np.isfinite(values).all():
-            packer.add(quantity.key, values, quantity.quantum)
+            # A twentieth of the last digit that is shown.
+            packer.add(quantity["key"], values, 10.0 ** -quantity["decimals"] / 20)
     if recording.contacts is not None:
         _add_contacts(packer, recording, recording.contacts, every)
     return packer.text()

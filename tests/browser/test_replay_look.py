@@ -183,25 +183,3 @@ def ring(page) -> set[tuple[int, ...]]:
     angles = np.linspace(0, 2 * np.pi, 40)
     radius = 0.66 * inner * scale
     return {page.color(0, x + radius * np.cos(a), y + radius * np.sin(a)) for a in angles}
-
-
-def test_runs_have_colors_of_their_own(pair):
-    for scheme in ("light", "dark"):
-        features = [{"name": "prefers-color-scheme", "value": scheme}]
-        pair.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
-        palette = pair.script("return player.palette")
-        runs = [lab(palette[f"run-{k}"]) for k in (1, 2)]
-        boats = [lab(palette[name]) for name in ("normal", "leader", "force")]
-        pair.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
-        assert np.linalg.norm(runs[0] - runs[1]) > 60
-        for run in runs:
-            assert min(np.linalg.norm(run - boat) for boat in boats) > 35
-
-
-def lab(color: str) -> np.ndarray:
-    """A color #rrggbb in CIELAB, where 2 is just seen."""
-    rgb = np.array([int(color[k : k + 2], 16) for k in (1, 3, 5)]) / 255
-    linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
-    to_xyz = [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]
-    x, y, z = np.cbrt(np.array(to_xyz) @ linear / [0.9505, 1.0, 1.089])
-    return np.array([116 * y - 16, 500 * (x - y), 200 * (y - z)])

@@ -8,9 +8,7 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv.replay import MOST_BYTES, inline_replay, write_replay
-from flockenv.replay import page as replay_page
-from flockenv.replay.quantities import ShownQuantity, decisive_minute
+from flockenv.replay import write_replay
 
 from .conftest import LAST_DIGIT, number
 
@@ -124,19 +122,6 @@ def test_the_chart_follows_and_leads(page, law):
         assert shown == pytest.approx(value, abs=0.5 * 10.0**-decimals + 0.03)
 
 
-def test_a_quantity_that_is_new_is_charted(open_page, law, tmp_path, monkeypatch):
-    halved = ShownQuantity("halved", "halved order", "", None, 3, lambda run: run.order.psi_o / 2)
-    shown = replay_page.shown_quantities
-    monkeypatch.setattr(replay_page, "shown_quantities", lambda runs: [*shown(runs), halved])
-    write_replay(tmp_path / "new.html", law)
-    page = open_page(tmp_path / "new.html")
-    assert page.driver.title == "new – flockenv replay"
-    page.script("player.seek(60)")
-    page.choose("#quantity", "halved")
-    assert page.text("#legend").startswith("halved order")
-    assert page.number("#legend b") == pytest.approx(law.order.psi_o[600] / 2, abs=1e-3)
-
-
 def test_two_runs_side_by_side(pair, law, damped):
     assert [pair.text(".name", run) for run in (0, 1)] == ["law", "damped"]
     assert pair.find(".run[data-run='0']").rect["y"] == pair.find(".run[data-run='1']").rect["y"]
@@ -197,47 +182,3 @@ def test_without_contacts_or_normal_boats(open_page, parameters, tmp_path):
     assert not page.find("#forces").is_enabled()
     assert page.text(".psi", 0) == "–"
     assert page.driver.get_log("browser") == []
-
-
-def test_an_hour_opens_at_once_and_scrubs_smoothly(open_page, parameters, tmp_path):
-    parameters = parameters.replace(n_boats=27, n_leaders=3, pool="wide", bw_s=0.3)
-    run = flockenv.simulate(parameters, 7, 3600.0, contacts=True)
-    assert write_replay(tmp_path / "hour.html", {"hour": run}).every == 1
-    assert (tmp_path / "hour.html").stat().st_size < MOST_BYTES
-    start = time.perf_counter()
-    page = open_page(tmp_path / "hour.html")
-    assert time.perf_counter() - start < 10.0
-    source = """
-        const scrub = document.getElementById("scrub");
-        const start = performance.now();
-        for (let k = 0; k < 100; k += 1) {
-          scrub.value = 3600 * ((k * 0.618) % 1);
-          scrub.dispatchEvent(new Event("input"));
-          player.show();
-        }
-        return (performance.now() - start) / 100"""
-    assert page.script(source) < 40.0
-    page.click_at("#scrub", 0.7)
-    page.check(run)
-
-
-def test_it_plays_inside_a_notebook(open_page, law, tmp_path):
-    element = inline_replay(law, "law")
-    (tmp_path / "notebook.html").write_text(f"<!doctype html><p>cell</p>{element}")
-    outside = open_page(tmp_path / "notebook.html", waits=False, rests=False)
-    outside.driver.switch_to.frame(0)
-    outside.wait()
-    assert not outside.is_playing()
-    moment, _ = decisive_minute([law])
-    assert outside.time() == moment
-    outside.check(law)
-    outside.click("#play")
-    time.sleep(1.5)
-    outside.click("#play")
-    outside.wait_until_drawn()
-    assert outside.time() > moment + 4.0
-    outside.check(law)
-    reaching = "try { return parent.document.title; } catch (error) { return error.name; }"
-    assert outside.script(reaching) == "SecurityError"
-    outside.driver.switch_to.default_content()
-    assert outside.driver.get_log("browser") == []

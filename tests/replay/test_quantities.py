@@ -7,7 +7,7 @@ import pytest
 
 import flockenv
 from flockenv.order import ORDER, OrderSeries
-from flockenv.replay.quantities import decisive_minute, shown_quantities
+from flockenv.replay.quantities import decisive_minute, series_of, shown_quantities
 
 PARAMETERS = flockenv.FlockParameters(n_boats=4, n_leaders=1, target="cw")
 
@@ -63,15 +63,15 @@ def test_without_a_minute_or_normal_boats_it_is_the_start(constant):
 
 def test_order_towards_the_target_comes_first_where_there_are_leaders(constant):
     free = flockenv.simulate(PARAMETERS.replace(n_leaders=0), 1, 1.0)
-    keys = [each.key for each in shown_quantities([constant])]
+    keys = [each["key"] for each in shown_quantities([constant])]
     assert keys == ["signed_order", "rotation", *ORDER]
-    assert [each.key for each in shown_quantities([free])] == ["rotation", *ORDER]
-    assert shown_quantities([free, constant])[0].key == "signed_order"
+    assert [each["key"] for each in shown_quantities([free])] == ["rotation", *ORDER]
+    assert shown_quantities([free, constant])[0]["key"] == "signed_order"
 
 
 def test_digits_follow_the_size_of_the_numbers(constant):
-    quantities = {each.key: each for each in shown_quantities([constant])}
-    assert quantities["psi_o"].decimals == 2
-    for quantity in quantities.values():
-        largest = np.abs(quantity.of(constant)).max()
-        assert quantity.quantum <= max(largest, 1e-3) / 100
+    decimals = {each["key"]: each["decimals"] for each in shown_quantities([constant])}
+    assert decimals["psi_o"] == 2
+    for key, digits in decimals.items():
+        largest = np.abs(series_of(constant, key)).max()
+        assert 10.0**-digits / 20 <= max(largest, 1e-3) / 100
