@@ -33,14 +33,19 @@ DECAY_1, DECAY_2 = 0.9, 0.99
 
 
 def lean(pool: str, episode_s: float) -> dict[str, Any]:
-    """Return the options in which three leaders lean about the tangent, which is the tuned law."""
+    """Return the options in which three leaders lean about the tangent, which is the tuned law.
+
+    They see the lean features alone, as those of examples/train_leaders.py.
+    """
+    others = dict.fromkeys(("own", "phase", "target", "order"), False)
     return {
         "pool": pool,
         "n_boats": 27,
         "n_leaders": 3,
         "bw_s": flockenv.FlockParameters.critical_bw_s("simulation", pool),
+        "observation": {**others, "neighbors": 0, "lean_features": True},
         "action_mode": "lean",
-        "decision_period_s": 1.0,
+        "decision_period_s": 2.0,
         "episode_s": episode_s,
         "physics": "training",
     }
