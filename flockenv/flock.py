@@ -54,6 +54,8 @@ class Contacts(_Columns):
         boat j feels its opposite.
     point_cm : float64 array, shape (c, 2)
         Where boat i is pushed: a point of its hull, world axes.
+    along_cm : float64 array, shape (c,)
+        The same along its core, from its center to the bow.
     """
 
     i: NDArray[np.int64]
@@ -62,6 +64,7 @@ class Contacts(_Columns):
     normal: NDArray[np.float64]
     force: NDArray[np.float64]
     point_cm: NDArray[np.float64]
+    along_cm: NDArray[np.float64]
 
     def __len__(self) -> int:
         return len(self.i)
@@ -84,6 +87,8 @@ class ContactSeries(_Columns):
         Mean force over the substep before the sample in cm/s² (mass 1), above 0.
     point_cm : float32 array, shape (c, 2)
         Where boat i is pushed: a point of its hull, world axes.
+    along_cm : float32 array, shape (c,)
+        The same along its core, from its center to the bow.
     """
 
     count: NDArray[np.int64]
@@ -92,6 +97,7 @@ class ContactSeries(_Columns):
     normal: NDArray[np.float32]
     force: NDArray[np.float32]
     point_cm: NDArray[np.float32]
+    along_cm: NDArray[np.float32]
 
     @classmethod
     def of(cls, samples: Sequence[Contacts]) -> Self:
@@ -119,7 +125,7 @@ class ContactSeries(_Columns):
         return ContactSeries(self.count[samples], *each)
 
 
-_VECTORS = ("normal", "force", "point_cm")
+_VECTORS = ("normal", "force", "point_cm", "along_cm")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -29,7 +29,7 @@ __all__ = [
     "order_series",
 ]
 
-STATES = np.array(_core.collective_state_names())
+STATES = np.array(_core.COLLECTIVE_STATES)
 """Names of the collective states (Table 2; ordered motion by its direction)."""
 
 

@@ -13,7 +13,7 @@ from flockenv.errors import ParameterError, refuse_unknown
 
 __all__ = ["FlockParameters"]
 
-_TABLE = {row[0]: row for row in _core.parameter_table()}
+_TABLE = {row[0]: row for row in _core.PARAMETERS}
 _DEFAULTS = _core.changed_fields("simulation", {})
 
 
@@ -98,7 +98,7 @@ class FlockParameters:
     @classmethod
     def presets(cls) -> list[str]:
         """Names of the presets."""
-        return _core.preset_names()
+        return list(_core.PRESETS)
 
     @classmethod
     def preset(cls, name: str) -> Self:

@@ -13,6 +13,14 @@ pub enum FlockError {
         /// What would have been accepted.
         accepted: String,
     },
+    /// A value is of another kind than its field.
+    #[error("{field} must be {accepted}")]
+    Kind {
+        /// The name users know the field by.
+        field: &'static str,
+        /// What would have been accepted.
+        accepted: String,
+    },
     /// An array has the wrong number of entries.
     #[error("{field} has shape {found}, expected {expected}")]
     Shape {
@@ -71,6 +79,22 @@ impl FlockError {
             value: value.to_string(),
             accepted: accepted.into(),
         }
+    }
+
+    /// Refuses a value as [`Self::parameter`] does, unless it is accepted.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`].
+    pub(crate) fn unless(
+        is_accepted: bool,
+        field: &'static str,
+        value: impl std::fmt::Display,
+        accepted: impl Into<String>,
+    ) -> Result<()> {
+        if is_accepted {
+            return Ok(());
+        }
+        Err(Self::parameter(field, value, accepted))
     }
 }
 

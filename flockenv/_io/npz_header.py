@@ -51,7 +51,7 @@ def read_headed(
         version = entry_of(header, "observation_version", int)
     except ParameterError as error:
         raise ParameterError(f"{path} is no whole {kind}: {error}") from error
-    current = _core.observation_version()
+    current = _core.OBSERVATION_VERSION
     if not 1 <= version <= current:
         raise ParameterError(
             f"{path} was made for version {version} of the observation; this package has versions "

@@ -96,7 +96,7 @@ class LeaderBatch:
 
     def final_state(self, flock: int) -> NDArray[np.float32]:
         """Return the last global state of the episode that ended in the last step."""
-        return self._core.last_views(flock)[1]
+        return self._core.last_views(flock)[1].ravel()
 
     def final_flock_features(self, flock: int, leader: int = 0) -> NDArray[np.float32]:
         """Return the flock's features for a leader, as the last step ended an episode."""
@@ -117,11 +117,11 @@ class LeaderBatch:
 
     def poses(self) -> NDArray[np.float64]:
         """Return the poses of all boats, shape (flocks, n, 3)."""
-        return self._core.poses()
+        return self._core.poses().reshape(self.num_flocks, -1, 3)
 
     def velocities(self) -> NDArray[np.float64]:
         """Return the velocities of all boats, shape (flocks, n, 3)."""
-        return self._core.velocities()
+        return self._core.velocities().reshape(self.num_flocks, -1, 3)
 
     def in_analysis_window(self) -> NDArray[np.bool_]:
         """Return for every flock whether its episode is in the analysis window."""

@@ -31,7 +31,7 @@ __all__ = [
 ]
 
 #: Newest version of the observation: of its entries, their order, scales and bounds.
-OBSERVATION_VERSION: int = _core.observation_version()
+OBSERVATION_VERSION: int = _core.OBSERVATION_VERSION
 
 #: The blocks with their defaults: on or off, and how many neighbors, obstacles or fellow leaders.
 BLOCKS: dict[str, Any] = _core.env_defaults()["observation"]

@@ -17,9 +17,7 @@ __all__ = ["RESET_OPTIONS", "EnvOptions"]
 RESET_OPTIONS = ("target", "bw_s", "state", "snapshot")
 
 _FIELDS = tuple(each.name for each in fields(FlockParameters))
-_SETTINGS = tuple(
-    name for name in _core.env_defaults() if name not in ("bw_range_s", "autoreset_mode")
-)
+_SETTINGS = tuple(name for name in _core.env_defaults() if name not in ("bw_s", "autoreset_mode"))
 _NAMES = (
     "preset",
     "params",
@@ -60,13 +58,13 @@ class EnvOptions:
         given = dict(options)
         settings = {name: given.pop(name) for name in _SETTINGS if name in given}
         if isinstance(given.get("bw_s"), tuple | list):
-            settings["bw_range_s"] = tuple(given.pop("bw_s"))
+            settings["bw_s"] = tuple(given.pop("bw_s"))
         for name, known in (("observation", BLOCKS), ("reward", TERMS)):
             if isinstance(settings.get(name), Mapping):
                 settings[name] = dict(settings[name])
                 refuse_unknown(settings[name], known, f"part of {name}")
         if isinstance(settings.get("action_mode"), str):
-            refuse_unknown((settings["action_mode"],), _core.action_modes(), "action mode")
+            refuse_unknown((settings["action_mode"],), _core.ACTION_MODES, "action mode")
         target = settings.get("target")
         if isinstance(target, list | tuple):
             # What is no direction is refused with the settings, where it could be expected.
@@ -98,7 +96,7 @@ def _period_of_cycles(
 ) -> float:
     """Return the decision period in s nearest to a number of motor cycles."""
     # What is no range is refused with the settings.
-    ends = settings.get("bw_range_s") or (parameters.bw_s,)
+    ends = settings.get("bw_s") or (parameters.bw_s,)
     for given, other in (
         (settings.get("decision_period_s") is not None, "decision_period_s"),
         (any(each != ends[0] for each in ends), "a drawn bw_s"),
@@ -154,7 +152,7 @@ def arguments_table() -> str:
         "n_boats": declared["n_boats"],
         "n_leaders": declared["n_leaders"],
         "bw_s": f"{declared['bw_s']} In s; a pair (low, high) draws it uniformly for each episode.",
-        **{name: text for name, text in _core.env_meanings().items() if name in _SETTINGS},
+        **{name: text for name, *_, text in _core.OPTIONS if name in _SETTINGS},
         "decision_period_cycles": "decision_period_s as a number of motor cycles, rounded to whole "
         "control steps; not where bw_s is drawn",
         "render_mode": 'None, "rgb_array" (`render` returns a frame) or, for environments with one '
@@ -167,6 +165,7 @@ def arguments_table() -> str:
         "preset": "simulation",
         "physics": "default",
         "target": parameters["target"],
+        "bw_s": parameters["bw_s"],
         "render_size": DEFAULT_SIZE,
     }
     lines = ["| option | default | meaning |", "| --- | --- | --- |"]

@@ -5,7 +5,7 @@ from flockenv import _core
 __all__ = ["TERMS", "terms_table"]
 
 #: Name and meaning of each term; every term is larger for better.
-TERMS: dict[str, str] = dict(_core.reward_terms())
+TERMS: dict[str, str] = dict(_core.REWARD_TERMS)
 
 
 def terms_table() -> str:

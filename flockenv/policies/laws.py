@@ -20,7 +20,7 @@ from flockenv.policies.model import ModelPolicy
 
 __all__ = ["LEAN_FEATURES", "DampedLaw", "LawPolicy", "LeaningLaw", "SteeringLaw"]
 
-LEAN_FEATURES: tuple[str, ...] = tuple(_core.lean_feature_names())
+LEAN_FEATURES: tuple[str, ...] = tuple(_core.LEAN_FEATURES)
 """The features of a lean, in the order of the observation's block ``lean_features``."""
 
 _LARGEST_FILE = 1 << 20
@@ -264,7 +264,7 @@ class LeaningLaw(LawPolicy):
                     f"in the {len(LEAN_FEATURES)} lean features, mirrored to the target"
                 )
         weights, bias = (
-            _core.largest_lean() * each.detach().cpu().double().numpy().ravel()
+            _core.LARGEST_LEAN * each.detach().cpu().double().numpy().ravel()
             for each in (policy.action_net.weight, policy.action_net.bias)
         )
         return cls(

@@ -79,7 +79,7 @@ class NetworkPolicy(RowPolicy):
         provenance: Mapping[str, str] | None = None,
     ) -> None:
         super().__init__(observation, mirror_to_target)
-        refuse_unknown((action_mode,), _core.action_modes(), "action mode")
+        refuse_unknown((action_mode,), _core.ACTION_MODES, "action mode")
         refuse_unknown((activation,), ACTIVATIONS, "activation")
         if decision_period_s is not None and not 0.0 < decision_period_s < math.inf:
             raise ParameterError(

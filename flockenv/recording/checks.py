@@ -24,10 +24,10 @@ __all__ = [
     "check_quantities",
 ]
 
-PHASES = np.array(_core.phase_names())
+PHASES = np.array(_core.PHASES)
 TIMES = ("time_s", "phase", "in_analysis_window")
 PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
-CONTACTS = ("count", "i", "j", "normal", "force", "point_cm")
+CONTACTS = ("count", "i", "j", "normal", "force", "point_cm", "along_cm")
 """The arrays of a `ContactSeries`, in its order."""
 
 

@@ -256,14 +256,11 @@ def _add_contacts(
 ) -> None:
     sample = np.repeat(np.arange(len(recording)), contacts.count)
     chosen = sample % every == 0
-    sample, i, normal = sample[chosen], contacts.i[chosen], contacts.normal[chosen]
+    normal = contacts.normal[chosen]
     # A hull's surface point is its place along the core and the normal: one number remains.
-    pose = recording.pose[sample, i].astype(np.float64)
-    radius_cm = recording.parameters.boat_radius_cm
-    along_cm = _core.contact_along_cm(pose, normal, contacts.point_cm[chosen], radius_cm)
     packer.add_plain("contact_count", contacts.count[::every])
-    packer.add_plain("contact_i", i)
+    packer.add_plain("contact_i", contacts.i[chosen])
     packer.add_plain("contact_j", contacts.j[chosen])
-    packer.add_plain("contact_along_cm", along_cm, 0.1)
+    packer.add_plain("contact_along_cm", contacts.along_cm[chosen], 0.1)
     packer.add_plain("contact_angle", np.arctan2(normal[:, 1], normal[:, 0]), 0.02)
     packer.add_plain("contact_force", np.minimum(contacts.force[chosen], 1e6), _FORCE)

@@ -30,12 +30,6 @@ pub struct Contact {
     pub gap: Gap,
 }
 
-/// Where along a hull's core, from its center to the bow, [`Contact::point`] lies, in cm.
-#[cfg(feature = "python")]
-pub(crate) fn along_core(boat: &HullPose, normal: Vec2, point: Vec2, radius: f64) -> f64 {
-    (point + normal * radius - boat.center).dot(&boat.axis)
-}
-
 /// What identifies a contact from one substep to the next.
 pub type ContactKey = (u32, Partner, Feature);
 

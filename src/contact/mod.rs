@@ -21,8 +21,6 @@ mod trial;
 mod velocity_bias;
 mod warm_start;
 
-#[cfg(feature = "python")]
-pub(crate) use contact::along_core;
 pub use contact::{Contact, ContactKey, Partner};
 pub use depenetration::KeepGoing;
 pub(crate) use depenetration::push_apart;

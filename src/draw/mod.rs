@@ -113,10 +113,9 @@ impl FrameRenderer {
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for a boat that is not there.
-    pub fn place(&self, flock: &Flock, boat: u64) -> Result<(f32, f32, f32)> {
+    pub fn place(&self, flock: &Flock, boat: usize) -> Result<(f32, f32, f32)> {
         let hulls = flock.hulls();
-        let found = usize::try_from(boat).ok().and_then(|at| hulls.get(at));
-        let hull = found.ok_or_else(|| {
+        let hull = hulls.get(boat).ok_or_else(|| {
             FlockError::parameter("boat", boat, format!("0 to {}", hulls.len() - 1))
         })?;
         let view = View::of(flock, self.width(), self.height());

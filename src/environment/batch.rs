@@ -45,9 +45,7 @@ impl EnvBatch {
     /// # Errors
     /// [`FlockError::Parameter`] for settings or parameters that are not accepted.
     pub fn new(settings: EnvSettings, members: Vec<FlockParameters>) -> Result<Self> {
-        if members.is_empty() {
-            return Err(FlockError::parameter("num_envs", 0, "at least 1"));
-        }
+        FlockError::unless(!members.is_empty(), "num_envs", 0, "at least 1")?;
         for parameters in &members {
             parameters.check()?;
             settings.check(parameters)?;
@@ -96,11 +94,11 @@ impl EnvBatch {
             });
         }
         for &action in actions {
-            self.settings.rudder.check_action(action)?;
+            self.settings.check_action(action)?;
         }
         self.envs
             .iter()
-            .try_for_each(|env| env.check_ready(self.settings.autoreset))
+            .try_for_each(|env| env.check_ready(self.settings.autoreset_mode))
     }
 
     /// One decision of every flock, held over its control steps, or the start of its next episode where one is due.

@@ -5,7 +5,9 @@ mod stored;
 pub(crate) use stored::StoredEpisode;
 
 use super::credit::{ContactCredit, LeaderCredit};
-use super::observation::{Camera, CourseView, FlockFeatures, FlockView, Observer, StateObserver};
+use super::observation::{
+    Camera, CourseView, FlockFeatures, FlockView, Lens, Observer, StateObserver,
+};
 use super::statistics::{EpisodeStatistics, LeaderSummary, LeaderSums};
 use super::{EnvSettings, EpisodeSchedule, EpisodeSummary, Reward, RewardTerms, Servo, TERMS};
 use crate::analysis::OrderParameters;
@@ -30,17 +32,7 @@ struct EpisodeState {
 
 impl EpisodeState {
     fn view(&self) -> FlockView<'_> {
-        FlockView {
-            poses: self.flock.poses(),
-            hulls: self.flock.hulls(),
-            velocities: self.flock.velocities(),
-            leaders: self.rudders.len(),
-            phase: self.flock.phase(),
-            bw_s: self.schedule.bw_s,
-            targets: &self.flock.parameters().target,
-            rudders: &self.rudders,
-            order: self.order.as_ref(),
-        }
+        FlockView::new(&self.flock, &self.rudders, self.order.as_ref())
     }
 }
 
@@ -71,21 +63,15 @@ impl Episode {
     pub fn new(settings: &EnvSettings, schedule: EpisodeSchedule, flock: Flock) -> Result<Self> {
         let parameters = flock.parameters();
         let (leaders, boats) = (parameters.n_leaders, parameters.n_boats);
-        let law = settings.action.steering_law(parameters)?;
+        let law = settings.steering_law(parameters)?;
         let law = law.map(|law| Ok((law, CourseView::new(parameters)?)));
         let credit = settings.reward.need_credit();
-        let camera = settings.camera.is_active().then(|| {
+        let camera = Lens::new(settings).map(|lens| {
             let (poses, velocities) = (flock.poses(), flock.velocities());
-            Camera::new(
-                settings.camera,
-                schedule.flock_seed,
-                leaders,
-                poses,
-                velocities,
-            )
+            Camera::new(lens, schedule.flock_seed, leaders, poses, velocities)
         });
         Ok(Self {
-            observer: Observer::new(settings.observation, parameters)?,
+            observer: Observer::new(settings.layout(), parameters)?,
             law: law.transpose()?,
             commands: vec![0.0; leaders],
             credit: credit.then(|| ContactCredit::new(leaders, boats)),
@@ -139,7 +125,8 @@ impl Episode {
 
     /// Statistics of the episode so far.
     pub fn summary(&self) -> EpisodeSummary {
-        self.statistics.summary(&self.state.schedule)
+        let bw_s = self.state.flock.parameters().bw_s;
+        self.statistics.summary(&self.state.schedule, bw_s)
     }
 
     /// Statistics so far of each leader, where each has a target of its own; empty otherwise.
@@ -200,10 +187,7 @@ impl Episode {
         rewards: &mut [f64],
     ) -> Result<()> {
         // A rudder that was chosen in the mirrored view stays what it is when the target turns round.
-        let mirror_to = settings
-            .observation
-            .mirror_to_target
-            .then(|| self.targets().clone());
+        let mirror_to = settings.mirror_to_target.then(|| self.targets().clone());
         let mut taken = 0;
         while taken == 0 || (taken < settings.period_steps() && !self.ended) {
             self.command(settings, actions, mirror_to.as_ref());
@@ -223,11 +207,11 @@ impl Episode {
         let mut commands = std::mem::take(&mut self.commands);
         let view = seen_view(&self.state, self.camera.as_ref());
         for (leader, (command, &action)) in commands.iter_mut().zip(actions).enumerate() {
-            let value = settings.rudder.command(action);
+            let value = settings.command(action);
             let mirrored = mirror_to.is_some_and(|targets| targets.of(leader).sign() < 0.0);
             *command = match &self.law {
                 Some((law, courses)) => {
-                    let angle = settings.action.angle(value);
+                    let angle = settings.angle(value);
                     let rudder = law.rudder(&courses.course(&view, leader, angle));
                     f64::from(rudder as f32)
                 }
@@ -244,8 +228,8 @@ impl Episode {
         for (rudder, &command) in state.rudders.iter_mut().zip(&self.commands) {
             *rudder = servo.moved(*rudder, command);
         }
-        let (plan, step) = (&settings.episode, state.schedule.step);
-        let end = state.flock.time() + plan.time_of(step + 1) - plan.time_of(step);
+        let step = state.schedule.step;
+        let end = state.flock.time() + settings.time_of(step + 1) - settings.time_of(step);
         let steering = Steering::Held(&state.rudders);
         let advanced = match &mut self.credit {
             None => state.flock.advance_to(end, steering),
@@ -260,7 +244,7 @@ impl Episode {
             return Err(error);
         }
         if let Some(credit) = &mut self.credit {
-            credit.remember(&state.flock.integrator, 1.0 / plan.control_hz);
+            credit.remember(&state.flock.integrator, 1.0 / settings.control_hz);
         }
         state.order = state.flock.order_parameters(false).ok();
         Ok(())
@@ -287,7 +271,7 @@ impl Episode {
                 .credit
                 .as_ref()
                 .map_or_else(LeaderCredit::default, |each| {
-                    let (flock, hz) = (&self.state.flock.integrator, settings.episode.control_hz);
+                    let (flock, hz) = (&self.state.flock.integrator, settings.control_hz);
                     each.of(leader, flock, view.targets.of(leader), 1.0 / hz)
                 });
             let terms = reward.terms(&view, leader, &credit);
@@ -311,7 +295,7 @@ impl Episode {
         };
         let (flock, schedule) = (&self.state.flock, &self.state.schedule);
         let (step, steps) = (u64::from(schedule.step) + 1, u64::from(schedule.steps));
-        let time_s = seconds(settings.episode.time_of(schedule.step + 1));
+        let time_s = seconds(settings.time_of(schedule.step + 1));
         self.statistics
             .watch_order(order, time_s, 2 * step >= steps);
         if 10 * step <= steps || !flock.schedule().in_analysis_window(flock.time()) {

@@ -40,8 +40,8 @@ impl FlockEnv {
     /// For checked settings and parameters; to be reset before it can be stepped.
     pub fn new(settings: &EnvSettings, parameters: FlockParameters) -> Self {
         Self {
-            servo: settings.rudder.servo(1.0 / settings.episode.control_hz),
-            state_observer: StateObserver::new(&parameters, settings.observation.mirror_to_target),
+            servo: settings.servo(),
+            state_observer: StateObserver::new(&parameters, settings.mirror_to_target),
             features: FlockFeatures::new(&parameters),
             seeds: None,
             episode: None,
@@ -89,10 +89,9 @@ impl FlockEnv {
         &self.final_state
     }
 
-    /// The features of the flock for a leader at the end of that episode; empty after a restore.
-    pub fn final_features(&self, leader: usize) -> &[f32] {
-        let mut rows = self.final_features.chunks_exact(FlockFeatures::SIZE);
-        rows.nth(leader).unwrap_or_default()
+    /// The features of the flock for each leader at the end of that episode; empty after a restore.
+    pub fn final_features(&self) -> &[f32] {
+        &self.final_features
     }
 
     /// The next episode, not started yet.
@@ -148,7 +147,7 @@ impl FlockEnv {
         rewards: &mut [f64],
     ) -> Result<bool> {
         rewards.fill(0.0);
-        self.check_ready(settings.autoreset)?;
+        self.check_ready(settings.autoreset_mode)?;
         if self.episode.as_ref().is_some_and(Episode::has_ended) {
             self.start_next(settings, observations)?;
             return Ok(false);
@@ -163,7 +162,7 @@ impl FlockEnv {
         }
         self.finished = Some(episode.summary());
         self.finished_leaders = episode.leader_summaries();
-        if settings.autoreset == Autoreset::SameStep {
+        if settings.autoreset_mode == Autoreset::SameStep {
             self.final_observation.clear();
             self.final_observation.extend_from_slice(observations);
             self.keep_final_views();

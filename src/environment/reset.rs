@@ -1,6 +1,6 @@
 //! Options of a reset, and the initial flock of an episode.
 
-use super::{EnvSettings, EpisodeSchedule, TargetChoice};
+use super::{Drawn, EnvSettings, EpisodeSchedule, TargetChoice};
 use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
 use crate::flock::{Flock, LATEST, State};
@@ -26,7 +26,7 @@ pub struct ResetRequest {
     /// Target of this episode; `None`: as the settings say.
     pub target: Option<TargetChoice>,
     /// Length of the backward phase in this episode in s; `None`: as the settings say.
-    pub bw_s: Option<f64>,
+    pub bw_s: Option<Drawn>,
     /// Where it starts.
     pub start: Start,
 }
@@ -43,17 +43,13 @@ impl ResetRequest {
         flock_seed: u64,
         keep_going: KeepGoing,
     ) -> Result<(EpisodeSchedule, Flock)> {
-        let mut plan = settings.episode.clone();
-        // The length belongs to the environment, whatever the target of this episode.
-        plan.episode_s = Some(plan.duration_s());
-        if let Some(target) = &self.target {
-            target.check(parameters.n_leaders)?;
-            plan.target = target.clone();
-        }
-        let mut schedule = EpisodeSchedule::new(&plan, flock_seed, parameters.bw_s);
-        schedule.bw_s = self.bw_s.unwrap_or(schedule.bw_s);
+        let target = self.target.as_ref().unwrap_or(&settings.target);
+        target.check(parameters.n_leaders)?;
+        let (schedule, share) = EpisodeSchedule::new(settings, target, flock_seed);
+        self.bw_s.map_or(Ok(()), |bw_s| bw_s.check("bw_s"))?;
+        let bw_s = self.bw_s.or(settings.bw_s);
         let own = FlockParameters {
-            bw_s: schedule.bw_s,
+            bw_s: bw_s.map_or(parameters.bw_s, |bw_s| bw_s.at(share)),
             ..parameters.clone()
         };
         let mut flock = match &self.start {
@@ -61,11 +57,10 @@ impl ResetRequest {
             Start::Random => Flock::new_while(keep_going, own, flock_seed)?,
             Start::State(state) => Flock::from_state(own, flock_seed, state)?,
         };
-        if flock.time() + plan.time_of(schedule.steps) > LATEST {
+        if flock.time() + settings.time_of(schedule.steps) > LATEST {
             let accepted = "a time at least an episode's length before 1e9 s";
             return Err(FlockError::parameter("time_s", flock.time_s(), accepted));
         }
-        schedule.bw_s = flock.parameters().bw_s;
         flock.set_target(schedule.targets())?;
         Ok((schedule, flock))
     }

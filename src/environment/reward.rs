@@ -5,7 +5,7 @@ use super::observation::{FlockView, speed_scale_cm_s};
 use crate::analysis::OrderParameters;
 use crate::error::{FlockError, Result};
 use crate::geometry::LapFrame;
-use crate::parameters::{FlockParameters, Target, named_choice};
+use crate::parameters::{FlockParameters, Kind, Setting, Target, Value, named_choice, wrong_kind};
 
 named_choice! {
     /// A term of the reward.
@@ -81,14 +81,11 @@ impl RewardWeights {
     pub fn check(&self, parameters: &FlockParameters) -> Result<()> {
         for (term, weight) in RewardTerm::ALL.iter().zip(self.0) {
             let value = format!("{}: {weight}", term.name());
-            if weight.is_nan() || weight.abs() > 1e6 {
-                return Err(FlockError::parameter("reward", value, "weights within 1e6"));
-            }
-            let normal = parameters.n_boats - parameters.n_leaders;
-            if weight != 0.0 && term.needs_normal_boats() && normal == 0 {
-                let accepted = "terms about the normal boats need n_boats > n_leaders";
-                return Err(FlockError::parameter("reward", value, accepted));
-            }
+            FlockError::unless(weight.abs() <= 1e6, "reward", &value, "weights within 1e6")?;
+            let has_normal = parameters.n_leaders < parameters.n_boats;
+            let is_met = has_normal || weight == 0.0 || !term.needs_normal_boats();
+            let accepted = "terms about the normal boats need n_boats > n_leaders";
+            FlockError::unless(is_met, "reward", value, accepted)?;
         }
         Ok(())
     }
@@ -108,6 +105,33 @@ impl RewardWeights {
             .zip(terms)
             .map(|(weight, term)| weight * term)
             .sum()
+    }
+}
+
+impl Setting for RewardWeights {
+    const KIND: Kind = Kind::Map(RewardTerm::names);
+
+    fn value(&self) -> Value {
+        let weights = RewardTerm::ALL.iter().zip(self.0);
+        let weights = weights.filter(|(_, weight)| *weight != 0.0);
+        Value::Map(
+            weights
+                .map(|(term, weight)| (term.name().to_owned(), Value::Real(weight)))
+                .collect(),
+        )
+    }
+
+    /// Terms that are not named weigh nothing.
+    fn from_value(name: &'static str, value: &Value) -> Result<Self> {
+        let Value::Map(weights) = value else {
+            return wrong_kind(name, "a dictionary of weights");
+        };
+        let mut own = Self([0.0; TERMS]);
+        for (term, weight) in weights {
+            let term: RewardTerm = term.parse()?;
+            own.0[term as usize] = f64::from_value(name, weight)?;
+        }
+        Ok(own)
     }
 }
 

@@ -1,9 +1,24 @@
-//! Everything about an environment that is not the flock's own parameters.
+//! Everything about an environment that is not the flock's own parameters, each option declared once. The bindings,
+//! their defaults and the documentation follow from this table.
 
-use super::observation::{Block, CameraSettings, ObservationLayout, Observer};
-use super::{ActionSettings, EpisodeSettings, RewardWeights, RudderSettings};
+use super::observation::{Block, ObservationLayout, Observer};
+use super::{Drawn, RewardWeights, TargetChoice};
+use crate::clock::{Ticks, ticks, whole_steps};
 use crate::error::{FlockError, Result};
-use crate::parameters::{FlockParameters, named_choice};
+use crate::parameters::{FlockParameters, Range, declare_fields, named_choice};
+
+named_choice! {
+    /// What an action stands for.
+    pub enum ActionMode ("action_mode") {
+        /// The rudder itself.
+        Rudder = "rudder",
+        /// Any heading: its angle outward of the target's tangent over π. The damped law steers to it.
+        Heading = "heading",
+        /// A heading about the tangent: its angle outward over [`super::LARGEST_LEAN`]. The pool's tuned law steers to
+        /// it, and 0 is that law itself.
+        Lean = "lean",
+    }
+}
 
 named_choice! {
     /// What happens when an episode has ended.
@@ -17,40 +32,45 @@ named_choice! {
     }
 }
 
-/// The settings of an environment.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct EnvSettings {
-    /// Episodes.
-    pub episode: EpisodeSettings,
-    /// What is observed.
-    pub observation: ObservationLayout,
-    /// What the camera does to it.
-    pub camera: CameraSettings,
-    /// What is rewarded.
-    pub reward: RewardWeights,
-    /// How actions become rudders.
-    pub rudder: RudderSettings,
-    /// What happens at an episode's end.
-    pub autoreset: Autoreset,
-    /// What actions stand for, and how long they are held.
-    pub action: ActionSettings,
-    /// Time in s over which rewards are means; `None`: one control step.
-    pub reward_horizon_s: Option<f64>,
-}
+/// The largest chance below 1.
+const ALMOST_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
 
-impl Default for EnvSettings {
-    fn default() -> Self {
-        Self {
-            episode: EpisodeSettings::default(),
-            observation: ObservationLayout::default(),
-            camera: CameraSettings::default(),
-            reward: RewardWeights::default(),
-            rudder: RudderSettings::default(),
-            autoreset: Autoreset::NextStep,
-            action: ActionSettings::default(),
-            reward_horizon_s: None,
-        }
-    }
+declare_fields! {
+    /// The settings of an environment.
+    pub struct EnvSettings;
+
+    /// "cw", "ccw", "random" (drawn for each episode) or "alternate" (ccw, cw, ccw, cw, a quarter of the episode each); or a list of "cw" and "ccw", one per leader
+    target: TargetChoice = TargetChoice::default(), "", Range::Any, "chosen";
+    /// length of an episode in s, rounded to whole control steps; None: 480, and 960 where targets alternate
+    episode_s: Option<f64> = None, "s", Range::Dependent("at least one control step, at most 1e6 s"), "chosen";
+    /// control steps per second
+    control_hz: f64 = 10.0, "1/s", Range::Within(0.1, 1000.0, "0.1 to 1000 control steps per second"), "chosen";
+    /// what an action in [-1, 1] stands for: "rudder"; "heading", the angle outward of the target's tangent over pi, to which the damped law steers; or "lean", that angle over 1.2 rad, to which the pool's tuned law steers, so that 0 is that law
+    action_mode: ActionMode = ActionMode::Rudder, "", Range::Any, "chosen";
+    /// time in s from one decision to the next, a whole number of control steps, through which a step holds its action; None: one control step
+    decision_period_s: Option<f64> = None, "s", Range::Dependent("a whole number of control steps"), "chosen";
+    /// bw_s of each episode, fixed or drawn uniformly from a range (low, high); None: the parameters' own
+    bw_s: Option<Drawn> = None, "s", Range::NonNegative, "chosen";
+    /// blocks that differ from the default layout, such as `{'order': False, 'neighbors': 4}`
+    observation: ObservationLayout = ObservationLayout::default(), "", Range::Any, "chosen";
+    /// reflect observation, state and action where the target is ccw, so that both directions are one task
+    mirror_to_target: bool = false, "", Range::Any, "chosen";
+    /// chance that the camera loses a boat in a frame and shows where it was before
+    dropout_rate: f64 = 0.0, "", Range::Within(0.0, ALMOST_ONE, "a chance of at least 0, below 1"), "chosen";
+    /// frames that the leaders' picture is late, 0 or 1
+    delay_frames: usize = 0, "", Range::Within(0.0, 1.0, "0 or 1"), "chosen";
+    /// weights of the reward's terms; terms that are not named weigh nothing
+    reward: RewardWeights = RewardWeights::default(), "", Range::Any, "chosen";
+    /// time T in s: a control step's reward counts for its length over T, so that sums over T are means, of order one; None: each counts in full
+    reward_horizon_s: Option<f64> = None, "s", Range::Positive, "chosen";
+    /// number of levels of the discrete action, 2 to 1001; None: continuous
+    rudder_levels: Option<usize> = None, "", Range::Within(2.0, 1001.0, "2 to 1001 choices, or none for continuous rudders"), "chosen";
+    /// time constant of the rudder servo in s
+    rudder_lag_s: f64 = 0.0, "s", Range::Within(0.0, 1e3, "0 (no lag) to 1000 s"), "chosen";
+    /// fastest change of the rudder in 1/s (-1 to 1 is a change of 2); None: any
+    rudder_rate_per_s: Option<f64> = None, "1/s", Range::Positive, "chosen";
+    /// what happens at an episode's end in the vector environment: "next_step", "same_step" or "disabled"
+    autoreset_mode: Autoreset = Autoreset::NextStep, "", Range::Any, "chosen";
 }
 
 impl EnvSettings {
@@ -59,45 +79,71 @@ impl EnvSettings {
     /// # Errors
     /// [`FlockError::Parameter`] names the first setting that is not accepted.
     pub fn check(&self, parameters: &FlockParameters) -> Result<()> {
-        if parameters.n_leaders == 0 {
-            return Err(FlockError::parameter(
-                "n_leaders",
-                0,
-                "at least 1 in an environment; simulate runs flocks without leaders",
-            ));
-        }
-        self.episode.check()?;
-        self.episode.target.check(parameters.n_leaders)?;
+        let accepted = "at least 1 in an environment; simulate runs flocks without leaders";
+        FlockError::unless(parameters.n_leaders > 0, "n_leaders", 0, accepted)?;
+        Self::FIELDS
+            .iter()
+            .try_for_each(|field| field.check(self))?;
+        let duration = self.duration_s();
+        let steps = duration * self.control_hz;
+        let accepted = "at least one control step, at most 1e6 s";
+        let is_long_enough = duration <= 1e6 && (0.5..=1e9).contains(&steps);
+        FlockError::unless(is_long_enough, "episode_s", duration, accepted)?;
+        self.bw_s.map_or(Ok(()), |bw_s| bw_s.check("bw_s"))?;
+        self.target.check(parameters.n_leaders)?;
         self.observation.check()?;
-        self.camera.check()?;
-        self.rudder.check()?;
-        self.action.check(parameters, self.episode.control_hz)?;
-        Observer::new(self.observation, parameters)?;
-        if let Some(horizon) = self.reward_horizon_s
-            && !(horizon > 0.0 && horizon <= 1e6)
-        {
-            let accepted = "a positive time of at most 1e6 s, or none";
-            return Err(FlockError::parameter("reward_horizon_s", horizon, accepted));
+        self.steering_law(parameters)?;
+        if let Some(period) = self.decision_period_s {
+            whole_steps(
+                "decision_period_s",
+                period,
+                self.control_hz,
+                "control steps",
+            )?;
         }
+        Observer::new(self.layout(), parameters)?;
         for block in [Block::Order, Block::LeanFeatures] {
-            if self.observation.has(block) && parameters.n_leaders == parameters.n_boats {
-                return Err(FlockError::parameter(
-                    block.option(),
-                    true,
-                    "order parameters are of the normal boats and need n_boats > n_leaders",
-                ));
-            }
+            let has_normal = parameters.n_leaders < parameters.n_boats;
+            let accepted = "order parameters are of the normal boats and need n_boats > n_leaders";
+            let is_met = has_normal || !self.observation.has(block);
+            FlockError::unless(is_met, block.option(), true, accepted)?;
         }
         self.reward.check(parameters)
     }
+
+    /// What is observed, and whether it is mirrored.
+    pub fn layout(&self) -> ObservationLayout {
+        self.observation.mirrored(self.mirror_to_target)
+    }
+
+    /// Length of an episode in s.
+    pub fn duration_s(&self) -> f64 {
+        self.episode_s.unwrap_or(match self.target {
+            TargetChoice::Alternate => 960.0,
+            TargetChoice::Fixed(_) | TargetChoice::Random => 480.0,
+        })
+    }
+
+    /// Length of an episode in control steps.
+    pub fn steps(&self) -> u32 {
+        (self.duration_s() * self.control_hz).round() as u32
+    }
+
     /// Control steps from one decision to the next.
     pub fn period_steps(&self) -> u32 {
-        self.action.control_steps(self.episode.control_hz)
+        self.decision_period_s
+            .map_or(1, |period| (period * self.control_hz).round() as u32)
+    }
+
+    /// Time from an episode's start to the end of so many control steps, to the nearest tick: where a
+    /// period is no whole number of ticks, rounding does not add up.
+    pub(crate) fn time_of(&self, steps: u32) -> Ticks {
+        ticks(f64::from(steps) / self.control_hz)
     }
 
     /// What the weighted sum of a control step's terms is multiplied by.
     pub(crate) fn reward_factor(&self) -> f64 {
         self.reward_horizon_s
-            .map_or(1.0, |horizon| 1.0 / (self.episode.control_hz * horizon))
+            .map_or(1.0, |horizon| 1.0 / (self.control_hz * horizon))
     }
 }

@@ -76,8 +76,8 @@ impl EpisodeStatistics {
         self.observed += observed as u64;
     }
 
-    /// The summary of an episode with these statistics.
-    pub(super) fn summary(&self, schedule: &EpisodeSchedule) -> EpisodeSummary {
+    /// The summary of an episode with these statistics and this backward duration.
+    pub(super) fn summary(&self, schedule: &EpisodeSchedule, bw_s: f64) -> EpisodeSummary {
         let steps = f64::from(schedule.step);
         let mut terms = [0.0; TERMS];
         for (mean, sum) in terms.iter_mut().zip(&self.terms) {
@@ -86,7 +86,7 @@ impl EpisodeStatistics {
         let window = f64::from(self.window_steps);
         EpisodeSummary {
             flock_seed: schedule.flock_seed,
-            bw_s: schedule.bw_s,
+            bw_s,
             steps: schedule.step,
             total_reward: self.reward,
             terms,

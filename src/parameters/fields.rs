@@ -1,57 +1,15 @@
 //! Every constant of Tables 1 and 3, declared once: name, type, default, unit, range, source and meaning. The struct,
 //! its check, the bindings and the documentation follow from this table.
 
-use super::field::{Field, FieldType, Range, Value};
-use super::{Disc, Noise, Pool, Scheme, Solver, Target, Targets, Wall, obstacles};
+use super::field::{Range, declare_fields};
+use super::{Disc, Noise, Pool, Scheme, Solver, Target, Targets, Value, Wall, obstacles};
 use crate::error::{FlockError, Result};
 
-macro_rules! declare_parameters {
-    ($($(#[doc = $doc:literal])+ $name:ident: $type:ty = $default:expr, $unit:literal, $range:expr, $source:literal;)+) => {
-        /// Everything that defines a flock. Fields are public to read and to build with;
-        /// [`FlockParameters::check`] runs once wherever a flock is made from them.
-        #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-        pub struct FlockParameters {
-            $($(#[doc = $doc])+ pub $name: $type,)+
-        }
+declare_fields! {
+    /// Everything that defines a flock, by default the preset `simulation`. Fields are public to read and to build
+    /// with; [`FlockParameters::check`] runs once wherever a flock is made from them.
+    pub struct FlockParameters;
 
-        impl FlockParameters {
-            /// What is declared of each field, in the order of documentation. Defaults and sources are those of the
-            /// preset `simulation`.
-            pub const FIELDS: &'static [Field] = &[$(Field {
-                name: stringify!($name),
-                kind: <$type as FieldType>::KIND,
-                unit: $unit,
-                range: $range,
-                source: $source,
-                doc: concat!($($doc),+),
-            },)+];
-
-            /// The preset `simulation`.
-            pub(super) fn simulation() -> Self {
-                Self { $($name: $default,)+ }
-            }
-
-            /// The values in the order of [`Self::FIELDS`].
-            pub fn values(&self) -> Vec<Value> {
-                vec![$(self.$name.value(),)+]
-            }
-
-            /// Parameters from their values, which `read` gives for each field in turn. They are not checked yet.
-            ///
-            /// # Errors
-            /// Those of `read`, and [`FlockError::Parameter`] for a name that is none of the choices.
-            pub fn from_values<E: From<FlockError>>(
-                mut read: impl FnMut(&'static Field) -> std::result::Result<Value, E>,
-            ) -> std::result::Result<Self, E> {
-                let mut fields = Self::FIELDS.iter();
-                let mut next = || fields.next().map(&mut read).unwrap_or(Ok(Value::Flag(false)));
-                Ok(Self { $($name: <$type as FieldType>::from_value(next()?)?,)+ })
-            }
-        }
-    };
-}
-
-declare_parameters! {
     /// Number of boats, leaders included (Table 3: n).
     n_boats: usize = 20, "", Range::Within(1.0, Self::MOST_BOATS as f64, "1 to 100000"), "Table 3 (20 to 50)";
     /// Number of steerable leaders, boats 0..k-1 (Table 3: k).
@@ -131,6 +89,12 @@ impl FlockParameters {
     /// The most boats a flock may have: placing them takes some ten seconds.
     pub const MOST_BOATS: usize = 100_000;
 
+    /// The values in the order of [`Self::FIELDS`].
+    pub fn values(&self) -> Vec<Value> {
+        let fields = Self::FIELDS.iter();
+        fields.map(|field| (field.get)(self)).collect()
+    }
+
     /// Half-length of the hull's core segment, h = p·r, in cm.
     pub fn half_length_cm(&self) -> f64 {
         self.boat_shape * self.boat_radius_cm
@@ -149,9 +113,9 @@ impl FlockParameters {
     /// # Errors
     /// [`FlockError::Parameter`] names a field that is out of range.
     pub fn check(&self) -> Result<()> {
-        for (field, value) in Self::FIELDS.iter().zip(self.values()) {
-            field.check(value)?;
-        }
+        Self::FIELDS
+            .iter()
+            .try_for_each(|field| field.check(self))?;
         self.check_leaders()?;
         self.check_pool()?;
         obstacles::check(&self.discs, self.pool)?;

@@ -8,12 +8,16 @@ mod obstacles;
 mod pools;
 mod presets;
 mod targets;
+mod value;
 
 pub use choices::{Noise, Scheme, Solver, Target};
-pub use field::{Field, Kind, Range, Value};
+pub(crate) use field::declare_fields;
+pub use field::{Field, Range};
 pub use fields::FlockParameters;
 pub(crate) use named_choice::named_choice;
 pub use obstacles::{Disc, MOST_OBSTACLES, Wall};
 pub use pools::Pool;
 pub use presets::{Physics, Preset};
 pub use targets::Targets;
+pub use value::{Kind, Value};
+pub(crate) use value::{Setting, text_of, wrong_kind};

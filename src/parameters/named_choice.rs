@@ -14,6 +14,11 @@ macro_rules! named_choice {
             /// Every choice, in the order of documentation.
             pub const ALL: &'static [Self] = &[$($(#[cfg(feature = $feature)])? Self::$variant,)+];
 
+            /// The public names of all choices.
+            pub fn names() -> Vec<&'static str> {
+                Self::ALL.iter().map(|choice| choice.name()).collect()
+            }
+
             /// What it is, for documentation.
             pub fn doc(self) -> &'static str {
                 match self { $($(#[cfg(feature = $feature)])? Self::$variant => concat!($($doc),+),)+ }.trim_ascii_start()
@@ -25,17 +30,26 @@ macro_rules! named_choice {
             }
         }
 
+        impl $crate::parameters::Setting for $type {
+            const KIND: $crate::parameters::Kind = $crate::parameters::Kind::Choice(Self::names);
+
+            fn value(&self) -> $crate::parameters::Value {
+                $crate::parameters::Value::name(Self::name(*self))
+            }
+
+            fn from_value(name: &'static str, value: &$crate::parameters::Value) -> $crate::error::Result<Self> {
+                $crate::parameters::text_of(name, value)?.parse()
+            }
+        }
+
         impl std::str::FromStr for $type {
             type Err = $crate::error::FlockError;
 
             fn from_str(text: &str) -> $crate::error::Result<Self> {
                 Self::ALL.iter().copied().find(|choice| choice.name() == text).ok_or_else(|| {
-                    let names: Vec<_> = Self::ALL.iter().map(|c| format!("{:?}", c.name())).collect();
-                    $crate::error::FlockError::parameter(
-                        $field,
-                        format!("{text:?}"),
-                        format!("one of {}", names.join(", ")),
-                    )
+                    let names: Vec<_> = Self::names().iter().map(|name| format!("{name:?}")).collect();
+                    let accepted = format!("one of {}", names.join(", "));
+                    $crate::error::FlockError::parameter($field, format!("{text:?}"), accepted)
                 })
             }
         }

@@ -1,7 +1,8 @@
 //! Obstacles that stand in the water.
 
-use super::field::{FieldType, Kind, Range, Value, wrong_kind};
+use super::field::Range;
 use super::pools::Pool;
+use super::value::{Kind, Setting, Value, wrong_kind};
 use crate::error::{FlockError, Result};
 
 /// The most discs, and the most walls, that a pool may have.
@@ -123,20 +124,33 @@ impl Wall {
     }
 }
 
-impl<T: ObstacleRow> FieldType for Vec<T> {
+impl<T: ObstacleRow> Setting for Vec<T> {
     const KIND: Kind = Kind::Rows(T::COLUMNS);
 
     fn value(&self) -> Value {
-        Value::Rows(self.iter().map(ObstacleRow::numbers).collect())
+        let rows = self.iter().map(|row| Value::reals(row.numbers()));
+        Value::List(rows.collect())
     }
 
-    fn from_value(value: Value) -> Result<Self> {
-        let Value::Rows(rows) = &value else {
-            return wrong_kind(&value);
+    fn from_value(name: &'static str, value: &Value) -> Result<Self> {
+        let accepted = format!("rows of ({})", T::COLUMNS.join(", "));
+        let Value::List(rows) = value else {
+            return wrong_kind(name, accepted);
         };
-        let obstacles = rows.iter().map(|row| T::from_numbers(row));
-        let obstacles: Option<Self> = obstacles.collect();
-        obstacles.map_or_else(|| wrong_kind(&value), Ok)
+        let mut obstacles = Self::new();
+        for row in rows {
+            let numbers = match row {
+                Value::List(numbers) => numbers.iter().map(Value::number).collect(),
+                other if other.number().is_some() => Some(Vec::new()),
+                _ => None,
+            };
+            let Some(numbers) = numbers else {
+                return wrong_kind(name, accepted);
+            };
+            let refuse = || FlockError::parameter(name, row, accepted.as_str());
+            obstacles.push(T::from_numbers(&numbers).ok_or_else(refuse)?);
+        }
+        Ok(obstacles)
     }
 }
 

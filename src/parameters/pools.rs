@@ -1,5 +1,6 @@
 //! The water that boats move in.
 
+use super::value::{Kind, Setting, Value, wrong_kind};
 use crate::error::{FlockError, Result};
 
 /// The water: an annulus, a disc (inner radius 0) or open water (outer radius infinite).
@@ -57,5 +58,25 @@ impl Pool {
     /// Whether there is an obstacle in the middle.
     pub fn has_inner_wall(&self) -> bool {
         self.inner_radius_cm > 0.0
+    }
+}
+
+impl Setting for Pool {
+    const KIND: Kind = Kind::Pool;
+
+    fn value(&self) -> Value {
+        let radii = [self.outer_radius_cm, self.inner_radius_cm];
+        self.name().map_or(Value::reals(radii), Value::name)
+    }
+
+    fn from_value(name: &'static str, value: &Value) -> Result<Self> {
+        match (value, value.pair()) {
+            (Value::Name(text), _) => Self::named(text),
+            (_, Some((outer_radius_cm, inner_radius_cm))) => Ok(Self {
+                outer_radius_cm,
+                inner_radius_cm,
+            }),
+            _ => wrong_kind(name, "a pool's name or (outer_radius_cm, inner_radius_cm)"),
+        }
     }
 }

@@ -41,7 +41,7 @@ impl Physics {
 macro_rules! changes {
     ($($name:ident = $value:expr, $source:literal;)*) => {{
         #[allow(unused_mut)]
-        let mut parameters = FlockParameters::simulation();
+        let mut parameters = FlockParameters::default();
         $(parameters.$name = $value;)*
         (parameters, &[$((stringify!($name), $source)),*])
     }};

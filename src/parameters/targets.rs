@@ -1,6 +1,7 @@
 //! Where leaders steer to: all in one direction, or each in its own.
 
 use super::Target;
+use super::value::{Kind, Setting, Value, text_of, wrong_kind};
 use crate::error::{FlockError, Result};
 
 /// How many targets of a list a message shows.
@@ -76,6 +77,28 @@ impl Targets {
 impl From<Target> for Targets {
     fn from(target: Target) -> Self {
         Self::One(target)
+    }
+}
+
+impl Setting for Targets {
+    const KIND: Kind = Kind::Choices(Target::names);
+
+    fn value(&self) -> Value {
+        match self {
+            Self::One(target) => target.value(),
+            Self::Each(targets) => Value::List(targets.iter().map(Setting::value).collect()),
+        }
+    }
+
+    fn from_value(name: &'static str, value: &Value) -> Result<Self> {
+        match value {
+            Value::Name(text) => text.parse().map(Self::One),
+            Value::List(names) => {
+                let targets = names.iter().map(|each| text_of(name, each)?.parse());
+                targets.collect::<Result<_>>().map(Self::Each)
+            }
+            _ => wrong_kind(name, "a string or a list of strings"),
+        }
     }
 }
 

@@ -1,17 +1,17 @@
 //! `flockenv._core.EnvBatch`: what all environment classes sit on.
 
-use super::arguments::floats;
+use super::arrays::{floats, rows_of};
 use super::exclusive::{Exclusive, interruptible};
-use super::flock::PyFlock;
-use super::parameters::to_dict;
-use super::state::request_from;
-use super::summary::{episode_dict, summary_dict};
-use super::value::{options_dict, settings_from};
+use super::flock::{PyFlock, pose_numbers, state_from, velocity_numbers};
+use super::value::{fields_dict, given, seed_from, set_given, value_from, written};
 use crate::environment::observation::FlockFeatures;
-use crate::environment::{BatchRows, EnvBatch, Episode, FlockEnv, TERMS};
+use crate::environment::{
+    BatchRows, EnvBatch, EnvSettings, Episode, EpisodeSummary, FlockEnv, LeaderSummary,
+    ResetRequest, RewardTerm, Start, TERMS,
+};
 use crate::error::{FlockError, Result};
-use crate::parameters::FlockParameters;
-use numpy::{Element, PyArray1, PyArray2, PyArray3, PyArrayMethods};
+use crate::parameters::{FlockParameters, Setting, text_of};
+use numpy::{Element, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
 
@@ -22,16 +22,15 @@ type Step<'py> = (
     Bound<'py, PyArray1<bool>>,
 );
 
-/// Observations (leaders, size), the global state, and features of the flock (leaders, features).
-type Views<'py> = (
-    Bound<'py, PyArray2<f32>>,
-    Bound<'py, PyArray1<f32>>,
-    Bound<'py, PyArray2<f32>>,
-);
+/// Observations (leaders, size), the global state (1, size), and features of the flock (leaders, features).
+type Views<'py> = [Bound<'py, PyArray2<f32>>; 3];
+
+/// Numbers of flocks, boats or leaders, a row each.
+type Rows<'py, T> = PyResult<Bound<'py, PyArray2<T>>>;
 
 /// Many flocks with their episodes, stepped at once; one row per leader, flock after flock.
 #[pyclass(name = "EnvBatch", module = "flockenv._core", frozen)]
-pub struct PyEnvBatch(Exclusive<EnvBatch>);
+pub(super) struct PyEnvBatch(Exclusive<EnvBatch>);
 
 impl PyEnvBatch {
     fn of(batch: EnvBatch) -> Self {
@@ -43,26 +42,14 @@ impl PyEnvBatch {
         &self,
         py: Python<'py>,
         columns: usize,
-        append: impl Fn(&FlockEnv, &Episode, &mut Vec<T>),
-    ) -> PyResult<Bound<'py, PyArray2<T>>> {
+        numbers: impl Fn(&FlockEnv, &Episode) -> Vec<T>,
+    ) -> Rows<'py, T> {
         let batch = self.0.read()?;
-        let mut numbers = Vec::new();
+        let mut gathered = Vec::new();
         for env in batch.envs() {
-            append(env, env.episode().ok_or_else(never_reset)?, &mut numbers);
+            gathered.extend(numbers(env, env.episode().ok_or_else(never_reset)?));
         }
-        let rows = numbers.len() / columns;
-        PyArray1::from_vec(py, numbers).reshape([rows, columns])
-    }
-
-    /// Three numbers of every boat: (flocks, boats, 3).
-    fn of_boats<'py>(
-        &self,
-        py: Python<'py>,
-        append: impl Fn(&Episode, &mut Vec<f64>),
-    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let rows = self.gathered(py, 3, |_, episode, numbers| append(episode, numbers))?;
-        let flocks = self.0.read()?.envs().len();
-        rows.reshape([flocks, rows.len()? / flocks, 3])
+        rows_of(py, gathered, columns)
     }
 }
 
@@ -80,19 +67,20 @@ fn never_reset() -> FlockError {
     FlockError::Episode("reset has not been called yet".to_owned())
 }
 
-/// Appends zeros that `fill` then writes.
-fn appended(numbers: &mut Vec<f32>, count: usize, fill: impl FnOnce(&mut [f32])) {
-    let start = numbers.len();
-    numbers.resize(start + count, 0.0);
-    fill(&mut numbers[start..]);
+/// So many numbers that `fill` writes.
+fn filled(count: usize, fill: impl FnOnce(&mut [f32])) -> Vec<f32> {
+    let mut numbers = vec![0.0; count];
+    fill(&mut numbers);
+    numbers
 }
 
 #[pymethods]
 impl PyEnvBatch {
     #[new]
     fn new(parameters: Vec<FlockParameters>, options: &Bound<'_, PyDict>) -> PyResult<Self> {
-        let batch = EnvBatch::new(settings_from(options)?, parameters)?;
-        Ok(Self::of(batch))
+        let mut settings = EnvSettings::default();
+        set_given(&mut settings, EnvSettings::FIELDS, options)?;
+        Ok(Self::of(EnvBatch::new(settings, parameters)?))
     }
 
     #[getter]
@@ -102,7 +90,7 @@ impl PyEnvBatch {
 
     #[getter]
     fn episode_steps(&self) -> Result<u32> {
-        Ok(self.0.read()?.settings().episode.steps())
+        Ok(self.0.read()?.settings().steps())
     }
 
     #[getter]
@@ -112,12 +100,13 @@ impl PyEnvBatch {
 
     #[getter]
     fn options<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        options_dict(py, self.0.read()?.settings())
+        fields_dict(py, self.0.read()?.settings(), EnvSettings::FIELDS)
     }
 
     fn parameters<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Bound<'py, PyDict>> {
         let batch = self.0.read()?;
-        to_dict(py, env_of(&batch, flock)?.parameters())
+        let parameters = env_of(&batch, flock)?.parameters();
+        fields_dict(py, parameters, FlockParameters::FIELDS)
     }
 
     /// One decision of every flock. The actions are copied, since other Python threads may write to them meanwhile.
@@ -157,7 +146,7 @@ impl PyEnvBatch {
         interruptible(py, |keep_going| batch.reset_while(keep_going, &requests))
     }
 
-    fn observe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+    fn observe<'py>(&self, py: Python<'py>) -> Rows<'py, f32> {
         let mut batch = self.0.write()?;
         if batch.envs().iter().all(|env| env.episode().is_none()) {
             return Err(never_reset().into());
@@ -171,96 +160,76 @@ impl PyEnvBatch {
     fn last_views<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Views<'py>> {
         let batch = self.0.read()?;
         let env = env_of(&batch, flock)?;
-        let rows = |numbers: &[f32], size: usize| {
-            PyArray1::from_slice(py, numbers).reshape([numbers.len() / size, size])
-        };
-        let leaders = 0..env.parameters().n_leaders;
-        let features: Vec<f32> = leaders
-            .flat_map(|leader| env.final_features(leader).to_vec())
-            .collect();
-        Ok((
+        let rows = |numbers: &[f32], columns| rows_of(py, numbers.to_vec(), columns);
+        Ok([
             rows(env.final_observation(), batch.observation_size())?,
-            PyArray1::from_slice(py, env.final_state()),
-            rows(&features, FlockFeatures::SIZE)?,
-        ))
+            rows(env.final_state(), env.state_size())?,
+            rows(env.final_features(), FlockFeatures::SIZE)?,
+        ])
     }
 
     /// Features of every flock in the frame of its target, (flocks, features), or of each leader's flock in the frame
     /// of its own, (rows, features).
-    fn flock_features<'py>(
-        &self,
-        py: Python<'py>,
-        each_leader: bool,
-    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        self.gathered(py, FlockFeatures::SIZE, |env, _, numbers| {
+    fn flock_features<'py>(&self, py: Python<'py>, each_leader: bool) -> Rows<'py, f32> {
+        self.gathered(py, FlockFeatures::SIZE, |env, _| {
             let leaders = env.parameters().n_leaders;
             let rows = if each_leader { leaders } else { 1 };
-            appended(numbers, rows * FlockFeatures::SIZE, |out| {
-                env.observe_features(out);
-            });
+            filled(rows * FlockFeatures::SIZE, |out| env.observe_features(out))
         })
     }
 
     /// Global states of every flock, which have equally many boats: (flocks, state size).
-    fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+    fn states<'py>(&self, py: Python<'py>) -> Rows<'py, f32> {
         let size = self
             .0
             .read()?
             .envs()
             .first()
             .map_or(1, FlockEnv::state_size);
-        self.gathered(py, size, |env, _, numbers| {
-            appended(numbers, env.state_size(), |out| env.observe_state(out));
+        self.gathered(py, size, |env, _| {
+            filled(env.state_size(), |out| env.observe_state(out))
         })
     }
 
     /// Reward terms of the last step: (rows, terms).
-    fn reward_terms<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.gathered(py, TERMS, |_, episode, numbers| {
-            numbers.extend(episode.terms().iter().flatten());
-        })
+    fn reward_terms<'py>(&self, py: Python<'py>) -> Rows<'py, f64> {
+        self.gathered(py, TERMS, |_, episode| episode.terms().concat())
     }
 
     /// Order parameters of the normal boats: (flocks, 6) [psi_o, phi_o, c_o, psi_v, phi_v, c_v], NaN
     /// where a flock has none.
-    fn order_parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.gathered(py, 6, |_, episode, numbers| {
+    fn order_parameters<'py>(&self, py: Python<'py>) -> Rows<'py, f64> {
+        self.gathered(py, 6, |_, episode| {
             let order = episode.order();
-            numbers.extend(order.map_or([f64::NAN; 6], |o| {
-                [o.psi_o, o.phi_o, o.c_o, o.psi_v, o.phi_v, o.c_v]
-            }));
+            let numbers = order.map(|o| vec![o.psi_o, o.phi_o, o.c_o, o.psi_v, o.phi_v, o.c_v]);
+            numbers.unwrap_or_else(|| vec![f64::NAN; 6])
         })
     }
 
-    /// Poses of all boats: (flocks, boats, 3).
-    fn poses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        self.of_boats(py, |episode, numbers| {
-            let poses = episode.flock().poses().iter();
-            numbers.extend(poses.flat_map(|p| [p.position.x, p.position.y, p.heading]));
+    /// Poses of all boats, flock after flock.
+    fn poses<'py>(&self, py: Python<'py>) -> Rows<'py, f64> {
+        self.gathered(py, 3, |_, episode| {
+            pose_numbers(episode.flock().poses()).collect()
         })
     }
 
-    /// Velocities of all boats: (flocks, boats, 3).
-    fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        self.of_boats(py, |episode, numbers| {
-            let velocities = episode.flock().velocities().iter();
-            numbers.extend(velocities.flat_map(|v| [v.linear.x, v.linear.y, v.angular]));
-        })
+    /// Velocities of all boats, flock after flock.
+    fn velocities<'py>(&self, py: Python<'py>) -> Rows<'py, f64> {
+        let numbers = |episode: &Episode| velocity_numbers(episode.flock().velocities()).collect();
+        self.gathered(py, 3, |_, episode| numbers(episode))
     }
 
     /// Whether each flock is in the analysis window: (flocks, 1).
-    fn in_analysis_window<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<bool>>> {
-        self.gathered(py, 1, |_, episode, windows| {
+    fn in_analysis_window<'py>(&self, py: Python<'py>) -> Rows<'py, bool> {
+        self.gathered(py, 1, |_, episode| {
             let flock = episode.flock();
-            windows.push(flock.schedule().in_analysis_window(flock.time()));
+            vec![flock.schedule().in_analysis_window(flock.time())]
         })
     }
 
     /// Rudders as they stand: (rows, 1), positive counter-clockwise.
-    fn rudders<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.gathered(py, 1, |_, episode, rudders| {
-            rudders.extend_from_slice(episode.rudders());
-        })
+    fn rudders<'py>(&self, py: Python<'py>) -> Rows<'py, f64> {
+        self.gathered(py, 1, |_, episode| episode.rudders().to_vec())
     }
 
     /// Whether a flock has ever been given a seed.
@@ -283,7 +252,15 @@ impl PyEnvBatch {
 
     /// A flock's target, step, backward duration and seed.
     fn episode<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Bound<'py, PyDict>> {
-        episode_dict(py, episode_of(&*self.0.read()?, flock)?.schedule())
+        let batch = self.0.read()?;
+        let episode = episode_of(&batch, flock)?;
+        let schedule = episode.schedule();
+        let dict = PyDict::new(py);
+        dict.set_item("target", written(&schedule.targets().value(), py)?)?;
+        dict.set_item("bw_s", episode.flock().parameters().bw_s)?;
+        dict.set_item("flock_seed", schedule.flock_seed)?;
+        dict.set_item("step", schedule.step)?;
+        Ok(dict)
     }
 
     /// Summary of the episode under way.
@@ -307,12 +284,12 @@ impl PyEnvBatch {
     }
 
     #[classmethod]
-    fn from_bytes(_class: &Bound<'_, PyType>, state: &Bound<'_, PyBytes>) -> PyResult<Self> {
-        Ok(Self::of(EnvBatch::from_bytes(state.as_bytes())?))
+    fn from_bytes(_class: &Bound<'_, PyType>, state: &[u8]) -> Result<Self> {
+        EnvBatch::from_bytes(state).map(Self::of)
     }
 
-    fn restore(&self, state: &Bound<'_, PyBytes>) -> Result<()> {
-        self.0.write()?.restore(state.as_bytes())
+    fn restore(&self, state: &[u8]) -> Result<()> {
+        self.0.write()?.restore(state)
     }
 
     fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Result<Self> {
@@ -326,4 +303,74 @@ impl PyEnvBatch {
         let class = py.get_type::<Self>();
         Ok((class.getattr("from_bytes")?, (self.to_bytes(py)?,)))
     }
+}
+
+/// A request of a flock of so many boats.
+fn request_from(options: &Bound<'_, PyDict>, boats: usize) -> PyResult<ResetRequest> {
+    let mut request = ResetRequest::default();
+    for (name, value) in options {
+        match text_of("reset option", &value_from(&name))? {
+            "seed" if value.is_none() => request.seed = None,
+            "seed" => request.seed = Some(seed_from(&value)?),
+            "target" => request.target = Some(given(&value, "target")?),
+            "bw_s" => request.bw_s = Some(given(&value, "bw_s")?),
+            "state" => request.start = Start::State(state_from(&value, boats)?),
+            "snapshot" => request.start = Start::Snapshot(value.extract()?),
+            other => {
+                let accepted = "target, bw_s, state or snapshot";
+                let found = format!("{other:?}");
+                return Err(FlockError::parameter("reset option", found, accepted).into());
+            }
+        }
+    }
+    let starts_twice = options.contains("state")? && options.contains("snapshot")?;
+    let noise_twice = options.contains("bw_s")? && options.contains("snapshot")?;
+    let accepted = "a snapshot alone: it brings its own state and bw_s along";
+    let is_alone = !starts_twice && !noise_twice;
+    FlockError::unless(is_alone, "reset options", "snapshot and others", accepted)?;
+    Ok(request)
+}
+
+/// A summary by name, with what each leader with a target of its own has: arrays (k,). Means over an analysis window
+/// that the episode did not reach are left out: infos hold no NaN.
+fn summary_dict<'py>(
+    py: Python<'py>,
+    summary: &EpisodeSummary,
+    leaders: &[LeaderSummary],
+) -> PyResult<Bound<'py, PyDict>> {
+    let terms = PyDict::new(py);
+    for (term, mean) in RewardTerm::ALL.iter().zip(summary.terms) {
+        terms.set_item(term.name(), mean)?;
+    }
+    let dict = PyDict::new(py);
+    dict.set_item("flock_seed", summary.flock_seed)?;
+    dict.set_item("bw_s", summary.bw_s)?;
+    dict.set_item("steps", summary.steps)?;
+    dict.set_item("total_reward", summary.total_reward)?;
+    dict.set_item("reward_terms", terms)?;
+    let share = ("share_towards_target", summary.share_towards_target);
+    let means = summary.averages.named().chain([share]);
+    for (name, mean) in means.filter(|(_, mean)| !mean.is_nan()) {
+        dict.set_item(name, mean)?;
+    }
+    let [printed, wide] = summary.ordering_times_s;
+    dict.set_item("ordering_time_s", printed)?;
+    dict.set_item("ordering_time_wide_s", wide)?;
+    dict.set_item("clip_rate", summary.clip_rate)?;
+    type Column = (&'static str, fn(&LeaderSummary) -> f64);
+    let columns: [Column; 4] = [
+        ("leader_targets", |each| each.target.sign()),
+        ("leader_total_rewards", |each| each.total_reward),
+        ("leader_signed_orders", |each| each.signed_order),
+        ("leader_shares_towards_target", |each| {
+            each.share_towards_target
+        }),
+    ];
+    for (name, value) in columns {
+        let values: Vec<f64> = leaders.iter().map(value).collect();
+        if !values.is_empty() && !values.iter().any(|value| value.is_nan()) {
+            dict.set_item(name, PyArray1::from_vec(py, values))?;
+        }
+    }
+    Ok(dict)
 }

@@ -2,64 +2,60 @@
 //! `?` does it elsewhere.
 
 use crate::error::FlockError;
-use pyo3::exceptions::{PyException, PyKeyboardInterrupt, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{
+    PyException, PyKeyboardInterrupt, PyRuntimeError, PyTypeError, PyValueError,
+};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::{PyDict, PyType};
+use pyo3::types::{IntoPyDict, PyTuple, PyType};
 
-/// A name, what it means, and a built-in class.
-type Declared = (
-    &'static str,
-    &'static str,
-    fn(Python<'_>) -> Bound<'_, PyType>,
-);
-
-/// The exceptions, each with what it means and the built-in class that it also is. The first is the base of the
-/// others.
-const DECLARED: [Declared; 5] = [
+/// Their names and what they mean. The first is the base of the others, each of which is a built-in exception too.
+const DECLARED: [(&str, &str); 5] = [
     (
         "FlockError",
         "Base of every error that flockenv raises by itself.",
-        |py| py.get_type::<PyException>(),
     ),
     (
         "ParameterError",
         "A parameter, argument, array, state, snapshot or file is not acceptable.\n\n\
          The message names it, shows the value and says what would be accepted. Nothing has changed.",
-        |py| py.get_type::<PyValueError>(),
     ),
     (
         "EpisodeError",
         "An environment was stepped before a reset or after the end of its episode.",
-        |py| py.get_type::<PyRuntimeError>(),
     ),
     (
         "SolverError",
         "The motion left the range of 1e9 (cm, cm/s, rad, rad/s).\n\n\
          The flock is where it was before the call.",
-        |py| py.get_type::<PyRuntimeError>(),
     ),
     (
         "InUseError",
         "A flock or an environment is at work in another thread: each thread needs one of its own.",
-        |py| py.get_type::<PyRuntimeError>(),
     ),
 ];
+/// Their places.
+const PARAMETER: usize = 1;
+const EPISODE: usize = 2;
+const SOLVER: usize = 3;
+const IN_USE: usize = 4;
 
 static EXCEPTIONS: PyOnceLock<Vec<Py<PyType>>> = PyOnceLock::new();
 
 fn exceptions(py: Python<'_>) -> PyResult<&Vec<Py<PyType>>> {
     EXCEPTIONS.get_or_try_init(py, || {
-        let mut made: Vec<Py<PyType>> = Vec::with_capacity(DECLARED.len());
-        for (name, doc, built_in) in DECLARED {
+        let mut made: Vec<Py<PyType>> = Vec::new();
+        for (name, doc) in DECLARED {
+            let built_in = match made.len() {
+                0 => py.get_type::<PyException>(),
+                PARAMETER => py.get_type::<PyValueError>(),
+                _ => py.get_type::<PyRuntimeError>(),
+            };
             let first = made.first().map(|first| first.bind(py).clone());
-            let bases: Vec<_> = first.into_iter().chain([built_in(py)]).collect();
-            let body = PyDict::new(py);
-            body.set_item("__module__", "flockenv.errors")?;
-            body.set_item("__doc__", doc)?;
+            let bases = PyTuple::new(py, first.into_iter().chain([built_in]).collect::<Vec<_>>())?;
+            let body = [("__module__", "flockenv.errors"), ("__doc__", doc)].into_py_dict(py)?;
             // As a `class` statement of Python makes it: it may have several bases.
-            let arguments = (name, pyo3::types::PyTuple::new(py, bases)?, body);
-            let class = py.get_type::<PyType>().call1(arguments)?;
+            let class = py.get_type::<PyType>().call1((name, bases, body))?;
             made.push(class.cast_into::<PyType>()?.unbind());
         }
         Ok(made)
@@ -67,44 +63,37 @@ fn exceptions(py: Python<'_>) -> PyResult<&Vec<Py<PyType>>> {
 }
 
 /// Puts the exception classes into the module.
-pub(crate) fn add_exceptions(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    let classes = exceptions(module.py())?.iter();
-    DECLARED
-        .iter()
-        .zip(classes)
-        .try_for_each(|((name, ..), class)| module.add(*name, class))
+pub(super) fn add_exceptions(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    let mut classes = exceptions(module.py())?.iter();
+    classes.try_for_each(|class| module.add(class.bind(module.py()).name()?, class))
 }
 
 /// The `ParameterError` with a message.
-pub(crate) fn refusal(message: String) -> PyErr {
-    named("ParameterError", message)
+pub(super) fn refusal(message: String) -> PyErr {
+    raised(PARAMETER, message)
 }
 
-fn named(name: &str, message: String) -> PyErr {
+fn raised(place: usize, message: String) -> PyErr {
     Python::attach(|py| match exceptions(py) {
-        Ok(classes) => {
-            let mut each = DECLARED.iter().zip(classes);
-            let found = each.find(|((known, ..), _)| *known == name);
-            let class = found.map_or(&classes[0], |(_, class)| class);
-            PyErr::from_type(class.bind(py).clone(), message)
-        }
+        Ok(classes) => PyErr::from_type(classes[place].bind(py).clone(), message),
         Err(failure) => failure,
     })
 }
 
 impl From<FlockError> for PyErr {
     fn from(error: FlockError) -> Self {
-        let name = match error {
+        let place = match error {
             FlockError::Parameter { .. }
             | FlockError::Shape { .. }
             | FlockError::Overlap { .. }
             | FlockError::Placement { .. }
-            | FlockError::Snapshot(_) => "ParameterError",
-            FlockError::Episode(_) => "EpisodeError",
-            FlockError::Solver(_) => "SolverError",
-            FlockError::InUse(_) => "InUseError",
+            | FlockError::Snapshot(_) => PARAMETER,
+            FlockError::Episode(_) => EPISODE,
+            FlockError::Solver(_) => SOLVER,
+            FlockError::InUse(_) => IN_USE,
+            FlockError::Kind { .. } => return PyTypeError::new_err(error.to_string()),
             FlockError::Interrupted => return PyKeyboardInterrupt::new_err(()),
         };
-        named(name, error.to_string())
+        raised(place, error.to_string())
     }
 }

@@ -10,14 +10,14 @@ use std::time::{Duration, Instant};
 
 /// An object that says so, instead of waiting, if another thread is at work with it.
 #[derive(Debug)]
-pub(crate) struct Exclusive<T> {
+pub(super) struct Exclusive<T> {
     object: RwLock<T>,
     name: &'static str,
 }
 
 impl<T> Exclusive<T> {
     /// An object that errors call `name`.
-    pub(crate) fn new(object: T, name: &'static str) -> Self {
+    pub(super) fn new(object: T, name: &'static str) -> Self {
         Self {
             object: RwLock::new(object),
             name,
@@ -28,7 +28,7 @@ impl<T> Exclusive<T> {
     ///
     /// # Errors
     /// [`FlockError::InUse`] while another thread changes it.
-    pub(crate) fn read(&self) -> Result<RwLockReadGuard<'_, T>> {
+    pub(super) fn read(&self) -> Result<RwLockReadGuard<'_, T>> {
         self.unless_in_use(self.object.try_read())
     }
 
@@ -36,7 +36,7 @@ impl<T> Exclusive<T> {
     ///
     /// # Errors
     /// [`FlockError::InUse`] while another thread uses it.
-    pub(crate) fn write(&self) -> Result<RwLockWriteGuard<'_, T>> {
+    pub(super) fn write(&self) -> Result<RwLockWriteGuard<'_, T>> {
         self.unless_in_use(self.object.try_write())
     }
 
@@ -55,7 +55,7 @@ const PATIENCE: Duration = Duration::from_millis(20);
 /// Work without the interpreter lock that ends if a signal's handler raises. It asks now and then whether to keep
 /// going; Python has its signals handled in the calling thread alone, so that this one looks for them whenever it
 /// asks, and the others see what it saw.
-pub(crate) fn interruptible<T: Send>(
+pub(super) fn interruptible<T: Send>(
     py: Python<'_>,
     work: impl FnOnce(KeepGoing) -> Result<T> + Send,
 ) -> PyResult<T> {

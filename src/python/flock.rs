@@ -1,29 +1,28 @@
 //! The simulator behind `flockenv.Flock`, which documents its methods.
 
-use super::arguments::{floats, real, targets, whole};
-use super::contacts;
+use super::arrays::{floats, poses_from, rows_of, velocities_from};
 use super::exclusive::{Exclusive, interruptible};
-use super::parameters::to_dict;
-use super::state::{poses_of, rows_of_three, state_from, velocities_of};
+use super::value::{fields_dict, given, seed_from, value_from, wrong_type};
 use crate::analysis::quantities::Recorded;
-use crate::contact::Statistics;
+use crate::contact::{Partner, Statistics};
 use crate::draw::FrameRenderer;
-use crate::error::Result;
-use crate::flock::Flock;
+use crate::error::{FlockError, Result};
+use crate::flock::{ContactForce, Flock, State};
+use crate::geometry::{Pose, Vec2, Velocity};
 use crate::integrator::Steering;
-use crate::parameters::FlockParameters;
-use numpy::{PyArray1, PyArray2};
+use crate::parameters::{FlockParameters, Targets, text_of};
+use numpy::{Element, PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
-use std::sync::RwLockReadGuard;
+use std::sync::{Mutex, MutexGuard, PoisonError, RwLockReadGuard};
 
 /// A flock for one thread at a time.
 #[pyclass(name = "Flock", module = "flockenv._core", frozen)]
-pub struct PyFlock(Exclusive<Flock>);
+pub(super) struct PyFlock(Exclusive<Flock>);
 
 impl PyFlock {
     /// A flock for Python.
-    pub fn of(flock: Flock) -> Self {
+    pub(super) fn of(flock: Flock) -> Self {
         Self(Exclusive::new(flock, "the flock"))
     }
 
@@ -31,7 +30,7 @@ impl PyFlock {
     ///
     /// # Errors
     /// [`FlockError::InUse`] while another thread changes it.
-    pub fn read(&self) -> Result<RwLockReadGuard<'_, Flock>> {
+    pub(super) fn read(&self) -> Result<RwLockReadGuard<'_, Flock>> {
         self.0.read()
     }
 }
@@ -40,7 +39,7 @@ impl PyFlock {
 impl PyFlock {
     #[new]
     fn new(py: Python<'_>, parameters: FlockParameters, seed: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let seed = whole(seed, "seed")?;
+        let seed = seed_from(seed)?;
         let flock = interruptible(py, |keep_going| {
             Flock::new_while(keep_going, parameters, seed)
         })?;
@@ -48,8 +47,8 @@ impl PyFlock {
     }
 
     #[classmethod]
-    fn from_snapshot(_class: &Bound<'_, PyType>, snapshot: &Bound<'_, PyBytes>) -> PyResult<Self> {
-        Ok(Self::of(Flock::from_snapshot(snapshot.as_bytes())?))
+    fn from_snapshot(_class: &Bound<'_, PyType>, snapshot: &[u8]) -> Result<Self> {
+        Flock::from_snapshot(snapshot).map(Self::of)
     }
 
     #[classmethod]
@@ -60,12 +59,12 @@ impl PyFlock {
         state: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
         parameters.check()?;
-        let (seed, state) = (whole(seed, "seed")?, state_from(state, parameters.n_boats)?);
+        let (seed, state) = (seed_from(seed)?, state_from(state, parameters.n_boats)?);
         Ok(Self::of(Flock::from_state(parameters, seed, &state)?))
     }
 
     fn reset(&self, py: Python<'_>, seed: &Bound<'_, PyAny>) -> PyResult<()> {
-        let seed = whole(seed, "seed")?;
+        let seed = seed_from(seed)?;
         let mut flock = self.0.write()?;
         let flock = &mut *flock;
         interruptible(py, |keep_going| flock.reset_while(keep_going, seed))
@@ -73,7 +72,7 @@ impl PyFlock {
 
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(py, self.read()?.parameters())
+        fields_dict(py, self.read()?.parameters(), FlockParameters::FIELDS)
     }
 
     #[getter]
@@ -83,16 +82,12 @@ impl PyFlock {
 
     #[getter]
     fn pose<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let flock = self.read()?;
-        let rows = flock.poses().iter();
-        rows_of_three(py, rows.map(|p| [p.position.x, p.position.y, p.heading]))
+        rows_of(py, pose_numbers(self.read()?.poses()).collect(), 3)
     }
 
     #[getter]
     fn velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let flock = self.read()?;
-        let rows = flock.velocities().iter();
-        rows_of_three(py, rows.map(|v| [v.linear.x, v.linear.y, v.angular]))
+        rows_of(py, velocity_numbers(self.read()?.velocities()).collect(), 3)
     }
 
     #[getter]
@@ -124,7 +119,7 @@ impl PyFlock {
 
     #[setter]
     fn set_threads(&self, threads: &Bound<'_, PyAny>) -> PyResult<()> {
-        let threads = usize::try_from(whole(threads, "threads")?).unwrap_or(usize::MAX);
+        let threads = given(threads, "threads")?;
         Ok(self.0.write()?.set_threads(threads)?)
     }
 
@@ -135,16 +130,16 @@ impl PyFlock {
         time_s: &Bound<'_, PyAny>,
         allow_overlap: bool,
     ) -> PyResult<()> {
-        let shape = [self.read()?.parameters().n_boats, 3];
-        let poses = poses_of(&floats(pose, "pose", &shape)?);
-        let velocities = velocities_of(&floats(velocity, "velocity", &shape)?);
-        let time_s = real(time_s, "time_s")?;
+        let boats = self.read()?.parameters().n_boats;
+        let (poses, velocities) = (poses_from(pose, boats)?, velocities_from(velocity, boats)?);
+        let time_s = given(time_s, "time_s")?;
         let mut flock = self.0.write()?;
         Ok(flock.set_state(&poses, &velocities, time_s, allow_overlap)?)
     }
 
     fn set_target(&self, target: &Bound<'_, PyAny>) -> PyResult<()> {
-        Ok(self.0.write()?.set_target(targets(target)?)?)
+        let target: Targets = given(target, "target")?;
+        Ok(self.0.write()?.set_target(target)?)
     }
 
     #[pyo3(signature = (seconds, rudder=None))]
@@ -154,13 +149,10 @@ impl PyFlock {
         seconds: &Bound<'_, PyAny>,
         rudder: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
-        let seconds = real(seconds, "seconds")?;
-        let leaders = [self.read()?.parameters().n_leaders];
-        let rudder = rudder.map(|rudder| floats(rudder, "rudder", &leaders));
-        let rudder = rudder.transpose()?;
+        let seconds = given(seconds, "seconds")?;
+        let rudder = rudders_from(rudder, &*self.read()?)?;
         let mut flock = self.0.write()?;
         let flock = &mut *flock;
-        flock.check_rudder(rudder.as_deref())?;
         let end = flock.end_of(seconds)?;
         let steering = rudder.as_deref().map_or(Steering::Law, Steering::Held);
         interruptible(py, |keep_going| {
@@ -182,15 +174,15 @@ impl PyFlock {
 
     /// Contacts and near-contacts of the last substep, by column.
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        contacts::columns::<i64, f64>(py, &self.read()?.contacts(), |x| x)
+        contact_columns::<i64, f64>(py, &self.read()?.contacts(), |x| x)
     }
 
     fn snapshot<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyBytes>> {
         Ok(PyBytes::new(py, &self.read()?.snapshot()))
     }
 
-    fn restore(&self, snapshot: &Bound<'_, PyBytes>) -> Result<()> {
-        self.0.write()?.restore(snapshot.as_bytes())
+    fn restore(&self, snapshot: &[u8]) -> Result<()> {
+        self.0.write()?.restore(snapshot)
     }
 
     fn copy(&self) -> Result<Self> {
@@ -204,30 +196,144 @@ impl PyFlock {
     }
 }
 
+/// Numbers [cm, cm, rad] of poses, one after another.
+pub(super) fn pose_numbers(poses: &[Pose]) -> impl Iterator<Item = f64> {
+    let poses = poses.iter();
+    poses.flat_map(|pose| [pose.position.x, pose.position.y, pose.heading])
+}
+
+/// Numbers [cm/s, cm/s, rad/s] of velocities, one after another.
+pub(super) fn velocity_numbers(velocities: &[Velocity]) -> impl Iterator<Item = f64> {
+    let velocities = velocities.iter();
+    velocities.flat_map(|v| [v.linear.x, v.linear.y, v.angular])
+}
+
+/// Checked rudders of a flock's leaders, if they are given.
+pub(super) fn rudders_from(
+    object: Option<&Bound<'_, PyAny>>,
+    flock: &Flock,
+) -> PyResult<Option<Vec<f64>>> {
+    let leaders = [flock.parameters().n_leaders];
+    let rudders = object.map(|rudder| floats(rudder, "rudder", &leaders));
+    let rudders = rudders.transpose()?;
+    flock.check_rudder(rudders.as_deref())?;
+    Ok(rudders)
+}
+
+/// {"pose": (n, 3), "velocity": (n, 3), "time_s": float, "allow_overlap": bool}; the pose alone will do.
+pub(super) fn state_from(value: &Bound<'_, PyAny>, boats: usize) -> PyResult<State> {
+    let accepted = "a dictionary with pose and, if need be, velocity, time_s and allow_overlap";
+    let state = value.cast::<PyDict>();
+    let dict = state.map_err(|_| wrong_type(value, "state", accepted))?;
+    let refuse = |found: &str| FlockError::parameter("state", found, accepted);
+    let mut state = State {
+        poses: Vec::new(),
+        velocities: vec![Velocity::default(); boats],
+        time_s: 0.0,
+        allow_overlap: false,
+    };
+    let mut has_pose = false;
+    for (name, value) in dict {
+        match text_of("state", &value_from(&name))? {
+            "pose" => (state.poses, has_pose) = (poses_from(&value, boats)?, true),
+            "velocity" => state.velocities = velocities_from(&value, boats)?,
+            "time_s" => state.time_s = given(&value, "time_s")?,
+            "allow_overlap" => state.allow_overlap = given(&value, "allow_overlap")?,
+            other => return Err(refuse(&format!("{other:?}")).into()),
+        }
+    }
+    if !has_pose {
+        return Err(refuse("without pose").into());
+    }
+    Ok(state)
+}
+
 /// Statistics by name.
 fn statistics_dict<'py>(py: Python<'py>, of: &Statistics) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     macro_rules! set {
-        ($($name:ident),+) => { $(dict.set_item(stringify!($name), of.$name)?;)+ };
+        ($($name:ident)+) => { $(dict.set_item(stringify!($name), of.$name)?;)+ };
     }
-    set!(
-        substeps,
-        solves,
-        contacts,
-        islands,
-        solver_iterations,
-        factored_rows
-    );
-    set!(
-        most_factor_entries,
-        unsolved,
-        depenetration_passes,
-        neighbor_builds
-    );
-    set!(
-        worst_residual_cm_s,
-        worst_overlap_cm,
-        displaced_angular_momentum_cm2_s
-    );
+    set!(substeps solves contacts islands solver_iterations factored_rows most_factor_entries unsolved);
+    set!(depenetration_passes neighbor_builds worst_residual_cm_s worst_overlap_cm);
+    set!(displaced_angular_momentum_cm2_s);
     Ok(dict)
+}
+
+/// Contacts by column: i, j, gap_cm, normal, force, point_cm and along_cm, in the precision that a flock or a recording
+/// has.
+pub(super) fn contact_columns<'py, I: Element + From<i32>, T: Element>(
+    py: Python<'py>,
+    contacts: &[ContactForce],
+    rounded: fn(f64) -> T,
+) -> PyResult<Bound<'py, PyDict>> {
+    let numbers = |value: fn(&ContactForce) -> f64| {
+        PyArray1::from_iter(py, contacts.iter().map(value).map(rounded))
+    };
+    let boats = |boat: fn(&ContactForce) -> i32| {
+        PyArray1::from_iter(py, contacts.iter().map(boat).map(I::from))
+    };
+    let vectors = |vector: fn(&ContactForce) -> Vec2| {
+        let each = contacts.iter().map(vector).flat_map(|v| [v.x, v.y]);
+        rows_of(py, each.map(rounded).collect(), 2)
+    };
+    let columns = PyDict::new(py);
+    columns.set_item("i", boats(|each| each.contact.boat as i32))?;
+    columns.set_item("j", boats(partner))?;
+    columns.set_item("gap_cm", numbers(|each| each.contact.gap.gap))?;
+    columns.set_item("normal", vectors(|each| each.contact.gap.normal)?)?;
+    columns.set_item("force", numbers(|each| each.force))?;
+    columns.set_item("point_cm", vectors(|each| each.point)?)?;
+    columns.set_item("along_cm", numbers(|each| each.contact.gap.along))?;
+    Ok(columns)
+}
+
+/// Walls are numbered −1 (outer) and −2 (inner), obstacles from −3 downwards.
+fn partner(contact: &ContactForce) -> i32 {
+    match contact.contact.partner {
+        Partner::Boat(boat) => boat as i32,
+        Partner::OuterWall => -1,
+        Partner::InnerWall => -2,
+        Partner::Obstacle(number) => -3 - number as i32,
+    }
+}
+
+/// Draws flocks at one size, for one thread at a time: others wait.
+#[pyclass(name = "FrameRenderer", module = "flockenv._core", frozen)]
+pub(super) struct PyFrameRenderer(Mutex<FrameRenderer>);
+
+impl PyFrameRenderer {
+    fn lock(&self) -> MutexGuard<'_, FrameRenderer> {
+        // Every frame is drawn again: nothing remains of one that was not finished.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[pymethods]
+impl PyFrameRenderer {
+    #[new]
+    fn new(width: &Bound<'_, PyAny>, height: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let side = |object, name| {
+            // What does not fit 32 bits is as far out of range as the largest that does.
+            Ok::<_, PyErr>(u32::try_from(given::<usize>(object, name)?).unwrap_or(u32::MAX))
+        };
+        let renderer = FrameRenderer::new(side(width, "width")?, side(height, "height")?)?;
+        Ok(Self(Mutex::new(renderer)))
+    }
+
+    /// A flock as it is now: (height, width, 3), uint8.
+    fn draw<'py>(&self, py: Python<'py>, flock: &PyFlock) -> PyResult<Bound<'py, PyArray3<u8>>> {
+        let (shape, frame) = py.detach(|| -> Result<_> {
+            let mut renderer = self.lock();
+            let shape = [renderer.height() as usize, renderer.width() as usize, 3];
+            Ok((shape, renderer.draw(&*flock.read()?)))
+        })?;
+        PyArray1::from_vec(py, frame).reshape(shape)
+    }
+
+    /// Where a boat is in the frame, in pixels from the top left: (x, y, reach of its hull).
+    fn place(&self, flock: &PyFlock, boat: &Bound<'_, PyAny>) -> PyResult<(f32, f32, f32)> {
+        let boat = given::<usize>(boat, "boat")?;
+        Ok(self.lock().place(&*flock.read()?, boat)?)
+    }
 }

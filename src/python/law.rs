@@ -1,9 +1,8 @@
 //! Laws of leaders, as they steer by themselves and as they read observations.
 
-use super::value::layout_from;
+use super::error::refusal;
+use super::observation::layout_from;
 use crate::boat::DampedLaw;
-use crate::environment::LARGEST_LEAN;
-use crate::environment::observation::LeanFeatures;
 use crate::error::{FlockError, Result};
 use crate::policies::{Law, LeaningLaw, ObservedLaw};
 use numpy::{PyArray1, PyReadonlyArray2};
@@ -16,19 +15,13 @@ pub struct PyLaw(Law);
 
 impl PyLaw {
     /// The law.
-    pub(crate) fn law(&self) -> &Law {
+    pub(super) fn law(&self) -> &Law {
         &self.0
     }
 }
 
 #[pymethods]
 impl PyLaw {
-    /// The names of the laws that have one.
-    #[staticmethod]
-    fn names() -> Vec<&'static str> {
-        Law::NAMES.to_vec()
-    }
-
     /// The law of a name, where it needs one in a pool of this name.
     #[staticmethod]
     #[pyo3(signature = (name, pool=None))]
@@ -76,18 +69,6 @@ impl PyLaw {
     }
 }
 
-/// Names of the lean features, in order.
-#[pyfunction]
-pub(crate) fn lean_feature_names() -> Vec<&'static str> {
-    LeanFeatures::names().collect()
-}
-
-/// The lean in rad that an action of 1 stands for.
-#[pyfunction]
-pub(crate) fn largest_lean() -> f64 {
-    LARGEST_LEAN
-}
-
 /// A law as it reads observations of one layout.
 #[pyclass(name = "ObservedLaw", module = "flockenv._core", frozen)]
 pub struct PyObservedLaw(ObservedLaw);
@@ -110,17 +91,13 @@ impl PyObservedLaw {
         let size = self.0.observation_size();
         let width = observations.as_array().ncols();
         if width != size {
-            return Err(FlockError::Shape {
-                field: "observation",
-                found: format!("(..., {width})"),
-                expected: format!("(..., {size}), the size of the law's own layout"),
-            }
-            .into());
+            let expected = format!("(..., {size}), the size of the law's own layout");
+            let message = format!("observation has shape (..., {width}), expected {expected}");
+            return Err(refusal(message));
         }
         let numbers = observations.as_slice()?;
-        if numbers.iter().any(|number| number.is_nan()) {
-            return Err(FlockError::parameter("observation", f64::NAN, "numbers").into());
-        }
+        let are_numbers = !numbers.iter().any(|number| number.is_nan());
+        FlockError::unless(are_numbers, "observation", f64::NAN, "numbers")?;
         let rows = numbers.chunks_exact(size);
         let actions = rows.map(|observation| self.0.action(observation) as f32);
         Ok(PyArray1::from_iter(py, actions))

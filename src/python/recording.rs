@@ -1,48 +1,26 @@
 //! The loop of `flockenv.simulate`.
 
-use super::arguments::{floats, real, same_length, targets};
-use super::flock::PyFlock;
+use super::analysis;
+use super::arrays::floats;
+use super::flock::{PyFlock, contact_columns};
 use super::law::PyLaw;
-use super::observation::observed;
-use super::value::layout_from;
-use super::{contacts, order};
+use super::observation::{layout_from, observed};
+use super::value::given;
 use crate::clock::ticks;
 use crate::environment::observation::ObservationLayout;
-use crate::error::Result;
 use crate::flock::{
     BOAT_SUBSTEPS_A_PIECE, Change, Flock, Pause, Real, Recorder, Recording, Sampling,
 };
-use crate::integrator::Phase;
+use crate::parameters::Targets;
 use crate::policies::Pilot;
-use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArray1};
+use numpy::{Element, PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyString, PyTuple};
-
-/// The phases in the order of a cycle; samples hold their place in it.
-#[pyfunction]
-pub(crate) fn phase_names() -> Vec<&'static str> {
-    Phase::ALL.iter().map(|phase| phase.name()).collect()
-}
-
-/// Whether each of some times (s) lies in the analysis window, by the phases then: names, shape (t,).
-#[pyfunction]
-pub(crate) fn sampled_analysis_window<'py>(
-    py: Python<'py>,
-    time_s: PyReadonlyArray1<'py, f64>,
-    phase: Vec<String>,
-) -> PyResult<Bound<'py, PyArray1<bool>>> {
-    let times = time_s.to_vec()?;
-    same_length("phase", phase.len(), times.len())?;
-    let phases = phase.iter().map(|name| name.parse::<Phase>());
-    let phases = phases.collect::<Result<Vec<_>>>()?;
-    let analyzed = crate::integrator::sampled_analysis_window(&times, &phases);
-    Ok(PyArray1::from_vec(py, analyzed))
-}
 
 /// What of a run is kept, what changes on the way, and who steers.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct Plan<'py> {
+pub(super) struct Plan<'py> {
     sample_hz: Bound<'py, PyAny>,
     single_precision: bool,
     contacts: bool,
@@ -58,7 +36,7 @@ pub(crate) struct Plan<'py> {
 /// observations (k, size), one for each layout, that returns rudders (k,).
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct Control<'py> {
+pub(super) struct Control<'py> {
     steer: Bound<'py, PyAny>,
     layouts: Vec<(Bound<'py, PyAny>, bool)>,
     control_hz: Bound<'py, PyAny>,
@@ -66,14 +44,14 @@ pub(crate) struct Control<'py> {
 
 /// Records a run from where a flock is, which stays there: the columns of a `flockenv.Recording` that a run fills.
 #[pyfunction]
-pub(crate) fn record<'py>(
+pub(super) fn record<'py>(
     py: Python<'py>,
     flock: &PyFlock,
     duration_s: &Bound<'py, PyAny>,
     plan: Plan<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let duration_s = real(duration_s, "duration_s")?;
-    let sampling = Sampling::new(duration_s, real(&plan.sample_hz, "sample_hz")?)?;
+    let duration_s = given(duration_s, "duration_s")?;
+    let sampling = Sampling::new(duration_s, given(&plan.sample_hz, "sample_hz")?)?;
     if plan.single_precision {
         recorded::<f32>(py, flock, sampling, &plan)
     } else {
@@ -84,7 +62,7 @@ pub(crate) fn record<'py>(
 fn change_from(value: &Bound<'_, PyAny>) -> PyResult<Change> {
     let is_list = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
     if is_list || value.is_instance_of::<PyString>() {
-        return Ok(Change::Target(targets(value)?));
+        return Ok(Change::Target(given::<Targets>(value, "target")?));
     }
     Ok(Change::Parameters(Box::new(value.extract()?)))
 }
@@ -105,7 +83,7 @@ fn recorded<'py, T: Real + Element>(
     }
     let mut layouts = Vec::new();
     if let Some(control) = &plan.control {
-        recorder = recorder.with_control(real(&control.control_hz, "control_hz")?)?;
+        recorder = recorder.with_control(given(&control.control_hz, "control_hz")?)?;
         for (blocks, is_mirrored) in &control.layouts {
             layouts.push(layout_from(blocks, *is_mirrored)?);
         }
@@ -141,7 +119,7 @@ fn pilot_of(plan: &Plan<'_>, flock: &Flock) -> PyResult<Option<Pilot>> {
     let Ok(law) = control.steer.cast::<PyLaw>() else {
         return Ok(None);
     };
-    let hz = real(&control.control_hz, "control_hz")?;
+    let hz = given(&control.control_hz, "control_hz")?;
     let law = law.get().law().clone();
     Ok(Some(Pilot::new(law, flock.parameters(), hz)?))
 }
@@ -167,24 +145,25 @@ fn steer<T: Real>(
 
 fn columns<T: Element>(py: Python<'_>, run: Recording<T>) -> PyResult<Bound<'_, PyDict>> {
     let samples = run.time_s.len();
-    let rows = |numbers: Vec<T>| {
-        let boats = numbers.len() / (3 * samples.max(1));
-        PyArray1::from_vec(py, numbers).reshape([samples, boats, 3])
-    };
+    let boats = |numbers: &[T]| [samples, numbers.len() / (3 * samples.max(1)), 3];
+    let (pose, velocity) = (boats(&run.pose), boats(&run.velocity));
     let leaders = run.rudder.len() / samples.max(1);
-    let rudder = PyArray1::from_vec(py, run.rudder).reshape([samples, leaders])?;
     let phases = run.phase.iter().map(|phase| phase.index() as u8);
     let columns = PyDict::new(py);
     columns.set_item("phase", PyArray1::from_iter(py, phases))?;
-    columns.set_item("order", order::columns(py, &run.order)?)?;
+    columns.set_item("order", analysis::columns(py, &run.order)?)?;
     columns.set_item("time_s", PyArray1::from_vec(py, run.time_s))?;
     let window = PyArray1::from_vec(py, run.in_analysis_window);
     columns.set_item("in_analysis_window", window)?;
-    columns.set_item("pose", rows(run.pose)?)?;
-    columns.set_item("velocity", rows(run.velocity)?)?;
+    columns.set_item("pose", PyArray1::from_vec(py, run.pose).reshape(pose)?)?;
+    columns.set_item(
+        "velocity",
+        PyArray1::from_vec(py, run.velocity).reshape(velocity)?,
+    )?;
+    let rudder = PyArray1::from_vec(py, run.rudder).reshape([samples, leaders])?;
     columns.set_item("rudder", rudder)?;
     if let Some(samples) = &run.contacts {
-        let each = contacts::columns::<i32, f32>(py, &samples.contacts, |x| x as f32)?;
+        let each = contact_columns::<i32, f32>(py, &samples.contacts, |x| x as f32)?;
         let count = samples.count.iter().map(|&count| count as i64);
         each.set_item("count", PyArray1::from_iter(py, count))?;
         columns.set_item("contacts", each)?;

@@ -1,212 +1,194 @@
-//! Values of parameters and options from Python, and to it.
+//! Values of parameters, options and arguments from Python, and to it. Every refusal names the field and shows what was
+//! given: a value out of range is a `ParameterError`, a value of the wrong type a `TypeError`.
 
-use super::arguments::{Texts, count, floats, not_accepted, real, text, texts, truth, wrong_type};
-use crate::environment::observation::{Block, ObservationLayout};
-use crate::environment::{EnvSettings, OPTIONS, OptionValue, RewardTerm};
+use super::error::refusal;
 use crate::error::FlockError;
-use crate::parameters::{Field, Kind, MOST_OBSTACLES, Value};
+use crate::parameters::{Field, FlockParameters, Setting, Value};
 use pyo3::IntoPyObjectExt;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PySequence, PyString, PyTuple};
+use pyo3::types::{PyBytes, PyDict, PyFloat, PyInt, PySequence, PyString, PyTuple};
 
-/// The value of a field of the parameters.
-pub(super) fn field_from(value: &Bound<'_, PyAny>, field: &'static Field) -> PyResult<Value> {
-    let name = field.name;
-    Ok(match field.kind {
-        Kind::Count => Value::Count(count(value, name)?),
-        Kind::Real => Value::Real(real(value, name)?),
-        Kind::Flag => Value::Flag(truth(value, name)?),
-        Kind::Choice(_) => Value::Name(text(value, name)?),
-        Kind::Choices(_) => match texts(value, name)? {
-            Texts::One(name) => Value::Name(name),
-            Texts::Each(names) => Value::Names(names),
-        },
-        Kind::Pool => pool_from(value)?,
-        Kind::Rows(columns) => rows_from(value, name, columns)?,
-    })
+/// The most items of a list, such as targets of leaders or rows of obstacles, and of a list in it: beyond, nothing is
+/// copied.
+const MOST_ITEMS: [usize; 2] = [FlockParameters::MOST_BOATS, 16];
+
+/// A value as Python code gives it.
+pub(super) fn value_from(object: &Bound<'_, PyAny>) -> Value {
+    nested_value(object, &MOST_ITEMS)
 }
 
-/// A pool is its name, or (outer_radius_cm, inner_radius_cm) if it has none.
-pub(super) fn pool_from(value: &Bound<'_, PyAny>) -> PyResult<Value> {
-    let accepted = "a pool's name or (outer_radius_cm, inner_radius_cm)";
-    if value.cast::<PyString>().is_ok() {
-        return Ok(Value::Name(text(value, "pool")?));
+fn nested_value(object: &Bound<'_, PyAny>, most_items: &[usize]) -> Value {
+    if object.is_none() {
+        Value::None
+    } else if let Ok(float) = object.cast::<PyFloat>() {
+        Value::Real(float.value())
+    } else if let Ok(flag) = object.extract() {
+        Value::Flag(flag)
+    } else if let Ok(count) = object.extract() {
+        Value::Count(count)
+    } else if let Ok(real) = object.extract() {
+        Value::Real(real)
+    } else if let Ok(name) = object.extract() {
+        Value::Name(name)
+    } else if let Ok(dict) = object.cast::<PyDict>() {
+        let each = dict
+            .iter()
+            .map(|(name, value)| Some((name.extract().ok()?, nested_value(&value, most_items))));
+        each.collect::<Option<_>>().map_or(Value::Other, Value::Map)
+    } else {
+        list_from(object, most_items).map_or(Value::Other, Value::List)
     }
-    let (outer, inner) = pair_from(value, "pool", accepted)?;
-    Ok(Value::Radii(outer, inner))
 }
 
-fn pair_from(value: &Bound<'_, PyAny>, name: &'static str, accepted: &str) -> PyResult<(f64, f64)> {
-    let pair = value.cast::<PySequence>().ok();
-    let pair = pair.filter(|pair| pair.len().is_ok_and(|length| length == 2));
-    let pair = pair.ok_or_else(|| wrong_type(value, name, accepted))?;
-    Ok((
-        real(&pair.get_item(0)?, name)?,
-        real(&pair.get_item(1)?, name)?,
-    ))
+fn list_from(object: &Bound<'_, PyAny>, most_items: &[usize]) -> Option<Vec<Value>> {
+    let (most, inner) = most_items.split_first()?;
+    let length = sequence_length(object).filter(|length| length <= most)?;
+    let items = (0..length).map(|place| object.get_item(place).ok());
+    items
+        .map(|item| Some(nested_value(&item?, inner)))
+        .collect()
 }
 
-/// Rows of numbers: any sequence of sequences, or an array (rows, columns).
-fn rows_from(value: &Bound<'_, PyAny>, name: &'static str, columns: &[&str]) -> PyResult<Value> {
-    let accepted = format!("rows of ({})", columns.join(", "));
-    let is_text = value.cast::<PyString>().is_ok() || value.cast::<PyDict>().is_ok();
-    let rows = if is_text { None } else { value.len().ok() };
-    let rows = rows.ok_or_else(|| wrong_type(value, name, &accepted))?;
-    if rows == 0 {
-        return Ok(Value::Rows(Vec::new()));
-    }
-    // Before anything is copied.
-    if rows > MOST_OBSTACLES {
-        let found = format!("{rows} rows");
-        return Err(FlockError::parameter(name, found, "at most 1000 rows").into());
-    }
-    let first = value.get_item(0);
-    if first.is_ok_and(|first| first.extract::<f64>().is_ok()) {
-        return Err(not_accepted(name, value, &accepted));
-    }
-    let numbers = floats(value, name, &[rows, columns.len()])?;
-    let rows = numbers.chunks_exact(columns.len()).map(<[f64]>::to_vec);
-    Ok(Value::Rows(rows.collect()))
+/// The length of what stacks to an array: sequences other than strings, and arrays of any library.
+pub(super) fn sequence_length(object: &Bound<'_, PyAny>) -> Option<usize> {
+    let text = object.is_instance_of::<PyString>() || object.is_instance_of::<PyBytes>();
+    let is_sequence = object.cast::<PySequence>().is_ok() || object.hasattr("shape").ok()?;
+    (is_sequence && !text).then(|| object.len().ok()).flatten()
 }
 
-/// What Python code gets for a value of the parameters.
+/// A value as Python code gets it.
 pub(super) fn written<'py>(value: &Value, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
     match value {
+        Value::None | Value::Other => Ok(py.None().into_bound(py)),
+        Value::Flag(flag) => flag.into_bound_py_any(py),
         Value::Count(count) => count.into_bound_py_any(py),
         Value::Real(real) => real.into_bound_py_any(py),
-        Value::Flag(flag) => flag.into_bound_py_any(py),
         Value::Name(name) => name.into_bound_py_any(py),
-        Value::Radii(outer, inner) => (outer, inner).into_bound_py_any(py),
-        Value::Names(names) => Ok(PyTuple::new(py, names)?.into_any()),
-        Value::Rows(rows) => {
-            let rows = rows.iter().map(|row| PyTuple::new(py, row));
-            let rows = rows.collect::<PyResult<Vec<_>>>()?;
-            Ok(PyTuple::new(py, rows)?.into_any())
+        Value::List(values) => {
+            let values = values.iter().map(|value| written(value, py));
+            let values = values.collect::<PyResult<Vec<_>>>()?;
+            Ok(PyTuple::new(py, values)?.into_any())
+        }
+        Value::Map(values) => {
+            let dict = PyDict::new(py);
+            for (name, value) in values {
+                dict.set_item(name, written(value, py)?)?;
+            }
+            Ok(dict.into_any())
         }
     }
 }
 
-/// Settings from the options that are given; the others have their defaults.
-pub(super) fn settings_from(options: &Bound<'_, PyDict>) -> PyResult<EnvSettings> {
-    let mut settings = EnvSettings::default();
-    for (name, value) in options {
-        let option = OPTIONS
-            .iter()
-            .find(|option| name.eq(option.name).is_ok_and(|same| same));
-        let option =
-            option.ok_or_else(|| not_accepted("option", &name, "an option of environments"))?;
-        let value = option_from(&value, option.name, &(option.get)(&settings))?;
-        (option.set)(&mut settings, value)?;
+/// The argument of that name.
+pub(super) fn given<T: Setting>(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<T> {
+    let value = value_from(object);
+    T::from_value(name, &value).map_err(|error| refused(error, &value, object))
+}
+
+/// A seed.
+pub(super) fn seed_from(object: &Bound<'_, PyAny>) -> PyResult<u64> {
+    Ok(given::<usize>(object, "seed")? as u64)
+}
+
+/// The error of a field's type as one that shows what Python code gave.
+fn refused(error: FlockError, value: &Value, object: &Bound<'_, PyAny>) -> PyErr {
+    match error {
+        FlockError::Kind { field, accepted } => {
+            let is_long = sequence_length(object).is_some_and(|length| length > MOST_ITEMS[0]);
+            match value {
+                // Any other int has a value.
+                Value::Other if object.is_instance_of::<PyInt>() => {
+                    return not_accepted(field, object, "a number that fits 64 bits");
+                }
+                Value::Other if is_long => {
+                    return not_accepted(field, object, "at most 100000 items");
+                }
+                _ => {}
+            }
+            wrong_type(object, field, &accepted)
+        }
+        other => other.into(),
     }
-    Ok(settings)
 }
 
-/// A value of the kind that an option has.
-fn option_from(
-    value: &Bound<'_, PyAny>,
-    name: &'static str,
-    like: &OptionValue,
-) -> PyResult<OptionValue> {
-    let given = Some(value).filter(|value| !value.is_none());
-    let optional_real = || given.map(|value| real(value, name)).transpose();
-    let optional_count = || given.map(|value| count(value, name)).transpose();
-    let range = || {
-        let accepted = "a number or a range (low, high)";
-        given
-            .map(|value| pair_from(value, "bw_s", accepted))
-            .transpose()
-    };
-    Ok(match like {
-        OptionValue::Real(_) => OptionValue::Real(real(value, name)?),
-        OptionValue::OptionalReal(_) => OptionValue::OptionalReal(optional_real()?),
-        OptionValue::OptionalRange(_) => OptionValue::OptionalRange(range()?),
-        OptionValue::Count(_) => OptionValue::Count(count(value, name)?),
-        OptionValue::OptionalCount(_) => OptionValue::OptionalCount(optional_count()?),
-        OptionValue::Flag(_) => OptionValue::Flag(truth(value, name)?),
-        OptionValue::Name(_) | OptionValue::Names(_) => match texts(value, name)? {
-            Texts::One(name) => OptionValue::Name(name),
-            Texts::Each(names) => OptionValue::Names(names),
-        },
-        OptionValue::Blocks(_) => OptionValue::Blocks(blocks_from(value)?),
-        OptionValue::Weights(_) => OptionValue::Weights(weights_from(value)?),
-    })
+fn set<S>(of: &mut S, field: &Field<S>, object: &Bound<'_, PyAny>) -> PyResult<()> {
+    let value = value_from(object);
+    let outcome = (field.set)(of, &value);
+    outcome.map_err(|error| refused(error, &value, object))
 }
 
-/// The settings as the dictionary that they would be read from.
-pub(super) fn options_dict<'py>(
+/// Gives fields the values that a dictionary holds. They are not checked yet.
+pub(super) fn set_given<S>(
+    of: &mut S,
+    fields: &[Field<S>],
+    values: &Bound<'_, PyDict>,
+) -> PyResult<()> {
+    for (name, value) in values {
+        let is_meant = |field: &&Field<S>| name.eq(field.name).is_ok_and(|same| same);
+        let field = fields.iter().find(is_meant);
+        let field = field.ok_or_else(|| not_accepted("option", &name, "one that there is"))?;
+        set(of, field, &value)?;
+    }
+    Ok(())
+}
+
+/// The values of all fields by name, in the order of documentation.
+pub(super) fn fields_dict<'py, S>(
     py: Python<'py>,
-    settings: &EnvSettings,
+    of: &S,
+    fields: &[Field<S>],
 ) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
-    for option in OPTIONS {
-        dict.set_item(option.name, option_written((option.get)(settings), py)?)?;
+    for field in fields {
+        dict.set_item(field.name, written(&(field.get)(of), py)?)?;
     }
     Ok(dict)
 }
 
-fn option_written(value: OptionValue, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
-    let dict = PyDict::new(py);
-    match value {
-        OptionValue::Real(real) => return real.into_bound_py_any(py),
-        OptionValue::OptionalReal(real) => return real.into_bound_py_any(py),
-        OptionValue::OptionalRange(range) => return range.into_bound_py_any(py),
-        OptionValue::Count(count) => return count.into_bound_py_any(py),
-        OptionValue::OptionalCount(count) => return count.into_bound_py_any(py),
-        OptionValue::Flag(flag) => return flag.into_bound_py_any(py),
-        OptionValue::Name(name) => return name.into_bound_py_any(py),
-        OptionValue::Names(names) => return Ok(PyTuple::new(py, names)?.into_any()),
-        OptionValue::Blocks(blocks) => {
-            for (block, repeats) in blocks {
-                if block.is_counted() {
-                    dict.set_item(block.name(), repeats)?;
-                } else {
-                    dict.set_item(block.name(), repeats > 0)?;
-                }
-            }
+/// Fields are read as attributes of the same name, so any object that has them will do.
+impl<'py> FromPyObject<'_, 'py> for FlockParameters {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let mut parameters = Self::default();
+        for field in Self::FIELDS {
+            let value = object.getattr_opt(field.name)?;
+            let refuse = || wrong_type(&object, "parameters", "FlockParameters");
+            set(&mut parameters, field, &value.ok_or_else(refuse)?)?;
         }
-        OptionValue::Weights(weights) => {
-            for (term, weight) in weights {
-                dict.set_item(term.name(), weight)?;
-            }
-        }
+        Ok(parameters)
     }
-    Ok(dict.into_any())
 }
 
-/// A layout from its blocks and whether it is mirrored.
-pub(super) fn layout_from(blocks: &Bound<'_, PyAny>, mirror: bool) -> PyResult<ObservationLayout> {
-    let mut layout = ObservationLayout::default();
-    layout.mirror_to_target = mirror;
-    for (block, repeats) in blocks_from(blocks)? {
-        layout.repeat(block, repeats);
+/// The error of a value that is out of range.
+pub(super) fn not_accepted(name: &str, value: &Bound<'_, PyAny>, accepted: &str) -> PyErr {
+    refusal(format!(
+        "{name} = {} is not accepted: {accepted}",
+        shown(value)
+    ))
+}
+
+/// The `TypeError` for an argument.
+pub(super) fn wrong_type(object: &Bound<'_, PyAny>, name: &str, accepted: &str) -> PyErr {
+    let kind = object.get_type().name();
+    let kind = kind.map_or_else(|_| "?".to_owned(), |name| name.to_string());
+    let found = shown(object);
+    PyTypeError::new_err(format!(
+        "{name} must be {accepted}, not {found} of type {kind}"
+    ))
+}
+
+/// What a message shows of a value: its repr, cut at a length that fits a line.
+fn shown(object: &Bound<'_, PyAny>) -> String {
+    const LONGEST: usize = 80;
+    // A repr may fail: that of an int of more than 4300 digits does.
+    let full = object.repr().map_or_else(
+        |_| "a value that cannot be printed".to_owned(),
+        |repr| repr.to_string_lossy().into_owned(),
+    );
+    if full.chars().count() <= LONGEST {
+        return full;
     }
-    layout.check()?;
-    Ok(layout)
-}
-
-fn blocks_from(value: &Bound<'_, PyAny>) -> PyResult<Vec<(Block, usize)>> {
-    let given = value.cast::<PyDict>();
-    let given = given.map_err(|_| wrong_type(value, "observation", "a dictionary of blocks"))?;
-    let each = given.iter().map(|(name, value)| {
-        let block: Block = text(&name, "observation")?.parse()?;
-        let name = block.option();
-        let repeats = if block.is_counted() {
-            count(&value, name)?
-        } else {
-            usize::from(truth(&value, name)?)
-        };
-        Ok((block, repeats))
-    });
-    each.collect()
-}
-
-/// Weights by the names of their terms; terms without one weigh nothing.
-fn weights_from(value: &Bound<'_, PyAny>) -> PyResult<Vec<(RewardTerm, f64)>> {
-    let given = value.cast::<PyDict>();
-    let given = given.map_err(|_| wrong_type(value, "reward", "a dictionary of weights"))?;
-    let each = given.iter().map(|(name, value)| {
-        let term: RewardTerm = text(&name, "reward")?.parse()?;
-        Ok((term, real(&value, "reward")?))
-    });
-    each.collect()
+    full.chars().take(LONGEST).chain("…".chars()).collect()
 }

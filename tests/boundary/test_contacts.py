@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv import Flock, FlockParameters, ParameterError, _core
+from flockenv import Flock, FlockParameters
 
 
 def at(parameters, *poses, **changes):
@@ -92,11 +92,9 @@ def test_places_along_the_cores_give_the_points_back():
     contacts = run.contacts
     assert len(contacts.i) > 500
     pose = run.pose[np.repeat(np.arange(len(run)), contacts.count), contacts.i]
-    along = _core.contact_along_cm(pose, contacts.normal, contacts.point_cm, 5.0)
+    along = contacts.along_cm
     axis = np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])], axis=1)
     points = pose[:, :2] + along[:, None] * axis - 5.0 * contacts.normal
     assert contacts.point_cm == pytest.approx(points, abs=1e-4)
     # Points lie on the hull's end discs and its sides, whose core reaches 2.5 cm either way.
     assert np.abs(along).max() == pytest.approx(2.5, abs=1e-4)
-    with pytest.raises(ParameterError, match="point_cm"):
-        _core.contact_along_cm(pose, contacts.normal, contacts.point_cm[1:], 5.0)

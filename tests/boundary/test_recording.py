@@ -93,6 +93,7 @@ def test_contacts_that_cannot_be_are_refused(change):
         "normal": np.ones((3, 2), np.float32),
         "force": np.ones(3, np.float32),
         "point_cm": np.ones((3, 2), np.float32),
+        "along_cm": np.ones(3, np.float32),
     }
     dataclasses.replace(RUN, contacts=flockenv.ContactSeries(**good))
     with pytest.raises(ParameterError, match=f"contacts.{next(iter(change))}"):

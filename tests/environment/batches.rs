@@ -80,7 +80,7 @@ fn steps_wait_for_a_reset() {
         Err(FlockError::Episode(_))
     ));
     let disabled = EnvSettings {
-        autoreset: Autoreset::Disabled,
+        autoreset_mode: Autoreset::Disabled,
         ..settings(3)
     };
     let mut batch = batch(disabled, &[1, 1], 0);

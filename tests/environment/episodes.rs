@@ -3,8 +3,7 @@
 use crate::support::{batch, parameters, settings, step};
 use flockenv::Flock;
 use flockenv::environment::{
-    Autoreset, EnvSettings, EpisodeSchedule, EpisodeSeeds, EpisodeSettings, RudderSettings,
-    TargetChoice,
+    Autoreset, Drawn, EnvSettings, EpisodeSchedule, EpisodeSeeds, TargetChoice,
 };
 use flockenv::parameters::Target;
 
@@ -26,12 +25,12 @@ fn the_first_episode_has_the_seed_itself() {
 
 #[test]
 fn targets_alternate_by_quarters() {
-    let plan = EpisodeSettings {
+    let plan = EnvSettings {
         target: TargetChoice::Alternate,
-        ..EpisodeSettings::default()
+        ..EnvSettings::default()
     };
     assert_eq!(plan.steps(), 9600);
-    let mut episode = EpisodeSchedule::new(&plan, 0, 0.3);
+    let (mut episode, _) = EpisodeSchedule::new(&plan, &plan.target, 0);
     for (step, target) in [
         (0, Target::CounterClockwise),
         (2399, Target::CounterClockwise),
@@ -47,37 +46,35 @@ fn targets_alternate_by_quarters() {
 
 #[test]
 fn random_targets_are_even_and_noise_levels_uniform() {
-    let plan = EpisodeSettings {
-        target: TargetChoice::Random,
-        bw_range_s: Some((0.2, 0.6)),
-        ..EpisodeSettings::default()
-    };
-    let episodes: Vec<EpisodeSchedule> = (0..4000)
-        .map(|seed| EpisodeSchedule::new(&plan, seed, 0.3))
+    let plan = EnvSettings::default();
+    let episodes: Vec<(EpisodeSchedule, f64)> = (0..4000)
+        .map(|seed| EpisodeSchedule::new(&plan, &TargetChoice::Random, seed))
         .collect();
     let clockwise = episodes
         .iter()
-        .filter(|e| e.target() == Target::Clockwise)
+        .filter(|(episode, _)| episode.target() == Target::Clockwise)
         .count();
     assert!((1850..2150).contains(&clockwise), "{clockwise}");
-    let mean = episodes.iter().map(|e| e.bw_s).sum::<f64>() / 4000.0;
-    assert!((mean - 0.4).abs() < 0.01, "{mean}");
-    assert!(episodes.iter().all(|e| (0.2..=0.6).contains(&e.bw_s)));
-    // Fixing one of them leaves the other as it was drawn.
-    let fixed = EpisodeSettings {
-        bw_range_s: None,
-        ..plan
+    let levels = || {
+        let drawn = Drawn::Uniform(0.2, 0.6);
+        episodes.iter().map(move |(_, share)| drawn.at(*share))
     };
+    let mean = levels().sum::<f64>() / 4000.0;
+    assert!((mean - 0.4).abs() < 0.01, "{mean}");
+    assert!(levels().all(|bw_s| (0.2..=0.6).contains(&bw_s)));
+    // Fixing one of them leaves the other as it was drawn.
     let same = |seed: u64| {
-        EpisodeSchedule::new(&fixed, seed, 0.3).target() == episodes[seed as usize].target()
+        let (_, share) = EpisodeSchedule::new(&plan, &plan.target, seed);
+        share == episodes[seed as usize].1
     };
     assert!((0..100).all(same));
+    assert_eq!(Drawn::Fixed(0.3).at(0.7), 0.3);
 }
 
 #[test]
 fn autoresets_start_the_same_episode() {
     let same_step = EnvSettings {
-        autoreset: Autoreset::SameStep,
+        autoreset_mode: Autoreset::SameStep,
         ..settings(4)
     };
     let mut now = batch(same_step, &[2], 0);
@@ -104,19 +101,22 @@ fn autoresets_start_the_same_episode() {
 
 #[test]
 fn servos_move_by_their_lag_and_rate() {
-    let none = RudderSettings::default();
-    assert_eq!(none.servo(0.1).moved(-1.0, 1.0), 1.0);
-    let rate = RudderSettings {
-        rate_per_s: Some(4.0),
-        ..none
+    let none = EnvSettings::default();
+    assert_eq!(none.servo().moved(-1.0, 1.0), 1.0);
+    let rate = EnvSettings {
+        rudder_rate_per_s: Some(4.0),
+        ..none.clone()
     };
-    assert!((rate.servo(0.1).moved(-1.0, 1.0) + 0.6).abs() < 1e-12);
-    assert_eq!(rate.servo(0.1).moved(0.9, 1.0), 1.0);
-    let lag = RudderSettings { lag_s: 0.2, ..none };
+    assert!((rate.servo().moved(-1.0, 1.0) + 0.6).abs() < 1e-12);
+    assert_eq!(rate.servo().moved(0.9, 1.0), 1.0);
+    let lag = EnvSettings {
+        rudder_lag_s: 0.2,
+        ..none.clone()
+    };
     let expected = 1.0 - 2.0 * (-0.5_f64).exp();
-    assert!((lag.servo(0.1).moved(-1.0, 1.0) - expected).abs() < 1e-12);
-    let levels = RudderSettings {
-        levels: Some(3),
+    assert!((lag.servo().moved(-1.0, 1.0) - expected).abs() < 1e-12);
+    let levels = EnvSettings {
+        rudder_levels: Some(3),
         ..none
     };
     assert_eq!(

@@ -3,21 +3,21 @@
 use crate::support::{Written, batch, parameters, seeded, settings, step};
 use flockenv::Flock;
 use flockenv::environment::RewardWeights;
-use flockenv::environment::observation::{Block, CameraSettings, FlockFeatures};
+use flockenv::environment::observation::{Block, FlockFeatures};
 use flockenv::environment::{ActionMode, EnvBatch, EnvSettings, ResetRequest, TargetChoice};
 use flockenv::parameters::Target::{self, Clockwise, CounterClockwise};
-use flockenv::parameters::{FlockParameters, Targets};
+use flockenv::parameters::{FlockParameters, Targets, Value};
 
 const MIXED: [Target; 3] = [Clockwise, CounterClockwise, Clockwise];
 
 fn each(targets: &[Target]) -> TargetChoice {
-    TargetChoice::Each(targets.to_vec())
+    TargetChoice::Fixed(Targets::Each(targets.to_vec()))
 }
 
 /// Every reward term has a weight, those from contacts too.
 fn towards(steps: u32, target: TargetChoice) -> EnvSettings {
     let mut own = settings(steps);
-    own.episode.target = target;
+    own.target = target;
     own.reward = RewardWeights(std::array::from_fn(|term| 1.0 + term as f64));
     own
 }
@@ -33,15 +33,15 @@ fn rows(written: &Written) -> Vec<(&[f32], f64)> {
 fn compare(change: impl Fn(&mut EnvSettings)) {
     let choices = [
         each(&MIXED),
-        TargetChoice::Clockwise,
-        TargetChoice::CounterClockwise,
+        TargetChoice::Fixed(Clockwise.into()),
+        TargetChoice::Fixed(CounterClockwise.into()),
     ];
     let mut batches = choices.map(|target| {
         let mut own = towards(200, target);
         change(&mut own);
         batch(own, &[3], 5)
     });
-    let mirrored = batches[0].settings().observation.mirror_to_target;
+    let mirrored = batches[0].settings().mirror_to_target;
     for time in 0..200 {
         let rudders: Vec<f64> = (0..3).map(|k| f64::from(time + 7 * k).sin()).collect();
         let written: Vec<Written> = batches
@@ -73,13 +73,10 @@ fn compare(change: impl Fn(&mut EnvSettings)) {
 #[test]
 fn a_leader_sees_and_is_rewarded_as_if_its_target_were_everybodys() {
     compare(|_| ());
-    compare(|own| own.observation.mirror_to_target = true);
+    compare(|own| own.mirror_to_target = true);
     compare(|own| {
         own.observation.repeat(Block::LawRudder, 1);
-        own.camera = CameraSettings {
-            dropout_rate: 0.3,
-            delay_frames: 1,
-        };
+        (own.dropout_rate, own.delay_frames) = (0.3, 1);
     });
 }
 
@@ -88,12 +85,12 @@ fn an_action_that_stands_for_a_heading_is_taken_from_the_leaders_own_target() {
     for mode in [ActionMode::Heading, ActionMode::Lean] {
         let rudders = [
             each(&MIXED),
-            TargetChoice::Clockwise,
-            TargetChoice::CounterClockwise,
+            TargetChoice::Fixed(Clockwise.into()),
+            TargetChoice::Fixed(CounterClockwise.into()),
         ]
         .map(|target| {
             let mut own = towards(5, target);
-            own.action.mode = mode;
+            own.action_mode = mode;
             let mut batch = batch(own, &[3], 5);
             step(&mut batch, &[0.1, 0.1, 0.1]).unwrap();
             batch.envs()[0].episode().unwrap().rudders().to_vec()
@@ -105,7 +102,11 @@ fn an_action_that_stands_for_a_heading_is_taken_from_the_leaders_own_target() {
 
 #[test]
 fn a_list_of_equal_targets_is_one_target() {
-    let mut one = batch(towards(60, TargetChoice::CounterClockwise), &[3], 1);
+    let mut one = batch(
+        towards(60, TargetChoice::Fixed(CounterClockwise.into())),
+        &[3],
+        1,
+    );
     let mut list = batch(towards(60, each(&[CounterClockwise; 3])), &[3], 1);
     for time in 0..60 {
         let actions = [0.3, -1.0, f64::from(time).cos()];
@@ -181,7 +182,10 @@ fn the_global_state_has_the_mean_of_the_targets() {
         batch.envs()[0].observe_state(&mut state);
         state
     };
-    let (mixed, cw) = (state(each(&MIXED)), state(TargetChoice::Clockwise));
+    let (mixed, cw) = (
+        state(each(&MIXED)),
+        state(TargetChoice::Fixed(Clockwise.into())),
+    );
     let place = cw.len() - 2;
     assert_eq!((mixed[place], cw[place]), (1.0 / 3.0, 1.0));
     assert_eq!(mixed[..place], cw[..place]);
@@ -222,8 +226,11 @@ fn lists_of_another_length_are_refused_before_anything_changes() {
 #[test]
 fn what_is_drawn_or_alternates_stands_alone() {
     for name in ["random", "alternate", "CW"] {
-        let names = ["cw".to_owned(), name.to_owned()];
-        let message = TargetChoice::each(&names).unwrap_err().to_string();
+        let names = ["cw", name].map(|name| Value::Name(name.to_owned()));
+        let mut fields = EnvSettings::FIELDS.iter();
+        let set = fields.find(|field| field.name == "target").unwrap().set;
+        let outcome = set(&mut settings(10), &Value::List(names.to_vec()));
+        let message = outcome.unwrap_err().to_string();
         assert!(
             message.contains(name) && message.contains("one per leader"),
             "{message}"
@@ -234,7 +241,7 @@ fn what_is_drawn_or_alternates_stands_alone() {
 #[test]
 fn restored_batches_go_on_bit_for_bit_with_the_leaders_sums() {
     let mut own = towards(12, each(&MIXED));
-    own.observation.mirror_to_target = true;
+    own.mirror_to_target = true;
     let mut original = batch(own, &[3, 3], 0);
     for time in 0..40 {
         let mut copy = EnvBatch::from_bytes(&original.to_bytes()).unwrap();

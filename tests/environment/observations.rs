@@ -46,9 +46,9 @@ fn every_number_is_inside_its_bounds() {
 fn steering_law_can_be_read_from_the_observation() {
     for mirror_to_target in [false, true] {
         let mut own = settings(4000);
-        own.observation.mirror_to_target = mirror_to_target;
-        own.episode.target = flockenv::environment::TargetChoice::Alternate;
-        let law = ObservedLaw::new(Law::Paper, &own.observation).unwrap();
+        own.mirror_to_target = mirror_to_target;
+        own.target = flockenv::environment::TargetChoice::Alternate;
+        let law = ObservedLaw::new(Law::Paper, &own.layout()).unwrap();
         let mut batch = batch(EnvSettings { ..own }, &[4], 3);
         let size = batch.observation_size();
         let mut worst: f64 = 0.0;

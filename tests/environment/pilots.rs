@@ -36,13 +36,13 @@ fn a_pilot_and_an_environment_with_the_laws_actions_are_the_same() {
                 observation: ObservationLayout::of(&blocks),
                 ..EnvSettings::default()
             };
-            settings.observation.mirror_to_target = mirror;
-            settings.episode.target = TargetChoice::Each(vec![target; 3]);
-            settings.action.decision_period_s = period;
+            settings.mirror_to_target = mirror;
+            settings.target = TargetChoice::Fixed(Targets::Each(vec![target; 3]));
+            settings.decision_period_s = period;
             if period.is_some() {
-                settings.action.mode = ActionMode::Lean;
+                settings.action_mode = ActionMode::Lean;
             }
-            let observed = ObservedLaw::new(law.clone(), &settings.observation).unwrap();
+            let observed = ObservedLaw::new(law.clone(), &settings.layout()).unwrap();
             let size = settings.observation.size();
             let mut batch = EnvBatch::new(settings, vec![parameters(3)]).unwrap();
             batch.reset(&[seeded(5)]).unwrap();

@@ -2,17 +2,16 @@
 
 use crate::support::{batch, settings, step};
 use flockenv::Flock;
-use flockenv::environment::observation::CameraSettings;
-use flockenv::environment::{EnvBatch, EnvSettings};
+use flockenv::environment::{Autoreset, EnvBatch, EnvSettings, RewardWeights, TERMS, TargetChoice};
+use flockenv::parameters::Target::{Clockwise, CounterClockwise};
+use flockenv::parameters::Targets;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 fn rich_settings() -> EnvSettings {
     EnvSettings {
-        camera: CameraSettings {
-            dropout_rate: 0.2,
-            delay_frames: 1,
-        },
+        dropout_rate: 0.2,
+        delay_frames: 1,
         ..settings(12)
     }
 }
@@ -53,12 +52,34 @@ fn reseal(bytes: &mut [u8]) {
     bytes[8..16].copy_from_slice(&sum.to_le_bytes());
 }
 
-/// Written by version 1 of each format. If a format changes: raise the version in its magic, then write these again.
+/// A batch in the middle of its second episode, with everything that it may hold.
+fn stored_batch() -> EnvBatch {
+    let mut own = rich_settings();
+    own.reward = RewardWeights([1.0; TERMS]);
+    own.autoreset_mode = Autoreset::SameStep;
+    own.target = TargetChoice::Fixed(Targets::Each(vec![Clockwise, CounterClockwise]));
+    let mut batch = batch(own, &[2, 2], 2011);
+    for time in 0..20 {
+        step(&mut batch, &[f64::from(time).sin(), 0.2, -0.7, 1.0]).unwrap();
+    }
+    batch
+}
+
+/// Written by version 1 of each format. If a format changes once it is released: raise the version in its magic. Then
+/// write these again: `WRITE_FIXTURES=1 cargo test --test environment`.
 const BATCH: &[u8] = include_bytes!("../fixtures/environment_1.state");
 const FLOCK: &[u8] = include_bytes!("../fixtures/flock_1.snapshot");
 
 #[test]
 fn states_of_this_version_are_read_and_written_as_the_same_bytes() {
+    let now = stored_batch().to_bytes();
+    if std::env::var_os("WRITE_FIXTURES").is_some() {
+        std::fs::write("tests/fixtures/environment_1.state", &now).unwrap();
+    }
+    assert!(
+        now == BATCH,
+        "the batch of the fixture's seed has other bytes"
+    );
     assert_eq!(EnvBatch::from_bytes(BATCH).unwrap().to_bytes(), BATCH);
     assert_eq!(Flock::from_snapshot(FLOCK).unwrap().snapshot(), FLOCK);
 }

@@ -15,9 +15,10 @@ pub fn parameters(n_leaders: usize) -> FlockParameters {
 
 /// Settings of episodes of so many control steps.
 pub fn settings(steps: u32) -> EnvSettings {
-    let mut settings = EnvSettings::default();
-    settings.episode.episode_s = Some(f64::from(steps) / 10.0);
-    settings
+    EnvSettings {
+        episode_s: Some(f64::from(steps) / 10.0),
+        ..EnvSettings::default()
+    }
 }
 
 /// A request with a seed.

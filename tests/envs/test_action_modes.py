@@ -182,7 +182,7 @@ def test_motor_cycles_are_rounded_to_control_steps(cycles: float, period_s: floa
         ({"decision_period_s": 0.0}, "whole number of control steps"),
         ({"decision_period_s": float("nan")}, "whole number of control steps"),
         ({"decision_period_s": -1.0}, "whole number of control steps"),
-        ({"reward_horizon_s": 0.0}, "positive time"),
+        ({"reward_horizon_s": 0.0}, "positive number"),
         ({"reward": {"contact_pusch": 1.0}}, "did you mean 'contact_push'"),
         ({"observation": {"law_ruder": True}}, "did you mean 'law_rudder'"),
         ({"observation": {"law_rudder": True}, "pool": (100.0, 40.0)}, "wide and narrow"),

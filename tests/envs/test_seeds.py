@@ -83,7 +83,7 @@ def test_seeds_that_are_taken(place, seed):
         (np.True_, TypeError),
         ("1", TypeError),
         (b"1", TypeError),
-        (np.float32(1.0), TypeError),
+        (np.float32(1.0), (ParameterError, TypeError)),
         (1 + 0j, TypeError),
         (np.array([[1]]), TypeError),
         ({}, TypeError),

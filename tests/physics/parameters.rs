@@ -59,21 +59,17 @@ fn every_preset_is_accepted() {
 
 /// Table 3's parameters with another value of a real field.
 fn with(name: &str, number: f64) -> FlockParameters {
-    let mut values = table_3().values().into_iter();
-    let read = |field: &Field| -> Result<Value, FlockError> {
-        let value = values.next().expect("a value of each field");
-        Ok(if field.name == name {
-            Value::Real(number)
-        } else {
-            value
-        })
-    };
-    FlockParameters::from_values(read).expect("values of the fields' kinds")
+    let mut parameters = table_3();
+    let mut fields = FlockParameters::FIELDS.iter();
+    let field = fields.find(|field| field.name == name);
+    let set = field.expect("a field of that name").set;
+    set(&mut parameters, &Value::Real(number)).expect("a value of the field's kind");
+    parameters
 }
 
 #[test]
 fn every_number_out_of_range_is_refused_by_name() {
-    let is_real = |field: &&Field| matches!(field.kind, Kind::Real);
+    let is_real = |field: &&Field<FlockParameters>| matches!(field.kind, Kind::Real);
     let fields = FlockParameters::FIELDS.iter().filter(is_real);
     assert!(fields.clone().count() >= 20);
     for field in fields {

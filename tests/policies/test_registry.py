@@ -67,9 +67,9 @@ def test_no_name_holds_a_comma() -> None:
 
 
 def test_the_core_has_the_same_laws_by_name() -> None:
-    for name in _core.Law.names():
+    for name in _core.LAWS:
         assert named_policy(name, "narrow")().law == _core.Law.named(name, "narrow")
-    assert not {*_core.Law.names()} - {*POLICIES, *POOL_POLICIES}
+    assert not {*_core.LAWS} - {*POLICIES, *POOL_POLICIES}
     with pytest.raises(flockenv.ParameterError, match="one of paper's law, damped law"):
         _core.Law.named("law")
 

@@ -23,6 +23,7 @@ fn kind_name(kind: Kind) -> &'static str {
         Kind::Choices(_) => "choices",
         Kind::Pool => "pool",
         Kind::Rows(_) => "rows",
+        Kind::Map(_) => "map",
     }
 }
 

@@ -61,8 +61,9 @@ impl Leaders {
             let law = law(name, parameters)?;
             let mut layout = ObservationLayout::default();
             // As in Python, leaning laws look at lean features, and see each target as the clockwise one.
-            layout.mirror_to_target = matches!(law, Law::Leaning(_));
-            layout.repeat(Block::LeanFeatures, usize::from(layout.mirror_to_target));
+            let leans = matches!(law, Law::Leaning(_));
+            layout.repeat(Block::LeanFeatures, usize::from(leans));
+            layout = layout.mirrored(leans);
             let law = ObservedLaw::new(law, &layout)?;
             Ok(Observing { law, layout })
         });
@@ -97,7 +98,7 @@ impl Observing {
         let (all, size) = (observe_flock(flock, self.layout, held)?, self.layout.size());
         let action = self.law.action(&all[leader * size..][..size]);
         let sign = flock.parameters().target.of(leader).sign();
-        Ok(if self.layout.mirror_to_target {
+        Ok(if self.layout.is_mirrored {
             sign * action
         } else {
             action

@@ -40,11 +40,18 @@ impl Request {
             FlockError::parameter("seed", shown(seed), "a whole number from 0 to 2^64 - 1")
         })?;
         let defaults = FlockParameters::preset(preset);
-        let mut values = defaults.values().into_iter();
-        let mut parameters = FlockParameters::from_values(|field| {
-            let default = values.next().unwrap_or(Value::Flag(false));
-            find(field.name).map_or(Ok(default), |text| value_of(field, text))
-        })?;
+        let mut parameters = defaults.clone();
+        for field in FlockParameters::FIELDS {
+            if let Some(text) = find(field.name) {
+                let outcome = (field.set)(&mut parameters, &value_of(field.kind, text));
+                outcome.map_err(|error| match error {
+                    FlockError::Kind { .. } => {
+                        FlockError::parameter(field.name, shown(text), accepted(field))
+                    }
+                    other => other,
+                })?;
+            }
+        }
         if find("gyration_radius_cm").is_none() {
             parameters.gyration_radius_cm = resized_gyration_radius_cm(
                 &defaults,
@@ -71,47 +78,26 @@ fn shown(text: &str) -> String {
     }
 }
 
-fn value_of(field: &'static Field, text: &str) -> Result<Value> {
-    let refuse = || FlockError::parameter(field.name, shown(text), accepted(field));
-    let numbers = |text: &str| -> Result<Vec<f64>> {
-        text.split(',')
-            .map(|each| each.trim().parse().map_err(|_| refuse()))
-            .collect()
-    };
-    Ok(match field.kind {
-        Kind::Count => Value::Count(text.parse().map_err(|_| refuse())?),
-        Kind::Real => Value::Real(text.parse().map_err(|_| refuse())?),
-        Kind::Flag => Value::Flag(text.parse().map_err(|_| refuse())?),
-        Kind::Choice(names) if !names().contains(&text) => return Err(refuse()),
-        Kind::Choice(_) => Value::Name(text.to_owned()),
-        Kind::Choices(names) => {
-            let each: Vec<_> = text.split(',').map(str::to_owned).collect();
-            if !each.iter().all(|name| names().contains(&name.as_str())) {
-                return Err(refuse());
-            }
-            match <[String; 1]>::try_from(each) {
-                Ok([name]) => Value::Name(name),
-                Err(names) => Value::Names(names),
-            }
+fn value_of(kind: Kind, text: &str) -> Value {
+    let number = |text: &str| text.trim().parse().map_or(Value::Other, Value::Real);
+    let numbers = |text: &str| Value::List(text.split(',').map(number).collect());
+    let name = |text: &str| Value::Name(shown(text));
+    match kind {
+        Kind::Count => text.parse().map_or(Value::Other, Value::Count),
+        Kind::Real => number(text),
+        Kind::Flag => text.parse().map_or(Value::Other, Value::Flag),
+        Kind::Pool if text.contains(',') => numbers(text),
+        Kind::Choices(_) if text.contains(',') => Value::List(text.split(',').map(name).collect()),
+        Kind::Choice(_) | Kind::Choices(_) | Kind::Pool | Kind::Map(_) => name(text),
+        Kind::Rows(_) => {
+            let rows = text.split(';').filter(|row| !row.is_empty());
+            Value::List(rows.map(numbers).collect())
         }
-        Kind::Pool if text.contains(',') => match numbers(text)?[..] {
-            [outer, inner] => Value::Radii(outer, inner),
-            _ => return Err(refuse()),
-        },
-        Kind::Pool => Value::Name(shown(text)),
-        Kind::Rows(names) => {
-            let rows = text.split(';').filter(|row| !row.is_empty()).map(numbers);
-            let rows = rows.collect::<Result<Vec<_>>>()?;
-            if rows.iter().any(|row| row.len() != names.len()) {
-                return Err(refuse());
-            }
-            Value::Rows(rows)
-        }
-    })
+    }
 }
 
 /// Which values a field accepts, in words.
-pub(crate) fn accepted(field: &Field) -> String {
+pub(crate) fn accepted(field: &Field<FlockParameters>) -> String {
     match field.kind {
         Kind::Choice(names) => names().join(", "),
         Kind::Choices(names) => format!(
@@ -119,21 +105,20 @@ pub(crate) fn accepted(field: &Field) -> String {
             names().join(" or ")
         ),
         Kind::Flag => "true or false".to_owned(),
-        Kind::Count | Kind::Real | Kind::Pool | Kind::Rows(_) => field.range.accepted().to_owned(),
+        Kind::Count | Kind::Real | Kind::Pool | Kind::Rows(_) | Kind::Map(_) => {
+            field.range.accepted().to_owned()
+        }
     }
 }
 
 /// A value as requests and links have it.
 pub(crate) fn written(value: &Value) -> String {
     match value {
-        Value::Names(names) => names.join(","),
-        Value::Radii(outer, inner) => format!("{outer},{inner}"),
-        Value::Rows(rows) => {
-            let rows = rows.iter().map(|row| {
-                let numbers: Vec<_> = row.iter().map(f64::to_string).collect();
-                numbers.join(",")
-            });
-            rows.collect::<Vec<_>>().join(";")
+        Value::Name(name) => name.clone(),
+        Value::List(values) => {
+            let are_rows = matches!(values.first(), Some(Value::List(_)));
+            let each: Vec<_> = values.iter().map(written).collect();
+            each.join(if are_rows { ";" } else { "," })
         }
         other => other.to_string(),
     }

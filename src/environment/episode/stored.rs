@@ -2,7 +2,7 @@
 
 use super::Episode;
 use crate::environment::credit::ContactCredit;
-use crate::environment::observation::{Camera, CameraState};
+use crate::environment::observation::{Camera, CameraState, Lens};
 use crate::environment::reset::flock_from;
 use crate::environment::statistics::{EpisodeStatistics, LeaderSums};
 use crate::environment::{EnvSettings, EpisodeSchedule, RewardTerms};
@@ -50,18 +50,18 @@ impl Episode {
     ) -> Result<Self> {
         let (leaders, boats) = (parameters.n_leaders, parameters.n_boats);
         let flock = flock_from(&stored.flock, parameters)?;
+        let lens = Lens::new(settings);
         let fits = stored.rudders.len() == leaders
             && stored.rudders.iter().all(|rudder| rudder.abs() <= 1.0)
             && stored.terms.len() == leaders
-            && stored.schedule.steps == settings.episode.steps()
-            && stored.schedule.bw_s == flock.parameters().bw_s
+            && stored.schedule.steps == settings.steps()
             && stored.schedule.targets() == flock.parameters().target
             && stored.credit.is_some() == settings.reward.need_credit()
             && stored
                 .credit
                 .as_ref()
                 .is_none_or(|each| each.fits(leaders, boats))
-            && stored.camera.is_some() == settings.camera.is_active()
+            && stored.camera.is_some() == lens.is_some()
             && stored
                 .camera
                 .as_ref()
@@ -74,8 +74,8 @@ impl Episode {
         let seed = stored.schedule.flock_seed;
         let mut episode = Self::new(settings, stored.schedule, flock)?;
         episode.state.rudders = stored.rudders;
-        episode.camera = stored.camera.map(|state| {
-            let mut camera = Camera::unexposed(settings.camera, seed);
+        episode.camera = lens.zip(stored.camera).map(|(lens, state)| {
+            let mut camera = Camera::unexposed(lens, seed);
             camera.set_state(state, leaders);
             camera
         });

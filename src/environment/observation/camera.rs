@@ -2,48 +2,28 @@
 //! (0.3 % of the boats were not recognized in a frame, Section 3.1). Off by default and free then.
 
 use crate::analysis::OrderParameters;
-use crate::error::{FlockError, Result};
+use crate::environment::EnvSettings;
 use crate::geometry::{HullPose, Pose, Velocity};
 use crate::random::{Stream, StreamRng};
 use rand_chacha::rand_core::Rng;
 
 /// What the camera does to the leaders' picture of the flock.
-#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
-pub struct CameraSettings {
-    /// Chance that a boat is not recognized in a frame, and stays in the picture as it was in the last
-    /// one; in [0, 1).
-    pub dropout_rate: f64,
-    /// Frames that the picture is late: 0 or 1.
-    pub delay_frames: usize,
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Lens {
+    /// Chance that a boat is not recognized in a frame, and stays in the picture as it was in the last one.
+    dropout_rate: f64,
+    /// Whether the picture is a frame late.
+    is_late: bool,
 }
 
-impl CameraSettings {
-    /// Checks the settings.
-    ///
-    /// # Errors
-    /// [`FlockError::Parameter`].
-    pub fn check(&self) -> Result<()> {
-        if !(0.0..1.0).contains(&self.dropout_rate) {
-            let accepted = "a chance of at least 0, below 1";
-            return Err(FlockError::parameter(
-                "dropout_rate",
-                self.dropout_rate,
-                accepted,
-            ));
-        }
-        if self.delay_frames > 1 {
-            return Err(FlockError::parameter(
-                "delay_frames",
-                self.delay_frames,
-                "0 or 1",
-            ));
-        }
-        Ok(())
-    }
-
-    /// Whether the picture differs from the flock at all.
-    pub(crate) fn is_active(&self) -> bool {
-        self.dropout_rate > 0.0 || self.delay_frames > 0
+impl Lens {
+    /// That of some settings; `None` where the picture does not differ from the flock at all.
+    pub(crate) fn new(settings: &EnvSettings) -> Option<Self> {
+        let lens = Self {
+            dropout_rate: settings.dropout_rate,
+            is_late: settings.delay_frames > 0,
+        };
+        (lens.dropout_rate > 0.0 || lens.is_late).then_some(lens)
     }
 }
 
@@ -66,7 +46,7 @@ impl Frame {
 /// The frames of one episode.
 #[derive(Debug, Clone)]
 pub(crate) struct Camera {
-    settings: CameraSettings,
+    lens: Lens,
     rng: StreamRng,
     frame: u64,
     now: Frame,
@@ -81,7 +61,7 @@ pub(crate) type CameraState = (u64, Frame, Frame);
 impl Camera {
     /// A camera that sees the whole flock in its first frame.
     pub(crate) fn new(
-        settings: CameraSettings,
+        lens: Lens,
         seed: u64,
         leaders: usize,
         poses: &[Pose],
@@ -91,15 +71,15 @@ impl Camera {
             poses: poses.to_vec(),
             velocities: velocities.to_vec(),
         };
-        let mut camera = Self::unexposed(settings, seed);
+        let mut camera = Self::unexposed(lens, seed);
         camera.set_state((0, now.clone(), now), leaders);
         camera
     }
 
     /// A camera without a picture yet.
-    pub(crate) fn unexposed(settings: CameraSettings, seed: u64) -> Self {
+    pub(crate) fn unexposed(lens: Lens, seed: u64) -> Self {
         Self {
-            settings,
+            lens,
             rng: Stream::Sensing.rng(seed),
             frame: 0,
             now: Frame::default(),
@@ -118,7 +98,7 @@ impl Camera {
         for boat in 0..poses.len() {
             // 53 random bits as a number in [0, 1).
             let draw = (self.rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
-            if draw >= self.settings.dropout_rate {
+            if draw >= self.lens.dropout_rate {
                 self.now.poses[boat] = poses[boat];
                 self.now.velocities[boat] = velocities[boat];
             }
@@ -136,7 +116,7 @@ impl Camera {
 
     /// The frame that leaders see now.
     pub(crate) fn seen(&self) -> &Frame {
-        if self.settings.delay_frames > 0 {
+        if self.lens.is_late {
             &self.before
         } else {
             &self.now

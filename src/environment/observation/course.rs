@@ -36,7 +36,7 @@ impl CourseReader {
             sin_orientation: place(Block::Own, "sin_orientation")?,
             forward_velocity: place(Block::Own, "forward_velocity")?,
             clockwise_spin: place(Block::Own, "clockwise_spin")?,
-            target: if layout.mirror_to_target {
+            target: if layout.is_mirrored {
                 None
             } else {
                 Some(place(Block::Target, "target")?)

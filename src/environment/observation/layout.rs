@@ -3,6 +3,7 @@
 use super::blocks::{Block, PHASE, TARGET};
 use super::entry::{BOAT, CLOCK, Entry};
 use crate::error::{FlockError, Result};
+use crate::parameters::{Kind, Setting, Value, wrong_kind};
 
 /// Newest version of the observation: of the entries, their order, scales and bounds. A policy belongs to the one of
 /// its layout.
@@ -17,14 +18,14 @@ pub struct ObservationLayout {
     repeats: [usize; Block::COUNT],
     /// Whether observation and action are reflected where the target is counter-clockwise, so that
     /// both directions are one task, the clockwise one.
-    pub mirror_to_target: bool,
+    pub is_mirrored: bool,
 }
 
 impl Default for ObservationLayout {
     fn default() -> Self {
         Self {
             repeats: Block::DEFAULT,
-            mirror_to_target: false,
+            is_mirrored: false,
         }
     }
 }
@@ -34,12 +35,21 @@ impl ObservationLayout {
     pub fn of(blocks: &[Block]) -> Self {
         let mut layout = Self {
             repeats: [0; Block::COUNT],
-            mirror_to_target: false,
+            is_mirrored: false,
         };
         for &block in blocks {
             layout.repeat(block, 1);
         }
         layout
+    }
+
+    /// The same layout, mirrored or not.
+    #[must_use]
+    pub fn mirrored(self, is_mirrored: bool) -> Self {
+        Self {
+            is_mirrored,
+            ..self
+        }
     }
 
     /// Checks the layout.
@@ -54,17 +64,11 @@ impl ObservationLayout {
             } else {
                 1
             };
-            if repeats > most {
-                let accepted = format!("0 (off) to {most}");
-                return Err(FlockError::parameter(block.option(), repeats, accepted));
-            }
+            let accepted = format!("0 (off) to {most}");
+            FlockError::unless(repeats <= most, block.option(), repeats, accepted)?;
         }
-        if self.size() == 0 {
-            let names: Vec<_> = Block::ALL.iter().map(|block| block.name()).collect();
-            let accepted = format!("at least one of {}", names.join(", "));
-            return Err(FlockError::parameter("observation", "no block", accepted));
-        }
-        Ok(())
+        let accepted = format!("at least one of {}", Block::names().join(", "));
+        FlockError::unless(self.size() > 0, "observation", "no block", accepted)
     }
 
     /// The version of the observation that has this layout: 1 without obstacles and fellow leaders.
@@ -131,6 +135,41 @@ impl ObservationLayout {
                 entries.map(move |entry| (block, count, *entry))
             })
             .collect()
+    }
+}
+
+impl Setting for ObservationLayout {
+    const KIND: Kind = Kind::Map(Block::names);
+
+    fn value(&self) -> Value {
+        let blocks = Block::ALL.iter().map(|block| {
+            let repeats = self.repeats(*block);
+            let shown = if block.is_counted() {
+                Value::Count(repeats)
+            } else {
+                Value::Flag(repeats > 0)
+            };
+            (block.name().to_owned(), shown)
+        });
+        Value::Map(blocks.collect())
+    }
+
+    /// Blocks that are not named are as by default.
+    fn from_value(name: &'static str, value: &Value) -> Result<Self> {
+        let Value::Map(blocks) = value else {
+            return wrong_kind(name, "a dictionary of blocks");
+        };
+        let mut layout = Self::default();
+        for (block, value) in blocks {
+            let block: Block = block.parse()?;
+            let repeats = if block.is_counted() {
+                usize::from_value(block.option(), value)?
+            } else {
+                usize::from(bool::from_value(block.option(), value)?)
+            };
+            layout.repeat(block, repeats);
+        }
+        Ok(layout)
     }
 }
 

@@ -67,7 +67,7 @@ impl Observer {
             self.physical.clear();
             let seen = Seen::new(view, leader);
             self.writers.write(&seen, &mut self.physical);
-            let mirrored = self.layout.mirror_to_target && view.targets.of(leader).sign() < 0.0;
+            let mirrored = self.layout.is_mirrored && view.targets.of(leader).sign() < 0.0;
             clipped += self.scaling.write(&self.physical, mirrored, row);
         }
         clipped

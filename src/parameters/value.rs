@@ -1,0 +1,195 @@
+//! Values of parameters and options as they are given and shown outside, and the types that have such values.
+
+use crate::error::{FlockError, Result};
+use std::fmt;
+
+/// A value as it is given and shown outside.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// None.
+    None,
+    /// Yes or no.
+    Flag(bool),
+    /// A whole number.
+    Count(usize),
+    /// A real number.
+    Real(f64),
+    /// A name.
+    Name(String),
+    /// Several values.
+    List(Vec<Self>),
+    /// Values by name.
+    Map(Vec<(String, Self)>),
+    /// Something that no field has.
+    Other,
+}
+
+impl Value {
+    /// A name.
+    pub(crate) fn name(name: &str) -> Self {
+        Self::Name(name.to_owned())
+    }
+
+    /// Real numbers.
+    pub(crate) fn reals(numbers: impl IntoIterator<Item = f64>) -> Self {
+        Self::List(numbers.into_iter().map(Self::Real).collect())
+    }
+
+    /// The number that it is, if it is one.
+    pub(crate) fn number(&self) -> Option<f64> {
+        match self {
+            Self::Count(count) => Some(*count as f64),
+            Self::Real(real) => Some(*real),
+            _ => None,
+        }
+    }
+
+    /// The two numbers that it is, if it is a pair.
+    pub(crate) fn pair(&self) -> Option<(f64, f64)> {
+        match self {
+            Self::List(values) => match &values[..] {
+                [first, second] => Some((first.number()?, second.number()?)),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::None => formatter.write_str("none"),
+            Self::Flag(flag) => flag.fmt(formatter),
+            Self::Count(count) => count.fmt(formatter),
+            Self::Real(real) => real.fmt(formatter),
+            Self::Name(name) => write!(formatter, "{name:?}"),
+            Self::List(values) => {
+                let values: Vec<_> = values.iter().map(Self::to_string).collect();
+                write!(formatter, "({})", values.join(", "))
+            }
+            Self::Map(values) => {
+                let values = values
+                    .iter()
+                    .map(|(name, value)| format!("{name}: {value}"));
+                write!(formatter, "{{{}}}", values.collect::<Vec<_>>().join(", "))
+            }
+            Self::Other => formatter.write_str("something else"),
+        }
+    }
+}
+
+/// Which kind of value a field has.
+#[derive(Debug, Clone, Copy)]
+pub enum Kind {
+    /// A whole number of at least 0.
+    Count,
+    /// A real number.
+    Real,
+    /// Yes or no.
+    Flag,
+    /// One of these names.
+    Choice(fn() -> Vec<&'static str>),
+    /// A pool's name, or its outer and inner radius.
+    Pool,
+    /// One of these names, or a list with one of them per leader.
+    Choices(fn() -> Vec<&'static str>),
+    /// Rows of real numbers with these names.
+    Rows(&'static [&'static str]),
+    /// Values by these names.
+    Map(fn() -> Vec<&'static str>),
+}
+
+/// A type that fields have.
+pub(crate) trait Setting: Sized {
+    /// Which kind of values it has.
+    const KIND: Kind;
+
+    /// As it is shown outside.
+    fn value(&self) -> Value;
+
+    /// From the value of the field of that name. It is not checked against the field's range.
+    ///
+    /// # Errors
+    /// [`FlockError::Kind`] for a value of another kind, [`FlockError::Parameter`] for one that is none of the choices.
+    fn from_value(name: &'static str, value: &Value) -> Result<Self>;
+}
+
+/// The error of a value of another kind.
+pub(crate) fn wrong_kind<T>(field: &'static str, accepted: impl Into<String>) -> Result<T> {
+    let accepted = accepted.into();
+    Err(FlockError::Kind { field, accepted })
+}
+
+/// The name that the value of a field is.
+///
+/// # Errors
+/// [`FlockError::Kind`] for anything else.
+pub(crate) fn text_of<'a>(name: &'static str, value: &'a Value) -> Result<&'a str> {
+    match value {
+        Value::Name(text) => Ok(text),
+        _ => wrong_kind(name, "a string"),
+    }
+}
+
+impl Setting for usize {
+    const KIND: Kind = Kind::Count;
+
+    fn value(&self) -> Value {
+        Value::Count(*self)
+    }
+
+    fn from_value(name: &'static str, value: &Value) -> Result<Self> {
+        match value {
+            Value::Count(count) => Ok(*count),
+            Value::Real(real) => {
+                let accepted = "a whole number of at least 0, below 2^64";
+                Err(FlockError::parameter(name, real, accepted))
+            }
+            _ => wrong_kind(name, "an integer"),
+        }
+    }
+}
+
+impl Setting for f64 {
+    const KIND: Kind = Kind::Real;
+
+    fn value(&self) -> Value {
+        Value::Real(*self)
+    }
+
+    fn from_value(name: &'static str, value: &Value) -> Result<Self> {
+        let number = value.number();
+        number.map_or_else(|| wrong_kind(name, "a number"), Ok)
+    }
+}
+
+impl Setting for bool {
+    const KIND: Kind = Kind::Flag;
+
+    fn value(&self) -> Value {
+        Value::Flag(*self)
+    }
+
+    fn from_value(name: &'static str, value: &Value) -> Result<Self> {
+        match value {
+            Value::Flag(flag) => Ok(*flag),
+            _ => wrong_kind(name, "True or False"),
+        }
+    }
+}
+
+impl<T: Setting> Setting for Option<T> {
+    const KIND: Kind = T::KIND;
+
+    fn value(&self) -> Value {
+        self.as_ref().map_or(Value::None, T::value)
+    }
+
+    fn from_value(name: &'static str, value: &Value) -> Result<Self> {
+        match value {
+            Value::None => Ok(None),
+            given => T::from_value(name, given).map(Some),
+        }
+    }
+}

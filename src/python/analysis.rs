@@ -1,0 +1,268 @@
+//! The table of quantities at many times, what follows from them, and structure computed from recorded poses: arrays
+//! (t, n, 3).
+
+use super::arrays::{rows_of, same_length, wrong_shape};
+use super::value::given;
+use crate::analysis::OrderParameters;
+use crate::analysis::collective_state::{CollectiveState, ordering_time};
+use crate::analysis::quantities::{Formula, QUANTITIES, RECORDED, Recorded, quantity};
+use crate::analysis::samples::Samples;
+use crate::analysis::structure::{self, PairCounts};
+use crate::error::FlockError;
+use crate::geometry::Pose;
+use crate::geometry::lap_frame::orientation;
+use crate::integrator::Phase;
+use crate::parameters::{FlockParameters, Targets};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray3};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// A number at each time or in each bin.
+type Series<'py> = PyResult<Bound<'py, PyArray1<f64>>>;
+/// Found and expected pairs in each bin, or two curves of the same lags.
+type Pairs<'py> = PyResult<[Bound<'py, PyArray1<f64>>; 2]>;
+
+/// An entry of the table of quantities: the fields of `flockenv.order.Quantity`.
+#[derive(IntoPyObject)]
+pub(super) struct Entry {
+    name: &'static str,
+    label: &'static str,
+    symbol: &'static str,
+    unit: &'static str,
+    meaning: &'static str,
+    source: &'static str,
+    range: Option<(f64, f64)>,
+    least_boats: usize,
+    is_averaged: bool,
+    kind: &'static str,
+}
+
+/// The table of quantities.
+#[pyfunction]
+pub(super) fn quantities() -> Vec<Entry> {
+    let entries = QUANTITIES.iter().map(|each| Entry {
+        name: each.name,
+        label: each.label,
+        symbol: each.symbol,
+        unit: each.unit,
+        meaning: each.meaning,
+        source: each.source,
+        range: each.range,
+        least_boats: each.least_boats,
+        is_averaged: each.is_averaged,
+        kind: match each.formula {
+            Formula::Recorded(_) => "recorded",
+            Formula::Derived(_) => "derived",
+            Formula::Structure(_) => "structure",
+        },
+    });
+    entries.collect()
+}
+
+/// Columns of the table's recorded quantities, by name: arrays (t,).
+pub(super) fn columns<'py>(py: Python<'py>, series: &[Recorded]) -> PyResult<Bound<'py, PyDict>> {
+    let columns = PyDict::new(py);
+    for (place, each) in QUANTITIES[..RECORDED].iter().enumerate() {
+        let values = series.iter().map(|values| values[place]);
+        columns.set_item(each.name, PyArray1::from_iter(py, values))?;
+    }
+    Ok(columns)
+}
+
+/// The recorded quantities of boats at each time, of poses and velocities of shape (t, n, 3). Rows of NaN stand for
+/// boats that are not there; quantities of too few boats are NaN.
+#[pyfunction]
+pub(super) fn order_columns<'py>(
+    py: Python<'py>,
+    pose: PyReadonlyArray3<'py, f64>,
+    velocity: PyReadonlyArray3<'py, f64>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (poses, velocities) = (samples(&pose, "pose")?, samples(&velocity, "velocity")?);
+    let ((times, boats), (found, others)) = (poses.shape(), velocities.shape());
+    if (times, boats) != (found, others) {
+        let expected = format!("({times}, {boats}, 3), that of pose");
+        return Err(wrong_shape("velocity", &[found, others, 3], &expected));
+    }
+    columns(py, &poses.recorded(&velocities)?)
+}
+
+/// The columns that derived quantities and states follow from.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(super) struct Orders<'py> {
+    psi_o: PyReadonlyArray1<'py, f64>,
+    phi_o: PyReadonlyArray1<'py, f64>,
+    psi_v: PyReadonlyArray1<'py, f64>,
+}
+
+impl Orders<'_> {
+    fn rows(&self) -> PyResult<Vec<OrderParameters>> {
+        let (psi_o, phi_o) = (self.psi_o.as_array(), self.phi_o.as_array());
+        let psi_v = self.psi_v.as_array();
+        same_length("phi_o", phi_o.len(), psi_o.len())?;
+        same_length("psi_v", psi_v.len(), psi_o.len())?;
+        let row = |((&psi_o, &phi_o), &psi_v)| OrderParameters {
+            psi_o,
+            phi_o,
+            psi_v,
+            ..OrderParameters::default()
+        };
+        Ok(psi_o.iter().zip(phi_o).zip(psi_v).map(row).collect())
+    }
+}
+
+fn wrong_formula(name: &str, accepted: &str) -> PyErr {
+    FlockError::parameter("quantity", format!("{name:?}"), accepted).into()
+}
+
+/// A derived quantity at each time.
+#[pyfunction]
+pub(super) fn derived_series<'py>(
+    py: Python<'py>,
+    name: &str,
+    orders: Orders<'py>,
+    target: &Bound<'py, PyAny>,
+) -> Series<'py> {
+    let Formula::Derived(formula) = quantity(name)?.formula else {
+        return Err(wrong_formula(name, "a derived quantity"));
+    };
+    let targets: Targets = given(target, "target")?;
+    let accepted = "\"cw\", \"ccw\", or a list with one of them per leader";
+    let is_any = targets != Targets::Each(Vec::new());
+    FlockError::unless(is_any, "target", &targets, accepted)?;
+    let target = targets.reference();
+    let values = orders.rows()?.into_iter();
+    let values = values.map(|order| formula(&order, target));
+    Ok(PyArray1::from_iter(py, values))
+}
+
+/// A quantity of the kind "structure" at each time.
+#[pyfunction]
+pub(super) fn structure_series<'py>(
+    py: Python<'py>,
+    name: &str,
+    parameters: FlockParameters,
+    pose: PyReadonlyArray3<'py, f64>,
+) -> Series<'py> {
+    let Formula::Structure(formula) = quantity(name)?.formula else {
+        return Err(wrong_formula(name, "a quantity of structure"));
+    };
+    let samples = samples(&pose, "pose")?;
+    let each = |poses: Vec<Pose>| formula(&poses, &parameters);
+    let values: Vec<f64> = py.detach(|| samples.present().map(each).collect());
+    Ok(PyArray1::from_vec(py, values))
+}
+
+/// The place of the collective state at each time among `COLLECTIVE_STATES`.
+#[pyfunction]
+pub(super) fn collective_states<'py>(
+    py: Python<'py>,
+    orders: Orders<'py>,
+    speed_cm_s: f64,
+    largest_cluster: PyReadonlyArray1<'py, f64>,
+) -> PyResult<Bound<'py, PyArray1<i64>>> {
+    let (orders, clusters) = (orders.rows()?, largest_cluster.to_vec()?);
+    same_length("largest_cluster", clusters.len(), orders.len())?;
+    let places = orders.iter().zip(clusters);
+    let places = places.map(|(order, share)| CollectiveState::of(order, speed_cm_s, share) as i64);
+    Ok(PyArray1::from_iter(py, places))
+}
+
+/// Ordering time τ of a run, eq. (7), in s; infinite if the run does not order.
+#[pyfunction]
+pub(super) fn ordering_time_s(
+    orders: Orders<'_>,
+    time_s: PyReadonlyArray1<'_, f64>,
+    within: f64,
+) -> PyResult<f64> {
+    let (orders, times) = (orders.rows()?, time_s.to_vec()?);
+    same_length("time_s", times.len(), orders.len())?;
+    Ok(ordering_time(&times, &orders, within))
+}
+
+/// Whether each of some times (s) lies in the analysis window, by the phases then: names, shape (t,).
+#[pyfunction]
+pub(super) fn sampled_analysis_window<'py>(
+    py: Python<'py>,
+    time_s: PyReadonlyArray1<'py, f64>,
+    phase: Vec<String>,
+) -> PyResult<Bound<'py, PyArray1<bool>>> {
+    let times = time_s.to_vec()?;
+    same_length("phase", phase.len(), times.len())?;
+    let phases = phase.iter().map(|name| name.parse::<Phase>());
+    let phases = phases.collect::<Result<Vec<_>, _>>()?;
+    let analyzed = crate::integrator::sampled_analysis_window(&times, &phases);
+    Ok(PyArray1::from_vec(py, analyzed))
+}
+
+/// How many boats each jam holds, at each time.
+#[pyfunction]
+pub(super) fn jam_sizes(
+    py: Python<'_>,
+    parameters: FlockParameters,
+    pose: PyReadonlyArray3<'_, f64>,
+) -> PyResult<Vec<Vec<usize>>> {
+    let samples = samples(&pose, "pose")?;
+    let sizes = |poses: Vec<Pose>| structure::jam_sizes(&poses, &parameters);
+    Ok(py.detach(|| samples.present().map(sizes).collect()))
+}
+
+/// LAP orientation φ of each boat at each time, in (-π, π].
+#[pyfunction]
+pub(super) fn lap_orientation<'py>(
+    py: Python<'py>,
+    pose: PyReadonlyArray3<'py, f64>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let samples = samples(&pose, "pose")?;
+    let angles = samples.rows().iter().map(orientation);
+    rows_of(py, angles.collect(), samples.shape().1)
+}
+
+/// Pairs by distance, over all times.
+#[pyfunction]
+pub(super) fn pair_counts<'py>(
+    py: Python<'py>,
+    pose: PyReadonlyArray3<'py, f64>,
+    edges: PyReadonlyArray1<'py, f64>,
+) -> Pairs<'py> {
+    let samples = samples(&pose, "pose")?;
+    let edges = edges.to_vec()?;
+    let rising = edges.windows(2).all(|pair| pair[0] < pair[1]);
+    let are_edges = edges.len() >= 2 && rising && edges.iter().all(|edge| edge.is_finite());
+    let accepted = "at least two finite distances in cm, increasing";
+    FlockError::unless(are_edges, "edges", format!("{edges:?}"), accepted)?;
+    let mut counts = PairCounts::new(edges);
+    py.detach(|| samples.present().for_each(|poses| counts.add(&poses)));
+    Ok([counts.found, counts.expected].map(|each| PyArray1::from_vec(py, each)))
+}
+
+/// Mean-square displacement in cm² and heading correlation after each lag, in samples.
+#[pyfunction]
+pub(super) fn lagged_motion<'py>(
+    py: Python<'py>,
+    pose: PyReadonlyArray3<'py, f64>,
+    lags: Vec<usize>,
+) -> Pairs<'py> {
+    let samples = samples(&pose, "pose")?;
+    let rows: Vec<&[Pose]> = samples.each().collect();
+    let means = [
+        structure::mean_square_displacement,
+        structure::heading_correlation,
+    ];
+    let curves: [Vec<f64>; 2] =
+        py.detach(|| means.map(|mean| lags.iter().map(|&lag| mean(&rows, lag)).collect()));
+    Ok(curves.map(|each| PyArray1::from_vec(py, each)))
+}
+
+/// Poses, or velocities, of an array of shape (t, n, 3).
+fn samples(array: &PyReadonlyArray3<'_, f64>, name: &str) -> PyResult<Samples> {
+    let array = array.as_array();
+    let (times, boats, numbers) = array.dim();
+    if numbers != 3 || boats == 0 {
+        let expected = "(t, n, 3) of at least one boat";
+        return Err(wrong_shape(name, &[times, boats, numbers], expected));
+    }
+    let rows = array.rows().into_iter();
+    let rows = rows.map(|row| Pose::new(row[0], row[1], row[2]));
+    Ok(Samples::new(rows.collect(), boats))
+}

@@ -1,0 +1,187 @@
+//! Arrays from Python: of a given shape and of real numbers, whatever holds them.
+
+use super::error::refusal;
+use super::value::{sequence_length, value_from, wrong_type};
+use crate::geometry::{Pose, Velocity};
+use numpy::{
+    Element, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray,
+    PyUntypedArrayMethods,
+};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyInt;
+
+/// How deep NumPy stacks sequences.
+const MOST_AXES: usize = 64;
+
+/// The shape of whatever has one: arrays of any library.
+fn array_shape(object: &Bound<'_, PyAny>) -> Option<Vec<usize>> {
+    object.getattr("shape").ok()?.extract().ok()
+}
+
+/// The shape that the first items of an array-like suggest, to so many axes. An error if the first one is no real
+/// number.
+fn suggested_shape(object: &Bound<'_, PyAny>, name: &str, axes: usize) -> PyResult<Vec<usize>> {
+    if let Some(shape) = array_shape(object) {
+        let dtype = object.getattr("dtype").ok();
+        let kind = dtype.as_ref().and_then(|dtype| dtype.getattr("kind").ok());
+        return match (kind.and_then(|kind| kind.extract().ok()), dtype) {
+            (Some('f' | 'i' | 'u') | None, _) | (_, None) => Ok(shape),
+            (Some(_), Some(dtype)) => Err(wrong_dtype(name, dtype)),
+        };
+    }
+    match sequence_length(object) {
+        None => real(object, name).map(|_| Vec::new()),
+        Some(length) if length == 0 || axes == 0 => Ok(vec![length]),
+        Some(length) => {
+            let inner = suggested_shape(&object.get_item(0)?, name, axes - 1)?;
+            Ok([vec![length], inner].concat())
+        }
+    }
+}
+
+fn wrong_dtype(name: &str, dtype: impl std::fmt::Display) -> PyErr {
+    let message = format!("{name} must be an array of real numbers, not of dtype {dtype}");
+    PyTypeError::new_err(message)
+}
+
+fn real(object: &Bound<'_, PyAny>, name: &str) -> PyResult<f64> {
+    let number = value_from(object).number();
+    number.ok_or_else(|| wrong_type(object, name, "a number"))
+}
+
+/// The numbers of an array-like of a given shape, row by row, and whether all are integers. Sequences are read item
+/// by item: NumPy would copy them before their shape is known, and a short tuple of views or a `range` may claim more
+/// numbers than there is memory.
+struct Numbers {
+    values: Vec<f64>,
+    are_whole: bool,
+}
+
+impl Numbers {
+    fn of(object: &Bound<'_, PyAny>, name: &str, expected: &[usize]) -> PyResult<Self> {
+        let mut numbers = Self {
+            values: Vec::with_capacity(expected.iter().product()),
+            are_whole: true,
+        };
+        if numbers.read(object, name, expected)? {
+            return Ok(numbers);
+        }
+        let found = suggested_shape(object, name, MOST_AXES)?;
+        Err(wrong_shape(name, &found, &shape_text(expected)))
+    }
+
+    /// Reads a part of that shape; false if it has another one.
+    fn read(&mut self, part: &Bound<'_, PyAny>, name: &str, shape: &[usize]) -> PyResult<bool> {
+        if let Some(found) = array_shape(part) {
+            return Ok(found == shape && self.read_array(part, name)?);
+        }
+        match (sequence_length(part), shape) {
+            (None, []) => {
+                self.are_whole &= part.is_instance_of::<PyInt>();
+                self.values.push(real(part, name)?);
+                Ok(true)
+            }
+            (None, _) if value_from(part).number().is_some() => Ok(false),
+            (None, _) => Err(wrong_type(part, name, "an array of real numbers")),
+            (Some(length), [first, rest @ ..]) if length == *first => {
+                for place in 0..length {
+                    if !self.read(&part.get_item(place)?, name, rest)? {
+                        return Ok(false);
+                    }
+                }
+                Ok(true)
+            }
+            (Some(_), _) => Ok(false),
+        }
+    }
+
+    fn read_array(&mut self, array: &Bound<'_, PyAny>, name: &str) -> PyResult<bool> {
+        let py = array.py();
+        let asarray = numpy::get_array_module(py)?.getattr("asarray")?;
+        let array = asarray.call1((array,))?.cast_into::<PyUntypedArray>()?;
+        let dtype = array.dtype();
+        if !matches!(dtype.kind(), b'f' | b'i' | b'u') {
+            return Err(wrong_dtype(name, dtype));
+        }
+        self.are_whole &= dtype.kind() != b'f';
+        let array = array.call_method1("astype", (numpy::dtype::<f64>(py),))?;
+        let array = array.cast::<PyArrayDyn<f64>>()?.readonly();
+        self.values.extend(array.as_array());
+        Ok(true)
+    }
+}
+
+/// The numbers of an array-like of a given shape, row by row.
+pub(super) fn floats(
+    object: &Bound<'_, PyAny>,
+    name: &str,
+    expected: &[usize],
+) -> PyResult<Vec<f64>> {
+    Ok(Numbers::of(object, name, expected)?.values)
+}
+
+/// Poses of the numbers in an array (n, 3).
+pub(super) fn poses_from(object: &Bound<'_, PyAny>, boats: usize) -> PyResult<Vec<Pose>> {
+    let numbers = floats(object, "pose", &[boats, 3])?;
+    let rows = numbers.as_chunks::<3>().0.iter();
+    Ok(rows.map(|&[x, y, a]| Pose::new(x, y, a)).collect())
+}
+
+/// Velocities of the numbers in an array (n, 3).
+pub(super) fn velocities_from(object: &Bound<'_, PyAny>, boats: usize) -> PyResult<Vec<Velocity>> {
+    let numbers = floats(object, "velocity", &[boats, 3])?;
+    let rows = numbers.as_chunks::<3>().0.iter();
+    Ok(rows.map(|&[x, y, w]| Velocity::new(x, y, w)).collect())
+}
+
+/// Actions of a given shape, one number per leader: rudders, or numbers of levels if there are such. A rudder of 1.0
+/// is not level 1, so that levels must be integers. Messages call the actions by `name`.
+#[pyfunction]
+#[pyo3(signature = (actions, shape, levels, name="actions"))]
+pub(super) fn flat_actions<'py>(
+    actions: &Bound<'py, PyAny>,
+    shape: Vec<usize>,
+    levels: Option<usize>,
+    name: &str,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let numbers = Numbers::of(actions, name, &shape)?;
+    match levels {
+        Some(levels) if !numbers.are_whole => Err(refusal(format!(
+            "{name} must be integers, whole numbers from 0 to {} that name levels of the rudder",
+            levels.saturating_sub(1)
+        ))),
+        _ => Ok(PyArray1::from_vec(actions.py(), numbers.values)),
+    }
+}
+
+/// The error of an array of another shape.
+pub(super) fn wrong_shape(name: &str, found: &[usize], expected: &str) -> PyErr {
+    let found = shape_text(found);
+    refusal(format!("{name} has shape {found}, expected {expected}"))
+}
+
+fn shape_text(shape: &[usize]) -> String {
+    match shape {
+        [length] => format!("({length},)"),
+        _ => format!("{shape:?}").replace('[', "(").replace(']', ")"),
+    }
+}
+
+/// Refuses a series of another length than those it belongs to.
+pub(super) fn same_length(name: &str, found: usize, expected: usize) -> PyResult<()> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(wrong_shape(name, &[found], &shape_text(&[expected])))
+}
+
+/// Numbers as rows of so many.
+pub(super) fn rows_of<T: Element>(
+    py: Python<'_>,
+    numbers: Vec<T>,
+    columns: usize,
+) -> PyResult<Bound<'_, PyArray2<T>>> {
+    let rows = numbers.len() / columns.max(1);
+    PyArray1::from_vec(py, numbers).reshape([rows, columns])
+}
