@@ -26,7 +26,7 @@ export const LESSONS = [
     title: "Learned or law",
     link: "#lesson=learned&n_boats=27&n_leaders=4&bw_s=0.3&seed=7&beside.leaders=learned&speed=16",
     words: "Both flocks have four leaders, and start from the same places with the same noise. The leaders of the first follow the " +
-      "paper's law, those of the second learned by trial and error which way to head: compare the mean order towards the target.",
+      "paper's law, those of the second learned by trial and error which way to head: compare the mean order towards the target after some minutes.",
   },
   {
     name: "forces",
@@ -39,8 +39,9 @@ export const LESSONS = [
     name: "opposed",
     title: "Opposed leaders",
     link: `${OPPOSED}&target=cw,cw,ccw,ccw`,
-    words: "Two leaders steer clockwise (amber) and two counter-clockwise (pink), and within twenty minutes this flock goes " +
-      `counter-clockwise on average. With [three against one](${OPPOSED}&target=cw,cw,cw,ccw) it goes clockwise, with the three.`,
+    words: `With [two against two](${OPPOSED}&target=cw,cw,ccw,ccw), amber leaders clockwise and pink ones counter-clockwise, chance ` +
+      `decides whom a flock follows, and this one mostly follows the pink. With [three against one](${OPPOSED}&target=cw,cw,cw,ccw) ` +
+      "most flocks, and this one too, follow the three.",
   },
 ];
 

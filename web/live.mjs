@@ -34,6 +34,13 @@ const NOT_ON_MAP = new Set(["bw_s", "seed", "target"]);
 
 const byId = (id) => document.getElementById(id);
 
+/** Two flocks are called by what distinguishes them. */
+function distinguished(described) {
+  const parts = described.map(({ name }) => name.split(", "));
+  const place = parts.length > 1 && parts[0][0] === parts[1][0] ? 1 : 0;
+  return parts.length === 1 ? described : described.map((each, k) => ({ ...each, name: parts[k][place] ?? each.name }));
+}
+
 export class LivePage {
   constructor(simulator, about, described) {
     const kinds = byKind(described);
@@ -161,7 +168,7 @@ export class LivePage {
   async #become(wanted, kind, words) {
     const had = this.shown;
     const { continues, values, taken } = await this.simulator.ask(kind, { requests: requestsOf(wanted) });
-    const described = values.map((text, place) => this.#describe(text, wanted, place));
+    const described = distinguished(values.map((text, place) => this.#describe(text, wanted, place)));
     const isSame = continues && described.every(({ boats }, place) => this.runs[place]?.boats === boats);
     const signature = JSON.stringify(Object.entries(described[0].parameters).filter(([name]) => !NOT_ON_MAP.has(name)));
     if (signature !== this.signature) {
@@ -235,6 +242,10 @@ export class LivePage {
     this.pin(this.pinned !== null && this.pinned < this.runs[0].boats ? this.pinned : null);
     this.controls.show(this.#controlled());
     byId("parameters").replaceChildren(parameterTable(this.runs));
+    for (const link of byId("story").querySelectorAll("a")) {
+      const { flock } = readLink(link.hash, Object.keys(this.kinds));
+      link.setAttribute("aria-current", String(Object.entries(flock).every(([name, value]) => this.shown.flock[name] === value)));
+    }
     this.#showTexts();
     this.show();
   }
@@ -269,10 +280,10 @@ export class LivePage {
     byId("story").dataset.lesson = name ?? "";
     byId("story").replaceChildren(...(lesson ? storyOf(lesson) : []));
     for (const link of byId("lessons").querySelectorAll("a")) {
+      link.setAttribute("aria-current", String(link.dataset.lesson === name));
       if (link.dataset.lesson === name) {
-        link.setAttribute("aria-current", "true");
-      } else {
-        link.removeAttribute("aria-current");
+        // Into view, where the row is wider than the window.
+        byId("lessons").scrollLeft = link.offsetLeft - byId("lessons").offsetLeft;
       }
     }
   }
@@ -557,14 +568,9 @@ export class LivePage {
     }
     const scores = this.runs.filter(({ target }) => target !== null);
     byId("score").replaceChildren(...(scores.length === 0 ? [] : ["mean order towards the target: ",
-      ...scores.flatMap((each, place) => [`${place > 0 ? " · " : ""}${this.#shortName(each)} `, element("b", "", fixed(each.score, 2, true))])]));
+      ...scores.flatMap((each, place) => [`${place > 0 ? " · " : ""}${this.runs.length > 1 ? `${each.name} ` : ""}`,
+        element("b", "", fixed(each.score, 2, true))])]));
     this.#showObserved();
-  }
-
-  /** What distinguishes a flock from the other one. */
-  #shortName({ name }) {
-    const [leaders, steering] = name.split(", ");
-    return this.runs.every((run) => run.leaders === this.runs[0].leaders) ? steering : leaders;
   }
 
   #showObserved() {

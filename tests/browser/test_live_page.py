@@ -261,6 +261,10 @@ def test_a_second_flock_runs_beside(live):
     first, second = live.rows("pose", 0), live.rows("pose", 1)
     assert np.array_equal(first[0], second[0])
     assert not np.array_equal(first[-1], second[-1])
+    assert [run.text for run in live.driver.find_elements("css selector", ".run .name")] == [
+        "the paper's law",
+        "the tuned law",
+    ]
     assert "the paper's law" in live.text("#score")
     assert "the tuned law" in live.text("#score")
     live.choose("#beside", "")
@@ -357,6 +361,7 @@ def test_every_scene_is_a_link_to_a_flock(open_live):
             link.click()
             live.wait()
             assert live.script("return page.other.lesson") == name
+            assert link.get_attribute("aria-current") == "true"
             # A story that stays is not written again: the keyboard's focus remains.
             assert link.is_displayed()
     assert live.complaints() == []
