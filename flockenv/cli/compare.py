@@ -3,9 +3,8 @@
 import json
 import shlex
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -34,14 +33,6 @@ _BOATS = 27
 _MOST_LEADERS = 64
 
 
-class PoolChoice(StrEnum):
-    """Pools of a comparison."""
-
-    BOTH = "both"
-    WIDE = "wide"
-    NARROW = "narrow"
-
-
 @dataclass(frozen=True, kw_only=True)
 class CompareOptions(Flocks, Printing):
     """Options of `flockenv compare`."""
@@ -62,7 +53,8 @@ class CompareOptions(Flocks, Printing):
     )
     trust: TrustOption = False
     pool: Annotated[
-        PoolChoice | None, typer.Option(help="Which pool. [both, or that of the parameters]")
+        list[str] | None,
+        typer.Option(help="Which pool, repeatable. [wide and narrow, or that of the parameters]"),
     ] = None
     bw_s: Annotated[
         list[float] | None,
@@ -255,12 +247,9 @@ def _parameters(options: CompareOptions) -> list[FlockParameters]:
         )
     base = read_parameters(options.preset, options.params, options.changes)
     base = base.replace(n_boats=given.get("n_boats", _BOATS))
-    if options.pool is None:
-        pools = [base.pool] if "pool" in given else POOLS
-    else:
-        pools = POOLS if options.pool == PoolChoice.BOTH else [options.pool.value]
+    own: Sequence[Any] = [base.pool] if "pool" in given else POOLS
     found = []
-    for pool in pools:
+    for pool in options.pool or own:
         levels = options.bw_s or ([base.bw_s] if "bw_s" in given else [])
         preset = given.get("preset", "simulation")
         for bw_s in levels or [FlockParameters.critical_bw_s(preset, pool)]:

@@ -1,5 +1,6 @@
 """Leader policies against each other: seeded episodes, order by number of leaders (figure 12)."""
 
+import itertools
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -11,16 +12,9 @@ from numpy.typing import NDArray
 from flockenv import _core
 from flockenv._io.extras import require
 from flockenv._io.interrupts import end_if_interrupted
-from flockenv.comparison.each_leader import EachLeader
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
-from flockenv.policies.base import (
-    CONTROL_HZ,
-    LeaderPolicy,
-    action_mode,
-    check_action_mode,
-    control_rate,
-)
+from flockenv.policies.base import LeaderPolicy, action_mode, check_action_mode, control_rate
 from flockenv.policies.model import ModelPolicy, as_policy
 from flockenv.policies.registry import EVERY_SUBSTEP, named_policy
 from flockenv.runs.executors import in_order
@@ -31,7 +25,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 __all__ = [
-    "CONTROL_HZ",
     "NO_LEADERS",
     "ORDERING_TIMES",
     "QUANTITIES",
@@ -93,7 +86,8 @@ def compare_leaders(
         Called with flock-seconds as they are simulated.
     environment
         Options of the environment that differ from its defaults, such as ``target="alternate"`` or
-        ``dropout_rate=0.003``. What runs in `simulate` has none of them and is refused then.
+        ``dropout_rate=0.003``. Flocks without leaders, the paper's law at every substep, and a
+        policy for each leader run in `simulate`, which has none of them, and are refused then.
 
     Returns
     -------
@@ -110,75 +104,7 @@ def compare_leaders(
     """
     pandas = require("pandas", "plot")
     check_evaluation_seeds(seeds)
-    _check_leaders(parameters, leaders)
-    for name, policy in policies.items():
-        found = steering(policy, parameters.pool)
-        _check_policy(name, found, [k for k in leaders if k > 0], environment or {})
-    if environment and 0 in leaders:
-        raise _outside(NO_LEADERS, environment)
-    options = {"target": parameters.target, **(environment or {})}
-    parts = []
-    if 0 in leaders:
-        alone = parameters.replace(n_leaders=0)
-        parts.append((NO_LEADERS, 0, _simulated(alone, seeds, duration_s, progress)))
-    for name, policy in policies.items():
-        for k in (k for k in leaders if k > 0):
-            led, found = parameters.replace(n_leaders=k), steering(policy, parameters.pool)
-            if isinstance(found, str):
-                measured = _simulated(led, seeds, duration_s, progress)
-            else:
-                measured = run_episodes(led, found, seeds, duration_s, progress, options)
-            parts.append((name, k, measured))
-    tables = [
-        pandas.DataFrame({"policy": name, "leaders": k, "seed": seeds, **measured})
-        for name, k, measured in parts
-    ]
-    runs: pd.DataFrame = pandas.concat(tables, ignore_index=True)
-    return runs
-
-
-def steering(policy: Steering, pool: Any) -> Any:
-    """Return what steers: a policy, or `EVERY_SUBSTEP`.
-
-    Raises
-    ------
-    ParameterError
-        For unknown names, files that are no policy, pools that a policy is not made for, and a
-        dictionary whose policies observe or act in different ways.
-    OSError
-        If a file cannot be opened.
-    """
-    if isinstance(policy, type) or (callable(policy) and not hasattr(policy, "predict")):
-        policy = policy()
-    if isinstance(policy, str) and policy != EVERY_SUBSTEP:
-        policy = named_policy(policy, pool)()
-    if isinstance(policy, Mapping):
-        return EachLeader({leader: steering(each, pool) for leader, each in policy.items()})
-    return as_policy(policy)
-
-
-def _check_policy(
-    name: str, policy: Any, leaders: Sequence[int], environment: Mapping[str, Any]
-) -> None:
-    if isinstance(policy, str):
-        if environment:
-            raise _outside(name, environment)
-        return
-    if "action_mode" in environment:
-        check_action_mode(policy, environment["action_mode"], "in this environment")
-    if isinstance(policy, ModelPolicy | EachLeader):
-        for k in leaders:
-            policy.check_leaders(k)
-
-
-def _outside(name: str, environment: Mapping[str, Any]) -> ParameterError:
-    return ParameterError(
-        f"{name!r} runs outside of the environment, which is not accepted with its options "
-        f"{', '.join(environment)}"
-    )
-
-
-def _check_leaders(parameters: FlockParameters, leaders: Sequence[int]) -> None:
+    environment = environment or {}
     most = max(leaders, default=0)
     if most >= parameters.n_boats:
         raise ParameterError(
@@ -186,6 +112,61 @@ def _check_leaders(parameters: FlockParameters, leaders: Sequence[int]) -> None:
             "normal boat, as order is theirs (on the command line fewer `--leaders`, or more boats)"
         )
     parameters.replace(n_leaders=most)
+    steers: dict[str, Any] = {NO_LEADERS: None} if 0 in leaders else {}
+    for name, policy in policies.items():
+        steers[name] = steering(policy, parameters.pool)
+    for name, policy in steers.items():
+        if environment and _is_outside(policy):
+            raise ParameterError(
+                f"{name!r} runs outside of the environment, which is not accepted with its options "
+                f"{', '.join(environment)}"
+            )
+        if "action_mode" in environment:
+            check_action_mode(policy, environment["action_mode"], "in this environment")
+        if isinstance(policy, Mapping) and most > 0:  # Refuses what it would refuse later.
+            simulate(parameters.replace(n_leaders=most), 0, 0.0, policy=_first(policy, most))
+        if isinstance(policy, ModelPolicy):
+            for k in (k for k in leaders if k > 0):
+                policy.check_leaders(k)
+    options = {"target": parameters.target, **environment}
+    tables = []
+    for name, policy in steers.items():
+        for k in (k for k in leaders if (k == 0) == (name == NO_LEADERS)):
+            led = parameters.replace(n_leaders=k)
+            if _is_outside(policy):
+                measured = _simulated(led, policy, seeds, duration_s, progress)
+            else:
+                # A function makes a policy of its own for each number of leaders.
+                fresh = steering(policies[name], parameters.pool)
+                measured = run_episodes(led, fresh, seeds, duration_s, progress, options)
+            rows = {"policy": name, "leaders": k, "seed": seeds, **measured}
+            tables.append(pandas.DataFrame(rows))
+    runs: pd.DataFrame = pandas.concat(tables, ignore_index=True)
+    return runs
+
+
+def steering(policy: Steering, pool: Any) -> Any:
+    """Return what steers: a policy, a dictionary with one per leader, or `EVERY_SUBSTEP`.
+
+    Raises
+    ------
+    ParameterError
+        For unknown names, files that are no policy, and pools that a policy is not made for.
+    OSError
+        If a file cannot be opened.
+    """
+    if isinstance(policy, Mapping):
+        return {leader: steering(each, pool) for leader, each in policy.items()}
+    if isinstance(policy, type) or (callable(policy) and not hasattr(policy, "predict")):
+        policy = policy()
+    if isinstance(policy, str) and policy != EVERY_SUBSTEP:
+        policy = named_policy(policy, pool)()
+    return as_policy(policy)
+
+
+def _is_outside(policy: Any) -> bool:
+    """Return whether what steers runs in `simulate`, which knows no options of environments."""
+    return policy is None or isinstance(policy, str | Mapping)
 
 
 def run_episodes(
@@ -212,12 +193,16 @@ def run_episodes(
         The `QUANTITIES` and `ORDERING_TIMES` by name, one number per episode.
     """
     policy = as_policy(policy)
+    if "action_mode" in options:
+        check_action_mode(policy, options["action_mode"], "in this environment")
     control_hz = options.get("control_hz", control_rate(policy))
+    own = getattr(policy, "decision_period_s", None)
     layout = {
         "observation": getattr(policy, "observation", {}),
         "mirror_to_target": getattr(policy, "mirror_to_target", False),
         "control_hz": control_hz,
-        **_decisions(policy, options),
+        "action_mode": action_mode(policy),
+        "decision_period_s": options.get("decision_period_s") if own is None else own,
     }
     env = _environment(parameters, len(seeds), duration_s, {**options, **layout})
     observations, _ = env.reset(seed=list(seeds))
@@ -229,24 +214,17 @@ def run_episodes(
         progress(len(seeds) / env.metadata["render_fps"])
         end_if_interrupted()
     summary = infos.get("episode_summary", {})
-    names = (*QUANTITIES, *ORDERING_TIMES)
-    return {name: _told(summary, name, len(seeds)) for name in names}
+    # NaN for episodes whose summary does not have it.
+    unknown = np.full(len(seeds), np.nan)
+    return {
+        name: np.where(summary[f"_{name}"], summary[name], np.nan) if name in summary else unknown
+        for name in (*QUANTITIES, *ORDERING_TIMES)
+    }
 
 
-def _decisions(policy: LeaderPolicy, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the options by which actions are read, those of the policy; others are refused."""
-    if "action_mode" in options:
-        check_action_mode(policy, options["action_mode"], "in this environment")
-    own = getattr(policy, "decision_period_s", None)
-    period = own if own is not None else options.get("decision_period_s")
-    return {"action_mode": action_mode(policy), "decision_period_s": period}
-
-
-def _told(summary: Mapping[str, Any], name: str, episodes: int) -> NDArray[np.float64]:
-    """Return a number of each episode's summary, NaN for episodes that do not have it."""
-    if name not in summary:
-        return np.full(episodes, np.nan)
-    return np.where(summary[f"_{name}"], summary[name], np.nan)
+def _first(policies: Mapping[str, Any], leaders: int) -> dict[str, Any]:
+    """Return the policies of a flock's leaders: with fewer leaders the first ones."""
+    return dict(itertools.islice(policies.items(), leaders))
 
 
 def _environment(
@@ -265,6 +243,7 @@ def _environment(
 
 def _simulated(
     parameters: FlockParameters,
+    policy: Any,
     seeds: Sequence[int],
     duration_s: float,
     progress: Callable[[float], None],
@@ -272,34 +251,31 @@ def _simulated(
     target = parameters.target if isinstance(parameters.target, str) else parameters.target[0]
     # The environment derives a flock's seed from its own, which pairs the runs.
     some = parameters.replace(n_leaders=max(1, parameters.n_leaders))
-    env = _environment(some, len(seeds), duration_s, {})
-    _, infos = env.reset(seed=list(seeds))
-    flock_seeds = [int(seed) for seed in infos["flock_seed"]]
+    _, infos = _environment(some, len(seeds), duration_s, {}).reset(seed=list(seeds))
+    names = (*QUANTITIES, *ORDERING_TIMES)
+    is_each = isinstance(policy, Mapping)
+    if is_each:
+        policy = _first(policy, parameters.n_leaders)
 
     def run(seed: int) -> list[float]:
         recording = simulate(
             parameters,
             seed,
             duration_s,
-            CONTROL_HZ,
+            policy=policy,
             dtype=np.float32,
             progress=lambda done: end_if_interrupted(),
         )
         order = recording.analyzed().order
         signed = order.signed_order(target)
         progress(duration_s)
-        ordering = [
-            recording.order.ordering_time(recording.time_s, within)
-            for within in ORDERING_TIMES.values()
-        ]
-        if len(signed) == 0:
-            return [np.nan] * len(QUANTITIES) + ordering
-        return [
-            order.psi_o.mean(),
-            signed.mean(),
-            (signed > _core.TOWARDS_TARGET).mean(),
-            *ordering,
-        ]
+        means = [np.nan] * len(QUANTITIES)
+        if len(signed) > 0:
+            towards = signed > _core.TOWARDS_TARGET
+            means = [order.psi_o.mean(), signed.mean(), towards.mean()]
+        times = ORDERING_TIMES.values()
+        return means + [recording.order.ordering_time(recording.time_s, each) for each in times]
 
-    means = np.array(in_order(run, flock_seeds))
-    return dict(zip((*QUANTITIES, *ORDERING_TIMES), means.T, strict=True))
+    # Policies in Python may draw from a generator of their own: one run after another.
+    rows = in_order(run, infos["flock_seed"].tolist(), 1 if is_each else None)
+    return dict(zip(names, np.array(rows).T, strict=True))
