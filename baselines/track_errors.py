@@ -95,7 +95,7 @@ def main() -> None:
         expected = quantities(truth)
         for name, camera in CAMERAS.items():
             tracks = from_table(seen(truth, camera, np.random.default_rng(seed)), LAYOUT)
-            found = quantities(tracks.to_recording())
+            found = quantities(tracks.recording)
             errors = {
                 each: float(np.abs(found[each] - expected[each]).mean()) for each in QUANTITIES
             }

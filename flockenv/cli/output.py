@@ -58,7 +58,7 @@ def load_recording(path: Path, layout: Path | None = None, *, quiet: bool = Fals
     tracks = load_tracks(path, None if layout is None else read_layout(layout))
     if not quiet:
         say(f"{printable(path)}: {tracks.report}", errors)
-    return tracks.to_recording()
+    return tracks.recording
 
 
 def prepare(*paths: Path, overwrites: bool = True) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, refuse_unknown
 from flockenv.order import OrderSeries, order_series
 from flockenv.parameters import FlockParameters
 from flockenv.recording import PHASES, Recording
@@ -70,20 +70,31 @@ def recording_of(
         10 m/s (in the median of a boat), more than a tenth of the centers outside the pool, and
         for names that are unknown or there twice.
     """
-    times = _floats("time_s", time_s)
-    if not np.isfinite(times).all() or not (np.diff(times) > 0).all():
-        raise ParameterError("time_s must increase, in finite numbers")
-    poses = _states("pose", pose, times)
-    names = _names(ids, poses.shape[1])
-    order = _leaders_first(names, leaders)
-    names, poses = names[order], poses[:, order]
-    if not np.isfinite(poses).any():
+    times, poses = _numbers("time_s", time_s), _numbers("pose", pose)
+    if times.ndim != 1 or poses.shape != (len(times), *poses.shape[1:2], 3) or 0 in poses.shape:
+        raise ParameterError(
+            f"pose has shape {poses.shape} for time_s of shape {times.shape}, expected (t, n, 3) "
+            "for t times"
+        )
+    if not (np.isfinite(times).all() and (np.diff(times) > 0.0).all()) or np.isinf(poses).any():
+        raise ParameterError("time_s must increase, and pose hold finite numbers or rows of NaN")
+    if np.isnan(poses).all():
         raise ParameterError("pose is not accepted: it is NaN everywhere, no boat is ever there")
+    names = np.array([str(each) for each in (range(poses.shape[1]) if ids is None else ids)])
+    if len(names) != poses.shape[1]:
+        raise ParameterError(f"ids holds {len(names)} names for {poses.shape[1]} boats")
+    order = _leaders_first(names.tolist(), [str(each) for each in leaders])
+    names, poses = names[order], poses[:, order]
     poses[..., 2] = unwrapped(poses[..., 2])
     if velocity is None:
         motion = velocities(times, poses)
     else:
-        motion = _states("velocity", velocity, times, poses.shape)[:, order]
+        motion = _numbers("velocity", velocity)
+        if motion.shape != poses.shape:
+            raise ParameterError(
+                f"velocity has shape {motion.shape}, expected {poses.shape}, that of pose"
+            )
+        motion = motion[:, order]
     radius, shape = hull
     parameters = FlockParameters(
         n_boats=len(names),
@@ -96,14 +107,20 @@ def recording_of(
         walls=walls,
     )
     _check_units(poses, motion, parameters)
-    phases, analyzed = _phases(phase, times)
+    # Without phases all samples count.
+    phases = np.full(times.shape, "") if phase is None else np.asarray(phase, np.str_)
+    analyzed = np.ones(times.shape, bool)
+    if phase is not None:
+        analyzed = _core.sampled_analysis_window(times, phases.tolist())
+    normal = (poses[:, len(leaders) :], motion[:, len(leaders) :])
+    undefined = normal[0].shape[1] == 0
     return Recording(
         time_s=times,
-        phase=phases,
+        phase=phases.astype(PHASES.dtype),
         in_analysis_window=analyzed,
         pose=poses,
         velocity=motion,
-        order=_order(poses[:, len(leaders) :], motion[:, len(leaders) :]),
+        order=OrderSeries(np.full(len(times), np.nan)) if undefined else order_series(*normal),
         parameters=parameters,
         seed=0,
         version=_core.__version__,
@@ -133,59 +150,22 @@ def velocities(
     return np.where(there[..., None], found, np.nan)
 
 
-def _floats(name: str, values: ArrayLike) -> NDArray[np.float64]:
+def _numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:
+    if isinstance(values, np.ma.MaskedArray):  # What is masked is not there.
+        values = values.astype(np.float64).filled(np.nan)
     try:
         return np.array(values, np.float64)
     except (TypeError, ValueError) as error:
         raise ParameterError(f"{name} is not accepted: numbers") from error
 
 
-def _states(
-    name: str,
-    values: ArrayLike,
-    times: NDArray[np.float64],
-    shape: tuple[int, ...] | None = None,
-) -> NDArray[np.float64]:
-    states = _floats(name, values)
-    expected = shape or (len(times) if times.ndim == 1 else 0, *states.shape[1:2], 3)
-    if states.ndim != 3 or states.shape != expected or 0 in states.shape:
-        wanted = "(t, n, 3) for t times" if shape is None else f"{shape}, that of pose"
-        raise ParameterError(
-            f"{name} has shape {states.shape} for time_s of shape {times.shape}, expected {wanted}"
-        )
-    if np.isinf(states).any():
-        raise ParameterError(f"{name} is not accepted: finite numbers, or rows of NaN")
-    absent = np.isnan(states)
-    partly = absent.any(axis=-1) & ~absent.all(axis=-1)
-    if partly.any():
-        sample, boat = np.argwhere(partly)[0]
-        raise ParameterError(
-            f"{name}[{sample}, {boat}] = {states[sample, boat].tolist()} is not accepted: "
-            "all three numbers, or NaN for all three where a boat is not there"
-        )
-    return states
-
-
-def _names(ids: Sequence[str] | None, boats: int) -> NDArray[np.str_]:
-    names = [str(each) for each in (range(boats) if ids is None else ids)]
-    if len(names) != boats:
-        raise ParameterError(f"ids holds {len(names)} names for {boats} boats")
-    twice = [name for name in dict.fromkeys(names) if names.count(name) > 1]
-    if twice:
-        raise ParameterError(f"ids holds {shown(twice[0])} more than once")
-    return np.array(names, np.str_)
-
-
-def _leaders_first(names: NDArray[np.str_], leaders: Sequence[str]) -> list[int]:
-    known = names.tolist()
-    leading = [str(each) for each in leaders]
-    for name in leading:
-        if name not in known:
-            raise ParameterError(f"leaders holds {shown(name)}, which is none of the ids")
-    if len(set(leading)) < len(leading):
-        raise ParameterError("leaders holds a name more than once")
-    first = [known.index(name) for name in leading]
-    return first + [place for place in range(len(known)) if place not in set(first)]
+def _leaders_first(names: list[str], leaders: list[str]) -> list[int]:
+    """Return the places of leaders, in their order, and then those of the others."""
+    refuse_unknown(leaders, names, "leader among the ids")
+    if len(set(leaders)) < len(leaders) or len(set(names)) < len(names):
+        raise ParameterError("ids or leaders holds a name more than once")
+    first = [names.index(name) for name in leaders]
+    return first + [place for place in range(len(names)) if place not in set(first)]
 
 
 def unwrapped(heading: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -218,23 +198,3 @@ def _check_units(
             f"{outside:.0%} of the centers lie outside the pool of radius {outer_cm:g} cm: are "
             "positions in cm, from the center of the pool?"
         )
-
-
-def _phases(
-    phase: ArrayLike | None, times: NDArray[np.float64]
-) -> tuple[NDArray[np.str_], NDArray[np.bool_]]:
-    if phase is None:
-        return np.full(times.shape, "", PHASES.dtype), np.ones(times.shape, bool)
-    phases = np.asarray(phase, np.str_)
-    if phases.shape != times.shape or not np.isin(phases, PHASES).all():
-        raise ParameterError(f"phase is not accepted: {', '.join(PHASES)} for each time")
-    analyzed = _core.sampled_analysis_window(times, phases.tolist())
-    return phases.astype(PHASES.dtype), analyzed
-
-
-def _order(pose: NDArray[np.float64], velocity: NDArray[np.float64]) -> OrderSeries:
-    """Return the quantities of normal boats; NaN where too few of them are there."""
-    if pose.shape[1] == 0:
-        undefined = np.full(len(pose), np.nan)
-        return OrderSeries(undefined)
-    return order_series(pose, velocity)

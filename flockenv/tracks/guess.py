@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import tomli_w
-from numpy.typing import NDArray
 
 from flockenv._io.atomic_write import write_text
 from flockenv.errors import ParameterError
@@ -24,6 +23,14 @@ _NAMES = {
     "x": ("x_cm", "x", "pos_x", "x_px", "position_x", "centroid_x", "center_x"),
     "y": ("y_cm", "y", "pos_y", "y_px", "position_y", "centroid_y", "center_y"),
     "heading": ("heading_rad", "heading", "heading_deg", "theta", "angle", "orientation", "alpha"),
+}
+_DOUBTS = {
+    "pool": "outer and inner radius in cm: the circle about all positions stands here",
+    "center": "center of the pool in units of the file: the middle of all positions",
+    "cm_per_unit": "how many cm a unit of x and y has: 1 stands for cm",
+    "y_down": "whether y points down, as in pictures",
+    "fps": "frames per second of the camera; without it the column of frames holds times in s",
+    "heading": "a column of headings; without one they are the directions of motion",
 }
 _FRAMES = ("frame", "frame_number", "frames", "step")
 _FPS = 25.0
@@ -53,63 +60,43 @@ def guess_layout(path: str | os.PathLike[str]) -> tuple[TrackLayout, dict[str, s
         If the description cannot be written.
     """
     path = Path(path)
-    table = read_table(path)
-    columns = {field: _column(table, field) for field in _NAMES}
+    beside, table = path.with_suffix(".toml"), read_table(path)
+    fields: dict[str, object] = {field: _column(table, field) for field in _NAMES}
     for field in ("frame", "id", "x", "y"):
-        if columns[field] is None:
+        if not fields[field]:
             raise ParameterError(
                 f"{path}: no column looks like {field!r} ({', '.join(_NAMES[field])}) among "
-                f"{', '.join(map(str, table.columns))}: describe the columns in "
-                f"{path.with_suffix('.toml')}"
+                f"{', '.join(map(str, table.columns))}: describe the columns in {beside}"
             )
-    fields = {field: column or "" for field, column in columns.items()}
-    points = np.stack([table[fields[each]].to_numpy(np.float64) for each in "xy"], axis=-1)
-    found, doubts = _geometry(points)
-    if fields["frame"].lower() in _FRAMES:
-        found["fps"] = _FPS
-        doubts["fps"] = "frames per second of the camera"
-    if fields["heading"]:
-        heading = table[fields["heading"]].to_numpy(np.float64)
-        degrees = np.nanmax(np.abs(heading), initial=0.0) > 2 * np.pi + 1e-6
-        found["heading_unit"] = "deg" if degrees else "rad"
-    else:
-        doubts["heading"] = "no column of headings was found: they are the directions of motion"
-    _write(path.with_suffix(".toml"), {**fields, **found}, doubts)
-    return read_layout(path.with_suffix(".toml")), doubts
-
-
-def _column(table: "pd.DataFrame", field: str) -> str | None:
-    names = {str(name).strip().lower(): str(name) for name in table.columns}
-    return next((names[each] for each in _NAMES[field] if each in names), None)
-
-
-def _geometry(points: NDArray[np.float64]) -> tuple[dict[str, object], dict[str, str]]:
-    """Return a round pool about all positions, and what of it is doubtful."""
-    there = points[np.isfinite(points).all(axis=1)]
-    if len(there) == 0:
-        raise ParameterError("no row has a position")
-    low, high = there.min(axis=0), there.max(axis=0)
+    points = table[[fields["x"], fields["y"]]].to_numpy(np.float64)
+    points = points[np.isfinite(points).all(axis=1)]
+    if len(points) == 0:
+        raise ParameterError(f"{path}: no row has a position")
+    low, high = points.min(axis=0), points.max(axis=0)
     center = (low + high) / 2
-    radius = float(np.hypot(*(there - center).T).max()) * _MARGIN or 1.0
-    found: dict[str, object] = {
+    radius = float(np.hypot(*(points - center).T).max()) * _MARGIN or 1.0
+    fields |= {
         "pool": [round(radius, 1), 0.0],
         "center": [round(float(each), 2) for each in center],
         "cm_per_unit": 1.0,
         # Pictures count from their upper left corner.
         "y_down": bool((low >= 0.0).all()),
     }
-    doubts = {
-        "pool": "outer and inner radius in cm: the circle about all positions stands here",
-        "center": "center of the pool in units of the file: the middle of all positions",
-        "cm_per_unit": "how many cm a unit of x and y has: 1 stands for cm",
-        "y_down": "whether y points down, as in pictures",
-    }
-    return found, doubts
-
-
-def _write(path: Path, fields: dict[str, object], doubts: dict[str, str]) -> None:
+    if str(fields["frame"]).lower() in _FRAMES:
+        fields["fps"] = _FPS
+    if fields["heading"]:
+        largest = np.nanmax(np.abs(table[fields["heading"]].to_numpy(np.float64)), initial=0.0)
+        fields["heading_unit"] = "deg" if largest > 2 * np.pi + 1e-6 else "rad"
+    sure = () if not fields["heading"] else ("heading",)
+    doubts = {name: text for name, text in _DOUBTS.items() if name in fields and name not in sure}
     lines = ["# Guessed from the table beside this file. Check the lines that say so."]
     for name, value in fields.items():
         line = tomli_w.dumps({name: value}, multiline_strings=False).strip().replace("\n", " ")
         lines.append(f"{line}  # check: {doubts[name]}" if name in doubts else line)
-    write_text(path, "\n".join(lines) + "\n")
+    write_text(beside, "\n".join(lines) + "\n")
+    return read_layout(beside), doubts
+
+
+def _column(table: "pd.DataFrame", field: str) -> str:
+    names = {str(name).strip().lower(): str(name) for name in table.columns}
+    return next((names[each] for each in _NAMES[field] if each in names), "")

@@ -2,17 +2,54 @@
 
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Self
 
 from flockenv._io.toml import read_toml_file
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, refuse_unknown, shown
+from flockenv.parameters import FlockParameters
 
 __all__ = ["TrackLayout", "layout_beside", "read_layout"]
 
-_UNITS = ("rad", "deg")
+
+def _is_positive(value: Any) -> bool:
+    return _are_numbers((value,), 1) and value > 0.0
+
+
+def _are_numbers(values: Any, count: int) -> bool:
+    kinds = all(isinstance(each, int | float) and not isinstance(each, bool) for each in values)
+    return kinds and len(values) == count and all(map(math.isfinite, values))
+
+
+def _are_words(values: Any) -> bool:
+    return isinstance(values, tuple) and all(isinstance(each, str) for each in values)
+
+
+_COLUMN = "the name of a column", lambda value: isinstance(value, str)
+_TRUTH = "true or false", lambda value: isinstance(value, bool)
+_POSITIVE = "a positive number", _is_positive
+_PAIR = "two numbers", lambda value: isinstance(value, tuple) and _are_numbers(value, 2)
+_CHECKS: Mapping[str, tuple[str, Callable[[Any], bool]]] = {
+    "frame": _COLUMN,
+    "id": _COLUMN,
+    "x": _COLUMN,
+    "y": _COLUMN,
+    "heading": (
+        "a column, or the columns x, y of the tail and x, y of the head",
+        lambda value: isinstance(value, str | None) or (_are_words(value) and len(value) == 4),
+    ),
+    "heading_unit": ("rad or deg", lambda value: value in ("rad", "deg")),
+    "wrapped": _TRUTH,
+    "y_down": _TRUTH,
+    "leaders": ("a list of names", _are_words),
+    "hull": _PAIR,
+    "center": _PAIR,
+    "fps": ("a positive number", lambda value: value is None or _is_positive(value)),
+    "cm_per_unit": _POSITIVE,
+    "max_speed_cm_s": _POSITIVE,
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,7 +94,7 @@ class TrackLayout:
     Raises
     ------
     ParameterError
-        For a value out of range.
+        For a value out of range or of another kind.
     """
 
     pool: Any
@@ -78,26 +115,11 @@ class TrackLayout:
     max_speed_cm_s: float = 200.0
 
     def __post_init__(self) -> None:
-        for name in ("cm_per_unit", "max_speed_cm_s", "fps"):
-            value = getattr(self, name)
-            if name == "fps" and value is None:
-                continue
-            if not _is_number(value) or not 0.0 < value < math.inf:
-                raise ParameterError(f"{name} = {shown(value)} is not accepted: a positive number")
-        for name, length in (("hull", 2), ("center", 2)):
-            value = getattr(self, name)
-            if len(value) != length or not all(_is_number(each) for each in value):
-                raise ParameterError(f"{name} = {shown(value)} is not accepted: two numbers")
-        if self.heading_unit not in _UNITS:
-            raise ParameterError(
-                f"heading_unit = {shown(self.heading_unit)} is not accepted: {' or '.join(_UNITS)}"
-            )
-        is_name = isinstance(self.heading, str | None)
-        if not is_name and len(self.heading or ()) != 4:
-            raise ParameterError(
-                f"heading = {shown(self.heading)} is not accepted: a column, or the columns x, y "
-                "of the tail and x, y of the head"
-            )
+        for name, (accepted, holds) in _CHECKS.items():
+            if not holds(getattr(self, name)):
+                value = shown(getattr(self, name))
+                raise ParameterError(f"{name} = {value} is not accepted: {accepted}")
+        FlockParameters(pool=self.pool)
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> Self:
@@ -108,10 +130,7 @@ class TrackLayout:
         ParameterError
             For unknown fields, a missing pool, and as for the class.
         """
-        names = [each.name for each in fields(cls)]
-        for name in values:
-            if name not in names:
-                raise ParameterError(f"{shown(name)} is no field of a layout: {', '.join(names)}")
+        refuse_unknown(values, [each.name for each in fields(cls)], "field of a layout")
         if "pool" not in values:
             raise ParameterError(
                 'pool is missing: "narrow", "wide", or the outer and the inner radius in cm'
@@ -122,12 +141,9 @@ class TrackLayout:
         }
         if plain.get("heading") == "":
             plain["heading"] = None
-        if "leaders" in plain:
+        if isinstance(plain.get("leaders"), tuple):
             plain["leaders"] = tuple(map(str, plain["leaders"]))
-        try:
-            return cls(**plain)
-        except TypeError as error:
-            raise ParameterError(f"a field of the layout is of another type: {error}") from error
+        return cls(**plain)
 
 
 def layout_beside(path: str | os.PathLike[str]) -> TrackLayout:
@@ -156,9 +172,5 @@ def read_layout(path: str | os.PathLike[str]) -> TrackLayout:
     """
     try:
         return TrackLayout.from_dict(read_toml_file(path, str(path)))
-    except ParameterError as error:
+    except (ParameterError, TypeError) as error:
         raise ParameterError(f"{path}: {error}") from error
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)

@@ -1,16 +1,16 @@
-"""Tracks of tables (CSV, Parquet), datasets of `movement` and arrays (npz), cleaned and counted."""
+"""Tracks of tables (CSV, Parquet) and datasets of `movement`, cleaned and counted."""
 
 import os
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv._io.array_file import is_special, read_arrays
+from flockenv._io.array_file import is_special
 from flockenv._io.extras import require
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, refuse_unknown
 from flockenv.recording import Recording
 from flockenv.tracks.assemble import recording_of, unwrapped, velocities
 from flockenv.tracks.layout import TrackLayout, layout_beside
@@ -31,9 +31,11 @@ __all__ = [
 ]
 
 SUFFIXES = (".csv", ".parquet", ".pq")
-"""Endings of files that `read_tracks` takes for tables; arrays end in ``.npz``."""
+"""Endings of files that `read_tracks` takes."""
 
-_MOST_POSES = 1 << 27
+_FEW = 1 << 22
+_SPARSEST = 16
+"""Arrays hold a pose for each frame and name; above `_FEW` a row must be there for so many."""
 _FULL_TURN = 2 * np.pi + 1e-6
 
 
@@ -48,7 +50,7 @@ class TrackReport:
     samples : int
         Poses that are used.
     missing : int
-        Rows without a position or a heading, which are left out.
+        Rows without a name, a position or a heading, which are left out.
     jumps : int
         Samples left out because it took more than the greatest speed to reach them from the sample
         before and to reach the one after.
@@ -70,68 +72,34 @@ class TrackReport:
     def __str__(self) -> str:
         return (
             f"{self.samples} poses of {self.boats} boats in {self.frames} frames; left out: "
-            f"{self.missing} rows without a pose, {self.jumps} jumps; steps too fast for "
+            f"{self.missing} rows without a name or a pose, {self.jumps} jumps; steps too fast for "
             f"a velocity: {self.broken}; samples without a velocity: {self.lone}"
         )
 
 
-@dataclass(frozen=True, slots=True)
-class Tracks:
-    """Tracks as arrays: in cm and s, from the center of the pool.
+class Tracks(NamedTuple):
+    """Tracks as a recording, and what of them was left out."""
 
-    Attributes
-    ----------
-    time_s : float64 array, shape (t,)
-        Times from the first frame on.
-    pose, velocity : float64 array, shape (t, n, 3)
-        As for `recording_of`; rows of NaN where a boat is not there, or has no velocity.
-    ids : str array, shape (n,)
-        Names.
-    report : TrackReport
-        What was left out.
-    layout : TrackLayout
-        As they were read.
-    """
-
-    time_s: NDArray[np.float64]
-    pose: NDArray[np.float64]
-    velocity: NDArray[np.float64]
-    ids: NDArray[np.str_]
+    recording: Recording
     report: TrackReport
-    layout: TrackLayout
-
-    def to_recording(self) -> Recording:
-        """Return the tracks as a recording; errors are those of `recording_of`."""
-        layout = self.layout
-        return recording_of(
-            self.time_s,
-            self.pose,
-            pool=layout.pool,
-            hull=layout.hull,
-            velocity=self.velocity,
-            ids=self.ids.tolist(),
-            leaders=layout.leaders,
-            target=layout.target,
-        )
 
 
 def read_tracks(path: str | os.PathLike[str], layout: TrackLayout | None = None) -> Recording:
     """Read tracks from a file as a recording, which is analyzed and replayed like a simulated one.
 
-    Parameters are those of `load_tracks`, errors also those of `recording_of`.
+    Parameters and errors are those of `load_tracks`.
     """
-    return load_tracks(path, layout).to_recording()
+    return load_tracks(path, layout).recording
 
 
 def load_tracks(path: str | os.PathLike[str], layout: TrackLayout | None = None) -> Tracks:
-    """Read tracks from a file as arrays, with the report of what was left out.
+    """Read tracks from a file, with the report of what was left out.
 
     Parameters
     ----------
     path
-        A CSV or Parquet table with one row per frame and boat (extra ``plot``), or an ``.npz`` file
-        of the arrays ``time_s``, ``pose`` (see `recording_of`; units and center as in the
-        layout) and perhaps ``ids``. Nothing in the file is executed.
+        A CSV or Parquet table with one row per frame and boat (extra ``plot``). Nothing in the file
+        is executed.
     layout
         How tracks lie in it; None for the TOML file beside it, see `layout_beside`.
 
@@ -140,15 +108,13 @@ def load_tracks(path: str | os.PathLike[str], layout: TrackLayout | None = None)
     ParameterError
         If the file cannot be read, a column is missing or holds other things than numbers, a name
         is there twice in a frame, headings look like degrees where radians are said, everything is
-        missing, or the arrays would be too large.
+        missing, the arrays would be too large, and as for `recording_of`.
     MissingExtraError
-        Without the extra ``plot``, for a table.
+        Without the extra ``plot``.
     """
     path = Path(path)
     layout = layout_beside(path) if layout is None else layout
     try:
-        if path.suffix.lower() == ".npz":
-            return _from_arrays(read_arrays(path), layout)
         return from_table(read_table(path), layout)
     except ParameterError as error:
         raise ParameterError(f"{path}: {error}") from error
@@ -167,91 +133,18 @@ def read_table(path: Path) -> "pd.DataFrame":
         If it cannot be opened.
     """
     pandas = require("pandas", "plot")
+    if path.suffix.lower() not in SUFFIXES:
+        raise ParameterError(f"it ends in none of {', '.join(SUFFIXES)}")
     if is_special(path):
         raise ParameterError("it is no table but a device, a pipe or a socket")
-    reading = {".csv": pandas.read_csv, ".parquet": pandas.read_parquet, ".pq": pandas.read_parquet}
-    if path.suffix.lower() not in reading:
-        raise ParameterError(f"it ends in none of .npz, {', '.join(reading)}")
+    read = pandas.read_csv if path.suffix.lower() == ".csv" else pandas.read_parquet
     try:
-        table: pd.DataFrame = reading[path.suffix.lower()](path)
+        table: pd.DataFrame = read(path)
     except OSError:
         raise
     except Exception as error:  # Parsers raise errors of many unrelated classes.
         raise ParameterError(f"it is no table: {error}") from error
     return table
-
-
-def from_table(table: "pd.DataFrame", layout: TrackLayout) -> Tracks:
-    """Return tracks of a table with one row per frame and boat; see `read_tracks`."""
-    frames = _numbers(table, layout.frame)
-    if not np.isfinite(frames).all():
-        raise ParameterError(f"column {layout.frame!r} has rows without a number")
-    names = _column(table, layout.id).astype(str).to_numpy(dtype=np.str_)
-    points, heading = _points(table, layout)
-    frame_values, at_frame = np.unique(frames, return_inverse=True)
-    ids, at_id = np.unique(names, return_inverse=True)
-    ids, at_id = _in_order(ids, at_id)
-    if len(frame_values) * len(ids) > _MOST_POSES:
-        raise ParameterError(
-            f"{len(ids)} names in {len(frame_values)} frames are too many for one recording: join "
-            "fragments of tracks, or read a part of the file"
-        )
-    places = at_frame * len(ids) + at_id
-    counts = np.bincount(places, minlength=1)
-    if (counts > 1).any():
-        frame, name = np.divmod(int(counts.argmax()), len(ids))
-        raise ParameterError(
-            f"{str(ids[name])!r} is there {counts.max()} times in frame {frame_values[frame]:g}"
-        )
-    pose = np.full((len(frame_values), len(ids), 3), np.nan)
-    pose[at_frame, at_id, :2] = points
-    pose[at_frame, at_id, 2] = heading
-    times = frame_values / (1.0 if layout.fps is None else layout.fps)
-    return _cleaned(times, pose, ids, layout)
-
-
-def _in_order(
-    ids: NDArray[np.str_], at_id: NDArray[np.intp]
-) -> tuple[NDArray[np.str_], NDArray[np.intp]]:
-    """Return names by their length, then alphabet, so that 2 comes before 10; and new places."""
-    order = sorted(range(len(ids)), key=lambda place: (len(ids[place]), ids[place]))
-    new = np.empty(len(ids), np.intp)
-    new[order] = np.arange(len(ids))
-    return ids[order], new[at_id]
-
-
-def _column(table: "pd.DataFrame", name: str) -> "pd.Series[Any]":
-    if name not in table:
-        raise ParameterError(
-            f"column {name!r} is missing; there are {', '.join(map(str, table.columns))}"
-        )
-    column: pd.Series[Any] = table[name]
-    return column
-
-
-def _numbers(table: "pd.DataFrame", name: str) -> NDArray[np.float64]:
-    column = _column(table, name)
-    try:
-        return column.to_numpy(dtype=np.float64, na_value=np.nan)
-    except (TypeError, ValueError) as error:
-        raise ParameterError(f"column {name!r} holds other things than numbers") from error
-
-
-def _points(
-    table: "pd.DataFrame", layout: TrackLayout
-) -> tuple[NDArray[np.float64], NDArray[np.float64] | float]:
-    points = np.stack([_numbers(table, name) for name in (layout.x, layout.y)], axis=-1)
-    if layout.heading is None:
-        return points, 0.0
-    if isinstance(layout.heading, str):
-        return points, _numbers(table, layout.heading)
-    x_tail, y_tail, x_head, y_head = (_numbers(table, name) for name in layout.heading)
-    return points, _direction(x_head - x_tail, y_head - y_tail)
-
-
-def _direction(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the angle of vectors, in radians; NaN for none."""
-    return np.where((x == 0.0) & (y == 0.0), np.nan, np.arctan2(y, x))
 
 
 def from_movement(
@@ -265,15 +158,14 @@ def from_movement(
     """Return tracks of a dataset of poses of the package `movement`.
 
     Its ``position`` has the dimensions time, space, keypoints and individuals; ``time`` is in s, or
-    in frames where the attribute ``time_unit`` says so. Columns and frames per second of the layout
-    are not used.
+    in frames where the attribute ``time_unit`` says so. Columns of the layout are not used.
 
     Parameters
     ----------
     dataset
         The dataset.
     layout
-        Pool, hull, scale, center and greatest speed.
+        Pool, hull, scale, center and greatest speed; frames per second where times are in frames.
     center
         Key point that is a boat's position; the mean of all by default.
     tail, head
@@ -282,80 +174,123 @@ def from_movement(
     Raises
     ------
     ParameterError
-        For a dataset without positions in the plane, unknown key points, and as for `read_tracks`.
+        For a dataset without positions in the plane, unknown key points, and as for `load_tracks`.
     """
-    if "position" not in dataset or not {"time", "space", "individuals"} <= set(
-        dataset["position"].dims
-    ):
-        raise ParameterError(
-            "the dataset has no position by time, space, keypoints and individuals"
-        )
-    position = dataset["position"]
-    if "keypoints" not in position.dims:
-        position = position.expand_dims("keypoints")
-    position = position.sel(space=["x", "y"]).transpose("time", "individuals", "keypoints", "space")
-    known = (
-        [str(each) for each in position.coords["keypoints"].values]
-        if ("keypoints" in position.coords)
-        else []
-    )
-
-    def point(name: str) -> NDArray[np.float64]:
-        if name not in known:
-            raise ParameterError(f"key point {name!r} is not there: {', '.join(known)}")
-        return position.values[:, :, known.index(name)].astype(np.float64)
-
-    values = position.values.astype(np.float64)
-    points = values.mean(axis=2) if center is None else point(center)
+    position = dataset.get("position")
+    if position is None or not {"time", "space", "individuals"} <= set(position.dims):
+        raise ParameterError("the dataset has no position by time, space and individuals")
     if (tail is None) != (head is None):
         raise ParameterError("a heading joins two key points: tail and head, or neither")
-    pose = np.full((*points.shape[:2], 3), np.nan)
-    pose[..., :2] = points
-    if tail is None or head is None:
-        layout = replace(layout, heading=None)
-        pose[..., 2] = 0.0
+    if "keypoints" not in position.dims:
+        position = position.expand_dims(keypoints=["position"])
+    known = [str(each) for each in position.coords["keypoints"].values]
+    chosen = {name: name for name in (center, tail, head) if name is not None}
+    refuse_unknown(chosen, known, "key point")
+    points = {name: position.sel(keypoints=name, drop=True) for name in chosen}
+    points["mean"] = position.mean("keypoints", skipna=False)
+    columns = {
+        f"{name}_{axis}": point.sel(space=axis, drop=True)
+        for name, point in points.items()
+        for axis in "xy"
+    }
+    table = dataset.assign(columns)[list(columns)].to_dataframe().reset_index()
+    is_in_frames = dataset.attrs.get("time_unit") == "frames"
+    if is_in_frames and layout.fps is None:
+        raise ParameterError("times are in frames: name fps in the layout")
+    place, ends = center or "mean", (tail, head)
+    heading = None if tail is None else tuple(f"{end}_{axis}" for end in ends for axis in "xy")
+    described: dict[str, Any] = {
+        "frame": "time",
+        "fps": layout.fps if is_in_frames else None,
+        "id": "individuals",
+        "x": f"{place}_x",
+        "y": f"{place}_y",
+        "heading": heading,
+    }
+    return from_table(table, replace(layout, **described))
+
+
+def from_table(table: "pd.DataFrame", layout: TrackLayout) -> Tracks:
+    """Return tracks of a table with one row per frame and boat; see `load_tracks`."""
+    names = [layout.frame, layout.id, layout.x, layout.y]
+    names += [layout.heading] if isinstance(layout.heading, str) else layout.heading or ()
+    for name in names:
+        if name not in table:
+            there = ", ".join(map(str, table.columns))
+            raise ParameterError(f"column {name!r} is missing; there are {there}")
+    frames, ids = _numbers(table, layout.frame), table[layout.id].convert_dtypes()
+    if not np.isfinite(frames).all():
+        raise ParameterError(f"column {layout.frame!r} has rows without a number")
+    rows = _poses(table, layout)
+    used = np.isfinite(rows).all(axis=1) & ids.notna().to_numpy(bool)
+    if not used.any():
+        raise ParameterError("no row has a name, a position and a heading")
+    given = np.array(ids[used].astype(str).tolist())
+    # By their length, then alphabet, so that 2 comes before 10.
+    order = np.array(sorted(set(given.tolist()), key=lambda name: (len(name), name)))
+    by_name = np.argsort(order)
+    at_id = by_name[np.searchsorted(order, given, sorter=by_name)]
+    times = np.unique(frames)
+    at_frame = np.searchsorted(times, frames[used])
+    if len(times) * len(order) > max(_FEW, _SPARSEST * len(table)):
+        raise ParameterError(
+            f"{len(order)} names in {len(times)} frames are too many for {len(table)} rows: join "
+            "fragments of tracks, or read a part of the file"
+        )
+    counts = np.bincount(at_frame * len(order) + at_id)
+    if (counts > 1).any():
+        frame, boat = np.divmod(int(counts.argmax()), len(order))
+        raise ParameterError(
+            f"{str(order[boat])!r} is there {counts.max()} times in frame {times[frame]:g}"
+        )
+    pose = np.full((len(times), len(order), 3), np.nan)
+    pose[at_frame, at_id] = rows[used]
+    seconds = (times - times[0]) / (1.0 if layout.fps is None else layout.fps)
+    return _cleaned(seconds, pose, order, layout, missing=int((~used).sum()))
+
+
+def _numbers(table: "pd.DataFrame", name: str) -> NDArray[np.float64]:
+    try:
+        return table[name].to_numpy(dtype=np.float64, na_value=np.nan)
+    except (TypeError, ValueError) as error:
+        raise ParameterError(f"column {name!r} holds other things than numbers") from error
+
+
+def _poses(table: "pd.DataFrame", layout: TrackLayout) -> NDArray[np.float64]:
+    """Return each row's x and y in cm and heading in rad, from the center of the pool, y up."""
+    places = np.stack([_numbers(table, name) for name in (layout.x, layout.y)], axis=-1)
+    up = -1.0 if layout.y_down else 1.0
+    xy = (places - layout.center) * layout.cm_per_unit * np.array([1.0, up])
+    if layout.heading is None:
+        heading = np.zeros(len(table))
+    elif isinstance(layout.heading, str):
+        heading = _numbers(table, layout.heading)
+        largest = np.nanmax(np.abs(heading), initial=0.0)
+        if layout.heading_unit == "deg":
+            heading = np.radians(heading)
+        elif layout.wrapped and largest > _FULL_TURN:
+            raise ParameterError(
+                f"headings reach {largest:.4g}, more than a full turn in radians: if they are in "
+                "degrees, say heading_unit = 'deg'"
+            )
     else:
-        pose[..., 2] = _direction(*np.moveaxis(point(head) - point(tail), -1, 0))
-        layout = replace(layout, heading="heading", heading_unit="rad")
-    times = dataset["time"].values.astype(np.float64)
-    if dataset.attrs.get("time_unit") == "frames":
-        if layout.fps is None:
-            raise ParameterError("times are in frames: name fps in the layout")
-        times = times / layout.fps
-    ids = np.array([str(each) for each in dataset["individuals"].values], np.str_)
-    return _cleaned(times, pose, ids, layout)
+        x_tail, y_tail, x_head, y_head = (_numbers(table, name) for name in layout.heading)
+        heading = _direction(x_head - x_tail, y_head - y_tail)
+    return np.column_stack([xy, up * heading])
 
 
-def _from_arrays(arrays: dict[str, NDArray[Any]], layout: TrackLayout) -> Tracks:
-    if not {"time_s", "pose"} <= arrays.keys() <= {"time_s", "pose", "ids"}:
-        raise ParameterError(
-            f"it holds {', '.join(arrays) or 'nothing'}, not time_s, pose and perhaps ids"
-        )
-    time_s, pose = arrays["time_s"], arrays["pose"]
-    if pose.ndim != 3 or pose.shape[2] != 3 or time_s.shape != pose.shape[:1]:
-        raise ParameterError(
-            f"pose has shape {pose.shape} for time_s of shape {time_s.shape}, expected (t, n, 3)"
-        )
-    ids = arrays.get("ids", np.arange(pose.shape[1])).astype(np.str_)
-    if ids.shape != pose.shape[1:2]:
-        raise ParameterError(f"ids holds {ids.size} names for {pose.shape[1]} boats")
-    return _cleaned(time_s.astype(np.float64), pose.astype(np.float64), ids, layout)
+def _direction(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the angle of vectors, in radians; NaN for none."""
+    return np.where((x == 0.0) & (y == 0.0), np.nan, np.arctan2(y, x))
 
 
 def _cleaned(
     times: NDArray[np.float64],
-    raw: NDArray[np.float64],
+    pose: NDArray[np.float64],
     ids: NDArray[np.str_],
     layout: TrackLayout,
+    missing: int,
 ) -> Tracks:
-    if len(times) == 0 or not (np.diff(times) > 0).all():
-        raise ParameterError("times must increase, and there must be one at least")
-    pose = _scaled(raw, layout)
-    absent = ~np.isfinite(pose).all(axis=-1)
-    pose[absent] = np.nan
-    if absent.all():
-        raise ParameterError("no row has both a position and a heading")
-    missing = int(np.isfinite(raw[..., :2]).any(axis=-1).sum() - (~absent).sum())
     jumps, broken = _jumps(times, pose, layout.max_speed_cm_s)
     pose[jumps] = np.nan
     if layout.heading is None:
@@ -374,27 +309,17 @@ def _cleaned(
         broken=int(broken.sum()),
         lone=int((there & np.isnan(velocity[..., 0])).sum()),
     )
-    return Tracks(times - times[0], pose, velocity, ids, report, layout)
-
-
-def _scaled(raw: NDArray[np.float64], layout: TrackLayout) -> NDArray[np.float64]:
-    """Return poses in cm and rad from the center of the pool, y up."""
-    pose = raw.copy()
-    up = -1.0 if layout.y_down else 1.0
-    pose[..., :2] = (raw[..., :2] - layout.center) * (layout.cm_per_unit * np.array([1.0, up]))
-    if isinstance(layout.heading, str):
-        heading = raw[..., 2]
-        if layout.heading_unit == "deg":
-            heading = np.radians(heading)
-        elif layout.wrapped and np.nanmax(np.abs(heading), initial=0.0) > _FULL_TURN:
-            raise ParameterError(
-                f"headings reach {np.nanmax(np.abs(heading)):.4g}, more than a full turn in "
-                "radians: if they are in degrees, say heading_unit = 'deg'"
-            )
-        pose[..., 2] = heading * up
-    else:
-        pose[..., 2] = raw[..., 2] * up
-    return pose
+    recording = recording_of(
+        times,
+        pose,
+        pool=layout.pool,
+        hull=layout.hull,
+        velocity=velocity,
+        ids=ids.tolist(),
+        leaders=layout.leaders,
+        target=layout.target,
+    )
+    return Tracks(recording, report)
 
 
 def _jumps(
@@ -409,7 +334,7 @@ def _jumps(
         too_fast = _too_fast(times[there], pose[there, boat, :2], most_cm_s)
         # A track's first and last sample have no other side.
         ends = np.r_[True, too_fast] & np.r_[too_fast, True]
-        jumps[there, boat] = ends & (too_fast.any() if len(too_fast) else False)
+        jumps[there, boat] = ends & too_fast.any()
         there = there[~jumps[there, boat]]
         left = _too_fast(times[there], pose[there, boat, :2], most_cm_s)
         broken[there[1:][left] - 1, boat] = True

@@ -15,7 +15,7 @@ def test_a_camera_gives_back_the_run(seen):
     assert tracks.report.samples == len(seen.table)
     assert tracks.report.samples + seen.missing == seen.truth.pose[..., 0].size
     assert (tracks.report.missing, tracks.report.jumps, tracks.report.broken) == (0, 0, 0)
-    found = tracks.to_recording()
+    found = tracks.recording
     assert found.ids.tolist() == [f"boat{number + 1}" for number in range(20)]
     assert found.parameters.n_leaders == 2
     assert np.allclose(found.time_s, seen.truth.time_s)
@@ -36,7 +36,7 @@ def without_turns(error):
 
 
 def test_order_parameters_of_a_camera_are_those_of_the_run(seen):
-    found = from_table(seen.table, LAYOUT).to_recording().order
+    found = from_table(seen.table, LAYOUT).recording.order
     truth = seen.truth.order
     # Of 18 boats one is missing in a frame in twenty, which moves a mean by a few percent.
     assert np.abs(found.psi_o - truth.psi_o).mean() < 0.005
@@ -66,7 +66,7 @@ def test_heading_from_two_key_points(seen):
         yh=seen.table["y_px"] + 20 * np.sin(angle),
     )
     layout = TrackLayout(**{**fields(LAYOUT), "heading": ("xt", "yt", "xh", "yh")})
-    by_points, by_angle = (from_table(table, each).pose for each in (layout, LAYOUT))
+    by_points, by_angle = (from_table(table, each).recording.pose for each in (layout, LAYOUT))
     assert np.nanmax(np.abs(without_turns(by_points - by_angle))) < 1e-9
 
 
@@ -76,7 +76,7 @@ def test_heading_from_motion():
     table = pd.DataFrame(
         {"frame": time_s, "id": "a", "x": 100 * np.cos(angle), "y": 100 * np.sin(angle)}
     )
-    found = from_table(table, TrackLayout(pool="wide", heading=None))
+    found = from_table(table, TrackLayout(pool="wide", heading=None)).recording
     # Counter-clockwise on a circle: a quarter turn ahead of the place.
     assert np.allclose(found.pose[1:-1, 0, 2], angle[1:-1] + np.pi / 2, atol=1e-6)
     expected = np.stack([-10 * np.sin(angle), 10 * np.cos(angle), 0.1 + 0 * angle], axis=1)
@@ -102,8 +102,8 @@ def test_a_jump_is_left_out_and_counted():
     table.loc[(table["frame"] == 4) & (table["id"] == 1), "x"] = 90.0
     tracks = from_table(table, OPEN)
     assert (tracks.report.jumps, tracks.report.broken, tracks.report.samples) == (1, 0, 29)
-    assert np.isnan(tracks.pose[4, 1]).all()
-    assert np.nanmax(np.abs(tracks.velocity[..., 0] - 10.0)) < 1e-9
+    assert np.isnan(tracks.recording.pose[4, 1]).all()
+    assert np.nanmax(np.abs(tracks.recording.velocity[..., 0] - 10.0)) < 1e-9
 
 
 def test_exchanged_names_are_counted_and_give_no_velocity():
@@ -114,8 +114,8 @@ def test_exchanged_names_are_counted_and_give_no_velocity():
     ]
     tracks = from_table(table, OPEN)
     assert (tracks.report.jumps, tracks.report.broken, tracks.report.samples) == (0, 2, 30)
-    assert np.nanmax(np.abs(tracks.velocity[..., 1])) < 1e-9
-    assert np.isfinite(tracks.velocity).all()
+    assert np.nanmax(np.abs(tracks.recording.velocity[..., 1])) < 1e-9
+    assert np.isfinite(tracks.recording.velocity).all()
 
 
 def test_boats_that_come_and_go():
@@ -124,7 +124,7 @@ def test_boats_that_come_and_go():
     table = table[~((table["id"] == 0) & ~table["frame"].isin([3]))]
     tracks = from_table(table, OPEN)
     assert tracks.report.lone == 1
-    recording = tracks.to_recording()
+    recording = tracks.recording
     assert np.isfinite(recording.pose[..., 0]).sum(axis=1).tolist() == [
         1,
         1,
@@ -142,9 +142,32 @@ def test_boats_that_come_and_go():
     assert np.isfinite(recording.order.psi_o).all()
 
 
+def test_rows_without_a_name_are_left_out_and_counted():
+    for names in ([1.0, 2.0, np.nan], ["ann", "bob", None]):
+        table = line(id=pd.Series(np.resize(np.array(names, object), 30)).infer_objects())
+        tracks = from_table(table, OPEN)
+        assert tracks.recording.ids.tolist() == [str(each).removesuffix(".0") for each in names[:2]]
+        assert (tracks.report.missing, tracks.report.samples) == (10, 20)
+
+
+def test_rows_of_which_all_is_missing_are_counted():
+    table = line()
+    table.loc[7:9, ["x", "y", "heading"]] = np.nan
+    assert from_table(table, OPEN).report.missing == 3
+
+
+def test_fragments_that_would_fill_the_memory_are_refused():
+    count = 10_000
+    places = {"frame": np.arange(count), "id": np.arange(count), "x": 1.0, "y": 0.0}
+    table = pd.DataFrame({**places, "heading": 0.0})
+    with pytest.raises(flockenv.ParameterError, match="10000 names in 10000 frames are too many"):
+        from_table(table, OPEN)
+    assert from_table(table[:2000], OPEN).report.lone == 2000
+
+
 def test_names_are_sorted_as_numbers():
     tracks = from_table(line(id=np.tile([10, 2, 1], 10)), OPEN)
-    assert tracks.ids.tolist() == ["1", "2", "10"]
+    assert tracks.recording.ids.tolist() == ["1", "2", "10"]
 
 
 @pytest.mark.parametrize(
@@ -152,24 +175,28 @@ def test_names_are_sorted_as_numbers():
     [
         (pd.concat([line(), line().iloc[[7]]]), {}, "'1' is there 2 times in frame 2"),
         (line(heading=np.linspace(0, 350, 30)), {}, "heading_unit = 'deg'"),
-        (line(x=np.nan), {}, "no row has both a position and a heading"),
+        (line(x=np.nan), {}, "no row has a name, a position and a heading"),
         (line(heading="left"), {}, "'heading' holds other things than numbers"),
         (line(frame=np.nan), {}, "'frame' has rows without a number"),
         (line().drop(columns="y"), {}, "'y' is missing; there are frame, id, x, heading"),
-        (line().iloc[:0], {}, "there must be one at least"),
+        (line().iloc[:0], {}, "no row has a name"),
         (line(), {"cm_per_unit": 0.0}, "cm_per_unit = 0.0"),
         (line(), {"fps": -1.0}, "fps = -1.0"),
         (line(), {"heading_unit": "grad"}, "'grad' is not accepted: rad or deg"),
         (line(), {"heading": ("x", "y")}, "the tail and x, y of the head"),
-        (line(), {"leaders": ("7",)}, "'7', which is none of the ids"),
+        (line(), {"leaders": ("7",)}, "'7' is no leader among the ids"),
         (line(), {"cm_per_unit": 200.0, "max_speed_cm_s": 1e9}, "20 m/s in the median"),
         (line(), {"center": (-500.0, 0.0)}, "100% of the centers lie outside the pool"),
         (line(), {"pool": "bathtub"}, "bathtub"),
+        (line(), {"y_down": "false"}, "y_down = 'false' is not accepted: true or false"),
+        (line(), {"leaders": "10"}, "leaders = '10' is not accepted: a list of names"),
+        (line(), {"x": 3}, "x = 3 is not accepted: the name of a column"),
+        (line(), {"hull": (5.0,)}, "hull = (5.0,) is not accepted: two numbers"),
     ],
 )
 def test_mistakes_are_named(table, changes, words):
     with pytest.raises(flockenv.ParameterError) as raised:
-        from_table(table, TrackLayout(**{**fields(OPEN), **changes})).to_recording()
+        from_table(table, TrackLayout(**{**fields(OPEN), **changes}))
     assert words in str(raised.value)
 
 
@@ -183,21 +210,9 @@ def test_files_with_their_layout_beside_them(seen, tmp_path):
     assert layout_beside(tmp_path / "tracks.csv") == LAYOUT
     seen.table.to_csv(tmp_path / "tracks.csv", index=False)
     seen.table.to_parquet(tmp_path / "tracks.parquet", index=False)
-    expected = from_table(seen.table, LAYOUT).to_recording()
+    expected = from_table(seen.table, LAYOUT).recording
     for name in ("tracks.csv", "tracks.parquet"):
         assert read_tracks(tmp_path / name) == expected
-
-
-def test_arrays(seen, tmp_path):
-    truth = seen.truth
-    np.savez(tmp_path / "tracks.npz", time_s=truth.time_s, pose=truth.pose)
-    layout = TrackLayout(pool="narrow", leaders=("0", "1"), wrapped=False)
-    found = read_tracks(tmp_path / "tracks.npz", layout)
-    assert np.array_equal(found.pose, truth.pose)
-    assert (found.order.psi_o == truth.order.psi_o).all()
-    np.savez(tmp_path / "other.npz", position=truth.pose)
-    with pytest.raises(flockenv.ParameterError, match="holds position, not time_s, pose"):
-        read_tracks(tmp_path / "other.npz", layout)
 
 
 def test_files_that_are_none(tmp_path):
@@ -206,7 +221,7 @@ def test_files_that_are_none(tmp_path):
         read_tracks(tmp_path / "tracks.csv")
     for name, words in (
         ("absent.csv", "cannot be read"),
-        ("wrong.txt", "ends in none of .npz, .csv"),
+        ("wrong.txt", "ends in none of .csv"),
     ):
         with pytest.raises(flockenv.ParameterError, match=words):
             read_tracks(tmp_path / name, OPEN)
@@ -214,7 +229,7 @@ def test_files_that_are_none(tmp_path):
     with pytest.raises(flockenv.ParameterError, match="it is no table"):
         read_tracks(tmp_path / "noise.parquet", OPEN)
     (tmp_path / "wrong.toml").write_text("pool = 'narrow'\nfbs = 25\n")
-    with pytest.raises(flockenv.ParameterError, match=r"'fbs' is no field of a layout: pool, hull"):
+    with pytest.raises(flockenv.ParameterError, match="'fbs' is no field of a layout"):
         layout_beside(tmp_path / "wrong.csv")
 
 
@@ -235,12 +250,12 @@ def test_a_dataset_of_movement(seen):
         attrs={"time_unit": "seconds", "source_software": "none", "ds_type": "poses"},
     )
     layout = TrackLayout(pool="narrow", leaders=("boat1", "boat2"))
-    found = from_movement(dataset, layout, center="mast", tail="stern", head="bow").to_recording()
+    found = from_movement(dataset, layout, center="mast", tail="stern", head="bow").recording
     assert np.allclose(found.pose, truth.pose, atol=1e-9)
     assert np.allclose(found.order.psi_o, truth.order.psi_o, atol=1e-9)
-    by_mean = from_movement(dataset, layout)
+    by_mean = from_movement(dataset, layout).recording
     assert np.allclose(by_mean.pose[..., :2], truth.pose[..., :2], equal_nan=True)
-    with pytest.raises(flockenv.ParameterError, match="'nose' is not there: stern, mast, bow"):
+    with pytest.raises(flockenv.ParameterError, match="there are stern, mast, bow"):
         from_movement(dataset, layout, tail="stern", head="nose")
     with pytest.raises(flockenv.ParameterError, match="no position by time"):
         from_movement(dataset.drop_vars("position"), layout)

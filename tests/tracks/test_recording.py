@@ -17,7 +17,7 @@ from .conftest import LAYOUT
 
 @pytest.fixture(scope="module")
 def tracked(seen):
-    return from_table(seen.table, LAYOUT).to_recording()
+    return from_table(seen.table, LAYOUT).recording
 
 
 def test_it_is_saved_and_loaded(tracked, tmp_path):
@@ -91,15 +91,15 @@ def test_phases_that_are_known_have_their_analysis_window():
         ({"pose": np.zeros((3, 2, 2))}, "pose has shape (3, 2, 2)"),
         ({"pose": np.zeros((2, 2, 3))}, "for time_s of shape (3,)"),
         ({"pose": np.full((3, 2, 3), np.nan)}, "NaN everywhere"),
-        ({"pose": [[[0, 0, np.nan]] * 2] * 3}, "all three numbers, or NaN for all three"),
-        ({"pose": np.full((3, 2, 3), np.inf)}, "finite numbers, or rows of NaN"),
+        ({"pose": [[[0, 0, np.nan]] * 2] * 3}, "finite, but for boats that are not there"),
+        ({"pose": np.full((3, 2, 3), np.inf)}, "finite numbers or rows of NaN"),
         ({"pose": "here"}, "numbers"),
         ({"time_s": [0.0, 0.0, 1.0]}, "time_s must increase"),
         ({"velocity": np.zeros((3, 1, 3))}, "expected (3, 2, 3), that of pose"),
-        ({"phase": ["forward"] * 3}, "fw, nop1, bw, nop2 for each time"),
-        ({"ids": ["a", "a"]}, "'a' more than once"),
+        ({"phase": ["forward"] * 3}, 'phase = "forward" is not accepted'),
+        ({"ids": ["a", "a"]}, "more than once"),
         ({"ids": ["a"]}, "1 names for 2 boats"),
-        ({"leaders": ["c"]}, "'c', which is none of the ids"),
+        ({"leaders": ["c"]}, "'c' is no leader among the ids"),
         ({"leaders": ["0", "0"]}, "more than once"),
         ({"hull": (-1.0, 0.5)}, "boat_radius_cm"),
         ({"target": "north"}, "north"),
@@ -114,6 +114,13 @@ def test_mistakes_are_named(changes, words):
     }
     with pytest.raises(flockenv.ParameterError, match=re.escape(words)):
         recording_of(**(given | changes))
+
+
+def test_what_is_masked_is_not_there():
+    pose = np.ma.masked_array(np.full((3, 2, 3), 90.0) * [1, 0, 0])
+    pose[1, 0] = np.ma.masked
+    recording = recording_of(np.arange(3.0), pose, pool="narrow")
+    assert np.isnan(recording.pose[:, 0, 0]).tolist() == [False, True, False]
 
 
 def test_tracks_may_have_obstacles_in_their_pool(tmp_path):
