@@ -20,7 +20,6 @@ from rich.progress import track
 
 import flockenv
 from flockenv.runs.executors import finished
-from flockenv.statistics.intervals import percentile_ends
 
 NOISE_S = {
     "simulation": np.round(np.arange(0.0, 0.91, 0.05), 2),
@@ -94,7 +93,7 @@ def main(arguments: list[str] | None = None) -> None:
             )
             for chosen in rng.integers(0, options.seeds, (200, options.seeds))
         ]
-        low, high = percentile_ends(np.array(resampled))
+        low, high = np.quantile(resampled, [0.025, 0.975])
         print(f"{preset:10} {pool:9} {critical_noise(means):.3f} s  [{low:.3f}, {high:.3f}]")
 
 

@@ -5,11 +5,9 @@ import os
 import stat
 import zipfile
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from flockenv._io.atomic_write import atomic_write
@@ -63,26 +61,24 @@ def read_arrays(
     """
     if is_special(path):
         raise ParameterError(f"{path} is no .npz file but a device, a pipe or a socket")
-    with Path(path).open("rb") as file:
+    most = MOST_BYTES if most_bytes is None else most_bytes
+    with open(path, "rb") as file:
         try:
             with zipfile.ZipFile(file) as archive:
                 held = sum(entry.file_size for entry in archive.infolist())
-                most = MOST_BYTES if most_bytes is None else most_bytes
                 if held > most:
                     raise ValueError(f"it holds {held} bytes of {most} that are accepted")
                 # Whole entries, whose checksums are compared; NumPy alone may stop before the end.
-                return {
-                    name.removesuffix(".npy"): _array(name, archive.read(name))
-                    for name in archive.namelist()
-                }
+                parts = {name: io.BytesIO(archive.read(name)) for name in archive.namelist()}
+            arrays = {
+                name.removesuffix(".npy"): np.lib.format.read_array(part, allow_pickle=False)
+                for name, part in parts.items()
+            }
+            for name, array in arrays.items():
+                if array.dtype.kind not in "biufU":
+                    raise ValueError(f"{name} holds {array.dtype}, which is not accepted")
         except Exception as error:
             # zipfile, zlib and NumPy raise very different things for damaged bytes.
             reason = str(error) or type(error).__name__
             raise ParameterError(f"{path} is no whole, unharmed .npz file: {reason}") from error
-
-
-def _array(name: str, data: bytes) -> NDArray[Any]:
-    array: NDArray[Any] = npy.read_array(io.BytesIO(data), allow_pickle=False)
-    if array.dtype.kind not in "biufU":
-        raise ValueError(f"{name} holds {array.dtype}, which is not accepted")
-    return array
+    return arrays

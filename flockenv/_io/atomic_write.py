@@ -13,9 +13,6 @@ if TYPE_CHECKING:
 
 __all__ = ["atomic_write", "remove_temporary_files", "write_csv", "write_text"]
 
-# File systems take names of 255 bytes; the temporary one is longer by its marks.
-_LONGEST_STEM = 200
-
 # A name is here before there is a file of that name, so that no moment is left out.
 _temporary: set[Path] = set()
 
@@ -32,8 +29,7 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
         If the file cannot be written; what was there before is still there.
     """
     target = Path(path)
-    stem = os.fsdecode(os.fsencode(f".{target.name}")[:_LONGEST_STEM])
-    temporary = target.parent / f"{stem}.{secrets.token_hex(4)}.tmp"
+    temporary = target.parent / f".{secrets.token_hex(8)}.tmp"
     _temporary.add(temporary)
     try:
         with temporary.open("xb") as file:
@@ -62,13 +58,6 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
 def write_csv(path: str | os.PathLike[str], table: "pd.DataFrame", **options: Any) -> None:
     """Write a table without its index to a CSV file, with the same bytes on every system.
 
-    Parameters
-    ----------
-    path
-        The file, written as by `atomic_write`.
-    table
-        What to write.
-    options
-        As of ``to_csv``.
+    Options are those of ``to_csv``; the file is written as by `atomic_write`.
     """
     write_text(path, table.to_csv(index=False, lineterminator="\n", **options))

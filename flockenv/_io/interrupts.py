@@ -1,8 +1,8 @@
 """One rule for Ctrl-C: a command finishes the work under way, keeps it, and ends.
 
 While a command runs the signal is only noted. Work calls `end_if_interrupted` where nothing is half
-done, and engines start no further run. A second signal ends the process at once. A request to end,
-as of Slurm before a job's time is over, counts as Ctrl-C.
+done, and executors start no further run. A second signal ends the process at once. A request to
+end, as of Slurm before a job's time is over, counts as Ctrl-C.
 """
 
 import os
@@ -10,7 +10,7 @@ import signal
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from threading import current_thread, main_thread
-from types import FrameType
+from typing import Any
 
 from flockenv._io.atomic_write import remove_temporary_files
 
@@ -65,15 +65,12 @@ def noted_interrupts() -> Iterator[None]:
         _is_noted = False
 
 
-def _note(number: int, frame: FrameType | None) -> None:
+def _note(number: int, frame: Any) -> None:
     global _is_noted
-    if _is_noted:
-        _end()
-    _is_noted = True
-    _write(_NOTED)
-
-
-def _end() -> None:
+    if not _is_noted:
+        _is_noted = True
+        _write(_NOTED)
+        return
     try:
         remove_temporary_files()
         if os.isatty(2):

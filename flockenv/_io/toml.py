@@ -6,20 +6,30 @@ from typing import Any
 
 from flockenv.errors import ParameterError
 
-__all__ = ["read_toml", "read_toml_file"]
+__all__ = ["read_limited", "read_toml", "read_toml_file"]
 
 _MOST_BYTES = 1 << 20
 
 
-def read_toml_file(path: str | os.PathLike[str], what: str) -> dict[str, Any]:
-    """Return the values in a TOML file.
+def read_limited(path: str | os.PathLike[str], otherwise: str) -> bytes:
+    """Return the content of a file, pipe or device of at most 1 MiB.
 
-    Parameters
-    ----------
-    path
-        A file of at most 1 MiB, or a pipe or device that gives no more.
-    what
-        What errors call it.
+    Raises
+    ------
+    OSError
+        If it cannot be read.
+    ParameterError
+        If it is larger; the message starts with `otherwise`.
+    """
+    with open(path, "rb") as file:
+        data = file.read(_MOST_BYTES + 1)
+    if len(data) > _MOST_BYTES:
+        raise ParameterError(f"{otherwise}: it is larger than {_MOST_BYTES} bytes")
+    return data
+
+
+def read_toml_file(path: str | os.PathLike[str], what: str) -> dict[str, Any]:
+    """Return the values in a TOML file of at most 1 MiB, which errors call `what`.
 
     Raises
     ------
@@ -27,27 +37,15 @@ def read_toml_file(path: str | os.PathLike[str], what: str) -> dict[str, Any]:
         For a file that cannot be read, is larger, or is no TOML.
     """
     try:
-        with open(path, "rb") as file:
-            data = file.read(_MOST_BYTES + 1)
+        return read_toml(read_limited(path, f"{what} is no TOML").decode(), what)
     except OSError as error:
         raise ParameterError(f"{what} cannot be read: {error.strerror}") from error
-    if len(data) > _MOST_BYTES:
-        raise ParameterError(f"{what} is no TOML: it is larger than {_MOST_BYTES} bytes")
-    try:
-        return read_toml(data.decode(), what)
     except UnicodeDecodeError as error:
         raise ParameterError(f"{what} is no TOML: {error}") from error
 
 
 def read_toml(text: str, what: str) -> dict[str, Any]:
-    """Return the values in a TOML text.
-
-    Parameters
-    ----------
-    text
-        The text.
-    what
-        What errors call it, such as the name of its file.
+    """Return the values in a TOML text, which errors call `what`.
 
     Raises
     ------

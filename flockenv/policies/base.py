@@ -20,7 +20,6 @@ __all__ = [
     "control_rate",
     "decision_rate",
     "leaders_observed",
-    "numbers",
 ]
 
 
@@ -92,21 +91,6 @@ def check_action_mode(policy: Any, mode: str, where: str) -> None:
         )
 
 
-def numbers(name: str, values: ArrayLike, kind: type[Any] = np.float64) -> NDArray[Any]:
-    """Return a new array of real numbers; those that are too large for its kind are infinite.
-
-    Raises
-    ------
-    ParameterError
-        For anything else, by its name.
-    """
-    try:
-        with np.errstate(over="ignore"):
-            return np.array(values, kind)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise ParameterError(f"{name} = {shown(values)} is not accepted: numbers") from error
-
-
 def leaders_observed(observation: NDArray[Any], size: int) -> int:
     """Return how many leaders' observations, each of a size, the last axis holds.
 
@@ -129,11 +113,8 @@ class RowPolicy(ABC):
 
     Parameters
     ----------
-    observation
-        Blocks of the observation that differ from the default layout, as in the environments'
-        option of that name.
-    mirror_to_target
-        The environments' option of that name.
+    observation, mirror_to_target
+        Layout of the observations, as in the environments' options of those names.
 
     Attributes
     ----------
@@ -144,7 +125,17 @@ class RowPolicy(ABC):
     action_mode: str = "rudder"
     decision_period_s: float | None = None
 
-    def __init__(self, observation: Mapping[str, Any] | None, mirror_to_target: bool) -> None:
+    def __init__(
+        self, *, observation: Mapping[str, Any] | None = None, mirror_to_target: bool = False
+    ) -> None:
+        if not isinstance(observation, Mapping | None):
+            raise ParameterError(
+                f"observation = {shown(observation)} is not accepted: blocks by name"
+            )
+        if not isinstance(mirror_to_target, bool | np.bool_):
+            raise ParameterError(
+                f"mirror_to_target = {shown(mirror_to_target)} is not accepted: True or False"
+            )
         self.observation = dict(observation or {})
         self.mirror_to_target = bool(mirror_to_target)
         self._size = len(observation_entries(self.observation))
@@ -170,3 +161,6 @@ class RowPolicy(ABC):
         leaders = leaders_observed(array, self._size)
         rudders = np.asarray(self._steer(array.reshape(-1, self._size)), np.float32)
         return rudders.reshape(*array.shape[:-1], leaders)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}()"

@@ -4,6 +4,7 @@ import json
 import math
 import os
 from collections.abc import Mapping
+from functools import partial
 from hashlib import sha256
 from typing import Any, Self
 
@@ -11,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv import _core
-from flockenv._io.array_file import is_special
 from flockenv._io.atomic_write import write_text
+from flockenv._io.toml import read_limited
 from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError, shown
 from flockenv.policies.base import CONTROL_HZ, RowPolicy, control_rate
@@ -22,8 +23,6 @@ __all__ = ["LEAN_FEATURES", "DampedLaw", "LawPolicy", "LeaningLaw", "SteeringLaw
 
 LEAN_FEATURES: tuple[str, ...] = tuple(_core.LEAN_FEATURES)
 """The features of a lean, in the order of the observation's block ``lean_features``."""
-
-_LARGEST_FILE = 1 << 20
 
 
 class LawPolicy(RowPolicy):
@@ -45,7 +44,7 @@ class LawPolicy(RowPolicy):
     def __init__(
         self, law: _core.Law, observation: Mapping[str, Any] | None, mirror_to_target: bool
     ) -> None:
-        super().__init__(observation, mirror_to_target)
+        super().__init__(observation=observation, mirror_to_target=mirror_to_target)
         self.law = law
         self._observed = _core.ObservedLaw(law, self.observation, mirror_to_target)
 
@@ -57,16 +56,14 @@ class LawPolicy(RowPolicy):
     def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
         return self._observed.actions(rows)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        kind: Any = type(self)
+        layout = {"observation": self.observation, "mirror_to_target": self.mirror_to_target}
+        return partial(kind, *self.gains.values(), **layout), ()
+
     def __repr__(self) -> str:
         gains = ", ".join(f"{name}={value:g}" for name, value in self.gains.items())
         return f"{type(self).__name__}({gains})"
-
-
-def _observing(
-    kind: Any, gains: tuple[float, ...], observation: dict[str, Any], mirror_to_target: bool
-) -> Any:
-    """Return a law from its pickle."""
-    return kind(*gains, observation=observation, mirror_to_target=mirror_to_target)
 
 
 class SteeringLaw(LawPolicy):
@@ -82,19 +79,10 @@ class SteeringLaw(LawPolicy):
         Layout of the observations; see `LawPolicy`.
     """
 
-    _name = "paper's law"
-
     def __init__(
         self, *, observation: Mapping[str, Any] | None = None, mirror_to_target: bool = False
     ) -> None:
-        super().__init__(_core.Law.named(self._name), observation, mirror_to_target)
-
-    def observing(self, observation: Mapping[str, Any], mirror_to_target: bool) -> Self:
-        """Return the same law for another layout of the observations."""
-        return type(self)(observation=observation, mirror_to_target=mirror_to_target)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _observing, (type(self), (), self.observation, self.mirror_to_target)
+        super().__init__(_core.Law.named("paper's law"), observation, mirror_to_target)
 
 
 class DampedLaw(LawPolicy):
@@ -134,24 +122,15 @@ class DampedLaw(LawPolicy):
         super().__init__(law, observation, mirror_to_target)
 
     @classmethod
-    def tuned(cls, pool: str) -> Self:
-        """Return the tuned law of a named pool.
+    def tuned(cls, pool: str, **layout: Any) -> Self:
+        """Return the tuned law of a named pool, for a layout of the observations.
 
         Raises
         ------
         ParameterError
             For other pools.
         """
-        return cls(*dict(_core.Law.named("tuned law", pool).gains).values())
-
-    def observing(self, observation: Mapping[str, Any], mirror_to_target: bool) -> Self:
-        """Return the same law for another layout of the observations."""
-        gains = self.gains.values()
-        return type(self)(*gains, observation=observation, mirror_to_target=mirror_to_target)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        plain = type(self), tuple(self.gains.values())
-        return _observing, (*plain, self.observation, self.mirror_to_target)
+        return cls(*dict(_core.Law.named("tuned law", pool).gains).values(), **layout)
 
 
 class LeaningLaw(LawPolicy):
@@ -301,12 +280,7 @@ class LeaningLaw(LawPolicy):
         ParameterError
             For a file that is no whole law.
         """
-        if is_special(path):
-            raise ParameterError(f"{path} is no policy but a device, a pipe or a socket")
-        with open(path, "rb") as file:
-            content = file.read(_LARGEST_FILE + 1)
-        if len(content) > _LARGEST_FILE:
-            raise ParameterError(f"{path} is no policy: it is larger than {_LARGEST_FILE} bytes")
+        content = read_limited(path, f"{path} is no policy")
         try:
             return cls.from_json(content.decode())
         except ValueError as error:
@@ -325,8 +299,13 @@ class LeaningLaw(LawPolicy):
 
     def _read(self, text: str) -> None:
         law = _core.Law.from_json(text)
-        self._values: dict[str, Any] = json.loads(law.to_json())
-        self.decision_period_s = self._values.get("decision_period_s")
+        self._values = values = json.loads(law.to_json())
+        self.pool: str = values["pool"]
+        self.bias: float = values["bias"]
+        self.weights: dict[str, float] = values["weights"]
+        self.judged: dict[str, Any] | None = values.get("judged")
+        self.provenance: dict[str, str] = values.get("provenance", {})
+        self.decision_period_s = values.get("decision_period_s")
         self.action_mode = "rudder" if self.decision_period_s is None else "lean"
         others = dict.fromkeys(("phase", "target", "neighbors", "order"), False) | {"neighbors": 0}
         layout = {"own": self.action_mode == "rudder", **others, "lean_features": True}
@@ -345,31 +324,6 @@ class LeaningLaw(LawPolicy):
             If the file cannot be written; what was there before is still there.
         """
         write_text(path, self.to_json() + "\n")
-
-    @property
-    def pool(self) -> str:
-        """Name of the pool that it is for."""
-        return str(self._values["pool"])
-
-    @property
-    def bias(self) -> float:
-        """Lean in rad where every feature has its usual value."""
-        return float(self._values["bias"])
-
-    @property
-    def weights(self) -> dict[str, float]:
-        """Rad per standard deviation of each feature."""
-        return dict(self._values["weights"])
-
-    @property
-    def judged(self) -> dict[str, Any] | None:
-        """How well it leads, and by which flocks that was judged."""
-        return self._values.get("judged")
-
-    @property
-    def provenance(self) -> dict[str, str]:
-        """Its provenance."""
-        return dict(self._values.get("provenance", {}))
 
     @property
     def digest(self) -> str:

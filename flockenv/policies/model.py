@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv import _core
 from flockenv._io.array_file import is_special
 from flockenv._io.extras import require
-from flockenv.envs.observation import ObservationSpace, observation_space, seen_space
+from flockenv.envs.observation import ObservationSpace, seen_space
 from flockenv.errors import ParameterError
 from flockenv.policies.base import leaders_observed
 
@@ -39,9 +39,6 @@ class ModelPolicy:
     ----------
     model
         A model such as ``PPO``, or its ``policy``.
-    observation, mirror_to_target
-        The environments' options of those names that it was trained with. None: what the
-        observation space says, and the defaults where that is no space of an environment here.
     provenance
         Where it comes from: any short texts by name.
 
@@ -49,8 +46,10 @@ class ModelPolicy:
     ----------
     leaders : int
         Number of leaders that the model steers at once.
-    control_hz : float or None
-        Control steps per second that it was trained with, where the space says so.
+    control_hz : float
+        Control steps per second that it was trained with.
+    observation : dict
+    mirror_to_target : bool
     action_mode : str
     decision_period_s : float or None
         The environments' options of those names that it was trained with.
@@ -58,31 +57,25 @@ class ModelPolicy:
     Raises
     ------
     ParameterError
-        If the spaces are none of an environment here with those options.
+        If its spaces are none of an environment here.
     """
 
-    def __init__(
-        self,
-        model: Any,
-        *,
-        observation: Mapping[str, Any] | None = None,
-        mirror_to_target: bool | None = None,
-        provenance: Mapping[str, str] | None = None,
-    ) -> None:
+    def __init__(self, model: Any, *, provenance: Mapping[str, str] | None = None) -> None:
         self.model = model
         self.provenance = dict(provenance or {})
         space = seen_space(model)
-        reported = space.options if isinstance(space, ObservationSpace) else {}
-        given = {"observation": observation, "mirror_to_target": mirror_to_target}
-        reported = reported | {name: value for name, value in given.items() if value is not None}
-        self.observation: dict[str, Any] = dict(reported.get("observation", {}))
-        self.mirror_to_target = bool(reported.get("mirror_to_target", False))
-        self.control_hz: float | None = reported.get("control_hz")
-        self.action_mode: str = reported.get("action_mode", "rudder")
-        self.decision_period_s: float | None = reported.get("decision_period_s")
-        one = observation_space(self.observation)
-        self._size = one.shape[0]
-        self.leaders = _leaders_of(space, one)
+        if not isinstance(space, ObservationSpace):
+            raise ParameterError(
+                f"a model with the observation space {space} is not accepted: it was trained on "
+                "another environment, or a wrapper changes what it sees"
+            )
+        self.leaders = space.leaders
+        self._size = space.shape[0] // space.leaders
+        self.observation: dict[str, Any] = dict(space.options["observation"])
+        self.mirror_to_target: bool = space.options["mirror_to_target"]
+        self.control_hz: float = space.options["control_hz"]
+        self.action_mode: str = space.options["action_mode"]
+        self.decision_period_s: float | None = space.options["decision_period_s"]
         self._levels = _levels_of(model.action_space, self.leaders)
 
     def check_leaders(self, n_leaders: int) -> None:
@@ -133,32 +126,37 @@ class ModelPolicy:
                 f"{self.leaders} leaders at once"
             )
         items = np.ascontiguousarray(array, np.float32).reshape(rows // self.leaders, -1)
+        normalizing = getattr(self.model, "get_vec_normalize_env", lambda: None)()
+        if normalizing is not None:
+            items = normalizing.normalize_obs(items)
         if episode_start is not None:
             starts = np.ravel(episode_start)
             episode_start = np.repeat(starts, len(items) // len(starts))
-        actions, state = self.model.predict(
-            self._normalized(items), state, episode_start, deterministic
-        )
-        rudders = self._rudders(np.asarray(actions).reshape(rows))
-        return rudders.reshape(*array.shape[:-1], leaders), state
-
-    def _normalized(self, items: NDArray[np.float32]) -> NDArray[np.float32]:
-        around = getattr(self.model, "get_vec_normalize_env", lambda: None)()
-        return items if around is None else around.normalize_obs(items)
-
-    def _rudders(self, actions: NDArray[Any]) -> NDArray[np.float32]:
+        actions, state = self.model.predict(items, state, episode_start, deterministic)
+        given = np.asarray(actions, np.float64).reshape(rows)
         if self._levels is not None:
-            actions = _core.rudders_of_levels(
-                actions.astype(np.float64), self._levels, are_rudders=False
-            )
-        rudders: NDArray[np.float32] = np.clip(actions, -1.0, 1.0).astype(np.float32)
-        return rudders
+            given = _core.rudders_of_levels(given, self._levels, are_rudders=False)
+        rudders = np.clip(given, -1.0, 1.0).astype(np.float32)
+        return rudders.reshape(*array.shape[:-1], leaders), state
 
     def __repr__(self) -> str:
         name = self.provenance.get("file", type(self.model).__name__)
         takes = "one leader" if self.leaders == 1 else f"{self.leaders} leaders at once"
-        rate = "" if self.control_hz is None else f", {self.control_hz:g} Hz"
-        return f"{type(self).__name__}({name}, {takes}{rate})"
+        return f"{type(self).__name__}({name}, {takes}, {self.control_hz:g} Hz)"
+
+
+def _levels_of(space: gymnasium.Space[Any], leaders: int) -> int | None:
+    """Return the number of levels of a model's actions, None where they are rudders."""
+    if isinstance(space, gymnasium.spaces.Box) and space.shape == (leaders,):
+        return None
+    if isinstance(space, gymnasium.spaces.Discrete) and leaders == 1:
+        return int(space.n)
+    if isinstance(space, gymnasium.spaces.MultiDiscrete) and space.shape == (leaders,):
+        return int(space.nvec[0])
+    raise ParameterError(
+        f"a model with the action space {space} is not accepted: it observes {leaders} leaders and "
+        "has to choose as many rudders or levels"
+    )
 
 
 def as_policy(policy: Any) -> Any:
@@ -191,20 +189,13 @@ def is_model_file(path: str | os.PathLike[str]) -> bool:
             return False
 
 
-def load_model(
-    path: str | os.PathLike[str],
-    *,
-    observation: Mapping[str, Any] | None = None,
-    mirror_to_target: bool | None = None,
-) -> ModelPolicy:
+def load_model(path: str | os.PathLike[str]) -> ModelPolicy:
     """Read the policy of a model's ``.zip`` file, which executes code in the file.
 
     Parameters
     ----------
     path
         What ``model.save`` of stable-baselines3 or sb3-contrib wrote.
-    observation, mirror_to_target
-        As of `ModelPolicy`.
 
     Raises
     ------
@@ -233,6 +224,13 @@ def load_model(
         model = _policy_of(data)
         model.load_state_dict(weights["policy"])
         model.set_training_mode(False)
+        provenance = {
+            "file": Path(path).name,
+            "sha256": hashlib.sha256(Path(path).read_bytes()).hexdigest(),
+            "samples": str(stored.get("num_timesteps")),
+            "seed": str(stored.get("seed")),
+        }
+        return ModelPolicy(model, provenance=provenance)
     except OSError:
         raise
     except ParameterError as error:
@@ -242,19 +240,6 @@ def load_model(
         raise ParameterError(
             f"{path} is no model that can be read: {type(error).__name__}: {error}"
         ) from error
-    content = Path(path).read_bytes()
-    provenance = {
-        "file": Path(path).name,
-        "sha256": hashlib.sha256(content).hexdigest(),
-        "samples": str(stored.get("num_timesteps")),
-        "seed": str(stored.get("seed")),
-    }
-    return ModelPolicy(
-        model,
-        observation=observation,
-        mirror_to_target=mirror_to_target,
-        provenance=provenance,
-    )
 
 
 def _policy_of(data: Mapping[str, Any]) -> Any:
@@ -279,42 +264,3 @@ def _arguments(kind: type) -> set[str]:
             if all(each.kind is not Parameter.VAR_KEYWORD for each in parameters):
                 break
     return found
-
-
-def _leaders_of(space: gymnasium.Space[Any], one: gymnasium.spaces.Box) -> int:
-    """Return how many leaders' observations make up a space, each with the space `one`."""
-    size = one.shape[0]
-    if (
-        not isinstance(space, gymnasium.spaces.Box)
-        or len(space.shape) != 1
-        or (space.shape[0] % size)
-    ):
-        raise ParameterError(
-            f"a model with the observation space {space} is not accepted: a box with {size} "
-            "numbers per leader; name the observation's blocks that it was trained with"
-        )
-    leaders = space.shape[0] // size
-    if not np.array_equal(space.low, np.tile(one.low, leaders)) or not np.array_equal(
-        space.high, np.tile(one.high, leaders)
-    ):
-        raise ParameterError(
-            "a model with other bounds of its observations than the environment's is not accepted: "
-            "it was trained with other blocks, or a wrapper changes what it sees"
-        )
-    return leaders
-
-
-def _levels_of(space: gymnasium.Space[Any], leaders: int) -> int | None:
-    """Return the number of levels of a model's actions, None where they are rudders."""
-    if isinstance(space, gymnasium.spaces.Box) and space.shape == (leaders,):
-        return None
-    if isinstance(space, gymnasium.spaces.Discrete) and leaders == 1 and space.start == 0:
-        return int(space.n)
-    if isinstance(space, gymnasium.spaces.MultiDiscrete) and space.shape == (leaders,):
-        numbers: set[int] = set(space.nvec.tolist())
-        if len(numbers) == 1:
-            return numbers.pop()
-    raise ParameterError(
-        f"a model with the action space {space} is not accepted: it observes {leaders} leaders and "
-        "has to choose as many rudders or levels"
-    )

@@ -12,11 +12,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
-from flockenv._io.array_file import write_arrays
-from flockenv._io.npz_header import array_of, entry_of, read_headed
-from flockenv.envs.observation import BLOCKS, ObservationSpace, observation_version
+from flockenv._io.array_file import read_arrays, write_arrays
+from flockenv.envs.observation import (
+    BLOCKS,
+    OBSERVATION_VERSION,
+    ObservationSpace,
+    observation_version,
+)
 from flockenv.errors import ParameterError, refuse_unknown, shown
-from flockenv.policies.base import RowPolicy, numbers
+from flockenv.policies.base import RowPolicy
 
 __all__ = ["ACTIVATIONS", "NetworkPolicy"]
 
@@ -24,6 +28,7 @@ FORMAT = "flockenv policy 1"
 """First entry of every network's file."""
 
 _LARGEST_FILE = 5 << 20
+_OPTIONS = ("observation", "mirror_to_target", "action_mode", "decision_period_s")
 
 
 def _relu(values: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -78,7 +83,7 @@ class NetworkPolicy(RowPolicy):
         decision_period_s: float | None = None,
         provenance: Mapping[str, str] | None = None,
     ) -> None:
-        super().__init__(observation, mirror_to_target)
+        super().__init__(observation=observation, mirror_to_target=mirror_to_target)
         refuse_unknown((action_mode,), _core.ACTION_MODES, "action mode")
         refuse_unknown((activation,), ACTIVATIONS, "activation")
         if decision_period_s is not None and not 0.0 < decision_period_s < math.inf:
@@ -175,14 +180,7 @@ class NetworkPolicy(RowPolicy):
 
     def _contents(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """Return the header of a file, without the provenance, and its arrays."""
-        header = {
-            "observation": self.observation,
-            "mirror_to_target": self.mirror_to_target,
-            "activation": self.activation,
-            "action_mode": self.action_mode,
-            "decision_period_s": self.decision_period_s,
-            "layers": len(self._layers),
-        }
+        header = {name: getattr(self, name) for name in (*_OPTIONS, "activation")}
         arrays: dict[str, NDArray[Any]] = {}
         for place, (weight, bias) in enumerate(self._layers):
             arrays |= {f"weight_{place}": weight, f"bias_{place}": bias}
@@ -223,23 +221,28 @@ class NetworkPolicy(RowPolicy):
         ParameterError
             For a file that is no whole network, or was made for another version of the observation.
         """
-        if os.path.getsize(path) > _LARGEST_FILE:
-            raise ParameterError(f"{path} is no policy: it is larger than {_LARGEST_FILE} bytes")
-        header, arrays = read_headed(path, "policy", FORMAT, most_bytes=_LARGEST_FILE)
+        arrays = read_arrays(path, _LARGEST_FILE)
         try:
-            places = range(entry_of(header, "layers", int))
-            period = header.get("decision_period_s")
+            header = json.loads(str(arrays.pop("header")))
+            if header["format"] != FORMAT:
+                raise ParameterError(f"format = {shown(header['format'])}, not {FORMAT!r}")
+            version = header["observation_version"]
+            if version not in range(1, OBSERVATION_VERSION + 1):
+                raise ParameterError(
+                    f"it was made for version {shown(version)} of the observation; this package "
+                    f"has versions up to {OBSERVATION_VERSION}: train it again"
+                )
+            places = range(len(arrays) // 2)
             return cls(
-                [array_of(arrays, f"weight_{place}") for place in places],
-                [array_of(arrays, f"bias_{place}") for place in places],
-                entry_of(header, "activation", str),
-                observation=entry_of(header, "observation", dict),
-                mirror_to_target=entry_of(header, "mirror_to_target", bool),
-                action_mode=entry_of(header, "action_mode", str),
-                decision_period_s=period and entry_of(header, "decision_period_s", float),
-                provenance=entry_of(header, "made", dict),
+                [arrays[f"weight_{place}"] for place in places],
+                [arrays[f"bias_{place}"] for place in places],
+                provenance=header["made"],
+                **{name: header[name] for name in (*_OPTIONS, "activation")},
             )
-        except (TypeError, ValueError) as error:
+        except KeyError as error:
+            raise ParameterError(f"{path} is no whole policy: it has no {error}") from error
+        # Also of JSON that is nested without end.
+        except (TypeError, ValueError, RecursionError) as error:
             raise ParameterError(f"{path} is no whole policy: {error}") from error
 
     def __repr__(self) -> str:
@@ -257,8 +260,11 @@ def _checked_layers(
         )
     layers, inputs = [], size
     for place, (weight, bias) in enumerate(zip(weights, biases, strict=True)):
-        matrix = numbers(f"weights of layer {place}", weight, np.float32)
-        vector = numbers(f"biases of layer {place}", bias, np.float32)
+        try:
+            with np.errstate(over="ignore"):
+                matrix, vector = np.array(weight, np.float32), np.array(bias, np.float32)
+        except (TypeError, ValueError, OverflowError) as error:
+            raise ParameterError(f"layer {place} holds other things than numbers") from error
         wanted = 1 if place == len(weights) - 1 else vector.size
         if matrix.shape != (inputs, wanted) or vector.shape != (wanted,) or wanted == 0:
             raise ParameterError(

@@ -1,7 +1,7 @@
 """Intervals at one level: of means, of differences, and of any statistic of independent runs.
 
 The mean of few values has Student's interval and that of more a BCa bootstrap (`mean_interval`).
-`bootstrap_interval` takes any statistic. `statistics.block_bootstrap` resamples time averages.
+`bootstrap_interval` takes any statistic.
 """
 
 import math
@@ -22,14 +22,10 @@ if TYPE_CHECKING:
 __all__ = [
     "CONFIDENCE",
     "FEW",
-    "RESAMPLES",
     "Difference",
     "bootstrap_interval",
-    "crossed_replicates",
-    "interval",
     "mean_interval",
     "paired_difference",
-    "percentile_ends",
     "student_interval",
     "summarize",
 ]
@@ -42,9 +38,6 @@ FEW = 12
 normal values 80, 89 and 93 times of 100."""
 
 _BCA_RESAMPLES = 9999
-
-RESAMPLES = 499
-"""How many times values, and blocks and runs, are drawn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,41 +189,6 @@ def summarize(runs: "pd.DataFrame", by: list[str], quantities: list[str]) -> "pd
     return means
 
 
-def percentile_ends(
-    values: NDArray[np.float64], axis: int = -1
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the ends of the percentile interval of replicates, along an axis."""
-    tail = (1 - CONFIDENCE) / 2
-    low, high = np.quantile(values, [tail, 1 - tail], axis=axis)
-    return low, high
-
-
-def crossed_replicates(values: NDArray[np.float64], seed: int = 0) -> NDArray[np.float64]:
-    """Return the mean of a table as it is, then with rows and columns resampled.
-
-    Rows may be trainings with different seeds and columns the flocks that all of them are judged
-    by: rows are drawn out of the rows, and apart from them columns out of the columns, since a
-    flock that is hard is so for all rows. With few rows the interval is too narrow.
-
-    Parameters
-    ----------
-    values
-        Shape (rows, columns).
-    seed
-        Of the draws.
-
-    Returns
-    -------
-    float64 array, shape (RESAMPLES + 1,)
-        As `interval` takes it.
-    """
-    rng, shares = np.random.default_rng(seed), []
-    for count in values.shape:
-        shares.append(rng.multinomial(count, np.full(count, 1 / count), RESAMPLES) / count)
-    rows, columns = shares
-    return np.append(values.mean(), ((rows @ values) * columns).sum(axis=1))
-
-
 def student_interval(values: NDArray[np.float64]) -> tuple[float, float, float]:
     """Return the mean of a few independent values with Student's interval; NaN ends for one."""
     mean, count = float(values.mean()), len(values)
@@ -240,20 +198,3 @@ def student_interval(values: NDArray[np.float64]) -> tuple[float, float, float]:
     quantile = float(stats.t.ppf((1 + CONFIDENCE) / 2, count - 1))
     half = quantile * float(values.std(ddof=1)) / count**0.5
     return mean, mean - half, mean + half
-
-
-def interval(replicates: NDArray[np.float64]) -> tuple[float, float, float]:
-    """Return the first value, as measured, and the percentile interval of the others.
-
-    Parameters
-    ----------
-    replicates
-        Shape (resamples + 1,), of a quantity derived from `block_sums_resampled`. Draws in which it
-        is undefined (NaN) are left out, and if they are more than half, so are the ends.
-    """
-    drawn = replicates[1:]
-    drawn = drawn[np.isfinite(drawn)]
-    if len(drawn) < len(replicates) / 2:
-        return float(replicates[0]), float("nan"), float("nan")
-    low, high = percentile_ends(drawn)
-    return float(replicates[0]), float(low), float(high)

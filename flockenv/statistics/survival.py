@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv._io.extras import require
 from flockenv.statistics.intervals import CONFIDENCE
 
-__all__ = ["Survival", "kaplan_meier", "logrank_p"]
+__all__ = ["Survival", "kaplan_meier"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,18 +88,6 @@ def kaplan_meier(times_s: ArrayLike, until_s: ArrayLike) -> Survival:
         len(times),
         int(np.isfinite(times).sum()),
     )
-
-
-def logrank_p(
-    times_s: ArrayLike, until_s: ArrayLike, other_times_s: ArrayLike, other_until_s: ArrayLike
-) -> float:
-    """Return the probability of so different waiting times if both kinds of runs had the same.
-
-    That is the two-sided log-rank test (Mantel 1966). Parameters and errors are those of
-    `kaplan_meier`, for two sets of runs.
-    """
-    sets = (_censored(times_s, until_s), _censored(other_times_s, other_until_s))
-    return float(require("scipy.stats", "plot").logrank(*sets).pvalue)
 
 
 def _censored(times_s: ArrayLike, until_s: ArrayLike) -> Any:

@@ -152,7 +152,7 @@ def velocities(
 
 def _numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:
     if isinstance(values, np.ma.MaskedArray):  # What is masked is not there.
-        values = values.astype(np.float64).filled(np.nan)
+        values = np.where(np.ma.getmaskarray(values), np.nan, values.data)
     try:
         return np.array(values, np.float64)
     except (TypeError, ValueError) as error:

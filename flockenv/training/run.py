@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import cast
 
 import torch
+from filelock import FileLock, Timeout
 from stable_baselines3 import PPO
 from stable_baselines3.common.base_class import BaseAlgorithm
 from stable_baselines3.common.callbacks import BaseCallback
@@ -17,8 +18,7 @@ from stable_baselines3.common.logger import configure
 
 from flockenv._io.atomic_write import atomic_write, write_text
 from flockenv._io.interrupts import end_if_interrupted
-from flockenv._io.locks import held
-from flockenv.errors import FlockError, ParameterError
+from flockenv.errors import FlockError, InUseError, ParameterError
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import FlockMonitor, LeaderVecEnv
 from flockenv.training.settings import TrainingSettings
@@ -158,7 +158,12 @@ def _advance(
     torch.set_num_threads(1)
     try:
         with ExitStack() as stack:
-            stack.enter_context(held(folder / ".lock", str(folder)))
+            try:
+                stack.enter_context(FileLock(folder / ".lock", blocking=False))
+            except Timeout as error:
+                raise InUseError(
+                    f"{folder} is in use by another process: name another, or wait"
+                ) from error
             monitor = FlockMonitor(venv, str(folder / str(done)), ("signed_order",))
             stack.callback(monitor.close)
             model.set_env(monitor)

@@ -10,8 +10,6 @@ import pytest
 from flockenv.statistics import (
     FEW,
     bootstrap_interval,
-    crossed_replicates,
-    interval,
     mean_interval,
     paired_difference,
     summarize,
@@ -90,21 +88,3 @@ def test_pairs_are_compared_seed_by_seed() -> None:
     assert np.isnan(same.effect)
     with pytest.raises(ValueError, match="3 and 2"):
         paired_difference([1, 2, 3], [1, 2])
-
-
-def test_crossed_intervals_hold_where_rows_and_columns_vary() -> None:
-    rng = np.random.default_rng(2)
-    covered = 0
-    for _ in range(100):
-        table = 2.0 + rng.normal(size=(20, 1)) + rng.normal(size=30) + rng.normal(size=(20, 30))
-        mean, low, high = interval(crossed_replicates(table))
-        assert mean == pytest.approx(table.mean())
-        covered += low <= 2.0 <= high
-    # Binomial with n = 100 and 0.95: 86 or fewer has a chance of about 5e-4.
-    assert covered >= 87
-    # Equal rows leave the columns' spread alone, and the other way round.
-    columns = rng.normal(size=200)
-    replicates = crossed_replicates(np.tile(columns, (3, 1)))
-    assert replicates[1:].std() == pytest.approx(columns.std() / 200**0.5, rel=0.15)
-    replicates = crossed_replicates(np.tile(columns[:, None], (1, 7)))
-    assert replicates[1:].std() == pytest.approx(columns.std() / 200**0.5, rel=0.15)
