@@ -93,7 +93,7 @@ class NetworkPolicy(RowPolicy):
         self.action_mode = action_mode
         self.decision_period_s = None if decision_period_s is None else float(decision_period_s)
         self.activation = activation
-        self.provenance = {str(name): str(text) for name, text in (provenance or {}).items()}
+        self.provenance = {str(name): str(text) for name, text in dict(provenance or {}).items()}
         self._layers = _checked_layers(weights, biases, self._size)
 
     @classmethod

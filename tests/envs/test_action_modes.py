@@ -39,7 +39,7 @@ def same(one, other):
 @pytest.mark.parametrize("target", ["cw", "ccw"])
 def test_a_lean_of_zero_is_the_tuned_law(pool, mirror, target):
     options = {"pool": pool, "mirror_to_target": mirror, "target": target}
-    law = DampedLaw.tuned(pool).observing({}, mirror)
+    law = DampedLaw.tuned(pool, mirror_to_target=mirror)
     assert same(rolled(60, 0.0, action_mode="lean", **options), rolled(60, policy=law, **options))
 
 
@@ -245,7 +245,7 @@ def test_levels_stand_for_leans_too():
 def test_the_law_rudder_is_observed(pool):
     env = LeadersVectorEnv(2, n_boats=9, n_leaders=2, pool=pool, observation={"law_rudder": True})
     seen, _ = env.reset(seed=0)
-    law = DampedLaw.tuned(pool).observing({"law_rudder": True}, False)
+    law = DampedLaw.tuned(pool, observation={"law_rudder": True})
     for _ in range(50):
         rudders = law.predict(seen)[0]
         np.testing.assert_array_equal(seen.reshape(2, 2, -1)[..., -1], rudders)

@@ -1,4 +1,4 @@
-"""Law: files are read without trust and written whole; a lock goes with its holder."""
+"""Law: files are read without trust and written whole."""
 
 import io
 import os
@@ -11,10 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from flockenv import FlockError, FlockParameters, InUseError, ParameterError, Recording
+from flockenv import FlockError, FlockParameters, ParameterError, Recording
 from flockenv._io import array_file
 from flockenv._io.atomic_write import atomic_write, write_text
-from flockenv._io.locks import held
 from flockenv._io.toml import read_toml_file
 from flockenv.policies import load
 
@@ -24,14 +23,6 @@ from flockenv._io.atomic_write import atomic_write
 with atomic_write(sys.argv[1]) as file:
     file.write(b"half")
     os.kill(os.getpid(), signal.SIGKILL)
-"""
-HOLDING = """
-import sys
-from pathlib import Path
-from flockenv._io.locks import held
-with held(Path(sys.argv[1]), "it"):
-    print("held", flush=True)
-    sys.stdin.read()
 """
 
 
@@ -59,23 +50,6 @@ def test_names_may_be_as_long_as_the_file_system_takes(tmp_path):
     for name in ("x" * 251 + ".txt", "ü" * 125 + ".txt"):
         write_text(tmp_path / name, "whole")
         assert (tmp_path / name).read_text() == "whole"
-
-
-def test_what_is_held_is_let_go_of_when_its_holder_is_killed(tmp_path):
-    lock = tmp_path / ".lock"
-    words = [sys.executable, "-c", HOLDING, str(lock)]
-    holder = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-    try:
-        assert holder.stdout.readline() == b"held\n"
-        with pytest.raises(InUseError, match="runs is in use"), held(lock, "runs"):
-            pass
-    finally:
-        holder.kill()
-        holder.communicate()
-    with held(lock, "runs"), pytest.raises(InUseError), held(lock, "runs"):
-        pass
-    with held(lock, "runs"):
-        pass
 
 
 def zeros(path: Path, header: str, count: int) -> None:

@@ -169,20 +169,6 @@ def test_a_file_keeps_every_bit(tmp_path):
     assert again.activation == "relu"
 
 
-def test_a_smaller_layout(tmp_path):
-    blocks = {"neighbors": 0, "order": False}
-    size = len(observation_entries(blocks))
-    policy = NetworkPolicy([np.zeros((size, 1))], [[0.5]], observation=blocks)
-    policy.save(tmp_path / "policy.npz")
-    run = flockenv.simulate(
-        flockenv.FlockParameters(n_boats=4, n_leaders=1),
-        1,
-        1.0,
-        policy=load(tmp_path / "policy.npz"),
-    )
-    assert np.isfinite(run.pose).all()
-
-
 def changed(policy, tmp_path, **entries):
     """The policy's file with other entries in its header, or other arrays."""
     policy.save(tmp_path / "policy.npz")
@@ -202,23 +188,20 @@ def changed(policy, tmp_path, **entries):
     ("entries", "message"),
     [
         ({"observation_version": OBSERVATION_VERSION + 1}, "version .* of the observation"),
-        ({"observation_version": str(OBSERVATION_VERSION)}, "observation_version = '2' is not"),
-        ({"format": "something else"}, "no policy in the format"),
-        ({"layers": 2}, "layer 1 has weights"),
-        ({"layers": 4}, "no whole policy: the array weight_3 is missing"),
-        ({"layers": "3"}, "no whole policy: layers = '3' is not accepted: a whole number"),
-        ({"layers": 10**400}, "no whole policy"),
-        ({"layers": 0}, "0 weights"),
+        ({"observation_version": str(OBSERVATION_VERSION)}, "version '2' of the observation"),
+        ({"format": "something else"}, "format = 'something else'"),
+        ({"weight_1": np.zeros((8, 3))}, "layer 1 has weights"),
+        ({"other": np.zeros(3), "another": np.zeros(3)}, "it has no 'weight_3'"),
         ({"activation": "exec"}, "tanh, relu"),
-        ({"activation": ["tanh"]}, r"activation = \['tanh'\] is not accepted: a text"),
+        ({"activation": ["tanh"]}, r"\['tanh'\] is no activation"),
         ({"observation": {"neighbor": 3}}, "neighbor"),
         ({"observation": {"neighbors": 3}}, "layer 0"),
-        ({"observation": 3}, "observation = 3 is not accepted: a table"),
-        ({"made": 3}, "made = 3 is not accepted: a table"),
-        ({"mirror_to_target": "no"}, "mirror_to_target = 'no' is not accepted: true or false"),
+        ({"observation": 3}, "observation = 3 is not accepted: blocks by name"),
+        ({"made": 3}, "no whole policy"),
+        ({"mirror_to_target": "no"}, "mirror_to_target = 'no' is not accepted: True or False"),
         ({"weight_0": np.full((SIZE, 8), np.nan)}, "not finite"),
         ({"weight_0": np.full((SIZE, 8), 1e300)}, "not finite"),
-        ({"weight_0": np.full((SIZE, 8), "fw")}, "weight_0 holds <U2, which is not accepted: numb"),
+        ({"weight_0": np.full((SIZE, 8), "fw")}, "layer 0 holds other things than numbers"),
         ({"bias_0": np.zeros(9)}, "layer 0"),
     ],
 )
@@ -240,11 +223,5 @@ def test_damaged_and_foreign_files(tmp_path):
     with pytest.raises(FileNotFoundError):
         load(tmp_path / "nowhere.npz")
     flockenv.simulate(flockenv.FlockParameters(), 1, 1.0).save(tmp_path / "run.npz")
-    with pytest.raises(flockenv.ParameterError, match=r"run\.npz is no policy: it has no header"):
+    with pytest.raises(flockenv.ParameterError, match=r"run\.npz is no .*: it has no 'header'"):
         load(tmp_path / "run.npz")
-
-
-def test_random_rudders_are_seeded():
-    first, again = (RandomRudders(7).predict(np.zeros((9, SIZE)))[0] for _ in range(2))
-    np.testing.assert_array_equal(first, again)
-    assert len(np.unique(first)) == 9

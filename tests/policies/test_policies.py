@@ -97,26 +97,6 @@ def test_formulas(law):
 
 
 @pytest.mark.parametrize("kind", LAWS)
-def test_shapes_follow_the_action_spaces(kind):
-    law, size = kind(), len(observation_entries())
-    observations = random_observations(5)
-    assert observations.shape == (5, 3 * size)
-    rudders, state = law.predict(observations, state="kept", episode_start=None)
-    assert rudders.shape == (5, 3)
-    assert rudders.dtype == np.float32
-    assert state == "kept"
-    split = observations.reshape(5, 3, size)
-    np.testing.assert_array_equal(law.predict(split)[0], rudders[..., None])
-    np.testing.assert_array_equal(law.predict(split[0])[0], rudders[0][:, None])
-    np.testing.assert_array_equal(law.predict(split[0, 0])[0], rudders[0, :1])
-    by_agent = {f"leader_{leader}": split[0, leader] for leader in range(3)}
-    found, _ = law.predict(by_agent)
-    assert {agent: float(each[0]) for agent, each in found.items()} == {
-        f"leader_{leader}": rudders[0, leader] for leader in range(3)
-    }
-
-
-@pytest.mark.parametrize("kind", LAWS)
 def test_a_block_that_is_off_is_named(kind):
     for block in ("own", "target"):
         with pytest.raises(flockenv.ParameterError, match=block):
@@ -155,27 +135,6 @@ def test_levels_are_the_nearest_ones(kind):
         assert levels.shape == rudders.shape
         nearest = np.linspace(-1, 1, count)[levels]
         assert np.abs(nearest - rudders).max() <= 1 / (count - 1) + 1e-6
-
-
-@pytest.mark.parametrize("kind", LAWS)
-def test_laws_drive_environments_with_levels(kind):
-    options = {"n_boats": 6, "n_leaders": 2, "rudder_levels": 5, "episode_s": 3.0}
-    law = WithLevels(kind(), 5)
-    env = flockenv.LeadersEnv(**options)
-    venv = flockenv.LeadersVectorEnv(2, **options)
-    parallel = flockenv.parallel_env(**options)
-    rows, _ = env.reset(seed=0)
-    batch, _ = venv.reset(seed=0)
-    by_agent, _ = parallel.reset(seed=0)
-    for _ in range(30):
-        action, actions = law.predict(rows)[0], law.predict(by_agent)[0]
-        assert action in env.action_space
-        assert all(actions[agent] in parallel.action_space(agent) for agent in parallel.agents)
-        rows, *_ = env.step(action)
-        batch, *_ = venv.step(law.predict(batch)[0])
-        by_agent, *_ = parallel.step(actions)
-        np.testing.assert_array_equal(rows, np.concatenate(list(by_agent.values())))
-        np.testing.assert_array_equal(rows, batch[0])
 
 
 def test_rudders_of_a_law_are_no_levels():

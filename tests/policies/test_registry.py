@@ -1,9 +1,7 @@
 """Law: a policy's name, its file and the object itself steer the same, wherever they are given."""
 
-import json
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import flockenv
@@ -62,26 +60,9 @@ def test_unknown_names_are_reported_with_what_there_is(name: str, words: str) ->
     assert words in str(reported.value)
 
 
-def test_no_name_holds_a_comma() -> None:
-    assert not [name for name in (*POLICIES, *POOL_POLICIES) if "," in name]
-
-
 def test_the_core_has_the_same_laws_by_name() -> None:
     for name in _core.LAWS:
         assert named_policy(name, "narrow")().law == _core.Law.named(name, "narrow")
     assert not {*_core.LAWS} - {*POLICIES, *POOL_POLICIES}
     with pytest.raises(flockenv.ParameterError, match="one of paper's law, damped law"):
         _core.Law.named("law")
-
-
-def test_the_command_line_knows_names_in_any_folder(
-    cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    fields = [f"--set={field}" for field in ("n_boats=6", "n_leaders=2", "pool=narrow")]
-    monkeypatch.chdir(tmp_path)
-    words = ["--policy", "learned", "--minutes", "0.2", "--seed", "3", "--json"]
-    done = cli("run", *fields, *words)
-    assert json.loads(done.stdout)["policy"] == "learned"
-    (path,) = tmp_path.rglob("*.npz")
-    expected = flockenv.simulate(PARAMETERS, 3, 12.0, policy="learned")
-    assert np.array_equal(flockenv.Recording.load(path).pose, expected.pose)

@@ -117,6 +117,9 @@ def test_a_folder_takes_one_training_at_a_time(tiny: TrainingSettings, tmp_path:
             training.resume(tmp_path)
 
     training.train(tiny, tmp_path, meanwhile)
+    # The file stays, so that no two hold different ones of its name; it holds nobody up.
+    assert (tmp_path / ".lock").exists()
+    training.resume(tmp_path, report=meanwhile)
 
 
 def test_weights_that_are_no_numbers_end_the_training(
