@@ -49,7 +49,7 @@ def batch(seconds: float) -> float:
     flocks = LeaderBatch(EnvOptions.parse(FLOCK), [LEADERS] * FLOCKS, "same_step")
     flocks.reset(range(FLOCKS), None, int)
     flat = rudders().astype(np.float64).reshape(-1)
-    return rate(lambda: flocks.step(flat), flat.size, seconds)
+    return rate(lambda: flocks.core.step(flat), flat.size, seconds)
 
 
 def vector(seconds: float) -> float:

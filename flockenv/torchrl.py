@@ -20,10 +20,10 @@ from tensordict import TensorDict, TensorDictBase
 from torchrl.data import Binary, Bounded, Categorical, Composite, Unbounded
 from torchrl.envs import EnvBase
 
+from flockenv import _core
 from flockenv.envs.batch import LeaderBatch, at_least_one, seeds_from
 from flockenv.envs.observation import ObservationSpace, state_entries
 from flockenv.envs.options import EnvOptions
-from flockenv.envs.spaces import flat_actions
 from flockenv.errors import refuse_unknown
 
 __all__ = ["GROUP", "STATES", "LeadersEnv"]
@@ -162,14 +162,14 @@ class LeadersEnv(EnvBase):
         started = np.ones(self.num_flocks, np.bool_) if mask is None else mask
         for flock in np.flatnonzero(started).tolist():
             self._seeds[flock] = None
-        return self._seen(self._batch.observe())
+        return self._seen(self._batch.core.observe())
 
     def _step(self, tensordict: TensorDictBase) -> TensorDictBase:
         actions = tensordict.get((GROUP, "action")).detach().cpu().numpy()
         shape = (self.num_flocks, self.num_leaders)
         each = shape if self.rudder_levels is not None else (*shape, 1)
-        flat = flat_actions(actions, each, self.rudder_levels, "the leaders' action")
-        observations, rewards, ended = self._batch.step(flat)
+        flat = _core.flat_actions(actions, each, self.rudder_levels, "the leaders' action")
+        observations, rewards, ended = self._batch.step(self, flat)
         result = self._seen(observations)
         reward = self._tensor(rewards.astype(np.float32)).reshape(*shape, 1)
         result.set((GROUP, "reward"), reward)
@@ -200,15 +200,24 @@ def _states(
     low, high = (_boat_rows(bound[None], boats)[0] for bound in (space.low, space.high))
     rows = gymnasium.spaces.Box(low, high, dtype=np.float32)
     return {
-        "boats": (space, batch.states),
+        "boats": (space, partial(_batch_states, batch)),
         "set": (rows, partial(_batch_rows, batch, boats)),
-        "features": (batch.flock_feature_space, batch.flock_features),
+        "features": (batch.flock_feature_space, partial(_batch_features, batch)),
         "none": None,
     }
 
 
+# Functions of the batch, not methods of its core: a copy of the environment has a batch of its own.
+def _batch_states(batch: LeaderBatch) -> NDArray[np.float32]:
+    return batch.core.states()
+
+
+def _batch_features(batch: LeaderBatch) -> NDArray[np.float32]:
+    return batch.core.flock_features(each_leader=False)
+
+
 def _batch_rows(batch: LeaderBatch, boats: int) -> NDArray[np.float32]:
-    return _boat_rows(batch.states(), boats)
+    return _boat_rows(batch.core.states(), boats)
 
 
 def _boat_rows(states: NDArray[np.float32], boats: int) -> NDArray[np.float32]:

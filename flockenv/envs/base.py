@@ -39,7 +39,8 @@ class SingleEnvironmentBase:
 
     def state(self) -> NDArray[np.float32]:
         """Return the global state for centralized critics, shape (state size,), float32."""
-        return self._batch.state(0)
+        state: NDArray[np.float32] = self._batch.core.states()[0]
+        return state
 
     def flock_features(self) -> NDArray[np.float32]:
         """Return features of the flock, shape (features,), float32.
@@ -48,12 +49,12 @@ class SingleEnvironmentBase:
         the target, of several targets leader 0's; `envs.observation.flock_feature_entries` lists
         them.
         """
-        features: NDArray[np.float32] = self._batch.flock_features()[0]
+        features: NDArray[np.float32] = self._batch.core.flock_features(each_leader=False)[0]
         return features
 
     def episode(self) -> dict[str, Any]:
         """Return target, backward duration, seed and step of the episode."""
-        return self._batch.episode(0)
+        return self._batch.core.episode(0)
 
     @property
     def flock(self) -> Flock:
@@ -62,7 +63,7 @@ class SingleEnvironmentBase:
 
     def get_state(self) -> bytes:
         """Return everything that the future depends on, as bytes."""
-        return self._batch.to_bytes()
+        return self._batch.core.to_bytes()
 
     def set_state(self, state: bytes) -> None:
         """Continue from `get_state` of an environment with the same options, bit for bit."""

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv.envs.observation import flock_feature_space, state_space
-from flockenv.envs.options import EnvOptions, known_reset_options
-from flockenv.envs.reward import TERMS
+from flockenv.envs.options import TERMS, EnvOptions, known_reset_options
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import Flock
 from flockenv.parameters import FlockParameters
@@ -23,21 +22,25 @@ _MOST = 100_000
 
 
 class LeaderBatch:
-    """A batch of flocks with their episodes. Rows are leaders, flock after flock."""
+    """A batch of flocks with their episodes in the core. Rows are leaders, flock after flock."""
 
     def __init__(self, options: EnvOptions, leaders: Sequence[int], autoreset_mode: str) -> None:
         by_count = {k: options.parameters.replace(n_leaders=k) for k in set(leaders)}
         members = [by_count[k] for k in leaders]
-        self._core = _core.EnvBatch(members, {**options.settings, "autoreset_mode": autoreset_mode})
-        self.settings: dict[str, Any] = self._core.options
+        self.core = _core.EnvBatch(members, {**options.settings, "autoreset_mode": autoreset_mode})
+        self.settings: dict[str, Any] = self.core.options
         self.num_flocks = len(members)
         self.leaders = tuple(leaders)
-        self.observation_size: int = self._core.observation_size
+        self._own_reward = options.own_reward
+        self._flock_of_row = np.repeat(np.arange(self.num_flocks), self.leaders)
+        #: To each leader in its episode, where rewards are not the core's.
+        self._paid = np.zeros(len(self._flock_of_row))
+        self.observation_size: int = self.core.observation_size
         self.state_space = state_space(options.parameters.n_boats)
         self.flock_feature_space = flock_feature_space()
         #: Control steps from one decision to the next, and decisions per second.
-        self.period_steps: int = self._core.period_steps
-        self.episode_steps: int = self._core.episode_steps
+        self.period_steps: int = self.core.period_steps
+        self.episode_steps: int = self.core.episode_steps
         self.decisions_hz: float = self.settings["control_hz"] / self.period_steps
 
     def reset(
@@ -53,10 +56,11 @@ class LeaderBatch:
         requests: list[dict[str, Any] | None] = [None] * self.num_flocks
         for flock in np.flatnonzero(chosen).tolist():
             seed = seeds[flock]
-            if seed is None and not self._core.is_seeded(flock):
+            if seed is None and not self.core.is_seeded(flock):
                 seed = new_seed()
             requests[flock] = {**per_flock[flock], "seed": seed}
-        self._core.reset(requests)
+        self.core.reset(requests)
+        self._paid[chosen[self._flock_of_row]] = 0.0
 
     def _per_flock(self, options: Mapping[str, Any]) -> list[dict[str, Any]]:
         """Options for each flock: lists have one entry per flock, anything else holds for all."""
@@ -72,109 +76,100 @@ class LeaderBatch:
         return per_flock
 
     def step(
-        self, actions: NDArray[np.float64]
+        self, env: Any, actions: NDArray[np.float64]
     ) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_]]:
-        """Take a control step: observations and rewards by row, and by flock whether it ended."""
-        return self._core.step(actions)
+        """Take a decision: observations and rewards by row, and by flock whether it ended.
 
-    def observe(self) -> NDArray[np.float32]:
-        """Return every leader's observation, a row each."""
-        return self._core.observe()
+        `env` is what a function of a user's own that rewards looks at.
 
-    def final_observation(self, flock: int) -> NDArray[np.float32]:
-        """Return the last observation of the episode that ended in the last step."""
-        return self._core.last_views(flock)[0]
+        Raises
+        ------
+        ParameterError
+            For what such a function returns; the flocks have moved then.
+        """
+        if self._own_reward is None:
+            return self.core.step(actions)
+        starts = np.array([not self.core.is_running(flock) for flock in range(self.num_flocks)])
+        observations, _, truncated = self.core.step(actions)
+        if callable(self._own_reward):
+            rewards = self._rewards(self._own_reward(env))
+        else:
+            rewards = self._weighted(self._own_reward, truncated)
+        # A step that only starts the next episode is worth nothing.
+        rewards[starts[self._flock_of_row]] = self._paid[starts[self._flock_of_row]] = 0.0
+        self._paid += rewards
+        return observations, rewards, truncated
 
-    def state(self, flock: int) -> NDArray[np.float32]:
-        """Return the global state of a flock."""
-        state: NDArray[np.float32] = self._core.states()[flock]
-        return state
+    def _weighted(
+        self, weights: NDArray[np.float64], truncated: NDArray[np.bool_]
+    ) -> NDArray[np.float64]:
+        """Return the weighted sums of leaders with weights of their own, over the decision."""
+        last = self.episode_steps % self.period_steps or self.period_steps
+        steps = np.where(truncated, last, self.period_steps)[self._flock_of_row]
+        horizon_s = self.settings["reward_horizon_s"]
+        share = 1.0 if horizon_s is None else 1.0 / (horizon_s * self.settings["control_hz"])
+        each = np.concatenate([weights[:leaders] for leaders in self.leaders])
+        sums: NDArray[np.float64] = (self.core.reward_terms() * each).sum(axis=1)
+        return share * steps * sums
 
-    def states(self) -> NDArray[np.float32]:
-        """Return the global state of every flock, a row each."""
-        return self._core.states()
-
-    def final_state(self, flock: int) -> NDArray[np.float32]:
-        """Return the last global state of the episode that ended in the last step."""
-        return self._core.last_views(flock)[1].ravel()
-
-    def final_flock_features(self, flock: int, leader: int = 0) -> NDArray[np.float32]:
-        """Return the flock's features for a leader, as the last step ended an episode."""
-        features: NDArray[np.float32] = self._core.last_views(flock)[2][leader]
-        return features
-
-    def leader_features(self) -> NDArray[np.float32]:
-        """Return the features of its flock for every leader, towards its own target."""
-        return self._core.flock_features(each_leader=True)
-
-    def flock_features(self) -> NDArray[np.float32]:
-        """Return the features of every flock, a row each."""
-        return self._core.flock_features(each_leader=False)
-
-    def order_parameters(self) -> NDArray[np.float64]:
-        """Return the order parameters of every flock, a row each."""
-        return self._core.order_parameters()
-
-    def poses(self) -> NDArray[np.float64]:
-        """Return the poses of all boats, shape (flocks, n, 3)."""
-        return self._core.poses().reshape(self.num_flocks, -1, 3)
-
-    def velocities(self) -> NDArray[np.float64]:
-        """Return the velocities of all boats, shape (flocks, n, 3)."""
-        return self._core.velocities().reshape(self.num_flocks, -1, 3)
-
-    def in_analysis_window(self) -> NDArray[np.bool_]:
-        """Return for every flock whether its episode is in the analysis window."""
-        return self._core.in_analysis_window().ravel()
-
-    def rudders(self) -> NDArray[np.float64]:
-        """Return every leader's rudder as it stands."""
-        return self._core.rudders().ravel()
-
-    def is_running(self, flock: int) -> bool:
-        """Return whether an episode is under way."""
-        return self._core.is_running(flock)
-
-    def flock(self, flock: int) -> Flock:
-        """Return a copy of a flock in its present state."""
-        return Flock.of(self._core.flock(flock))
-
-    def parameters(self, flock: int) -> FlockParameters:
-        """Return the parameters of a flock's environment."""
-        return FlockParameters(**self._core.parameters(flock))
-
-    def episode(self, flock: int) -> dict[str, Any]:
-        """Return target, backward duration, seed and step of a flock's episode."""
-        return self._core.episode(flock)
-
-    def summary(self, flock: int) -> dict[str, Any]:
-        """Return the statistics of a flock's episode so far."""
-        return self._core.summary(flock)
-
-    def to_bytes(self) -> bytes:
-        """Return everything that the future depends on."""
-        return self._core.to_bytes()
+    def _rewards(self, returned: Any) -> NDArray[np.float64]:
+        rows = len(self._flock_of_row)
+        try:
+            found = np.array(returned, np.float64)
+        except (TypeError, ValueError) as error:
+            raise ParameterError("the function of reward must return numbers") from error
+        if found.shape == (self.num_flocks,):
+            found = np.repeat(found, self.leaders)
+        if found.size != rows or not np.isfinite(found).all():
+            raise ParameterError(
+                f"the function of reward returned shape {found.shape}, expected finite numbers, "
+                f"one for each of {self.num_flocks} flocks or {rows} leaders"
+            )
+        return found.ravel()
 
     def restore(self, state: bytes) -> None:
         """Continue from the bytes of a batch with the same options."""
-        self._core.restore(state)
+        self.core.restore(state)
+        # Bytes of the core do not hold it.
+        self._paid[:] = np.nan
+
+    def poses(self) -> NDArray[np.float64]:
+        """Return the poses of all boats, shape (flocks, n, 3)."""
+        return self.core.poses().reshape(self.num_flocks, -1, 3)
+
+    def velocities(self) -> NDArray[np.float64]:
+        """Return the velocities of all boats, shape (flocks, n, 3)."""
+        return self.core.velocities().reshape(self.num_flocks, -1, 3)
+
+    def flock(self, flock: int) -> Flock:
+        """Return a copy of a flock in its present state."""
+        return Flock.of(self.core.flock(flock))
+
+    def parameters(self, flock: int) -> FlockParameters:
+        """Return the parameters of a flock's environment."""
+        return FlockParameters(**self.core.parameters(flock))
 
     def reset_info(self, flock: int) -> dict[str, Any]:
         """Return the infos of the start of an episode."""
-        episode = self._core.episode(flock)
+        episode = self.core.episode(flock)
         seed = np.uint64(episode["flock_seed"])
         return {"target": episode["target"], "bw_s": episode["bw_s"], "flock_seed": seed}
 
     def end_info(self, flock: int) -> dict[str, Any]:
         """Return the infos of the end of an episode."""
-        summary = self._core.finished(flock)
+        summary = self.core.finished(flock)
         if summary is None:
             return {}
+        if self._own_reward is not None:
+            own = self._paid[self._flock_of_row == flock]
+            summary["total_reward"] = float(own.mean())
+            if "leader_total_rewards" in summary:
+                summary["leader_total_rewards"] = own
         return {"episode_summary": {**summary, "flock_seed": np.uint64(summary["flock_seed"])}}
 
     def reward_terms(self) -> dict[str, NDArray[np.float64]]:
         """Return each term of the last step's reward, one number per row."""
-        return dict(zip(TERMS, self._core.reward_terms().T, strict=True))
+        return dict(zip(TERMS, self.core.reward_terms().T, strict=True))
 
 
 def leader_summary(summary: Mapping[str, Any], leader: int) -> dict[str, Any]:

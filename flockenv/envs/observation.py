@@ -16,13 +16,10 @@ __all__ = [
     "Entry",
     "FlockRowSpace",
     "ObservationSpace",
-    "feature_table",
     "flock_feature_entries",
     "flock_feature_space",
-    "neighbor_places",
     "observation_entries",
     "observation_space",
-    "observation_table",
     "observation_version",
     "observe",
     "seen_space",
@@ -60,26 +57,6 @@ def observation_entries(blocks: Mapping[str, Any] | None = None) -> list[Entry]:
         Blocks that differ from `BLOCKS`.
     """
     return [Entry(**row) for row in _core.observation_table(dict(blocks or {}))]
-
-
-def neighbor_places(blocks: Mapping[str, Any] | None = None) -> NDArray[np.intp]:
-    """Return where the numbers of each observed neighbor stand in an observation.
-
-    Parameters
-    ----------
-    blocks
-        Blocks that differ from `BLOCKS`.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape (neighbors, numbers of one neighbor); the first number is whether there is one.
-    """
-    rows: dict[int, list[int]] = {}
-    for place, entry in enumerate(observation_entries(blocks)):
-        if entry.block == "neighbors":
-            rows.setdefault(entry.place, []).append(place)
-    return np.array(list(rows.values()), np.intp).reshape(len(rows), -1 if rows else 0)
 
 
 def observation_version(blocks: Mapping[str, Any] | None = None) -> int:
@@ -230,28 +207,3 @@ def observe(
         For unknown blocks, and where a block needs normal boats that are not there.
     """
     return _core.observe(flock.core, dict(observation or {}), mirror_to_target, rudder)
-
-
-def feature_table(entries: Iterable[Entry]) -> str:
-    """Return features of a whole flock as a Markdown table; blocks with equal ones once."""
-    blocks: dict[str, list[str]] = {}
-    features = {}
-    for entry in entries:
-        blocks.setdefault(entry.name, []).append(entry.block)
-        features[entry.name] = entry
-    lines = ["| blocks | feature | bounds | meaning |", "| --- " * 4 + "|"]
-    for name, entry in features.items():
-        bounds = f"[{entry.low:g}, {entry.high:g}]"
-        lines.append(f"| {', '.join(blocks[name])} | `{name}` | {bounds} | {entry.meaning} |")
-    return "\n".join(lines)
-
-
-def observation_table(entries: Iterable[Entry]) -> str:
-    """Return entries as a Markdown table; those of each neighbor, obstacle or boat once."""
-    lines = ["| block | entry | unit | 1 stands for | bounds | meaning |", "| --- " * 6 + "|"]
-    for entry in entries:
-        if entry.place == 0:
-            bounds = f"[{entry.low:g}, {entry.high:g}]"
-            cells = (entry.block, f"`{entry.name}`", entry.unit or "-", entry.scale, bounds)
-            lines.append(f"| {' | '.join(cells)} | {entry.meaning} |")
-    return "\n".join(lines)

@@ -1,17 +1,28 @@
 """Options of the environments: one flat set of names, checked once, for all interfaces."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Self
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
 from flockenv import _core
 from flockenv.envs.observation import BLOCKS
-from flockenv.envs.reward import TERMS
-from flockenv.errors import ParameterError, UnknownOptionError, hint, nearest, refuse_unknown
+from flockenv.errors import (
+    ParameterError,
+    UnknownOptionError,
+    hint,
+    nearest,
+    refuse_unknown,
+    shown,
+)
 from flockenv.parameters import FlockParameters
-from flockenv.rendering.frames import DEFAULT_SIZE
 
-__all__ = ["RESET_OPTIONS", "EnvOptions"]
+__all__ = ["RESET_OPTIONS", "TERMS", "EnvOptions", "known_reset_options"]
+
+TERMS: dict[str, str] = dict(_core.REWARD_TERMS)
+"""Name and meaning of each term of the reward; every term is larger for better."""
 
 #: What ``reset(options=...)`` understands, besides ``reset_mask`` in the vector environment.
 RESET_OPTIONS = ("target", "bw_s", "state", "snapshot")
@@ -22,7 +33,6 @@ _NAMES = (
     "preset",
     "params",
     "physics",
-    "decision_period_cycles",
     *_FIELDS,
     *(name for name in _SETTINGS if name not in _FIELDS),
 )
@@ -36,10 +46,12 @@ class EnvOptions:
 
     parameters: FlockParameters
     settings: dict[str, Any]
+    #: A function of the environment, or weights (leaders, terms), instead of the core's rewards.
+    own_reward: Callable[[Any], ArrayLike] | NDArray[np.float64] | None = None
 
     @classmethod
-    def parse(cls, options: Mapping[str, Any]) -> Self:
-        """Return options from keyword arguments.
+    def parse(cls, options: Mapping[str, Any], *, takes_function: bool = False) -> Self:
+        """Return options from keyword arguments, whose reward may be a function where that is so.
 
         Raises
         ------
@@ -55,7 +67,12 @@ class EnvOptions:
                     f"got an unexpected keyword argument {name!r}, which is no option of the "
                     f"environment: {hint(name, _NAMES)}"
                 )
-        given = dict(options)
+        given, own_reward = dict(options), None
+        reward = given.get("reward")
+        if takes_function and callable(reward):
+            own_reward, given["reward"] = reward, {}
+        elif isinstance(reward, list | tuple):
+            own_reward, given["reward"] = _leader_weights(reward)
         settings = {name: given.pop(name) for name in _SETTINGS if name in given}
         if isinstance(given.get("bw_s"), tuple | list):
             settings["bw_s"] = tuple(given.pop("bw_s"))
@@ -73,12 +90,29 @@ class EnvOptions:
         elif isinstance(target, str) and target in ("cw", "ccw"):
             given["target"] = target
         stepping = _physics(given)
-        cycles = given.pop("decision_period_cycles", None)
         parameters = _parameters({**given, **stepping})
-        if cycles is not None:
-            settings["decision_period_s"] = _period_of_cycles(cycles, settings, parameters)
         settings.setdefault("target", parameters.target)
-        return cls(parameters, settings)
+        if isinstance(own_reward, np.ndarray) and len(own_reward) != parameters.n_leaders:
+            raise ParameterError(
+                f"reward lists {len(own_reward)} weights, which is not accepted: a dictionary, or "
+                f"one for each of {parameters.n_leaders} leaders"
+            )
+        return cls(parameters, settings, own_reward)
+
+
+def _leader_weights(reward: Sequence[Any]) -> tuple[NDArray[np.float64], dict[str, float]]:
+    """Return a row of weights for each leader, and the terms that the core has to work out."""
+    for each in reward:
+        if not isinstance(each, Mapping):
+            raise TypeError(f"reward must hold dictionaries of weights, not {shown(each)}")
+        refuse_unknown(each, TERMS, "part of reward")
+    try:
+        weights = np.array([[each.get(term, 0.0) for term in TERMS] for each in reward], float)
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"reward = {shown(reward)} is not accepted: weights are numbers") from error
+    if not (np.abs(weights) <= 1e6).all():
+        raise ParameterError(f"reward = {shown(reward)} is not accepted: weights within 1e6")
+    return weights, {name: 1.0 for each in reward for name in each}
 
 
 def _physics(given: dict[str, Any]) -> dict[str, Any]:
@@ -89,25 +123,6 @@ def _physics(given: dict[str, Any]) -> dict[str, Any]:
         if field in given:
             raise ParameterError(f"physics = {name!r} and {field} are both given: one of them")
     return chosen
-
-
-def _period_of_cycles(
-    cycles: float, settings: Mapping[str, Any], parameters: FlockParameters
-) -> float:
-    """Return the decision period in s nearest to a number of motor cycles."""
-    # What is no range is refused with the settings.
-    ends = settings.get("bw_s") or (parameters.bw_s,)
-    for given, other in (
-        (settings.get("decision_period_s") is not None, "decision_period_s"),
-        (any(each != ends[0] for each in ends), "a drawn bw_s"),
-    ):
-        if given:
-            raise ParameterError(
-                f"decision_period_cycles = {cycles!r} is not accepted with {other}: one of them"
-            )
-    parameters = parameters.replace(bw_s=ends[0])
-    control_hz = settings.get("control_hz", _core.env_defaults()["control_hz"])
-    return _core.decision_period_of_cycles(cycles, parameters, control_hz)
 
 
 def _parameters(given: dict[str, Any]) -> FlockParameters:
@@ -138,38 +153,3 @@ def known_reset_options(options: Mapping[str, Any] | None) -> dict[str, Any]:
         if near and name != near:
             raise ParameterError(f"{name!r} is no reset option: did you mean {near!r}?")
     return {name: options[name] for name in RESET_OPTIONS if name in options}
-
-
-def arguments_table() -> str:
-    """Return the options as a Markdown table: what the core declares, and how Python adds to it."""
-    parameters = FlockParameters().replace(**_DEFAULTS).to_dict()
-    declared = {each.name: str(each.metadata["doc"]) for each in fields(FlockParameters)}
-    meanings = {
-        "preset": "named parameters of the flock, see `FlockParameters.presets`",
-        "params": "parameters of the flock, `FlockParameters` or a dictionary, instead of a preset",
-        "physics": '"training" steps the flock by dt_s = 0.1 s with one relinearization, coarser '
-        'and cheaper; "default" as the parameters have it',
-        "n_boats": declared["n_boats"],
-        "n_leaders": declared["n_leaders"],
-        "bw_s": f"{declared['bw_s']} In s; a pair (low, high) draws it uniformly for each episode.",
-        **{name: text for name, *_, text in _core.OPTIONS if name in _SETTINGS},
-        "decision_period_cycles": "decision_period_s as a number of motor cycles, rounded to whole "
-        "control steps; not where bw_s is drawn",
-        "render_mode": 'None, "rgb_array" (`render` returns a frame) or, for environments with one '
-        'flock, "human" (a window, extra `render`)',
-        "render_size": "width and height of a frame in pixels, 64 to 4096",
-    }
-    defaults = {
-        **parameters,
-        **_core.env_defaults(),
-        "preset": "simulation",
-        "physics": "default",
-        "target": parameters["target"],
-        "bw_s": parameters["bw_s"],
-        "render_size": DEFAULT_SIZE,
-    }
-    lines = ["| option | default | meaning |", "| --- | --- | --- |"]
-    for name, meaning in meanings.items():
-        lines.append(f"| `{name}` | `{defaults.get(name)!r}` | {meaning} |")
-    lines.append("| any other field of `FlockParameters` | the preset's | see there |")
-    return "\n".join(lines)

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pettingzoo import ParallelEnv
 
+from flockenv import _core
 from flockenv.envs.base import SingleEnvironmentBase
 from flockenv.envs.batch import drawn_seed, leader_summary
-from flockenv.envs.docs import specified
 from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.render_mode import RENDER_MODES
-from flockenv.envs.spaces import flat_actions, leader_action_space
+from flockenv.envs.spaces import leader_action_space
 from flockenv.errors import EpisodeError, ParameterError
 from flockenv.rendering.frames import DEFAULT_SIZE
 
@@ -23,7 +23,6 @@ Observations = dict[str, NDArray[np.float32]]
 Infos = dict[str, dict[str, Any]]
 
 
-@specified
 class LeadersParallelEnv(
     SingleEnvironmentBase, ParallelEnv[str, NDArray[np.float32], NDArray[np.float32] | int]
 ):
@@ -31,51 +30,28 @@ class LeadersParallelEnv(
 
     ``flockenv.parallel_env(**options)``
 
-    ## Start here
-    {start}
+    `LeadersEnv` specifies the task, the entries of an observation, the terms of the reward and the
+    options; this text says what differs.
 
     ## Description
-    {task}
-
     Agents are `leader_0` to `leader_{k-1}`, boats 0 to k - 1. All act at once and live until the
     time limit; `agents` is empty from then on.
 
     ## Action space
     An agent's is `Box(-1, 1, (1,), float32)`, its rudder; `Discrete(n)` with `rudder_levels=n`.
-    {rudder}
 
     ## Observation space
-    An agent's is a `Box` of shape (observation size,), float32. {frame}
-
-    {observation_table}
-
-    `state()` gives the global state, for critics: the entries of `boat` for each boat in order,
-    then the rest.
-
-    {state_table}
+    An agent's is a `Box` of shape (observation size,), float32.
 
     ## Rewards
-    Each agent gets the weighted sum of the terms below, its own where they are a leader's own or
-    towards its own target; `signed_order` with weight 1 unless `reward` says otherwise. Each step's
-    infos have the agent's `"reward_terms"`, the last ones the `"episode_summary"`; those of a reset
-    are empty.
-
-    {general_sum} The last infos of an agent then have a `"leader_summary"` of its own: `target`,
-    `total_reward`, `signed_order` and `share_towards_target`.
-
-    {reward_table}
-
-    ## Starting state
-    {starting_state}
-
-    ## Episode end
-    {episode_end}
-
-    ## Arguments
-    {arguments_table}
+    Each agent gets the weighted sum of the terms, its own where they are a leader's own or towards
+    its own target. Each step's infos have the agent's `"reward_terms"`, the last ones the
+    `"episode_summary"`; those of a reset are empty. Where each leader has a target of its own the
+    last infos of an agent have a `"leader_summary"` of its own: `target`, `total_reward`,
+    `signed_order` and `share_towards_target`.
 
     ## Version history
-    {version_history}
+    - v0: as `LeadersEnv`.
     """
 
     metadata: dict[str, Any] = {  # noqa: RUF012 - PettingZoo's own declaration
@@ -161,7 +137,7 @@ class LeadersParallelEnv(
             Before the first reset and after the end.
         """
         flat = self._flat(actions)
-        rows, rewards, truncated = self._batch.step(flat)
+        rows, rewards, truncated = self._batch.step(self, flat)
         agents, over = self.agents, bool(truncated[0])
         infos = self._infos(over)
         if over:
@@ -188,7 +164,7 @@ class LeadersParallelEnv(
         levels = self._batch.settings["rudder_levels"]
         shape = (1,) if levels is None else ()
         each = [
-            flat_actions(actions[agent], shape, levels, f"the action of {agent}")
+            _core.flat_actions(actions[agent], shape, levels, f"the action of {agent}")
             for agent in self.agents
         ]
         return np.concatenate(each)
@@ -212,12 +188,12 @@ class LeadersParallelEnv(
 
     def observe(self) -> Observations:
         """Return the observations as they are now, by agent."""
-        return self._by_agent(self._batch.observe())
+        return self._by_agent(self._batch.core.observe())
 
     def set_state(self, state: bytes) -> None:
         """Continue from `get_state` of an environment with the same options, bit for bit."""
         super().set_state(state)
-        self.agents = self.possible_agents[:] if self._batch.is_running(0) else []
+        self.agents = self.possible_agents[:] if self._batch.core.is_running(0) else []
 
 
 def parallel_env(*, render_mode: str | None = None, **options: Any) -> LeadersParallelEnv:

@@ -1,89 +1,63 @@
 """`LeadersVectorEnv`: many flocks behind Gymnasium's vector interface, stepped at once in Rust."""
 
 import copy
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Self
 
 import gymnasium
 import numpy as np
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
+from flockenv import _core
 from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
-from flockenv.envs.docs import specified
 from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.options import EnvOptions
 from flockenv.envs.render_mode import RenderMode
-from flockenv.envs.spaces import flat_actions, joint_action_space
+from flockenv.envs.spaces import joint_action_space
 from flockenv.errors import EpisodeError, ParameterError
 from flockenv.rendering.frames import DEFAULT_SIZE
 
-__all__ = ["LeadersVectorEnv", "Reward"]
-
-Reward = Callable[["LeadersVectorEnv"], ArrayLike]
-"""A reward of a user's own: of the environment after its step."""
+__all__ = ["LeadersVectorEnv"]
 
 
-@specified
 class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], NDArray[Any]]):
     """Lead many flocks at once, one policy steering all leaders of a flock.
 
     ``gymnasium.make_vec("flockenv/Leaders-v0", num_envs=64, **options)``
 
-    ## Start here
-    {start}
+    `LeadersEnv` specifies the task, the entries of an observation, the terms of the reward and the
+    options; this text says what differs.
 
     ## Description
-    {task}
-
     Flocks are stepped in parallel in Rust; results depend neither on `num_envs` nor on the number
     of threads. Arrays that are returned are never written to again.
 
     ## Action space
-    For each flock `Box(-1, 1, (k,), float32)`, the rudders of leaders 0 to k - 1;
-    `MultiDiscrete([n] * k)` with `rudder_levels=n`. {rudder}
+    For each flock that of `LeadersEnv`.
 
     ## Observation space
-    For each flock a `Box` of shape (k * observation size,), float32: what leader 0 observes, then
-    leader 1, and so on. {frame}
-
-    {observation_table}
-
-    `state()` gives the global state of every flock, for critics: the entries of `boat` for each
-    boat in order, then the rest.
-
-    {state_table}
-
-    `flock_features()` gives features of every flock that depend neither on the order of boats nor
-    on absolute angles, shape (num_envs, {flock_feature_count}), in `flock_feature_space`.
-
-    {flock_feature_table}
+    For each flock that of `LeadersEnv`; `state()` and `flock_features()` have a row for each.
 
     ## Rewards
-    The weighted sum of the terms below, mean over a flock's leaders; `signed_order` with weight 1
-    unless `reward` says otherwise. `reward_terms()` returns those of the last step.
-
-    {general_sum} In `reset` a tuple has one target per leader, since a list has one option per
-    flock.
-
-    With opposite targets that mean says little: `leader_rewards()` returns each leader's own.
+    The weighted sum of the terms, mean over a flock's leaders. `reward_terms()` returns those of
+    the last step, `leader_rewards()` each leader's own reward: with opposite targets the mean says
+    little.
 
     `reward` may also be a function of this environment, which `step` calls once the flocks have
     moved and which returns rewards (num_envs,), or (num_envs, k) for each leader. It looks at
-    `poses()`, `velocities()`, `order_parameters()`, `reward_terms()` and the like. The summary of
-    an episode has no `total_reward` then. A flock that starts anew in the same step has nothing
-    left to look at: `autoreset_mode="same_step"` is refused.
-
-    {reward_table}
+    `poses()`, `velocities()`, `order_parameters()`, `reward_terms()` and the like. A flock that
+    starts anew in the same step has nothing left to look at: `autoreset_mode="same_step"` is
+    refused.
 
     ## Starting state
-    {starting_state} Here `seed=s` seeds flock i with s + i, a list gives each flock its own, and an
-    option that is a list has one entry per flock. `reset(options={"reset_mask": mask})` resets some
-    flocks.
+    `seed=s` seeds flock i with s + i, a list gives each flock its own, and an option of `reset`
+    that is a list has one entry per flock: a tuple has one target per leader.
+    `reset(options={"reset_mask": mask})` resets some flocks.
 
     ## Episode end
-    {episode_end} At the end `infos["episode_summary"]` has means over the episode. With
+    At the end `infos["episode_summary"]` has means over the episode. With
     `autoreset_mode="next_step"` the next step starts the next episode and ignores its action, with
     `"same_step"` the step itself does (`infos["final_obs"]` and `infos["final_info"]` have what was
     last), with `"disabled"` flocks wait for a reset with a mask, which is what TorchRL's
@@ -91,12 +65,10 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
 
     ## Arguments
     `num_envs`: number of flocks; `autoreset_mode`: one of Gymnasium's `AutoresetMode` or its name;
-    and:
-
-    {arguments_table}
+    and those of `LeadersEnv`.
 
     ## Version history
-    {version_history}
+    - v0: as `LeadersEnv`.
     """
 
     metadata: dict[str, Any] = {  # noqa: RUF012 - Gymnasium's own declaration
@@ -115,15 +87,12 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
     ) -> None:
         self.autoreset_mode = _autoreset_mode(autoreset_mode)
         num_envs = at_least_one(num_envs, "num_envs")
-        self._reward: Reward | None = None
-        if callable(options.get("reward")):
-            self._reward, options["reward"] = options["reward"], {}
-            if self.autoreset_mode == AutoresetMode.SAME_STEP:
-                raise ParameterError(
-                    "reward = a function is not accepted with autoreset_mode 'same_step': "
-                    "'next_step' or 'disabled'"
-                )
-        parsed = EnvOptions.parse(options)
+        parsed = EnvOptions.parse(options, takes_function=True)
+        if parsed.own_reward is not None and self.autoreset_mode == AutoresetMode.SAME_STEP:
+            raise ParameterError(
+                "reward = a function or a list is not accepted with autoreset_mode 'same_step': "
+                "'next_step' or 'disabled'"
+            )
         self.num_envs = num_envs
         self.num_leaders = parsed.parameters.n_leaders
         self._batch = LeaderBatch(
@@ -184,7 +153,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         infos: dict[str, Any] = {}
         for flock in range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist():
             infos = self._add_info(infos, self._batch.reset_info(flock), flock)
-        return self._shaped(self._batch.observe()), infos
+        return self._shaped(self._batch.core.observe()), infos
 
     def step(
         self, actions: NDArray[Any]
@@ -215,15 +184,11 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         EpisodeError
             Before the first reset, and after an episode's end with ``"disabled"``.
         """
-        flat = flat_actions(actions, self._actions_shape, self._batch.settings["rudder_levels"])
-        flocks = range(self.num_envs) if self._reward is not None else ()
-        over = [flock for flock in flocks if not self._batch.is_running(flock)]
-        observations, rewards, truncated = self._batch.step(flat)
+        flat = _core.flat_actions(
+            actions, self._actions_shape, self._batch.settings["rudder_levels"]
+        )
+        observations, rewards, truncated = self._batch.step(self, flat)
         self._rewards = rewards.reshape(self._actions_shape)
-        if self._reward is not None:
-            self._rewards = self._valued(self._reward(self))
-            # A step that only starts the next episode is worth nothing.
-            self._rewards[over] = 0.0
         infos = self._end_infos(truncated) if truncated.any() else {}
         return (
             self._shaped(observations),
@@ -233,21 +198,6 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
             infos,
         )
 
-    def _valued(self, rewards: ArrayLike) -> NDArray[np.float64]:
-        """Return a function's rewards by leader, shape (num_envs, k)."""
-        try:
-            found = np.array(rewards, np.float64)
-        except (TypeError, ValueError) as error:
-            raise ParameterError("the function of reward must return numbers") from error
-        if found.shape == (self.num_envs,):
-            found = np.repeat(found[:, None], self.num_leaders, axis=1)
-        if found.shape != self._actions_shape or not np.isfinite(found).all():
-            raise ParameterError(
-                f"the function of reward returned shape {found.shape}, expected finite numbers of "
-                f"shape ({self.num_envs},) or {self._actions_shape}"
-            )
-        return found
-
     def _shaped(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
         return rows.reshape(self.num_envs, -1)
 
@@ -255,10 +205,8 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         infos: dict[str, Any] = {}
         for flock in np.flatnonzero(truncated).tolist():
             info = self._batch.end_info(flock)
-            if self._reward is not None:
-                info["episode_summary"].pop("total_reward", None)
             if self.autoreset_mode == AutoresetMode.SAME_STEP:
-                last = self._batch.final_observation(flock).reshape(-1)
+                last = self._batch.core.last_views(flock)[0].reshape(-1)
                 infos = self._add_info(infos, {"final_obs": last, "final_info": info}, flock)
                 info = self._batch.reset_info(flock)
             infos = self._add_info(infos, info, flock)
@@ -266,7 +214,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
 
     def state(self) -> NDArray[np.float32]:
         """Return the global state of every flock, shape (num_envs, state size)."""
-        return self._batch.states()
+        return self._batch.core.states()
 
     def flock_features(self) -> NDArray[np.float32]:
         """Return features of every flock, shape (num_envs, features), float32.
@@ -274,7 +222,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         They depend neither on the order of boats nor on absolute angles, and are in the frame of
         the target, of several targets leader 0's.
         """
-        return self._batch.flock_features()
+        return self._batch.core.flock_features(each_leader=False)
 
     def reward_terms(self) -> dict[str, NDArray[np.float64]]:
         """Return each term of the last step's reward, shape (num_envs,), mean over leaders."""
@@ -308,15 +256,15 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
 
         Shape (num_envs, 6): the fields of `OrderParameters`, in its order.
         """
-        return self._batch.order_parameters()
+        return self._batch.core.order_parameters()
 
     def in_analysis_window(self) -> NDArray[np.bool_]:
         """Return which flocks are in the paper's analysis window now."""
-        return self._batch.in_analysis_window()
+        return self._batch.core.in_analysis_window().ravel()
 
     def get_state(self) -> bytes:
         """Return everything that the future depends on, as bytes."""
-        return self._batch.to_bytes()
+        return self._batch.core.to_bytes()
 
     def set_state(self, state: bytes) -> None:
         """Continue from `get_state` of an environment with the same options, bit for bit."""
@@ -324,7 +272,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
 
     def observe(self) -> NDArray[np.float32]:
         """Return the observations as they are now."""
-        return self._shaped(self._batch.observe())
+        return self._shaped(self._batch.core.observe())
 
     def clone(self) -> Self:
         """Return an independent copy that continues with the same bits."""

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
+from flockenv import _core
 from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, leader_summary, seeds_from
-from flockenv.envs.docs import specified
 from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.options import EnvOptions
 from flockenv.envs.render_mode import RenderMode
-from flockenv.envs.spaces import flat_actions, leader_action_space
+from flockenv.envs.spaces import leader_action_space
 from flockenv.errors import EpisodeError, ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.rendering.frames import DEFAULT_SIZE
@@ -44,25 +44,23 @@ class LeaderSlot:
 
     def episode(self) -> dict[str, Any]:
         """Return target, backward duration, seed and step of the slot's flock."""
-        return self._env._batch.episode(self.flock_index)
+        return self._env._batch.core.episode(self.flock_index)
 
     def state(self) -> NDArray[np.float32]:
         """Return the global state of the slot's flock, shape (state size,)."""
-        return self._env._batch.state(self.flock_index)
+        state: NDArray[np.float32] = self._env._batch.core.states()[self.flock_index]
+        return state
 
 
-@specified
 class LeaderVecEnv(VecEnv):
     """Many flocks for stable-baselines3, each leader a slot: one policy is shared by all leaders.
 
     ``flockenv.sb3.LeaderVecEnv(num_flocks=64, n_leaders=[1, 2, 3, 4], **options)``
 
-    ## Start here
-    {start}
+    `LeadersEnv` specifies the task, the entries of an observation, the terms of the reward and the
+    options; this text says what differs.
 
     ## Description
-    {task}
-
     Slots are leaders, flock after flock. Flocks are stepped in parallel in Rust; results depend
     neither on `num_flocks` nor on the number of threads. Arrays that are returned are never written
     to again.
@@ -76,50 +74,38 @@ class LeaderVecEnv(VecEnv):
 
     ## Action space
     A slot's is `Box(-1, 1, (1,), float32)`, its leader's rudder; `Discrete(n)` with
-    `rudder_levels=n`. {rudder}
+    `rudder_levels=n`.
 
     ## Observation space
-    A slot's is a `Box` of shape (observation size,), float32. {frame}
-
-    {observation_table}
-
-    `state()` gives each slot the global state of its flock, for critics: the entries of `boat` for
-    each boat in order, then the rest.
-
-    {state_table}
-
-    `flock_features()` gives each slot features of its flock that depend neither on the order of
-    boats nor on absolute angles, shape (slots, {flock_feature_count}), in `flock_feature_space`.
-
-    {flock_feature_table}
+    A slot's is a `Box` of shape (observation size,), float32. `state()` gives each slot the global
+    state of its flock, `flock_features()` the features of its flock in the frame of its own target.
 
     ## Rewards
-    Each slot gets the weighted sum of the terms below, its own where they are a leader's own;
-    `signed_order` with weight 1 unless `reward` says otherwise. `reward_terms()` returns those of
-    the last step.
+    Each slot gets the weighted sum of the terms, its own where they are a leader's own.
+    `reward_terms()` returns those of the last step. Where each leader has a target of its own, each
+    slot's last info has a `"leader_summary"` of its own: `target`, `total_reward`, `signed_order`
+    and `share_towards_target`.
 
-    {general_sum} Each slot's last info then has a `"leader_summary"` of its own: `target`,
-    `total_reward`, `signed_order` and `share_towards_target`.
-
-    {reward_table}
+    `reward` may also be a function of this environment, which is called once the flocks have moved,
+    before those that ended start anew, and which returns rewards (slots,), or (flocks,) for all
+    leaders of a flock. It looks at `poses()`, `velocities()`, `order_parameters()`,
+    `reward_terms()` and the like.
 
     ## Starting state
-    {starting_state} Here `seed(s)` makes the next reset seed flock i with s + i, and
-    `set_options` sets the options of the next reset.
+    `seed(s)` makes the next reset seed flock i with s + i, and `set_options` sets the options of
+    the next reset: a dictionary, or a list of one for each slot, equal for a flock's leaders.
 
     ## Episode end
-    {episode_end} A flock's slots end together and start the next episode in the same step. Their
-    infos then have `"TimeLimit.truncated"` (always True), `"terminal_observation"`,
-    `"terminal_state"`, `"terminal_flock_features"` and the `"episode_summary"`.
+    A flock's slots end together and start the next episode in the same step. Their infos then have
+    `"TimeLimit.truncated"` (always True), `"terminal_observation"`, `"terminal_state"`,
+    `"terminal_flock_features"` and the `"episode_summary"`.
 
     ## Arguments
     `num_flocks`: number of flocks; `n_leaders`: leaders of each flock, where a list is dealt out to
-    the flocks in turn, so that one policy can learn all of them; and:
-
-    {arguments_table}
+    the flocks in turn, so that one policy can learn all of them; and those of `LeadersEnv`.
 
     ## Version history
-    {version_history}
+    - v0: as `LeadersEnv`.
     """
 
     def __init__(
@@ -133,10 +119,12 @@ class LeaderVecEnv(VecEnv):
     ) -> None:
         num_flocks = at_least_one(num_flocks, "num_flocks")
         counts = None if n_leaders is None else _leader_counts(n_leaders)
-        parsed = EnvOptions.parse({**options, "n_leaders": max(counts)} if counts else options)
+        options = {**options, "n_leaders": max(counts)} if counts else options
+        parsed = EnvOptions.parse(options, takes_function=True)
         counts = counts or [parsed.parameters.n_leaders]
         leaders = [counts[flock % len(counts)] for flock in range(num_flocks)]
-        self._batch = LeaderBatch(parsed, leaders, "same_step")
+        # Flocks start anew here, once their rewards are known.
+        self._batch = LeaderBatch(parsed, leaders, "disabled")
         settings = self._batch.settings
         self.num_flocks = num_flocks
         self.render_mode = render_mode
@@ -148,7 +136,7 @@ class LeaderVecEnv(VecEnv):
         self.flock_feature_space = self._batch.flock_feature_space
         #: What actions stand for, and decisions per second.
         self.action_mode: str = settings["action_mode"]
-        self.decisions_hz = self._batch.decisions_hz
+        self.decisions_hz = fps
         self.slots = [
             LeaderSlot(self, flock, leader)
             for flock, k in enumerate(leaders)
@@ -176,22 +164,39 @@ class LeaderVecEnv(VecEnv):
         -------
         numpy.ndarray
             Shape (slots, observation size), float32.
+
+        Raises
+        ------
+        ParameterError
+            For options that differ between the leaders of a flock, or name other things in
+            different flocks.
+        TypeError
+            For options that are no dictionaries.
         """
+        options = self._options_by_flock()
         first = np.searchsorted(self.flock_of_slot, np.arange(self.num_flocks))
         seeds = [self._seeds[slot] for slot in first.tolist()]
-        options = [self._options[slot] for slot in first.tolist()]
-        if not all(isinstance(each, Mapping) for each in options):
-            raise TypeError("set_options: a dictionary, or a list of one for each slot")
-        names = {name for each in options for name in each}
-        if any(each.keys() != names for each in options):
-            raise ParameterError("set_options: the flocks' options have to name the same things")
-        listed = {name: [each[name] for each in options] for name in names}
-        self._batch.reset(seeds, listed, lambda: drawn_seed(self._random))
+        self._batch.reset(seeds, options, lambda: drawn_seed(self._random))
         self._reset_seeds()
         self._reset_options()
         start = [self._batch.reset_info(flock) for flock in range(self.num_flocks)]
         self.reset_infos = [dict(start[flock]) for flock in self.flock_of_slot]
-        return self._batch.observe()
+        return self._batch.core.observe()
+
+    def _options_by_flock(self) -> dict[str, list[Any]]:
+        options: list[Any] = self._options
+        if len(options) != self.num_envs or not all(isinstance(each, Mapping) for each in options):
+            raise TypeError("set_options: a dictionary, or a list of one for each slot")
+        by_flock: dict[int, Mapping[str, Any]] = {}
+        for flock, each in zip(self.flock_of_slot.tolist(), options, strict=True):
+            if not _equal(by_flock.setdefault(flock, each), each):
+                raise ParameterError(
+                    f"set_options: the leaders of flock {flock} have different options"
+                )
+        names = by_flock[0].keys()
+        if any(each.keys() != names for each in by_flock.values()):
+            raise ParameterError("set_options: the flocks' options have to name the same things")
+        return {name: [each[name] for each in by_flock.values()] for name in names}
 
     def step_async(self, actions: NDArray[Any]) -> None:
         """Take note of actions, shape (slots, 1) rudders or (slots,) numbers of levels."""
@@ -199,7 +204,7 @@ class LeaderVecEnv(VecEnv):
         if levels is not None and np.shape(actions) == (self.num_envs, 1):
             # As the closed-form laws give them.
             actions = np.reshape(actions, self.num_envs)
-        self._actions = flat_actions(actions, self._actions_shape, levels)
+        self._actions = _core.flat_actions(actions, self._actions_shape, levels, "actions")
 
     def step_wait(
         self,
@@ -222,39 +227,41 @@ class LeaderVecEnv(VecEnv):
         if self._actions is None:
             raise EpisodeError("step_wait was called without step_async")
         flat, self._actions = self._actions, None
-        observations, rewards, truncated = self._batch.step(flat)
+        observations, rewards, truncated = self._batch.step(self, flat)
         infos: list[dict[str, Any]] = [{} for _ in self.slots]
         if truncated.any():
-            self._report_ends(truncated, infos)
-            dones = truncated[self.flock_of_slot]
-        else:
-            dones = np.zeros(self.num_envs, np.bool_)
-        return observations, rewards.astype(np.float32), dones, infos
+            self._report_ends(truncated, observations, infos)
+            unseeded: list[int | None] = [None] * self.num_flocks
+            self._batch.reset(unseeded, None, lambda: drawn_seed(self._random), truncated)
+            observations = self._batch.core.observe()
+        for slot in np.flatnonzero(truncated[self.flock_of_slot]).tolist():
+            self.reset_infos[slot] = self._batch.reset_info(int(self.flock_of_slot[slot]))
+        return observations, rewards.astype(np.float32), truncated[self.flock_of_slot], infos
 
-    def _report_ends(self, truncated: NDArray[np.bool_], infos: list[dict[str, Any]]) -> None:
-        for flock in np.flatnonzero(truncated).tolist():
-            last = self._batch.final_observation(flock)
-            first = int(np.searchsorted(self.flock_of_slot, flock))
-            for leader, row in enumerate(last):
-                slot = first + leader
-                infos[slot] = self._batch.end_info(flock)
-                infos[slot]["TimeLimit.truncated"] = True
-                infos[slot]["terminal_observation"] = row.copy()
-                infos[slot]["terminal_state"] = self._batch.final_state(flock)
-                infos[slot]["terminal_flock_features"] = self._batch.final_flock_features(
-                    flock, leader
-                )
-                own = leader_summary(infos[slot]["episode_summary"], leader)
-                if own:
-                    infos[slot]["leader_summary"] = own
-                if leader == 0:
-                    infos[slot]["episode"] = self._monitored(infos[slot]["episode_summary"])
-                self.reset_infos[slot] = self._batch.reset_info(flock)
-
-    def _monitored(self, summary: Mapping[str, Any]) -> dict[str, Any]:
-        # As `Monitor` does, but for the time: infos depend on seeds alone.
-        decisions = -(-summary["steps"] // self._batch.period_steps)
-        return {"r": summary["total_reward"], "l": decisions}
+    def _report_ends(
+        self,
+        truncated: NDArray[np.bool_],
+        last: NDArray[np.float32],
+        infos: list[dict[str, Any]],
+    ) -> None:
+        states, features = self._batch.core.states(), self.flock_features()
+        for slot in np.flatnonzero(truncated[self.flock_of_slot]).tolist():
+            flock, leader = int(self.flock_of_slot[slot]), self.slots[slot].leader_index
+            infos[slot] = {
+                **self._batch.end_info(flock),
+                "TimeLimit.truncated": True,
+                "terminal_observation": last[slot],
+                "terminal_state": states[flock],
+                "terminal_flock_features": features[slot],
+            }
+            summary = infos[slot]["episode_summary"]
+            own = leader_summary(summary, leader)
+            if own:
+                infos[slot]["leader_summary"] = own
+            if leader == 0:
+                # As `Monitor` does, but for the time: infos depend on seeds alone.
+                decisions = -(-summary["steps"] // self._batch.period_steps)
+                infos[slot]["episode"] = {"r": summary["total_reward"], "l": decisions}
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
         """Return an attribute of each slot's `LeaderSlot`."""
@@ -280,7 +287,7 @@ class LeaderVecEnv(VecEnv):
 
     def state(self) -> NDArray[np.float32]:
         """Return the global state of each slot's flock, shape (slots, state size)."""
-        return self._batch.states()[self.flock_of_slot]
+        return self._batch.core.states()[self.flock_of_slot]
 
     def flock_features(self) -> NDArray[np.float32]:
         """Return features of each slot's flock, shape (slots, features), float32.
@@ -288,24 +295,32 @@ class LeaderVecEnv(VecEnv):
         They depend neither on the order of boats nor on absolute angles, and are in the frame of
         the slot's own target.
         """
-        return self._batch.leader_features()
+        return self._batch.core.flock_features(each_leader=True)
 
     def reward_terms(self) -> dict[str, NDArray[np.float64]]:
         """Return each term of the last step's reward, shape (slots,)."""
         return self._batch.reward_terms()
 
+    def poses(self) -> NDArray[np.float64]:
+        """Return all poses, shape (flocks, n, 3): [x cm, y cm, heading rad], leaders first."""
+        return self._batch.poses()
+
+    def velocities(self) -> NDArray[np.float64]:
+        """Return all velocities, shape (flocks, n, 3): [cm/s, cm/s, rad/s], leaders first."""
+        return self._batch.velocities()
+
     def order_parameters(self) -> NDArray[np.float64]:
         """Return order parameters now, shape (flocks, 6); see `LeadersVectorEnv`."""
-        return self._batch.order_parameters()
+        return self._batch.core.order_parameters()
 
     def get_state(self) -> bytes:
         """Return everything that the future depends on, as bytes."""
-        return self._batch.to_bytes()
+        return self._batch.core.to_bytes()
 
     def set_state(self, state: bytes) -> NDArray[np.float32]:
         """Continue from `get_state` of the same options, bit for bit; return the observations."""
         self._batch.restore(state)
-        return self._batch.observe()
+        return self._batch.core.observe()
 
     def clone(self) -> Self:
         """Return an independent copy that continues with the same bits."""
@@ -320,6 +335,14 @@ class LeaderVecEnv(VecEnv):
 
     def close(self) -> None:
         """Nothing is held open."""
+
+
+def _equal(one: Any, other: Any) -> bool:
+    try:
+        np.testing.assert_equal(one, other)
+    except AssertionError:
+        return False
+    return True
 
 
 def _leader_counts(n_leaders: Any) -> list[int]:

@@ -91,7 +91,7 @@ def test_a_run_has_training_seeds_of_its_own():
     seeds = POLICY_SEEDS["training"].seeds(2, run=3)
     native = flockenv.LeadersVectorEnv(2, **SMALL)
     expected, _ = native.reset(seed=list(seeds))
-    observed = env._batch.observe().reshape(2, -1)
+    observed = env._batch.core.observe().reshape(2, -1)
     np.testing.assert_array_equal(observed, expected)
 
 

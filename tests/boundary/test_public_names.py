@@ -19,7 +19,6 @@ ENVIRONMENT_OPTIONS = {
     "observation": {"observation": {"neighbors": 4, "order": False}},
     "action_mode": {"action_mode": "lean"},
     "decision_period_s": {"decision_period_s": 0.5},
-    "decision_period_cycles": {"decision_period_cycles": 2.0},
     "physics": {"physics": "training"},
     "render_mode": {"render_mode": "rgb_array"},
 }

@@ -26,7 +26,7 @@ def rolled(steps, actions=None, policy=None, **options):
         given = np.full((3, 2), actions) if policy is None else policy.predict(seen)[0]
         seen, reward, *_ = env.step(given)
         rewards.append(reward)
-    rudders = env._batch.rudders()
+    rudders = env._batch.core.rudders().ravel()
     return seen, np.array(rewards), rudders, env._batch.flock(1).pose
 
 
@@ -62,7 +62,7 @@ def test_leaders_steer_outward_of_the_tangent_by_the_angle(mode, largest, gain, 
     angle = 0.3
     env.step([angle / largest])
     # Outward of a clockwise tangent is counter-clockwise, where positive rudders turn to.
-    rudders = env._batch.rudders()
+    rudders = env._batch.core.rudders().ravel()
     assert rudders == pytest.approx([sign * gain * angle], rel=1e-6)
     for _ in range(18):
         env.step([angle / largest])
@@ -148,32 +148,8 @@ def test_the_parallel_environment_and_the_single_one_agree():
 
 
 @pytest.mark.parametrize(
-    ("cycles", "period_s"), [(1.0, 6.3), (2.0, 12.6), (0.5, 3.2), (10.0, 63.1), (1e-9, 0.1)]
-)
-def test_motor_cycles_are_rounded_to_control_steps(cycles: float, period_s: float) -> None:
-    # The cycle is 4 s forward, 0.31 s backward and 1 s of drift after each.
-    options = {"fw_s": 4.0, "bw_s": 0.31, "n_boats": 6, "n_leaders": 2}
-    env = LeadersEnv(**options, decision_period_cycles=cycles)
-    assert env.metadata["render_fps"] == pytest.approx(1.0 / period_s)
-    same = LeadersEnv(**options, decision_period_s=period_s)
-    for each in (env, same):
-        each.reset(seed=4)
-    assert env.step([0.5, -0.5])[0].tobytes() == same.step([0.5, -0.5])[0].tobytes()
-
-
-@pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"decision_period_cycles": 0.0}, "decision_period_cycles = 0.*a positive number"),
-        ({"decision_period_cycles": float("nan")}, "a positive number of motor cycles"),
-        ({"decision_period_cycles": 1e12}, "at most 1e9 control steps"),
-        ({"decision_period_cycles": 1.0, "bw_s": (0.3, 0.4)}, "not accepted with a drawn bw_s"),
-        ({"decision_period_cycles": 1.0, "bw_s": (0.3,)}, "bw_s"),
-        ({"decision_period_cycles": 1.0, "control_hz": 0.0}, "control_hz"),
-        (
-            {"decision_period_cycles": 1.0, "decision_period_s": 1.0},
-            "not accepted with decision_period_s: one of them",
-        ),
         ({"action_mode": "leen"}, "did you mean 'lean'"),
         ({"action_mode": "xyz"}, "there are rudder, heading, lean"),
         ({"action_mode": "lean", "pool": (100.0, 40.0)}, "wide and narrow"),

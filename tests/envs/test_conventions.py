@@ -231,7 +231,7 @@ def test_summary_reports_means_over_the_episode():
     for step in range(200):
         _, reward, _, _, info = env.step(np.zeros(3))
         rewards.append(reward)
-        if step >= 20 and env._batch.in_analysis_window()[0]:
+        if step >= 20 and env._batch.core.in_analysis_window().ravel()[0]:
             in_window.append(reward)
     summary = info["episode_summary"]
     assert summary["total_reward"] == pytest.approx(sum(rewards), rel=1e-12)

@@ -67,7 +67,7 @@ def test_counter_clockwise_actions_are_reflected():
     env = flockenv.LeadersEnv(**QUIET, target="ccw")
     env.reset(seed=0)
     env.step(np.array([1.0, -0.25, 0.0]))
-    np.testing.assert_array_equal(env._batch.rudders(), [-1.0, 0.25, 0.0])
+    np.testing.assert_array_equal(env._batch.core.rudders().ravel(), [-1.0, 0.25, 0.0])
 
 
 SIGNS = np.array([-1.0 if each.mirrored else 1.0 for each in observation_entries()], np.float32)

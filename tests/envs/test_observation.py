@@ -165,7 +165,7 @@ def test_observations_stay_inside_their_space():
         observations, *_ = venv.step(venv.action_space.sample())
         assert observations in venv.observation_space
         assert np.isfinite(observations).all()
-    assert all(venv._batch.summary(flock)["clip_rate"] < 0.01 for flock in range(8))
+    assert all(venv._batch.core.summary(flock)["clip_rate"] < 0.01 for flock in range(8))
 
 
 def test_state_describes_every_boat():

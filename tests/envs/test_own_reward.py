@@ -45,14 +45,16 @@ def closeness(env: LeadersVectorEnv) -> np.ndarray:
 
 def test_a_function_of_the_environment_is_its_reward():
     env, plain = started(reward=closeness), started()
+    total = np.zeros(3)
     for _ in range(4):
         observations, rewards, *_ = env.step(ACTIONS)
+        total += rewards
         assert np.array_equal(observations, plain.step(ACTIONS)[0])
         assert np.array_equal(rewards, closeness(plain))
         assert np.array_equal(env.leader_rewards(), np.stack([closeness(plain)] * 2, axis=1))
-    *_, truncated, infos = env.step(ACTIONS)
+    _, rewards, _, truncated, infos = env.step(ACTIONS)
     assert truncated.all()
-    assert "total_reward" not in infos["episode_summary"]
+    assert infos["episode_summary"]["total_reward"] == pytest.approx(total + rewards)
     # The next step starts the next episode.
     assert not env.step(ACTIONS)[1].any()
     assert env.step(ACTIONS)[1].all()
@@ -77,3 +79,45 @@ def test_rewards_that_are_none_are_refused(returned):
 def test_a_function_needs_the_end_of_an_episode_to_look_at():
     with pytest.raises(ParameterError, match="same_step"):
         LeadersVectorEnv(2, autoreset_mode="same_step", reward=closeness, **SMALL)
+
+
+WEIGHTS = [{"leader_velocity": 2.0, "contact_push": 0.5}, {"signed_order": -1.0}]
+
+
+@pytest.mark.parametrize(
+    "options", [{}, {"decision_period_s": 0.2, "reward_horizon_s": 5.0, "target": ["cw", "ccw"]}]
+)
+def test_weights_of_each_leader_pay_it_as_the_same_weights_of_all(options):
+    """Leader 0 of the first flock is paid as where all have its weights, and so is leader 1."""
+    own = flockenv.parallel_env(**SMALL, reward=WEIGHTS, **options)
+    same = [flockenv.parallel_env(**SMALL, reward=weights, **options) for weights in WEIGHTS]
+    for env in (own, *same):
+        env.reset(seed=4)
+    total = np.zeros(2)
+    while own.agents:
+        actions = {"leader_0": [0.5], "leader_1": [-0.5]}
+        steps = [env.step(actions) for env in (own, *same)]
+        paid = np.array([steps[0][1][f"leader_{leader}"] for leader in range(2)])
+        expected = [steps[1 + leader][1][f"leader_{leader}"] for leader in range(2)]
+        assert paid == pytest.approx(expected, rel=1e-12)
+        total += paid
+    infos = steps[0][4]
+    assert infos["leader_0"]["episode_summary"]["total_reward"] == pytest.approx(total.mean())
+    if "target" in options:
+        own_total = infos["leader_1"]["leader_summary"]["total_reward"]
+        assert own_total == pytest.approx(total[1])
+
+
+@pytest.mark.parametrize(
+    ("reward", "words"),
+    [
+        (WEIGHTS[:1], "one for each of 2 leaders"),
+        ([{}, {"signed_ordre": 1.0}], "did you mean 'signed_order'"),
+        ([{}, {"signed_order": np.nan}], "within 1e6"),
+        ([{}, 1.0], "must hold dictionaries"),
+        ([{}, {"signed_order": "much"}], "weights are numbers"),
+    ],
+)
+def test_weights_that_are_none_are_refused(reward, words):
+    with pytest.raises((ParameterError, TypeError), match=words):
+        flockenv.parallel_env(**SMALL, reward=reward)

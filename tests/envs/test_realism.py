@@ -102,7 +102,7 @@ def rudders(env, commands):
     found = []
     for command in commands:
         env.step(np.array(command))
-        found.append(env._batch.rudders().copy())
+        found.append(env._batch.core.rudders().ravel().copy())
     return np.array(found)
 
 
@@ -129,7 +129,9 @@ def test_the_rudder_that_stands_is_observed():
     env.reset(seed=0)
     for _ in range(3):
         observation = env.step(np.array([1.0, 0.5, -1.0]))[0]
-    np.testing.assert_allclose(observation.reshape(3, -1)[:, 7], env._batch.rudders(), atol=1e-7)
+    np.testing.assert_allclose(
+        observation.reshape(3, -1)[:, 7], env._batch.core.rudders().ravel(), atol=1e-7
+    )
 
 
 def test_levels_are_spread_evenly():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv.envs.reward import TERMS
+from flockenv.envs.options import TERMS
 
 OPTIONS = {"n_boats": 6, "n_leaders": 2, "episode_s": 10.0}
 ALL = {
@@ -104,4 +104,4 @@ def test_leaders_alone_can_be_rewarded_for_their_own_motion():
     )
     env.reset(seed=0)
     env.step(np.zeros(3))
-    assert np.isnan(env._batch.order_parameters()).all()
+    assert np.isnan(env._batch.core.order_parameters()).all()

@@ -52,7 +52,7 @@ def test_mirrored_observations_give_the_mirrored_rudder():
         action, _ = law.predict(observation)
         np.testing.assert_allclose(-action, env.flock.steering_law(), atol=1e-6)
         observation, *_ = env.step(action)
-    np.testing.assert_allclose(env._batch.rudders(), -action, atol=1e-6)
+    np.testing.assert_allclose(env._batch.core.rudders().ravel(), -action, atol=1e-6)
 
 
 def random_observations(count):

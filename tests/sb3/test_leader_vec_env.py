@@ -168,7 +168,7 @@ def test_discrete_rudders():
     assert venv.action_space == gymnasium.spaces.Discrete(5)
     venv.reset()
     venv.step(np.arange(6) % 5)
-    np.testing.assert_array_equal(venv._batch.rudders(), [-1, -0.5, 0, 0.5, 1, -1])
+    np.testing.assert_array_equal(venv._batch.core.rudders().ravel(), [-1, -0.5, 0, 0.5, 1, -1])
     PPO("MlpPolicy", venv, n_steps=8, batch_size=16, n_epochs=1, device="cpu").learn(100)
 
 

@@ -151,7 +151,7 @@ def test_torch_fixes_what_has_no_seed():
 def test_reset_options_reach_the_flocks():
     env = made(state="features")
     starts = [env.reset(options={"target": target}) for target in ("cw", "ccw")]
-    assert env._batch.episode(0)["target"] == "ccw"
+    assert env._batch.core.episode(0)["target"] == "ccw"
     assert len(starts) == 2
     with pytest.raises(ParameterError, match="did you mean 'target'"):
         env.reset(options={"targt": "cw"})
@@ -219,10 +219,10 @@ def test_bad_actions_move_nothing():
     env = made()
     env.set_seed(4)
     step = acted(env, np.full((3, 2), np.nan))
-    before = env._batch.to_bytes()
+    before = env._batch.core.to_bytes()
     with pytest.raises(ParameterError, match="NaN"):
         env.step(step)
-    assert env._batch.to_bytes() == before
+    assert env._batch.core.to_bytes() == before
 
 
 def test_steps_past_the_end_are_refused():
