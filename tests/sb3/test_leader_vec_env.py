@@ -223,9 +223,56 @@ def test_counts_and_seeds_are_checked():
         venv.seed(1.5)
     venv.seed(2**64 - 3)
     venv.reset()
-    venv.set_options([])
-    with pytest.raises((TypeError, IndexError)):
-        venv.reset()
+
+
+def test_a_flocks_leaders_share_the_options_of_a_reset():
+    venv = make(num_flocks=2)
+    venv.set_options([{"target": word} for word in ("cw", "cw", "ccw", "ccw")])
+    venv.reset()
+    assert [info["target"] for info in venv.reset_infos] == ["cw", "cw", "ccw", "ccw"]
+    state = {"pose": flockenv.Flock(venv.slots[0].parameters, 9).pose}
+    venv.set_options([{"state": {"pose": state["pose"].copy()}} for _ in range(4)])
+    venv.reset()
+    np.testing.assert_array_equal(venv.poses(), [state["pose"]] * 2)
+    for options in (
+        [{"target": word} for word in ("cw", "ccw", "cw", "cw")],
+        [{"target": "cw"}, {}, {"target": "cw"}, {"target": "cw"}],
+        [{"target": "cw"}, {"target": "cw"}, {"bw_s": 0.1}, {"bw_s": 0.1}],
+    ):
+        venv.set_options(options)
+        with pytest.raises(flockenv.ParameterError, match="set_options: the"):
+            venv.reset()
+    for options in ([{}], [None] * 4):
+        venv.set_options(options)
+        with pytest.raises(TypeError, match="a list of one for each slot"):
+            venv.reset()
+
+
+def test_a_function_of_the_environment_is_its_reward():
+    """It sees the last state of an episode, and its sum is the episode's return."""
+
+    def outward(venv: LeaderVecEnv) -> np.ndarray:
+        pose = venv.poses()[:, :2, :2]
+        return np.hypot(pose[..., 0], pose[..., 1]) + venv.velocities()[:, :2, 2]
+
+    venv, plain = make(reward=outward, num_flocks=2), make(num_flocks=2)
+    for env in (venv, plain):
+        env.seed(3)
+        env.reset()
+    total = np.zeros(4)
+    for step in range(STEPS):
+        actions = actions_of(venv, step)
+        observations, rewards, dones, infos = venv.step(actions)
+        np.testing.assert_array_equal(observations, plain.step(actions)[0])
+        total += rewards
+        if not dones.all():
+            np.testing.assert_allclose(rewards, outward(venv).ravel(), rtol=1e-6)
+    assert dones.all()
+    returns = [infos[slot]["episode"]["r"] for slot in (0, 2)]
+    assert returns == pytest.approx(total.reshape(2, 2).mean(axis=1), rel=1e-6)
+    last = infos[0]["terminal_state"]
+    assert (last != venv.state()[0]).any()
+    assert rewards[0] != pytest.approx(outward(venv).ravel()[0])
 
 
 def test_laws_steer_slots_with_levels():

@@ -42,13 +42,13 @@ def test_the_same_settings_train_the_same_leaders(tiny: TrainingSettings, tmp_pa
 
 def test_a_killed_training_goes_on(tiny: TrainingSettings, tmp_path: Path) -> None:
     with pytest.raises(Killed):
-        training.train(tiny, tmp_path, killed_after(128))
+        training.train(tiny, tmp_path, killed_after(64))
     with pytest.raises(ParameterError, match="holds a run already: resume it"):
         training.train(tiny, tmp_path)
     stored = PPO.load(tmp_path / "checkpoint.zip", device="cpu")
     seen: list[int] = []
     model = training.resume(tmp_path, report=lambda progress: seen.append(progress.samples))
-    assert seen[0] == stored.num_timesteps == 128
+    assert seen[0] == stored.num_timesteps == 64
     assert model.num_timesteps == seen[-1] == 192
     # It starts from what was stored, and learns.
     assert (weights(model) != weights(stored)).any()
