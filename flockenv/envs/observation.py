@@ -14,15 +14,12 @@ __all__ = [
     "BLOCKS",
     "OBSERVATION_VERSION",
     "Entry",
-    "FlockRowSpace",
     "ObservationSpace",
     "flock_feature_entries",
     "flock_feature_space",
     "observation_entries",
-    "observation_space",
     "observation_version",
     "observe",
-    "seen_space",
     "state_entries",
     "state_space",
 ]
@@ -126,45 +123,6 @@ class ObservationSpace(_Box):
             "decision_period_s",
         )
         self.options = {name: options[name] for name in names}
-
-
-class FlockRowSpace(_Box):
-    """The space of one leader's observation, followed by the features of its flock.
-
-    Attributes
-    ----------
-    observed : ObservationSpace
-        The space of the first part, which is what a leader sees.
-    """
-
-    def __init__(self, observed: ObservationSpace) -> None:
-        flock = flock_feature_space()
-        low, high = np.append(observed.low, flock.low), np.append(observed.high, flock.high)
-        super().__init__(low, high, dtype=np.float32)
-        self.observed = observed
-
-
-def seen_space(model: Any) -> Any:
-    """Return the space of what a model's actor sees."""
-    space = getattr(model, "observation_space", None)
-    return space.observed if isinstance(space, FlockRowSpace) else space
-
-
-def observation_space(
-    blocks: Mapping[str, Any], leaders: int = 1, **options: Any
-) -> ObservationSpace:
-    """Return the space of one leader's observation, or of several one after another.
-
-    Parameters
-    ----------
-    blocks
-        Blocks that differ from `BLOCKS`.
-    leaders
-        Number of leaders.
-    options
-        Others of `ObservationSpace.options`, where they are not the defaults.
-    """
-    return ObservationSpace({**_core.env_defaults(), **options, "observation": blocks}, leaders)
 
 
 def state_space(n_boats: int) -> _Box:

@@ -41,13 +41,13 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
     `rudder_levels=n`. A rudder is held for a control step. A positive rudder turns a boat that
     moves forward counter-clockwise, and works in reverse on a boat that moves backward. Numbers
     beyond ±1 are clipped. NaN is an error, and nothing moves then. With `rudder_levels=n`, levels 0
-    to n - 1 are rudders evenly spaced from -1 to 1, which `policies.WithLevels` chooses for a
-    policy of rudders. With `action_mode="heading"` an action stands for a heading, its angle
-    outward of the target's tangent over π, and `DampedLaw()` steers to it in every control step.
-    With `"lean"` it stands for that angle over 1.2 rad, and the damped law with the gains tuned in
-    the pool steers to it: 0 is that law itself, bit for bit. Both laws read what the leader sees of
-    itself. A step holds its action for `decision_period_s`; its reward is the sum over those
-    control steps, or over fewer where the episode ends, and its `reward_terms` are means over them.
+    to n - 1 are rudders evenly spaced from -1 to 1. With `action_mode="heading"` an action stands
+    for a heading, its angle outward of the target's tangent over π, and `DampedLaw()` steers to it
+    in every control step. With `"lean"` it stands for that angle over 1.2 rad, and the damped law
+    with the gains tuned in the pool steers to it: 0 is that law itself, bit for bit. Both laws read
+    what the leader sees of itself. A step holds its action for `decision_period_s`; its reward is
+    the sum over those control steps, or over fewer where the episode ends, and its `reward_terms`
+    are means over them.
 
     ## Observation space
     `Box` of shape (k * observation size,), float32: what leader 0 observes, then leader 1, and so
@@ -322,7 +322,8 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
       T, so that sums over T are means, of order one; None: each counts in full
     - `rudder_levels` = `None`: number of levels of the discrete action, 2 to 1001; None: continuous
     - `rudder_lag_s` = `0.0`: time constant of the rudder servo in s
-    - `rudder_rate_per_s` = `None`: fastest change of the rudder in 1/s; None: any
+    - `rudder_rate_per_s` = `None`: fastest change of the rudder in 1/s (-1 to 1 is a change of 2);
+      None: any
     - `render_mode` = `None`: None, "rgb_array" (`render` returns a frame) or, for environments with
       one flock, "human" (a window, extra `render`)
     - `render_size` = `(600, 600)`: width and height of a frame in pixels, 64 to 4096

@@ -1,7 +1,6 @@
 """Leader policies: closed-form laws, learned networks and plain ones to compare with."""
 
 from flockenv.policies.constant import RandomRudders, StraightAhead
-from flockenv.policies.discrete import WithLevels
 from flockenv.policies.laws import DampedLaw, LawPolicy, LeaningLaw, SteeringLaw
 from flockenv.policies.model import ModelPolicy
 from flockenv.policies.network import NetworkPolicy
@@ -16,6 +15,5 @@ __all__ = [
     "RandomRudders",
     "SteeringLaw",
     "StraightAhead",
-    "WithLevels",
     "load",
 ]

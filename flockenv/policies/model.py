@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv import _core
 from flockenv._io.array_file import is_special
 from flockenv._io.extras import require
-from flockenv.envs.observation import ObservationSpace, seen_space
+from flockenv.envs.observation import ObservationSpace
 from flockenv.errors import ParameterError
 from flockenv.policies.base import leaders_observed
 
@@ -63,7 +63,7 @@ class ModelPolicy:
     def __init__(self, model: Any, *, provenance: Mapping[str, str] | None = None) -> None:
         self.model = model
         self.provenance = dict(provenance or {})
-        space = seen_space(model)
+        space = getattr(model, "observation_space", None)
         if not isinstance(space, ObservationSpace):
             raise ParameterError(
                 f"a model with the observation space {space} is not accepted: it was trained on "

@@ -14,13 +14,11 @@ from flockenv.sb3.evaluation import (
     PerFlock,
     evaluate_flocks,
 )
-from flockenv.sb3.flock_critic import FlockCriticPolicy, WithFlockFeatures
 from flockenv.sb3.leader_vec_env import LeaderSlot, LeaderVecEnv
 from flockenv.sb3.monitor import FlockMonitor
 from flockenv.sb3.shared_noise import SharedNoisePolicy, shared_noise
 
 __all__ = [
-    "FlockCriticPolicy",
     "FlockEvalCallback",
     "FlockEvaluation",
     "FlockMonitor",
@@ -28,7 +26,6 @@ __all__ = [
     "LeaderVecEnv",
     "PerFlock",
     "SharedNoisePolicy",
-    "WithFlockFeatures",
     "evaluate_flocks",
     "shared_noise",
 ]

@@ -201,9 +201,6 @@ class LeaderVecEnv(VecEnv):
     def step_async(self, actions: NDArray[Any]) -> None:
         """Take note of actions, shape (slots, 1) rudders or (slots,) numbers of levels."""
         levels = self._batch.settings["rudder_levels"]
-        if levels is not None and np.shape(actions) == (self.num_envs, 1):
-            # As the closed-form laws give them.
-            actions = np.reshape(actions, self.num_envs)
         self._actions = _core.flat_actions(actions, self._actions_shape, levels, "actions")
 
     def step_wait(

@@ -129,13 +129,6 @@ def test_policies_of_leaders_that_share_nothing_are_refused(tmp_path):
         network_policy(run)
 
 
-def test_levels_of_the_rudder_are_learned_too(tmp_path):
-    run = experiment(tmp_path, critic=MlpConfig, state="none", prefer_continuous_actions=False)
-    run.run()
-    with pytest.raises(ParameterError, match="rudder_levels = 5 is not accepted"):
-        network_policy(run)
-
-
 def test_the_command_finds_the_tasks(tmp_path):
     command = [
         *(sys.executable, "-m", "flockenv.benchmarl", "task=flockenv/lean", "algorithm=mappo"),
@@ -164,8 +157,3 @@ def test_the_command_finds_the_tasks(tmp_path):
 def test_bad_configurations_are_named(config, error, message):
     with pytest.raises(error, match=message):
         LeadersTask.LEADERS.get_task(config)
-
-
-def test_no_flocks_are_refused():
-    with pytest.raises(ParameterError, match="num_flocks = 0"):
-        LeadersTask.LEAN.get_from_yaml().get_env_fun(0, True, 0, "cpu")()

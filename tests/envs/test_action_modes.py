@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv.envs.parallel import LeadersParallelEnv
 from flockenv.envs.single import LeadersEnv
 from flockenv.envs.vector import LeadersVectorEnv
 from flockenv.errors import ParameterError
-from flockenv.policies import DampedLaw, NetworkPolicy, WithLevels
+from flockenv.policies import DampedLaw, NetworkPolicy
 
 POOLS = ("wide", "narrow")
 
@@ -134,19 +133,6 @@ def test_the_reward_horizon_makes_sums_over_it_means():
         assert other[4]["reward_terms"] == one[4]["reward_terms"]
 
 
-def test_the_parallel_environment_and_the_single_one_agree():
-    options = {"n_boats": 6, "n_leaders": 2, "pool": "narrow", "action_mode": "lean"}
-    options["decision_period_s"] = 0.5
-    single, parallel = LeadersEnv(**options), LeadersParallelEnv(**options)
-    single.reset(seed=2)
-    parallel.reset(seed=2)
-    for _ in range(4):
-        row = single.step([0.2, -0.1])[0]
-        rows = parallel.step({"leader_0": [0.2], "leader_1": [-0.1]})[0]
-        assert row.tobytes() == np.concatenate(list(rows.values())).tobytes()
-    assert single.metadata["render_fps"] == 2.0
-
-
 @pytest.mark.parametrize(
     ("options", "message"),
     [
@@ -211,7 +197,6 @@ def test_a_leaning_policy_is_compared_in_its_own_action_mode(tmp_path):
 
 
 def test_levels_stand_for_leans_too():
-    assert WithLevels(lean_policy(), 5).action_mode == "lean"
     options = {"pool": "narrow", "action_mode": "lean"}
     levels = rolled(20, 3, rudder_levels=5, **options)
     assert same(levels, rolled(20, 0.5, **options))

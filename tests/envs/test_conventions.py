@@ -19,16 +19,6 @@ def actions_of(venv, step):
     return np.random.default_rng(step).uniform(-1, 1, venv.action_space.shape).astype(np.float32)
 
 
-def test_time_limit_is_truncation_in_the_single_environment():
-    env = gymnasium.make("flockenv/Leaders-v0", **OPTIONS)
-    env.reset(seed=0)
-    for step in range(1, STEPS + 1):
-        _, _, terminated, truncated, info = env.step(env.action_space.sample())
-        assert not terminated
-        assert truncated == (step == STEPS)
-    assert info["episode_summary"]["steps"] == STEPS
-
-
 def test_time_limit_is_truncation_in_the_parallel_environment():
     env = flockenv.parallel_env(**OPTIONS)
     env.reset(seed=0)
@@ -133,13 +123,6 @@ def test_nothing_returned_is_written_to_later(mode):
     assert len({array.__array_interface__["data"][0] for array in stored}) == len(stored)
 
 
-def test_first_episode_has_the_flock_of_the_seed():
-    parameters = flockenv.FlockParameters().replace(n_boats=9, n_leaders=3)
-    env = flockenv.LeadersEnv(**OPTIONS)
-    env.reset(seed=11)
-    np.testing.assert_array_equal(env.flock.pose, flockenv.Flock(parameters, seed=11).pose)
-
-
 def test_a_flock_outside_meets_the_same_noise():
     env = flockenv.LeadersEnv(**OPTIONS)
     env.reset(seed=11)
@@ -149,11 +132,6 @@ def test_a_flock_outside_meets_the_same_noise():
         env.step(rudders)
         flock.advance(0.1, rudders)
     np.testing.assert_array_equal(env.flock.pose, flock.pose)
-
-
-def test_unseeded_environments_differ():
-    first, second = flockenv.LeadersEnv(**OPTIONS), flockenv.LeadersEnv(**OPTIONS)
-    assert (first.reset()[0] != second.reset()[0]).any()
 
 
 def test_targets_and_noise_do_not_depend_on_the_policy():
@@ -217,13 +195,6 @@ def test_reset_to_a_state_and_to_a_snapshot():
     assert observation in other.observation_space
 
 
-def test_vector_reset_options_can_differ_by_flock():
-    venv = vector_env(num_envs=2)
-    _, infos = venv.reset(seed=0, options={"target": ["cw", "ccw"], "bw_s": 0.5})
-    assert infos["target"].tolist() == ["cw", "ccw"]
-    assert infos["bw_s"].tolist() == [0.5, 0.5]
-
-
 def test_summary_reports_means_over_the_episode():
     env = flockenv.LeadersEnv(**{**OPTIONS, "episode_s": 20.0})
     env.reset(seed=0)
@@ -238,8 +209,3 @@ def test_summary_reports_means_over_the_episode():
     assert summary["reward_terms"]["signed_order"] == pytest.approx(np.mean(rewards), rel=1e-12)
     assert summary["signed_order"] == pytest.approx(np.mean(in_window), rel=1e-12)
     assert 0.0 <= summary["clip_rate"] < 0.05
-
-
-def test_parameters_report_the_target():
-    assert flockenv.LeadersEnv(target="ccw").parameters.target == "ccw"
-    assert flockenv.parallel_env(target="cw").parameters.target == "cw"

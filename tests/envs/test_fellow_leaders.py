@@ -1,13 +1,10 @@
 """Law: the block `fellow_leaders` is where the other leaders are along the ring, however far."""
 
-import gymnasium
 import numpy as np
 import pytest
-from gymnasium.utils.env_checker import check_env
 
 import flockenv
-from flockenv.envs.observation import observation_entries, observation_version, observe
-from flockenv.policies import NetworkPolicy
+from flockenv.envs.observation import observe
 
 ALONE = {"own": False, "phase": False, "target": False, "neighbors": 0, "order": False}
 #: An observed 1.0 is six boat radii.
@@ -32,14 +29,6 @@ def flock_of(leaders, sign=1.0, **fields):
 def rows(flock, count, **options):
     seen = observe(flock, {**ALONE, "fellow_leaders": count}, **options)
     return seen.reshape(len(seen), count, 6)
-
-
-def test_entries():
-    entries = observation_entries({**ALONE, "fellow_leaders": 2})
-    names = ["fellow", "cos_angle", "sin_angle", "radial_distance"]
-    assert [entry.name for entry in entries[:6]] == [*names, "cos_orientation", "sin_orientation"]
-    assert [entry.place for entry in entries] == [0] * 6 + [1] * 6
-    assert [entry.mirrored for entry in entries[:6]] == [False, False, True, False, False, True]
 
 
 def test_the_nearest_come_first_at_any_distance_and_zeros_where_there_are_none():
@@ -88,21 +77,3 @@ def test_a_block_at_the_end_leaves_the_others_where_they_are():
 def test_bad_counts_are_refused_by_name(count):
     with pytest.raises(flockenv.ParameterError, match="observation fellow_leaders"):
         flockenv.LeadersEnv(observation={"fellow_leaders": count})
-
-
-def test_the_environment_conforms():
-    env = gymnasium.make("flockenv/Leaders-v0", n_leaders=3, observation={"fellow_leaders": 3})
-    check_env(env.unwrapped, skip_render_check=True)
-
-
-def test_its_version_is_the_second_and_its_policies_steer(tmp_path):
-    assert observation_version({"fellow_leaders": 1}) == 2
-    blocks = {"fellow_leaders": 2}
-    size = len(observation_entries(blocks))
-    policy = NetworkPolicy([np.full((size, 1), 0.1)], [[0.1]], observation=blocks)
-    policy.save(tmp_path / "policy.npz")
-    loaded = flockenv.policies.load(tmp_path / "policy.npz")
-    parameters = flockenv.FlockParameters(n_boats=9, n_leaders=3)
-    runs = [flockenv.simulate(parameters, 1, 2.0, policy=each) for each in (policy, loaded)]
-    assert runs[0].rudder.tobytes() == runs[1].rudder.tobytes()
-    assert np.ptp(runs[0].rudder) > 0.0

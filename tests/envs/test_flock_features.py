@@ -9,7 +9,6 @@ import pytest
 import flockenv
 from flockenv.envs.observation import flock_feature_entries
 from flockenv.envs.single import LeadersEnv
-from flockenv.envs.vector import LeadersVectorEnv
 
 NAMES = [(entry.block, entry.name) for entry in flock_feature_entries()]
 OPTIONS = {"n_boats": 12, "n_leaders": 3, "pool": "narrow"}
@@ -83,13 +82,3 @@ def test_values_from_their_definitions(state):
     radius_cm = flockenv.FlockParameters().boat_radius_cm
     near = np.exp(-((distance / (6 * radius_cm)) ** 2) / 2).sum(axis=1).mean()
     assert values["near leaders", "near"] == pytest.approx(near, rel=1e-5)
-
-
-def test_shapes_spaces_and_slots():
-    env = LeadersVectorEnv(4, **OPTIONS)
-    with pytest.raises(flockenv.FlockError, match="reset"):
-        env.flock_features()
-    env.reset(seed=0)
-    every = env.flock_features()
-    assert every.shape == (4, len(NAMES))
-    assert all(env.flock_feature_space.contains(row) for row in every)

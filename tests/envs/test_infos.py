@@ -68,13 +68,3 @@ def test_means_over_a_window_that_was_not_reached_are_left_out():
     summary = last_info(episode_s=0.5)["episode_summary"]
     assert not WINDOW_MEANS & summary.keys()
     assert {"ordering_time_s", "total_reward", "reward_terms"} <= summary.keys()
-
-
-@pytest.mark.parametrize("mode", ["next_step", "same_step", "disabled"])
-@pytest.mark.parametrize("episode_s", [0.5, 2.0, 6.0])
-def test_infos_of_the_vector_environment(mode, episode_s):
-    venv = flockenv.LeadersVectorEnv(3, autoreset_mode=mode, episode_s=episode_s, **SMALL)
-    infos = venv.reset(seed=0)[1]
-    while "episode_summary" not in infos and "final_info" not in infos:
-        infos = venv.step(np.zeros((3, 2)))[4]
-        assert not any(map(math.isnan, numbers(infos)))

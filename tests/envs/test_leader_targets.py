@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv import Flock, FlockParameters, ParameterError, Recording
+from flockenv import FlockParameters, ParameterError
 from flockenv.policies import DampedLaw, StraightAhead
-from flockenv.replay.page import write_replay
 
 SMALL = {"n_boats": 9, "n_leaders": 3, "episode_s": 6.0, "pool": "narrow"}
 MIXED = ("cw", "ccw", "cw")
@@ -178,85 +177,3 @@ def test_bad_lists_are_named_errors(target, message):
     with pytest.raises(ParameterError, match=message):
         env.reset(seed=1, options={"target": target})
     assert env.get_state() == before
-
-
-@pytest.mark.parametrize("target", [[1, 2, 3], ["cw", None, "cw"], [["cw"], "cw", "cw"]])
-def test_what_is_no_word_is_a_type_error(target):
-    with pytest.raises(TypeError, match="target"):
-        flockenv.LeadersEnv(**SMALL, target=target)
-    with pytest.raises(TypeError, match="target"):
-        FlockParameters(n_boats=9, n_leaders=3, target=target)
-
-
-def test_a_long_list_is_named_in_a_short_message():
-    with pytest.raises(ParameterError, match=r"… 100000 in all\].*n_leaders = 3") as error:
-        FlockParameters(n_boats=9, n_leaders=3, target=["cw"] * 100_000)
-    assert len(str(error.value)) < 300
-
-
-def test_a_signed_order_towards_no_target_is_an_error():
-    order = flockenv.simulate(FlockParameters(n_boats=5, n_leaders=1), 1, 2.0).order
-    with pytest.raises(ParameterError, match=r"target = \[\] is not accepted"):
-        order.signed_order([])
-
-
-@pytest.mark.parametrize("target", [[], ["cw"], ["cw", "ccw"]])
-def test_leaders_that_are_not_there_have_no_targets(target):
-    with pytest.raises(ParameterError, match="without leaders"):
-        FlockParameters(n_leaders=0, target=target)
-    with pytest.raises(ParameterError):
-        Flock(FlockParameters(n_leaders=0), 0).set_target(target)
-
-
-def test_parameters_are_stored_and_read_with_their_targets(tmp_path):
-    parameters = FlockParameters(n_boats=9, n_leaders=3, target=list(MIXED))
-    assert parameters.target == MIXED
-    assert FlockParameters.from_toml(parameters.to_toml()) == parameters
-    assert FlockParameters.from_dict(parameters.to_dict()) == parameters
-    assert hash(parameters) != hash(parameters.replace(target="cw"))
-    assert parameters.common_target is None
-    assert parameters.replace(target=["ccw"] * 3).common_target == "ccw"
-    recording = flockenv.simulate(parameters, seed=1, duration_s=2.0)
-    recording.save(tmp_path / "run.npz")
-    assert Recording.load(tmp_path / "run.npz").parameters == parameters
-    flock = Flock(parameters, 1)
-    flock.advance(2.0)
-    assert Flock.from_snapshot(flock.snapshot()).parameters.target == MIXED
-    # Signed quantities are towards leader 0's target.
-    series = recording.order
-    np.testing.assert_array_equal(series.signed_order(MIXED), series.signed_order("cw"))
-
-
-def test_targets_change_during_a_run():
-    flock = Flock(FlockParameters(n_boats=9, n_leaders=3), 2)
-    cw = flock.steering_law()
-    flock.set_target(["ccw", "cw", "cw"])
-    assert flock.parameters.target == ("ccw", "cw", "cw")
-    mixed = flock.steering_law()
-    assert (mixed[1:] == cw[1:]).all()
-    assert mixed[0] != cw[0]
-    with pytest.raises(ParameterError, match="n_leaders = 3"):
-        flock.set_target(["cw"])
-    np.testing.assert_array_equal(flock.steering_law(), mixed)
-
-
-def test_frames_and_pages_show_the_leaders_in_the_colors_of_their_targets(tmp_path):
-    def flock(target):
-        return Flock(FlockParameters(n_boats=9, n_leaders=3, pool="narrow", target=target), 1)
-
-    amber, purple = (240, 162, 2), (204, 121, 167)
-
-    def pixels(target, color):
-        frame = flockenv.rendering.frame(flock(target), 400, 400)
-        return int((frame == color).all(axis=-1).sum())
-
-    assert pixels("ccw", purple) == 0 < pixels("ccw", amber)
-    assert pixels(MIXED, purple) > 50
-    assert pixels(MIXED, amber) > pixels(MIXED, purple)
-    recording = flockenv.simulate(flock(MIXED).parameters, seed=1, duration_s=2.0)
-    write_replay(tmp_path / "run.html", recording)
-    page = (tmp_path / "run.html").read_text(encoding="utf-8")
-    assert '"targets":["cw","ccw","cw"]' in page
-    one = flockenv.simulate(flock("ccw").parameters, seed=1, duration_s=2.0)
-    write_replay(tmp_path / "one.html", one)
-    assert '"targets":[' not in (tmp_path / "one.html").read_text(encoding="utf-8")

@@ -133,8 +133,3 @@ def test_they_are_mirrored_to_the_target():
 def test_other_pools_are_refused(pool):
     with pytest.raises(flockenv.ParameterError, match="standardized in the pools wide and narrow"):
         flockenv.LeadersEnv(pool=pool, observation=LEAN)
-
-
-def test_flocks_of_leaders_alone_are_refused():
-    with pytest.raises(flockenv.ParameterError, match="observation lean_features"):
-        flockenv.LeadersEnv(n_boats=3, n_leaders=3, pool="wide", observation=LEAN)

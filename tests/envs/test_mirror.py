@@ -48,28 +48,6 @@ def test_mirror_images_are_one_task(options):
     np.testing.assert_allclose(envs[0].flock.pose * FLIP, envs[1].flock.pose, atol=1e-5)
 
 
-def test_target_reads_clockwise_throughout():
-    envs, observations = pair()
-    for env, observation in zip(envs, observations, strict=True):
-        place = [entry.name for entry in observation_entries()].index("target")
-        assert (observation.reshape(3, -1)[:, place] == 1.0).all()
-        assert env.flock.parameters.target in ("cw", "ccw")
-
-
-def test_clockwise_is_left_as_it_is():
-    plain = flockenv.LeadersEnv(**{**QUIET, "mirror_to_target": False})
-    mirrored = flockenv.LeadersEnv(**QUIET)
-    np.testing.assert_array_equal(plain.reset(seed=1)[0], mirrored.reset(seed=1)[0])
-    np.testing.assert_array_equal(plain.step(np.ones(3))[0], mirrored.step(np.ones(3))[0])
-
-
-def test_counter_clockwise_actions_are_reflected():
-    env = flockenv.LeadersEnv(**QUIET, target="ccw")
-    env.reset(seed=0)
-    env.step(np.array([1.0, -0.25, 0.0]))
-    np.testing.assert_array_equal(env._batch.core.rudders().ravel(), [-1.0, 0.25, 0.0])
-
-
 SIGNS = np.array([-1.0 if each.mirrored else 1.0 for each in observation_entries()], np.float32)
 STATE_SIGNS = np.array([-1.0 if each.mirrored else 1.0 for each in state_entries(12)], np.float32)
 TERMS = {"signed_order": 1.0, "leader_velocity": 0.25, "rudder_effort": 0.125, "jam": 2.0}

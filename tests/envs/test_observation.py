@@ -7,10 +7,7 @@ import pytest
 
 import flockenv
 from flockenv.envs.observation import (
-    OBSERVATION_VERSION,
     observation_entries,
-    observation_space,
-    observation_version,
     observe,
     state_entries,
 )
@@ -39,12 +36,6 @@ def flock_of(pose, velocity=None, n_leaders=1, **fields):
 
 def observed(flock, **blocks):
     return named(observe(flock, blocks)[0], observation_entries(blocks))
-
-
-def test_version():
-    assert OBSERVATION_VERSION == 2
-    assert observation_version() == observation_version({"law_rudder": True}) == 1
-    assert observation_version({"obstacles": 1}) == 2
 
 
 def test_a_boat_on_the_x_axis():
@@ -195,26 +186,9 @@ def test_state_describes_every_boat():
     assert entries["clock", 0, "episode_elapsed"] == pytest.approx(0.25)
 
 
-def test_state_of_faces_is_the_same():
-    options = {"n_boats": 7, "n_leaders": 2}
-    single, parallel = flockenv.LeadersEnv(**options), flockenv.parallel_env(**options)
-    venv = flockenv.LeadersVectorEnv(2, **options)
-    for env in (single, parallel, venv):
-        env.reset(seed=5)
-    np.testing.assert_array_equal(single.state(), parallel.state())
-    np.testing.assert_array_equal(single.state(), venv.state()[0])
-
-
 def test_infinite_pools_are_observed():
     env = flockenv.LeadersEnv(n_boats=6, n_leaders=1, pool=(math.inf, 0.0), episode_s=5.0)
     observation, _ = env.reset(seed=0)
     for _ in range(50):
         assert observation in env.observation_space
         observation = env.step(np.ones(1))[0]
-
-
-def test_space_has_the_bounds_of_the_table():
-    space = observation_space({}, 2)
-    entries = observation_entries()
-    np.testing.assert_array_equal(space.low, np.float32([entry.low for entry in entries] * 2))
-    np.testing.assert_array_equal(space.high, np.float32([entry.high for entry in entries] * 2))

@@ -2,10 +2,8 @@
 
 import math
 
-import gymnasium
 import numpy as np
 import pytest
-from gymnasium.utils.env_checker import check_env
 
 import flockenv
 from flockenv.envs.observation import observation_entries, observe
@@ -31,18 +29,6 @@ def flock_at(*pose, **fields):
 def rows(flock, count, **options):
     row = observe(flock, {**ALONE, "obstacles": count}, **options)[0]
     return row.reshape(count, 4) * [1.0, LENGTH, LENGTH, LENGTH]
-
-
-def test_entries():
-    entries = observation_entries({**ALONE, "obstacles": 2})
-    assert [entry.name for entry in entries[:4]] == [
-        "there",
-        "outward_distance",
-        "clockwise_distance",
-        "gap",
-    ]
-    assert [entry.place for entry in entries] == [0] * 4 + [1] * 4
-    assert [entry.mirrored for entry in entries[:4]] == [False, False, True, False]
 
 
 def test_nearest_first_and_zeros_where_there_are_none():
@@ -77,11 +63,6 @@ def test_mirrored_where_the_target_is_counter_clockwise():
     assert rows(other, 3)[:, 2] == pytest.approx(-plain[:, 2], abs=1e-5)
 
 
-def test_without_obstacles_the_block_is_zero():
-    flock = flockenv.Flock(flockenv.FlockParameters(n_boats=5, n_leaders=2), seed=1)
-    assert not observe(flock, {**ALONE, "obstacles": 3}).any()
-
-
 def test_a_block_at_the_end_leaves_the_others_where_they_are():
     flock = flockenv.Flock(flockenv.FlockParameters(n_boats=9, n_leaders=3, **ARENA), seed=4)
     plain, longer = observe(flock), observe(flock, {"obstacles": 2})
@@ -92,15 +73,6 @@ def test_a_block_at_the_end_leaves_the_others_where_they_are():
 def test_bad_counts_are_refused_by_name(count):
     with pytest.raises(flockenv.ParameterError, match="observation obstacles"):
         flockenv.LeadersEnv(observation={"obstacles": count})
-
-
-def test_the_environment_conforms():
-    env = gymnasium.make("flockenv/Leaders-v0", observation={"obstacles": 3}, **ARENA)
-    check_env(env.unwrapped, skip_render_check=True)
-    parallel = flockenv.parallel_env(observation={"obstacles": 3}, **ARENA)
-    observations, _ = parallel.reset(seed=1)
-    for agent, observation in observations.items():
-        assert parallel.observation_space(agent).contains(observation)
 
 
 def test_policies_of_both_versions(tmp_path):
@@ -115,12 +87,3 @@ def test_policies_of_both_versions(tmp_path):
             flockenv.FlockParameters(n_boats=9, n_leaders=2, **ARENA), 1, 2.0, policy=loaded
         )
         assert np.isfinite(run.pose).all()
-
-
-def test_an_earlier_policy_steers_as_it_did():
-    parameters = flockenv.FlockParameters(n_boats=9, n_leaders=2)
-    policy = flockenv.policies.load("learned", pool="wide")
-    assert policy.observation.get("obstacles", 0) == 0
-    plain = flockenv.simulate(parameters, 1, 2.0, policy=policy)
-    among = flockenv.simulate(parameters.replace(discs=[(179, 0, 2)]), 1, 2.0, policy=policy)
-    assert plain.rudder.shape == among.rudder.shape

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv.envs.observation import observe
 
 OPTIONS = {"n_boats": 10, "n_leaders": 3, "episode_s": 60.0}
 # What the camera shows; phase, target and rudder are known without it.
@@ -85,16 +84,6 @@ def test_dropouts_do_not_depend_on_the_policy():
         return np.array(dropped[1:])
 
     np.testing.assert_array_equal(gaps(1.0), gaps(-1.0))
-
-
-def test_camera_off_is_the_flock_itself():
-    env = flockenv.LeadersEnv(**OPTIONS)
-    env.reset(seed=0)
-    for _ in range(20):
-        observation = env.step(np.zeros(3))[0]
-    np.testing.assert_array_equal(
-        observation.reshape(3, -1), observe(env.flock, rudder=np.zeros(3))
-    )
 
 
 def rudders(env, commands):

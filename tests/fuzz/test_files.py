@@ -14,7 +14,6 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-import flockenv
 from flockenv import FlockError, FlockParameters, ParameterError, Recording, simulate
 from flockenv._io.array_file import read_arrays
 from flockenv.cli.parameters import read_parameters
@@ -307,9 +306,3 @@ def test_animations(frames, fps, name):
             return
         (path,) = Path(folder).iterdir()
         assert path.read_bytes()[:6] == b"GIF89a"
-
-
-def test_the_largest_flock_still_answers():
-    # Far more than any pool holds: refused in words, not by the memory.
-    with pytest.raises(ParameterError, match="do not fit"):
-        flockenv.Flock(FlockParameters(n_boats=100_000, pool="narrow"), 0)

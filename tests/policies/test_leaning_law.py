@@ -105,15 +105,6 @@ def test_a_file_keeps_every_bit(tmp_path):
     assert random_law().digest != law.digest
 
 
-def test_rudders_do_not_depend_on_the_batch():
-    law = random_law()
-    rows = visited(law).reshape(-1, OWN + len(LEAN_FEATURES))
-    whole = law.predict(rows)[0]
-    for size in (1, 2, 7, 64):
-        parts = [law.predict(rows[first : first + size])[0] for first in range(0, len(rows), size)]
-        assert np.concatenate(parts).tobytes() == whole.tobytes()
-
-
 @pytest.mark.parametrize("target", ["cw", "ccw"])
 @pytest.mark.parametrize("period", [None, 0.5])
 @pytest.mark.parametrize("pool", POOLS)
@@ -132,13 +123,6 @@ def test_a_run_is_an_episode_of_the_same_flock(pool, period, target):
         seen, *_ = env.step(law.predict(seen)[0])
     run = flockenv.simulate(env.flock.parameters, int(info["flock_seed"]), 20.0, policy=law)
     assert run.pose[-1].tobytes() == env.flock.pose.tobytes()
-
-
-def test_a_law_leads_in_other_pools_as_in_its_own():
-    """Its features are standardized as in its own pool."""
-    parameters = flockenv.FlockParameters(n_boats=9, n_leaders=2, pool=(100.0, 40.0))
-    run = flockenv.simulate(parameters, 1, 20.0, policy=random_law("wide"))
-    assert np.ptp(run.rudder) > 0.5
 
 
 def text(change) -> str:

@@ -13,7 +13,7 @@ import pytest
 import flockenv
 from flockenv import ParameterError
 from flockenv.comparison import compare_leaders, run_episodes
-from flockenv.policies import ModelPolicy, SteeringLaw, WithLevels
+from flockenv.policies import ModelPolicy, SteeringLaw
 
 sb3 = pytest.importorskip("stable_baselines3")
 
@@ -101,9 +101,6 @@ def test_every_interface_gets_the_same_rudders(model):
     single.step(rudders)
     parallel.step(by_agent)
     slots.step(of_slots)
-    chosen = flockenv.LeadersEnv(**{**options, "rudder_levels": 5})
-    chosen.reset(seed=5)
-    chosen.step(WithLevels(policy, 5).predict(observation)[0])
 
 
 def test_simulations_and_episodes_take_the_model_itself(model):

@@ -35,20 +35,6 @@ def test_without_weights_the_bias_steers():
     assert beyond.predict(np.ones(SIZE))[0] == -1.0
 
 
-@pytest.mark.parametrize("activation", ["tanh", "relu"])
-def test_numpy_and_torch_agree_to_rounding(activation):
-    torch = pytest.importorskip("torch")
-    policy = network(hidden=32, activation=activation)
-    observations = np.random.default_rng(1).uniform(-2, 2, (1000, SIZE)).astype(np.float32)
-    values = torch.from_numpy(observations)
-    for place, (weight, bias) in enumerate(zip(policy.weights, policy.biases, strict=True)):
-        values = values @ torch.from_numpy(weight) + torch.from_numpy(bias)
-        if place < 2:
-            values = getattr(torch, activation)(values)
-    expected = values.clamp(-1, 1).numpy()[:, 0]
-    np.testing.assert_allclose(policy.predict(observations)[0][:, 0], expected, atol=2e-6)
-
-
 def torch_network(activation, outputs=2):
     torch = pytest.importorskip("torch")
     torch.manual_seed(3)
@@ -78,14 +64,6 @@ def test_a_torch_network_becomes_a_policy(activation, squashed, outputs, tmp_pat
         expected = (mean.tanh() if squashed else mean.clamp(-1, 1)).numpy()
     assert expected.std() > 0.02
     np.testing.assert_allclose(loaded.predict(rows)[0][:, 0], expected, atol=2e-6)
-
-
-def test_the_layout_of_a_torch_network_is_that_of_its_space():
-    torch = pytest.importorskip("torch")
-    few = {"neighbors": 0, "order": False}
-    space = flockenv.LeadersVectorEnv(1, n_leaders=1, observation=few).single_observation_space
-    policy = NetworkPolicy.from_module(torch.nn.Linear(space.shape[0], 1), space)
-    assert policy.observation == few
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,6 @@ from pathlib import Path
 import pytest
 
 import flockenv
-from flockenv import _core
 from flockenv.policies.registry import POLICIES, POOL_POLICIES, named_policy, quoted
 
 REPOSITORY = Path(__file__).parents[2]
@@ -58,11 +57,3 @@ def test_unknown_names_are_reported_with_what_there_is(name: str, words: str) ->
     with pytest.raises(flockenv.ParameterError) as reported:
         named_policy(name, "narrow")
     assert words in str(reported.value)
-
-
-def test_the_core_has_the_same_laws_by_name() -> None:
-    for name in _core.LAWS:
-        assert named_policy(name, "narrow")().law == _core.Law.named(name, "narrow")
-    assert not {*_core.LAWS} - {*POLICIES, *POOL_POLICIES}
-    with pytest.raises(flockenv.ParameterError, match="one of paper's law, damped law"):
-        _core.Law.named("law")

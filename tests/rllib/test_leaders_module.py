@@ -128,19 +128,6 @@ def test_ppo_on_the_parallel_environment():
         algorithm.stop()
 
 
-def test_several_agents_are_not_batched_by_rllib():
-    """What the page says: with more than one agent RLlib refuses every mode but its own loop."""
-    register_env("leaders", lambda config: ParallelPettingZooEnv(flockenv.parallel_env(**config)))
-    config = (
-        PPOConfig()
-        .environment("leaders", env_config=SMALL)
-        .env_runners(num_env_runners=0, gym_env_vectorize_mode="vector_entry_point")
-        .multi_agent(policies={"leader"}, policy_mapping_fn=lambda *args, **kwargs: "leader")
-    )
-    with pytest.raises(Exception, match="only synchronous environment vectorization"):
-        config.build_algo()
-
-
 @pytest.mark.parametrize(
     ("model_config", "options", "message"),
     [

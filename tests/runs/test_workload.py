@@ -59,11 +59,6 @@ def test_a_workload_counts_runs_once_and_leaves_out_stored_ones(tmp_path):
     assert work.flock_hours == pytest.approx(5 / 60)
 
 
-def test_nothing_to_do_takes_no_time(tmp_path):
-    work = measure_workload([], RunStore(tmp_path))
-    assert (work.runs, work.flock_hours, work.core_hours) == (0, 0.0, 0.0)
-
-
 def test_each_policy_has_a_trial_of_its_middle_run(tmp_path, monkeypatch):
     # Trials are of at most a minute; here the clock of the processor is a made-up one.
     clock = iter([0.0, 1.0, 10.0, 14.0])

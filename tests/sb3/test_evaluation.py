@@ -83,15 +83,6 @@ def test_the_order_is_that_of_a_comparison_and_has_an_interval():
     assert str(found) == text
 
 
-def test_returns_are_the_environments_own_inside_wrappers():
-    venv = make()
-    expected = returns_of(venv, SteeringLaw(), 3).mean()
-    found = evaluate_flocks(
-        SteeringLaw(), VecNormalize(make(), norm_obs=False), n_eval_episodes=4, seed=3
-    )
-    assert found.returns.mean() == pytest.approx(expected, rel=1e-5)
-
-
 def test_other_environments_are_refused():
     from stable_baselines3.common.vec_env import DummyVecEnv
 
@@ -100,15 +91,6 @@ def test_other_environments_are_refused():
     other = DummyVecEnv([lambda: flockenv.LeadersEnv(**OPTIONS)])
     with pytest.raises(TypeError, match="a LeaderVecEnv is needed, not DummyVecEnv"):
         evaluate_flocks(SteeringLaw(), other)
-
-
-def test_logs_count_flocks_without_a_monitor():
-    venv = make()
-    model = ppo(venv)
-    model.learn(12 * 24)
-    episodes = list(model.ep_info_buffer)
-    # 24 steps of 4 flocks, episodes of 20.
-    assert [episode["l"] for episode in episodes] == [20] * 4
 
 
 def test_callback_evaluates_flocks_and_keeps_the_best(tmp_path):

@@ -31,17 +31,6 @@ def actions_of(venv, step):
     return random.uniform(-1, 1, (venv.num_envs, 1)).astype(np.float32)
 
 
-def test_shapes_and_types():
-    venv = make()
-    observations = venv.reset()
-    assert observations.shape == (6, *venv.observation_space.shape)
-    observations, rewards, dones, infos = venv.step(actions_of(venv, 0))
-    assert observations.dtype == np.float32
-    assert rewards.dtype == np.float32
-    assert rewards.shape == dones.shape == (6,)
-    assert len({id(info) for info in infos}) == 6
-
-
 def test_end_of_an_episode():
     venv = make()
     reference = gymnasium.make_vec("flockenv/Leaders-v0", num_envs=3, n_leaders=2, **OPTIONS)
@@ -90,10 +79,6 @@ def test_seed_gives_flock_i_the_seed_s_plus_i():
     np.testing.assert_array_equal(venv.reset(), observations)
 
 
-def test_unseeded_environments_differ():
-    assert (make().reset() != make().reset()).any()
-
-
 def test_leader_counts_mix():
     venv = make(num_flocks=5, n_leaders=[1, 3])
     assert venv.num_envs == 1 + 3 + 1 + 3 + 1
@@ -119,27 +104,6 @@ def test_attributes_and_methods_of_slots():
     assert venv.get_attr("render_mode") == [None] * 6
 
 
-def test_options_of_the_next_reset():
-    venv = make()
-    venv.set_options({"target": "ccw"})
-    venv.reset()
-    assert {info["target"] for info in venv.reset_infos} == {"ccw"}
-    venv.reset()
-    assert {info["target"] for info in venv.reset_infos} == {"cw"}
-
-
-def test_nothing_returned_is_written_to_later():
-    venv = make()
-    arrays = [venv.reset()]
-    copies = [arrays[0].copy()]
-    for step in range(STEPS + 2):
-        observations, rewards, dones, _ = venv.step(actions_of(venv, step))
-        arrays += [observations, rewards, dones]
-        copies += [array.copy() for array in (observations, rewards, dones)]
-    for array, copy in zip(arrays, copies, strict=True):
-        np.testing.assert_array_equal(array, copy)
-
-
 def test_wrappers_evaluation_and_ppo():
     venv = VecMonitor(VecCheckNan(make(num_flocks=4)))
     model = PPO("MlpPolicy", venv, n_steps=16, batch_size=64, n_epochs=2, seed=1, device="cpu")
@@ -150,17 +114,6 @@ def test_wrappers_evaluation_and_ppo():
     normalized = VecNormalize(make())
     normalized.reset()
     normalized.step(actions_of(normalized, 0))
-
-
-def test_ppo_repeats_itself_with_a_seed():
-    weights = []
-    for _ in range(2):
-        model = PPO(
-            "MlpPolicy", make(), n_steps=16, batch_size=32, n_epochs=1, seed=1, device="cpu"
-        )
-        model.learn(200)
-        weights.append(model.policy.state_dict())
-    assert all((weights[0][name] == weights[1][name]).all() for name in weights[0])
 
 
 def test_discrete_rudders():
@@ -273,12 +226,6 @@ def test_a_function_of_the_environment_is_its_reward():
     last = infos[0]["terminal_state"]
     assert (last != venv.state()[0]).any()
     assert rewards[0] != pytest.approx(outward(venv).ravel()[0])
-
-
-def test_laws_steer_slots_with_levels():
-    law = flockenv.policies.WithLevels(flockenv.policies.SteeringLaw(), 5)
-    mean, _ = evaluate_policy(law, VecMonitor(make(rudder_levels=5)), n_eval_episodes=6)
-    assert np.isfinite(mean)
 
 
 def test_images_are_those_of_the_flocks():

@@ -7,8 +7,6 @@ import pytest
 
 import flockenv
 from flockenv.recording import Recording
-from flockenv.rendering import frame
-from flockenv.replay import write_replay
 from flockenv.statistics.structure import structure_series
 from flockenv.tracks import from_table, recording_of
 
@@ -50,14 +48,6 @@ def test_datasets_have_units_and_names(tracked):
     assert dataset["time_s"].attrs["units"] == "s"
 
 
-def test_a_flock_at_a_time_has_the_boats_that_are_there(tracked):
-    missing = ~np.isfinite(tracked.pose[..., 0])
-    sample = int(missing.any(axis=1).argmax())
-    flock = tracked.flock_at(float(tracked.time_s[sample]))
-    assert flock.parameters.n_boats == 20 - missing[sample].sum()
-    assert frame(tracked, float(tracked.time_s[sample])).ndim == 3
-
-
 def test_structure_leaves_out_boats_that_are_not_there(tracked):
     parameters = tracked.parameters
     missing = ~np.isfinite(tracked.pose[..., 0])
@@ -68,14 +58,6 @@ def test_structure_leaves_out_boats_that_are_not_there(tracked):
         assert whole[sample] == alone[0]
     nobody = np.full((1, 20, 3), np.nan)
     assert np.isnan(structure_series("largest_cluster", parameters, nobody)).all()
-
-
-def test_it_is_played_beside_the_model(tracked, seen, tmp_path):
-    page = tmp_path / "page.html"
-    write_replay(page, {"robots": tracked, "model": seen.truth})
-    text = page.read_text("utf-8")
-    assert re.search(r'"ids":\["boat1","boat2"', text)
-    assert text.count('"phases":[]') == 1
 
 
 def test_phases_that_are_known_have_their_analysis_window():
@@ -121,16 +103,6 @@ def test_what_is_masked_is_not_there():
     pose[1, 0] = np.ma.masked
     recording = recording_of(np.arange(3.0), pose, pool="narrow")
     assert np.isnan(recording.pose[:, 0, 0]).tolist() == [False, True, False]
-
-
-def test_tracks_may_have_obstacles_in_their_pool(tmp_path):
-    pose = np.full((3, 2, 3), 70.0) * [1, 0, 0]
-    recording = recording_of(
-        np.arange(3.0), pose, pool="narrow", discs=[(0, 70, 5)], walls=np.array([[-60, 0, -80, 0]])
-    )
-    assert recording.parameters.discs == ((0.0, 70.0, 5.0),)
-    recording.save(tmp_path / "tracks.npz")
-    assert Recording.load(tmp_path / "tracks.npz") == recording
 
 
 def test_simulated_recordings_still_hold_no_gaps(seen):
