@@ -65,6 +65,7 @@ def judge(e: Evidence) -> Claims:
 def draw(options: Options, e: Evidence) -> None:
     """Draw the densities of a reading."""
     with picture(options, f"fig14_{e.name}", height_cm=9.0) as figure:
+        image = None
         panels = figure.subplots(2, 2, sharex=True, sharey=True)
         for axes, (n, k) in zip(panels.flat, SERIES, strict=True):
             runs = e.of(n, k)
@@ -80,7 +81,8 @@ def draw(options: Options, e: Evidence) -> None:
             axes.set_xlabel("bw (s)")
         for axes in panels[:, 0]:
             axes.set_ylabel("φ_o")
-        figure.colorbar(image, ax=panels, label="density over uniform", extend="max")
+        if image is not None:
+            figure.colorbar(image, ax=panels, label="density over uniform", extend="max")
 
 
 def script(options: Options) -> None:

@@ -2,8 +2,8 @@
 
 import numpy as np
 from claim import Claims, bca, mean, write_claims
-from section5 import HIGH_S, LOW_S, PRESETS, SERIES, STUDY, Evidence, panel_title
-from study import COLORS, Options, curve, main, picture
+from section5 import HIGH_S, LOW_S, PRESETS, SERIES, STUDY, Evidence, draw_means
+from study import Options, main
 
 
 def judge(e: Evidence) -> Claims:
@@ -55,32 +55,12 @@ def _steepest(means: list[np.ndarray]) -> np.ndarray:
     return np.asarray((psi_o[:-1] - psi_o[1:]).max(0) / (psi_o.max(0) - psi_o.min(0)))
 
 
-def draw(options: Options, evidence: list[Evidence]) -> None:
-    """Draw means with intervals of both presets."""
-    with picture(options, "fig15", height_cm=9.0) as figure:
-        panels = figure.subplots(2, 2, sharex=True, sharey=True)
-        for axes, (n, k) in zip(panels.flat, SERIES, strict=True):
-            for color, marker, e in zip(COLORS, "os", evidence, strict=False):
-                runs = e.of(n, k)
-                groups = runs.groupby("bw_s")["psi_o"]
-                if len(runs):
-                    found = [mean(each) for _, each in groups]
-                    curve(axes, groups.groups, found, color=color, marker=marker, label=e.name)
-                    axes.set_title(panel_title(n, k, runs))
-            axes.axvspan(0.6, 0.8, color="0.9", zorder=0)
-        for axes in panels[1]:
-            axes.set_xlabel("bw (s); shaded: where the paper has order lost")
-        for axes in panels[:, 0]:
-            axes.set_ylabel("mean Ψ_o")
-        panels[0, 0].legend()
-
-
 def script(options: Options) -> None:
     """Make, judge and draw the runs of both presets."""
     table = STUDY.results(options)
     evidence = [Evidence(table, name) for name in PRESETS]
     write_claims(options, "fig15", [claim for e in evidence for claim in judge(e)])
-    draw(options, evidence)
+    draw_means(options, "fig15", evidence, "psi_o", "mean Ψ_o")
 
 
 if __name__ == "__main__":

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 from claim import Claims, bca, mean, write_claims
-from section5 import LOW_S, PRESETS, SERIES, STUDY, Evidence, panel_title
-from study import COLORS, Options, curve, main, picture
+from section5 import LOW_S, PRESETS, STUDY, Evidence, draw_means
+from study import Options, main
 
 
 def judge(e: Evidence) -> Claims:
@@ -55,31 +55,12 @@ def _best(groups: Any, column: int = 0) -> Any:
     return np.stack(np.broadcast_arrays(*(group[..., column].mean(-1) for group in groups))).max(0)
 
 
-def draw(options: Options, evidence: list[Evidence]) -> None:
-    """Draw means with intervals of both presets."""
-    with picture(options, "fig16", height_cm=9.0) as figure:
-        panels = figure.subplots(2, 2, sharex=True, sharey=True)
-        for axes, (n, k) in zip(panels.flat, SERIES, strict=True):
-            for color, marker, e in zip(COLORS, "os", evidence, strict=False):
-                runs = e.of(n, k)
-                groups = runs.groupby("bw_s")["c_v"]
-                if len(runs):
-                    found = [mean(each) for _, each in groups]
-                    curve(axes, groups.groups, found, color=color, marker=marker, label=e.name)
-                    axes.set_title(panel_title(n, k, runs))
-        for axes in panels[1]:
-            axes.set_xlabel("bw (s)")
-        for axes in panels[:, 0]:
-            axes.set_ylabel("mean C_v (cm²/s²)")
-        panels[0, 0].legend()
-
-
 def script(options: Options) -> None:
     """Make, judge and draw the runs of both presets."""
     table = STUDY.results(options)
     evidence = [Evidence(table, name) for name in PRESETS]
     write_claims(options, "fig16", [claim for e in evidence for claim in judge(e)])
-    draw(options, evidence)
+    draw_means(options, "fig16", evidence, "c_v", "mean C_v (cm²/s²)")
 
 
 if __name__ == "__main__":

@@ -35,6 +35,8 @@ def judge(e: Evidence) -> Claims:
         least=0.3,
         n="20, 50",
     )
+    if len(sizes) < 4:
+        return claims
     between = 1.0 - runs["jammed"] - runs["rotates"]
     claims.add(
         "The jamming–order transition is sharp",
@@ -60,10 +62,11 @@ def judge(e: Evidence) -> Claims:
 def draw(options: Options, evidence: list[Evidence]) -> None:
     """Draw the densities of both presets."""
     with picture(options, "fig17", height_cm=9.0) as figure:
+        image = None
         panels = figure.subplots(2, 2, sharex=True)
         for (top, bottom), e in zip(panels.T, evidence, strict=True):
             runs = densities(e)
-            if not len(runs):
+            if runs["n_boats"].nunique() < 3:
                 top.set_title(f"{e.name}: no runs yet")
                 continue
             groups = runs.groupby("n_boats")
@@ -78,7 +81,8 @@ def draw(options: Options, evidence: list[Evidence]) -> None:
             bottom.set_yticklabels(["−π/2", "0", "π/2"])
         panels[0, 0].set_ylabel("Ψ_o")
         panels[1, 0].set_ylabel("φ_o")
-        figure.colorbar(image, ax=panels, label="density over uniform", extend="max")
+        if image is not None:
+            figure.colorbar(image, ax=panels, label="density over uniform", extend="max")
 
 
 def script(options: Options) -> None:

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from claim import Interval, critical_bw
-from study import SEEDS, Row, Study, order_row, simulated
+from claim import Interval, critical_bw, mean
+from study import COLORS, SEEDS, Options, Row, Study, curve, order_row, picture, simulated
 
 LEVELS_S = tuple(round(0.1 * place, 1) for place in range(13))
 LOW_S, HIGH_S = 0.2, 1.0
@@ -94,11 +94,16 @@ class Evidence:
         self.name, self.runs = name, found.assign(rotates=found["cw"] + found["ccw"])
 
     def of(self, n: int, k: int, least: float = 0.0, most: float = 9.0) -> pd.DataFrame:
-        """Return the runs of a series at the noises of a range that have all of its seeds."""
+        """Return the runs of a series at the noises of a range that have all of its seeds.
+
+        A series counts once it has been run at four noises.
+        """
         r = self.runs
         chosen = r[(r["n_boats"] == n) & (r["n_leaders"] == k)]
         count = chosen.groupby("bw_s")["seed"].transform("size")
-        return chosen[(count == count.max()) & chosen["bw_s"].between(least - 1e-9, most + 1e-9)]
+        chosen = chosen[count == count.max()]
+        enough = chosen["bw_s"].nunique() >= 4
+        return chosen[enough & chosen["bw_s"].between(least - 1e-9, most + 1e-9)]
 
     def over(self, n: int, k: int, column: str, least: float, most: float = 9.0) -> Any:
         """Return the mean of a column over the noises of a range, one value per seed."""
@@ -118,6 +123,31 @@ class Evidence:
 
 SERIES = [(n, k) for n in (20, 50) for k in (0, n // 5)]
 """Numbers of boats and of leaders: the four panels of figures 14 to 16."""
+
+
+def draw_means(
+    options: Options, name: str, evidence: list[Evidence], column: str, label: str
+) -> None:
+    """Draw the means of a column against noise with their intervals, a panel per series."""
+    with picture(options, name, height_cm=9.0) as figure:
+        panels = figure.subplots(2, 2, sharex=True, sharey=True)
+        for axes, (n, k) in zip(panels.flat, SERIES, strict=True):
+            axes.set_title(f"n = {n}, k = {k}: no runs yet")
+            for color, marker, e in zip(COLORS, "os", evidence, strict=False):
+                runs = e.of(n, k)
+                groups = runs.groupby("bw_s")[column]
+                if len(runs):
+                    found = [mean(each) for _, each in groups]
+                    curve(axes, groups.groups, found, color=color, marker=marker, label=e.name)
+                    axes.set_title(panel_title(n, k, runs))
+            if column == "psi_o":
+                axes.axvspan(0.6, 0.8, color="0.9", zorder=0)
+        shaded = "; shaded: where the paper has order lost" if column == "psi_o" else ""
+        for axes in panels[1]:
+            axes.set_xlabel(f"bw (s){shaded}")
+        for axes in panels[:, 0]:
+            axes.set_ylabel(label)
+        panels[0, 0].legend()
 
 
 def panel_title(n: int, k: int, runs: pd.DataFrame) -> str:
