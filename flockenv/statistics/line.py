@@ -34,16 +34,6 @@ class Line:
     p: float
     n: int
 
-    @property
-    def t(self) -> float:
-        """Student's t of the slope, with n - 2 degrees of freedom: √F with the slope's sign."""
-        return math.copysign(math.sqrt(self.f), self.slope)
-
-    @property
-    def p_rising(self) -> float:
-        """Probability of such a t or a larger one if y did not rise with x: the signed test."""
-        return self.p / 2 if self.slope > 0 else 1.0 - self.p / 2
-
     def __str__(self) -> str:
         if math.isnan(self.f):
             return f"{self.intercept:.3f} in all {self.n} runs: no line to fit"

@@ -2,9 +2,7 @@
 
 use super::{ActionMode, EnvSettings};
 use crate::boat::DampedLaw;
-use crate::clock::seconds;
-use crate::error::{FlockError, Result};
-use crate::integrator::PhaseSchedule;
+use crate::error::Result;
 use crate::parameters::FlockParameters;
 use std::f64::consts::PI;
 
@@ -12,23 +10,6 @@ use std::f64::consts::PI;
 pub const LARGEST_LEAN: f64 = 1.2;
 
 impl EnvSettings {
-    /// The decision period in s that is nearest to a number of motor cycles: a whole number of control steps, at
-    /// least one.
-    ///
-    /// # Errors
-    /// [`FlockError::Parameter`] for numbers that are not positive, and periods of more than 1e9 control steps.
-    pub fn period_of_cycles(
-        cycles: f64,
-        parameters: &FlockParameters,
-        control_hz: f64,
-    ) -> Result<f64> {
-        let steps = cycles * seconds(PhaseSchedule::new(parameters).cycle()) * control_hz;
-        let is_accepted = cycles > 0.0 && steps <= 1e9;
-        let accepted = "a positive number of motor cycles, at most 1e9 control steps long";
-        FlockError::unless(is_accepted, "decision_period_cycles", cycles, accepted)?;
-        Ok(steps.round().max(1.0) / control_hz)
-    }
-
     /// The law that steers to the heading that an action stands for; `None` where actions are rudders.
     ///
     /// # Errors

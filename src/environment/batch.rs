@@ -105,7 +105,7 @@ impl EnvBatch {
     ///
     /// # Errors
     /// Those of [`Self::check_step`], before anything moves; [`FlockError::Solver`] and
-    /// [`FlockError::Placement`] after the other flocks have moved.
+    /// [`FlockError::Placement`] after the other flocks have moved: their rewards are lost, and all have to be reset.
     ///
     /// # Panics
     /// If the rows have other lengths than the batch.
@@ -120,7 +120,11 @@ impl EnvBatch {
                 .step(settings, actions, observations, share.rewards)?;
             Ok(())
         };
-        parallel::map(shares, step).into_iter().collect()
+        let moved: Result<()> = parallel::map(shares, step).into_iter().collect();
+        if moved.is_err() {
+            self.envs.iter_mut().for_each(FlockEnv::abandon);
+        }
+        moved
     }
 
     /// Starts new episodes: one request a flock, `None` leaves it as it is. Either all requests are met

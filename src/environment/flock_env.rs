@@ -119,13 +119,18 @@ impl FlockEnv {
         (self.seeds, self.episode) = (Some(seeds), Some(episode));
     }
 
+    /// Leaves the episode, so that a reset is due.
+    pub(crate) fn abandon(&mut self) {
+        self.episode = None;
+    }
+
     /// Whether a step is due, be it one that only starts the next episode.
     ///
     /// # Errors
     /// [`FlockError::Episode`] if the environment has to be reset first.
     pub(crate) fn check_ready(&self, autoreset: Autoreset) -> Result<()> {
         let message = match &self.episode {
-            None => "step was called before the first reset",
+            None => "step was called without an episode; call reset first",
             Some(episode) if episode.has_ended() && autoreset == Autoreset::Disabled => {
                 "step was called after the episode's end; call reset first"
             }

@@ -48,8 +48,8 @@ mod _core {
     use super::recording::record;
     #[pymodule_export]
     use super::tables::{
-        changed_fields, critical_bw_s, decision_period_of_cycles, env_defaults, physics_fields,
-        pool_radii_cm, preset_sources, rudders_of_levels, whole_steps_in,
+        changed_fields, critical_bw_s, env_defaults, physics_fields, pool_radii_cm, preset_sources,
+        rudders_of_levels, whole_steps_in,
     };
 
     #[pymodule_init]

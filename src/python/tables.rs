@@ -131,22 +131,6 @@ pub(super) fn whole_steps_in(name: &str, time_s: &Bound<'_, PyAny>, rate_hz: f64
     Ok(whole_steps(name, given(time_s, name)?, rate_hz, steps)?)
 }
 
-/// The decision period in s nearest to a number of motor cycles.
-#[pyfunction]
-pub(super) fn decision_period_of_cycles(
-    cycles: &Bound<'_, PyAny>,
-    parameters: FlockParameters,
-    control_hz: &Bound<'_, PyAny>,
-) -> PyResult<f64> {
-    let cycles = given(cycles, "decision_period_cycles")?;
-    let control_hz = given(control_hz, "control_hz")?;
-    Ok(EnvSettings::period_of_cycles(
-        cycles,
-        &parameters,
-        control_hz,
-    )?)
-}
-
 /// The rudders that numbers of levels stand for, of so many that an environment may have; or the other way round, the
 /// numbers of the levels nearest to rudders.
 #[pyfunction]

@@ -80,21 +80,6 @@ def test_alignment_and_order_follow_the_spin_that_the_hit_gave(target):
     assert abs(seen[-1][1]) > 0.01
 
 
-def test_contacts_of_others_give_no_credit():
-    # Two normal boats run into each other, and the leader into the wall.
-    constants = dict.fromkeys(("c0", "c1", "c2", "c3", "c4"), 0.0)
-    params = flockenv.FlockParameters(n_boats=3, n_leaders=1, **constants)
-    env = LeadersEnv(params=params, reward=CREDIT)
-    pose = [[-170.0, 0.0, 0.0], [140.0, 0.0, 1.0], [140.0, 16.0, 1.0]]
-    velocity = [[-10.0, 0.0, 0.0], [0.0, 5.0, 0.0], [0.0, -5.0, 0.0]]
-    env.reset(seed=0, options={"state": {"pose": pose, "velocity": velocity}})
-    for _ in range(30):
-        info = env.step([0.0])[4]
-        for name in CREDIT:
-            assert info["reward_terms"][name] == 0.0
-    assert env.flock.statistics.contacts > 0
-
-
 def test_a_credit_changes_no_bits_and_survives_a_stored_state():
     options = {"n_boats": 20, "n_leaders": 3, "pool": "narrow", "action_mode": "lean"}
     plain = LeadersVectorEnv(2, **options)

@@ -96,17 +96,6 @@ def test_disabled_autoreset_waits_for_a_partial_reset():
     venv.step(actions_of(venv, 0))
 
 
-def test_partial_reset_with_seeds_touches_no_other_flock():
-    venv, reference = vector_env(), vector_env()
-    venv.reset(seed=5)
-    reference.reset(seed=5)
-    mask = np.array([False, True, False, False])
-    observations, _ = venv.reset(seed=[None, 77, None, None], options={"reset_mask": mask})
-    np.testing.assert_array_equal(observations[1], vector_env(1).reset(seed=77)[0][0])
-    ours, theirs = venv.step(actions_of(venv, 1)), reference.step(actions_of(venv, 1))
-    np.testing.assert_array_equal(ours[0][~mask], theirs[0][~mask])
-
-
 @pytest.mark.parametrize("mode", ["next_step", "same_step"])
 def test_nothing_returned_is_written_to_later(mode):
     venv = vector_env(autoreset_mode=mode)
@@ -152,16 +141,6 @@ def test_targets_and_noise_do_not_depend_on_the_policy():
     assert noise.max() <= 0.9
     assert len(np.unique(noise)) == noise.size
     assert {target for targets in drawn[0][::2] for target in targets} == {"cw", "ccw"}
-
-
-def test_alternating_targets_change_every_quarter():
-    env = flockenv.LeadersEnv(**{**OPTIONS, "target": "alternate", "episode_s": 4.0})
-    env.reset(seed=0)
-    targets = []
-    for _ in range(40):
-        targets.append(env.episode()["target"])
-        env.step(np.zeros(3))
-    assert targets == ["ccw"] * 10 + ["cw"] * 10 + ["ccw"] * 10 + ["cw"] * 10
 
 
 def test_reset_options_hold_for_one_episode():

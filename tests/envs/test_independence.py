@@ -1,6 +1,7 @@
 """Law: a flock's bits depend neither on the batch it is in, nor on threads, nor on a fork."""
 
 import hashlib
+import itertools
 import multiprocessing
 import os
 import subprocess
@@ -68,3 +69,18 @@ def test_leader_counts_share_starts():
         poses.append(env.flock.pose)
     np.testing.assert_array_equal(poses[0], poses[1])
     np.testing.assert_array_equal(poses[0], poses[2])
+
+
+@pytest.mark.parametrize("mode", ["next_step", "same_step"])
+def test_a_flock_that_explodes_ends_all_episodes_of_its_batch(mode):
+    """No reward of the others is lost unseen, and no episode starts by itself."""
+    fields = {"scheme": "moreau", "dt_s": 0.1, "c0": 1e6, "solver": "gauss-seidel"}
+    venv = flockenv.LeadersVectorEnv(3, autoreset_mode=mode, **OPTIONS, **fields)
+    venv.reset(seed=1)
+    steps = iter(lambda: venv.step(np.zeros((3, 2))), None)
+    with pytest.raises(flockenv.SolverError, match="range"):
+        list(itertools.islice(steps, 600))
+    for _ in range(2):
+        with pytest.raises(flockenv.EpisodeError, match="call reset first"):
+            venv.step(np.zeros((3, 2)))
+    venv.reset(seed=2)

@@ -118,27 +118,6 @@ def test_flock_features_of_slots_are_towards_their_own_targets():
 
 
 @pytest.mark.parametrize("mirror_to_target", [False, True])
-def test_the_mirror_image_with_opposite_targets_is_the_same_game(mirror_to_target):
-    options = {**SMALL, "c4": 0.0, "mirror_to_target": mirror_to_target}
-    own, other = (flockenv.parallel_env(**options) for _ in range(2))
-    own.reset(seed=6)
-    state = {"pose": own.flock.pose}
-    mirrored = {"pose": state["pose"] * FLIP}
-    own.reset(seed=0, options={"state": state, "target": list(MIXED)})
-    other.reset(seed=0, options={"state": mirrored, "target": ["ccw", "cw", "ccw"]})
-    sign = 1.0 if mirror_to_target else -1.0
-    for step in range(50):
-        rudder = np.sin(0.2 * step + np.arange(3))
-        ours = own.step({a: rudder[k : k + 1] for k, a in enumerate(own.agents)})
-        theirs = other.step({a: sign * rudder[k : k + 1] for k, a in enumerate(other.agents)})
-        for agent in own.agents:
-            assert ours[1][agent] == pytest.approx(theirs[1][agent], abs=1e-6)
-            if mirror_to_target:
-                np.testing.assert_allclose(ours[0][agent], theirs[0][agent], atol=2e-5)
-    np.testing.assert_allclose(own.flock.pose * FLIP, other.flock.pose, atol=1e-5)
-
-
-@pytest.mark.parametrize("mirror_to_target", [False, True])
 def test_policies_steer_each_leader_to_its_own_target(mirror_to_target):
     def rudders(policy, target):
         parameters = FlockParameters(n_boats=9, n_leaders=3, pool="narrow", target=target)

@@ -95,24 +95,6 @@ def rudders(env, commands):
     return np.array(found)
 
 
-def test_rate_limit():
-    env = flockenv.LeadersEnv(**OPTIONS, rudder_rate_per_s=3.0)
-    found = rudders(env, [[1.0, -1.0, 0.2]] * 4 + [[-1.0, -1.0, 0.2]] * 2)
-    np.testing.assert_allclose(found[:, 0], [0.3, 0.6, 0.9, 1.0, 0.7, 0.4], atol=1e-12)
-    np.testing.assert_allclose(found[:, 1], [-0.3, -0.6, -0.9, -1.0, -1.0, -1.0], atol=1e-12)
-    np.testing.assert_allclose(found[:, 2], 0.2, atol=1e-12)
-
-
-def test_lag_follows_an_exponential_whatever_the_control_rate():
-    for control_hz in (5.0, 10.0, 50.0):
-        env = flockenv.LeadersEnv(**OPTIONS, rudder_lag_s=0.4, control_hz=control_hz)
-        steps = int(2 * control_hz)
-        found = rudders(env, [[1.0, -0.5, 0.0]] * steps)
-        time = np.arange(1, steps + 1) / control_hz
-        np.testing.assert_allclose(found[:, 0], 1 - np.exp(-time / 0.4), atol=1e-9)
-        np.testing.assert_allclose(found[:, 1], -0.5 * (1 - np.exp(-time / 0.4)), atol=1e-9)
-
-
 def test_the_rudder_that_stands_is_observed():
     env = flockenv.LeadersEnv(**OPTIONS, rudder_rate_per_s=1.0, rudder_lag_s=0.1)
     env.reset(seed=0)
@@ -121,9 +103,3 @@ def test_the_rudder_that_stands_is_observed():
     np.testing.assert_allclose(
         observation.reshape(3, -1)[:, 7], env._batch.core.rudders().ravel(), atol=1e-7
     )
-
-
-def test_levels_are_spread_evenly():
-    env = flockenv.LeadersEnv(**OPTIONS, rudder_levels=5)
-    found = rudders(env, [[0, 1, 2], [3, 4, 4]])
-    np.testing.assert_array_equal(found, [[-1.0, -0.5, 0.0], [0.5, 1.0, 1.0]])

@@ -196,14 +196,6 @@ def test_bad_numbers(arguments, options, message):
         LeaningLaw(*arguments, **options)
 
 
-def test_observations_of_another_layout_are_refused():
-    law = random_law()
-    with pytest.raises(flockenv.ParameterError, match="observation has shape"):
-        law.predict(np.zeros(len(observation_entries()), np.float32))
-    with pytest.raises(flockenv.ParameterError, match="NaN"):
-        law.predict(np.full(OWN + len(LEAN_FEATURES), np.nan, np.float32))
-
-
 @pytest.mark.parametrize("pool", POOLS)
 def test_learned_leaders_lead_better_than_the_papers(pool: str) -> None:
     """By more than twice in `narrow` and half as much again in `wide`, where measured."""

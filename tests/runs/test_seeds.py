@@ -19,16 +19,6 @@ def test_no_two_uses_meet():
     assert all(0 <= each.every.start < each.every.stop <= 2**64 for each in POLICY_SEEDS.values())
 
 
-def test_runs_of_one_use_do_not_meet():
-    for seeds in POLICY_SEEDS.values():
-        for run in (0, (seeds.runs - 1) // 2):
-            whole = seeds.seeds(seeds.of_a_run, run)
-            assert whole.start == seeds.first + run * seeds.of_a_run
-            assert whole.stop <= seeds.every.stop
-            if seeds.runs > 1:
-                assert seeds.seeds(1, run + 1)[0] == whole.stop
-
-
 def test_each_use_that_makes_policies_has_one_script():
     scripts = {use: set() for use in POLICY_SEEDS}
     for path in MAKERS:

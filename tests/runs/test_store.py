@@ -14,7 +14,6 @@ import flockenv
 from flockenv._io.interrupts import noted_interrupts
 from flockenv.order import ORDER
 from flockenv.runs import store as run_store
-from flockenv.runs.executors import threads
 from flockenv.runs.spec import KEEP, RunSpec, execute
 from flockenv.runs.store import RunStore, StorageError, StoreWarning, run_missing
 
@@ -133,24 +132,6 @@ def test_only_missing_runs_are_made_and_failures_cost_no_others(
     before = store.path(spec).stat().st_mtime_ns
     assert run_missing([spec], store) == {}
     assert store.path(spec).stat().st_mtime_ns == before
-
-
-def test_an_interruption_keeps_what_was_finished(spec: RunSpec, tmp_path: Path) -> None:
-    store = RunStore(tmp_path)
-    specs = [RunSpec(parameters=spec.parameters, seed=seed, duration_s=30.0) for seed in range(6)]
-    finished: list[RunSpec] = []
-
-    def interrupt(spec: RunSpec) -> None:
-        finished.append(spec)
-        if len(finished) == 2:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        run_missing(specs, store, threads, interrupt, workers=1)
-    assert all(store.load(spec) is not None for spec in finished)
-    assert sum(store.path(spec).exists() for spec in specs) == 2
-    run_missing(specs, store)
-    assert all(store.load(spec) == execute(spec) for spec in specs)
 
 
 def test_a_command_that_is_interrupted_keeps_the_runs_under_way(

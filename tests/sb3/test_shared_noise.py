@@ -113,18 +113,6 @@ def test_ppo_learns_with_it_and_its_file_steers(tmp_path, use_sde):
     assert np.isfinite(found["signed_order"]).all()
 
 
-def test_the_length_of_an_episode_counts_decisions():
-    venv = LeaderVecEnv(2, n_leaders=2, episode_s=2.2, **OPTIONS)
-    venv.seed(0)
-    venv.reset()
-    for step in range(1, 6):
-        _, _, dones, infos = venv.step(np.zeros((4, 1)))
-        assert dones.tolist() == [step == 5] * 4
-    assert infos[0]["episode"]["l"] == 5
-    assert infos[0]["episode_summary"]["steps"] == 22
-    assert all(info["TimeLimit.truncated"] for info in infos)
-
-
 def test_models_of_another_action_mode_are_refused():
     options = {"n_boats": 6, "n_leaders": 2, "pool": "narrow", "episode_s": 5.0}
     model = model_of(LeaderVecEnv(2, n_leaders=2, **OPTIONS))

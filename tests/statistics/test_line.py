@@ -20,15 +20,6 @@ def test_a_line_through_three_points() -> None:
     assert line.n == 3
 
 
-def test_the_signed_test_knows_whether_a_line_rises() -> None:
-    rising, falling = fit_line([0, 1, 2], [1, 2, 2]), fit_line([0, 1, 2], [2, 2, 1])
-    # F and p are the same for both.
-    assert (rising.f, rising.p) == pytest.approx((falling.f, falling.p))
-    assert (rising.t, falling.t) == pytest.approx((np.sqrt(3), -np.sqrt(3)))
-    # Student's t with one degree of freedom is Cauchy's: P(t > √3) = 1/2 - atan(√3)/π = 1/6.
-    assert (rising.p_rising, falling.p_rising) == pytest.approx((1 / 6, 5 / 6))
-
-
 def test_points_on_a_line_leave_no_doubt() -> None:
     line = fit_line(range(5), [3 - 2 * x for x in range(5)])
     assert (line.slope, line.intercept) == pytest.approx((-2, 3))
@@ -39,7 +30,7 @@ def test_points_on_a_line_leave_no_doubt() -> None:
 def test_equal_values_have_no_line() -> None:
     line = fit_line(range(5), [0.25] * 5)
     assert (line.slope, line.intercept, line.n) == (0.0, 0.25, 5)
-    assert np.isnan([line.f, line.p, line.t, line.p_rising]).all()
+    assert np.isnan([line.f, line.p]).all()
     assert str(line) == "0.250 in all 5 runs: no line to fit"
 
 
