@@ -71,8 +71,8 @@ export class LivePage {
     this.pinned = this.other.boat === undefined ? null : Number(this.other.boat);
     this.#showStory(this.other.lesson);
     const wanted = { flock: linked.flock, beside: linked.beside };
-    const isSame = this.shown && ["seed", "preset", "n_boats"].every((name) => this.shown.flock[name] === wanted.flock[name]) &&
-      Boolean(this.shown.beside) === Boolean(wanted.beside);
+    const isSame = this.asked && ["seed", "preset", "n_boats"].every((name) => this.asked.flock[name] === wanted.flock[name]) &&
+      Boolean(this.asked.beside) === Boolean(wanted.beside);
     // What the simulator refuses is left out, one parameter after another.
     for (let tries = 0; tries < 40; tries += 1) {
       try {
@@ -97,7 +97,7 @@ export class LivePage {
 
   /** Changes one parameter, from where the flock is if that is possible. */
   set(name, value) {
-    const base = this.wanted ?? this.shown;
+    const base = this.wanted ?? this.asked;
     const wanted = { flock: { ...base.flock }, beside: base.beside && { ...base.beside } };
     if (name === "beside") {
       const [field, different] = value.split("=");
@@ -130,9 +130,9 @@ export class LivePage {
   }
 
   /** Starts again, with this seed. */
-  async restart(seed = this.shown.flock.seed) {
-    const flock = { ...this.shown.flock, ...(seed !== undefined && { seed }) };
-    await this.#attempt(() => this.#become({ ...this.shown, flock }, "open", []));
+  async restart(seed = this.asked.flock.seed) {
+    const flock = { ...this.asked.flock, ...(seed !== undefined && { seed }) };
+    await this.#attempt(() => this.#become({ ...this.asked, flock }, "open", []));
   }
 
   /** One change after another, the last of those that came meanwhile. */
@@ -144,8 +144,7 @@ export class LivePage {
     while (this.wanted) {
       const wanted = this.wanted;
       this.wanted = null;
-      const alike = Boolean(wanted.beside) === Boolean(this.shown.beside) &&
-        JSON.stringify(wanted.beside) === JSON.stringify(this.shown.beside);
+      const alike = JSON.stringify(wanted.beside) === JSON.stringify(this.asked.beside);
       await this.#attempt(() => this.#become(wanted, alike && !this.recorded ? "change" : "open", []));
     }
     this.changing = false;
@@ -167,7 +166,13 @@ export class LivePage {
   /** Has the simulator open or change the flocks, and shows them. */
   async #become(wanted, kind, words) {
     const had = this.shown;
-    const { continues, values, taken } = await this.simulator.ask(kind, { requests: requestsOf(wanted) });
+    // What is changed meanwhile is changed of this.
+    this.asked = wanted;
+    const answer = this.simulator.ask(kind, { requests: requestsOf(wanted) });
+    const { continues, values, taken } = await answer.catch((error) => {
+      this.asked = this.shown;
+      throw error;
+    });
     const described = distinguished(values.map((text, place) => this.#describe(text, wanted, place)));
     const isSame = continues && described.every(({ boats }, place) => this.runs[place]?.boats === boats);
     const signature = JSON.stringify(Object.entries(described[0].parameters).filter(([name]) => !NOT_ON_MAP.has(name)));
@@ -278,6 +283,7 @@ export class LivePage {
       return;
     }
     byId("story").dataset.lesson = name ?? "";
+    byId("observes").open = name === "forces";
     byId("story").replaceChildren(...(lesson ? storyOf(lesson) : []));
     for (const link of byId("lessons").querySelectorAll("a")) {
       link.setAttribute("aria-current", String(link.dataset.lesson === name));

@@ -250,6 +250,28 @@ def test_each_leader_steers_by_a_policy_of_its_own(live):
     assert live.complaints() == []
 
 
+def test_another_start_has_other_places(live):
+    live.run_to(2.0)
+    first = live.rows("pose")[0]
+    live.click("#again")
+    live.wait()
+    assert np.array_equal(live.rows("pose")[0], first)
+    live.click("#another")
+    live.wait()
+    assert not np.array_equal(live.rows("pose")[0], first)
+    seed = live.script("return page.shown.flock.seed")
+    live.until("return location.hash.includes(arguments[0])", f"seed={seed}")
+    assert live.complaints() == []
+
+
+def test_forces_are_shown_when_asked_for(live):
+    live.run_to(3.0)
+    assert not live.find(".force-key").is_displayed()
+    live.click("#forces")
+    assert live.find(".force-key").is_displayed()
+    live.until("return location.hash.includes('forces=1')")
+
+
 def test_a_second_flock_runs_beside(live):
     for value, leaders in (("n_leaders=0", "0"), ("n_leaders=4", "4")):
         live.choose("#beside", value)
@@ -388,6 +410,21 @@ def test_noise_makes_motion(open_live):
     assert seen["2.8"][0] < 0.4
 
 
+def test_a_change_while_a_link_is_followed_is_one_of_the_links_flock(live):
+    link = "#n_boats=9&seed=3&beside.n_leaders=1"
+    live.script("page.follow(arguments[0]); page.set('bw_s', '0.5')", link)
+    live.wait()
+    for run, leaders in ((0, "0"), (1, "1")):
+        found = live.parameters(run)
+        assert (found["n_boats"], found["n_leaders"], found["bw_s"]) == ("9", leaders, "0.5")
+    # What is refused is not what later changes start from.
+    live.script("page.set('pool', 'none')")
+    live.wait()
+    live.script("page.set('c4', '0.2')")
+    live.wait()
+    assert (live.parameters()["pool"], live.parameters()["c4"]) == ("wide", "0.2")
+
+
 def test_a_link_shows_the_same_flock_again(open_live):
     live = open_live().go("#n_boats=9&bw_s=0.2&pool=narrow&seed=3&beside.bw_s=0.8&speed=4&forces=1")
     live.run_to(5.0)
@@ -478,7 +515,8 @@ def test_a_recording_is_saved_loaded_and_played(live, downloads):
 
 
 def test_a_file_is_dropped_onto_the_page(live, tmp_path):
-    recording = flockenv.simulate(flockenv.FlockParameters(n_boats=5, n_leaders=1), 3, 4.0)
+    parameters = flockenv.FlockParameters(n_boats=5, n_leaders=1)
+    recording = flockenv.simulate(parameters, 3, 4.0, contacts=True)
     recording.save(tmp_path / "dropped.npz")
     drop = """
         const [name, text] = arguments;
