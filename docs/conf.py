@@ -22,7 +22,7 @@ environment_pages.write()
 
 # What index.md shows: the live page where `make live` has built it, else the replay of two flocks.
 html_extra_path = ["_build/shown"]
-_shown = Path(__file__).parent / html_extra_path[0] / "live.html"
+_shown = Path(__file__).parent / html_extra_path[0] / "flock.html"
 _shown.parent.mkdir(parents=True, exist_ok=True)
 if (_live := live_page()) is None:
     write_replay(_shown, demo_runs())

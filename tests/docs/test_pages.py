@@ -108,8 +108,10 @@ def test_files_that_are_named_exist(page):
 
 def test_the_home_page_opens_with_a_flock():
     home = (DOCS / "index.md").read_text()
-    assert home.index('<iframe src="live.html"') < home.index("```{toctree}")
-    assert 'html_extra_path[0] / "live.html"' in (DOCS / "conf.py").read_text()
+    assert home.index('<iframe src="flock.html"') < home.index("```{toctree}")
+    assert 'html_extra_path[0] / "flock.html"' in (DOCS / "conf.py").read_text()
+    # A page of this name would take its place.
+    assert not (DOCS / "flock.md").exists()
 
 
 def test_every_public_name_has_a_reference():
