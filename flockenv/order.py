@@ -336,7 +336,7 @@ def order_series(pose: ArrayLike, velocity: ArrayLike) -> OrderSeries:
         For other shapes, and for what is no number.
     """
     try:
-        states = [np.asarray(each, np.float64) for each in (pose, velocity)]
+        states = [np.ma.asarray(each, np.float64).filled(np.nan) for each in (pose, velocity)]
     except (TypeError, ValueError) as error:
         raise ParameterError("pose and velocity are not accepted: numbers") from error
     for name, each in zip(("pose", "velocity"), states, strict=True):

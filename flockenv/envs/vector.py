@@ -304,7 +304,7 @@ def _autoreset_mode(mode: str | AutoresetMode) -> AutoresetMode:
 def _checked_mask(mask: Any, num_envs: int) -> NDArray[np.bool_] | None:
     if mask is None:
         return None
-    if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_:
+    if type(mask) is not np.ndarray or mask.dtype != np.bool_:
         raise TypeError("options['reset_mask'] must be a numpy array of bools")
     if mask.shape != (num_envs,):
         raise ParameterError(

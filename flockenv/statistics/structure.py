@@ -105,7 +105,7 @@ def heading_correlation(pose: ArrayLike, lags: Sequence[int]) -> NDArray[np.floa
 
 
 def _poses(pose: ArrayLike) -> NDArray[np.float64]:
-    poses = np.asarray(pose, np.float64)
+    poses = np.ma.asarray(pose, np.float64).filled(np.nan)
     if poses.ndim != 3:
         raise ParameterError(f"pose has shape {poses.shape}, expected (t, n, 3)")
     absent = np.isnan(poses).all(axis=-1)

@@ -151,10 +151,9 @@ def velocities(
 
 
 def _numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:
-    if isinstance(values, np.ma.MaskedArray):  # What is masked is not there.
-        values = np.where(np.ma.getmaskarray(values), np.nan, values.data)
     try:
-        return np.array(values, np.float64)
+        # What is masked is not there.
+        return np.array(np.ma.asarray(values, np.float64).filled(np.nan))
     except (TypeError, ValueError) as error:
         raise ParameterError(f"{name} is not accepted: numbers") from error
 

@@ -156,3 +156,10 @@ def test_bad_lists_are_named_errors(target, message):
     with pytest.raises(ParameterError, match=message):
         env.reset(seed=1, options={"target": target})
     assert env.get_state() == before
+
+
+def test_a_list_is_of_flocks_and_a_tuple_of_leaders_where_both_would_fit():
+    venv = flockenv.LeadersVectorEnv(3, **SMALL)
+    for given, found in ((list(MIXED), [*MIXED]), (MIXED, [MIXED] * 3)):
+        _, infos = venv.reset(seed=1, options={"target": given})
+        assert [each if isinstance(each, str) else tuple(each) for each in infos["target"]] == found

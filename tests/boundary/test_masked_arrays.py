@@ -1,0 +1,44 @@
+"""Law: what is masked in an array is refused, or not there; it is never read as a number."""
+
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv.statistics.structure import structure_series
+
+PARAMETERS = flockenv.FlockParameters(n_boats=5, n_leaders=2)
+
+
+def masked(array: np.ndarray, *place: int) -> np.ma.MaskedArray:
+    found = np.ma.masked_array(array)
+    found[place] = np.ma.masked
+    return found
+
+
+def test_masked_states_rudders_and_masks_are_refused():
+    flock = flockenv.Flock(PARAMETERS, 0)
+    env = flockenv.LeadersVectorEnv(2, params=PARAMETERS)
+    env.reset(seed=0)
+    before = flock.snapshot(), env.get_state()
+    for call in (
+        lambda: flock.set_state(masked(flock.pose, 1, 0), flock.velocity),
+        lambda: flock.set_state(flock.pose, masked(flock.velocity, 1, 0)),
+        lambda: flock.advance(1.0, masked(np.zeros(2), 1)),
+        lambda: env.step(masked(np.zeros((2, 2)), 0, 1)),
+    ):
+        with pytest.raises(flockenv.ParameterError, match="is masked"):
+            call()
+    with pytest.raises(TypeError, match="reset_mask"):
+        env.reset(options={"reset_mask": masked(np.array([True, True]), 1)})
+    assert (flock.snapshot(), env.get_state()) == before
+    flock.set_state(np.ma.masked_array(flock.pose), flock.velocity)
+
+
+def test_boats_that_are_masked_are_not_there():
+    pose = flockenv.Flock(PARAMETERS, 0).pose[None]
+    gone, velocity = pose.copy(), np.zeros_like(pose)
+    gone[0, 1] = np.nan
+    found = flockenv.order_series(masked(pose, 0, 1), velocity)
+    assert found == flockenv.order_series(gone, velocity)
+    by_mask = structure_series("on_outer_wall", PARAMETERS, masked(pose, 0, 1))
+    assert by_mask == structure_series("on_outer_wall", PARAMETERS, gone)
