@@ -100,11 +100,11 @@ impl Numbers {
         let py = array.py();
         let mask = array.getattr("mask");
         // Others have a method of that name.
-        if let Ok(any) = mask.and_then(|mask| mask.call_method0("any")) {
-            if any.is_truthy()? {
-                let message = format!("{name} is masked, which is not accepted: numbers alone");
-                return Err(refusal(message));
-            }
+        if let Ok(any) = mask.and_then(|mask| mask.call_method0("any"))
+            && any.is_truthy()?
+        {
+            let message = format!("{name} is masked, which is not accepted: numbers alone");
+            return Err(refusal(message));
         }
         let asarray = numpy::get_array_module(py)?.getattr("asarray")?;
         let array = asarray.call1((array,))?.cast_into::<PyUntypedArray>()?;
