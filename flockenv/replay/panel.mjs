@@ -203,12 +203,13 @@ export class Panel {
     this.card.replaceChildren(head, list);
     const [x, y] = this.scene.place(boat);
     const beside = x > this.canvas.clientWidth / 2 ? x - this.card.offsetWidth - 18 : x + 18;
-    this.card.style.left = `${Math.max(beside, 2)}px`;
-    // Between the words in the corners.
+    this.card.style.left = `${Math.max(Math.min(beside, this.canvas.clientWidth - this.card.offsetWidth - 2), 2)}px`;
+    // Between the words in the corners, where they lie on the picture.
+    const above = this.canvas.offsetTop;
     const [top, bottom] = ["top", "bottom"].map((side) =>
-      2 + Math.max(...[...this.picture.querySelectorAll(`.corner.${side}`)].map((each) => each.offsetHeight)));
+      (above > 0 ? 2 : 2 + Math.max(...[...this.picture.querySelectorAll(`.corner.${side}`)].map((each) => each.offsetHeight))));
     const lowest = this.canvas.clientHeight - this.card.offsetHeight - bottom;
-    this.card.style.top = `${Math.max(2, Math.min(Math.max(y - 30, top), lowest))}px`;
+    this.card.style.top = `${above + Math.max(2, Math.min(Math.max(y - 30, top), lowest))}px`;
   }
 }
 
