@@ -2,13 +2,10 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
-
-import typer
 
 from flockenv._io.atomic_write import atomic_write
 from flockenv.cli.console import print_json, say
-from flockenv.cli.options import Overwriting, Printing, takes
+from flockenv.cli.options import Overwriting, Printing, argument, option, takes
 from flockenv.cli.output import in_words, load_recording, prepare, printable, summary_of
 from flockenv.errors import ParameterError
 
@@ -19,20 +16,12 @@ __all__ = ["analyze"]
 class AnalyzeOptions(Overwriting, Printing):
     """Options of `flockenv analyze`."""
 
-    file: Annotated[
-        Path, typer.Argument(help="Tracks (.csv, .parquet, .npz) or a recording (.npz).")
-    ]
-    layout: Annotated[
-        Path | None,
-        typer.Option("--layout", help="Columns and units of tracks: TOML. [beside the file]"),
-    ] = None
-    plot: Annotated[
-        Path | None, typer.Option(help="Draw order parameters against time into this picture.")
-    ] = None
-    out: Annotated[
-        Path | None,
-        typer.Option(help="Write it: a recording (.npz), tables (.csv, .parquet) or .gsd."),
-    ] = None
+    file: Path = argument("Tracks (.csv, .parquet, .npz) or a recording (.npz).")
+    layout: Path | None = option(None, "Columns and units of tracks: TOML. [beside the file]")
+    plot: Path | None = option(None, "Draw order parameters against time into this picture.")
+    out: Path | None = option(
+        None, "Write it: a recording (.npz), tables (.csv, .parquet) or .gsd."
+    )
 
 
 @takes(AnalyzeOptions)

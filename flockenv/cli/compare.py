@@ -6,14 +6,12 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
-
-import typer
+from typing import Any
 
 from flockenv._io.atomic_write import write_csv, write_text
 from flockenv._io.extras import require
 from flockenv.cli.console import console, errors, print_json, progress, say
-from flockenv.cli.options import Flocks, Printing, TrustOption, takes
+from flockenv.cli.options import TRUST, Flocks, Printing, option, takes
 from flockenv.cli.output import prepare, printable
 from flockenv.cli.parameters import changed_fields, given_fields, read_parameters
 from flockenv.comparison.case import Case
@@ -37,57 +35,35 @@ _MOST_LEADERS = 64
 class CompareOptions(Flocks, Printing):
     """Options of `flockenv compare`."""
 
-    policy: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Policy of yours, repeatable: a name, the file of a learned one, the .zip file "
-            "of an SB3 model (with --trust), or one per leader, as in leader_0=a.npz,leader_1=law."
-        ),
-    ] = None
-    name: Annotated[
-        list[str] | None,
-        typer.Option(help="What a policy of yours is called; once for each. [its file's name]"),
-    ] = None
-    only: Annotated[bool, typer.Option("--only", help=f"Leave out {', '.join(REFERENCES)}.")] = (
-        False
+    policy: list[str] | None = option(
+        None,
+        "Policy of yours, repeatable: a name, the file of a learned one, the .zip file of an SB3 "
+        "model (with --trust), or one per leader, as in leader_0=a.npz,leader_1=learned.",
     )
-    trust: TrustOption = False
-    pool: Annotated[
-        list[str] | None,
-        typer.Option(help="Which pool, repeatable. [wide and narrow, or that of the parameters]"),
-    ] = None
-    bw_s: Annotated[
-        list[float] | None,
-        typer.Option(help="Noise: backward duration in s, repeatable. [critical]"),
-    ] = None
-    leaders: Annotated[
-        str | None, typer.Option(metavar="NUMBERS", help="As in 0-4 or 1,3. [0-4; 1-4 with --env]")
-    ] = None
-    env: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="NAME=VALUE",
-            help="Option of the environment, repeatable, as in target=alternate.",
-        ),
-    ] = None
-    episodes: Annotated[int, typer.Option(min=2, help="Seeds for each case.")] = 64
-    minutes: Annotated[
-        float | None,
-        typer.Option(min=0.0, help="Length of an episode. [8; 16 for target=alternate]"),
-    ] = None
-    seed: Annotated[int, typer.Option(min=0, help="First seed.")] = 0
-    suite: Annotated[
-        str | None, typer.Option(help="Score the policies on the frozen tasks of a suite: v2.")
-    ] = None
-    task: Annotated[
-        list[str] | None, typer.Option(help="Of the suite, one task, repeatable. [every task]")
-    ] = None
-    full: Annotated[
-        bool, typer.Option("--full", help="Print differences and straight lines too.")
-    ] = False
-    out: Annotated[Path, typer.Option(help="Folder for tables and pictures.")] = Path(
-        "results/compare"
+    name: list[str] | None = option(
+        None, "What a policy of yours is called; once for each. [its file's name]"
     )
+    only: bool = option(False, f"Leave out {', '.join(REFERENCES)}.", "--only")
+    trust: bool = option(False, TRUST, "--trust")
+    pool: list[str] | None = option(
+        None, "Which pool, repeatable. [wide and narrow, or that of the parameters]"
+    )
+    bw_s: list[float] | None = option(None, "Noise: backward duration in s, repeatable. [critical]")
+    leaders: str | None = option(None, "As in 0-4 or 1,3. [0-4; 1-4 with --env]", metavar="NUMBERS")
+    env: list[str] | None = option(
+        None,
+        "Option of the environment, repeatable, as in target=alternate.",
+        metavar="NAME=VALUE",
+    )
+    episodes: int = option(64, "Seeds for each case.", min=2)
+    minutes: float | None = option(
+        None, "Length of an episode. [8; 16 for target=alternate]", min=0.0
+    )
+    seed: int = option(0, "First seed.", min=0)
+    suite: str | None = option(None, "Score the policies on the frozen tasks of a suite: v2.")
+    task: list[str] | None = option(None, "Of the suite, one task, repeatable. [every task]")
+    full: bool = option(False, "Print differences and straight lines too.", "--full")
+    out: Path = option(Path("results/compare"), "Folder for tables and pictures.")
 
 
 _OF_FLOCKS = (

@@ -3,11 +3,11 @@
 import functools
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, Protocol
+from typing import Any
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import Progress
 
 from flockenv._io.interrupts import INTERRUPTED, end_if_interrupted, noted_interrupts
 
@@ -32,36 +32,25 @@ def print_json(data: Any) -> None:
     console.print_json(data=data, ensure_ascii=True)
 
 
-class Advance(Protocol):
-    """Moves a bar on, by an amount of work."""
-
-    def __call__(self, done: float = 1.0, what: str | None = None) -> None:
-        """Move the bar on, and change what it says that is done."""
-
-
 @contextmanager
-def progress(what: str, total: float | None, quiet: bool, ends: bool = True) -> Iterator[Advance]:
-    """Show a bar with the time left, on a terminal, and yield what moves it on.
+def progress(
+    what: str, total: float, quiet: bool, ends: bool = True
+) -> Iterator[Callable[..., None]]:
+    """Show a bar with the time left, on a terminal.
+
+    Yields a function that moves it on by an amount of work, and may change what it says is done.
 
     Parameters
     ----------
     what, total
-        What is done, and how much of it there is; None: as the function that is yielded adds up.
+        What is done, and how much of it there is.
     quiet
         Whether to show nothing.
     ends
         Whether work ends where it moves on, if Ctrl-C was noted.
     """
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.percentage:3.0f} %"),
-        TimeElapsedColumn(),
-        TextColumn("left:"),
-        TimeRemainingColumn(),
-    )
     disable = quiet or not errors.is_terminal
-    with Progress(*columns, console=errors, transient=True, disable=disable) as bar:
+    with Progress(console=errors, transient=True, disable=disable) as bar:
         task = bar.add_task(what, total=total)
 
         def advance(done: float = 1.0, what: str | None = None) -> None:

@@ -2,13 +2,10 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
-
-import typer
 
 from flockenv._io.atomic_write import write_text
 from flockenv.cli.console import print_json, progress, say
-from flockenv.cli.options import Printing, takes
+from flockenv.cli.options import Printing, option, takes
 from flockenv.cli.output import in_words, open_page, prepare, summary_of
 
 __all__ = ["demo"]
@@ -18,12 +15,10 @@ __all__ = ["demo"]
 class DemoOptions(Printing):
     """Options of `flockenv demo`."""
 
-    seed: Annotated[int, typer.Option(min=0, help="Seed of placement and noise.")] = 7
-    minutes: Annotated[float, typer.Option(min=0.1, help="Length of each run.")] = 8.0
-    out: Annotated[Path, typer.Option(help="The page.")] = Path("results/demo.html")
-    show: Annotated[bool, typer.Option("--open/--no-open", help="Open the page in a browser.")] = (
-        True
-    )
+    seed: int = option(7, "Seed of placement and noise.", min=0)
+    minutes: float = option(8.0, "Length of each run.", min=0.1)
+    out: Path = option(Path("results/demo.html"), "The page.")
+    show: bool = option(True, "Open the page in a browser.", "--open/--no-open")
 
 
 @takes(DemoOptions)

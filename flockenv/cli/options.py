@@ -2,42 +2,40 @@
 
 import inspect
 from collections.abc import Callable
-from dataclasses import MISSING, dataclass, fields
+from dataclasses import MISSING, dataclass, field, fields
 from functools import wraps
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_type_hints
 
 import typer
 
-__all__ = ["Flocks", "Overwriting", "Printing", "TrustOption", "takes"]
+__all__ = ["TRUST", "Flocks", "Overwriting", "Printing", "argument", "option", "takes"]
 
 Options = TypeVar("Options")
 
-TrustOption = Annotated[
-    bool,
-    typer.Option(
-        "--trust",
-        help="Read .zip files of stable-baselines3 models, which executes the code in them.",
-    ),
-]
+TRUST = "Read .zip files of stable-baselines3 models, which executes the code in them."
+"""What a command's option ``trust`` does."""
+
+
+def option(default: Any, help: str, *names: str, **settings: Any) -> Any:  # noqa: A002
+    """Return a field that is an option: its default, and what `typer.Option` takes."""
+    return field(default=default, metadata={"typer": typer.Option(*names, help=help, **settings)})
+
+
+def argument(help: str, default: Any = MISSING, **settings: Any) -> Any:  # noqa: A002
+    """Return a field that is an argument, which must be given if it has no default."""
+    return field(default=default, metadata={"typer": typer.Argument(help=help, **settings)})
 
 
 def takes(options: type[Options]) -> Callable[[Callable[[Options], None]], Callable[..., None]]:
-    """Let a command take a dataclass: each of its fields is an option of the command line.
-
-    Parameters
-    ----------
-    options
-        A dataclass whose fields are annotated as `typer` has it; a field without a default is an
-        argument.
-    """
-    hints = get_type_hints(options, include_extras=True)
+    """Let a command take a dataclass whose fields are each an `option` or an `argument`."""
+    hints = get_type_hints(options)
     parameters = [
         inspect.Parameter(
             each.name,
             inspect.Parameter.KEYWORD_ONLY,
             default=inspect.Parameter.empty if each.default is MISSING else each.default,
-            annotation=hints[each.name],
+            annotation=Annotated[hints[each.name], each.metadata["typer"]],
         )
         for each in fields(options)  # type: ignore[arg-type]
     ]
@@ -58,39 +56,28 @@ def takes(options: type[Options]) -> Callable[[Callable[[Options], None]], Calla
 class Flocks:
     """Which parameters a flock has."""
 
-    preset: Annotated[
-        str | None,
-        typer.Option("--preset", help="Named parameters: see `flockenv presets`. [simulation]"),
-    ] = None
-    params: Annotated[
-        Path | None,
-        typer.Option(
-            "--params", help="TOML file of parameters, such as those saved beside results."
-        ),
-    ] = None
-    changes: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="FIELD=VALUE", help="Change one field; may be repeated."),
-    ] = None
+    preset: str | None = option(None, "Named parameters: see `flockenv presets`. [simulation]")
+    params: Path | None = option(
+        None, "TOML file of parameters, such as those saved beside results."
+    )
+    changes: list[str] | None = option(
+        None, "Change one field; may be repeated.", "--set", metavar="FIELD=VALUE"
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
 class Overwriting:
     """Whether files that are there may be written over."""
 
-    force: Annotated[
-        bool, typer.Option("--force", help="Overwrite files that are there already.")
-    ] = False
+    force: bool = option(False, "Overwrite files that are there already.", "--force")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Printing:
     """How much a command prints."""
 
-    as_json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False
-    quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="Print no progress and no remarks.")
-    ] = False
+    as_json: bool = option(False, "Print the results as JSON.", "--json")
+    quiet: bool = option(False, "Print no progress and no remarks.", "--quiet", "-q")
 
     @property
     def shows_nothing(self) -> bool:

@@ -12,6 +12,7 @@ from flockenv.cli.console import errors, say
 from flockenv.errors import ParameterError
 from flockenv.order import QUANTITIES
 from flockenv.recording import Recording
+from flockenv.runs.sweep import summary
 
 __all__ = ["in_words", "load_recording", "open_page", "prepare", "printable", "summary_of"]
 
@@ -92,31 +93,18 @@ def open_page(page: Path) -> None:
         say(f"No browser was found here. Open this page in one: {address}", errors)
 
 
-def summary_of(recording: Recording) -> dict[str, float | int | None]:
-    """Return the means of the averaged quantities by name: `Recording.analyzed`'s, None if unknown.
-
-    ``samples`` and ``samples_in_window`` say of how many samples there are and were used.
-    """
-    used = recording.analyzed()
-    found: dict[str, float | int | None] = {
-        "samples": len(recording),
-        "samples_in_window": len(used),
-    }
-    for each in QUANTITIES:
-        if each.is_averaged:
-            values = used.order.series(each.name, recording.parameters.target)
-            defined = values[np.isfinite(values)]
-            found[each.name] = float(defined.mean()) if len(defined) else None
-    return found
+def summary_of(recording: Recording) -> dict[str, float | None]:
+    """Return what a sweep's table says of a run; None for what is not defined."""
+    return {name: None if np.isnan(n) else n for name, n in summary(recording).items()}
 
 
 def in_words(recording: Recording) -> str:
     """Return the means of a recording's quantities without a unit, in one line."""
-    words = []
-    for name, mean in summary_of(recording).items():
-        each = next((each for each in QUANTITIES if each.name == name and not each.unit), None)
-        has_target = recording.parameters.common_target is not None
-        if each is not None and (has_target or name != "signed_order"):
+    means, words = summary_of(recording), []
+    has_target = recording.parameters.common_target is not None
+    for each in QUANTITIES:
+        if each.is_averaged and not each.unit and (has_target or each.name != "signed_order"):
+            mean = means[f"{each.name}_mean"]
             called = f"mean {each.symbol}" if "_" in each.symbol else each.label.partition(",")[0]
             words.append(f"{called} {'undefined' if mean is None else f'{mean:.3f}'}")
     return ", ".join(words)

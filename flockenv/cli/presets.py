@@ -2,13 +2,12 @@
 
 import dataclasses
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Any
 
-import typer
 from rich.table import Table
 
 from flockenv.cli.console import console, print_json
-from flockenv.cli.options import takes
+from flockenv.cli.options import option, takes
 from flockenv.parameters import FlockParameters
 
 __all__ = ["ABOUT", "presets"]
@@ -25,7 +24,7 @@ ABOUT = {
 class PresetsOptions:
     """Options of `flockenv presets`."""
 
-    as_json: Annotated[bool, typer.Option("--json", help="Print all of it as JSON.")] = False
+    as_json: bool = option(False, "Print all of it as JSON.", "--json")
 
 
 @takes(PresetsOptions)
@@ -34,31 +33,31 @@ def presets(options: PresetsOptions) -> None:
 
     Example: `flockenv presets --json`
     """
-    names = FlockParameters.presets()
-    values = {name: FlockParameters.preset(name).to_dict() for name in names}
-    sources = {name: FlockParameters.preset_sources(name) for name in names}
-    declared = dataclasses.fields(FlockParameters)
+    found: dict[str, dict[str, Any]] = {}
+    for name in FlockParameters.presets():
+        values = FlockParameters.preset(name).to_dict()
+        sources = FlockParameters.preset_sources(name)
+        declared = {
+            each.name: {
+                "value": values[each.name],
+                "unit": each.metadata["unit"],
+                "meaning": each.metadata["doc"],
+                "source": sources[each.name],
+            }
+            for each in dataclasses.fields(FlockParameters)
+        }
+        found[name] = {"about": ABOUT[name], "fields": declared}
     if options.as_json:
-        print_json({name: _described(name, values[name], sources[name]) for name in names})
+        print_json(found)
         return
-    for name in names:
+    for name in found:
         console.print(f"{name}: {ABOUT[name]}", highlight=False)
     table = Table(box=None, show_header=False, padding=(0, 2, 1, 0))
     table.add_column(no_wrap=True)
-    for each in declared:
-        unit, meaning = each.metadata["unit"], each.metadata["doc"]
-        lines = [f"{meaning} Unit: {unit}." if unit else meaning]
-        lines += [f"{n}: {values[n][each.name]} ({sources[n][each.name]})" for n in names]
-        table.add_row(each.name, "\n".join(lines))
+    for field, first in declared.items():
+        lines = [first["meaning"] + (f" Unit: {first['unit']}." if first["unit"] else "")]
+        for name, preset in found.items():
+            own = preset["fields"][field]
+            lines.append(f"{name}: {own['value']} ({own['source']})")
+        table.add_row(field, "\n".join(lines))
     console.print("", table, highlight=False)
-
-
-def _described(
-    name: str, values: dict[str, Any], sources: dict[str, str]
-) -> dict[str, str | dict[str, Any]]:
-    fields = {}
-    for each in dataclasses.fields(FlockParameters):
-        unit, meaning = each.metadata["unit"], each.metadata["doc"]
-        value, source = values[each.name], sources[each.name]
-        fields[each.name] = {"value": value, "unit": unit, "meaning": meaning, "source": source}
-    return {"about": ABOUT[name], "fields": fields}

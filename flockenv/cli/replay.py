@@ -1,21 +1,16 @@
 """`flockenv replay`: recordings as a page that plays them, or as a moving picture."""
 
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Any
 
 import numpy as np
-import typer
 from numpy.typing import NDArray
 
 from flockenv.cli.console import print_json, progress, say
-from flockenv.cli.options import Printing, takes
+from flockenv.cli.options import Printing, argument, option, takes
 from flockenv.cli.output import load_recording, open_page, prepare, printable
 from flockenv.errors import ParameterError
-
-if TYPE_CHECKING:
-    from flockenv.recording import Recording
 
 __all__ = ["replay"]
 
@@ -26,32 +21,15 @@ _FPS = {".gif": 12.5, ".mp4": 25.0}
 class ReplayOptions(Printing):
     """Options of `flockenv replay`."""
 
-    first: Annotated[
-        Path, typer.Argument(metavar="RUN", help="A recording (.npz), or tracks (.csv, .parquet).")
-    ]
-    second: Annotated[
-        Path | None, typer.Argument(metavar="OTHER", help="Another one to play beside it.")
-    ] = None
-    html: Annotated[
-        Path | None, typer.Option("--html", help="The page. [the first recording's name]")
-    ] = None
-    gif: Annotated[
-        Path | None, typer.Option("--gif", help="A moving picture of the first, in its place.")
-    ] = None
-    mp4: Annotated[
-        Path | None, typer.Option("--mp4", help="A video of the first, in its place.")
-    ] = None
-    speed: Annotated[
-        float, typer.Option(min=0.1, max=100.0, help="Of pictures: how many times real time.")
-    ] = 8.0
-    seconds: Annotated[
-        float, typer.Option(min=0.1, help="Of pictures: how long they last at most.")
-    ] = 20.0
-    name: Annotated[
-        list[str] | None,
-        typer.Option("--name", help="What a recording is called on the page; once for each."),
-    ] = None
-    show: Annotated[bool, typer.Option("--open", help="Open the page in a browser.")] = False
+    first: Path = argument("A recording (.npz), or tracks (.csv, .parquet).", metavar="RUN")
+    second: Path | None = argument("Another one to play beside it.", None, metavar="OTHER")
+    html: Path | None = option(None, "The page. [the first recording's name]")
+    gif: Path | None = option(None, "A moving picture of the first, in its place.")
+    mp4: Path | None = option(None, "A video of the first, in its place.")
+    speed: float = option(8.0, "Of pictures: how many times real time.", min=0.1, max=100.0)
+    seconds: float = option(20.0, "Of pictures: how long they last at most.", min=0.1)
+    name: list[str] | None = option(None, "What a recording is called on the page; once for each.")
+    show: bool = option(False, "Open the page in a browser.", "--open")
 
 
 @takes(ReplayOptions)
@@ -105,7 +83,7 @@ def _page(options: ReplayOptions) -> None:
 
 def _pictures(options: ReplayOptions, paths: list[Path]) -> None:
     """Write the first recording as a GIF, a video, or both."""
-    from flockenv.rendering import save_animation
+    from flockenv.rendering import frame, save_animation
 
     prepare(*paths)
     recording = load_recording(options.first, quiet=options.shows_nothing)
@@ -115,18 +93,13 @@ def _pictures(options: ReplayOptions, paths: list[Path]) -> None:
         steps_s = np.arange(max(1, round(lasting_s * fps))) * options.speed / fps
         times = recording.time_s[0] + np.minimum(steps_s, recording.duration_s)
         with progress("drawing", len(times), options.shows_nothing) as advance:
-            save_animation(path, _frames(recording, times, advance), fps)
+
+            def drawn(time_s: Any) -> NDArray[np.uint8]:
+                advance()
+                return frame(recording, time_s)
+
+            save_animation(path, map(drawn, times.tolist()), fps)
     if options.as_json:
         print_json({"files": list(map(printable, paths))})
     else:
         say(f"Written to {' and '.join(map(printable, paths))}")
-
-
-def _frames(
-    recording: "Recording", times: NDArray[np.float64], drawn: Callable[[], None]
-) -> Iterator[NDArray[np.uint8]]:
-    from flockenv.rendering import frame
-
-    for time_s in times.tolist():
-        yield frame(recording, time_s)
-        drawn()

@@ -4,13 +4,10 @@ import shlex
 from dataclasses import dataclass
 from itertools import chain, count
 from pathlib import Path
-from typing import Annotated
-
-import typer
 
 from flockenv._io.atomic_write import write_text
 from flockenv.cli.console import print_json, progress, say
-from flockenv.cli.options import Flocks, Overwriting, Printing, TrustOption, takes
+from flockenv.cli.options import TRUST, Flocks, Overwriting, Printing, option, takes
 from flockenv.cli.output import in_words, prepare, printable, summary_of
 from flockenv.cli.parameters import read_parameters
 from flockenv.errors import ParameterError
@@ -26,28 +23,21 @@ _OUT = Path("results/run.npz")
 class RunOptions(Flocks, Overwriting, Printing):
     """Options of `flockenv run`."""
 
-    policy: Annotated[
-        str,
-        typer.Option(
-            help="How leaders steer. The paper's law at every substep, or at 10 Hz, from what they "
-            "observe, a policy's file, an SB3 model's .zip file (with --trust) or one of: "
-            f"{quoted([*POLICIES, *POOL_POLICIES])}."
-        ),
-    ] = EVERY_SUBSTEP
-    trust: TrustOption = False
-    seed: Annotated[int, typer.Option(min=0, help="Seed of placement and noise.")] = 0
-    minutes: Annotated[float, typer.Option(min=0.0, help="Length of the run.")] = 8.0
-    hz: Annotated[float, typer.Option(help="Samples per second.")] = 10.0
-    threads: Annotated[
-        int, typer.Option(min=1, max=1024, help="Threads for 200 boats or more; same result.")
-    ] = 1
-    contacts: Annotated[
-        bool, typer.Option("--contacts/--no-contacts", help="Record contact forces too.")
-    ] = True
-    out: Annotated[
-        Path | None,
-        typer.Option(help="The recording. [results/run.npz, numbered where that is taken]"),
-    ] = None
+    policy: str = option(
+        EVERY_SUBSTEP,
+        "How leaders steer. The paper's law at every substep, or at 10 Hz, from what they observe, "
+        "a policy's file, an SB3 model's .zip file (with --trust) or one of: "
+        f"{quoted([*POLICIES, *POOL_POLICIES])}.",
+    )
+    trust: bool = option(False, TRUST, "--trust")
+    seed: int = option(0, "Seed of placement and noise.", min=0)
+    minutes: float = option(8.0, "Length of the run.", min=0.0)
+    hz: float = option(10.0, "Samples per second.")
+    threads: int = option(1, "Threads for 200 boats or more; same result.", min=1, max=1024)
+    contacts: bool = option(True, "Record contact forces too.", "--contacts/--no-contacts")
+    out: Path | None = option(
+        None, "The recording. [results/run.npz, numbered where that is taken]"
+    )
 
 
 @takes(RunOptions)

@@ -3,13 +3,12 @@
 import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
 from flockenv._io.atomic_write import write_text
 from flockenv.cli.console import errors, print_json, progress, say, warn
-from flockenv.cli.options import Printing, takes
+from flockenv.cli.options import Printing, argument, option, takes
 from flockenv.cli.output import prepare
 from flockenv.runs.executors import named
 from flockenv.runs.spec import RunSpec
@@ -23,28 +22,16 @@ __all__ = ["sweep"]
 class SweepOptions(Printing):
     """Options of `flockenv sweep`."""
 
-    spec: Annotated[Path, typer.Argument(help="What to run: a TOML file.")]
-    engine: Annotated[
-        str,
-        typer.Option("--engine", help="Where to run: local or ray."),
-    ] = "local"
-    workers: Annotated[
-        int | None,
-        typer.Option(min=1, help="Runs at a time. [every core that this process may use]"),
-    ] = None
-    shard: Annotated[
-        str | None,
-        typer.Option(
-            "--shard", metavar="I/N", help="Make the I-th of N shares of the runs, no more."
-        ),
-    ] = None
-    dry_run: Annotated[
-        bool,
-        typer.Option("--dry-run", help="Print how many runs there are and what they take."),
-    ] = False
-    out: Annotated[Path | None, typer.Option(help="Folder for results. [results/sweep/NAME]")] = (
-        None
+    spec: Path = argument("What to run: a TOML file.")
+    engine: str = option("local", "Where to run: local or ray.")
+    workers: int | None = option(
+        None, "Runs at a time. [every core that this process may use]", min=1
     )
+    shard: str | None = option(
+        None, "Make the I-th of N shares of the runs, no more.", metavar="I/N"
+    )
+    dry_run: bool = option(False, "Print how many runs there are and what they take.", "--dry-run")
+    out: Path | None = option(None, "Folder for results. [results/sweep/NAME]")
 
 
 @takes(SweepOptions)

@@ -2,13 +2,11 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from typing import TYPE_CHECKING, Any
 
 from flockenv._io.atomic_write import write_csv
 from flockenv.cli.console import errors, print_json, progress, say
-from flockenv.cli.options import Printing, takes
+from flockenv.cli.options import Printing, option, takes
 from flockenv.cli.parameters import changed_fields
 from flockenv.errors import ParameterError
 
@@ -22,31 +20,19 @@ __all__ = ["train"]
 class TrainOptions(Printing):
     """Options of `flockenv train`."""
 
-    pool: Annotated[str | None, typer.Option(help="wide or narrow. [wide]")] = None
-    leaders: Annotated[int | None, typer.Option(help="Leaders of each flock. [3]")] = None
-    flock_hours: Annotated[
-        float | None, typer.Option(help="When to stop: hours of all flocks together. [2000]")
-    ] = None
-    seed: Annotated[int | None, typer.Option(help="Number of the training. [0]")] = None
-    change: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set", metavar="NAME=VALUE", help="Change an option of the environment; repeatable."
-        ),
-    ] = None
-    ppo: Annotated[
-        list[str] | None,
-        typer.Option("--ppo", metavar="NAME=VALUE", help="Change an option of PPO; repeatable."),
-    ] = None
-    episodes: Annotated[
-        int, typer.Option(min=2, help="Held-out flocks to compare with the laws in.")
-    ] = 64
-    out: Annotated[Path, typer.Option(help="Folder for the model and the run.")] = Path(
-        "results/train"
+    pool: str | None = option(None, "wide or narrow. [wide]")
+    leaders: int | None = option(None, "Leaders of each flock. [3]")
+    flock_hours: float | None = option(None, "When to stop: hours of all flocks together. [2000]")
+    seed: int | None = option(None, "Number of the training. [0]")
+    change: list[str] | None = option(
+        None, "Change an option of the environment; repeatable.", "--set", metavar="NAME=VALUE"
     )
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Continue from the folder's last checkpoint.")
-    ] = False
+    ppo: list[str] | None = option(
+        None, "Change an option of PPO; repeatable.", metavar="NAME=VALUE"
+    )
+    episodes: int = option(64, "Held-out flocks to compare with the laws in.", min=2)
+    out: Path = option(Path("results/train"), "Folder for the model and the run.")
+    resume: bool = option(False, "Continue from the folder's last checkpoint.", "--resume")
 
     def settings(self) -> dict[str, Any]:
         """Return the settings of the training that were given."""

@@ -17,7 +17,6 @@ __all__ = [
     "PHASES",
     "PRECISIONS",
     "TIMES",
-    "arrays_equal",
     "check_array",
     "check_contacts",
     "check_ids",
@@ -78,13 +77,6 @@ def check_quantities(quantities: Any, times: tuple[int, ...]) -> None:
             raise ParameterError(f"quantity {name!r} must be an array of float64")
         if values.shape != times:
             raise ParameterError(f"quantity {name!r} has shape {values.shape}, expected {times}")
-
-
-def arrays_equal(a: NDArray[Any] | None, b: NDArray[Any] | None) -> bool:
-    """Return whether two arrays are equal, gaps included, or both None."""
-    if a is None or b is None:
-        return a is b
-    return np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
 
 
 def check_contacts(contacts: ContactSeries, samples: int, parameters: FlockParameters) -> None:

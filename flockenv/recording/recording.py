@@ -19,13 +19,12 @@ from flockenv.parameters import FlockParameters
 from flockenv.recording.checks import (
     PHASES,
     PRECISIONS,
-    arrays_equal,
     check_array,
     check_contacts,
     check_ids,
     check_quantities,
 )
-from flockenv.recording.stored import ARRAYS, OPTIONAL, arrays_of, fields_from
+from flockenv.recording.stored import ARRAYS, arrays_of, fields_from
 from flockenv.recording.tables import dataset_of, table_of
 
 if TYPE_CHECKING:
@@ -152,29 +151,19 @@ class Recording:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Recording):
             return NotImplemented
-        plain = ("order", "parameters", "seed", "version", "contacts", "policy", "duration_s")
-        if any(getattr(self, name) != getattr(other, name) for name in plain):
-            return False
-        own, others = self.quantities, other.quantities
-        return (
-            own.keys() == others.keys()
-            and all(arrays_equal(own[name], others[name]) for name in own)
-            and all(
-                arrays_equal(getattr(self, name), getattr(other, name))
-                for name in (*ARRAYS, *OPTIONAL)
-            )
+        mine, theirs = arrays_of(self._fields()), arrays_of(other._fields())
+        return mine.keys() == theirs.keys() and all(
+            np.array_equal(array, theirs[name], equal_nan=array.dtype.kind == "f")
+            for name, array in mine.items()
         )
 
     def __repr__(self) -> str:
-        if self.ids is not None:
-            return (
-                f"<flockenv.Recording of {self.parameters.n_boats} tracked boats, "
-                f"{len(self)} samples to {self.duration_s} s>"
-            )
-        return (
-            f"<flockenv.Recording of {self.parameters.n_boats} boats, seed {self.seed}, "
-            f"{len(self)} samples to {self.duration_s} s>"
-        )
+        boats = self.parameters.n_boats
+        what = f"{boats} boats, seed {self.seed}" if self.ids is None else f"{boats} tracked boats"
+        return f"<flockenv.Recording of {what}, {len(self)} samples to {self.duration_s} s>"
+
+    def _fields(self) -> dict[str, Any]:
+        return {each.name: getattr(self, each.name) for each in fields(self)}
 
     def flock_at(self, time_s: float) -> Flock:
         """Return the flock at the last sample up to a time, as far as it was recorded.
@@ -363,8 +352,7 @@ class Recording:
                 f"path = {os.fspath(path)!r} is not accepted: a name that ends in .npz; "
                 "to_dataframe() has to_csv(), to_parquet() and others"
             )
-        own = {each.name: getattr(self, each.name) for each in fields(self)}
-        write_arrays(path, arrays_of(own), compressed=compressed)
+        write_arrays(path, arrays_of(self._fields()), compressed=compressed)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:

@@ -162,12 +162,13 @@ def summary(run: Recording) -> dict[str, float]:
         ``frames``, how many there are (analysis window, after the first tenth); ``<name>_mean`` and
         ``<name>_std`` of each averaged quantity of the table: Ψ_o, C_o, Ψ_v (cm/s), C_v (cm²/s²),
         the nematic order, milling, the signed order towards the target and the rotation
-        Ψ_o·sin φ_o. NaN where undefined.
+        Ψ_o·sin φ_o. Over the frames in which they are defined, NaN where there is none.
     """
     used = run.analyzed()
     row: dict[str, float] = {"frames": len(used)}
     for name in _AVERAGED:
         series = used.order.series(name, run.parameters.target)
+        series = series[np.isfinite(series)]
         row[f"{name}_mean"] = float(series.mean()) if len(series) else np.nan
         row[f"{name}_std"] = float(series.std()) if len(series) else np.nan
     return row

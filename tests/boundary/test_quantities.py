@@ -72,7 +72,7 @@ def test_the_command_line_and_the_replay_page_show_the_table(cli, run, tmp_path)
     done = cli("run", *options, "--out", tmp_path / "run.npz")
     assert done.returncode == 0, done.stderr
     shown = json.loads(done.stdout)
-    assert {"nematic", "milling", "psi_v", "signed_order"} <= shown.keys()
+    assert {"nematic_mean", "milling_mean", "psi_v_mean", "signed_order_mean"} <= shown.keys()
     keys = [each["key"] for each in shown_quantities([run])]
     assert keys == ["signed_order", "rotation", *RECORDED]
 

@@ -38,7 +38,7 @@ def test_tracks_have_the_numbers_of_the_run_they_are_of(cli, run, tmp_path):
         for path in (tmp_path / "again.npz", tracks)
     ]
     assert summaries[0] == summaries[1]
-    assert summaries[0]["psi_o"] == pytest.approx(recording.analyzed().order.psi_o.mean())
+    assert summaries[0]["psi_o_mean"] == pytest.approx(recording.analyzed().order.psi_o.mean())
 
 
 def test_nobody_heads_for_a_target_without_leaders(cli, tmp_path):
@@ -95,7 +95,7 @@ def test_a_table_without_a_description_gets_one_to_check(cli, tmp_path):
     (tmp_path / "robots.csv").write_text("\n".join(["frame,robot,x,y,theta", *rows]))
     done = cli("analyze", tmp_path / "robots.csv", "--json")
     assert done.returncode == 0, done.stderr
-    assert json.loads(done.stdout)["milling"] == pytest.approx(1.0, abs=0.01)
+    assert json.loads(done.stdout)["milling_mean"] == pytest.approx(1.0, abs=0.01)
     text = (tmp_path / "robots.toml").read_text()
     for field in ("pool", "center", "cm_per_unit", "y_down", "fps"):
         assert f"  {field}: " in done.stderr

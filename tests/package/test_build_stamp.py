@@ -59,14 +59,11 @@ def test_what_was_removed_is_built_again(clone: Path) -> None:
     assert builds(clone)
 
 
-def test_an_install_that_is_not_editable_is_replaced(clone: Path) -> None:
-    (path,) = clone.rglob("flockenv.pth")
-    path.unlink()
-    (path.parent / "flockenv").mkdir()
-    assert builds(clone)
-
-
-def test_an_install_of_another_folder_is_replaced(clone: Path, tmp_path: Path) -> None:
+def test_another_install_is_replaced(clone: Path, tmp_path: Path) -> None:
+    """Of another folder, and one that is not editable."""
     (path,) = clone.rglob("flockenv.pth")
     path.write_text(str(tmp_path / "another" / "flockenv"))
+    assert builds(clone)
+    path.unlink()
+    (path.parent / "flockenv").mkdir()
     assert builds(clone)
