@@ -55,8 +55,3 @@ def order(row: Row) -> str:
 def difference(row: Row) -> str:
     """Return a paired difference of signed orders with its interval."""
     return interval(row, "mean", "low", "high", "+.3f")
-
-
-def ratio(row: Row) -> str:
-    """Return a paired ratio of signed orders with its interval."""
-    return interval(row, "ratio", "ratio_low", "ratio_high", ".2f")

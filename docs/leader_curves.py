@@ -10,11 +10,13 @@ FOLDER = DOCS / "leaders"
 
 def main() -> None:
     """Draw both pools' curves."""
-    means = pd.read_csv(FOLDER / "means.csv").rename(columns={"comparison": "case"})
+    means = pd.read_csv(FOLDER / "means.csv")
     for pool, bw_s in (("wide", 0.31), ("narrow", 0.45)):
-        title = f"27 boats, pool {pool}, bw = {bw_s:g} s, target cw, 512 episodes per point"
-        own = means[means["case"] == pool]
-        leader_curve(own, FOLDER / f"curve-{pool}.png", titles={pool: title})
+        case = f"{pool}-bw-{bw_s:g}"
+        own = means[means["case"] == case]
+        episodes = own["runs"].max()
+        title = f"27 boats, pool {pool}, bw = {bw_s:g} s, target cw, {episodes} episodes per point"
+        leader_curve(own, FOLDER / f"curve-{pool}.png", titles={case: title})
 
 
 if __name__ == "__main__":

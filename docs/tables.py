@@ -6,7 +6,7 @@ where a page differs from its data.
 """
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
 
@@ -43,6 +43,8 @@ def filled(text: str) -> str:
     return MARKED.sub(lambda found: f"{found[1]}\n{TABLES[found[2]]()}\n\n{found[4]}", text)
 
 
+LADDER = ("paper's law", "damped law", "tuned law", "learned")
+
 # --- the leaders ----------------------------------------------------------------------------------
 
 
@@ -66,31 +68,15 @@ def leader_count() -> str:
     return markdown(["leaders", *header], body)
 
 
-def leaders_of(pool: str, policies: Sequence[str]) -> str:
-    """Return the order with each policy in a pool, and what learning adds to the best law."""
+def leaders_of(case: str) -> str:
+    """Return the order with each policy in a pool, and what learning adds to the tuned law."""
     body = []
     for k in ("1", "2", "3", "4"):
-        means = (one(MEANS, comparison=pool, policy=name, leaders=k) for name in policies)
-        added = one(
-            DIFFERENCES,
-            comparison=pool,
-            policy="learned",
-            reference="tuned law",
-            leaders=k,
-        )
+        known = {"case": case, "leaders": k}
+        means = (one(MEANS, policy=name, **known) for name in LADDER)
+        added = one(DIFFERENCES, policy="learned", reference="tuned law", **known)
         body.append([k, *(order(row) for row in means), difference(added)])
-    return markdown(["leaders", *policies, "learned minus tuned law"], body)
-
-
-def strong_wide() -> str:
-    """Return the order in wide with more than the boats' rudder, for the same policies."""
-    policies = ("tuned law", "learned")
-    body = []
-    for times, comparison in ((1, "wide"), (2, "rudder-2"), (10, "rudder-10")):
-        known = {"comparison": comparison, "scene": "wide-bw-0.31", "leaders": "3"}
-        cells = [order(one(MEANS, policy=name, **known)) for name in policies]
-        body.append([f"{times}", *cells])
-    return markdown(["times the rudder", *policies], body)
+    return markdown(["leaders", *LADDER, "learned minus tuned law"], body)
 
 
 def leader_motion() -> str:
@@ -143,10 +129,9 @@ def parameters() -> str:
 TABLES: dict[str, Callable[[], str]] = {
     "parameters": parameters,
     "leader-count": leader_count,
-    "leaders-wide": lambda: leaders_of("wide", ("paper's law", "tuned law", "learned")),
-    "leaders-narrow": lambda: leaders_of("narrow", ("paper's law", "tuned law", "learned")),
+    "leaders-wide": lambda: leaders_of("wide-bw-0.31"),
+    "leaders-narrow": lambda: leaders_of("narrow-bw-0.45"),
     "leader-motion": leader_motion,
-    "strong-wide": strong_wide,
     **TRAINING_TABLES,
 }
 """How each table is made."""

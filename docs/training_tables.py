@@ -1,4 +1,4 @@
-"""The tables of docs/train.md: what settings of trainings gave, and signals of rewards."""
+"""The tables of the pages about training: the easy environment, settings, signals of rewards."""
 
 from committed_data import interval, markdown, one, rows
 
@@ -40,5 +40,20 @@ def settings() -> str:
     return markdown(["setting", "pool", "seeds", "flock-hours", "minus the tuned law"], body)
 
 
-TRAINING_TABLES = {"signals": signals, "training-settings": settings}
+def easy() -> str:
+    """Return what each training in the easy environment reached, and the laws in its flocks."""
+    body = []
+    for row in rows("easy/curve.csv"):
+        reached = interval(row, "signed_order", "low", "high")
+        if not row["seed"]:
+            body.append([row["policy"], "", reached, ""])
+        elif row["policy"] == "PPO minus paper's law":
+            (*_, last) = rows("easy/curve.csv", policy="PPO", seed=row["seed"])
+            order = interval(last, "signed_order", "low", "high")
+            gain = interval(row, "signed_order", "low", "high", "+.3f")
+            body.append([f"PPO, seed {row['seed']}", f"{float(row['cpu_s']):.0f}", order, gain])
+    return markdown(["policy", "processor time (s)", "signed order", "minus paper's law"], body)
+
+
+TRAINING_TABLES = {"easy": easy, "signals": signals, "training-settings": settings}
 """How each table is made."""
