@@ -343,7 +343,8 @@ class Flock:
         TypeError
             For arrays that are not of real numbers.
         """
-        self.core.set_state(pose, velocity, time_s, allow_overlap)
+        state = {"pose": pose, "velocity": velocity, "time_s": time_s}
+        self.core.set_state({**state, "allow_overlap": allow_overlap})
 
     def set_target(self, target: str | Sequence[str]) -> None:
         """Change the direction that the steering law heads for.

@@ -73,7 +73,7 @@ class Quantity:
         return f"{self.label}{symbol}{f' [{self.unit}]' if self.unit else ''}"
 
 
-QUANTITIES = tuple(Quantity(**entry) for entry in _core.quantities())
+QUANTITIES = tuple(Quantity(**entry) for entry in _core.QUANTITIES)
 """The table of quantities."""
 
 RECORDED = tuple(each for each in QUANTITIES if each.kind == "recorded")

@@ -13,17 +13,15 @@ from flockenv.errors import ParameterError, refuse_unknown
 
 __all__ = ["FlockParameters"]
 
-_TABLE = {row[0]: row for row in _core.PARAMETERS}
+_TABLE = {each["name"]: each for each in _core.PARAMETERS}
 _DEFAULTS = _core.changed_fields("simulation", {})
 
 
 def _declared(name: str) -> Any:
     """Return the field that the core declares under this name: default, unit, range and meaning."""
-    _, kind, unit, accepted, doc = _TABLE[name]
-    metadata = {"kind": kind, "unit": unit, "accepted": accepted, "doc": doc}
     # None: as the hull makes it.
     default = None if name == "gyration_radius_cm" else _DEFAULTS[name]
-    return field(default=default, metadata=metadata)
+    return field(default=default, metadata=_TABLE[name])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

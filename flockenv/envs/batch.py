@@ -35,12 +35,10 @@ class LeaderBatch:
         self._flock_of_row = np.repeat(np.arange(self.num_flocks), self.leaders)
         #: To each leader in its episode, where rewards are not the core's.
         self._paid = np.zeros(len(self._flock_of_row))
-        self.observation_size: int = self.core.observation_size
         self.state_space = state_space(options.parameters.n_boats)
         self.flock_feature_space = flock_feature_space()
-        #: Control steps from one decision to the next, and decisions per second.
-        self.period_steps: int = self.core.period_steps
-        self.episode_steps: int = self.core.episode_steps
+        #: Numbers in an observation, control steps in an episode and from one decision to the next.
+        self.observation_size, self.episode_steps, self.period_steps = self.core.sizes
         self.decisions_hz: float = self.settings["control_hz"] / self.period_steps
 
     def reset(

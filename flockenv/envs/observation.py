@@ -71,7 +71,7 @@ def observation_version(blocks: Mapping[str, Any] | None = None) -> int:
 
 def flock_feature_entries() -> list[Entry]:
     """Return every feature of a whole flock, in order."""
-    return [Entry(**row) for row in _core.flock_feature_table()]
+    return [Entry(**row) for row in _core.FLOCK_FEATURES]
 
 
 def flock_feature_space() -> "_Box":

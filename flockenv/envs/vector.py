@@ -206,7 +206,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
         for flock in np.flatnonzero(truncated).tolist():
             info = self._batch.end_info(flock)
             if self.autoreset_mode == AutoresetMode.SAME_STEP:
-                last = self._batch.core.last_views(flock)[0].reshape(-1)
+                last = self._batch.core.final_observation(flock).reshape(-1)
                 infos = self._add_info(infos, {"final_obs": last, "final_info": info}, flock)
                 info = self._batch.reset_info(flock)
             infos = self._add_info(infos, info, flock)

@@ -52,7 +52,7 @@ def shared_noise(venv: VecEnv, hold_s: float) -> dict[str, Any]:
         raise TypeError(f"a LeaderVecEnv is needed, not {type(leaders).__name__}")
     return {
         "flock_of_slot": leaders.flock_of_slot.tolist(),
-        "hold_steps": _core.whole_steps_in("hold_s", hold_s, leaders.decisions_hz),
+        "hold_steps": _core.decisions_in(hold_s, leaders.decisions_hz),
     }
 
 

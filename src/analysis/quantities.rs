@@ -6,7 +6,7 @@ use super::OrderParameters;
 use super::structure::{largest_cluster, on_outer_wall, polarization};
 use crate::error::{FlockError, Result};
 use crate::geometry::{HullPose, LapFrame, Pose, Vec2, Velocity, cross};
-use crate::parameters::{FlockParameters, Target};
+use crate::parameters::{FlockParameters, Target, Value, named_fields};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Boats at one time, with the sums that several quantities share.
@@ -167,6 +167,21 @@ pub const QUANTITIES: &[Quantity] = &[
 ];
 
 impl Quantity {
+    /// What is declared of it by name.
+    pub fn named(&self) -> Value {
+        let kind = match self.formula {
+            Formula::Recorded(_) => "recorded",
+            Formula::Derived(_) => "derived",
+            Formula::Structure(_) => "structure",
+        };
+        let declared = named_fields!(self; name label symbol unit meaning source range least_boats
+            is_averaged);
+        declared
+            .into_iter()
+            .chain([("kind", kind.into())])
+            .collect()
+    }
+
     /// Whether summaries of episodes hold its mean.
     const fn is_summarized(&self) -> bool {
         self.is_averaged && !matches!(self.formula, Formula::Structure(_))

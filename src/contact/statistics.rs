@@ -1,6 +1,7 @@
 //! What a flock's substeps did: work counts and worst cases.
 
 use super::solver::SolveReport;
+use crate::parameters::{Value, named_fields};
 
 /// Running statistics since the flock was made or reset; a snapshot holds them.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
@@ -37,6 +38,15 @@ pub struct Statistics {
 }
 
 impl Statistics {
+    /// All of them by name.
+    pub fn named(&self) -> Value {
+        let counts = named_fields!(self; substeps solves contacts islands solver_iterations
+            factored_rows most_factor_entries unsolved depenetration_passes neighbor_builds);
+        let worst = named_fields!(self; worst_residual_cm_s worst_overlap_cm
+            displaced_angular_momentum_cm2_s);
+        counts.into_iter().chain(worst).collect()
+    }
+
     /// Counts one solve.
     pub fn count(&mut self, report: &SolveReport) {
         self.solves += 1;

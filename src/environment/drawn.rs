@@ -93,8 +93,8 @@ impl Setting for TargetChoice {
     fn value(&self) -> Value {
         match self {
             Self::Fixed(targets) => targets.value(),
-            Self::Random => Value::name("random"),
-            Self::Alternate => Value::name("alternate"),
+            Self::Random => "random".into(),
+            Self::Alternate => "alternate".into(),
         }
     }
 

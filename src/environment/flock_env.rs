@@ -16,7 +16,6 @@ pub(crate) struct StoredEnv {
     finished: Option<EpisodeSummary>,
     finished_leaders: Vec<LeaderSummary>,
     final_observation: Vec<f32>,
-    final_state: Vec<f32>,
 }
 
 /// A flock with its episodes.
@@ -31,9 +30,6 @@ pub struct FlockEnv {
     finished: Option<EpisodeSummary>,
     finished_leaders: Vec<LeaderSummary>,
     final_observation: Vec<f32>,
-    final_state: Vec<f32>,
-    /// Of each leader. Not stored: they are read in the step that ends an episode alone.
-    final_features: Vec<f32>,
 }
 
 impl FlockEnv {
@@ -48,8 +44,6 @@ impl FlockEnv {
             finished: None,
             finished_leaders: Vec::new(),
             final_observation: Vec::new(),
-            final_state: Vec::new(),
-            final_features: Vec::new(),
             parameters,
         }
     }
@@ -82,16 +76,6 @@ impl FlockEnv {
     /// The last observations of the last episode that ended under [`Autoreset::SameStep`].
     pub fn final_observation(&self) -> &[f32] {
         &self.final_observation
-    }
-
-    /// The global state at the end of that episode.
-    pub fn final_state(&self) -> &[f32] {
-        &self.final_state
-    }
-
-    /// The features of the flock for each leader at the end of that episode; empty after a restore.
-    pub fn final_features(&self) -> &[f32] {
-        &self.final_features
     }
 
     /// The next episode, not started yet.
@@ -170,21 +154,9 @@ impl FlockEnv {
         if settings.autoreset_mode == Autoreset::SameStep {
             self.final_observation.clear();
             self.final_observation.extend_from_slice(observations);
-            self.keep_final_views();
             self.start_next(settings, observations)?;
         }
         Ok(true)
-    }
-
-    fn keep_final_views(&mut self) {
-        let mut state = std::mem::take(&mut self.final_state);
-        state.resize(self.state_size(), 0.0);
-        self.observe_state(&mut state);
-        self.final_state = state;
-        let mut features = std::mem::take(&mut self.final_features);
-        features.resize(self.parameters.n_leaders * FlockFeatures::SIZE, 0.0);
-        self.observe_features(&mut features);
-        self.final_features = features;
     }
 
     fn start_next(&mut self, settings: &EnvSettings, observations: &mut [f32]) -> Result<()> {
@@ -250,7 +222,6 @@ impl FlockEnv {
             finished: self.finished,
             finished_leaders: self.finished_leaders.clone(),
             final_observation: self.final_observation.clone(),
-            final_state: self.final_state.clone(),
         }
     }
 
@@ -264,11 +235,8 @@ impl FlockEnv {
             .episode
             .map(|episode| Episode::restored(settings, &self.parameters, episode))
             .transpose()?;
-        let whole_or_none = |stored: &[f32], whole| stored.is_empty() || stored.len() == whole;
-        if !whole_or_none(&stored.final_observation, whole)
-            || !whole_or_none(&stored.final_state, self.state_size())
-            || (episode.is_some() && stored.seeds.is_none())
-        {
+        let found = stored.final_observation.len();
+        if (found != 0 && found != whole) || (episode.is_some() && stored.seeds.is_none()) {
             return Err(FlockError::Snapshot(
                 "the state is of another environment".to_owned(),
             ));
@@ -279,7 +247,6 @@ impl FlockEnv {
         restored.finished = stored.finished;
         restored.finished_leaders = stored.finished_leaders;
         restored.final_observation = stored.final_observation;
-        restored.final_state = stored.final_state;
         Ok(restored)
     }
 }

@@ -114,11 +114,9 @@ impl Setting for RewardWeights {
     fn value(&self) -> Value {
         let weights = RewardTerm::ALL.iter().zip(self.0);
         let weights = weights.filter(|(_, weight)| *weight != 0.0);
-        Value::Map(
-            weights
-                .map(|(term, weight)| (term.name().to_owned(), Value::Real(weight)))
-                .collect(),
-        )
+        weights
+            .map(|(term, weight)| (term.name(), weight))
+            .collect()
     }
 
     /// Terms that are not named weigh nothing.

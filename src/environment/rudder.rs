@@ -31,40 +31,6 @@ impl EnvSettings {
         }
     }
 
-    /// The action whose command is nearest to a rudder in [−1, 1].
-    pub fn action(&self, rudder: f64) -> f64 {
-        match self.rudder_levels {
-            Some(levels) => (0.5 * (rudder + 1.0) * (levels - 1) as f64).round(),
-            None => rudder,
-        }
-    }
-
-    /// The rudders that numbers of levels stand for; or the other way round, the numbers of the levels nearest to rudders.
-    ///
-    /// # Errors
-    /// [`FlockError::Parameter`] for levels that do not exist, and rudders beyond ±1.
-    #[cfg(feature = "python")]
-    pub(crate) fn converted_levels(
-        &self,
-        mut numbers: Vec<f64>,
-        are_rudders: bool,
-    ) -> Result<Vec<f64>> {
-        Self::FIELDS
-            .iter()
-            .try_for_each(|field| field.check(self))?;
-        for number in &mut numbers {
-            if are_rudders {
-                let is_rudder = (-1.0..=1.0).contains(number);
-                FlockError::unless(is_rudder, "rudder", *number, "numbers in [-1, 1]")?;
-                *number = self.action(*number);
-            } else {
-                self.check_action(*number)?;
-                *number = self.command(*number);
-            }
-        }
-        Ok(numbers)
-    }
-
     /// The servo, prepared for control steps.
     pub fn servo(&self) -> Servo {
         let period_s = 1.0 / self.control_hz;

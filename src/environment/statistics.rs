@@ -1,11 +1,11 @@
 //! Sums over an episode, and the summary given at its end.
 
 use super::Averages;
-use super::{EpisodeSchedule, RewardTerms, TERMS};
+use super::{EpisodeSchedule, RewardTerm, RewardTerms, TERMS};
 use crate::analysis::OrderParameters;
 use crate::analysis::collective_state::OrderingWatch;
 use crate::analysis::quantities::Boats;
-use crate::parameters::Target;
+use crate::parameters::{Target, Value, named_fields};
 use std::f64::consts::PI;
 
 /// Signed order above this is motion in the target direction.
@@ -95,6 +95,42 @@ impl EpisodeStatistics {
             ordering_times_s: self.ordering.map(|watch| watch.ordering_time_s()),
             clip_rate: self.clipped as f64 / self.observed as f64,
         }
+    }
+}
+
+impl EpisodeSummary {
+    /// The summary by name, with arrays of what each leader with a target of its own has. Means over an analysis window
+    /// that the episode did not reach are left out, as there is no NaN.
+    pub fn named(&self, leaders: &[LeaderSummary]) -> Value {
+        let terms = RewardTerm::ALL
+            .iter()
+            .map(|term| term.name())
+            .zip(self.terms);
+        let share = ("share_towards_target", self.share_towards_target);
+        let means = self.averages.named().chain([share]);
+        let means = means.filter(|(_, mean)| !mean.is_nan());
+        let [printed, wide] = self.ordering_times_s;
+        type Column = (&'static str, fn(&LeaderSummary) -> f64);
+        let columns: [Column; 4] = [
+            ("leader_targets", |each| each.target.sign()),
+            ("leader_total_rewards", |each| each.total_reward),
+            ("leader_signed_orders", |each| each.signed_order),
+            ("leader_shares_towards_target", |each| {
+                each.share_towards_target
+            }),
+        ];
+        let columns = columns.map(|(name, value)| (name, leaders.iter().map(value)));
+        let columns = columns.into_iter().filter_map(|(name, values)| {
+            let is_whole = values.len() > 0 && !values.clone().any(f64::is_nan);
+            is_whole.then(|| (name, Value::Array(values.collect())))
+        });
+        let first = named_fields!(self; flock_seed bw_s steps total_reward clip_rate);
+        let times = [("ordering_time_s", printed), ("ordering_time_wide_s", wide)];
+        let numbers = means
+            .chain(times)
+            .map(|(name, number)| (name, number.into()));
+        let each = first.into_iter().chain([("reward_terms", terms.collect())]);
+        each.chain(numbers).chain(columns).collect()
     }
 }
 

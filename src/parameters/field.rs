@@ -1,6 +1,6 @@
 //! What is declared of a parameter or an option: its kind, unit, range, source and meaning.
 
-use super::value::{Kind, Value};
+use super::value::{Kind, Value, named_fields};
 use crate::error::{FlockError, Result};
 
 /// What is declared of a field of `S`.
@@ -78,6 +78,52 @@ impl<S> Field<S> {
             }
             _ => Ok(()),
         }
+    }
+}
+
+impl<S> Field<S> {
+    /// Which values it accepts, in words.
+    pub fn accepted(&self) -> String {
+        let quoted = |names: fn() -> Vec<&'static str>| {
+            let names: Vec<_> = names().iter().map(|name| format!("{name:?}")).collect();
+            names.join(", ")
+        };
+        match self.kind {
+            Kind::Choice(names) => quoted(names),
+            Kind::Choices(names) => format!("{}, or a list of them, one per leader", quoted(names)),
+            _ => self.range.accepted().to_owned(),
+        }
+    }
+
+    /// What is declared of it by name; its type in Python's words.
+    #[cfg(feature = "python")]
+    pub(crate) fn named(&self) -> Value {
+        let kind = match self.kind {
+            Kind::Count => "int".to_owned(),
+            Kind::Real => "float".to_owned(),
+            Kind::Flag => "bool".to_owned(),
+            Kind::Map(_) => "dict".to_owned(),
+            Kind::Choice(_) => "str".to_owned(),
+            Kind::Pool => "str or (float, float)".to_owned(),
+            Kind::Choices(_) => "str or (str, ...)".to_owned(),
+            Kind::Rows(columns) => {
+                format!("tuple of ({})", vec!["float"; columns.len()].join(", "))
+            }
+        };
+        let own = [
+            ("kind", kind.into()),
+            ("accepted", self.accepted().into()),
+            ("doc", self.doc.trim().into()),
+        ];
+        let declared = named_fields!(self; name unit);
+        declared.into_iter().chain(own).collect()
+    }
+
+    /// The values of some fields by name, in the order of documentation.
+    #[cfg(feature = "python")]
+    pub(crate) fn values(fields: &[Self], of: &S) -> Value {
+        let each = fields.iter();
+        each.map(|field| (field.name, (field.get)(of))).collect()
     }
 }
 

@@ -20,4 +20,4 @@ pub use pools::Pool;
 pub use presets::{Physics, Preset};
 pub use targets::Targets;
 pub use value::{Kind, Value};
-pub(crate) use value::{Setting, text_of, wrong_kind};
+pub(crate) use value::{Setting, named_fields, text_of, wrong_kind};

@@ -34,7 +34,7 @@ macro_rules! named_choice {
             const KIND: $crate::parameters::Kind = $crate::parameters::Kind::Choice(Self::names);
 
             fn value(&self) -> $crate::parameters::Value {
-                $crate::parameters::Value::name(Self::name(*self))
+                Self::name(*self).into()
             }
 
             fn from_value(name: &'static str, value: &$crate::parameters::Value) -> $crate::error::Result<Self> {

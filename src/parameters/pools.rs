@@ -66,7 +66,7 @@ impl Setting for Pool {
 
     fn value(&self) -> Value {
         let radii = [self.outer_radius_cm, self.inner_radius_cm];
-        self.name().map_or(Value::reals(radii), Value::name)
+        self.name().map_or(Value::reals(radii), Value::from)
     }
 
     fn from_value(name: &'static str, value: &Value) -> Result<Self> {

@@ -16,6 +16,8 @@ pub enum Value {
     Real(f64),
     /// A name.
     Name(String),
+    /// Real numbers, one per leader.
+    Array(Vec<f64>),
     /// Several values.
     List(Vec<Self>),
     /// Values by name.
@@ -25,11 +27,6 @@ pub enum Value {
 }
 
 impl Value {
-    /// A name.
-    pub(crate) fn name(name: &str) -> Self {
-        Self::Name(name.to_owned())
-    }
-
     /// Real numbers.
     pub(crate) fn reals(numbers: impl IntoIterator<Item = f64>) -> Self {
         Self::List(numbers.into_iter().map(Self::Real).collect())
@@ -56,6 +53,54 @@ impl Value {
     }
 }
 
+macro_rules! made_of {
+    ($($given:ident: $type:ty => $value:expr;)+) => {
+        $(impl From<$type> for Value {
+            fn from($given: $type) -> Self {
+                $value
+            }
+        })+
+    };
+}
+
+made_of! {
+    flag: bool => Self::Flag(flag);
+    count: usize => Self::Count(count);
+    count: u32 => Self::Count(count as usize);
+    count: u64 => Self::Count(count as usize);
+    real: f64 => Self::Real(real);
+    name: &str => Self::Name(name.to_owned());
+    name: String => Self::Name(name);
+    values: Vec<Self> => Self::List(values);
+    range: (f64, f64) => Self::reals([range.0, range.1]);
+}
+
+impl<T: Into<Self>> From<Option<T>> for Value {
+    fn from(value: Option<T>) -> Self {
+        value.map_or(Self::None, T::into)
+    }
+}
+
+impl<T: Into<Self>> FromIterator<(&'static str, T)> for Value {
+    fn from_iter<I: IntoIterator<Item = (&'static str, T)>>(values: I) -> Self {
+        let values = values.into_iter();
+        Self::Map(
+            values
+                .map(|(name, value)| (name.to_owned(), value.into()))
+                .collect(),
+        )
+    }
+}
+
+/// Some fields of a struct by their names: pairs that [`Value`] collects.
+macro_rules! named_fields {
+    ($of:expr; $($name:ident)+) => {
+        [$((stringify!($name), $crate::parameters::Value::from($of.$name))),+]
+    };
+}
+
+pub(crate) use named_fields;
+
 impl fmt::Display for Value {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -74,6 +119,7 @@ impl fmt::Display for Value {
                     .map(|(name, value)| format!("{name}: {value}"));
                 write!(formatter, "{{{}}}", values.collect::<Vec<_>>().join(", "))
             }
+            Self::Array(numbers) => write!(formatter, "{numbers:?}"),
             Self::Other => formatter.write_str("something else"),
         }
     }

@@ -36,6 +36,29 @@ impl Law {
         }
     }
 
+    /// Names and values of its gains.
+    pub fn gains(&self) -> Vec<(&'static str, f64)> {
+        match self {
+            Self::Paper => Vec::new(),
+            Self::Damped(law) => law.gains().to_vec(),
+            Self::Leaning(law) => law.gains.gains().to_vec(),
+        }
+    }
+
+    /// A leaning law as a JSON text.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for other laws, and as for [`LeaningLaw::to_json`].
+    pub fn to_json(&self) -> Result<String> {
+        match self {
+            Self::Leaning(law) => law.to_json(),
+            Self::Paper | Self::Damped(_) => {
+                let accepted = "a leaning law: only those are stored";
+                Err(FlockError::parameter("law", "without weights", accepted))
+            }
+        }
+    }
+
     /// Checks its numbers.
     ///
     /// # Errors

@@ -22,43 +22,6 @@ type Series<'py> = PyResult<Bound<'py, PyArray1<f64>>>;
 /// Found and expected pairs in each bin, or two curves of the same lags.
 type Pairs<'py> = PyResult<[Bound<'py, PyArray1<f64>>; 2]>;
 
-/// An entry of the table of quantities: the fields of `flockenv.order.Quantity`.
-#[derive(IntoPyObject)]
-pub(super) struct Entry {
-    name: &'static str,
-    label: &'static str,
-    symbol: &'static str,
-    unit: &'static str,
-    meaning: &'static str,
-    source: &'static str,
-    range: Option<(f64, f64)>,
-    least_boats: usize,
-    is_averaged: bool,
-    kind: &'static str,
-}
-
-/// The table of quantities.
-#[pyfunction]
-pub(super) fn quantities() -> Vec<Entry> {
-    let entries = QUANTITIES.iter().map(|each| Entry {
-        name: each.name,
-        label: each.label,
-        symbol: each.symbol,
-        unit: each.unit,
-        meaning: each.meaning,
-        source: each.source,
-        range: each.range,
-        least_boats: each.least_boats,
-        is_averaged: each.is_averaged,
-        kind: match each.formula {
-            Formula::Recorded(_) => "recorded",
-            Formula::Derived(_) => "derived",
-            Formula::Structure(_) => "structure",
-        },
-    });
-    entries.collect()
-}
-
 /// Columns of the table's recorded quantities, by name: arrays (t,).
 pub(super) fn columns<'py>(py: Python<'py>, series: &[Recorded]) -> PyResult<Bound<'py, PyDict>> {
     let columns = PyDict::new(py);

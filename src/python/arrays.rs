@@ -146,21 +146,19 @@ pub(super) fn velocities_from(object: &Bound<'_, PyAny>, boats: usize) -> PyResu
 /// Actions of a given shape, one number per leader: rudders, or numbers of levels if there are such. A rudder of 1.0
 /// is not level 1, so that levels must be integers. Messages call the actions by `name`.
 #[pyfunction]
-#[pyo3(signature = (actions, shape, levels, name="actions"))]
 pub(super) fn flat_actions<'py>(
     actions: &Bound<'py, PyAny>,
     shape: Vec<usize>,
     levels: Option<usize>,
     name: &str,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let numbers = Numbers::of(actions, name, &shape)?;
-    match levels {
-        Some(levels) if !numbers.are_whole => Err(refusal(format!(
-            "{name} must be integers, whole numbers from 0 to {} that name levels of the rudder",
-            levels.saturating_sub(1)
-        ))),
-        _ => Ok(PyArray1::from_vec(actions.py(), numbers.values)),
+    let Numbers { values, are_whole } = Numbers::of(actions, name, &shape)?;
+    if let Some(levels) = levels.filter(|_| !are_whole) {
+        let last = levels.saturating_sub(1);
+        let accepted = format!("whole numbers from 0 to {last} that name levels of the rudder");
+        return Err(refusal(format!("{name} must be integers, {accepted}")));
     }
+    Ok(PyArray1::from_vec(actions.py(), values))
 }
 
 /// The error of an array of another shape.

@@ -3,15 +3,14 @@
 use super::arrays::{floats, rows_of};
 use super::exclusive::{Exclusive, interruptible};
 use super::flock::{PyFlock, pose_numbers, state_from, velocity_numbers};
-use super::value::{fields_dict, given, seed_from, set_given, value_from, written};
+use super::value::{given, seed_from, set_given, value_from};
 use crate::environment::observation::FlockFeatures;
 use crate::environment::{
-    BatchRows, EnvBatch, EnvSettings, Episode, EpisodeSummary, FlockEnv, LeaderSummary,
-    ResetRequest, RewardTerm, Start, TERMS,
+    BatchRows, EnvBatch, EnvSettings, Episode, FlockEnv, ResetRequest, Start, TERMS,
 };
 use crate::error::{FlockError, Result};
-use crate::parameters::{FlockParameters, Setting, text_of};
-use numpy::{Element, PyArray1, PyArray2, PyArrayMethods};
+use crate::parameters::{Field, FlockParameters, Setting, Value, named_fields, text_of};
+use numpy::{Element, PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
 
@@ -21,9 +20,6 @@ type Step<'py> = (
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<bool>>,
 );
-
-/// Observations (leaders, size), the global state (1, size), and features of the flock (leaders, features).
-type Views<'py> = [Bound<'py, PyArray2<f32>>; 3];
 
 /// Numbers of flocks, boats or leaders, a row each.
 type Rows<'py, T> = PyResult<Bound<'py, PyArray2<T>>>;
@@ -35,6 +31,22 @@ pub(super) struct PyEnvBatch(Exclusive<EnvBatch>);
 impl PyEnvBatch {
     fn of(batch: EnvBatch) -> Self {
         Self(Exclusive::new(batch, "the environment"))
+    }
+
+    /// What there is to read of a flock's environment.
+    fn env<T>(&self, flock: usize, read: impl FnOnce(&FlockEnv) -> T) -> Result<T> {
+        let batch = self.0.read()?;
+        let refuse = || {
+            let accepted = format!("0 to {}", batch.envs().len() - 1);
+            FlockError::parameter("flock", flock, accepted)
+        };
+        batch.envs().get(flock).map(read).ok_or_else(refuse)
+    }
+
+    /// What there is to read of a flock's episode.
+    fn episode_of<T>(&self, flock: usize, read: impl FnOnce(&Episode) -> T) -> Result<T> {
+        let found = self.env(flock, |env| env.episode().map(read))?;
+        found.ok_or_else(never_reset)
     }
 
     /// Numbers of every flock's episode, as rows of so many.
@@ -51,16 +63,6 @@ impl PyEnvBatch {
         }
         rows_of(py, gathered, columns)
     }
-}
-
-fn env_of(batch: &EnvBatch, flock: usize) -> Result<&FlockEnv> {
-    let envs = batch.envs();
-    envs.get(flock)
-        .ok_or_else(|| FlockError::parameter("flock", flock, format!("0 to {}", envs.len() - 1)))
-}
-
-fn episode_of(batch: &EnvBatch, flock: usize) -> Result<&Episode> {
-    env_of(batch, flock)?.episode().ok_or_else(never_reset)
 }
 
 fn never_reset() -> FlockError {
@@ -83,30 +85,28 @@ impl PyEnvBatch {
         Ok(Self::of(EnvBatch::new(settings, parameters)?))
     }
 
+    /// Numbers in an observation, control steps in an episode and from one decision to the next.
     #[getter]
-    fn observation_size(&self) -> Result<usize> {
-        Ok(self.0.read()?.observation_size())
-    }
-
-    #[getter]
-    fn episode_steps(&self) -> Result<u32> {
-        Ok(self.0.read()?.settings().steps())
-    }
-
-    #[getter]
-    fn period_steps(&self) -> Result<u32> {
-        Ok(self.0.read()?.settings().period_steps())
-    }
-
-    #[getter]
-    fn options<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        fields_dict(py, self.0.read()?.settings(), EnvSettings::FIELDS)
-    }
-
-    fn parameters<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Bound<'py, PyDict>> {
+    fn sizes(&self) -> Result<(usize, u32, u32)> {
         let batch = self.0.read()?;
-        let parameters = env_of(&batch, flock)?.parameters();
-        fields_dict(py, parameters, FlockParameters::FIELDS)
+        let settings = batch.settings();
+        Ok((
+            batch.observation_size(),
+            settings.steps(),
+            settings.period_steps(),
+        ))
+    }
+
+    #[getter]
+    fn options(&self) -> Result<Value> {
+        let batch = self.0.read()?;
+        Ok(Field::values(EnvSettings::FIELDS, batch.settings()))
+    }
+
+    fn parameters(&self, flock: usize) -> Result<Value> {
+        self.env(flock, |env| {
+            Field::values(FlockParameters::FIELDS, env.parameters())
+        })
     }
 
     /// One decision of every flock. The actions are copied, since other Python threads may write to them meanwhile.
@@ -114,22 +114,21 @@ impl PyEnvBatch {
         let mut batch = self.0.write()?;
         let batch = &mut *batch;
         let actions = floats(actions, "actions", &[batch.rows()])?;
-        let shape = [batch.rows(), batch.observation_size()];
-        let observations = PyArray2::zeros(py, shape, false);
-        let rewards = PyArray1::zeros(py, batch.rows(), false);
-        let truncated = PyArray1::zeros(py, batch.envs().len(), false);
-        let (mut o, mut r, mut t) = (
-            observations.readwrite(),
-            rewards.readwrite(),
-            truncated.readwrite(),
-        );
+        let size = batch.observation_size();
+        let mut observations = vec![0.0; batch.rows() * size];
+        let mut rewards = vec![0.0; batch.rows()];
+        let mut truncated = vec![false; batch.envs().len()];
         let rows = BatchRows {
-            observations: o.as_slice_mut()?,
-            rewards: r.as_slice_mut()?,
-            truncated: t.as_slice_mut()?,
+            observations: &mut observations,
+            rewards: &mut rewards,
+            truncated: &mut truncated,
         };
         py.detach(|| batch.step(&actions, rows))?;
-        Ok((observations, rewards, truncated))
+        Ok((
+            rows_of(py, observations, size)?,
+            PyArray1::from_vec(py, rewards),
+            PyArray1::from_vec(py, truncated),
+        ))
     }
 
     /// Starts episodes: one request per flock, `None` leaves it as it is.
@@ -151,21 +150,19 @@ impl PyEnvBatch {
         if batch.envs().iter().all(|env| env.episode().is_none()) {
             return Err(never_reset().into());
         }
-        let array = PyArray2::zeros(py, [batch.rows(), batch.observation_size()], false);
-        batch.observe(array.readwrite().as_slice_mut()?);
-        Ok(array)
+        let size = batch.observation_size();
+        let observations = filled(batch.rows() * size, |out| batch.observe(out));
+        rows_of(py, observations, size)
     }
 
-    /// What the episode that ended in the last step ended with; features are empty after a restore.
-    fn last_views<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Views<'py>> {
-        let batch = self.0.read()?;
-        let env = env_of(&batch, flock)?;
-        let rows = |numbers: &[f32], columns| rows_of(py, numbers.to_vec(), columns);
-        Ok([
-            rows(env.final_observation(), batch.observation_size())?,
-            rows(env.final_state(), env.state_size())?,
-            rows(env.final_features(), FlockFeatures::SIZE)?,
-        ])
+    /// The observations that the last episode ended with: (leaders, size).
+    fn final_observation<'py>(&self, py: Python<'py>, flock: usize) -> Rows<'py, f32> {
+        let size = self.0.read()?.observation_size();
+        rows_of(
+            py,
+            self.env(flock, |env| env.final_observation().to_vec())?,
+            size,
+        )
     }
 
     /// Features of every flock in the frame of its target, (flocks, features), or of each leader's flock in the frame
@@ -234,49 +231,44 @@ impl PyEnvBatch {
 
     /// Whether a flock has ever been given a seed.
     fn is_seeded(&self, flock: usize) -> Result<bool> {
-        Ok(env_of(&*self.0.read()?, flock)?.is_seeded())
+        self.env(flock, FlockEnv::is_seeded)
     }
 
     /// Whether a flock has an episode under way.
     fn is_running(&self, flock: usize) -> Result<bool> {
-        let batch = self.0.read()?;
-        let episode = env_of(&batch, flock)?.episode();
-        Ok(episode.is_some_and(|episode| !episode.has_ended()))
+        let is_running = |episode: &Episode| !episode.has_ended();
+        self.env(flock, |env| env.episode().is_some_and(is_running))
     }
 
     /// A copy of a flock.
     fn flock(&self, flock: usize) -> Result<PyFlock> {
-        let batch = self.0.read()?;
-        Ok(PyFlock::of(episode_of(&batch, flock)?.flock().clone()))
+        self.episode_of(flock, |episode| PyFlock::of(episode.flock().clone()))
     }
 
     /// A flock's target, step, backward duration and seed.
-    fn episode<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Bound<'py, PyDict>> {
-        let batch = self.0.read()?;
-        let episode = episode_of(&batch, flock)?;
-        let schedule = episode.schedule();
-        let dict = PyDict::new(py);
-        dict.set_item("target", written(&schedule.targets().value(), py)?)?;
-        dict.set_item("bw_s", episode.flock().parameters().bw_s)?;
-        dict.set_item("flock_seed", schedule.flock_seed)?;
-        dict.set_item("step", schedule.step)?;
-        Ok(dict)
+    fn episode(&self, flock: usize) -> Result<Value> {
+        self.episode_of(flock, |episode| {
+            let schedule = episode.schedule();
+            let target = ("target", schedule.targets().value());
+            let bw_s = named_fields!(episode.flock().parameters(); bw_s);
+            let own = named_fields!(schedule; flock_seed step);
+            [target].into_iter().chain(bw_s).chain(own).collect()
+        })
     }
 
     /// Summary of the episode under way.
-    fn summary<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Bound<'py, PyDict>> {
-        let batch = self.0.read()?;
-        let episode = episode_of(&batch, flock)?;
-        summary_dict(py, &episode.summary(), &episode.leader_summaries())
+    fn summary(&self, flock: usize) -> Result<Value> {
+        self.episode_of(flock, |episode| {
+            episode.summary().named(&episode.leader_summaries())
+        })
     }
 
     /// Summary of the last episode that reached its end.
-    fn finished<'py>(&self, py: Python<'py>, flock: usize) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let batch = self.0.read()?;
-        let env = env_of(&batch, flock)?;
-        let summary = env.finished();
-        let dict = summary.map(|summary| summary_dict(py, summary, env.finished_leaders()));
-        dict.transpose()
+    fn finished(&self, flock: usize) -> Result<Option<Value>> {
+        self.env(flock, |env| {
+            let summary = env.finished();
+            summary.map(|summary| summary.named(env.finished_leaders()))
+        })
     }
 
     fn to_bytes<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyBytes>> {
@@ -329,48 +321,4 @@ fn request_from(options: &Bound<'_, PyDict>, boats: usize) -> PyResult<ResetRequ
     let is_alone = !starts_twice && !noise_twice;
     FlockError::unless(is_alone, "reset options", "snapshot and others", accepted)?;
     Ok(request)
-}
-
-/// A summary by name, with what each leader with a target of its own has: arrays (k,). Means over an analysis window
-/// that the episode did not reach are left out: infos hold no NaN.
-fn summary_dict<'py>(
-    py: Python<'py>,
-    summary: &EpisodeSummary,
-    leaders: &[LeaderSummary],
-) -> PyResult<Bound<'py, PyDict>> {
-    let terms = PyDict::new(py);
-    for (term, mean) in RewardTerm::ALL.iter().zip(summary.terms) {
-        terms.set_item(term.name(), mean)?;
-    }
-    let dict = PyDict::new(py);
-    dict.set_item("flock_seed", summary.flock_seed)?;
-    dict.set_item("bw_s", summary.bw_s)?;
-    dict.set_item("steps", summary.steps)?;
-    dict.set_item("total_reward", summary.total_reward)?;
-    dict.set_item("reward_terms", terms)?;
-    let share = ("share_towards_target", summary.share_towards_target);
-    let means = summary.averages.named().chain([share]);
-    for (name, mean) in means.filter(|(_, mean)| !mean.is_nan()) {
-        dict.set_item(name, mean)?;
-    }
-    let [printed, wide] = summary.ordering_times_s;
-    dict.set_item("ordering_time_s", printed)?;
-    dict.set_item("ordering_time_wide_s", wide)?;
-    dict.set_item("clip_rate", summary.clip_rate)?;
-    type Column = (&'static str, fn(&LeaderSummary) -> f64);
-    let columns: [Column; 4] = [
-        ("leader_targets", |each| each.target.sign()),
-        ("leader_total_rewards", |each| each.total_reward),
-        ("leader_signed_orders", |each| each.signed_order),
-        ("leader_shares_towards_target", |each| {
-            each.share_towards_target
-        }),
-    ];
-    for (name, value) in columns {
-        let values: Vec<f64> = leaders.iter().map(value).collect();
-        if !values.is_empty() && !values.iter().any(|value| value.is_nan()) {
-            dict.set_item(name, PyArray1::from_vec(py, values))?;
-        }
-    }
-    Ok(dict)
 }

@@ -2,19 +2,19 @@
 
 use super::arrays::{floats, poses_from, rows_of, velocities_from};
 use super::exclusive::{Exclusive, interruptible};
-use super::value::{fields_dict, given, seed_from, value_from, wrong_type};
+use super::value::{given, seed_from, value_from, wrong_type};
 use crate::analysis::quantities::Recorded;
-use crate::contact::{Partner, Statistics};
+use crate::contact::Partner;
 use crate::draw::FrameRenderer;
 use crate::error::{FlockError, Result};
 use crate::flock::{ContactForce, Flock, State};
 use crate::geometry::{Pose, Vec2, Velocity};
 use crate::integrator::Steering;
-use crate::parameters::{FlockParameters, Targets, text_of};
+use crate::parameters::{Field, FlockParameters, Targets, Value, text_of};
 use numpy::{Element, PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
-use std::sync::{Mutex, MutexGuard, PoisonError, RwLockReadGuard};
+use std::sync::RwLockReadGuard;
 
 /// A flock for one thread at a time.
 #[pyclass(name = "Flock", module = "flockenv._core", frozen)]
@@ -71,8 +71,9 @@ impl PyFlock {
     }
 
     #[getter]
-    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        fields_dict(py, self.read()?.parameters(), FlockParameters::FIELDS)
+    fn parameters(&self) -> Result<Value> {
+        let flock = self.read()?;
+        Ok(Field::values(FlockParameters::FIELDS, flock.parameters()))
     }
 
     #[getter]
@@ -108,8 +109,8 @@ impl PyFlock {
 
     /// What the substeps since the flock was made did, by name.
     #[getter]
-    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        statistics_dict(py, self.read()?.statistics())
+    fn statistics(&self) -> Result<Value> {
+        Ok(self.read()?.statistics().named())
     }
 
     #[getter]
@@ -123,18 +124,11 @@ impl PyFlock {
         Ok(self.0.write()?.set_threads(threads)?)
     }
 
-    fn set_state(
-        &self,
-        pose: &Bound<'_, PyAny>,
-        velocity: &Bound<'_, PyAny>,
-        time_s: &Bound<'_, PyAny>,
-        allow_overlap: bool,
-    ) -> PyResult<()> {
-        let boats = self.read()?.parameters().n_boats;
-        let (poses, velocities) = (poses_from(pose, boats)?, velocities_from(velocity, boats)?);
-        let time_s = given(time_s, "time_s")?;
+    fn set_state(&self, state: &Bound<'_, PyAny>) -> PyResult<()> {
+        let state = state_from(state, self.read()?.parameters().n_boats)?;
+        let (poses, velocities) = (&state.poses, &state.velocities);
         let mut flock = self.0.write()?;
-        Ok(flock.set_state(&poses, &velocities, time_s, allow_overlap)?)
+        Ok(flock.set_state(poses, velocities, state.time_s, state.allow_overlap)?)
     }
 
     fn set_target(&self, target: &Bound<'_, PyAny>) -> PyResult<()> {
@@ -248,18 +242,6 @@ pub(super) fn state_from(value: &Bound<'_, PyAny>, boats: usize) -> PyResult<Sta
     Ok(state)
 }
 
-/// Statistics by name.
-fn statistics_dict<'py>(py: Python<'py>, of: &Statistics) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
-    macro_rules! set {
-        ($($name:ident)+) => { $(dict.set_item(stringify!($name), of.$name)?;)+ };
-    }
-    set!(substeps solves contacts islands solver_iterations factored_rows most_factor_entries unsolved);
-    set!(depenetration_passes neighbor_builds worst_residual_cm_s worst_overlap_cm);
-    set!(displaced_angular_momentum_cm2_s);
-    Ok(dict)
-}
-
 /// Contacts by column: i, j, gap_cm, normal, force, point_cm and along_cm, in the precision that a flock or a recording
 /// has.
 pub(super) fn contact_columns<'py, I: Element + From<i32>, T: Element>(
@@ -298,16 +280,9 @@ fn partner(contact: &ContactForce) -> i32 {
     }
 }
 
-/// Draws flocks at one size, for one thread at a time: others wait.
-#[pyclass(name = "FrameRenderer", module = "flockenv._core", frozen)]
-pub(super) struct PyFrameRenderer(Mutex<FrameRenderer>);
-
-impl PyFrameRenderer {
-    fn lock(&self) -> MutexGuard<'_, FrameRenderer> {
-        // Every frame is drawn again: nothing remains of one that was not finished.
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
+/// Draws flocks at one size.
+#[pyclass(name = "FrameRenderer", module = "flockenv._core")]
+pub(super) struct PyFrameRenderer(FrameRenderer);
 
 #[pymethods]
 impl PyFrameRenderer {
@@ -317,23 +292,23 @@ impl PyFrameRenderer {
             // What does not fit 32 bits is as far out of range as the largest that does.
             Ok::<_, PyErr>(u32::try_from(given::<usize>(object, name)?).unwrap_or(u32::MAX))
         };
-        let renderer = FrameRenderer::new(side(width, "width")?, side(height, "height")?)?;
-        Ok(Self(Mutex::new(renderer)))
+        let (width, height) = (side(width, "width")?, side(height, "height")?);
+        Ok(Self(FrameRenderer::new(width, height)?))
     }
 
     /// A flock as it is now: (height, width, 3), uint8.
-    fn draw<'py>(&self, py: Python<'py>, flock: &PyFlock) -> PyResult<Bound<'py, PyArray3<u8>>> {
-        let (shape, frame) = py.detach(|| -> Result<_> {
-            let mut renderer = self.lock();
-            let shape = [renderer.height() as usize, renderer.width() as usize, 3];
-            Ok((shape, renderer.draw(&*flock.read()?)))
-        })?;
-        PyArray1::from_vec(py, frame).reshape(shape)
+    fn draw<'py>(
+        &mut self,
+        py: Python<'py>,
+        flock: &PyFlock,
+    ) -> PyResult<Bound<'py, PyArray3<u8>>> {
+        let shape = [self.0.height() as usize, self.0.width() as usize, 3];
+        PyArray1::from_vec(py, self.0.draw(&*flock.read()?)).reshape(shape)
     }
 
     /// Where a boat is in the frame, in pixels from the top left: (x, y, reach of its hull).
     fn place(&self, flock: &PyFlock, boat: &Bound<'_, PyAny>) -> PyResult<(f32, f32, f32)> {
-        let boat = given::<usize>(boat, "boat")?;
-        Ok(self.lock().place(&*flock.read()?, boat)?)
+        let boat = given(boat, "boat")?;
+        Ok(self.0.place(&*flock.read()?, boat)?)
     }
 }

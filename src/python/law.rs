@@ -49,23 +49,13 @@ impl PyLaw {
 
     /// A leaning law as a JSON text.
     fn to_json(&self) -> Result<String> {
-        match &self.0 {
-            Law::Leaning(law) => law.to_json(),
-            Law::Paper | Law::Damped(_) => {
-                let accepted = "a leaning law: only those are stored";
-                Err(FlockError::parameter("law", "without weights", accepted))
-            }
-        }
+        self.0.to_json()
     }
 
     /// Names and values of its gains.
     #[getter]
     fn gains(&self) -> Vec<(&'static str, f64)> {
-        match &self.0 {
-            Law::Paper => Vec::new(),
-            Law::Damped(law) => law.gains().to_vec(),
-            Law::Leaning(law) => law.gains.gains().to_vec(),
-        }
+        self.0.gains()
     }
 }
 

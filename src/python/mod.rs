@@ -17,20 +17,22 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _core {
     use super::*;
+    use crate::analysis::quantities::{QUANTITIES, Quantity};
     use crate::analysis::{CollectiveState, structure::JAM_ANGLE};
-    use crate::environment::observation::{LeanFeatures, OBSERVATION_VERSION};
+    use crate::environment::observation::{
+        LeanFeatures, OBSERVATION_VERSION, flock_feature_entries,
+    };
     use crate::environment::{
         ActionMode, EnvSettings, LARGEST_LEAN, ORDERED_WITHIN, RewardTerm, TOWARDS_TARGET,
     };
     use crate::integrator::Phase;
-    use crate::parameters::{FlockParameters, Preset};
+    use crate::parameters::{Field, FlockParameters, Preset, Value};
     use crate::policies::Law;
 
     #[pymodule_export]
     use super::analysis::{
         collective_states, derived_series, jam_sizes, lagged_motion, lap_orientation,
-        order_columns, ordering_time_s, pair_counts, quantities, sampled_analysis_window,
-        structure_series,
+        order_columns, ordering_time_s, pair_counts, sampled_analysis_window, structure_series,
     };
     #[pymodule_export]
     use super::arrays::flat_actions;
@@ -41,15 +43,13 @@ mod _core {
     #[pymodule_export]
     use super::law::{PyLaw, PyObservedLaw};
     #[pymodule_export]
-    use super::observation::{
-        flock_feature_table, observation_table, observation_version, observe, state_table,
-    };
+    use super::observation::{observation_table, observation_version, observe, state_table};
     #[pymodule_export]
     use super::recording::record;
     #[pymodule_export]
     use super::tables::{
-        changed_fields, critical_bw_s, env_defaults, physics_fields, pool_radii_cm, preset_sources,
-        rudders_of_levels, whole_steps_in,
+        changed_fields, critical_bw_s, decisions_in, env_defaults, physics_fields, pool_radii_cm,
+        preset_sources,
     };
 
     #[pymodule_init]
@@ -62,8 +62,15 @@ mod _core {
         module.add("LEAN_FEATURES", LeanFeatures::names().collect::<Vec<_>>())?;
         module.add("PHASES", Phase::names())?;
         module.add("PRESETS", Preset::names())?;
-        module.add("PARAMETERS", tables::declared(FlockParameters::FIELDS))?;
-        module.add("OPTIONS", tables::declared(EnvSettings::FIELDS))?;
+        let fields = FlockParameters::FIELDS.iter().map(Field::named);
+        module.add("PARAMETERS", Value::List(fields.collect()))?;
+        let fields = EnvSettings::FIELDS.iter().map(Field::named);
+        module.add("OPTIONS", Value::List(fields.collect()))?;
+        let quantities = QUANTITIES.iter().map(Quantity::named);
+        module.add("QUANTITIES", Value::List(quantities.collect()))?;
+        let features = flock_feature_entries().into_iter();
+        let features = features.map(|(block, entry)| entry.named(block, 0));
+        module.add("FLOCK_FEATURES", Value::List(features.collect()))?;
         let terms = RewardTerm::ALL.iter();
         let terms: Vec<_> = terms.map(|term| (term.name(), term.doc())).collect();
         module.add("REWARD_TERMS", terms)?;

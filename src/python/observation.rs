@@ -3,42 +3,12 @@
 use super::arrays::rows_of;
 use super::flock::{PyFlock, rudders_from};
 use super::value::given;
-use crate::environment::observation::{
-    BOAT, Entry, ObservationLayout, flock_feature_entries, observe_flock, state_entries,
-};
+use crate::environment::observation::{BOAT, ObservationLayout, observe_flock, state_entries};
 use crate::error::FlockError;
 use crate::flock::Flock;
-use crate::parameters::FlockParameters;
+use crate::parameters::{FlockParameters, Value};
 use numpy::PyArray2;
 use pyo3::prelude::*;
-
-/// A row of a table: the fields of `flockenv.envs.observation.Entry`.
-#[derive(IntoPyObject)]
-pub(super) struct Row {
-    block: &'static str,
-    place: usize,
-    name: &'static str,
-    unit: &'static str,
-    scale: &'static str,
-    low: f64,
-    high: f64,
-    mirrored: bool,
-    meaning: &'static str,
-}
-
-fn row(block: &'static str, place: usize, entry: Entry) -> Row {
-    Row {
-        block,
-        place,
-        name: entry.name,
-        unit: entry.unit,
-        scale: entry.scale.description(),
-        low: entry.low,
-        high: entry.high,
-        mirrored: entry.mirrored,
-        meaning: entry.meaning,
-    }
-}
 
 /// A checked layout from the blocks that differ from the default one, and whether it is mirrored.
 pub(super) fn layout_from(blocks: &Bound<'_, PyAny>, mirror: bool) -> PyResult<ObservationLayout> {
@@ -55,31 +25,24 @@ pub(super) fn observation_version(blocks: &Bound<'_, PyAny>) -> PyResult<u32> {
 
 /// Every entry of an observation with these blocks, in order.
 #[pyfunction]
-pub(super) fn observation_table(blocks: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
+pub(super) fn observation_table(blocks: &Bound<'_, PyAny>) -> PyResult<Vec<Value>> {
     let entries = layout_from(blocks, false)?.entries().into_iter();
-    let rows = entries.map(|(block, place, entry)| row(block.name(), place, entry));
+    let rows = entries.map(|(block, place, entry)| entry.named(block.name(), place));
     Ok(rows.collect())
 }
 
 /// Every entry of the global state of so many boats, in order.
 #[pyfunction]
-pub(super) fn state_table(n_boats: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
+pub(super) fn state_table(n_boats: &Bound<'_, PyAny>) -> PyResult<Vec<Value>> {
     let n_boats = given(n_boats, "n_boats")?;
     let most = FlockParameters::MOST_BOATS;
     FlockError::unless(n_boats <= most, "n_boats", n_boats, format!("0 to {most}"))?;
     let entries = state_entries(n_boats).into_iter().enumerate();
     let rows = entries.map(|(place, entry)| match place / BOAT.len() {
-        boat if boat < n_boats => row("boat", boat, entry),
-        _ => row("clock", 0, entry),
+        boat if boat < n_boats => entry.named("boat", boat),
+        _ => entry.named("clock", 0),
     });
     Ok(rows.collect())
-}
-
-/// Every feature of a whole flock, in order.
-#[pyfunction]
-pub(super) fn flock_feature_table() -> Vec<Row> {
-    let entries = flock_feature_entries().into_iter();
-    entries.map(|(block, entry)| row(block, 0, entry)).collect()
 }
 
 /// What the leaders of a flock observe now: (k, size) float32. `rudder`: as the rudders stand.

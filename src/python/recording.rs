@@ -8,14 +8,12 @@ use super::observation::{layout_from, observed};
 use super::value::given;
 use crate::clock::ticks;
 use crate::environment::observation::ObservationLayout;
-use crate::flock::{
-    BOAT_SUBSTEPS_A_PIECE, Change, Flock, Pause, Real, Recorder, Recording, Sampling,
-};
+use crate::flock::{BOAT_SUBSTEPS_A_PIECE, Change, Pause, Real, Recorder, Recording, Sampling};
 use crate::parameters::Targets;
 use crate::policies::Pilot;
 use numpy::{Element, PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList, PyString, PyTuple};
+use pyo3::types::{PyDict, PyTuple};
 
 /// What of a run is kept, what changes on the way, and who steers.
 #[derive(FromPyObject)]
@@ -60,11 +58,10 @@ pub(super) fn record<'py>(
 }
 
 fn change_from(value: &Bound<'_, PyAny>) -> PyResult<Change> {
-    let is_list = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
-    if is_list || value.is_instance_of::<PyString>() {
-        return Ok(Change::Target(given::<Targets>(value, "target")?));
+    if value.hasattr("n_boats")? {
+        return Ok(Change::Parameters(Box::new(value.extract()?)));
     }
-    Ok(Change::Parameters(Box::new(value.extract()?)))
+    given::<Targets>(value, "target").map(Change::Target)
 }
 
 fn recorded<'py, T: Real + Element>(
@@ -81,14 +78,18 @@ fn recorded<'py, T: Real + Element>(
     if plan.contacts {
         recorder = recorder.with_contacts();
     }
-    let mut layouts = Vec::new();
+    let (mut layouts, mut pilot) = (Vec::new(), None);
     if let Some(control) = &plan.control {
-        recorder = recorder.with_control(given(&control.control_hz, "control_hz")?)?;
+        let hz = given(&control.control_hz, "control_hz")?;
+        recorder = recorder.with_control(hz)?;
         for (blocks, is_mirrored) in &control.layouts {
             layouts.push(layout_from(blocks, *is_mirrored)?);
         }
+        if let Ok(law) = control.steer.cast::<PyLaw>() {
+            let law = law.get().law().clone();
+            pilot = Some(Pilot::new(law, recorder.flock().parameters(), hz)?);
+        }
     }
-    let mut pilot = pilot_of(plan, recorder.flock())?;
     let mut reported_s = 0.0;
     loop {
         let pause = py.detach(|| match &mut pilot {
@@ -109,19 +110,6 @@ fn recorded<'py, T: Real + Element>(
         }
     }
     columns(py, recorder.into_recording())
-}
-
-/// The pilot of a run that a law controls.
-fn pilot_of(plan: &Plan<'_>, flock: &Flock) -> PyResult<Option<Pilot>> {
-    let Some(control) = &plan.control else {
-        return Ok(None);
-    };
-    let Ok(law) = control.steer.cast::<PyLaw>() else {
-        return Ok(None);
-    };
-    let hz = given(&control.control_hz, "control_hz")?;
-    let law = law.get().law().clone();
-    Ok(Some(Pilot::new(law, flock.parameters(), hz)?))
 }
 
 fn steer<T: Real>(

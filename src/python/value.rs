@@ -4,10 +4,11 @@
 use super::error::refusal;
 use crate::error::FlockError;
 use crate::parameters::{Field, FlockParameters, Setting, Value};
+use numpy::PyArray1;
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyFloat, PyInt, PySequence, PyString, PyTuple};
+use pyo3::types::{IntoPyDict, PyBytes, PyDict, PyFloat, PyInt, PySequence, PyString, PyTuple};
 
 /// The most items of a list, such as targets of leaders or rows of obstacles, and of a list in it: beyond, nothing is
 /// copied.
@@ -58,24 +59,21 @@ pub(super) fn sequence_length(object: &Bound<'_, PyAny>) -> Option<usize> {
 }
 
 /// A value as Python code gets it.
-pub(super) fn written<'py>(value: &Value, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-    match value {
-        Value::None | Value::Other => Ok(py.None().into_bound(py)),
-        Value::Flag(flag) => flag.into_bound_py_any(py),
-        Value::Count(count) => count.into_bound_py_any(py),
-        Value::Real(real) => real.into_bound_py_any(py),
-        Value::Name(name) => name.into_bound_py_any(py),
-        Value::List(values) => {
-            let values = values.iter().map(|value| written(value, py));
-            let values = values.collect::<PyResult<Vec<_>>>()?;
-            Ok(PyTuple::new(py, values)?.into_any())
-        }
-        Value::Map(values) => {
-            let dict = PyDict::new(py);
-            for (name, value) in values {
-                dict.set_item(name, written(value, py)?)?;
-            }
-            Ok(dict.into_any())
+impl<'py> IntoPyObject<'py> for Value {
+    type Target = PyAny;
+    type Output = Bound<'py, PyAny>;
+    type Error = PyErr;
+
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        match self {
+            Self::None | Self::Other => Ok(py.None().into_bound(py)),
+            Self::Flag(flag) => flag.into_bound_py_any(py),
+            Self::Count(count) => count.into_bound_py_any(py),
+            Self::Real(real) => real.into_bound_py_any(py),
+            Self::Name(name) => name.into_bound_py_any(py),
+            Self::Array(numbers) => Ok(PyArray1::from_vec(py, numbers).into_any()),
+            Self::List(values) => Ok(PyTuple::new(py, values)?.into_any()),
+            Self::Map(values) => Ok(values.into_py_dict(py)?.into_any()),
         }
     }
 }
@@ -131,19 +129,6 @@ pub(super) fn set_given<S>(
         set(of, field, &value)?;
     }
     Ok(())
-}
-
-/// The values of all fields by name, in the order of documentation.
-pub(super) fn fields_dict<'py, S>(
-    py: Python<'py>,
-    of: &S,
-    fields: &[Field<S>],
-) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
-    for field in fields {
-        dict.set_item(field.name, written(&(field.get)(of), py)?)?;
-    }
-    Ok(dict)
 }
 
 /// Fields are read as attributes of the same name, so any object that has them will do.

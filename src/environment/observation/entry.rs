@@ -2,7 +2,7 @@
 //! this table, and the documentation prints it.
 
 use crate::geometry::Hull;
-use crate::parameters::FlockParameters;
+use crate::parameters::{FlockParameters, Value, named_fields};
 
 /// The physical value that an observed 1.0 stands for (and, for the radius, what 0.0 stands for).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,6 +115,16 @@ impl Entry {
             high,
             mirrored: false,
         }
+    }
+
+    /// What is declared of it by name, as the entry at a place of a block.
+    pub fn named(&self, block: &'static str, place: usize) -> Value {
+        let [name, unit, low, high, mirrored, meaning] =
+            named_fields!(self; name unit low high mirrored meaning);
+        let scale = ("scale", self.scale.description().into());
+        let at = [("block", block.into()), ("place", place.into())];
+        let each = [name, unit, scale, low, high, mirrored, meaning];
+        at.into_iter().chain(each).collect()
     }
 
     pub(super) const fn odd(self) -> Self {

@@ -149,9 +149,9 @@ impl Setting for ObservationLayout {
             } else {
                 Value::Flag(repeats > 0)
             };
-            (block.name().to_owned(), shown)
+            (block.name(), shown)
         });
-        Value::Map(blocks.collect())
+        blocks.collect()
     }
 
     /// Blocks that are not named are as by default.
