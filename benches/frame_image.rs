@@ -25,7 +25,7 @@ fn frames(bencher: Bencher, pool: Pool) {
 }
 
 #[divan::bench]
-fn five_hundred_boats(bencher: Bencher) {
+fn wide(bencher: Bencher) {
     frames(bencher, Pool::WIDE);
 }
 

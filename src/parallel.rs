@@ -166,21 +166,3 @@ fn pool_of_fork() -> Option<&'static ThreadPool> {
     *forked = Some((id(), pool));
     Some(pool)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn results_come_in_the_order_of_items_on_any_number_of_threads() {
-        for threads in 1..=5 {
-            let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-            for items in [0, 1, 2, 3, 7, 64_u64] {
-                let squares = || map((0..items).collect(), |item| item * item);
-                let expected: Vec<_> = (0..items).map(|item| item * item).collect();
-                assert_eq!(pool.as_ref().unwrap().install(squares), expected);
-                assert_eq!(squares(), expected, "from outside of the pool");
-            }
-        }
-    }
-}

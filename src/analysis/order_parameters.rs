@@ -39,13 +39,8 @@ impl OrderParameters {
     /// # Errors
     /// [`FlockError::Parameter`] if there is no boat.
     pub(crate) fn of_hulls(hulls: &[HullPose], velocities: &[Velocity]) -> Result<Self> {
-        if hulls.is_empty() {
-            return Err(FlockError::parameter(
-                "n_boats - n_leaders",
-                0,
-                "order parameters need at least one normal boat; pass include_leaders=True",
-            ));
-        }
+        let accepted = "order parameters need at least one normal boat; pass include_leaders=True";
+        FlockError::unless(!hulls.is_empty(), "n_boats - n_leaders", 0, accepted)?;
         let (mut orientations, mut motions) = (VectorSum::default(), VectorSum::default());
         for (hull, velocity) in hulls.iter().zip(velocities) {
             let frame = LapFrame::at(hull.center);

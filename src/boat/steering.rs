@@ -108,11 +108,9 @@ impl DampedLaw {
     /// # Errors
     /// [`FlockError::Parameter`] for gains that are not finite.
     pub fn check(&self) -> Result<()> {
-        let mut gains = self.gains().into_iter();
-        match gains.find(|(_, value)| value.is_nan() || value.abs() > 1e9) {
-            Some((name, value)) => Err(FlockError::parameter(name, value, "a finite number")),
-            None => Ok(()),
-        }
+        self.gains().into_iter().try_for_each(|(name, value)| {
+            FlockError::unless(value.abs() <= 1e9, name, value, "a finite number")
+        })
     }
 
     /// The rudder in [−1, 1] on a course.

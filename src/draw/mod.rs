@@ -55,10 +55,9 @@ impl FrameRenderer {
     /// [`FlockError::Parameter`] for a side outside [`Self::SHORTEST`] to [`Self::LONGEST`].
     pub fn new(width: u32, height: u32) -> Result<Self> {
         for (field, side) in [("width", width), ("height", height)] {
-            if !(Self::SHORTEST..=Self::LONGEST).contains(&side) {
-                let accepted = format!("{} to {} pixels", Self::SHORTEST, Self::LONGEST);
-                return Err(FlockError::parameter(field, side, accepted));
-            }
+            let accepted = format!("{} to {} pixels", Self::SHORTEST, Self::LONGEST);
+            let is_accepted = (Self::SHORTEST..=Self::LONGEST).contains(&side);
+            FlockError::unless(is_accepted, field, side, accepted)?;
         }
         let canvas = Pixmap::new(width, height)
             .ok_or_else(|| FlockError::parameter("width", width, "a size that fits memory"))?;

@@ -57,10 +57,9 @@ impl ResetRequest {
             Start::Random => Flock::new_while(keep_going, own, flock_seed)?,
             Start::State(state) => Flock::from_state(own, flock_seed, state)?,
         };
-        if flock.time() + settings.time_of(schedule.steps) > LATEST {
-            let accepted = "a time at least an episode's length before 1e9 s";
-            return Err(FlockError::parameter("time_s", flock.time_s(), accepted));
-        }
+        let is_early = flock.time() + settings.time_of(schedule.steps) <= LATEST;
+        let accepted = "a time at least an episode's length before 1e9 s";
+        FlockError::unless(is_early, "time_s", flock.time_s(), accepted)?;
         flock.set_target(schedule.targets())?;
         Ok((schedule, flock))
     }

@@ -115,10 +115,13 @@ impl Flock {
     /// # Errors
     /// [`FlockError::Parameter`] for no thread, and for more than 1024.
     pub fn set_threads(&mut self, threads: usize) -> Result<()> {
-        if !(1..=MOST_THREADS).contains(&threads) {
-            let accepted = "a whole number from 1 to 1024";
-            return Err(FlockError::parameter("threads", threads, accepted));
-        }
+        let is_accepted = (1..=MOST_THREADS).contains(&threads);
+        FlockError::unless(
+            is_accepted,
+            "threads",
+            threads,
+            "a whole number from 1 to 1024",
+        )?;
         self.share_out(threads);
         Ok(())
     }
@@ -222,21 +225,16 @@ impl Flock {
     /// # Errors
     /// [`FlockError::Parameter`] for a bad duration.
     pub fn end_of(&self, duration_s: f64) -> Result<Ticks> {
-        if !(0.0..=seconds(LATEST)).contains(&duration_s) {
-            return Err(FlockError::parameter(
-                "seconds",
-                duration_s,
-                "a finite duration of at least 0 s",
-            ));
-        }
+        let is_duration = (0.0..=seconds(LATEST)).contains(&duration_s);
+        let accepted = "a finite duration of at least 0 s";
+        FlockError::unless(is_duration, "seconds", duration_s, accepted)?;
         let end = self.time + ticks(duration_s);
-        if end > LATEST {
-            return Err(FlockError::parameter(
-                "seconds",
-                duration_s,
-                "an end before time_s = 1e9",
-            ));
-        }
+        FlockError::unless(
+            end <= LATEST,
+            "seconds",
+            duration_s,
+            "an end before time_s = 1e9",
+        )?;
         Ok(end)
     }
 
@@ -256,17 +254,10 @@ impl Flock {
                 expected: format!("({k},), one per leader"),
             });
         }
-        match commands
-            .iter()
-            .find(|command| !(-1.0..=1.0).contains(*command))
-        {
-            Some(command) => Err(FlockError::parameter(
-                "rudder",
-                command,
-                "numbers in [-1, 1]",
-            )),
-            None => Ok(()),
-        }
+        commands.iter().try_for_each(|command| {
+            let is_rudder = (-1.0..=1.0).contains(command);
+            FlockError::unless(is_rudder, "rudder", command, "numbers in [-1, 1]")
+        })
     }
 
     /// Advances to a time with checked steering. Substeps end on multiples of dt, on phase switches and

@@ -29,15 +29,13 @@ impl Sampling {
     /// # Errors
     /// [`FlockError::Parameter`] for a duration or rate out of range.
     pub fn new(duration_s: f64, sample_hz: f64) -> Result<Self> {
-        if !(0.0..=Self::LONGEST_S).contains(&duration_s) {
-            let accepted = "a finite duration of at least 0 s, at most 1e9 s";
-            return Err(FlockError::parameter("duration_s", duration_s, accepted));
-        }
+        let is_duration = (0.0..=Self::LONGEST_S).contains(&duration_s);
+        let accepted = "a finite duration of at least 0 s, at most 1e9 s";
+        FlockError::unless(is_duration, "duration_s", duration_s, accepted)?;
         // A NaN fails both comparisons.
-        if !(sample_hz > 0.0 && sample_hz <= Self::FASTEST_HZ) {
-            let accepted = "a positive rate of at most 1e6 samples per second";
-            return Err(FlockError::parameter("sample_hz", sample_hz, accepted));
-        }
+        let is_rate = sample_hz > 0.0 && sample_hz <= Self::FASTEST_HZ;
+        let accepted = "a positive rate of at most 1e6 samples per second";
+        FlockError::unless(is_rate, "sample_hz", sample_hz, accepted)?;
         let periods = (duration_s * sample_hz).floor() as u64;
         let mut sampling = Self {
             sample_hz,
@@ -62,7 +60,7 @@ impl Sampling {
 }
 
 /// How a recording keeps poses and velocities.
-pub trait Real: Copy + Send {
+pub trait Real: Copy + Send + Default {
     /// The nearest number of this type.
     fn nearest(value: f64) -> Self;
 }
@@ -134,33 +132,16 @@ impl<T: Real> Recording<T> {
         let rudders = parameters.n_leaders * size_of::<f64>();
         let other = (size_of::<Recorded>() + size_of::<f64>() + 2 + rudders) as u64;
         let bytes = samples.saturating_mul(state + other);
-        let mut recording = Self::empty();
-        if bytes > Self::MOST_BYTES || recording.reserve(samples, parameters).is_none() {
-            return Err(FlockError::parameter(
-                "duration_s * sample_hz",
-                format!("{} samples of {} boats", samples, parameters.n_boats),
-                format!(
-                    "a recording of {} bytes does not fit; at most {} bytes, and the memory there \
-                     is: record a shorter run, at a lower rate or in float32",
-                    bytes,
-                    Self::MOST_BYTES
-                ),
-            ));
-        }
+        let mut recording = Self::default();
+        let fits = bytes <= Self::MOST_BYTES && recording.reserve(samples, parameters).is_some();
+        let found = format!("{} samples of {} boats", samples, parameters.n_boats);
+        let accepted = format!(
+            "a recording of {bytes} bytes does not fit; at most {} bytes, and the memory there is: record a shorter run, \
+             at a lower rate or in float32",
+            Self::MOST_BYTES
+        );
+        FlockError::unless(fits, "duration_s * sample_hz", found, accepted)?;
         Ok(recording)
-    }
-
-    fn empty() -> Self {
-        Self {
-            time_s: Vec::new(),
-            phase: Vec::new(),
-            in_analysis_window: Vec::new(),
-            pose: Vec::new(),
-            velocity: Vec::new(),
-            rudder: Vec::new(),
-            order: Vec::new(),
-            contacts: None,
-        }
     }
 
     fn reserve(&mut self, samples: u64, parameters: &FlockParameters) -> Option<()> {
@@ -278,10 +259,9 @@ impl<T: Real> Recorder<T> {
     /// # Errors
     /// [`FlockError::Parameter`] for a rate out of range.
     pub fn with_control(mut self, control_hz: f64) -> Result<Self> {
-        if !(control_hz > 0.0 && control_hz <= Sampling::FASTEST_HZ) {
-            let accepted = "a positive rate of at most 1e6 control steps a second";
-            return Err(FlockError::parameter("control_hz", control_hz, accepted));
-        }
+        let is_rate = control_hz > 0.0 && control_hz <= Sampling::FASTEST_HZ;
+        let accepted = "a positive rate of at most 1e6 control steps a second";
+        FlockError::unless(is_rate, "control_hz", control_hz, accepted)?;
         self.control = Some(Control {
             hz: control_hz,
             control_steps: 0,

@@ -97,14 +97,10 @@ impl Flock {
 }
 
 fn time_from(time_s: f64) -> Result<Ticks> {
-    if time_s >= 0.0 && time_s <= seconds(LATEST) {
-        return Ok(ticks(time_s));
-    }
-    Err(FlockError::parameter(
-        "time_s",
-        time_s,
-        "a finite time of at least 0 s, at most 1e9 s",
-    ))
+    let is_time = time_s >= 0.0 && time_s <= seconds(LATEST);
+    let accepted = "a finite time of at least 0 s, at most 1e9 s";
+    FlockError::unless(is_time, "time_s", time_s, accepted)?;
+    Ok(ticks(time_s))
 }
 
 /// Refuses contacts that overlap by more than `allowed`, of those that count.

@@ -125,11 +125,10 @@ impl FlockParameters {
     }
 
     fn check_leaders(&self) -> Result<()> {
-        if self.n_leaders <= self.n_boats {
-            return self.target.check(self.n_leaders);
-        }
         let accepted = format!("0 to n_boats = {}", self.n_boats);
-        Err(FlockError::parameter("n_leaders", self.n_leaders, accepted))
+        let are_boats = self.n_leaders <= self.n_boats;
+        FlockError::unless(are_boats, "n_leaders", self.n_leaders, accepted)?;
+        self.target.check(self.n_leaders)
     }
 
     fn check_pool(&self) -> Result<()> {
@@ -137,49 +136,29 @@ impl FlockParameters {
             outer_radius_cm: outer,
             inner_radius_cm: inner,
         } = self.pool;
-        let ok = (0.0..=Range::LARGE).contains(&inner)
+        let is_pool = (0.0..=Range::LARGE).contains(&inner)
             && outer > inner
             && (outer <= Range::LARGE || outer == f64::INFINITY);
-        if ok {
-            return Ok(());
-        }
-        Err(FlockError::parameter(
-            "pool",
-            format!("({outer}, {inner})"),
-            "(outer_radius_cm, inner_radius_cm) with 0 <= inner < outer; an infinite outer radius is open water",
-        ))
+        let accepted = "(outer_radius_cm, inner_radius_cm) with 0 <= inner < outer; an infinite outer radius is open \
+                        water";
+        FlockError::unless(is_pool, "pool", format!("({outer}, {inner})"), accepted)
     }
 
     fn check_spread(&self) -> Result<()> {
-        if (0.0..=self.speed_cm_s).contains(&self.speed_spread_cm_s) {
-            return Ok(());
-        }
+        let spread = self.speed_spread_cm_s;
         let accepted = format!("0 to speed_cm_s = {}", self.speed_cm_s);
-        Err(FlockError::parameter(
-            "speed_spread_cm_s",
-            self.speed_spread_cm_s,
-            accepted,
-        ))
+        let is_spread = (0.0..=self.speed_cm_s).contains(&spread);
+        FlockError::unless(is_spread, "speed_spread_cm_s", spread, accepted)
     }
 
     fn check_timing(&self) -> Result<()> {
         let cycle_s = self.fw_s + self.nop1_s + self.bw_s + self.nop2_s;
-        if cycle_s < 1e-6 {
-            let accepted = "a cycle of at least 1e-6 s (a single phase may last 0 s)";
-            return Err(FlockError::parameter(
-                "fw_s + nop1_s + bw_s + nop2_s",
-                cycle_s,
-                accepted,
-            ));
-        }
-        let longest = self.scheme.longest_dt_s();
-        if (1e-6..=longest).contains(&self.dt_s) {
-            return Ok(());
-        }
-        let accepted = format!(
-            "1e-6 to {longest} s, where scheme {:?} is stable",
-            self.scheme.name()
-        );
-        Err(FlockError::parameter("dt_s", self.dt_s, accepted))
+        let accepted = "a cycle of at least 1e-6 s (a single phase may last 0 s)";
+        let phases = "fw_s + nop1_s + bw_s + nop2_s";
+        FlockError::unless(cycle_s >= 1e-6, phases, cycle_s, accepted)?;
+        let (longest, scheme) = (self.scheme.longest_dt_s(), self.scheme.name());
+        let accepted = format!("1e-6 to {longest} s, where scheme {scheme:?} is stable");
+        let is_stable = (1e-6..=longest).contains(&self.dt_s);
+        FlockError::unless(is_stable, "dt_s", self.dt_s, accepted)
     }
 }

@@ -10,50 +10,78 @@ pub const MOST_OBSTACLES: usize = 1000;
 /// The shortest wall in cm.
 const SHORTEST_CM: f64 = 1e-3;
 
-/// A disc that stands in the water.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Disc {
-    /// Its center in cm, world axes.
-    pub x_cm: f64,
-    /// Its center in cm, world axes.
-    pub y_cm: f64,
-    /// Its radius in cm.
-    pub radius_cm: f64,
+/// Declares a row of numbers that describes an obstacle, and the field that holds such obstacles.
+macro_rules! obstacle_row {
+    ($(#[$meta:meta])* $type:ident in $field:literal { $($(#[$doc:meta])+ $column:ident,)+ }) => {
+        $(#[$meta])*
+        #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+        pub struct $type { $($(#[$doc])+ pub $column: f64,)+ }
+
+        impl Row for $type {
+            const FIELD: &'static str = $field;
+            const COLUMNS: &'static [&'static str] = &[$(stringify!($column)),+];
+
+            fn numbers(&self) -> Vec<f64> {
+                vec![$(self.$column),+]
+            }
+
+            fn from_numbers(numbers: &[f64]) -> Option<Self> {
+                let &[$($column),+] = numbers else {
+                    return None;
+                };
+                Some(Self { $($column),+ })
+            }
+        }
+    };
 }
 
-/// A straight wall without thickness from one point to another.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Wall {
-    /// Where it starts, in cm, world axes.
-    pub x0_cm: f64,
-    /// Where it starts, in cm, world axes.
-    pub y0_cm: f64,
-    /// Where it ends, in cm, world axes.
-    pub x1_cm: f64,
-    /// Where it ends, in cm, world axes.
-    pub y1_cm: f64,
+obstacle_row! {
+    /// A disc that stands in the water.
+    Disc in "discs" {
+        /// Its center in cm, world axes.
+        x_cm,
+        /// Its center in cm, world axes.
+        y_cm,
+        /// Its radius in cm.
+        radius_cm,
+    }
 }
 
-/// A row of numbers that describes an obstacle.
-pub(super) trait ObstacleRow: Copy {
-    /// The field that holds such obstacles.
+obstacle_row! {
+    /// A straight wall without thickness from one point to another.
+    Wall in "walls" {
+        /// Where it starts, in cm, world axes.
+        x0_cm,
+        /// Where it starts, in cm, world axes.
+        y0_cm,
+        /// Where it ends, in cm, world axes.
+        x1_cm,
+        /// Where it ends, in cm, world axes.
+        y1_cm,
+    }
+}
+
+/// A row of numbers.
+pub(super) trait Row: Copy {
+    /// The field that holds such rows.
     const FIELD: &'static str;
     /// The names of the numbers.
     const COLUMNS: &'static [&'static str];
-    /// What is wrong with the shape of an obstacle, if something is.
-    fn flaw(&self) -> Option<&'static str>;
-    /// The least and the largest distance of its points from the pool's center.
-    fn distances(&self) -> (f64, f64);
     /// The numbers.
     fn numbers(&self) -> Vec<f64>;
     /// From as many numbers as there are columns.
     fn from_numbers(numbers: &[f64]) -> Option<Self>;
 }
 
-impl ObstacleRow for Disc {
-    const FIELD: &'static str = "discs";
-    const COLUMNS: &'static [&'static str] = &["x_cm", "y_cm", "radius_cm"];
+/// A row that describes an obstacle.
+pub(super) trait ObstacleRow: Row {
+    /// What is wrong with the shape of an obstacle, if something is.
+    fn flaw(&self) -> Option<&'static str>;
+    /// The least and the largest distance of its points from the pool's center.
+    fn distances(&self) -> (f64, f64);
+}
 
+impl ObstacleRow for Disc {
     fn flaw(&self) -> Option<&'static str> {
         let radius = self.radius_cm;
         (!(radius > 0.0 && radius <= Range::LARGE)).then_some("a positive radius, at most 1e6")
@@ -63,27 +91,9 @@ impl ObstacleRow for Disc {
         let center = libm::hypot(self.x_cm, self.y_cm);
         ((center - self.radius_cm).max(0.0), center + self.radius_cm)
     }
-
-    fn numbers(&self) -> Vec<f64> {
-        vec![self.x_cm, self.y_cm, self.radius_cm]
-    }
-
-    fn from_numbers(numbers: &[f64]) -> Option<Self> {
-        let &[x_cm, y_cm, radius_cm] = numbers else {
-            return None;
-        };
-        Some(Self {
-            x_cm,
-            y_cm,
-            radius_cm,
-        })
-    }
 }
 
 impl ObstacleRow for Wall {
-    const FIELD: &'static str = "walls";
-    const COLUMNS: &'static [&'static str] = &["x0_cm", "y0_cm", "x1_cm", "y1_cm"];
-
     fn flaw(&self) -> Option<&'static str> {
         (self.length_cm() < SHORTEST_CM).then_some("two ends at least 0.001 cm apart")
     }
@@ -99,22 +109,6 @@ impl ObstacleRow for Wall {
         ];
         (nearest, ends[0].max(ends[1]))
     }
-
-    fn numbers(&self) -> Vec<f64> {
-        vec![self.x0_cm, self.y0_cm, self.x1_cm, self.y1_cm]
-    }
-
-    fn from_numbers(numbers: &[f64]) -> Option<Self> {
-        let &[x0_cm, y0_cm, x1_cm, y1_cm] = numbers else {
-            return None;
-        };
-        Some(Self {
-            x0_cm,
-            y0_cm,
-            x1_cm,
-            y1_cm,
-        })
-    }
 }
 
 impl Wall {
@@ -124,7 +118,7 @@ impl Wall {
     }
 }
 
-impl<T: ObstacleRow> Setting for Vec<T> {
+impl<T: Row> Setting for Vec<T> {
     const KIND: Kind = Kind::Rows(T::COLUMNS);
 
     fn value(&self) -> Value {
@@ -156,31 +150,29 @@ impl<T: ObstacleRow> Setting for Vec<T> {
 
 /// Checks the obstacles of one kind: finite, well formed, and with a part in the water.
 pub(super) fn check<T: ObstacleRow>(obstacles: &[T], pool: Pool) -> Result<()> {
-    if obstacles.len() > MOST_OBSTACLES {
-        let value = format!("{} rows", obstacles.len());
-        return Err(FlockError::parameter(T::FIELD, value, "at most 1000 rows"));
-    }
+    let (count, most) = (obstacles.len(), MOST_OBSTACLES);
+    let accepted = format!("at most {most} rows");
+    FlockError::unless(count <= most, T::FIELD, format!("{count} rows"), accepted)?;
     for (number, obstacle) in obstacles.iter().enumerate() {
-        let refuse = |accepted: &str| {
+        let check = |is_accepted: bool, accepted: String| {
             let value = format!("{:?} (number {number})", obstacle.numbers());
-            FlockError::parameter(T::FIELD, value, accepted)
+            FlockError::unless(is_accepted, T::FIELD, value, accepted)
         };
         // A NaN lies in no range.
-        let is_near = |number: &f64| number.abs() <= Range::LARGE;
-        if !obstacle.numbers().iter().all(is_near) {
-            let columns = T::COLUMNS.join(", ");
-            return Err(refuse(&format!("({columns}), each from -1e6 to 1e6")));
-        }
-        if let Some(accepted) = obstacle.flaw() {
-            return Err(refuse(accepted));
-        }
+        let are_near = obstacle
+            .numbers()
+            .iter()
+            .all(|number| number.abs() <= Range::LARGE);
+        let columns = T::COLUMNS.join(", ");
+        check(are_near, format!("({columns}), each from -1e6 to 1e6"))?;
+        let flaw = obstacle.flaw();
+        check(flaw.is_none(), flaw.unwrap_or_default().to_owned())?;
         let (least, largest) = obstacle.distances();
-        if least >= pool.outer_radius_cm || largest <= pool.inner_radius_cm {
-            let radii = format!("{} and {} cm", pool.inner_radius_cm, pool.outer_radius_cm);
-            return Err(refuse(&format!(
-                "an obstacle with a part in the water, between {radii} from the pool's center"
-            )));
-        }
+        let (inner, outer) = (pool.inner_radius_cm, pool.outer_radius_cm);
+        let accepted = format!(
+            "an obstacle with a part in the water, between {inner} and {outer} cm from the pool's center"
+        );
+        check(least < outer && largest > inner, accepted)?;
     }
     Ok(())
 }

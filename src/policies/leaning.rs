@@ -181,23 +181,17 @@ impl LeaningLaw {
         LeanFeatures::check_pool(Some(&self.pool))?;
         let weights = LeanFeatures::names().zip(self.weights);
         for (name, value) in weights.chain([("bias", self.bias)]) {
-            if value.is_nan() || value.abs() > 1e9 {
-                return Err(FlockError::parameter(name, value, "a finite number"));
-            }
+            FlockError::unless(value.abs() <= 1e9, name, value, "a finite number")?;
         }
         let Some(period) = self.decision_period_s else {
             return Ok(());
         };
         let is_tuned = DampedLaw::TUNED.contains(&(self.pool.as_str(), self.gains));
-        if !is_tuned {
-            let accepted = "none with gains other than those tuned in the pool";
-            return Err(FlockError::parameter("decision_period_s", period, accepted));
-        }
-        if !(period > 0.0 && period <= 1e6) {
-            let accepted = "a positive time in s, or none";
-            return Err(FlockError::parameter("decision_period_s", period, accepted));
-        }
-        Ok(())
+        let accepted = "none with gains other than those tuned in the pool";
+        FlockError::unless(is_tuned, "decision_period_s", period, accepted)?;
+        let is_time = period > 0.0 && period <= 1e6;
+        let accepted = "a positive time in s, or none";
+        FlockError::unless(is_time, "decision_period_s", period, accepted)
     }
 
     /// The lean over [`LARGEST_LEAN`] for standardized features, in [−1, 1], with the precision of actions.

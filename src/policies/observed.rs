@@ -24,11 +24,9 @@ impl ObservedLaw {
     pub fn new(law: Law, layout: &ObservationLayout) -> Result<Self> {
         law.check()?;
         let features = layout.offset(Block::LeanFeatures);
-        if law.leans() && features.is_none() {
-            let accepted = "a leaning law reads this block; switch it on";
-            let off = "lean_features: off";
-            return Err(FlockError::parameter("observation", off, accepted));
-        }
+        let is_met = features.is_some() || !law.leans();
+        let accepted = "a leaning law reads this block; switch it on";
+        FlockError::unless(is_met, "observation", "lean_features: off", accepted)?;
         let holds = matches!(&law, Law::Leaning(law) if law.decision_period_s.is_some());
         let courses = (!holds).then(|| CourseReader::new(layout)).transpose()?;
         Ok(Self {

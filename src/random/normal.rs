@@ -108,38 +108,3 @@ fn tail(mut uniform: impl FnMut() -> f64) -> f64 {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Share of a million draws within x, against erf(x/√2): binomial errors, five standard deviations.
-    #[test]
-    fn draws_have_the_normal_distribution_from_its_middle_to_its_tail() {
-        let (ziggurat, draws) = (Ziggurat::new(), 4_000_000_u64);
-        let numbers: Vec<f64> = (0..draws)
-            .map(|word| ziggurat.normal(scramble(word)))
-            .collect();
-        for x in [
-            -4.5, -4.0, TAIL, -3.0, -1.0, -0.1, 0.0, 0.2, 0.7, 2.0, 3.5, 4.0, 4.5,
-        ] {
-            let below = numbers.iter().filter(|&&number| number < x).count() as f64;
-            let expected = 0.5 * libm::erfc(-x * std::f64::consts::FRAC_1_SQRT_2);
-            let draws = draws as f64;
-            let error = (expected * (1.0 - expected) / draws).sqrt();
-            assert!(
-                (below / draws - expected).abs() < 5.0 * error,
-                "{x}: {below}"
-            );
-        }
-    }
-
-    #[test]
-    fn layers_have_equal_areas_and_the_uppermost_ends_on_the_axis() {
-        let Layers { edges, densities } = &*OF_NORMAL;
-        let areas = (1..LAYERS).map(|k| edges[k] * (densities[k + 1] - densities[k]));
-        for area in areas {
-            assert!((area - edges[0] * densities[1]).abs() < 1e-12, "{area}");
-        }
-    }
-}

@@ -1,9 +1,12 @@
 //! Observations stay inside their bounds, the table describes them, and eq. (10) can be read from them.
 
-use crate::support::{batch, settings, step};
+use crate::support::{batch, parameters, settings, step};
 use flockenv::environment::EnvSettings;
-use flockenv::environment::observation::{Block, ObservationLayout};
+use flockenv::environment::observation::{Block, ObservationLayout, observe_flock};
+use flockenv::flock::State;
+use flockenv::geometry::{Pose, Velocity};
 use flockenv::policies::{Law, ObservedLaw};
+use flockenv::{Flock, FlockParameters};
 
 #[test]
 fn layout_adds_up() {
@@ -75,4 +78,54 @@ fn laws_name_a_block_that_is_off() {
         .unwrap_err()
         .to_string();
     assert!(message.contains("own"), "{message}");
+}
+
+/// Boats on a grid, so that many are equally far from a leader, each with a heading of its own.
+fn grid(boats: usize, leaders: usize) -> Flock {
+    let place =
+        |boat: usize| Pose::new((7 * boat % 6) as f64, (boat % 5) as f64, TURN * boat as f64);
+    let state = State {
+        poses: (0..boats).map(place).collect(),
+        velocities: vec![Velocity::default(); boats],
+        time_s: 0.0,
+        allow_overlap: true,
+    };
+    let own = FlockParameters {
+        n_boats: boats,
+        ..parameters(leaders)
+    };
+    Flock::from_state(own, 0, &state).unwrap()
+}
+
+const TURN: f64 = 0.03;
+
+#[test]
+fn the_nearest_come_first_and_equally_near_ones_in_the_order_of_boats() {
+    for (boats, leaders) in [(1, 1), (2, 2), (27, 6), (90, 5)] {
+        let flock = grid(boats, leaders);
+        for wanted in [1, 3, 6, 16, 17, 64] {
+            let mut layout = ObservationLayout::of(&[Block::Neighbors]);
+            layout.repeat(Block::Neighbors, wanted);
+            let observed = observe_flock(&flock, layout, &[]).unwrap();
+            for (leader, row) in observed.chunks_exact(layout.size()).enumerate() {
+                let own = flock.poses()[leader];
+                let square =
+                    |boat: &usize| (flock.poses()[*boat].position - own.position).norm_squared();
+                let mut expected: Vec<_> = (0..boats).filter(|&boat| boat != leader).collect();
+                expected.sort_by(|a, b| square(a).total_cmp(&square(b)));
+                expected.truncate(wanted);
+                let present = row
+                    .chunks_exact(layout.size() / wanted)
+                    .filter(|each| each[0] > 0.0);
+                // Cosine of the angle between the headings, and its sine, positive clockwise.
+                let turned = present.map(|each| f64::from(-each[4]).atan2(each[3].into()));
+                let found = turned.map(|angle| (leader as f64 + angle / TURN).round() as usize);
+                assert_eq!(
+                    found.collect::<Vec<_>>(),
+                    expected,
+                    "{boats} boats, {wanted} wanted"
+                );
+            }
+        }
+    }
 }

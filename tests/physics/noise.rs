@@ -218,6 +218,29 @@ fn increments(paths: &mut BrownianPaths, from: u64, to: u64) -> Vec<f64> {
     found
 }
 
+/// Share of four million increments below x, against erf(x/√2): binomial errors, five standard deviations.
+#[test]
+fn increments_have_the_normal_distribution_from_its_middle_to_its_tail() {
+    // Over cells of 1 s.
+    let (cell, boats, cells) = (2_000_000_000, 4000, 1000);
+    let mut paths = BrownianPaths::new(6, boats, cell, 0);
+    let (mut found, mut numbers) = (vec![0.0; boats], Vec::new());
+    for k in 0..cells {
+        paths.increments(k * cell, (k + 1) * cell, &mut found);
+        numbers.extend_from_slice(&found);
+    }
+    let draws = numbers.len() as f64;
+    for x in [
+        -4.5, -4.0, -3.65, -3.0, -1.0, -0.1, 0.0, 0.2, 0.7, 2.0, 3.5, 4.0, 4.5,
+    ] {
+        let below = numbers.iter().filter(|&&number| number < x).count() as f64;
+        let expected = 0.5 * libm::erfc(-x * std::f64::consts::FRAC_1_SQRT_2);
+        let error = (expected * (1.0 - expected) / draws).sqrt();
+        let share = below / draws;
+        assert!((share - expected).abs() < 5.0 * error, "{x}: {share}");
+    }
+}
+
 #[test]
 fn increments_over_parts_add_up_to_the_whole() {
     // Cells of 0.02 s, half a cell shifted as for leapfrog; cuts in a cell, across cells, odd ones.

@@ -104,34 +104,3 @@ fn sort(found: &mut [u32], square: impl Fn(u32) -> f64) {
     }
     found.copy_from_slice(&sorted[..found.len()]);
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::geometry::Pose;
-
-    /// Boats on a grid, so that many are equally far from a leader.
-    fn grid(boats: usize) -> Vec<HullPose> {
-        let place = |boat: usize| Pose::new((7 * boat % 6) as f64, (boat % 5) as f64, 0.0);
-        (0..boats).map(|boat| HullPose::new(&place(boat))).collect()
-    }
-
-    #[test]
-    fn the_nearest_come_first_and_equally_near_ones_in_the_order_of_boats() {
-        for (boats, leaders) in [(1, 1), (2, 2), (27, 6), (90, 5)] {
-            let hulls = grid(boats);
-            for wanted in [1, 3, 6, FEW, FEW + 1, 64] {
-                let mut nearest = Nearest::default();
-                for leader in 0..leaders {
-                    let mut expected: Vec<_> = (0..boats).filter(|&boat| boat != leader).collect();
-                    let center = hulls[leader].center;
-                    let square = |boat: &usize| (hulls[*boat].center - center).norm_squared();
-                    expected.sort_by(|a, b| square(a).total_cmp(&square(b)));
-                    expected.truncate(wanted);
-                    let found: Vec<_> = nearest.of_leader(&hulls, leader, wanted).collect();
-                    assert_eq!(found, expected, "{boats} boats, {wanted} wanted");
-                }
-            }
-        }
-    }
-}

@@ -100,33 +100,3 @@ fn two_impulses([a, b]: [f64; 2], coupling: f64, [r, s]: [f64; 2]) -> Option<[f6
         None
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::two_impulses;
-
-    #[test]
-    fn two_rows_on_paper() {
-        // Without coupling each closes its own gap.
-        assert_eq!(
-            two_impulses([2.0, 4.0], 0.0, [-2.0, -8.0]),
-            Some([1.0, 2.0])
-        );
-        assert_eq!(two_impulses([2.0, 4.0], 0.0, [-2.0, 8.0]), Some([1.0, 0.0]));
-        // The first one's push opens the second gap: 2·1 − 2 = 0 and 1·1 − 0.5 ≥ 0.
-        assert_eq!(
-            two_impulses([2.0, 2.0], 1.0, [-2.0, -0.5]),
-            Some([1.0, 0.0])
-        );
-        assert_eq!(
-            two_impulses([2.0, 2.0], 1.0, [-0.5, -2.0]),
-            Some([0.0, 1.0])
-        );
-        // The first one's push closes the second: 2·λ − μ = 3 and 2·μ − λ = 0.
-        assert_eq!(
-            two_impulses([2.0, 2.0], -1.0, [-3.0, 0.0]),
-            Some([2.0, 1.0])
-        );
-        assert_eq!(two_impulses([1.0, 1.0], 1.0, [-1.0, -1.0]), None);
-    }
-}
