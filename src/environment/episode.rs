@@ -1,38 +1,91 @@
 //! One episode under way: the flock, its leaders' rudders, what was observed and rewarded so far.
 
-mod stored;
-
-pub(crate) use stored::StoredEpisode;
-
 use super::credit::{ContactCredit, LeaderCredit};
 use super::observation::{
     Camera, CourseView, FlockFeatures, FlockView, Lens, Observer, StateObserver,
 };
+use super::reset::check_flock;
 use super::statistics::{EpisodeStatistics, LeaderSummary, LeaderSums};
 use super::{EnvSettings, EpisodeSchedule, EpisodeSummary, Reward, RewardTerms, Servo, TERMS};
 use crate::analysis::OrderParameters;
 use crate::analysis::quantities::Boats;
 use crate::boat::DampedLaw;
 use crate::clock::seconds;
-use crate::error::Result;
+use crate::error::{FlockError, Result};
 use crate::flock::Flock;
 use crate::integrator::{Integrator, Steering};
-use crate::parameters::{Target, Targets};
+use crate::parameters::{FlockParameters, Target, Targets};
 
-/// What observations and rewards are computed from.
-#[derive(Debug, Clone)]
-struct EpisodeState {
+/// What an episode remembers. It is stored as it is.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub(crate) struct EpisodeState {
     flock: Flock,
     schedule: EpisodeSchedule,
     /// The leaders' rudders as they stand, positive counter-clockwise.
     rudders: Vec<f64>,
+    camera: Option<Camera>,
+    terms: Vec<RewardTerms>,
+    statistics: EpisodeStatistics,
+    /// Where each leader has a target of its own, the sums of each.
+    leader_sums: Vec<LeaderSums>,
+    ended: bool,
+    /// What the leaders' contacts do, where a reward asks for it.
+    credit: Option<ContactCredit>,
     /// Of the normal boats; `None` where there is none.
+    #[serde(skip)]
     order: Option<OrderParameters>,
 }
 
 impl EpisodeState {
+    fn new(settings: &EnvSettings, schedule: EpisodeSchedule, flock: Flock) -> Self {
+        let parameters = flock.parameters();
+        let (leaders, boats) = (parameters.n_leaders, parameters.n_boats);
+        let lens = Lens::new(settings);
+        let credit = settings.reward.need_credit();
+        Self {
+            rudders: vec![0.0; leaders],
+            camera: lens.map(|lens| Camera::new(lens, schedule.flock_seed, leaders, &flock)),
+            terms: vec![[0.0; TERMS]; leaders],
+            statistics: EpisodeStatistics::default(),
+            leader_sums: vec![LeaderSums::default(); schedule.own_targets(leaders)],
+            ended: false,
+            credit: credit.then(|| ContactCredit::new(leaders, boats)),
+            order: None,
+            schedule,
+            flock,
+        }
+    }
+
+    /// Whether it is one of an environment with these settings and parameters.
+    fn fits(&self, settings: &EnvSettings, parameters: &FlockParameters) -> bool {
+        let (leaders, boats) = (parameters.n_leaders, parameters.n_boats);
+        let (camera, credit) = (self.camera.as_ref(), self.credit.as_ref());
+        self.rudders.len() == leaders
+            && self.rudders.iter().all(|rudder| rudder.abs() <= 1.0)
+            && self.terms.len() == leaders
+            && self.schedule.steps == settings.steps()
+            && self.schedule.targets() == self.flock.parameters().target
+            && self.leader_sums.len() == self.schedule.own_targets(leaders)
+            && credit.is_some() == settings.reward.need_credit()
+            && credit.is_none_or(|credit| credit.fits(leaders, boats))
+            && camera.is_some() == Lens::new(settings).is_some()
+            && camera.is_none_or(|camera| camera.fits(boats))
+    }
+
     fn view(&self) -> FlockView<'_> {
         FlockView::new(&self.flock, &self.rudders, self.order.as_ref())
+    }
+
+    /// What leaders see: through the camera, if there is one.
+    fn seen(&self) -> FlockView<'_> {
+        let mut view = self.view();
+        if let Some(camera) = &self.camera {
+            view.poses = &camera.seen().poses;
+            view.velocities = &camera.seen().velocities;
+            view.hulls = camera.hulls();
+            view.order = camera.order();
+        }
+        view
     }
 }
 
@@ -41,56 +94,58 @@ impl EpisodeState {
 pub struct Episode {
     state: EpisodeState,
     observer: Observer,
-    camera: Option<Camera>,
     /// The law that steers to a heading, where actions stand for one.
     law: Option<(DampedLaw, CourseView)>,
     /// Commands of the control step under way.
     commands: Vec<f64>,
-    /// What the leaders' contacts do, where a reward asks for it.
-    credit: Option<ContactCredit>,
-    terms: Vec<RewardTerms>,
-    statistics: EpisodeStatistics,
-    /// Where each leader has a target of its own, the sums of each.
-    leader_sums: Vec<LeaderSums>,
-    ended: bool,
 }
 
 impl Episode {
     /// An episode that starts with this flock.
     ///
     /// # Errors
-    /// [`crate::FlockError::Parameter`] where the flock's pool has no law that the settings need.
+    /// [`FlockError::Parameter`] where the flock's pool has no law that the settings need.
     pub fn new(settings: &EnvSettings, schedule: EpisodeSchedule, flock: Flock) -> Result<Self> {
-        let parameters = flock.parameters();
-        let (leaders, boats) = (parameters.n_leaders, parameters.n_boats);
+        Self::of(settings, EpisodeState::new(settings, schedule, flock))
+    }
+
+    fn of(settings: &EnvSettings, mut state: EpisodeState) -> Result<Self> {
+        state.order = state.flock.order_parameters(false).ok();
+        let parameters = state.flock.parameters();
         let law = settings.steering_law(parameters)?;
         let law = law.map(|law| Ok((law, CourseView::new(parameters)?)));
-        let credit = settings.reward.need_credit();
-        let camera = Lens::new(settings).map(|lens| {
-            let (poses, velocities) = (flock.poses(), flock.velocities());
-            Camera::new(lens, schedule.flock_seed, leaders, poses, velocities)
-        });
         Ok(Self {
             observer: Observer::new(settings.layout(), parameters)?,
             law: law.transpose()?,
-            commands: vec![0.0; leaders],
-            credit: credit.then(|| ContactCredit::new(leaders, boats)),
-            camera,
-            terms: vec![[0.0; TERMS]; leaders],
-            statistics: EpisodeStatistics::default(),
-            leader_sums: if schedule.has_own_targets() {
-                vec![LeaderSums::default(); leaders]
-            } else {
-                Vec::new()
-            },
-            ended: false,
-            state: EpisodeState {
-                order: flock.order_parameters(false).ok(),
-                rudders: vec![0.0; leaders],
-                schedule,
-                flock,
-            },
+            commands: vec![0.0; parameters.n_leaders],
+            state,
         })
+    }
+
+    /// The episode that was stored, in an environment with these settings and parameters.
+    ///
+    /// # Errors
+    /// [`FlockError::Snapshot`] if it does not belong there.
+    pub(crate) fn restored(
+        settings: &EnvSettings,
+        parameters: &FlockParameters,
+        mut state: EpisodeState,
+    ) -> Result<Self> {
+        check_flock(&state.flock, parameters)?;
+        if !state.fits(settings, parameters) {
+            return Err(FlockError::Snapshot(
+                "the state holds an episode that this environment cannot have".to_owned(),
+            ));
+        }
+        let (seed, leaders) = (state.schedule.flock_seed, parameters.n_leaders);
+        let camera = Lens::new(settings).zip(state.camera);
+        state.camera = camera.map(|(lens, camera)| camera.restored(lens, seed, leaders));
+        Self::of(settings, state)
+    }
+
+    /// What it remembers, to be stored.
+    pub(crate) fn state(&self) -> &EpisodeState {
+        &self.state
     }
 
     /// The flock.
@@ -105,7 +160,7 @@ impl Episode {
 
     /// Whether the episode has ended.
     pub fn has_ended(&self) -> bool {
-        self.ended
+        self.state.ended
     }
 
     /// Order parameters of the normal boats now; `None` where there is none.
@@ -115,7 +170,7 @@ impl Episode {
 
     /// Each leader's reward terms, means over the control steps since the last decision.
     pub fn terms(&self) -> &[RewardTerms] {
-        &self.terms
+        &self.state.terms
     }
 
     /// The leaders' rudders as they stand, positive counter-clockwise.
@@ -126,16 +181,17 @@ impl Episode {
     /// Statistics of the episode so far.
     pub fn summary(&self) -> EpisodeSummary {
         let bw_s = self.state.flock.parameters().bw_s;
-        self.statistics.summary(&self.state.schedule, bw_s)
+        self.state.statistics.summary(&self.state.schedule, bw_s)
     }
 
     /// Statistics so far of each leader, where each has a target of its own; empty otherwise.
     pub fn leader_summaries(&self) -> Vec<LeaderSummary> {
         let targets = self.targets();
-        let leaders = self.leader_sums.iter().enumerate();
+        let leaders = self.state.leader_sums.iter().enumerate();
         leaders
             .map(|(leader, sums)| {
-                self.statistics
+                self.state
+                    .statistics
                     .summary_of(sums, targets.of(leader), targets.reference())
             })
             .collect()
@@ -148,14 +204,13 @@ impl Episode {
 
     /// Writes what leaders see now; returns how many numbers were clipped.
     pub fn observe(&mut self, out: &mut [f32]) -> u32 {
-        let view = seen_view(&self.state, self.camera.as_ref());
-        self.observer.observe(&view, out)
+        self.observer.observe(&self.state.seen(), out)
     }
 
     /// Writes what leaders see in the course of the episode, and counts what was clipped.
     pub(crate) fn observe_and_count(&mut self, out: &mut [f32]) {
         let clipped = self.observe(out);
-        self.statistics.count_clipped(clipped, out.len());
+        self.state.statistics.count_clipped(clipped, out.len());
     }
 
     /// Writes the global state, which no camera stands before.
@@ -178,7 +233,7 @@ impl Episode {
     /// and writes the rewards, sums over them.
     ///
     /// # Errors
-    /// [`crate::FlockError::Solver`]; the flock stays where it was in that control step, and the episode is over.
+    /// [`FlockError::Solver`]; the flock stays where it was in that control step, and the episode is over.
     pub fn step(
         &mut self,
         settings: &EnvSettings,
@@ -189,7 +244,7 @@ impl Episode {
         // A rudder that was chosen in the mirrored view stays what it is when the target turns round.
         let mirror_to = settings.mirror_to_target.then(|| self.targets().clone());
         let mut taken = 0;
-        while taken == 0 || (taken < settings.period_steps() && !self.ended) {
+        while taken == 0 || (taken < settings.period_steps() && !self.state.ended) {
             self.command(settings, actions, mirror_to.as_ref());
             self.advance(settings, servo)?;
             self.compute_rewards(settings, rewards, taken == 0);
@@ -197,7 +252,7 @@ impl Episode {
             taken += 1;
         }
         let taken = f64::from(taken);
-        let terms = self.terms.iter_mut().flatten();
+        let terms = self.state.terms.iter_mut().flatten();
         terms.for_each(|term| *term /= taken);
         Ok(())
     }
@@ -205,7 +260,7 @@ impl Episode {
     /// Works out the commands of a control step from actions that were chosen in views mirrored to targets, if any.
     fn command(&mut self, settings: &EnvSettings, actions: &[f64], mirror_to: Option<&Targets>) {
         let mut commands = std::mem::take(&mut self.commands);
-        let view = seen_view(&self.state, self.camera.as_ref());
+        let view = self.state.seen();
         for (leader, (command, &action)) in commands.iter_mut().zip(actions).enumerate() {
             let value = settings.command(action);
             let mirrored = mirror_to.is_some_and(|targets| targets.of(leader).sign() < 0.0);
@@ -231,7 +286,7 @@ impl Episode {
         let step = state.schedule.step;
         let end = state.flock.time() + settings.time_of(step + 1) - settings.time_of(step);
         let steering = Steering::Held(&state.rudders);
-        let advanced = match &mut self.credit {
+        let advanced = match &mut state.credit {
             None => state.flock.advance_to(end, steering),
             Some(credit) => {
                 credit.start();
@@ -240,10 +295,10 @@ impl Episode {
             }
         };
         if let Err(error) = advanced {
-            self.ended = true;
+            state.ended = true;
             return Err(error);
         }
-        if let Some(credit) = &mut self.credit {
+        if let Some(credit) = &mut state.credit {
             credit.remember(&state.flock.integrator, 1.0 / settings.control_hz);
         }
         state.order = state.flock.order_parameters(false).ok();
@@ -254,7 +309,7 @@ impl Episode {
     /// to those before.
     fn compute_rewards(&mut self, settings: &EnvSettings, rewards: &mut [f64], is_first: bool) {
         if is_first {
-            self.terms.fill([0.0; TERMS]);
+            self.state.terms.fill([0.0; TERMS]);
             rewards.fill(0.0);
         }
         self.pay(settings, rewards);
@@ -263,21 +318,28 @@ impl Episode {
 
     /// Adds each leader's terms and reward.
     fn pay(&mut self, settings: &EnvSettings, rewards: &mut [f64]) {
-        let view = self.state.view();
-        let reward = Reward::new(self.state.flock.parameters(), &view);
-        let share = 1.0 / rewards.len() as f64;
-        for (leader, (sums, sum)) in self.terms.iter_mut().zip(rewards).enumerate() {
-            let credit = self
-                .credit
-                .as_ref()
-                .map_or_else(LeaderCredit::default, |each| {
-                    let (flock, hz) = (&self.state.flock.integrator, settings.control_hz);
-                    each.of(leader, flock, view.targets.of(leader), 1.0 / hz)
-                });
+        let EpisodeState {
+            flock,
+            rudders,
+            order,
+            terms,
+            statistics,
+            leader_sums,
+            credit,
+            ..
+        } = &mut self.state;
+        let view = FlockView::new(flock, rudders, order.as_ref());
+        let reward = Reward::new(flock.parameters(), &view);
+        let (share, step_s) = (1.0 / rewards.len() as f64, 1.0 / settings.control_hz);
+        for (leader, (sums, sum)) in terms.iter_mut().zip(rewards).enumerate() {
+            let target = view.targets.of(leader);
+            let credit = credit.as_ref().map_or_else(LeaderCredit::default, |each| {
+                each.of(leader, &flock.integrator, target, step_s)
+            });
             let terms = reward.terms(&view, leader, &credit);
             let paid = settings.reward_factor() * settings.reward.total(&terms);
-            self.statistics.add_reward(share, &terms, paid);
-            if let Some(own) = self.leader_sums.get_mut(leader) {
+            statistics.add_reward(share, &terms, paid);
+            if let Some(own) = leader_sums.get_mut(leader) {
                 own.add_reward(paid);
             }
             *sum += paid;
@@ -290,26 +352,32 @@ impl Episode {
     /// Takes note of the order, and of everything that is averaged where the step ends in the analysis window, after
     /// the first tenth of the episode.
     fn note_order(&mut self, settings: &EnvSettings) {
-        let Some(order) = &self.state.order else {
+        let EpisodeState {
+            flock,
+            schedule,
+            statistics,
+            leader_sums,
+            order,
+            ..
+        } = &mut self.state;
+        let Some(order) = order else {
             return;
         };
-        let (flock, schedule) = (&self.state.flock, &self.state.schedule);
         let (step, steps) = (u64::from(schedule.step) + 1, u64::from(schedule.steps));
         let time_s = seconds(settings.time_of(schedule.step + 1));
-        self.statistics
-            .watch_order(order, time_s, 2 * step >= steps);
+        statistics.watch_order(order, time_s, 2 * step >= steps);
         if 10 * step <= steps || !flock.schedule().in_analysis_window(flock.time()) {
             return;
         }
-        let (view, leaders) = (self.state.view(), flock.parameters().n_leaders);
+        let parameters = flock.parameters();
         let boats = Boats {
-            hulls: &view.hulls[leaders..],
-            velocities: &view.velocities[leaders..],
+            hulls: &flock.hulls()[parameters.n_leaders..],
+            velocities: &flock.velocities()[parameters.n_leaders..],
             order: *order,
         };
-        self.statistics.add_window(&boats, view.targets.reference());
-        for (leader, own) in self.leader_sums.iter_mut().enumerate() {
-            own.add_window(order, view.targets.of(leader));
+        statistics.add_window(&boats, parameters.target.reference());
+        for (leader, own) in leader_sums.iter_mut().enumerate() {
+            own.add_window(order, parameters.target.of(leader));
         }
     }
 
@@ -317,26 +385,13 @@ impl Episode {
     fn advance_schedule(&mut self) -> Result<()> {
         let state = &mut self.state;
         state.schedule.step += 1;
-        self.ended = state.schedule.is_over();
+        state.ended = state.schedule.is_over();
         if state.schedule.alternates() {
             state.flock.set_target(state.schedule.targets())?;
         }
-        if let Some(camera) = &mut self.camera {
-            let (poses, velocities) = (state.flock.poses(), state.flock.velocities());
-            camera.expose(state.rudders.len(), poses, velocities);
+        if let Some(camera) = &mut state.camera {
+            camera.expose(state.rudders.len(), &state.flock);
         }
         Ok(())
     }
-}
-
-/// What leaders see: through the camera, if there is one.
-fn seen_view<'a>(state: &'a EpisodeState, camera: Option<&'a Camera>) -> FlockView<'a> {
-    let mut view = state.view();
-    if let Some(camera) = camera {
-        view.poses = &camera.seen().poses;
-        view.velocities = &camera.seen().velocities;
-        view.hulls = camera.hulls();
-        view.order = camera.order();
-    }
-    view
 }

@@ -1,6 +1,6 @@
 //! One flock as an environment: an episode after another, each seeded.
 
-use super::episode::StoredEpisode;
+use super::episode::EpisodeState;
 use super::observation::{FlockFeatures, StateObserver};
 use super::statistics::LeaderSummary;
 use super::{Autoreset, EnvSettings, Episode, EpisodeSeeds, EpisodeSummary, ResetRequest, Servo};
@@ -10,9 +10,9 @@ use crate::parameters::FlockParameters;
 
 /// What is stored of an environment.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-pub(crate) struct StoredEnv {
+pub(crate) struct StoredEnv<E = EpisodeState> {
     seeds: Option<EpisodeSeeds>,
-    episode: Option<StoredEpisode>,
+    episode: Option<E>,
     finished: Option<EpisodeSummary>,
     finished_leaders: Vec<LeaderSummary>,
     final_observation: Vec<f32>,
@@ -215,10 +215,10 @@ impl FlockEnv {
     }
 
     /// The environment, to be stored.
-    pub(crate) fn stored(&self) -> StoredEnv {
+    pub(crate) fn stored(&self) -> StoredEnv<&EpisodeState> {
         StoredEnv {
             seeds: self.seeds,
-            episode: self.episode.as_ref().map(Episode::stored),
+            episode: self.episode.as_ref().map(Episode::state),
             finished: self.finished,
             finished_leaders: self.finished_leaders.clone(),
             final_observation: self.final_observation.clone(),

@@ -53,10 +53,11 @@ impl ResetRequest {
             ..parameters.clone()
         };
         let mut flock = match &self.start {
-            Start::Snapshot(bytes) => flock_from(bytes, parameters)?,
+            Start::Snapshot(bytes) => Flock::from_snapshot(bytes)?,
             Start::Random => Flock::new_while(keep_going, own, flock_seed)?,
             Start::State(state) => Flock::from_state(own, flock_seed, state)?,
         };
+        check_flock(&flock, parameters)?;
         let is_early = flock.time() + settings.time_of(schedule.steps) <= LATEST;
         let accepted = "a time at least an episode's length before 1e9 s";
         FlockError::unless(is_early, "time_s", flock.time_s(), accepted)?;
@@ -65,16 +66,15 @@ impl ResetRequest {
     }
 }
 
-/// A flock from a snapshot, if it is one of an environment with these parameters.
-pub(super) fn flock_from(bytes: &[u8], parameters: &FlockParameters) -> Result<Flock> {
-    let flock = Flock::from_snapshot(bytes)?;
+/// Refuses a flock of a snapshot that is not one of an environment with these parameters.
+pub(super) fn check_flock(flock: &Flock, parameters: &FlockParameters) -> Result<()> {
     let same = FlockParameters {
         target: parameters.target.clone(),
         bw_s: parameters.bw_s,
         ..flock.parameters().clone()
     };
     if same == *parameters {
-        return Ok(flock);
+        return Ok(());
     }
     Err(FlockError::Snapshot(
         "the snapshot is of a flock with other parameters than the environment's, target and bw_s aside"

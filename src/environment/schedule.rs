@@ -61,9 +61,12 @@ impl EpisodeSchedule {
         self.targets().reference()
     }
 
-    /// Whether each leader has a target of its own.
-    pub(crate) fn has_own_targets(&self) -> bool {
-        matches!(self.targets, Targets::Each(_))
+    /// How many of so many leaders have targets of their own: all or none.
+    pub(crate) fn own_targets(&self, leaders: usize) -> usize {
+        match self.targets {
+            Targets::Each(_) => leaders,
+            Targets::One(_) => 0,
+        }
     }
 
     /// Whether the targets change in the course of the episode.

@@ -8,11 +8,13 @@ use crate::geometry::{Pose, Velocity};
 use crate::integrator::Checkpoint;
 use crate::parameters::FlockParameters;
 use crate::sealed_bytes::{Magic, seal, unseal};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 const MAGIC: Magic = *b"flockst1";
 
 /// What a snapshot holds.
-#[derive(Debug, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 struct Snapshot {
     parameters: FlockParameters,
     seed: u64,
@@ -61,6 +63,19 @@ impl Snapshot {
         Err(FlockError::Snapshot(
             "the snapshot holds a state that no flock can have".to_owned(),
         ))
+    }
+}
+
+/// A flock is stored as its snapshot.
+impl Serialize for Flock {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        serializer.serialize_bytes(&self.snapshot())
+    }
+}
+
+impl<'de> Deserialize<'de> for Flock {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        Self::from_snapshot(&Vec::<u8>::deserialize(deserializer)?).map_err(D::Error::custom)
     }
 }
 

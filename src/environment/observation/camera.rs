@@ -3,12 +3,13 @@
 
 use crate::analysis::OrderParameters;
 use crate::environment::EnvSettings;
+use crate::flock::Flock;
 use crate::geometry::{HullPose, Pose, Velocity};
-use crate::random::{Stream, StreamRng};
+use crate::random::Stream;
 use rand_chacha::rand_core::Rng;
 
 /// What the camera does to the leaders' picture of the flock.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Lens {
     /// Chance that a boat is not recognized in a frame, and stays in the picture as it was in the last one.
     dropout_rate: f64,
@@ -43,61 +44,58 @@ impl Frame {
     }
 }
 
-/// The frames of one episode.
-#[derive(Debug, Clone)]
+/// The frames of one episode. Stored are the frames alone.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Camera {
-    lens: Lens,
-    rng: StreamRng,
     frame: u64,
     now: Frame,
     before: Frame,
+    #[serde(skip)]
+    lens: Lens,
+    #[serde(skip)]
+    seed: u64,
+    #[serde(skip)]
     hulls: Vec<HullPose>,
+    #[serde(skip)]
     order: Option<OrderParameters>,
 }
 
-/// What a camera holds, to be stored.
-pub(crate) type CameraState = (u64, Frame, Frame);
-
 impl Camera {
     /// A camera that sees the whole flock in its first frame.
-    pub(crate) fn new(
-        lens: Lens,
-        seed: u64,
-        leaders: usize,
-        poses: &[Pose],
-        velocities: &[Velocity],
-    ) -> Self {
+    pub(crate) fn new(lens: Lens, seed: u64, leaders: usize, flock: &Flock) -> Self {
         let now = Frame {
-            poses: poses.to_vec(),
-            velocities: velocities.to_vec(),
+            poses: flock.poses().to_vec(),
+            velocities: flock.velocities().to_vec(),
         };
-        let mut camera = Self::unexposed(lens, seed);
-        camera.set_state((0, now.clone(), now), leaders);
-        camera
-    }
-
-    /// A camera without a picture yet.
-    pub(crate) fn unexposed(lens: Lens, seed: u64) -> Self {
-        Self {
-            lens,
-            rng: Stream::Sensing.rng(seed),
+        let camera = Self {
             frame: 0,
-            now: Frame::default(),
-            before: Frame::default(),
+            before: now.clone(),
+            now,
+            lens,
+            seed,
             hulls: Vec::new(),
             order: None,
-        }
+        };
+        camera.restored(lens, seed, leaders)
+    }
+
+    /// The camera whose frames were stored, with that lens and for the episode of that seed.
+    pub(crate) fn restored(mut self, lens: Lens, seed: u64, leaders: usize) -> Self {
+        (self.lens, self.seed) = (lens, seed);
+        self.develop(leaders);
+        self
     }
 
     /// Takes the next frame. Which boats drop out depends on the seed and the frame's number alone.
-    pub(crate) fn expose(&mut self, leaders: usize, poses: &[Pose], velocities: &[Velocity]) {
+    pub(crate) fn expose(&mut self, leaders: usize, flock: &Flock) {
+        let (poses, velocities) = (flock.poses(), flock.velocities());
         self.frame += 1;
-        self.rng.set_stream(self.frame);
-        self.rng.set_word_pos(0);
+        let mut rng = Stream::Sensing.rng(self.seed);
+        rng.set_stream(self.frame);
         self.before.copy_from(&self.now);
         for boat in 0..poses.len() {
             // 53 random bits as a number in [0, 1).
-            let draw = (self.rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+            let draw = (rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
             if draw >= self.lens.dropout_rate {
                 self.now.poses[boat] = poses[boat];
                 self.now.velocities[boat] = velocities[boat];
@@ -133,24 +131,13 @@ impl Camera {
         self.order.as_ref()
     }
 
-    /// Whether a stored state is one of a camera on so many boats.
-    pub(crate) fn fits((_, now, before): &CameraState, boats: usize) -> bool {
-        [now, before].into_iter().all(|frame| {
+    /// Whether stored frames are of so many boats.
+    pub(crate) fn fits(&self, boats: usize) -> bool {
+        [&self.now, &self.before].into_iter().all(|frame| {
             frame.poses.len() == boats
                 && frame.velocities.len() == boats
                 && frame.poses.iter().all(Pose::is_finite)
                 && frame.velocities.iter().all(Velocity::is_finite)
         })
-    }
-
-    /// The frames, to be stored.
-    pub(crate) fn state(&self) -> CameraState {
-        (self.frame, self.now.clone(), self.before.clone())
-    }
-
-    /// Puts back what [`Self::state`] gave, for as many boats.
-    pub(crate) fn set_state(&mut self, state: CameraState, leaders: usize) {
-        (self.frame, self.now, self.before) = state;
-        self.develop(leaders);
     }
 }

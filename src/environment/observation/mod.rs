@@ -11,7 +11,7 @@ mod observer;
 mod view;
 
 pub use blocks::{Block, LEAN_FEATURES, LeanFeatures};
-pub(crate) use camera::{Camera, CameraState, Lens};
+pub(crate) use camera::{Camera, Lens};
 pub use course::{CourseReader, CourseView};
 pub(crate) use entry::{ANGULAR_VELOCITY_SCALE, speed_scale_cm_s};
 pub use entry::{BOAT, Entry, Scale};
