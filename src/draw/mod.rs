@@ -11,7 +11,7 @@ mod water;
 use crate::error::{FlockError, Result};
 use crate::flock::Flock;
 use crate::geometry::Hull;
-use crate::parameters::{Disc, Pool, Target, Wall};
+use crate::parameters::{FlockParameters, Target};
 use legend::Legend;
 use tiny_skia::Pixmap;
 use view::View;
@@ -27,9 +27,7 @@ pub struct FrameRenderer {
 /// Water, walls and obstacles of a pool, as they look with a target.
 #[derive(Debug, Clone)]
 struct Background {
-    pool: Pool,
-    discs: Vec<Disc>,
-    walls: Vec<Wall>,
+    parameters: FlockParameters,
     target: Option<Target>,
     image: Pixmap,
 }
@@ -129,12 +127,8 @@ impl FrameRenderer {
             water::draw(&mut self.canvas, parameters, target, view);
             return;
         }
-        let same = |each: &Background| {
-            each.pool == parameters.pool
-                && each.target == target
-                && each.discs == parameters.discs
-                && each.walls == parameters.walls
-        };
+        let same =
+            |each: &Background| each.target == target && each.parameters.has_same_water(parameters);
         if let Some(found) = self.backgrounds.iter().find(|each| same(each)) {
             self.canvas.data_mut().copy_from_slice(found.image.data());
             return;
@@ -144,9 +138,7 @@ impl FrameRenderer {
             self.backgrounds.remove(0);
         }
         self.backgrounds.push(Background {
-            pool: parameters.pool,
-            discs: parameters.discs.clone(),
-            walls: parameters.walls.clone(),
+            parameters: parameters.clone(),
             target,
             image: self.canvas.clone(),
         });

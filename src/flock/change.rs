@@ -29,11 +29,7 @@ impl Flock {
                 let mut next = Self::new(FlockParameters::clone(parameters), self.seed())?;
                 // A smaller pool may let hulls overlap a little; the contact solver parts them.
                 next.set_state(&poses, self.velocities(), self.time_s(), true)?;
-                let is_same = |old: &FlockParameters| {
-                    (old.pool, &old.discs, &old.walls)
-                        == (parameters.pool, &parameters.discs, &parameters.walls)
-                };
-                if !is_same(self.parameters()) {
+                if !self.parameters().has_same_water(parameters) {
                     next.refuse_overlapped_obstacles()?;
                 }
                 self.replace(next);

@@ -100,6 +100,11 @@ impl FlockParameters {
         self.boat_shape * self.boat_radius_cm
     }
 
+    /// Whether boats with other parameters have the same water: the pool and its obstacles.
+    pub(crate) fn has_same_water(&self, other: &Self) -> bool {
+        (self.pool, &self.discs, &self.walls) == (other.pool, &other.discs, &other.walls)
+    }
+
     /// What messages call an obstacle, the discs numbered first, then the walls.
     pub(crate) fn obstacle_name(&self, number: usize) -> String {
         match number.checked_sub(self.discs.len()) {
