@@ -2,7 +2,6 @@
 
 use super::error::refusal;
 use super::value::{sequence_length, value_from, wrong_type};
-use crate::geometry::{Pose, Velocity};
 use numpy::{
     Element, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray,
     PyUntypedArrayMethods,
@@ -129,18 +128,14 @@ pub(super) fn floats(
     Ok(Numbers::of(object, name, expected)?.values)
 }
 
-/// Poses of the numbers in an array (n, 3).
-pub(super) fn poses_from(object: &Bound<'_, PyAny>, boats: usize) -> PyResult<Vec<Pose>> {
-    let numbers = floats(object, "pose", &[boats, 3])?;
-    let rows = numbers.as_chunks::<3>().0.iter();
-    Ok(rows.map(|&[x, y, a]| Pose::new(x, y, a)).collect())
-}
-
-/// Velocities of the numbers in an array (n, 3).
-pub(super) fn velocities_from(object: &Bound<'_, PyAny>, boats: usize) -> PyResult<Vec<Velocity>> {
-    let numbers = floats(object, "velocity", &[boats, 3])?;
-    let rows = numbers.as_chunks::<3>().0.iter();
-    Ok(rows.map(|&[x, y, w]| Velocity::new(x, y, w)).collect())
+/// Rows of three numbers for so many boats, such as their poses.
+pub(super) fn rows_from(
+    object: &Bound<'_, PyAny>,
+    name: &str,
+    boats: usize,
+) -> PyResult<Vec<[f64; 3]>> {
+    let numbers = floats(object, name, &[boats, 3])?;
+    Ok(numbers.as_chunks::<3>().0.to_vec())
 }
 
 /// Actions of a given shape, one number per leader: rudders, or numbers of levels if there are such. A rudder of 1.0

@@ -4,6 +4,7 @@ use super::arrays::{floats, rows_of};
 use super::exclusive::{Exclusive, interruptible};
 use super::flock::{PyFlock, pose_numbers, state_from, velocity_numbers};
 use super::value::{given, seed_from, set_given, value_from};
+use crate::analysis::OrderParameters;
 use crate::environment::observation::FlockFeatures;
 use crate::environment::{
     BatchRows, EnvBatch, EnvSettings, Episode, FlockEnv, ResetRequest, Start, TERMS,
@@ -197,9 +198,8 @@ impl PyEnvBatch {
     /// where a flock has none.
     fn order_parameters<'py>(&self, py: Python<'py>) -> Rows<'py, f64> {
         self.gathered(py, 6, |_, episode| {
-            let order = episode.order();
-            let numbers = order.map(|o| vec![o.psi_o, o.phi_o, o.c_o, o.psi_v, o.phi_v, o.c_v]);
-            numbers.unwrap_or_else(|| vec![f64::NAN; 6])
+            let numbers = |o: &OrderParameters| [o.psi_o, o.phi_o, o.c_o, o.psi_v, o.phi_v, o.c_v];
+            episode.order().map_or([f64::NAN; 6], numbers).to_vec()
         })
     }
 

@@ -1,6 +1,6 @@
 //! The simulator behind `flockenv.Flock`, which documents its methods.
 
-use super::arrays::{floats, poses_from, rows_of, velocities_from};
+use super::arrays::{floats, rows_from, rows_of};
 use super::exclusive::{Exclusive, interruptible};
 use super::value::{given, seed_from, value_from, wrong_type};
 use crate::analysis::quantities::Recorded;
@@ -229,8 +229,15 @@ pub(super) fn state_from(value: &Bound<'_, PyAny>, boats: usize) -> PyResult<Sta
     let mut has_pose = false;
     for (name, value) in dict {
         match text_of("state", &value_from(&name))? {
-            "pose" => (state.poses, has_pose) = (poses_from(&value, boats)?, true),
-            "velocity" => state.velocities = velocities_from(&value, boats)?,
+            "pose" => {
+                let rows = rows_from(&value, "pose", boats)?.into_iter();
+                state.poses = rows.map(|[x, y, a]| Pose::new(x, y, a)).collect();
+                has_pose = true;
+            }
+            "velocity" => {
+                let rows = rows_from(&value, "velocity", boats)?.into_iter();
+                state.velocities = rows.map(|[x, y, w]| Velocity::new(x, y, w)).collect();
+            }
             "time_s" => state.time_s = given(&value, "time_s")?,
             "allow_overlap" => state.allow_overlap = given(&value, "allow_overlap")?,
             other => return Err(refuse(&format!("{other:?}")).into()),

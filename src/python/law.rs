@@ -11,14 +11,7 @@ use pyo3::prelude::*;
 /// A law that leaders follow.
 #[pyclass(name = "Law", module = "flockenv._core", frozen, eq)]
 #[derive(PartialEq)]
-pub struct PyLaw(Law);
-
-impl PyLaw {
-    /// The law.
-    pub(super) fn law(&self) -> &Law {
-        &self.0
-    }
-}
+pub struct PyLaw(pub(super) Law);
 
 #[pymethods]
 impl PyLaw {

@@ -86,7 +86,7 @@ fn recorded<'py, T: Real + Element>(
             layouts.push(layout_from(blocks, *is_mirrored)?);
         }
         if let Ok(law) = control.steer.cast::<PyLaw>() {
-            let law = law.get().law().clone();
+            let law = law.get().0.clone();
             pilot = Some(Pilot::new(law, recorder.flock().parameters(), hz)?);
         }
     }
