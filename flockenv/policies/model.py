@@ -135,7 +135,7 @@ class ModelPolicy:
         actions, state = self.model.predict(items, state, episode_start, deterministic)
         given = np.asarray(actions, np.float64).reshape(rows)
         if self._levels is not None:
-            given = _core.rudders_of_levels(given, self._levels, are_rudders=False)
+            given = np.array(_core.rudders_of_levels(given.tolist(), self._levels))
         rudders = np.clip(given, -1.0, 1.0).astype(np.float32)
         return rudders.reshape(*array.shape[:-1], leaders), state
 

@@ -141,6 +141,7 @@ pub(super) fn rows_from(
 /// Actions of a given shape, one number per leader: rudders, or numbers of levels if there are such. A rudder of 1.0
 /// is not level 1, so that levels must be integers. Messages call the actions by `name`.
 #[pyfunction]
+#[pyo3(signature = (actions, shape, levels, name="actions"))]
 pub(super) fn flat_actions<'py>(
     actions: &Bound<'py, PyAny>,
     shape: Vec<usize>,

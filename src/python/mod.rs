@@ -49,7 +49,7 @@ mod _core {
     #[pymodule_export]
     use super::tables::{
         changed_fields, critical_bw_s, decisions_in, env_defaults, physics_fields, pool_radii_cm,
-        preset_sources,
+        preset_sources, rudders_of_levels,
     };
 
     #[pymodule_init]

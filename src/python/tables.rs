@@ -3,6 +3,7 @@
 use super::value::{given, set_given};
 use crate::clock::whole_steps;
 use crate::environment::EnvSettings;
+use crate::error::Result;
 use crate::geometry::resized_gyration_radius_cm;
 use crate::parameters::{Field, FlockParameters, Physics, Pool, Preset, Value};
 use pyo3::prelude::*;
@@ -78,4 +79,20 @@ pub(super) fn env_defaults() -> Value {
 pub(super) fn decisions_in(hold_s: &Bound<'_, PyAny>, rate_hz: f64) -> PyResult<u32> {
     let held_s = given(hold_s, "hold_s")?;
     Ok(whole_steps("hold_s", held_s, rate_hz, "decisions")?)
+}
+
+/// The rudders that numbers of levels stand for, of so many that an environment may have.
+#[pyfunction]
+pub(super) fn rudders_of_levels(levels: Vec<f64>, rudder_levels: usize) -> Result<Vec<f64>> {
+    let settings = EnvSettings {
+        rudder_levels: Some(rudder_levels),
+        ..EnvSettings::default()
+    };
+    let mut fields = EnvSettings::FIELDS.iter();
+    fields.try_for_each(|field| field.check(&settings))?;
+    let rudder = |&level: &f64| {
+        let is_level = settings.check_action(level);
+        is_level.map(|()| settings.command(level))
+    };
+    levels.iter().map(rudder).collect()
 }

@@ -47,7 +47,8 @@ class Crate:
         for public, tree in USE.findall(text):
             for leaf in leaves(tree):
                 path = self._absolute(module, leaf, public=bool(public))
-                if public and path:
+                # A macro is made visible in its own module under its own name.
+                if public and path and path != (*module, leaf.strip()):
                     self.reexports[module][path[-1]] = path
                 elif path:
                     self.named[module].append(path)
