@@ -74,7 +74,8 @@ def test_it_lists_every_feature_of_the_flock():
 def test_it_lists_every_term_of_the_reward_and_every_option():
     assert " ".join(f"- `{name}`: {meaning}" for name, meaning in TERMS.items()) in SPECIFIED
     defaults = {**_core.env_defaults(), "target": "cw"}
-    for name, *_, meaning in _core.OPTIONS:
+    for option in _core.OPTIONS:
+        name, meaning = option["name"], option["doc"]
         if name not in ("bw_s", "autoreset_mode"):
             assert words(f"- `{name}` = `{defaults[name]!r}`: {meaning}") in SPECIFIED
     means = [each.name for each in QUANTITIES if each.is_averaged and each.kind != "structure"]
