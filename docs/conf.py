@@ -56,7 +56,8 @@ nitpick_ignore_regex = [
     (
         r"py:.*",
         r"(ArrayLike|DTypeLike|NDArray|np|numpy|pd|pandas|gymnasium|pettingzoo|collections|typing|"
-        r"os|pathlib|threading|torch|xarray|stable_baselines3|matplotlib|Axes|Path|PathLike|Any|"
+        r"os|pathlib|threading|concurrent|torch|xarray|stable_baselines3|matplotlib|Axes|Path|"
+        r"PathLike|Executor|Future|Any|"
         r"Self|Mapping|Sequence|Callable|Iterator|Iterable|Generator)(\..*)?",
     ),
     # What DTypeLike is short for.
