@@ -1,6 +1,6 @@
 //! What is declared of a parameter or an option: its kind, unit, range, source and meaning.
 
-use super::value::{Kind, Value, named_fields};
+use super::value::{Kind, Value};
 use crate::error::{FlockError, Result};
 
 /// What is declared of a field of `S`.
@@ -115,7 +115,7 @@ impl<S> Field<S> {
             ("accepted", self.accepted().into()),
             ("doc", self.doc.trim().into()),
         ];
-        let declared = named_fields!(self; name unit);
+        let declared = super::named_fields!(self; name unit);
         declared.into_iter().chain(own).collect()
     }
 
