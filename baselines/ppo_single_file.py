@@ -5,7 +5,7 @@
 
 All leaders share one actor, which sees what its leader observes. The critic sees features of the
 flock (`LeadersVectorEnv.flock_features`) and is needed in training alone, so that the actor is
-saved as a policy that steers any number of leaders without torch. docs/train_single_file.md runs
+saved as a policy that steers any number of leaders without torch. docs/train_with_sb3.md runs
 it; needs torch (extra `train`).
 """
 
