@@ -16,7 +16,7 @@ __all__ = ["analyze"]
 class AnalyzeOptions(Overwriting, Printing):
     """Options of `flockenv analyze`."""
 
-    file: Path = argument("Tracks (.csv, .parquet, .npz) or a recording (.npz).")
+    file: Path = argument("Tracks (.csv, .parquet) or a recording (.npz).")
     layout: Path | None = option(None, "Columns and units of tracks: TOML. [beside the file]")
     plot: Path | None = option(None, "Draw order parameters against time into this picture.")
     out: Path | None = option(

@@ -31,7 +31,7 @@ def load_recording(path: Path, layout: Path | None = None, *, quiet: bool = Fals
     Parameters
     ----------
     path
-        An ``.npz`` file of a recording; or tracks: a table, or with `layout` also arrays.
+        An ``.npz`` file of a recording, or a table of tracks.
     layout
         How tracks lie in the file; by default as the TOML file beside it says. A table without one
         gets one that is guessed from its columns, and what is to be checked in it is printed.

@@ -22,7 +22,6 @@ from flockenv.replay import write_replay
 from flockenv.runs.spec import RunSpec, execute
 from flockenv.runs.store import RunStore
 from flockenv.runs.sweep import read_sweep
-from flockenv.tracks import TrackLayout, read_tracks
 
 FUZZ = settings.get_profile("fuzz")
 PARAMETERS = FlockParameters(n_boats=4, n_leaders=1, pool="narrow")
@@ -55,11 +54,6 @@ KINDS = {
         read_sweep,
         lambda found: len(found.runs) == 8,
     ),
-    "arrays of tracks": (
-        lambda path: np.savez(path, time_s=RUN.time_s, pose=RUN.pose),
-        lambda path: read_tracks(path, TrackLayout(pool="narrow", wrapped=False)),
-        lambda found: np.array_equal(found.pose, RUN.pose),
-    ),
     "parameters": (
         lambda path: Path(path).write_text(PARAMETERS.to_toml()),
         lambda path: read_parameters(file=path),
@@ -67,7 +61,7 @@ KINDS = {
     ),
 }
 kinds = st.sampled_from(sorted(KINDS))
-archives = st.sampled_from(["recording", "policy", "arrays of tracks"])
+archives = st.sampled_from(["recording", "policy"])
 
 
 @cache
