@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+import flockenv
 from flockenv.comparison import suite
 from flockenv.comparison.report import ComparisonReport
 from flockenv.comparison.suite import (
@@ -17,6 +18,7 @@ from flockenv.comparison.suite import (
     TASKS,
     aggregate,
     scores_table,
+    tasks_named,
 )
 from flockenv.errors import ParameterError
 from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
@@ -76,11 +78,38 @@ def test_flocks_that_follow_the_reference_score_nothing() -> None:
     assert REFERENCE not in found.index.get_level_values("policy")
 
 
-def test_the_aggregate_is_of_the_middle() -> None:
+def test_the_aggregate_is_of_the_middle_and_has_an_interval_that_holds() -> None:
     # On paper: the middle half of 0, 1, ..., 7 is 2, 3, 4 and 5, whatever the greatest is.
     tasks = [np.array([0.0, 7e9, 2.0, 4.0]), np.array([1.0, 3.0, 5.0, 6.0])]
     assert aggregate(tasks)["interquartile mean"][0] == 3.5
     assert aggregate(tasks)[IMPROVED][0] == pytest.approx((0.875 + 1.0) / 2)
+    rng = np.random.default_rng(3)
+    covered = 0
+    for _ in range(60):
+        drawn = [rng.normal(0.1 * task, 1.0, 40) for task in range(2)]
+        _, low, high = aggregate(drawn)[IMPROVED]
+        # P(x > 0) of normal values about 0 and 0.1 is 1/2 and 0.5398.
+        covered += low <= 0.5199 <= high
+    # Binomial with n = 60 and 0.95: 49 or fewer has a chance of about 1e-4.
+    assert covered >= 50
+
+
+def test_a_shared_policy_cannot_tell_which_leader_is_misinformed() -> None:
+    """Leaders with one policy are exchangeable: which of two told directions wins is chance.
+
+    Exchanged leaders with exchanged targets are the same flock: the signed order towards the
+    target of leader 0 changes its sign.
+    """
+    (task,) = tasks_named("v2", ["misinformed"])
+    assert task.targets == (("cw", "ccw"), ("ccw", "cw"))
+    parameters = task.parameters.replace(n_boats=8, target=("cw", "ccw"))
+    quiet = parameters.replace(c4=0.0)
+    first, other = flockenv.Flock(quiet, 5), flockenv.Flock(quiet.replace(target=("ccw", "cw")), 5)
+    swapped = [1, 0, *range(2, 8)]
+    other.set_state(first.pose[swapped], first.velocity[swapped])
+    for flock in (first, other):
+        flock.advance(5.0)
+    np.testing.assert_allclose(other.pose[swapped], first.pose, atol=1e-6)
 
 
 def test_a_policy_is_scored_on_every_task(cli, tmp_path: Path, monkeypatch) -> None:

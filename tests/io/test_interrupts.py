@@ -33,6 +33,13 @@ def test_a_signal_is_noted_until_work_can_end(number, capfd):
     assert "Ctrl-C again does not wait" in capfd.readouterr().err
 
 
+def test_a_block_within_another_changes_nothing():
+    with noted_interrupts():
+        with noted_interrupts():
+            press()
+        assert interrupted()
+
+
 def test_ignored_interrupts_stay_ignored():
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
