@@ -144,16 +144,17 @@ def test_it_opens_and_plays_without_a_network_or_a_complaint(open_live):
 
 @pytest.mark.parametrize("policy", ["paper's law at every substep", "tuned law", "learned"])
 def test_its_numbers_are_those_of_python(open_live, policy):
-    live = open_live().go(f"{FLOCK}&leaders={policy}")
-    live.run_to(10.0)
-    parameters = flockenv.FlockParameters(n_boats=12, n_leaders=2, bw_s=0.3)
-    native = flockenv.simulate(parameters, 7, 10.0, policy=policy)
-    pose, velocity = (live.rows(name)[:101] for name in ("pose", "velocity"))
-    assert np.array_equal(pose.reshape(-1, 12, 3), native.pose)
-    assert np.array_equal(velocity.reshape(-1, 12, 3), native.velocity)
-    assert np.array_equal(live.rows("in_analysis_window")[:101, 0] > 0, native.in_analysis_window)
+    """A minute of 27 boats, bit for bit, and the order that is shown."""
+    live = open_live().go(f"{FLOCK.replace('n_boats=12', 'n_boats=27')}&leaders={policy}")
+    live.run_to(60.0)
+    parameters = flockenv.FlockParameters(n_boats=27, n_leaders=2, bw_s=0.3)
+    native = flockenv.simulate(parameters, 7, 60.0, policy=policy)
+    pose, velocity = (live.rows(name)[:601] for name in ("pose", "velocity"))
+    assert np.array_equal(pose.reshape(-1, 27, 3), native.pose)
+    assert np.array_equal(velocity.reshape(-1, 27, 3), native.velocity)
+    assert np.array_equal(live.rows("in_analysis_window")[:601, 0] > 0, native.in_analysis_window)
     names = live.script("return page.quantities.map(({key}) => key)")
-    series = dict(zip(names, live.rows("series")[:101].T, strict=True))
+    series = dict(zip(names, live.rows("series")[:601].T, strict=True))
     for name in ("psi_o", "phi_o", "milling", "rotation", "signed_order"):
         assert np.allclose(series[name], native.order.series(name, "cw"), atol=1e-12)
 
