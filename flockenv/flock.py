@@ -347,7 +347,7 @@ class Flock:
         self.core.set_state({**state, "allow_overlap": allow_overlap})
 
     def set_target(self, target: str | Sequence[str]) -> None:
-        """Change the direction that the steering law heads for.
+        """Change the direction that leaders head for by the paper's law.
 
         Parameters
         ----------
@@ -370,7 +370,7 @@ class Flock:
             Duration in s, at least 0.
         rudder
             Commands of the leaders in [-1, 1], shape (k,), held; positive turns a boat that moves
-            forward counter-clockwise. None: the steering law, eq. (10), at every substep.
+            forward counter-clockwise. None: the paper's law, eq. (10), at every substep.
 
         Raises
         ------
@@ -383,7 +383,7 @@ class Flock:
         self.core.advance(seconds, rudder)
 
     def steering_law(self) -> NDArray[np.float64]:
-        """Return rudders of the steering law, eq. (10), for where the leaders are now: (k,)."""
+        """Return rudders of the paper's law, eq. (10), for where the leaders are now: (k,)."""
         return self.core.steering_law()
 
     def order_parameters(self, include_leaders: bool = False) -> OrderParameters:
