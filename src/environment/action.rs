@@ -13,7 +13,7 @@ impl EnvSettings {
     /// The law that steers to the heading that an action stands for; `None` where actions are rudders.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for leans in a pool in which the law has not been tuned.
+    /// [`FlockError::Parameter`](crate::FlockError::Parameter) for leans in a pool in which the law has not been tuned.
     pub fn steering_law(&self, parameters: &FlockParameters) -> Result<Option<DampedLaw>> {
         match self.action_mode {
             ActionMode::Rudder => Ok(None),
