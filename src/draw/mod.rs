@@ -10,7 +10,6 @@ mod water;
 
 use crate::error::{FlockError, Result};
 use crate::flock::Flock;
-use crate::geometry::Hull;
 use crate::parameters::{FlockParameters, Target};
 use legend::Legend;
 use tiny_skia::Pixmap;
@@ -104,21 +103,6 @@ impl FrameRenderer {
         let open = !flock.parameters().pool.has_outer_wall();
         let grid_cm = open.then(|| water::grid_spacing(&view));
         self.legend.draw(&mut self.canvas, flock, grid_cm);
-    }
-
-    /// Where a boat is in a flock's frame, in pixels from the top left, and how far its hull reaches.
-    ///
-    /// # Errors
-    /// [`FlockError::Parameter`] for a boat that is not there.
-    pub fn place(&self, flock: &Flock, boat: usize) -> Result<(f32, f32, f32)> {
-        let hulls = flock.hulls();
-        let hull = hulls.get(boat).ok_or_else(|| {
-            FlockError::parameter("boat", boat, format!("0 to {}", hulls.len() - 1))
-        })?;
-        let view = View::of(flock, self.width(), self.height());
-        let center = view.pixel(hull.center);
-        let reach = view.length(Hull::new(flock.parameters()).reach());
-        Ok((center.x, center.y, reach))
     }
 
     fn draw_background(&mut self, flock: &Flock, view: &View) {

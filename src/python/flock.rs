@@ -14,7 +14,7 @@ use crate::parameters::{Field, FlockParameters, Targets, Value, text_of};
 use numpy::{Element, PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
-use std::sync::RwLockReadGuard;
+use std::sync::{Mutex, PoisonError, RwLockReadGuard};
 
 /// A flock for one thread at a time.
 #[pyclass(name = "Flock", module = "flockenv._core", frozen)]
@@ -185,7 +185,7 @@ impl PyFlock {
 
     /// A square picture as the bytes of a PNG file.
     fn png<'py>(&self, py: Python<'py>, pixels: u32) -> Result<Bound<'py, PyBytes>> {
-        let png = FrameRenderer::new(pixels, pixels)?.png(&*self.read()?)?;
+        let png = py.detach(|| FrameRenderer::new(pixels, pixels)?.png(&*self.read()?))?;
         Ok(PyBytes::new(py, &png))
     }
 }
@@ -287,9 +287,9 @@ fn partner(contact: &ContactForce) -> i32 {
     }
 }
 
-/// Draws flocks at one size.
-#[pyclass(name = "FrameRenderer", module = "flockenv._core")]
-pub(super) struct PyFrameRenderer(FrameRenderer);
+/// Draws flocks at one size, several threads one after another and none with the interpreter.
+#[pyclass(name = "FrameRenderer", module = "flockenv._core", frozen)]
+pub(super) struct PyFrameRenderer(Mutex<FrameRenderer>);
 
 #[pymethods]
 impl PyFrameRenderer {
@@ -300,22 +300,16 @@ impl PyFrameRenderer {
             Ok::<_, PyErr>(u32::try_from(given::<usize>(object, name)?).unwrap_or(u32::MAX))
         };
         let (width, height) = (side(width, "width")?, side(height, "height")?);
-        Ok(Self(FrameRenderer::new(width, height)?))
+        Ok(Self(Mutex::new(FrameRenderer::new(width, height)?)))
     }
 
     /// A flock as it is now: (height, width, 3), uint8.
-    fn draw<'py>(
-        &mut self,
-        py: Python<'py>,
-        flock: &PyFlock,
-    ) -> PyResult<Bound<'py, PyArray3<u8>>> {
-        let shape = [self.0.height() as usize, self.0.width() as usize, 3];
-        PyArray1::from_vec(py, self.0.draw(&*flock.read()?)).reshape(shape)
-    }
-
-    /// Where a boat is in the frame, in pixels from the top left: (x, y, reach of its hull).
-    fn place(&self, flock: &PyFlock, boat: &Bound<'_, PyAny>) -> PyResult<(f32, f32, f32)> {
-        let boat = given(boat, "boat")?;
-        Ok(self.0.place(&*flock.read()?, boat)?)
+    fn draw<'py>(&self, py: Python<'py>, flock: &PyFlock) -> PyResult<Bound<'py, PyArray3<u8>>> {
+        let (shape, frame) = py.detach(|| -> Result<_> {
+            let mut renderer = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+            let shape = [renderer.height() as usize, renderer.width() as usize, 3];
+            Ok((shape, renderer.draw(&*flock.read()?)))
+        })?;
+        PyArray1::from_vec(py, frame).reshape(shape)
     }
 }
