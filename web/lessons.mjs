@@ -10,29 +10,29 @@ export const LESSONS = [
     name: "noise",
     title: "Noise makes motion",
     link: `${NOISE}&bw_s=0`,
-    words: "No boat leads and none looks at the others: they only bump. Each time they back up they turn at random, and this " +
-      `noise decides: [without it](${NOISE}&bw_s=0) they jam at the wall, with [0.6 s](${NOISE}&bw_s=0.6) or ` +
-      `[1 s](${NOISE}&bw_s=1) of it in each cycle they come to circle together, and with [2.8 s](${NOISE}&bw_s=2.8) they never agree.`,
+    words: "No boat leads and none looks at the others: they only bump. Each time they back up they turn at random, and this noise decides, " +
+      `as the paper found: if they [never back up](${NOISE}&bw_s=0) they jam at the wall, all heading outward (high order, no rotation), with ` +
+      `[0.6 s](${NOISE}&bw_s=0.6) or [1 s](${NOISE}&bw_s=1) in each cycle they come to circle together, and with [2.8 s](${NOISE}&bw_s=2.8) they never agree.`,
   },
   {
     name: "leaders",
     title: "One leader or four",
     link: "#lesson=leaders&n_boats=27&n_leaders=1&bw_s=0.3&seed=7&beside.n_leaders=4&speed=16",
-    words: "Leaders (amber) steer clockwise round the ring; the others cannot tell them from any boat that bumps into them. " +
-      "Compare one leader with four: the order towards the target is 1 if all others circle clockwise, and −1 if all circle the other way.",
+    words: "A few leaders (amber) decide which way a flock circles, as the paper found, although to the others they are boats that bump like any. " +
+      "Four do it better than one: the order towards the target, which is 1 if all others circle clockwise and −1 if all circle the other way, is 0.38 with four and 0.13 with one (means of 256 flocks).",
   },
   {
     name: "learned",
     title: "Learned or law",
     link: "#lesson=learned&n_boats=27&n_leaders=4&bw_s=0.3&seed=7&beside.leaders=learned&speed=16",
-    words: "Both flocks have four leaders, and start from the same places with the same noise. The leaders of the first follow the " +
-      "paper's law, those of the second learned by trial and error which way to head: compare the mean order towards the target after some minutes.",
+    words: "Both flocks have four leaders and start from the same places with the same noise: those of the first follow the paper's steering rule, " +
+      "those of the second learned in this simulator, by trial and error, which way to head. They lead better: the order towards the target is 0.59 with them and 0.38 with the rule (means of 256 flocks).",
   },
   {
     name: "forces",
     title: "Contacts and forces",
     link: "#lesson=forces&pool=narrow&n_boats=27&n_leaders=3&bw_s=0.1&seed=3&speed=1&boat=0&forces=1",
-    words: "A bar is the push that a boat gets where it touches another or a wall, and boats notice nothing else of each other. " +
+    words: "A bar is the push that a boat gets where it touches another or a wall, and such pushes alone, as the paper found, align a flock. " +
       "Touch a boat to see the local frame that its angle φ is measured in, and an amber one, a leader, to see all that it observes.",
   },
   {
