@@ -24,7 +24,7 @@ def main(arguments: list[str] | None = None) -> None:
     for name in names or FIGURES:
         done = subprocess.run([sys.executable, HERE / f"{name}.py", *options], check=False)
         if done.returncode:
-            sys.exit(f"{name} did not end well; the same command goes on from there")
+            sys.exit(f"{name} did not end well; the same command resumes from there")
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 
 A design is a list of rows; a row says all that a run depends on, its seed included. The result of a
 study is ``results/<study>.csv`` with one line per run: the row and what was measured. A run that
-has a line is not made again, so that work goes on where it ended, in another session too. Every
+has a line is not made again, so that work resumes where it ended. Every
 claim of the paper that a study judges is a line of ``claims.csv``, with the number of its runs.
 """
 
@@ -357,6 +357,6 @@ def main(script: Callable[[Options], None], arguments: Sequence[str] | None = No
     try:
         script(options)
     except KeyboardInterrupt:
-        sys.exit("Interrupted: the same command goes on with the runs that are missing")
+        sys.exit("Interrupted: the same command makes the runs that are missing")
     except (StudyError, flockenv.FlockError) as error:
         sys.exit(f"Error: {error}")
