@@ -92,7 +92,7 @@ test-rust: ## the physics alone, no Python
 	cargo test --locked --features clarabel,draw
 
 # One thread for each worker's linear algebra, or the workers fight over the cores. Tests of one file share what
-# it prepares. A worker that dies is not replaced: pytest-xdist would wait for ever for what the dead one had left.
+# it prepares. A worker that dies is not replaced: pytest-xdist would wait forever for what the dead one had left.
 test-python: $(STAMPS)/test $(CORE) ## the Python package
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist loadfile --max-worker-restart 0 $(PYTEST_ARGS)
 

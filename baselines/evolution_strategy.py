@@ -7,7 +7,7 @@ The policy is linear in what a leader observes. Gaussian perturbations of its we
 antithetic pairs, one flock for each, all in one batch of the simulator. The candidates of a
 generation steer the same episode, so that they differ by their weights alone. Their mean rewards
 are replaced by ranks, and Adam follows the estimated gradient (Salimans et al. 2017). An
-interrupted command goes on from its last generation. The result is a policy file:
+interrupted command resumes from its last generation. The result is a policy file:
 
     flockenv compare --policy "paper's law" --policy results/evolution/policy.npz
 """

@@ -2,10 +2,10 @@
 
     python baselines/misinformed_pair.py
 
-Two leaders are told opposite directions, and only that of leader 0 counts. With one policy for both
-leaders the flock follows either of them as often, and the mean signed order is 0: to exchange the
-leaders together with what they are told changes nothing but the sign of the order. Here leader 0
-follows the tuned law, and leader 1 follows it towards the other direction than the one it is told.
+Two leaders get opposite directions, and only that of leader 0 counts. With one policy for both
+leaders the flock follows either of them as often, and the mean signed order is 0: exchanging the
+leaders together with their directions changes only the sign of the order. Here leader 0
+follows the tuned law, and leader 1 follows it against the direction that it gets.
 """
 
 from typing import Any

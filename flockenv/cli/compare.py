@@ -139,7 +139,7 @@ def _compared(
 
 
 def _policies(pool: Any, own: Mapping[str, Any], options: CompareOptions) -> dict[str, Any]:
-    """Return the policies of a case by name, the user's first; those not for its pool are told."""
+    """Return the policies of a case by name, the user's first, and name those not for its pool."""
     found = {name: _read(given, pool, options.trust) for name, given in own.items()}
     for name in (REFERENCE,) if options.suite else () if options.only else REFERENCES:
         try:
@@ -251,6 +251,6 @@ def _own_policies(options: CompareOptions) -> dict[str, Any]:
         if name in own or (name in REFERENCES and text != name):
             name = printable(text)
         if name in own:
-            raise ParameterError(f"--policy {text} is given twice: another --name tells them apart")
+            raise ParameterError(f"--policy {text} is given twice: give one another --name")
         own[name] = changed_fields(text.split(","), "--policy") if is_each else text
     return own

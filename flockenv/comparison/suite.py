@@ -67,7 +67,7 @@ TASKS: tuple[Case, ...] = (
     _task("camera", 3, environment={"dropout_rate": 0.02, "delay_frames": 1}),
     # Half to 1.25 times the critical noise.
     _task("noises", 3, environment={"bw_s": (0.155, 0.3875)}),
-    # Leader 1 is told the wrong direction.
+    # Leader 1 gets the wrong direction.
     _task("misinformed", 2, targets=(("cw", "ccw"), ("ccw", "cw"))),
 )
 """The tasks, of which docs/suite.md says what each asks of leaders."""

@@ -48,7 +48,7 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
     `reward` may also be a function of this environment, which `step` calls once the flocks have
     moved and which returns rewards (num_envs,), or (num_envs, k) for each leader. It looks at
     `poses()`, `velocities()`, `order_parameters()`, `reward_terms()` and the like. A flock that
-    starts anew in the same step has nothing left to look at: `autoreset_mode="same_step"` is
+    starts again in the same step has nothing left to look at: `autoreset_mode="same_step"` is
     refused.
 
     ## Starting state

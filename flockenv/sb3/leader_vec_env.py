@@ -87,7 +87,7 @@ class LeaderVecEnv(VecEnv):
     and `share_towards_target`.
 
     `reward` may also be a function of this environment, which is called once the flocks have moved,
-    before those that ended start anew, and which returns rewards (slots,), or (flocks,) for all
+    before those that ended start again, and which returns rewards (slots,), or (flocks,) for all
     leaders of a flock. It looks at `poses()`, `velocities()`, `order_parameters()`,
     `reward_terms()` and the like.
 
@@ -123,7 +123,7 @@ class LeaderVecEnv(VecEnv):
         parsed = EnvOptions.parse(options, takes_function=True)
         counts = counts or [parsed.parameters.n_leaders]
         leaders = [counts[flock % len(counts)] for flock in range(num_flocks)]
-        # Flocks start anew here, once their rewards are known.
+        # Flocks start again here, once their rewards are known.
         self._batch = LeaderBatch(parsed, leaders, "disabled")
         settings = self._batch.settings
         self.num_flocks = num_flocks

@@ -1,4 +1,4 @@
-"""Law: policies are told apart in a figure, and a reference has its color in every one."""
+"""Law: the colors of policies are distinguishable, and a reference has its own in every figure."""
 
 import itertools
 from pathlib import Path

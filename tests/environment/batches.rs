@@ -128,7 +128,7 @@ fn an_exploding_flock_ends_the_episodes_of_its_batch() {
     (1..=20)
         .find(|_| matches!(step(&mut batch, &[0.5; 3]), Err(FlockError::Solver(_))))
         .expect("the wild flock leaves its range");
-    // The rewards of the others are lost, so that nothing goes on as if they were known.
+    // The rewards of the others are lost, so that no episode continues as if they were known.
     assert!(batch.envs().iter().all(|env| env.episode().is_none()));
     assert!(matches!(
         step(&mut batch, &[0.5; 3]),

@@ -1,4 +1,4 @@
-"""Every file of paper/ runs as a trial, goes on where it ended, and refuses what it cannot use."""
+"""Every file of paper/ runs as a trial, resumes where it ended, and refuses what it cannot use."""
 
 import csv
 import importlib

@@ -1,4 +1,4 @@
-"""Law: a training that was killed goes on from its last checkpoint, to the same samples."""
+"""Law: a training that was killed resumes from its last checkpoint, to the same samples."""
 
 import zipfile
 from pathlib import Path
