@@ -30,8 +30,6 @@ from flockenv.policies import NetworkPolicy
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.torchrl import GROUP, STATES, LeadersEnv
 
-__all__ = ["CONF", "LeadersTask", "LeadersTaskClass", "network_policy"]
-
 CONF = Path(__file__).parent / "benchmarl_tasks"
 """The folder of the configurations, as Hydra searches it: ``task/flockenv/NAME.yaml``."""
 

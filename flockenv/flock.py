@@ -12,8 +12,6 @@ from flockenv import _core
 from flockenv.order import OrderParameters
 from flockenv.parameters import FlockParameters
 
-__all__ = ["ContactSeries", "Contacts", "Flock", "Statistics"]
-
 _NOTEBOOK_PIXELS = 400
 
 

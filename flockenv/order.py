@@ -18,17 +18,6 @@ from flockenv.errors import ParameterError, shown
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = [
-    "ORDER",
-    "QUANTITIES",
-    "RECORDED",
-    "STATES",
-    "OrderParameters",
-    "OrderSeries",
-    "Quantity",
-    "order_series",
-]
-
 STATES = np.array(_core.COLLECTIVE_STATES)
 """Names of the collective states (Table 2; ordered motion by its direction)."""
 

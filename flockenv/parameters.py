@@ -11,8 +11,6 @@ from flockenv import _core
 from flockenv._io.toml import read_toml
 from flockenv.errors import ParameterError, refuse_unknown
 
-__all__ = ["FlockParameters"]
-
 _TABLE = {each["name"]: each for each in _core.PARAMETERS}
 _DEFAULTS = _core.changed_fields("simulation", {})
 

@@ -25,8 +25,6 @@ from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.policies import NetworkPolicy
 from flockenv.policies.network import ACTIVATIONS
 
-__all__ = ["LeadersModule"]
-
 _DEFAULTS = {"hidden": (64, 64), "activation": "tanh", "first_log_std": -1.0}
 _LAYERS = {"tanh": torch.nn.Tanh, "relu": torch.nn.ReLU}
 

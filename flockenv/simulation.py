@@ -18,8 +18,6 @@ from flockenv.policies.model import ModelPolicy, as_policy
 from flockenv.policies.registry import named_policy, policy_name
 from flockenv.recording import PHASES, PRECISIONS, Recording
 
-__all__ = ["simulate"]
-
 Schedule = Sequence[tuple[float, Mapping[str, Any]]]
 """Times in s from the start of a run, and the fields of the parameters that change then."""
 

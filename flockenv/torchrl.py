@@ -26,8 +26,6 @@ from flockenv.envs.observation import ObservationSpace, state_entries
 from flockenv.envs.options import EnvOptions
 from flockenv.errors import refuse_unknown
 
-__all__ = ["GROUP", "STATES", "LeadersEnv"]
-
 GROUP = "leaders"
 """Name of the group that all leaders of a flock are in."""
 

@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 from flockenv._io.atomic_write import atomic_write
 from flockenv.errors import ParameterError
 
-__all__ = ["is_special", "read_arrays", "write_arrays"]
-
 MOST_BYTES = 16 << 30
 """What all arrays of a file may hold together, if nothing else is said."""
 

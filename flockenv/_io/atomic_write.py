@@ -11,8 +11,6 @@ from typing import IO, TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["atomic_write", "remove_temporary_files", "write_csv", "write_text"]
-
 # A name is here before there is a file of that name, so that no moment is left out.
 _temporary: set[Path] = set()
 

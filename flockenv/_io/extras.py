@@ -5,8 +5,6 @@ from typing import Any
 
 from flockenv.errors import FlockError
 
-__all__ = ["MissingExtraError", "require"]
-
 
 class MissingExtraError(FlockError, ImportError):
     """An optional package is not installed; the message names the extra that brings it."""

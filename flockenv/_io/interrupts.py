@@ -14,8 +14,6 @@ from typing import Any
 
 from flockenv._io.atomic_write import remove_temporary_files
 
-__all__ = ["INTERRUPTED", "end_if_interrupted", "interrupted", "noted_interrupts"]
-
 INTERRUPTED = 130
 """Exit code after Ctrl-C."""
 

@@ -6,8 +6,6 @@ from typing import Any
 
 from flockenv.errors import ParameterError
 
-__all__ = ["read_limited", "read_toml", "read_toml_file"]
-
 _MOST_BYTES = 1 << 20
 
 

@@ -9,8 +9,6 @@ from flockenv.cli.options import Overwriting, Printing, argument, option, takes
 from flockenv.cli.output import in_words, load_recording, prepare, printable, summary_of
 from flockenv.errors import ParameterError
 
-__all__ = ["analyze"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class AnalyzeOptions(Overwriting, Printing):

@@ -22,8 +22,6 @@ from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.policies.registry import FILES, POOLS, named_policy
 
-__all__ = ["REFERENCES", "compare"]
-
 REFERENCES = ("learned", "tuned law", "paper's law")
 """What policies are compared with, unless `--only` is given."""
 

@@ -11,8 +11,6 @@ from rich.progress import Progress
 
 from flockenv._io.interrupts import INTERRUPTED, end_if_interrupted, noted_interrupts
 
-__all__ = ["console", "ends_on_interrupt", "errors", "print_json", "progress", "say", "warn"]
-
 console = Console()
 errors = Console(stderr=True)
 

@@ -8,8 +8,6 @@ from flockenv.cli.console import print_json, progress, say
 from flockenv.cli.options import Printing, option, takes
 from flockenv.cli.output import in_words, open_page, prepare, summary_of
 
-__all__ = ["demo"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class DemoOptions(Printing):

@@ -9,8 +9,6 @@ from typing import Annotated, Any, TypeVar, get_type_hints
 
 import typer
 
-__all__ = ["TRUST", "Flocks", "Overwriting", "Printing", "argument", "option", "takes"]
-
 Options = TypeVar("Options")
 
 TRUST = "Read .zip files of stable-baselines3 models, which executes the code in them."

@@ -14,8 +14,6 @@ from flockenv.order import QUANTITIES
 from flockenv.recording import Recording
 from flockenv.runs.sweep import summary
 
-__all__ = ["in_words", "load_recording", "open_page", "prepare", "printable", "summary_of"]
-
 
 def printable(name: str | os.PathLike[str]) -> str:
     """Return the name of a file or policy with a sign in place of bytes that are no UTF-8.

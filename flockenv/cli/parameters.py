@@ -8,8 +8,6 @@ from flockenv._io.toml import read_toml, read_toml_file
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 
-__all__ = ["changed_fields", "given_fields", "read_parameters"]
-
 
 def read_parameters(
     preset: str | None = None, file: Path | None = None, changes: Sequence[str] | None = None

@@ -10,8 +10,6 @@ from flockenv.cli.console import console, print_json
 from flockenv.cli.options import option, takes
 from flockenv.parameters import FlockParameters
 
-__all__ = ["ABOUT", "presets"]
-
 ABOUT = {
     "simulation": "Table 3's boats, with a scheme and a noise whose statistics do not depend on dt",
     "paper": "Table 3's boats, with the paper's own scheme and noise taken literally",

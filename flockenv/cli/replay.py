@@ -12,8 +12,6 @@ from flockenv.cli.options import Printing, argument, option, takes
 from flockenv.cli.output import load_recording, open_page, prepare, printable
 from flockenv.errors import ParameterError
 
-__all__ = ["replay"]
-
 _FPS = {".gif": 12.5, ".mp4": 25.0}
 
 

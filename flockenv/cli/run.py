@@ -14,8 +14,6 @@ from flockenv.errors import ParameterError
 from flockenv.policies.registry import EVERY_SUBSTEP, POLICIES, POOL_POLICIES, named_policy, quoted
 from flockenv.simulation import simulate
 
-__all__ = ["run"]
-
 _OUT = Path("results/run.npz")
 
 

@@ -15,8 +15,6 @@ from flockenv.runs.spec import RunSpec
 from flockenv.runs.store import RUNS_FOLDER, RunStore, run_missing
 from flockenv.runs.workload import Shard, measure_workload
 
-__all__ = ["sweep"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class SweepOptions(Printing):

@@ -13,8 +13,6 @@ from flockenv.errors import ParameterError
 if TYPE_CHECKING:
     from flockenv.training import Progress as TrainingProgress
 
-__all__ = ["train"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class TrainOptions(Printing):

@@ -11,8 +11,6 @@ from flockenv.parameters import FlockParameters
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Case"]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:

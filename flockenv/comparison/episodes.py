@@ -24,16 +24,6 @@ from flockenv.simulation import simulate
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = [
-    "NO_LEADERS",
-    "ORDERING_TIMES",
-    "QUANTITIES",
-    "Steering",
-    "compare_leaders",
-    "run_episodes",
-    "steering",
-]
-
 Steering = LeaderPolicy | str | Mapping[str, Any] | Callable[[], Any]
 """A policy or a model; its name, or the path of its file; a dictionary of these with one for each
 of ``"leader_0"``, ``"leader_1"`` and so on; or a function that returns one of them."""

@@ -12,8 +12,6 @@ from matplotlib.figure import Figure
 from flockenv._io.atomic_write import atomic_write
 from flockenv.comparison.episodes import NO_LEADERS
 
-__all__ = ["COLORS", "OWN_COLORS", "leader_curve", "policy_colors"]
-
 # Okabe and Ito's, which every kind of eye distinguishes, and three that differ from them.
 COLORS = {"paper's law": "#0072b2", "tuned law": "#e69f00", "learned": "#009e73"}
 """The color that a policy has in every figure."""

@@ -31,8 +31,6 @@ from flockenv.statistics import (
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["ComparisonReport"]
-
 _TABLES = ("runs", "means", "differences", "lines")
 
 

@@ -26,16 +26,6 @@ from flockenv.statistics import (
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = [
-    "EPISODES",
-    "REFERENCE",
-    "SUITE",
-    "TASKS",
-    "aggregate",
-    "scores_table",
-    "tasks_named",
-]
-
 SUITE = "v2"
 """Name of the suite."""
 

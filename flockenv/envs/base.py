@@ -12,8 +12,6 @@ from flockenv.envs.options import EnvOptions
 from flockenv.envs.render_mode import RenderMode
 from flockenv.flock import Flock
 
-__all__ = ["SingleEnvironmentBase"]
-
 
 class SingleEnvironmentBase:
     """The base of the environments of one flock: its episodes, infos and frames."""

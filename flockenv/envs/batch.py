@@ -14,8 +14,6 @@ from flockenv.errors import ParameterError, shown
 from flockenv.flock import Flock
 from flockenv.parameters import FlockParameters
 
-__all__ = ["LeaderBatch", "at_least_one", "drawn_seed", "leader_summary", "seeds_from"]
-
 _SEEDS = 2**64
 # More would fill the memory before anything is simulated.
 _MOST = 100_000

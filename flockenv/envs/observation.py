@@ -10,20 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv import _core
 from flockenv.flock import Flock
 
-__all__ = [
-    "BLOCKS",
-    "OBSERVATION_VERSION",
-    "Entry",
-    "ObservationSpace",
-    "flock_feature_entries",
-    "flock_feature_space",
-    "observation_entries",
-    "observation_version",
-    "observe",
-    "state_entries",
-    "state_space",
-]
-
 #: Newest version of the observation: of its entries, their order, scales and bounds.
 OBSERVATION_VERSION: int = _core.OBSERVATION_VERSION
 

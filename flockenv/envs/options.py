@@ -19,8 +19,6 @@ from flockenv.errors import (
 )
 from flockenv.parameters import FlockParameters
 
-__all__ = ["RESET_OPTIONS", "TERMS", "EnvOptions", "known_reset_options"]
-
 TERMS: dict[str, str] = dict(_core.REWARD_TERMS)
 """Name and meaning of each term of the reward; every term is larger for better."""
 

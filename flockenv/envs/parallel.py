@@ -17,8 +17,6 @@ from flockenv.envs.spaces import leader_action_space
 from flockenv.errors import EpisodeError, ParameterError
 from flockenv.rendering.frames import DEFAULT_SIZE
 
-__all__ = ["LeadersParallelEnv", "parallel_env"]
-
 Observations = dict[str, NDArray[np.float32]]
 Infos = dict[str, dict[str, Any]]
 

@@ -5,8 +5,6 @@ from typing import Any
 
 import gymnasium
 
-__all__ = ["EASY_ID", "ENVIRONMENTS", "ENV_ID", "register"]
-
 ENV_ID = "flockenv/Leaders-v0"
 
 EASY_ID = "flockenv/Order-easy-v0"

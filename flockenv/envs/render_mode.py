@@ -14,8 +14,6 @@ if TYPE_CHECKING:
 
     from flockenv.flock import Flock
 
-__all__ = ["RENDER_MODES", "RenderMode"]
-
 #: Render modes of the environments with one flock; those with many have "rgb_array" alone.
 RENDER_MODES = ("human", "rgb_array")
 

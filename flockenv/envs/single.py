@@ -14,8 +14,6 @@ from flockenv.envs.render_mode import RENDER_MODES
 from flockenv.envs.spaces import joint_action_space
 from flockenv.rendering.frames import DEFAULT_SIZE
 
-__all__ = ["LeadersEnv"]
-
 
 class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
     """Lead a flock of boats around a ring-shaped pool: one policy steers all leaders.

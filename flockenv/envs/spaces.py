@@ -5,8 +5,6 @@ from typing import Any
 import gymnasium
 import numpy as np
 
-__all__ = ["joint_action_space", "leader_action_space"]
-
 
 def leader_action_space(levels: int | None) -> gymnasium.Space[Any]:
     """Return one leader's space: a rudder in [-1, 1], or the number of a level."""

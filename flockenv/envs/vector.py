@@ -19,8 +19,6 @@ from flockenv.envs.spaces import joint_action_space
 from flockenv.errors import EpisodeError, ParameterError
 from flockenv.rendering.frames import DEFAULT_SIZE
 
-__all__ = ["LeadersVectorEnv"]
-
 
 class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], NDArray[Any]]):
     """Lead many flocks at once, one policy steering all leaders of a flock.

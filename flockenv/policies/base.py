@@ -11,17 +11,6 @@ from flockenv import _core
 from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError, shown
 
-__all__ = [
-    "CONTROL_HZ",
-    "LeaderPolicy",
-    "RowPolicy",
-    "action_mode",
-    "check_action_mode",
-    "control_rate",
-    "decision_rate",
-    "leaders_observed",
-]
-
 
 class LeaderPolicy(Protocol):
     """Anything with the ``predict`` of a stable-baselines3 policy."""

@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 from flockenv.policies.base import RowPolicy
 
-__all__ = ["RandomRudders", "StraightAhead"]
-
 
 class StraightAhead(RowPolicy):
     """Leaders that never steer: rudder 0. Options are those of `RowPolicy`."""

@@ -19,8 +19,6 @@ from flockenv.errors import ParameterError, shown
 from flockenv.policies.base import CONTROL_HZ, RowPolicy, control_rate
 from flockenv.policies.model import ModelPolicy
 
-__all__ = ["LEAN_FEATURES", "DampedLaw", "LawPolicy", "LeaningLaw", "SteeringLaw"]
-
 LEAN_FEATURES: tuple[str, ...] = tuple(_core.LEAN_FEATURES)
 """The features of a lean, in the order of the observation's block ``lean_features``."""
 

@@ -20,8 +20,6 @@ from flockenv.envs.observation import ObservationSpace
 from flockenv.errors import ParameterError
 from flockenv.policies.base import leaders_observed
 
-__all__ = ["ModelPolicy", "as_policy", "is_model_file", "load_model"]
-
 _WEIGHTS = "policy.pth"
 _NEEDED = ("policy_class", "policy_kwargs", "observation_space", "action_space", "use_sde")
 

@@ -22,8 +22,6 @@ from flockenv.envs.observation import (
 from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.policies.base import RowPolicy
 
-__all__ = ["ACTIVATIONS", "NetworkPolicy"]
-
 FORMAT = "flockenv policy 1"
 """First entry of every network's file."""
 

@@ -11,20 +11,6 @@ from flockenv.policies.laws import DampedLaw, LawPolicy, LeaningLaw, SteeringLaw
 from flockenv.policies.model import ModelPolicy, is_model_file, load_model
 from flockenv.policies.network import NetworkPolicy
 
-__all__ = [
-    "EVERY_SUBSTEP",
-    "FILES",
-    "LAWS",
-    "LEARNED",
-    "POLICIES",
-    "POOLS",
-    "POOL_POLICIES",
-    "load",
-    "named_policy",
-    "policy_name",
-    "quoted",
-]
-
 FILES = (".json", ".npz", ".zip")
 """How the files of policies end: laws, networks, and models of stable-baselines3."""
 

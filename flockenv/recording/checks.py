@@ -12,17 +12,6 @@ from flockenv.flock import ContactSeries
 from flockenv.order import QUANTITIES
 from flockenv.parameters import FlockParameters
 
-__all__ = [
-    "CONTACTS",
-    "PHASES",
-    "PRECISIONS",
-    "TIMES",
-    "check_array",
-    "check_contacts",
-    "check_ids",
-    "check_quantities",
-]
-
 PHASES = np.array(_core.PHASES)
 TIMES = ("time_s", "phase", "in_analysis_window")
 PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))

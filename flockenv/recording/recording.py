@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-__all__ = ["DISCARDED_SHARE", "Recording"]
-
 DISCARDED_SHARE = 0.1
 """The share of a run, at its start, that no figure uses."""
 

@@ -12,8 +12,6 @@ from flockenv.order import ORDER, OrderSeries
 from flockenv.parameters import FlockParameters
 from flockenv.recording.checks import CONTACTS, PRECISIONS, TIMES, check_array
 
-__all__ = ["ARRAYS", "FORMAT", "OPTIONAL", "arrays_of", "fields_from"]
-
 ARRAYS = (*TIMES, "pose", "velocity")
 OPTIONAL = ("rudder", "ids")
 """Arrays that a recording may lack."""

@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-__all__ = ["dataset_of", "table_of"]
-
 _COMPONENTS = {
     "pose": ("x_cm", "y_cm", "heading_rad"),
     "velocity": ("velocity_x_cm_s", "velocity_y_cm_s", "angular_velocity_rad_s"),

@@ -15,8 +15,6 @@ from flockenv._io.atomic_write import atomic_write
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError, shown
 
-__all__ = ["save_animation"]
-
 _LONGEST_SIDE = 65_535  # GIF counts in 16 bits
 _SLOWEST, _FASTEST = 0.1, 100.0
 

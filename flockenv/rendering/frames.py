@@ -11,8 +11,6 @@ from flockenv.errors import shown
 from flockenv.flock import Flock
 from flockenv.recording import Recording
 
-__all__ = ["DEFAULT_SIZE", "frame", "renderer"]
-
 #: Width and height of a frame in pixels.
 DEFAULT_SIZE = (600, 600)
 

@@ -7,8 +7,6 @@ from flockenv._io.extras import require
 from flockenv.flock import Flock
 from flockenv.rendering.frames import renderer
 
-__all__ = ["Window", "require_pygame"]
-
 
 def require_pygame() -> Any:
     """Return pygame.

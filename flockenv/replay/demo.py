@@ -11,8 +11,6 @@ from flockenv.recording import Recording
 from flockenv.replay.template import as_script_content
 from flockenv.simulation import simulate
 
-__all__ = ["DEMO_PARAMETERS", "DEMO_POLICIES", "demo_runs", "live_demo", "live_page"]
-
 DEMO_PARAMETERS: Final = FlockParameters(n_boats=27, n_leaders=4, pool="wide", bw_s=0.3)
 """Four leaders among 27 boats, near the critical noise."""
 

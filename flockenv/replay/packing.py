@@ -13,8 +13,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Packer"]
-
 _DIFFERENCES = 2
 _LARGEST = 2**28
 

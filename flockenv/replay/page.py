@@ -23,8 +23,6 @@ from flockenv.replay.packing import Packer
 from flockenv.replay.quantities import decisive_minute, series_of, shown_quantities
 from flockenv.replay.template import as_script_content, digest, filled, joined
 
-__all__ = ["MOST_BYTES", "Replay", "write_replay"]
-
 MOST_BYTES = 10_000_000
 """Size that no page exceeds: of longer runs it shows fewer samples per second."""
 

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from flockenv.order import QUANTITIES
 from flockenv.recording import Recording
 
-__all__ = ["decisive_minute", "series_of", "shown_quantities"]
-
 _MINUTE_S = 60.0
 _STEP_S = 0.5
 _SMALL = str.maketrans({"o": "ₒ", "v": "ᵥ", "n": "ₙ"})

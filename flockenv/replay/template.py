@@ -5,8 +5,6 @@ import hashlib
 import re
 from collections.abc import Iterable, Mapping
 
-__all__ = ["as_script_content", "digest", "filled", "joined"]
-
 
 def joined(modules: Iterable[str]) -> str:
     """Return the sources of modules as one script: without lines that import, words that export."""

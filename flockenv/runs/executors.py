@@ -15,8 +15,6 @@ from flockenv._io.extras import require
 from flockenv._io.interrupts import end_if_interrupted, interrupted
 from flockenv.errors import ParameterError
 
-__all__ = ["ENGINES", "Engine", "RayExecutor", "cores", "finished", "in_order", "named", "threads"]
-
 Item = TypeVar("Item")
 Value = TypeVar("Value")
 

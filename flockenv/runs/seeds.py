@@ -6,14 +6,6 @@ from dataclasses import dataclass
 
 from flockenv.errors import ParameterError, shown
 
-__all__ = [
-    "FIRST_TRAINING_SEED",
-    "POLICY_SEEDS",
-    "SeedRange",
-    "check_evaluation_seeds",
-    "release_seeds",
-]
-
 FIRST_TRAINING_SEED = 1 << 32
 """Seeds from here on make policies, those below judge them."""
 

@@ -15,8 +15,6 @@ from flockenv.policies.registry import EVERY_SUBSTEP, POLICIES, POOL_POLICIES
 from flockenv.recording import Recording
 from flockenv.simulation import simulate
 
-__all__ = ["KEEP", "RunSpec", "execute"]
-
 KEEP = ("window", "order", "poses")
 """What can be stored of a run: order parameters of the samples in the analysis window after the
 first tenth; of all samples; or these and all poses and velocities."""

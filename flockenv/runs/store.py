@@ -13,15 +13,6 @@ from flockenv.recording import Recording
 from flockenv.runs.executors import Engine, finished, threads
 from flockenv.runs.spec import RunSpec, execute
 
-__all__ = [
-    "RESULTS_VERSION",
-    "RUNS_FOLDER",
-    "RunStore",
-    "StorageError",
-    "StoreWarning",
-    "run_missing",
-]
-
 RUNS_FOLDER = "runs"
 """Folder of finished runs, inside a folder of results."""
 

@@ -28,16 +28,6 @@ from flockenv.runs.store import RUNS_FOLDER, RunStore, StorageError, run_missing
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = [
-    "MOST_RUNS",
-    "SweepSpec",
-    "load_sweep",
-    "read_sweep",
-    "run_sweep",
-    "summary",
-    "to_xarray",
-]
-
 MOST_RUNS = 1_000_000
 """A sweep of more runs is refused: it is a mistake in a list, or needs to be split."""
 

@@ -9,8 +9,6 @@ from flockenv.errors import FlockError, ParameterError
 from flockenv.runs.spec import RunSpec, execute
 from flockenv.runs.store import RunStore
 
-__all__ = ["Shard", "Workload", "measure_workload"]
-
 _TRIAL_S = 60.0
 
 

@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 from flockenv._io.extras import require
 
-__all__ = ["interquartile_mean", "probability_of_improvement"]
-
 
 def interquartile_mean(*tasks: NDArray[np.float64], axis: int = -1) -> Any:
     """Return the mean of the middle half of the values of all tasks together.

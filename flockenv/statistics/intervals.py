@@ -19,17 +19,6 @@ from flockenv._io.extras import require
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = [
-    "CONFIDENCE",
-    "FEW",
-    "Difference",
-    "bootstrap_interval",
-    "mean_interval",
-    "paired_difference",
-    "student_interval",
-    "summarize",
-]
-
 CONFIDENCE = 0.95
 """Level of every interval."""
 

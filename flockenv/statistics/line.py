@@ -8,8 +8,6 @@ import numpy as np
 
 from flockenv._io.extras import require
 
-__all__ = ["Line", "fit_line"]
-
 
 @dataclass(frozen=True, slots=True)
 class Line:

@@ -9,14 +9,6 @@ from flockenv import _core
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 
-__all__ = [
-    "heading_correlation",
-    "jam_sizes",
-    "mean_square_displacement",
-    "pair_distribution",
-    "structure_series",
-]
-
 
 def structure_series(
     name: str, parameters: FlockParameters, pose: ArrayLike

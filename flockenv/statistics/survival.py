@@ -15,8 +15,6 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv._io.extras import require
 from flockenv.statistics.intervals import CONFIDENCE
 
-__all__ = ["Survival", "kaplan_meier"]
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Survival:

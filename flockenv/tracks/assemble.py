@@ -12,8 +12,6 @@ from flockenv.order import OrderSeries, order_series
 from flockenv.parameters import FlockParameters
 from flockenv.recording import PHASES, Recording
 
-__all__ = ["recording_of", "unwrapped", "velocities"]
-
 _FASTEST_CM_S = 1000.0
 _MOST_OUTSIDE = 0.1
 

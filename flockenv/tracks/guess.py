@@ -15,8 +15,6 @@ from flockenv.tracks.reader import read_table
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["guess_layout"]
-
 _NAMES = {
     "frame": ("frame", "frame_number", "frames", "time_s", "time", "t", "timestamp", "step"),
     "id": ("id", "track_id", "track", "boat", "robot", "animal", "individual", "particle", "name"),

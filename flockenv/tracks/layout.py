@@ -11,8 +11,6 @@ from flockenv._io.toml import read_toml_file
 from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.parameters import FlockParameters
 
-__all__ = ["TrackLayout", "layout_beside", "read_layout"]
-
 
 def _is_positive(value: Any) -> bool:
     return _are_numbers((value,), 1) and value > 0.0

@@ -19,17 +19,6 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray
 
-__all__ = [
-    "SUFFIXES",
-    "TrackReport",
-    "Tracks",
-    "from_movement",
-    "from_table",
-    "load_tracks",
-    "read_table",
-    "read_tracks",
-]
-
 SUFFIXES = (".csv", ".parquet", ".pq")
 """Endings of files that `read_tracks` takes."""
 

@@ -15,8 +15,6 @@ from flockenv._io.extras import require
 from flockenv.errors import ParameterError
 from flockenv.recording import Recording
 
-__all__ = ["EXPORTS", "export"]
-
 EXPORTS = (".csv", ".parquet", ".gsd")
 """Endings of files that `export` writes."""
 
