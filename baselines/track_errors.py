@@ -18,7 +18,7 @@ import pandas as pd
 
 import flockenv
 from flockenv.statistics.structure import structure_series
-from flockenv.tracks import TrackLayout, from_table
+from flockenv.tracks import TrackLayout, read_tracks
 
 QUANTITIES = ("psi_o", "nematic", "milling", "psi_v", "largest_cluster")
 LAYOUT = TrackLayout(pool="wide", leaders=("0", "1", "2"), fps=25.0, wrapped=False)
@@ -94,8 +94,8 @@ def main() -> None:
         truth = flockenv.simulate(parameters, seed, options.minutes * 60, sample_hz=LAYOUT.fps)
         expected = quantities(truth)
         for name, camera in CAMERAS.items():
-            tracks = from_table(seen(truth, camera, np.random.default_rng(seed)), LAYOUT)
-            found = quantities(tracks.recording)
+            tracks = read_tracks(seen(truth, camera, np.random.default_rng(seed)), LAYOUT)
+            found = quantities(tracks)
             errors = {
                 each: float(np.abs(found[each] - expected[each]).mean()) for each in QUANTITIES
             }

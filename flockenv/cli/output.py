@@ -41,7 +41,7 @@ def load_recording(path: Path, layout: Path | None = None, *, quiet: bool = Fals
     ParameterError
         If the file cannot be read, is damaged, or neither; the message names it.
     """
-    from flockenv.tracks import SUFFIXES, guess_layout, load_tracks, read_layout
+    from flockenv.tracks import SUFFIXES, TrackReport, guess_layout, read_layout, read_tracks
 
     if layout is None and path.suffix.lower() not in SUFFIXES:
         try:
@@ -54,10 +54,12 @@ def load_recording(path: Path, layout: Path | None = None, *, quiet: bool = Fals
         say(f"{printable(path)} has no description; {printable(beside)} is a guess. Check:", errors)
         for name, meaning in doubts.items():
             say(f"  {name}: {meaning}", errors)
-    tracks = load_tracks(path, None if layout is None else read_layout(layout))
-    if not quiet:
-        say(f"{printable(path)}: {tracks.report}", errors)
-    return tracks.recording
+
+    def report(found: TrackReport) -> None:
+        if not quiet:
+            say(f"{printable(path)}: {found}", errors)
+
+    return read_tracks(path, None if layout is None else read_layout(layout), report)
 
 
 def prepare(*paths: Path, overwrites: bool = True) -> None:

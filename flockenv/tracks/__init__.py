@@ -2,16 +2,8 @@
 
 from flockenv.tracks.assemble import recording_of
 from flockenv.tracks.guess import guess_layout
-from flockenv.tracks.layout import TrackLayout, layout_beside, read_layout
-from flockenv.tracks.reader import (
-    SUFFIXES,
-    TrackReport,
-    Tracks,
-    from_movement,
-    from_table,
-    load_tracks,
-    read_tracks,
-)
+from flockenv.tracks.layout import TrackLayout, read_layout
+from flockenv.tracks.reader import SUFFIXES, TrackReport, read_tracks
 from flockenv.tracks.writer import EXPORTS, export
 
 __all__ = [
@@ -19,13 +11,8 @@ __all__ = [
     "SUFFIXES",
     "TrackLayout",
     "TrackReport",
-    "Tracks",
     "export",
-    "from_movement",
-    "from_table",
     "guess_layout",
-    "layout_beside",
-    "load_tracks",
     "read_layout",
     "read_tracks",
     "recording_of",

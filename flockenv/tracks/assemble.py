@@ -69,30 +69,27 @@ def recording_of(
         for names that are unknown or there twice.
     """
     times, poses = _numbers("time_s", time_s), _numbers("pose", pose)
+    motion = None if velocity is None else _numbers("velocity", velocity)
     if times.ndim != 1 or poses.shape != (len(times), *poses.shape[1:2], 3) or 0 in poses.shape:
         raise ParameterError(
             f"pose has shape {poses.shape} for time_s of shape {times.shape}, expected (t, n, 3) "
             "for t times"
         )
+    if motion is not None and motion.shape != poses.shape:
+        raise ParameterError(
+            f"velocity has shape {motion.shape}, expected {poses.shape}, that of pose"
+        )
     if not (np.isfinite(times).all() and (np.diff(times) > 0.0).all()) or np.isinf(poses).any():
         raise ParameterError("time_s must increase, and pose hold finite numbers or rows of NaN")
     if np.isnan(poses).all():
         raise ParameterError("pose is not accepted: it is NaN everywhere, no boat is ever there")
-    names = np.array([str(each) for each in (range(poses.shape[1]) if ids is None else ids)])
+    names = [str(each) for each in (range(poses.shape[1]) if ids is None else ids)]
     if len(names) != poses.shape[1]:
         raise ParameterError(f"ids holds {len(names)} names for {poses.shape[1]} boats")
-    order = _leaders_first(names.tolist(), [str(each) for each in leaders])
-    names, poses = names[order], poses[:, order]
+    order = _leaders_first(names, [str(each) for each in leaders])
     poses[..., 2] = unwrapped(poses[..., 2])
-    if velocity is None:
-        motion = velocities(times, poses)
-    else:
-        motion = _numbers("velocity", velocity)
-        if motion.shape != poses.shape:
-            raise ParameterError(
-                f"velocity has shape {motion.shape}, expected {poses.shape}, that of pose"
-            )
-        motion = motion[:, order]
+    motion = (velocities(times, poses) if motion is None else motion)[:, order]
+    poses = poses[:, order]
     radius, shape = hull
     parameters = FlockParameters(
         n_boats=len(names),
@@ -110,8 +107,8 @@ def recording_of(
     analyzed = np.ones(times.shape, bool)
     if phase is not None:
         analyzed = _core.sampled_analysis_window(times, phases.tolist())
-    normal = (poses[:, len(leaders) :], motion[:, len(leaders) :])
-    undefined = normal[0].shape[1] == 0
+    normal = poses[:, len(leaders) :], motion[:, len(leaders) :]
+    undefined = len(names) == len(leaders)
     return Recording(
         time_s=times,
         phase=phases.astype(PHASES.dtype),
@@ -122,7 +119,7 @@ def recording_of(
         parameters=parameters,
         seed=0,
         version=_core.__version__,
-        ids=names,
+        ids=np.array(names)[order],
     )
 
 
@@ -178,13 +175,11 @@ def _check_units(
     pose: NDArray[np.float64], velocity: NDArray[np.float64], parameters: FlockParameters
 ) -> None:
     speed = np.hypot(velocity[..., 0], velocity[..., 1])
-    known = np.isfinite(speed)
-    medians = [
-        np.median(column[at]) for column, at in zip(speed.T, known.T, strict=True) if at.any()
-    ]
-    if medians and max(medians) > _FASTEST_CM_S:
+    speed = speed[:, np.isfinite(speed).any(axis=0)]
+    fastest = np.nanmedian(speed, axis=0).max(initial=0.0)
+    if fastest > _FASTEST_CM_S:
         raise ParameterError(
-            f"a boat moves at {max(medians) / 100:.3g} m/s in the median, above "
+            f"a boat moves at {fastest / 100:.3g} m/s in the median, above "
             f"{_FASTEST_CM_S / 100:g} m/s: are positions in cm and times in s?"
         )
     outer_cm, _ = _core.pool_radii_cm(parameters.pool)

@@ -2,52 +2,52 @@
 
 import math
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, fields
-from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
 from flockenv._io.toml import read_toml_file
 from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.parameters import FlockParameters
 
 
+def _is_number(value: Any) -> bool:
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    return is_number and math.isfinite(value)
+
+
 def _is_positive(value: Any) -> bool:
-    return _are_numbers((value,), 1) and value > 0.0
+    return _is_number(value) and value > 0.0
 
 
-def _are_numbers(values: Any, count: int) -> bool:
-    kinds = all(isinstance(each, int | float) and not isinstance(each, bool) for each in values)
-    return kinds and len(values) == count and all(map(math.isfinite, values))
+def _is_text(value: Any) -> bool:
+    return isinstance(value, str)
 
 
-def _are_words(values: Any) -> bool:
-    return isinstance(values, tuple) and all(isinstance(each, str) for each in values)
+def _are(holds: Callable[[Any], bool], values: Any, count: int | None = None) -> bool:
+    is_long_enough = isinstance(values, tuple) and count in (None, len(values))
+    return is_long_enough and all(map(holds, values))
 
 
-_COLUMN = "the name of a column", lambda value: isinstance(value, str)
-_TRUTH = "true or false", lambda value: isinstance(value, bool)
-_POSITIVE = "a positive number", _is_positive
-_PAIR = "two numbers", lambda value: isinstance(value, tuple) and _are_numbers(value, 2)
-_CHECKS: Mapping[str, tuple[str, Callable[[Any], bool]]] = {
-    "frame": _COLUMN,
-    "id": _COLUMN,
-    "x": _COLUMN,
-    "y": _COLUMN,
-    "heading": (
-        "a column, or the columns x, y of the tail and x, y of the head",
-        lambda value: isinstance(value, str | None) or (_are_words(value) and len(value) == 4),
+_CHECKS: tuple[tuple[str, Callable[[Any], bool], tuple[str, ...]], ...] = (
+    ("the name of a column", _is_text, ("frame", "id", "x", "y")),
+    ("true or false", lambda value: isinstance(value, bool), ("wrapped", "y_down")),
+    ("rad or deg", lambda value: value in ("rad", "deg"), ("heading_unit",)),
+    ("a positive number", _is_positive, ("cm_per_unit", "max_speed_cm_s")),
+    ("a positive number", lambda value: value is None or _is_positive(value), ("fps",)),
+    ("two numbers", lambda value: _are(_is_number, value, 2), ("hull", "center")),
+    ("a list of names", lambda value: _are(_is_text, value), ("leaders",)),
+    (
+        "cw, ccw, or one of them per leader",
+        lambda value: _is_text(value) or _are(_is_text, value),
+        ("target",),
     ),
-    "heading_unit": ("rad or deg", lambda value: value in ("rad", "deg")),
-    "wrapped": _TRUTH,
-    "y_down": _TRUTH,
-    "leaders": ("a list of names", _are_words),
-    "hull": _PAIR,
-    "center": _PAIR,
-    "fps": ("a positive number", lambda value: value is None or _is_positive(value)),
-    "cm_per_unit": _POSITIVE,
-    "max_speed_cm_s": _POSITIVE,
-}
+    (
+        "a column, or the columns x, y of the tail and x, y of the head",
+        lambda value: value is None or _is_text(value) or _are(_is_text, value, 4),
+        ("heading",),
+    ),
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,62 +113,38 @@ class TrackLayout:
     max_speed_cm_s: float = 200.0
 
     def __post_init__(self) -> None:
-        for name, (accepted, holds) in _CHECKS.items():
-            if not holds(getattr(self, name)):
-                value = shown(getattr(self, name))
-                raise ParameterError(f"{name} = {value} is not accepted: {accepted}")
-        FlockParameters(pool=self.pool)
-
-    @classmethod
-    def from_dict(cls, values: Mapping[str, Any]) -> Self:
-        """Return the layout of these fields; lists stand for tuples, "" for no heading.
-
-        Raises
-        ------
-        ParameterError
-            For unknown fields, a missing pool, and as for the class.
-        """
-        refuse_unknown(values, [each.name for each in fields(cls)], "field of a layout")
-        if "pool" not in values:
-            raise ParameterError(
-                'pool is missing: "narrow", "wide", or the outer and the inner radius in cm'
-            )
-        plain: dict[str, Any] = {
-            name: tuple(value) if isinstance(value, list) else value
-            for name, value in values.items()
-        }
-        if plain.get("heading") == "":
-            plain["heading"] = None
-        if isinstance(plain.get("leaders"), tuple):
-            plain["leaders"] = tuple(map(str, plain["leaders"]))
-        return cls(**plain)
-
-
-def layout_beside(path: str | os.PathLike[str]) -> TrackLayout:
-    """Return the layout in the TOML file beside a file of tracks: ``a.toml`` for ``a.csv``.
-
-    Raises
-    ------
-    ParameterError
-        If it is not there, or no layout.
-    """
-    beside = Path(path).with_suffix(".toml")
-    if not beside.exists():
-        raise ParameterError(
-            f"{beside} is missing: it names the columns and units of {Path(path).name}"
-        )
-    return read_layout(beside)
+        for accepted, holds, names in _CHECKS:
+            for name in names:
+                value = getattr(self, name)
+                if not holds(value):
+                    raise ParameterError(f"{name} = {shown(value)} is not accepted: {accepted}")
+        try:
+            FlockParameters(pool=self.pool)
+        except TypeError as error:
+            raise ParameterError(str(error)) from error
 
 
 def read_layout(path: str | os.PathLike[str]) -> TrackLayout:
-    """Return the layout in a TOML file.
+    """Return the layout in a TOML file: its fields, where "" is no heading and a pool is needed.
 
     Raises
     ------
     ParameterError
         If it cannot be read, or is no layout; the message names the file.
     """
+    values = read_toml_file(path, str(path))
     try:
-        return TrackLayout.from_dict(read_toml_file(path, str(path)))
-    except (ParameterError, TypeError) as error:
+        refuse_unknown(values, [each.name for each in fields(TrackLayout)], "field of a layout")
+        if "pool" not in values:
+            raise ParameterError(
+                'pool is missing: "narrow", "wide", or the outer and the inner radius in cm'
+            )
+        if isinstance(values.get("leaders"), list):
+            values["leaders"] = list(map(str, values["leaders"]))
+        plain: dict[str, Any] = {
+            name: tuple(value) if isinstance(value, list) else value
+            for name, value in values.items()
+        }
+        return TrackLayout(**{**plain, "heading": plain.get("heading", "heading") or None})
+    except ParameterError as error:
         raise ParameterError(f"{path}: {error}") from error

@@ -1,23 +1,23 @@
-"""Tracks of tables (CSV, Parquet) and datasets of `movement`, cleaned and counted."""
+"""Tracks of tables (CSV, Parquet), cleaned and counted."""
 
 import os
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flockenv._io.array_file import is_special
 from flockenv._io.extras import require
-from flockenv.errors import ParameterError, refuse_unknown
+from flockenv.errors import ParameterError
 from flockenv.recording import Recording
 from flockenv.tracks.assemble import recording_of, unwrapped, velocities
-from flockenv.tracks.layout import TrackLayout, layout_beside
+from flockenv.tracks.layout import TrackLayout, read_layout
 
 if TYPE_CHECKING:
     import pandas as pd
-    import xarray
 
 SUFFIXES = (".csv", ".parquet", ".pq")
 """Endings of files that `read_tracks` takes."""
@@ -66,190 +66,143 @@ class TrackReport:
         )
 
 
-class Tracks(NamedTuple):
-    """Tracks as a recording, and what of them was left out."""
-
-    recording: Recording
-    report: TrackReport
-
-
-def read_tracks(path: str | os.PathLike[str], layout: TrackLayout | None = None) -> Recording:
-    """Read tracks from a file as a recording, which is analyzed and replayed like a simulated one.
-
-    Parameters and errors are those of `load_tracks`.
-    """
-    return load_tracks(path, layout).recording
-
-
-def load_tracks(path: str | os.PathLike[str], layout: TrackLayout | None = None) -> Tracks:
-    """Read tracks from a file, with the report of what was left out.
+def read_tracks(
+    source: "str | os.PathLike[str] | pd.DataFrame",
+    layout: TrackLayout | None = None,
+    report: Callable[[TrackReport], object] = lambda found: None,
+) -> Recording:
+    """Read tracks as a recording, which is analyzed and replayed like a simulated one.
 
     Parameters
     ----------
-    path
-        A CSV or Parquet table with one row per frame and boat (extra ``plot``). Nothing in the file
-        is executed.
+    source
+        A table with one row per frame and boat (extra ``plot``), or the CSV or Parquet file of one,
+        in which nothing is executed.
     layout
-        How tracks lie in it; None for the TOML file beside it, see `layout_beside`.
+        How tracks lie in it; None for the TOML file beside it: ``a.toml`` for ``a.csv``.
+    report
+        Called with what was used and left out, which prints as a line.
 
     Raises
     ------
     ParameterError
         If the file cannot be read, a column is missing or holds other things than numbers, a name
         is there twice in a frame, headings look like degrees where radians are said, everything is
-        missing, the arrays would be too large, and as for `recording_of`.
+        missing, the arrays would be too large, there is no layout, and as for `recording_of`.
     MissingExtraError
         Without the extra ``plot``.
     """
-    path = Path(path)
-    layout = layout_beside(path) if layout is None else layout
+    if not isinstance(source, str | os.PathLike):
+        if layout is None:
+            raise ParameterError("layout is missing: a table has no file beside it")
+        return _recording(source, layout, report)
+    path = Path(source)
+    if layout is None:
+        beside = path.with_suffix(".toml")
+        if not beside.exists():
+            raise ParameterError(
+                f"{beside} is missing: it names the columns and units of {path.name}"
+            )
+        layout = read_layout(beside)
+    table = read_table(path)
     try:
-        return from_table(read_table(path), layout)
+        return _recording(table, layout, report)
     except ParameterError as error:
         raise ParameterError(f"{path}: {error}") from error
-    except OSError as error:
-        raise ParameterError(f"{path} cannot be read: {error.strerror or error}") from error
 
 
 def read_table(path: Path) -> "pd.DataFrame":
-    """Return the rows of a CSV or Parquet file (extra ``plot``).
-
-    Raises
-    ------
-    ParameterError
-        If it is no such table.
-    OSError
-        If it cannot be opened.
-    """
+    """Return the rows of a CSV or Parquet file; a ParameterError names one that is none."""
     pandas = require("pandas", "plot")
     if path.suffix.lower() not in SUFFIXES:
-        raise ParameterError(f"it ends in none of {', '.join(SUFFIXES)}")
-    if is_special(path):
-        raise ParameterError("it is no table but a device, a pipe or a socket")
+        raise ParameterError(f"{path}: it ends in none of {', '.join(SUFFIXES)}")
     read = pandas.read_csv if path.suffix.lower() == ".csv" else pandas.read_parquet
     try:
+        if is_special(path):
+            raise ParameterError("a device, a pipe or a socket")
         table: pd.DataFrame = read(path)
-    except OSError:
-        raise
+    except OSError as error:
+        raise ParameterError(f"{path} cannot be read: {error.strerror or error}") from error
     except Exception as error:  # Parsers raise errors of many unrelated classes.
-        raise ParameterError(f"it is no table: {error}") from error
+        raise ParameterError(f"{path}: it is no table: {error}") from error
     return table
 
 
-def from_movement(
-    dataset: "xarray.Dataset",
-    layout: TrackLayout,
-    *,
-    center: str | None = None,
-    tail: str | None = None,
-    head: str | None = None,
-) -> Tracks:
-    """Return tracks of a dataset of poses of the package `movement`.
+def _recording(
+    table: "pd.DataFrame", layout: TrackLayout, report: Callable[[TrackReport], object]
+) -> Recording:
+    rows = _rows(table, layout)
+    frames = np.unique(rows["frame"])
+    is_placed = np.isfinite(rows[["x", "y", "heading"]].to_numpy()).all(axis=1)
+    rows = rows[rows["id"].notna() & is_placed]
+    missing = len(table) - len(rows)
+    if len(rows) == 0:
+        raise ParameterError("no row has a name, a position and a heading")
+    rows = rows.astype({"id": str}).sort_values(["id", "frame"])
+    # By their length, then alphabet, so that 2 comes before 10.
+    names = sorted(rows["id"].unique(), key=lambda name: (len(name), name))
+    if len(frames) * len(names) > max(_FEW, _SPARSEST * len(table)):
+        raise ParameterError(
+            f"{len(names)} names in {len(frames)} frames are too many for {len(table)} rows: join "
+            "fragments of tracks, or read a part of the file"
+        )
+    counts = rows.value_counts(["id", "frame"])
+    if counts.iloc[0] > 1:
+        name, frame = counts.index[0]
+        raise ParameterError(f"{name!r} is there {counts.iloc[0]} times in frame {frame:g}")
+    per_s = 1.0 if layout.fps is None else layout.fps
+    rows, jumps = _without_jumps(rows, layout.max_speed_cm_s / per_s)
+    at = (
+        np.searchsorted(frames, rows["frame"]),
+        rows["id"].map({name: place for place, name in enumerate(names)}),
+    )
+    pose = np.full((len(frames), len(names), 3), np.nan)
+    pose[at] = rows[["x", "y", "heading"]].to_numpy()
+    broken = np.zeros(pose.shape[:2], bool)
+    broken[at] = _too_fast(rows, layout.max_speed_cm_s / per_s)
+    times = (frames - frames[0]) / per_s
+    if layout.heading is None:
+        motion = velocities(times, pose, broken[1:])
+        pose[..., 2] = _direction(motion[..., 0], motion[..., 1])
+        pose[np.isnan(pose[..., 2])] = np.nan
+    pose[..., 2] = unwrapped(pose[..., 2])
+    velocity = velocities(times, pose, broken[1:])
+    there = np.isfinite(pose[..., 0])
+    recording = recording_of(
+        times,
+        pose,
+        pool=layout.pool,
+        hull=layout.hull,
+        velocity=velocity,
+        ids=names,
+        leaders=layout.leaders,
+        target=layout.target,
+    )
+    found = TrackReport(
+        frames=len(frames),
+        boats=len(names),
+        samples=int(there.sum()),
+        missing=missing,
+        jumps=jumps,
+        broken=int(broken.sum()),
+        lone=int((there & np.isnan(velocity[..., 0])).sum()),
+    )
+    report(found)
+    return recording
 
-    Its ``position`` has the dimensions time, space, keypoints and individuals; ``time`` is in s, or
-    in frames where the attribute ``time_unit`` says so. Columns of the layout are not used.
 
-    Parameters
-    ----------
-    dataset
-        The dataset.
-    layout
-        Pool, hull, scale, center and greatest speed; frames per second where times are in frames.
-    center
-        Key point that is a boat's position; the mean of all by default.
-    tail, head
-        Key points that the heading joins; without them the heading is the direction of motion.
-
-    Raises
-    ------
-    ParameterError
-        For a dataset without positions in the plane, unknown key points, and as for `load_tracks`.
-    """
-    position = dataset.get("position")
-    if position is None or not {"time", "space", "individuals"} <= set(position.dims):
-        raise ParameterError("the dataset has no position by time, space and individuals")
-    if (tail is None) != (head is None):
-        raise ParameterError("a heading joins two key points: tail and head, or neither")
-    if "keypoints" not in position.dims:
-        position = position.expand_dims(keypoints=["position"])
-    known = [str(each) for each in position.coords["keypoints"].values]
-    chosen = {name: name for name in (center, tail, head) if name is not None}
-    refuse_unknown(chosen, known, "key point")
-    points = {name: position.sel(keypoints=name, drop=True) for name in chosen}
-    points["mean"] = position.mean("keypoints", skipna=False)
-    columns = {
-        f"{name}_{axis}": point.sel(space=axis, drop=True)
-        for name, point in points.items()
-        for axis in "xy"
-    }
-    table = dataset.assign(columns)[list(columns)].to_dataframe().reset_index()
-    is_in_frames = dataset.attrs.get("time_unit") == "frames"
-    if is_in_frames and layout.fps is None:
-        raise ParameterError("times are in frames: name fps in the layout")
-    place, ends = center or "mean", (tail, head)
-    heading = None if tail is None else tuple(f"{end}_{axis}" for end in ends for axis in "xy")
-    described: dict[str, Any] = {
-        "frame": "time",
-        "fps": layout.fps if is_in_frames else None,
-        "id": "individuals",
-        "x": f"{place}_x",
-        "y": f"{place}_y",
-        "heading": heading,
-    }
-    return from_table(table, replace(layout, **described))
-
-
-def from_table(table: "pd.DataFrame", layout: TrackLayout) -> Tracks:
-    """Return tracks of a table with one row per frame and boat; see `load_tracks`."""
+def _rows(table: "pd.DataFrame", layout: TrackLayout) -> "pd.DataFrame":
+    """Return frame, id, x and y in cm and heading in rad, from the center of the pool, y up."""
     names = [layout.frame, layout.id, layout.x, layout.y]
     names += [layout.heading] if isinstance(layout.heading, str) else layout.heading or ()
     for name in names:
         if name not in table:
             there = ", ".join(map(str, table.columns))
             raise ParameterError(f"column {name!r} is missing; there are {there}")
-    frames, ids = _numbers(table, layout.frame), table[layout.id].convert_dtypes()
+    frames, x, y = (_numbers(table, name) for name in (layout.frame, layout.x, layout.y))
     if not np.isfinite(frames).all():
         raise ParameterError(f"column {layout.frame!r} has rows without a number")
-    rows = _poses(table, layout)
-    used = np.isfinite(rows).all(axis=1) & ids.notna().to_numpy(bool)
-    if not used.any():
-        raise ParameterError("no row has a name, a position and a heading")
-    given = np.array(ids[used].astype(str).tolist())
-    # By their length, then alphabet, so that 2 comes before 10.
-    order = np.array(sorted(set(given.tolist()), key=lambda name: (len(name), name)))
-    by_name = np.argsort(order)
-    at_id = by_name[np.searchsorted(order, given, sorter=by_name)]
-    times = np.unique(frames)
-    at_frame = np.searchsorted(times, frames[used])
-    if len(times) * len(order) > max(_FEW, _SPARSEST * len(table)):
-        raise ParameterError(
-            f"{len(order)} names in {len(times)} frames are too many for {len(table)} rows: join "
-            "fragments of tracks, or read a part of the file"
-        )
-    counts = np.bincount(at_frame * len(order) + at_id)
-    if (counts > 1).any():
-        frame, boat = np.divmod(int(counts.argmax()), len(order))
-        raise ParameterError(
-            f"{str(order[boat])!r} is there {counts.max()} times in frame {times[frame]:g}"
-        )
-    pose = np.full((len(times), len(order), 3), np.nan)
-    pose[at_frame, at_id] = rows[used]
-    seconds = (times - times[0]) / (1.0 if layout.fps is None else layout.fps)
-    return _cleaned(seconds, pose, order, layout, missing=int((~used).sum()))
-
-
-def _numbers(table: "pd.DataFrame", name: str) -> NDArray[np.float64]:
-    try:
-        return table[name].to_numpy(dtype=np.float64, na_value=np.nan)
-    except (TypeError, ValueError) as error:
-        raise ParameterError(f"column {name!r} holds other things than numbers") from error
-
-
-def _poses(table: "pd.DataFrame", layout: TrackLayout) -> NDArray[np.float64]:
-    """Return each row's x and y in cm and heading in rad, from the center of the pool, y up."""
-    places = np.stack([_numbers(table, name) for name in (layout.x, layout.y)], axis=-1)
     up = -1.0 if layout.y_down else 1.0
-    xy = (places - layout.center) * layout.cm_per_unit * np.array([1.0, up])
     if layout.heading is None:
         heading = np.zeros(len(table))
     elif isinstance(layout.heading, str):
@@ -265,7 +218,20 @@ def _poses(table: "pd.DataFrame", layout: TrackLayout) -> NDArray[np.float64]:
     else:
         x_tail, y_tail, x_head, y_head = (_numbers(table, name) for name in layout.heading)
         heading = _direction(x_head - x_tail, y_head - y_tail)
-    return np.column_stack([xy, up * heading])
+    rows = table[[layout.id]].convert_dtypes().set_axis(["id"], axis=1)
+    return rows.assign(
+        frame=frames,
+        x=(x - layout.center[0]) * layout.cm_per_unit,
+        y=(y - layout.center[1]) * layout.cm_per_unit * up,
+        heading=up * heading,
+    )
+
+
+def _numbers(table: "pd.DataFrame", name: str) -> NDArray[np.float64]:
+    try:
+        return table[name].to_numpy(dtype=np.float64, na_value=np.nan)
+    except (TypeError, ValueError) as error:
+        raise ParameterError(f"column {name!r} holds other things than numbers") from error
 
 
 def _direction(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -273,65 +239,21 @@ def _direction(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.flo
     return np.where((x == 0.0) & (y == 0.0), np.nan, np.arctan2(y, x))
 
 
-def _cleaned(
-    times: NDArray[np.float64],
-    pose: NDArray[np.float64],
-    ids: NDArray[np.str_],
-    layout: TrackLayout,
-    missing: int,
-) -> Tracks:
-    jumps, broken = _jumps(times, pose, layout.max_speed_cm_s)
-    pose[jumps] = np.nan
-    if layout.heading is None:
-        motion = velocities(times, pose, broken)
-        pose[..., 2] = _direction(motion[..., 0], motion[..., 1])
-        pose[np.isnan(pose[..., 2])] = np.nan
-    pose[..., 2] = unwrapped(pose[..., 2])
-    velocity = velocities(times, pose, broken)
-    there = np.isfinite(pose[..., 0])
-    report = TrackReport(
-        frames=len(times),
-        boats=len(ids),
-        samples=int(there.sum()),
-        missing=missing,
-        jumps=int(jumps.sum()),
-        broken=int(broken.sum()),
-        lone=int((there & np.isnan(velocity[..., 0])).sum()),
-    )
-    recording = recording_of(
-        times,
-        pose,
-        pool=layout.pool,
-        hull=layout.hull,
-        velocity=velocity,
-        ids=ids.tolist(),
-        leaders=layout.leaders,
-        target=layout.target,
-    )
-    return Tracks(recording, report)
+def _without_jumps(rows: "pd.DataFrame", most_cm: float) -> "tuple[pd.DataFrame, int]":
+    """Return the rows but for those that only faster steps than the greatest reach, their number.
+
+    Rows follow each other by name, then frame.
+    """
+    too_fast = _too_fast(rows, most_cm)
+    # A track's first and last sample have no other side.
+    first, last = ~rows["id"].duplicated(), ~rows["id"].duplicated(keep="last")
+    leaves_too_fast = np.append(too_fast[1:], False)
+    jumps = (too_fast | first) & (leaves_too_fast | last) & ~(first & last)
+    return rows[~jumps], int(jumps.sum())
 
 
-def _jumps(
-    times: NDArray[np.float64], pose: NDArray[np.float64], most_cm_s: float
-) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Return samples that only faster steps than the greatest reach, and the other such steps."""
-    samples, boats = pose.shape[:2]
-    jumps = np.zeros((samples, boats), bool)
-    broken = np.zeros((max(samples - 1, 0), boats), bool)
-    for boat in range(boats):
-        there = np.flatnonzero(np.isfinite(pose[:, boat, 0]))
-        too_fast = _too_fast(times[there], pose[there, boat, :2], most_cm_s)
-        # A track's first and last sample have no other side.
-        ends = np.r_[True, too_fast] & np.r_[too_fast, True]
-        jumps[there, boat] = ends & too_fast.any()
-        there = there[~jumps[there, boat]]
-        left = _too_fast(times[there], pose[there, boat, :2], most_cm_s)
-        broken[there[1:][left] - 1, boat] = True
-    return jumps, broken
-
-
-def _too_fast(
-    times: NDArray[np.float64], points: NDArray[np.float64], most_cm_s: float
-) -> NDArray[np.bool_]:
-    steps = np.diff(points, axis=0)
-    return np.hypot(steps[:, 0], steps[:, 1]) > most_cm_s * np.diff(times)
+def _too_fast(rows: "pd.DataFrame", most_cm: float) -> NDArray[np.bool_]:
+    """Return which rows a step of more than so many cm per frame reaches."""
+    frames, x, y = rows.groupby("id")[["frame", "x", "y"]].diff().to_numpy().T
+    too_fast: NDArray[np.bool_] = np.hypot(x, y) > most_cm * frames
+    return too_fast

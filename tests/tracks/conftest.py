@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 import flockenv
-from flockenv.tracks import TrackLayout
+from flockenv.tracks import TrackLayout, read_tracks
 
 PIXEL_CM = 0.25
 CENTER = (812.0, 604.5)
@@ -52,3 +52,11 @@ def seen() -> Seen:
     )
     dropped = np.random.default_rng(1).random(len(rows)) < 0.003
     return Seen(truth, rows[~dropped].reset_index(drop=True), int(dropped.sum()))
+
+
+def read_and_counted(source, layout=None):
+    """Return the recording of tracks and the report of what was left out."""
+    reports = []
+    recording = read_tracks(source, layout, reports.append)
+    (report,) = reports
+    return recording, report

@@ -5,17 +5,16 @@ import pandas as pd
 import pytest
 
 import flockenv
-from flockenv.tracks import TrackLayout, from_movement, from_table, layout_beside, read_tracks
+from flockenv.tracks import TrackLayout, read_layout, read_tracks
 
-from .conftest import CENTER, LAYOUT, PARAMETERS, PIXEL_CM
+from .conftest import CENTER, LAYOUT, PIXEL_CM, read_and_counted
 
 
 def test_a_camera_gives_back_the_run(seen):
-    tracks = from_table(seen.table, LAYOUT)
-    assert tracks.report.samples == len(seen.table)
-    assert tracks.report.samples + seen.missing == seen.truth.pose[..., 0].size
-    assert (tracks.report.missing, tracks.report.jumps, tracks.report.broken) == (0, 0, 0)
-    found = tracks.recording
+    found, report = read_and_counted(seen.table, LAYOUT)
+    assert report.samples == len(seen.table)
+    assert report.samples + seen.missing == seen.truth.pose[..., 0].size
+    assert (report.missing, report.jumps, report.broken) == (0, 0, 0)
     assert found.ids.tolist() == [f"boat{number + 1}" for number in range(20)]
     assert found.parameters.n_leaders == 2
     assert np.allclose(found.time_s, seen.truth.time_s)
@@ -57,7 +56,7 @@ def test_heading_from_two_key_points(seen):
         yh=seen.table["y_px"] + 20 * np.sin(angle),
     )
     layout = TrackLayout(**{**fields(LAYOUT), "heading": ("xt", "yt", "xh", "yh")})
-    by_points, by_angle = (from_table(table, each).recording.pose for each in (layout, LAYOUT))
+    by_points, by_angle = (read_tracks(table, each).pose for each in (layout, LAYOUT))
     assert np.nanmax(np.abs(without_turns(by_points - by_angle))) < 1e-9
 
 
@@ -67,7 +66,7 @@ def test_heading_from_motion():
     table = pd.DataFrame(
         {"frame": time_s, "id": "a", "x": 100 * np.cos(angle), "y": 100 * np.sin(angle)}
     )
-    found = from_table(table, TrackLayout(pool="wide", heading=None)).recording
+    found = read_tracks(table, TrackLayout(pool="wide", heading=None))
     # Counter-clockwise on a circle: a quarter turn ahead of the place.
     assert np.allclose(found.pose[1:-1, 0, 2], angle[1:-1] + np.pi / 2, atol=1e-6)
     expected = np.stack([-10 * np.sin(angle), 10 * np.cos(angle), 0.1 + 0 * angle], axis=1)
@@ -91,10 +90,10 @@ OPEN = TrackLayout(pool="wide", fps=10.0)
 def test_a_jump_is_left_out_and_counted():
     table = line()
     table.loc[(table["frame"] == 4) & (table["id"] == 1), "x"] = 90.0
-    tracks = from_table(table, OPEN)
-    assert (tracks.report.jumps, tracks.report.broken, tracks.report.samples) == (1, 0, 29)
-    assert np.isnan(tracks.recording.pose[4, 1]).all()
-    assert np.nanmax(np.abs(tracks.recording.velocity[..., 0] - 10.0)) < 1e-9
+    recording, report = read_and_counted(table, OPEN)
+    assert (report.jumps, report.broken, report.samples) == (1, 0, 29)
+    assert np.isnan(recording.pose[4, 1]).all()
+    assert np.nanmax(np.abs(recording.velocity[..., 0] - 10.0)) < 1e-9
 
 
 def test_exchanged_names_are_counted_and_give_no_velocity():
@@ -103,19 +102,18 @@ def test_exchanged_names_are_counted_and_give_no_velocity():
     table.loc[late, "y"] = np.where(table["id"] == 0, 40.0, np.where(table["id"] == 2, 0.0, 20.0))[
         late
     ]
-    tracks = from_table(table, OPEN)
-    assert (tracks.report.jumps, tracks.report.broken, tracks.report.samples) == (0, 2, 30)
-    assert np.nanmax(np.abs(tracks.recording.velocity[..., 1])) < 1e-9
-    assert np.isfinite(tracks.recording.velocity).all()
+    recording, report = read_and_counted(table, OPEN)
+    assert (report.jumps, report.broken, report.samples) == (0, 2, 30)
+    assert np.nanmax(np.abs(recording.velocity[..., 1])) < 1e-9
+    assert np.isfinite(recording.velocity).all()
 
 
 def test_boats_that_come_and_go():
     table = line()
     table = table[~((table["id"] == 2) & (table["frame"] < 6))]
     table = table[~((table["id"] == 0) & ~table["frame"].isin([3]))]
-    tracks = from_table(table, OPEN)
-    assert tracks.report.lone == 1
-    recording = tracks.recording
+    recording, report = read_and_counted(table, OPEN)
+    assert report.lone == 1
     assert np.isfinite(recording.pose[..., 0]).sum(axis=1).tolist() == [
         1,
         1,
@@ -136,15 +134,15 @@ def test_boats_that_come_and_go():
 def test_rows_without_a_name_are_left_out_and_counted():
     for names in ([1.0, 2.0, np.nan], ["ann", "bob", None]):
         table = line(id=pd.Series(np.resize(np.array(names, object), 30)).infer_objects())
-        tracks = from_table(table, OPEN)
-        assert tracks.recording.ids.tolist() == [str(each).removesuffix(".0") for each in names[:2]]
-        assert (tracks.report.missing, tracks.report.samples) == (10, 20)
+        recording, report = read_and_counted(table, OPEN)
+        assert recording.ids.tolist() == [str(each).removesuffix(".0") for each in names[:2]]
+        assert (report.missing, report.samples) == (10, 20)
 
 
 def test_rows_of_which_all_is_missing_are_counted():
     table = line()
     table.loc[7:9, ["x", "y", "heading"]] = np.nan
-    assert from_table(table, OPEN).report.missing == 3
+    assert read_and_counted(table, OPEN)[1].missing == 3
 
 
 def test_fragments_that_would_fill_the_memory_are_refused():
@@ -152,13 +150,13 @@ def test_fragments_that_would_fill_the_memory_are_refused():
     places = {"frame": np.arange(count), "id": np.arange(count), "x": 1.0, "y": 0.0}
     table = pd.DataFrame({**places, "heading": 0.0})
     with pytest.raises(flockenv.ParameterError, match="10000 names in 10000 frames are too many"):
-        from_table(table, OPEN)
-    assert from_table(table[:2000], OPEN).report.lone == 2000
+        read_tracks(table, OPEN)
+    assert read_and_counted(table[:2000], OPEN)[1].lone == 2000
 
 
 def test_names_are_sorted_as_numbers():
-    tracks = from_table(line(id=np.tile([10, 2, 1], 10)), OPEN)
-    assert tracks.recording.ids.tolist() == ["1", "2", "10"]
+    recording = read_tracks(line(id=np.tile([10, 2, 1], 10)), OPEN)
+    assert recording.ids.tolist() == ["1", "2", "10"]
 
 
 @pytest.mark.parametrize(
@@ -183,11 +181,13 @@ def test_names_are_sorted_as_numbers():
         (line(), {"leaders": "10"}, "leaders = '10' is not accepted: a list of names"),
         (line(), {"x": 3}, "x = 3 is not accepted: the name of a column"),
         (line(), {"hull": (5.0,)}, "hull = (5.0,) is not accepted: two numbers"),
+        (line(), {"hull": (-5.0, 0.5)}, "boat_radius_cm = -5 is not accepted"),
+        (line(), {"target": 5}, "target = 5 is not accepted: cw, ccw, or one of them per leader"),
     ],
 )
 def test_mistakes_are_named(table, changes, words):
     with pytest.raises(flockenv.ParameterError) as raised:
-        from_table(table, TrackLayout(**{**fields(OPEN), **changes}))
+        read_tracks(table, TrackLayout(**{**fields(OPEN), **changes}))
     assert words in str(raised.value)
 
 
@@ -198,10 +198,10 @@ def test_files_with_their_layout_beside_them(seen, tmp_path):
         f"center = [{CENTER[0]}, {CENTER[1]}]\ny_down = true\n"
     )
     (tmp_path / "tracks.toml").write_text(layout)
-    assert layout_beside(tmp_path / "tracks.csv") == LAYOUT
+    assert read_layout(tmp_path / "tracks.toml") == LAYOUT
     seen.table.to_csv(tmp_path / "tracks.csv", index=False)
     seen.table.to_parquet(tmp_path / "tracks.parquet", index=False)
-    expected = from_table(seen.table, LAYOUT).recording
+    expected = read_tracks(seen.table, LAYOUT)
     for name in ("tracks.csv", "tracks.parquet"):
         assert read_tracks(tmp_path / name) == expected
 
@@ -221,35 +221,23 @@ def test_files_that_are_none(tmp_path):
         read_tracks(tmp_path / "noise.parquet", OPEN)
     (tmp_path / "wrong.toml").write_text("pool = 'narrow'\nfbs = 25\n")
     with pytest.raises(flockenv.ParameterError, match="'fbs' is no field of a layout"):
-        layout_beside(tmp_path / "wrong.csv")
+        read_layout(tmp_path / "wrong.toml")
+    with pytest.raises(flockenv.ParameterError, match="layout is missing"):
+        read_tracks(line())
 
 
-def test_a_dataset_of_movement(seen):
-    xarray = pytest.importorskip("xarray")
-    truth = seen.truth
-    ahead = np.stack([np.cos(truth.pose[..., 2]), np.sin(truth.pose[..., 2])], axis=1)
-    middle = np.moveaxis(truth.pose[..., :2], 2, 1)
-    position = np.stack([middle - 5 * ahead, middle, middle + 5 * ahead], axis=2)
-    dataset = xarray.Dataset(
-        {"position": (("time", "space", "keypoints", "individuals"), position)},
-        coords={
-            "time": truth.time_s,
-            "space": ["x", "y"],
-            "keypoints": ["stern", "mast", "bow"],
-            "individuals": [f"boat{number + 1}" for number in range(PARAMETERS.n_boats)],
-        },
-        attrs={"time_unit": "seconds", "source_software": "none", "ds_type": "poses"},
-    )
-    layout = TrackLayout(pool="narrow", leaders=("boat1", "boat2"))
-    found = from_movement(dataset, layout, center="mast", tail="stern", head="bow").recording
-    assert np.allclose(found.pose, truth.pose, atol=1e-9)
-    assert np.allclose(found.order.psi_o, truth.order.psi_o, atol=1e-9)
-    by_mean = from_movement(dataset, layout).recording
-    assert np.allclose(by_mean.pose[..., :2], truth.pose[..., :2], equal_nan=True)
-    with pytest.raises(flockenv.ParameterError, match="there are stern, mast, bow"):
-        from_movement(dataset, layout, tail="stern", head="nose")
-    with pytest.raises(flockenv.ParameterError, match="no position by time"):
-        from_movement(dataset.drop_vars("position"), layout)
-    frames = dataset.assign_coords(time=np.arange(len(truth))).assign_attrs(time_unit="frames")
-    with pytest.raises(flockenv.ParameterError, match="name fps"):
-        from_movement(frames, layout)
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("pool = 5", "pool must be a pool's name or"),
+        ("pool = 'narrow'\ntarget = 5", "target = 5 is not accepted"),
+        ("pool = 'narrow'\nleaders = 5", "leaders = 5 is not accepted: a list of names"),
+        ("fps = 5", "pool is missing"),
+        ("pool = ", "is no TOML"),
+    ],
+)
+def test_a_layout_of_the_wrong_kind_names_its_file(tmp_path, text, words):
+    (tmp_path / "layout.toml").write_text(text)
+    with pytest.raises(flockenv.ParameterError, match=r"layout\.toml") as raised:
+        read_layout(tmp_path / "layout.toml")
+    assert words in str(raised.value)

@@ -8,14 +8,14 @@ import pytest
 import flockenv
 from flockenv.recording import Recording
 from flockenv.statistics.structure import structure_series
-from flockenv.tracks import from_table, recording_of
+from flockenv.tracks import read_tracks, recording_of
 
 from .conftest import LAYOUT
 
 
 @pytest.fixture(scope="module")
 def tracked(seen):
-    return from_table(seen.table, LAYOUT).recording
+    return read_tracks(seen.table, LAYOUT)
 
 
 def test_it_is_saved_and_loaded(tracked, tmp_path):

@@ -4,18 +4,17 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv.tracks import export, from_table, load_tracks, read_tracks
+from flockenv.tracks import export, read_tracks
 
-from .conftest import LAYOUT, PARAMETERS
+from .conftest import LAYOUT, PARAMETERS, read_and_counted
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".parquet"])
 def test_tables_are_read_back(seen, tmp_path, suffix):
     written = export(seen.truth, tmp_path / f"run{suffix}")
     assert [path.name for path in written] == [f"run{suffix}", "run.toml"]
-    found = load_tracks(written[0])
-    recording = found.recording
-    assert found.report.samples == seen.truth.pose[..., 0].size
+    recording, report = read_and_counted(written[0])
+    assert report.samples == seen.truth.pose[..., 0].size
     assert np.allclose(recording.time_s, seen.truth.time_s, atol=1e-12)
     assert np.array_equal(recording.pose, seen.truth.pose)
     assert recording.parameters.n_leaders == PARAMETERS.n_leaders
@@ -23,7 +22,7 @@ def test_tables_are_read_back(seen, tmp_path, suffix):
 
 
 def test_tracked_boats_keep_their_names(seen, tmp_path):
-    tracked = from_table(seen.table, LAYOUT).recording
+    tracked = read_tracks(seen.table, LAYOUT)
     again = read_tracks(export(tracked, tmp_path / "run.csv")[0])
     assert again.ids.tolist() == tracked.ids.tolist()
     assert np.allclose(again.pose, tracked.pose, atol=1e-9, equal_nan=True)
@@ -65,7 +64,7 @@ def _check_nematic(freud, frame, expected):
 
 def test_a_boat_that_is_not_there_is_in_no_frame(seen, tmp_path):
     hoomd = pytest.importorskip("gsd.hoomd")
-    tracked = from_table(seen.table, LAYOUT).recording
+    tracked = read_tracks(seen.table, LAYOUT)
     (path,) = export(tracked, tmp_path / "run.gsd")
     with hoomd.open(str(path), "r") as file:
         counts = np.array([frame.particles.N for frame in file])
