@@ -287,10 +287,6 @@ export class LivePage {
     byId("story").replaceChildren(...(lesson ? storyOf(lesson) : []));
     for (const link of byId("lessons").querySelectorAll("a")) {
       link.setAttribute("aria-current", String(link.dataset.lesson === name));
-      if (link.dataset.lesson === name) {
-        // Into view, where the row is wider than the window.
-        byId("lessons").scrollLeft = link.offsetLeft - byId("lessons").offsetLeft;
-      }
     }
   }
 
@@ -325,7 +321,8 @@ export class LivePage {
       button.addEventListener("click", () => this.#copy(button));
     }
     this.#listenToRudder();
-    window.addEventListener("hashchange", () => this.follow(location.hash));
+    // Not the address now: the link of what is shown may have been written since.
+    window.addEventListener("hashchange", ({ newURL }) => this.follow(new URL(newURL).hash));
     document.addEventListener("keydown", (event) => this.#key(event, true));
     document.addEventListener("keyup", (event) => this.#key(event, false));
     document.addEventListener("dragover", (event) => event.preventDefault());
@@ -532,7 +529,7 @@ export class LivePage {
     this.rate.passed += passed;
     if (now - this.rate.since > 1000) {
       const rate = (1000 * this.rate.passed) / (now - this.rate.since);
-      this.rate = { since: now, passed: 0, words: ` · ${fixed(rate, rate < 10 ? 1 : 0)} × real time` };
+      this.rate = { since: now, passed: 0, words: `${fixed(rate, rate < 10 ? 1 : 0)} × real time` };
     }
   }
 
@@ -565,7 +562,8 @@ export class LivePage {
 
   #showWords() {
     const [run] = this.runs;
-    byId("clock").textContent = `${fixed(this.time, 1)} s${this.playing ? this.rate?.words ?? "" : ""}`;
+    // While a flock plays, the time above its picture runs ahead of words that are written more rarely.
+    byId("clock").textContent = this.playing && !this.recorded ? this.rate?.words ?? "" : `${fixed(this.time, 1)} s`;
     Object.assign(byId("scrub"), { min: run.time[0], max: run.end, value: this.time });
     byId("scrub").setAttribute("aria-valuetext", `${fixed(this.time, 1)} s`);
     for (const [, key] of this.charts) {
@@ -600,10 +598,17 @@ export class LivePage {
     const seconds = 480;
     const { flock } = this.shown;
     const isYours = flock.leaders === "you";
-    const same = isYours ? { ...flock, leaders: "paper's law at every substep" } : flock;
-    byId("command").value = commandLine(same, seconds);
-    byId("python").value = pythonText(same, seconds, this.kinds);
-    byId("same").textContent = isYours ? "Your own rudders are in the recording alone: these run the law in your place." : "";
+    const flocks = [isYours ? { ...flock, leaders: "paper's law at every substep" } : flock];
+    if (this.shown.beside && !isYours) {
+      flocks.push({ ...flock, ...this.shown.beside });
+    }
+    const commands = flocks.map((each) => commandLine(each, seconds));
+    byId("command").value = commands.join("\n").trim();
+    byId("python").value = pythonText(flocks, seconds, this.kinds);
+    byId("same").textContent = [
+      isYours ? "Your own rudders are in the recording alone: these run the law in your place." : "",
+      commands.includes("") ? "No command gives each leader a policy of its own, as Python does." : "",
+    ].join("");
   }
 
   /** Brings the page's link up to date, soon: not more often than browsers allow. */

@@ -90,8 +90,12 @@ function listed(value) {
   return `[${value.split(",").join(", ")}]`;
 }
 
-/** The same in Python. `kinds`: what kind of value each field has. */
-export function pythonText(flock, seconds, kinds) {
+/** The same in Python, for one flock or two. `kinds`: what kind of value each field has. */
+export function pythonText(flocks, seconds, kinds) {
+  return ["import flockenv", ...flocks.map((flock, place) => simulation(flock, seconds, kinds, place > 0 ? "beside" : "recording")), ""].join("\n");
+}
+
+function simulation(flock, seconds, kinds, name) {
   const changes = Object.entries(flock).filter(([name]) => isOwn(name))
     .map(([name, value]) => `${name}=${pythonValue(value, kinds[name])}`);
   const { leaders = "paper's law at every substep" } = flock;
@@ -99,11 +103,9 @@ export function pythonText(flock, seconds, kinds) {
   const steering = each.length > 1 ? `{${each.join(", ")}}` : `"${leaders}"`;
   const policy = leaders === "paper's law at every substep" ? "" : `, policy=${steering}`;
   return [
-    "import flockenv",
     "",
     `parameters = flockenv.FlockParameters.preset("${flock.preset ?? "simulation"}")${changes.length > 0 ? `.replace(\n    ${changes.join(", ")}\n)` : ""}`,
-    `recording = flockenv.simulate(parameters, seed=${flock.seed ?? 0}, duration_s=${seconds}${policy})`,
-    "",
+    `${name} = flockenv.simulate(parameters, seed=${flock.seed ?? 0}, duration_s=${seconds}${policy})`,
   ].join("\n");
 }
 

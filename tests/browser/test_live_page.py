@@ -390,6 +390,14 @@ def test_every_scene_is_a_link_to_a_flock(open_live):
     assert live.complaints() == []
 
 
+def test_a_link_is_followed_where_the_address_is_written_at_the_same_moment(live):
+    live.script(
+        """location.hash = '#n_boats=9&seed=3';
+        history.replaceState(null, '', '#n_boats=12&seed=7');"""
+    )
+    live.until("return page.runs[0].boats === 9")
+
+
 def test_noise_makes_motion(open_live):
     """At bw_s = 0 the flock jams, at 0.6 and 1 s it circles, at 2.8 s it does neither."""
     live = open_live().go("")
@@ -613,6 +621,11 @@ def test_texts_of_the_flock_are_shown_and_copied(live, chromium):
         "flockenv run --set n_boats=12 --set n_leaders=2 --set bw_s=0.3 --seed 7 --minutes 8"
     )
     assert "flockenv.simulate(parameters, seed=7" in live.find("#python").get_attribute("value")
+    live.choose("#beside", "leaders=learned")
+    live.until("return page.runs.length === 2")
+    commands = live.find("#command").get_attribute("value").split("\n")
+    assert commands == [command, command.replace("--seed", '--policy "learned" --seed')]
+    assert 'policy="learned"' in live.find("#python").get_attribute("value")
     for button in live.driver.find_elements("css selector", "[data-copies]"):
         live.script("document.getElementById('status').textContent = ''")
         button.click()

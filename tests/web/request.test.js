@@ -63,7 +63,7 @@ test("the same flock as a command", () => {
 
 test("the same flock in Python", () => {
   const kinds = { n_boats: "count", pool: "pool", target: "choices" };
-  assert.equal(pythonText({ n_boats: "27", pool: "inf,0", target: "cw,ccw", leaders: "learned" }, 60, kinds), [
+  assert.equal(pythonText([{ n_boats: "27", pool: "inf,0", target: "cw,ccw", leaders: "learned" }], 60, kinds), [
     "import flockenv", "",
     'parameters = flockenv.FlockParameters.preset("simulation").replace(',
     '    n_boats=27, pool=(float("inf"), 0), target=["cw", "ccw"]', ")",
@@ -74,7 +74,7 @@ test("the same flock in Python", () => {
 test("leaders with policies of their own are no command, and a dictionary in Python", () => {
   const flock = { n_leaders: "2", leaders: "learned,paper's law" };
   assert.equal(commandLine(flock, 60), "");
-  assert.match(pythonText(flock, 60, { n_leaders: "count" }), /policy=\{"leader_0": "learned", "leader_1": "paper's law"\}\)\n$/);
+  assert.match(pythonText([flock], 60, { n_leaders: "count" }), /policy=\{"leader_0": "learned", "leader_1": "paper's law"\}\)\n$/);
 });
 
 test("parameters as TOML are read back as the request that they came from", () => {

@@ -17,7 +17,8 @@ SCRIPT = """
 import { readFileSync } from "node:fs";
 import { commandLine, pythonText } from "./web/request.mjs";
 const { flocks, kinds } = JSON.parse(readFileSync(0, "utf8"));
-const texts = flocks.map((each) => [commandLine(each, 90), pythonText(each, 90, kinds)]);
+const pair = (each) => [each, { ...each, bw_s: "0.2" }];
+const texts = flocks.map((each) => [commandLine(each, 90), pythonText(pair(each), 90, kinds)]);
 process.stdout.write(JSON.stringify(texts));
 """
 KINDS = {
@@ -69,8 +70,10 @@ def test_command_and_python_name_the_same_flock(flock, expected, pytestconfig, t
     assert words[words.index("--seed") + 1] == flock.get("seed", "0")
     same = tmp_path / "same.py"
     same.write_text(python)
-    recording = runpy.run_path(str(same))["recording"]
+    recorded = runpy.run_path(str(same))
+    recording = recorded["recording"]
     assert recording.parameters == wanted
+    assert recorded["beside"].parameters == wanted.replace(bw_s=0.2)
     assert recording.seed == int(flock.get("seed", "0"))
     assert recording.duration_s == 90.0
     assert recording.policy.startswith(
