@@ -50,13 +50,7 @@ def hint(name: object, known: Iterable[str]) -> str:
 
 
 def refuse_unknown(names: Iterable[object], known: Iterable[str], what: str) -> None:
-    """Refuse names that are none of those that are known.
-
-    Raises
-    ------
-    ParameterError
-        For the first of them, with the nearest name that is `what`.
-    """
+    """Refuse names that are none of those that are known: each is to be a `what`."""
     known = list(known)
     for name in names:
         if name not in known:

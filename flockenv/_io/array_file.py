@@ -27,13 +27,7 @@ def write_arrays(
 
 
 def is_special(path: str | os.PathLike[str]) -> bool:
-    """Return whether a path is a device, a pipe or a socket, which may be without end.
-
-    Raises
-    ------
-    OSError
-        If there is no such file.
-    """
+    """Return whether a path that is there is a device, a pipe or a socket, maybe without end."""
     mode = os.stat(path).st_mode
     return not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))
 
@@ -43,19 +37,8 @@ def read_arrays(
 ) -> dict[str, NDArray[Any]]:
     """Read all arrays of a file; nothing in it is ever executed.
 
-    Parameters
-    ----------
-    path
-        The file.
-    most_bytes
-        What all arrays together may hold; None: `MOST_BYTES`.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be opened.
-    ParameterError
-        If it is no ``.npz`` file of plain numbers and strings, cut off, damaged or too large.
+    A ParameterError names a file that is no ``.npz`` file of plain numbers and strings, is cut off
+    or damaged, or whose arrays hold more than `most_bytes` together.
     """
     if is_special(path):
         raise ParameterError(f"{path} is no .npz file but a device, a pipe or a socket")

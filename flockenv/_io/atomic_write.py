@@ -19,12 +19,8 @@ _temporary: set[Path] = set()
 def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     """Open a file for writing bytes: a temporary one beside it, renamed where all went well.
 
-    It is removed on every way out but a kill, at the latest when Python ends.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written; what was there before is still there.
+    It is removed on every way out but a kill, at the latest when Python ends. If the file cannot be
+    written, which is an OSError, what was there before is still there.
     """
     target = Path(path)
     temporary = target.parent / f".{secrets.token_hex(8)}.tmp"

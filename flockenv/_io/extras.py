@@ -11,13 +11,7 @@ class MissingExtraError(FlockError, ImportError):
 
 
 def require(module: str, extra: str) -> Any:
-    """Import a module of an optional extra.
-
-    Raises
-    ------
-    MissingExtraError
-        If it is not installed.
-    """
+    """Import a module of an optional extra; a MissingExtraError says how to install it."""
     try:
         return importlib.import_module(module)
     except ModuleNotFoundError as error:

@@ -30,13 +30,7 @@ def interrupted() -> bool:
 
 
 def end_if_interrupted() -> None:
-    """End the work where nothing is half done.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If Ctrl-C was noted.
-    """
+    """Raise KeyboardInterrupt, where nothing is half done, if Ctrl-C was noted."""
     if _is_noted:
         raise KeyboardInterrupt
 

@@ -10,15 +10,7 @@ _MOST_BYTES = 1 << 20
 
 
 def read_limited(path: str | os.PathLike[str], otherwise: str) -> bytes:
-    """Return the content of a file, pipe or device of at most 1 MiB.
-
-    Raises
-    ------
-    OSError
-        If it cannot be read.
-    ParameterError
-        If it is larger; the message starts with `otherwise`.
-    """
+    """Return the content of a file of at most 1 MiB; errors start with `otherwise`."""
     with open(path, "rb") as file:
         data = file.read(_MOST_BYTES + 1)
     if len(data) > _MOST_BYTES:
@@ -27,13 +19,7 @@ def read_limited(path: str | os.PathLike[str], otherwise: str) -> bytes:
 
 
 def read_toml_file(path: str | os.PathLike[str], what: str) -> dict[str, Any]:
-    """Return the values in a TOML file of at most 1 MiB, which errors call `what`.
-
-    Raises
-    ------
-    ParameterError
-        For a file that cannot be read, is larger, or is no TOML.
-    """
+    """Return the values in a TOML file of at most 1 MiB, which ParameterErrors call `what`."""
     try:
         return read_toml(read_limited(path, f"{what} is no TOML").decode(), what)
     except OSError as error:
@@ -45,12 +31,7 @@ def read_toml_file(path: str | os.PathLike[str], what: str) -> dict[str, Any]:
 def read_toml(text: str, what: str) -> dict[str, Any]:
     """Return the values in a TOML text, which errors call `what`.
 
-    Raises
-    ------
-    ParameterError
-        For text that is no TOML, and for numbers and nesting that nothing here could take.
-    TypeError
-        For what is no text.
+    Numbers and nesting that nothing here could take are refused too, as a ParameterError.
     """
     if not isinstance(text, str):
         raise TypeError(f"{what} must be a string, not {type(text).__name__}")

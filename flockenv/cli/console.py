@@ -34,18 +34,10 @@ def print_json(data: Any) -> None:
 def progress(
     what: str, total: float, quiet: bool, ends: bool = True
 ) -> Iterator[Callable[..., None]]:
-    """Show a bar with the time left, on a terminal.
+    """Show a bar with the time left of a total of work, on a terminal unless `quiet`.
 
-    Yields a function that moves it on by an amount of work, and may change what it says is done.
-
-    Parameters
-    ----------
-    what, total
-        What is done, and how much of it there is.
-    quiet
-        Whether to show nothing.
-    ends
-        Whether work ends where it moves on, if Ctrl-C was noted.
+    Yields a function that moves it on by an amount of work, and may change what it says is done;
+    with `ends`, work ends there if Ctrl-C was noted.
     """
     disable = quiet or not errors.is_terminal
     with Progress(console=errors, transient=True, disable=disable) as bar:

@@ -24,22 +24,11 @@ def printable(name: str | os.PathLike[str]) -> str:
 
 
 def load_recording(path: Path, layout: Path | None = None, *, quiet: bool = False) -> Recording:
-    """Return a recording, or one made of tracks; what of these was left out is printed.
+    """Return a recording, or one made of a table of tracks; what of these was left out is printed.
 
-    Parameters
-    ----------
-    path
-        An ``.npz`` file of a recording, or a table of tracks.
-    layout
-        How tracks lie in the file; by default as the TOML file beside it says. A table without one
-        gets one that is guessed from its columns, and what is to be checked in it is printed.
-    quiet
-        Whether to print nothing.
-
-    Raises
-    ------
-    ParameterError
-        If the file cannot be read, is damaged, or neither; the message names it.
+    The layout of tracks is by default that of the TOML file beside them. A table without one gets
+    one that is guessed from its columns, and what is to be checked in it is printed. A
+    ParameterError names a file that cannot be read, is damaged, or neither.
     """
     from flockenv.tracks import SUFFIXES, TrackReport, guess_layout, read_layout, read_tracks
 
@@ -65,10 +54,7 @@ def load_recording(path: Path, layout: Path | None = None, *, quiet: bool = Fals
 def prepare(*paths: Path, overwrites: bool = True) -> None:
     """Make the folders of files that will be written, before long work.
 
-    Raises
-    ------
-    ParameterError
-        For a file that cannot be written, or is there already and would not be overwritten.
+    A ParameterError names one that cannot be written, or is there already and is to stay.
     """
     for path in paths:
         try:

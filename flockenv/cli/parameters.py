@@ -12,22 +12,11 @@ from flockenv.parameters import FlockParameters
 def read_parameters(
     preset: str | None = None, file: Path | None = None, changes: Sequence[str] | None = None
 ) -> FlockParameters:
-    """Return the parameters that a command's options select.
+    """Return the parameters of a preset, a TOML file and changes of single fields.
 
-    Parameters
-    ----------
-    preset
-        The preset that all else changes; None for the file's own, or "simulation".
-    file
-        TOML file with any of the fields, and ``preset``.
-    changes
-        ``field=value`` each, as for `changed_fields`.
-
-    Raises
-    ------
-    ParameterError
-        For an unknown preset or field, a value that is not accepted, a file that cannot be read
-        or is no TOML, a change without ``=``, a field that is changed twice; the message names it.
+    The preset is the file's own, or "simulation", unless it is given. A ParameterError names an
+    unknown preset or field, a value that is not accepted, or a file that cannot be read or is no
+    TOML.
     """
     try:
         return FlockParameters.from_dict(given_fields(preset, file, changes))
@@ -38,10 +27,7 @@ def read_parameters(
 def given_fields(
     preset: str | None = None, file: Path | None = None, changes: Sequence[str] | None = None
 ) -> dict[str, Any]:
-    """Return the fields that a command's options name, and ``preset`` if they name one.
-
-    Parameters and errors are those of `read_parameters`, which checks names and values.
-    """
+    """Return the fields that a command's options name, and ``preset`` if they name one."""
     fields = {} if file is None else read_toml_file(file, f"--params {file}")
     if preset is not None and fields.setdefault("preset", preset) != preset:
         raise ParameterError(
@@ -51,15 +37,10 @@ def given_fields(
 
 
 def changed_fields(changes: Sequence[str], option: str = "--set") -> dict[str, Any]:
-    """Return what `--set` options, or others like it, give.
+    """Return what `--set` options, or others like it, give: ``NAME=VALUE`` each.
 
     Values are as in TOML, also with parentheses for brackets; words need no quotes, as in
-    ``target=cw,cw,ccw``.
-
-    Raises
-    ------
-    ParameterError
-        For a change without ``=`` or a value, and a field that is changed twice.
+    ``target=cw,cw,ccw``. Texts of another form and names that come twice are refused.
     """
     fields: dict[str, Any] = {}
     for change in changes:

@@ -37,16 +37,7 @@ def leader_curve(
 ) -> None:
     """Draw order against the number of leaders, as figure 12 does, a panel for each case.
 
-    Parameters
-    ----------
-    means
-        Means and intervals by case, policy and number of leaders, as in a `ComparisonReport`.
-    path
-        Where to write the picture; the suffix decides its format.
-    runs
-        One row per episode, to be drawn as dots.
-    titles
-        What was run, by case.
+    Means are those of a `ComparisonReport`; of its runs each is a dot. Titles are by case.
     """
     policies = [name for name in means["policy"].unique() if name != NO_LEADERS]
     cases = list(means["case"].unique())

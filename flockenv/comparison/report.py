@@ -112,12 +112,8 @@ class ComparisonReport:
 
         ``runs.csv``, ``means.csv``, ``differences.csv``, ``lines.csv``, ``run.toml`` (all that the
         numbers depend on but the parameters), for each case its parameters in ``NAME.toml``, and
-        ``leader_curve.png`` if a case has several numbers of leaders.
-
-        Raises
-        ------
-        OSError
-            If one cannot be written; each is whole or as it was before.
+        ``leader_curve.png`` if a case has several numbers of leaders. Each is whole or as it was
+        before.
         """
         folder.mkdir(parents=True, exist_ok=True)
         for name in _TABLES:

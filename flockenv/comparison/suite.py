@@ -64,13 +64,7 @@ TASKS: tuple[Case, ...] = (
 
 
 def tasks_named(suite: str, names: Sequence[str] = ()) -> list[Case]:
-    """Return tasks of a suite, all of them if none is named.
-
-    Raises
-    ------
-    ParameterError
-        For an unknown suite or task.
-    """
+    """Return tasks of a suite, all of them if none is named; unknown names are refused."""
     if suite != SUITE:
         raise ParameterError(f"suite = {shown(suite)} is not accepted: there is {SUITE}")
     refuse_unknown(names, [task.name for task in TASKS], f"task of suite {SUITE}")

@@ -76,12 +76,8 @@ class LeaderBatch:
     ) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_]]:
         """Take a decision: observations and rewards by row, and by flock whether it ended.
 
-        `env` is what a function of a user's own that rewards looks at.
-
-        Raises
-        ------
-        ParameterError
-            For what such a function returns; the flocks have moved then.
+        `env` is what a function of a user's own that rewards looks at. If that returns something
+        else than rewards, the flocks have moved already.
         """
         if self._own_reward is None:
             return self.core.step(actions)

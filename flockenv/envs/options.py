@@ -51,12 +51,7 @@ class EnvOptions:
     def parse(cls, options: Mapping[str, Any], *, takes_function: bool = False) -> Self:
         """Return options from keyword arguments, whose reward may be a function where that is so.
 
-        Raises
-        ------
-        UnknownOptionError
-            For unknown names, with the nearest known one.
-        ParameterError
-            For values out of range.
+        Unknown names are an `UnknownOptionError` with the nearest known one.
         """
         for name in options:
             if name not in _NAMES:

@@ -65,13 +65,7 @@ def action_mode(policy: Any) -> str:
 
 
 def check_action_mode(policy: Any, mode: str, where: str) -> None:
-    """Refuse a policy whose actions stand for something else.
-
-    Raises
-    ------
-    ParameterError
-        If the policy's action mode is not `mode`.
-    """
+    """Refuse a policy whose actions stand for something else than those of a mode."""
     own = action_mode(policy)
     if own != mode:
         raise ParameterError(
@@ -81,13 +75,7 @@ def check_action_mode(policy: Any, mode: str, where: str) -> None:
 
 
 def leaders_observed(observation: NDArray[Any], size: int) -> int:
-    """Return how many leaders' observations, each of a size, the last axis holds.
-
-    Raises
-    ------
-    ParameterError
-        If it holds no whole number of them.
-    """
+    """Return how many leaders' observations, each of a size, the last axis holds."""
     width = observation.shape[-1] if observation.ndim else 0
     if width == 0 or width % size != 0:
         raise ParameterError(

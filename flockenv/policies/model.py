@@ -77,13 +77,7 @@ class ModelPolicy:
         self._levels = _levels_of(model.action_space, self.leaders)
 
     def check_leaders(self, n_leaders: int) -> None:
-        """Refuse flocks with a number of leaders that the model cannot steer.
-
-        Raises
-        ------
-        ParameterError
-            If the model was trained to steer another number at once.
-        """
+        """Refuse another number of leaders than the model was trained to steer at once."""
         if self.leaders not in (1, n_leaders):
             raise ParameterError(
                 f"n_leaders = {n_leaders} is not accepted with {self!r}: it steers {self.leaders} "
@@ -158,26 +152,14 @@ def _levels_of(space: gymnasium.Space[Any], leaders: int) -> int | None:
 
 
 def as_policy(policy: Any) -> Any:
-    """Return a policy unchanged, and a model of stable-baselines3 as a `ModelPolicy`.
-
-    Raises
-    ------
-    ParameterError
-        For a model that was trained on something else than the environments here.
-    """
+    """Return a policy unchanged, and a model of stable-baselines3 as a `ModelPolicy`."""
     if isinstance(getattr(policy, "observation_space", None), gymnasium.Space):
         return ModelPolicy(policy)
     return policy
 
 
 def is_model_file(path: str | os.PathLike[str]) -> bool:
-    """Return whether a file is one that stable-baselines3 saved a model to, by its entries alone.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be opened.
-    """
+    """Return whether stable-baselines3 saved a model to a file, by its entries alone."""
     if is_special(path):
         return False
     with open(path, "rb") as file:
@@ -190,20 +172,8 @@ def is_model_file(path: str | os.PathLike[str]) -> bool:
 def load_model(path: str | os.PathLike[str]) -> ModelPolicy:
     """Read the policy of a model's ``.zip`` file, which executes code in the file.
 
-    Parameters
-    ----------
-    path
-        What ``model.save`` of stable-baselines3 or sb3-contrib wrote.
-
-    Raises
-    ------
-    MissingExtraError
-        Without the extra ``train``.
-    OSError
-        If the file cannot be opened.
-    ParameterError
-        If the model cannot be made from the file, was trained in `VecNormalize`, or was not trained
-        on an environment here.
+    The file is what ``model.save`` of stable-baselines3 or sb3-contrib wrote. Errors are those of
+    `flockenv.policies.load`; models trained in `VecNormalize` are refused, too.
     """
     saving = require("stable_baselines3.common.save_util", "train")
     try:

@@ -107,24 +107,10 @@ def load(
 
 
 def named_policy(name: str, pool: Any, *, trust: bool = False) -> Callable[[], LeaderPolicy | str]:
-    """Return a function that returns a policy, given its name or the path of its file.
+    """Return a function that returns a policy, given its name or the path of its file; see `load`.
 
-    Parameters
-    ----------
-    name
-        A name in `POLICIES` or `POOL_POLICIES`, or a path.
-    pool
-        The flock's pool.
-    trust
-        Whether a model's ``.zip`` file may execute the code in it; see `load`.
-
-    Raises
-    ------
-    ParameterError
-        For unknown names, files that are no policy, models' files without `trust`, and pools that
-        a policy is not made for.
-    OSError
-        If the file cannot be opened.
+    Names are those in `POLICIES` and `POOL_POLICIES`, of which the latter need the flock's pool.
+    Unknown names, files that are no policy and pools that a policy is not made for are refused.
     """
     if name in POLICIES:
         return POLICIES[name]

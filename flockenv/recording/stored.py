@@ -43,13 +43,7 @@ def arrays_of(fields: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
 
 
 def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
-    """Return the fields of the recording that a file's arrays hold.
-
-    Raises
-    ------
-    ParameterError
-        For arrays that are missing, unknown or of another format.
-    """
+    """Return the fields of a recording from all arrays of its file."""
     texts = ("format", "version", "parameters", "policy")
     expected = {*ARRAYS, *(f"order_{name}" for name in ORDER), *texts, "seed", "duration_s"}
     own = [name for name in arrays if name.startswith(_OWN)]

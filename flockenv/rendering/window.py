@@ -9,13 +9,7 @@ from flockenv.rendering.frames import renderer
 
 
 def require_pygame() -> Any:
-    """Return pygame.
-
-    Raises
-    ------
-    MissingExtraError
-        If the extra ``render`` is not installed.
-    """
+    """Return pygame, of the extra ``render``."""
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     return require("pygame", "render")
 

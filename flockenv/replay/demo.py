@@ -25,12 +25,7 @@ def demo_runs(
 ) -> dict[str, Recording]:
     """Return the runs of `DEMO_PARAMETERS` by name, both from the same initial state.
 
-    Parameters
-    ----------
-    seed, minutes
-        Seed and length of each run.
-    progress
-        Called now and then with the flock-seconds simulated since.
+    `progress` is called now and then with the flock-seconds simulated since.
     """
     return {
         name: simulate(
@@ -47,15 +42,7 @@ def live_page() -> Path | None:
 
 
 def live_demo(page: Path, seed: int) -> str:
-    """Return a live page that opens with the two flocks of the demo.
-
-    Parameters
-    ----------
-    page
-        The live page.
-    seed
-        Seed of both flocks.
-    """
+    """Return a live page that opens with the two flocks of the demo, of this seed."""
     p = DEMO_PARAMETERS
     flock = f"n_boats={p.n_boats}&n_leaders={p.n_leaders}&pool={p.pool}&bw_s={p.bw_s}&seed={seed}"
     link = f"#lesson=learned&{flock}&beside.leaders={LEARNED}"

@@ -35,13 +35,7 @@ class SeedRange:
         return range(self.first, self.first + self.runs * self.of_a_run)
 
     def seeds(self, count: int, run: int = 0, start: int = 0) -> range:
-        """Return `count` seeds of a run, from its `start`-th on.
-
-        Raises
-        ------
-        ParameterError
-            For a run, or seeds, that the range has not.
-        """
+        """Return `count` seeds of a run, from its `start`-th on; others are refused."""
         if not 0 <= run < self.runs:
             raise ParameterError(f"seed = {shown(run)} is not accepted: from 0 to {self.runs - 1}")
         if not 0 <= start <= start + count <= self.of_a_run:
@@ -77,13 +71,7 @@ POLICY_SEEDS: Mapping[str, SeedRange] = {
 
 
 def check_evaluation_seeds(seeds: Iterable[int]) -> None:
-    """Refuse seeds that policies are trained on.
-
-    Raises
-    ------
-    ParameterError
-        For a seed out of range.
-    """
+    """Refuse seeds that policies are trained on."""
     # Of a range the ends are enough, however long it is.
     for seed in (*seeds[:1], *seeds[-1:]) if isinstance(seeds, range) else seeds:
         if not 0 <= seed < FIRST_TRAINING_SEED:
@@ -94,22 +82,10 @@ def check_evaluation_seeds(seeds: Iterable[int]) -> None:
 
 
 def release_seeds(tag: str, count: int) -> range:
-    """Return the seeds that final tables of a release are made on.
+    """Return the seeds that final tables of a release are made on, given its tag.
 
     The first is SHA-256 of the tag, its first eight bytes as a big-endian number, modulo 2^32 less
     the count: seeds for evaluation that nobody chose.
-
-    Parameters
-    ----------
-    tag
-        Of the release, such as "v0.1.0".
-    count
-        How many seeds.
-
-    Raises
-    ------
-    ParameterError
-        For a count that is not positive, or larger than the range.
     """
     if not 1 <= count < FIRST_TRAINING_SEED:
         raise ParameterError(f"count = {shown(count)} is not accepted: from 1 to 2^32 - 1")

@@ -38,17 +38,8 @@ _MARGIN = 1.02
 def guess_layout(path: str | os.PathLike[str]) -> tuple[TrackLayout, dict[str, str]]:
     """Write a description of tracks beside their table, guessed from the table.
 
-    Parameters
-    ----------
-    path
-        A CSV or Parquet table; the description is the TOML file of the same name.
-
-    Returns
-    -------
-    layout : TrackLayout
-        As it was written.
-    doubts : dict
-        The fields that nothing in the table says, each with what to check.
+    The description is the TOML file of the table's name. Returned are the layout as it was written,
+    and the fields that nothing in the table says, each with what to check.
 
     Raises
     ------
