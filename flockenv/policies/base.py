@@ -74,6 +74,13 @@ def check_action_mode(policy: Any, mode: str, where: str) -> None:
         )
 
 
+def observed(observation: ArrayLike) -> NDArray[np.float32]:
+    """Return an observation as an array, of which nothing may be masked."""
+    if np.ma.is_masked(observation):
+        raise ParameterError("observation is masked, which is not accepted: numbers alone")
+    return np.ascontiguousarray(observation, np.float32)
+
+
 def leaders_observed(observation: NDArray[Any], size: int) -> int:
     """Return how many leaders' observations, each of a size, the last axis holds."""
     width = observation.shape[-1] if observation.ndim else 0
@@ -134,7 +141,7 @@ class RowPolicy(ABC):
         return self._rudders(observation), state
 
     def _rudders(self, observation: ArrayLike) -> NDArray[np.float32]:
-        array = np.ascontiguousarray(observation, np.float32)
+        array = observed(observation)
         leaders = leaders_observed(array, self._size)
         rudders = np.asarray(self._steer(array.reshape(-1, self._size)), np.float32)
         return rudders.reshape(*array.shape[:-1], leaders)

@@ -18,7 +18,7 @@ from flockenv._io.array_file import is_special
 from flockenv._io.extras import require
 from flockenv.envs.observation import ObservationSpace
 from flockenv.errors import ParameterError
-from flockenv.policies.base import leaders_observed
+from flockenv.policies.base import leaders_observed, observed
 
 _WEIGHTS = "policy.pth"
 _NEEDED = ("policy_class", "policy_kwargs", "observation_space", "action_space", "use_sde")
@@ -102,13 +102,13 @@ class ModelPolicy:
             If the leaders are no multiple of the model's, too.
         """
         if isinstance(observation, Mapping):
-            stacked = np.stack([np.asarray(each) for each in observation.values()])
+            stacked = np.stack([observed(each) for each in observation.values()])
             rudders, state = self._predict(stacked, state, episode_start, deterministic)
             return dict(zip(observation, rudders, strict=True)), state
-        return self._predict(np.asarray(observation), state, episode_start, deterministic)
+        return self._predict(observed(observation), state, episode_start, deterministic)
 
     def _predict(
-        self, array: NDArray[Any], state: Any, episode_start: Any, deterministic: bool
+        self, array: NDArray[np.float32], state: Any, episode_start: Any, deterministic: bool
     ) -> tuple[NDArray[np.float32], Any]:
         leaders = leaders_observed(array, self._size)
         rows = array.size // self._size
@@ -117,7 +117,7 @@ class ModelPolicy:
                 f"observation has shape {array.shape}, which is not accepted: {self!r} steers "
                 f"{self.leaders} leaders at once"
             )
-        items = np.ascontiguousarray(array, np.float32).reshape(rows // self.leaders, -1)
+        items = array.reshape(rows // self.leaders, -1)
         normalizing = getattr(self.model, "get_vec_normalize_env", lambda: None)()
         if normalizing is not None:
             items = normalizing.normalize_obs(items)

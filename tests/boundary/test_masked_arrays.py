@@ -42,3 +42,18 @@ def test_boats_that_are_masked_are_not_there():
     assert found == flockenv.order_series(gone, velocity)
     by_mask = structure_series("on_outer_wall", PARAMETERS, masked(pose, 0, 1))
     assert by_mask == structure_series("on_outer_wall", PARAMETERS, gone)
+
+
+@pytest.mark.parametrize("policy", [flockenv.policies.SteeringLaw(), "model"])
+def test_observations_that_are_masked_are_refused(policy):
+    env = flockenv.LeadersEnv(params=PARAMETERS)
+    seen, _ = env.reset(seed=0)
+    if policy == "model":
+        stable_baselines3 = pytest.importorskip("stable_baselines3")
+        venv = flockenv.sb3.LeaderVecEnv(1, params=PARAMETERS)
+        policy = flockenv.policies.ModelPolicy(stable_baselines3.PPO("MlpPolicy", venv, n_steps=32))
+    for given in (masked(seen, 0), {"leader_0": masked(seen, 0)}):
+        with pytest.raises(flockenv.ParameterError, match="observation is masked"):
+            policy.predict(given)
+    whole = np.ma.masked_array(seen)
+    assert np.array_equal(policy.predict(whole)[0], policy.predict(seen)[0])
