@@ -140,6 +140,8 @@ def _policies(pool: Any, own: Mapping[str, Any], options: CompareOptions) -> dic
     """Return the policies of a case by name, the user's first, and name those not for its pool."""
     found = {name: _read(given, pool, options.trust) for name, given in own.items()}
     for name in (REFERENCE,) if options.suite else () if options.only else REFERENCES:
+        if name in own.values() and not options.suite:  # It has a name of the user's.
+            continue
         try:
             found.setdefault(name, named_policy(name, pool))
         except ParameterError as error:

@@ -88,13 +88,17 @@ def test_alternating_targets_and_drop_outs_in_a_pool_of_ones_own(cli, tmp_path: 
 
 
 def test_names_of_references(cli, tmp_path: Path) -> None:
-    """A policy that is one is run once; a file that is called like one is not it."""
+    """A policy that is one is run once under any name; a file that is called like one is not."""
     file = learned(tmp_path, "learned.npz")
     two = ["--policy", REFERENCES[2], "--policy", file, "--leaders", "1", "--json"]
     done = cli("compare", *NARROW, *two, "--out", str(tmp_path))
     assert done.returncode == 0, done.stderr
     policies = [row["policy"] for row in json.loads(done.stdout)["means"]]
     assert policies == [REFERENCES[2], file, *REFERENCES[:2]]
+    alias = ["--policy", REFERENCES[1], "--name", "mine", "--leaders", "1", "--json"]
+    done = cli("compare", *NARROW, *alias, "--out", str(tmp_path))
+    policies = [row["policy"] for row in json.loads(done.stdout)["means"]]
+    assert policies == ["mine", REFERENCES[0], REFERENCES[2]]
 
 
 def test_a_policy_for_each_leader(cli, tmp_path: Path) -> None:
