@@ -3,8 +3,6 @@
 Needs the extra ``torchrl``: ``pip install flockenv[torchrl]``.
 """
 
-from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 from flockenv._io.extras import require
@@ -111,7 +109,7 @@ class LeadersEnv(EnvBase):
         self.episode_steps = -(-self._batch.episode_steps // self._batch.period_steps)
         self.group_map = {GROUP: [f"leader_{leader}" for leader in range(self.num_leaders)]}
         self.rudder_levels: int | None = settings["rudder_levels"]
-        self._state = _states(self._batch, self.parameters.n_boats)[state]
+        self._state = state
         self._seeds: list[int | None] = [None] * flocks
         self._make_specs()
 
@@ -128,8 +126,8 @@ class LeadersEnv(EnvBase):
             return Composite({GROUP: Composite(entries, shape=each)}, shape=flocks)
 
         self.observation_spec = grouped(observation=bounded(self.observation_space, *each))
-        if self._state is not None:
-            self.observation_spec["state"] = bounded(self._state[0], *flocks)
+        if self._state != "none":
+            self.observation_spec["state"] = bounded(self._state_space(), *flocks)
         if self.rudder_levels is None:
             action = Bounded(-1.0, 1.0, torch.Size([*each, 1]), device, torch.float32)
         else:
@@ -182,40 +180,28 @@ class LeadersEnv(EnvBase):
         observation = self._tensor(rows).reshape(*each, -1)
         leaders = TensorDict({"observation": observation}, each, device=self.device)
         seen: dict[str, Any] = {GROUP: leaders}
-        if self._state is not None:
-            seen["state"] = self._tensor(self._state[1]())
+        if self._state != "none":
+            seen["state"] = self._tensor(self._state_now())
         return TensorDict(seen, self.batch_size, device=self.device)
+
+    def _state_space(self) -> gymnasium.spaces.Box:
+        if self._state == "features":
+            return self._batch.flock_feature_space
+        space = self._batch.state_space
+        if self._state == "boats":
+            return space
+        boats = self.parameters.n_boats
+        low, high = (_boat_rows(bound[None], boats)[0] for bound in (space.low, space.high))
+        return gymnasium.spaces.Box(low, high, dtype=np.float32)
+
+    def _state_now(self) -> NDArray[np.float32]:
+        if self._state == "features":
+            return self._batch.core.flock_features(each_leader=False)
+        states = self._batch.core.states()
+        return states if self._state == "boats" else _boat_rows(states, self.parameters.n_boats)
 
     def _tensor(self, array: NDArray[Any]) -> torch.Tensor:
         return torch.from_numpy(array).to(self.device)
-
-
-def _states(
-    batch: LeaderBatch, boats: int
-) -> dict[str, tuple[gymnasium.spaces.Box, Callable[[], NDArray[np.float32]]] | None]:
-    """Return the space of each choice of a state, and the function that gives it."""
-    space = batch.state_space
-    low, high = (_boat_rows(bound[None], boats)[0] for bound in (space.low, space.high))
-    rows = gymnasium.spaces.Box(low, high, dtype=np.float32)
-    return {
-        "boats": (space, partial(_batch_states, batch)),
-        "set": (rows, partial(_batch_rows, batch, boats)),
-        "features": (batch.flock_feature_space, partial(_batch_features, batch)),
-        "none": None,
-    }
-
-
-# Functions of the batch, not methods of its core: a copy of the environment has a batch of its own.
-def _batch_states(batch: LeaderBatch) -> NDArray[np.float32]:
-    return batch.core.states()
-
-
-def _batch_features(batch: LeaderBatch) -> NDArray[np.float32]:
-    return batch.core.flock_features(each_leader=False)
-
-
-def _batch_rows(batch: LeaderBatch, boats: int) -> NDArray[np.float32]:
-    return _boat_rows(batch.core.states(), boats)
 
 
 def _boat_rows(states: NDArray[np.float32], boats: int) -> NDArray[np.float32]:

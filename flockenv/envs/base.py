@@ -1,4 +1,4 @@
-"""What the environments with one flock have in common: everything but the form of their steps."""
+"""What environments have in common: all of them, those of many flocks, and those of one."""
 
 import copy
 from collections.abc import Callable, Mapping
@@ -13,7 +13,44 @@ from flockenv.envs.render_mode import RenderMode
 from flockenv.flock import Flock
 
 
-class SingleEnvironmentBase:
+class Resumable:
+    """An environment that continues from what it was, or as a copy of itself."""
+
+    _batch: LeaderBatch
+
+    def get_state(self) -> bytes:
+        """Return everything that the future depends on, as bytes."""
+        return self._batch.to_bytes()
+
+    def set_state(self, state: bytes) -> Any:
+        """Continue from `get_state` of an environment with the same options, bit for bit."""
+        self._batch.restore(state)
+
+    def clone(self) -> Self:
+        """Return an independent copy that continues with the same bits."""
+        return copy.deepcopy(self)
+
+
+class ManyFlocks(Resumable):
+    """An environment of many flocks, whose boats can be looked at."""
+
+    def poses(self) -> NDArray[np.float64]:
+        """Return all poses, shape (flocks, n, 3): [x cm, y cm, heading rad], leaders first."""
+        return self._batch.core.poses().reshape(self._batch.num_flocks, -1, 3)
+
+    def velocities(self) -> NDArray[np.float64]:
+        """Return all velocities, shape (flocks, n, 3): [cm/s, cm/s, rad/s], leaders first."""
+        return self._batch.core.velocities().reshape(self._batch.num_flocks, -1, 3)
+
+    def order_parameters(self) -> NDArray[np.float64]:
+        """Return order parameters of the normal boats now.
+
+        Shape (flocks, 6): the fields of `OrderParameters`, in its order.
+        """
+        return self._batch.core.order_parameters()
+
+
+class SingleEnvironmentBase(Resumable):
     """The base of the environments of one flock: its episodes, infos and frames."""
 
     metadata: dict[str, Any]
@@ -58,18 +95,6 @@ class SingleEnvironmentBase:
     def flock(self) -> Flock:
         """A copy of the flock in its present state."""
         return self._batch.flock(0)
-
-    def get_state(self) -> bytes:
-        """Return everything that the future depends on, as bytes."""
-        return self._batch.core.to_bytes()
-
-    def set_state(self, state: bytes) -> None:
-        """Continue from `get_state` of an environment with the same options, bit for bit."""
-        self._batch.restore(state)
-
-    def clone(self) -> Self:
-        """Return an independent copy that continues with the same bits."""
-        return copy.deepcopy(self)
 
     def _show(self) -> None:
         if self._render_mode.is_live:

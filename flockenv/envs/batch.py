@@ -119,19 +119,18 @@ class LeaderBatch:
             )
         return found.ravel()
 
+    def to_bytes(self) -> bytes:
+        """Return everything that the future depends on: the core's bytes, then what was paid."""
+        return self.core.to_bytes() + (b"" if self._own_reward is None else self._paid.tobytes())
+
     def restore(self, state: bytes) -> None:
         """Continue from the bytes of a batch with the same options."""
-        self.core.restore(state)
-        # Bytes of the core do not hold it.
-        self._paid[:] = np.nan
-
-    def poses(self) -> NDArray[np.float64]:
-        """Return the poses of all boats, shape (flocks, n, 3)."""
-        return self.core.poses().reshape(self.num_flocks, -1, 3)
-
-    def velocities(self) -> NDArray[np.float64]:
-        """Return the velocities of all boats, shape (flocks, n, 3)."""
-        return self.core.velocities().reshape(self.num_flocks, -1, 3)
+        if self._own_reward is None or not isinstance(state, bytes):
+            self.core.restore(state)
+            return
+        end = len(state) - self._paid.nbytes
+        self.core.restore(state[: max(0, end)])
+        self._paid = np.frombuffer(state, np.float64, offset=end).copy()
 
     def flock(self, flock: int) -> Flock:
         """Return a copy of a flock in its present state."""

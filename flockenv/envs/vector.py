@@ -1,8 +1,7 @@
 """`LeadersVectorEnv`: many flocks behind Gymnasium's vector interface, stepped at once in Rust."""
 
-import copy
 from collections.abc import Mapping, Sequence
-from typing import Any, Self
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -11,6 +10,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from flockenv import _core
+from flockenv.envs.base import ManyFlocks
 from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
 from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.options import EnvOptions
@@ -20,7 +20,9 @@ from flockenv.errors import EpisodeError, ParameterError
 from flockenv.rendering.frames import DEFAULT_SIZE
 
 
-class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], NDArray[Any]]):
+class LeadersVectorEnv(
+    ManyFlocks, gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], NDArray[Any]]
+):
     """Lead many flocks at once, one policy steering all leaders of a flock.
 
     ``gymnasium.make_vec("flockenv/Leaders-v0", num_envs=64, **options)``
@@ -241,40 +243,13 @@ class LeadersVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[A
             raise EpisodeError("leader_rewards was called before the first step")
         return self._rewards.copy()
 
-    def poses(self) -> NDArray[np.float64]:
-        """Return all poses, shape (num_envs, n, 3): [x cm, y cm, heading rad], leaders first."""
-        return self._batch.poses()
-
-    def velocities(self) -> NDArray[np.float64]:
-        """Return all velocities, shape (num_envs, n, 3): [cm/s, cm/s, rad/s], leaders first."""
-        return self._batch.velocities()
-
-    def order_parameters(self) -> NDArray[np.float64]:
-        """Return order parameters of the normal boats now.
-
-        Shape (num_envs, 6): the fields of `OrderParameters`, in its order.
-        """
-        return self._batch.core.order_parameters()
-
     def in_analysis_window(self) -> NDArray[np.bool_]:
         """Return which flocks are in the paper's analysis window now."""
         return self._batch.core.in_analysis_window().ravel()
 
-    def get_state(self) -> bytes:
-        """Return everything that the future depends on, as bytes."""
-        return self._batch.core.to_bytes()
-
-    def set_state(self, state: bytes) -> None:
-        """Continue from `get_state` of an environment with the same options, bit for bit."""
-        self._batch.restore(state)
-
     def observe(self) -> NDArray[np.float32]:
         """Return the observations as they are now."""
         return self._shaped(self._batch.core.observe())
-
-    def clone(self) -> Self:
-        """Return an independent copy that continues with the same bits."""
-        return copy.deepcopy(self)
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
         """Return a frame of each flock, (height, width, 3) uint8, if that is the render mode."""

@@ -1,14 +1,14 @@
 """`LeaderVecEnv`: stable-baselines3's vector interface, one slot per leader."""
 
-import copy
 from collections.abc import Mapping, Sequence
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
 from flockenv import _core
+from flockenv.envs.base import ManyFlocks
 from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, leader_summary, seeds_from
 from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.options import EnvOptions
@@ -52,7 +52,7 @@ class LeaderSlot:
         return state
 
 
-class LeaderVecEnv(VecEnv):
+class LeaderVecEnv(ManyFlocks, VecEnv):
     """Many flocks for stable-baselines3, each leader a slot: one policy is shared by all leaders.
 
     ``flockenv.sb3.LeaderVecEnv(num_flocks=64, n_leaders=[1, 2, 3, 4], **options)``
@@ -298,30 +298,10 @@ class LeaderVecEnv(VecEnv):
         """Return each term of the last step's reward, shape (slots,)."""
         return self._batch.reward_terms()
 
-    def poses(self) -> NDArray[np.float64]:
-        """Return all poses, shape (flocks, n, 3): [x cm, y cm, heading rad], leaders first."""
-        return self._batch.poses()
-
-    def velocities(self) -> NDArray[np.float64]:
-        """Return all velocities, shape (flocks, n, 3): [cm/s, cm/s, rad/s], leaders first."""
-        return self._batch.velocities()
-
-    def order_parameters(self) -> NDArray[np.float64]:
-        """Return order parameters now, shape (flocks, 6); see `LeadersVectorEnv`."""
-        return self._batch.core.order_parameters()
-
-    def get_state(self) -> bytes:
-        """Return everything that the future depends on, as bytes."""
-        return self._batch.core.to_bytes()
-
     def set_state(self, state: bytes) -> NDArray[np.float32]:
         """Continue from `get_state` of the same options, bit for bit; return the observations."""
-        self._batch.restore(state)
+        super().set_state(state)
         return self._batch.core.observe()
-
-    def clone(self) -> Self:
-        """Return an independent copy that continues with the same bits."""
-        return copy.deepcopy(self)
 
     def get_images(self) -> Sequence[NDArray[np.uint8] | None]:
         """Return a frame of each flock; nothing to see where `render_mode` is None."""

@@ -67,6 +67,26 @@ def test_a_function_may_value_each_leader():
     assert rewards == pytest.approx(env.poses()[:, :2, 0].mean(axis=1))
 
 
+@pytest.mark.parametrize("make", [LeadersVectorEnv.clone, lambda env: env])
+def test_what_was_paid_is_a_part_of_the_state(make):
+    env = started(reward=closeness)
+    for _ in range(2):
+        env.step(ACTIONS)
+    other = make(started(reward=closeness))
+    other.set_state(env.get_state())
+    for _ in range(3):
+        ends = [each.step(ACTIONS)[4] for each in (env, other)]
+    totals = [each["episode_summary"]["total_reward"] for each in ends]
+    assert np.array_equal(*totals)
+    assert np.isfinite(totals).all()
+    for state in (started().get_state(), b"", env.get_state()[:-1]):
+        with pytest.raises(ParameterError):
+            other.set_state(state)
+    with pytest.raises(ParameterError):
+        started().set_state(env.get_state())
+    assert other.get_state() == env.get_state()
+
+
 @pytest.mark.parametrize(
     "returned", [np.zeros(2), np.zeros((3, 3)), np.full(3, np.nan), 1.0, ["a", "b", "c"], None]
 )
