@@ -1,15 +1,9 @@
 """Law: discs and walls are fields like others: checked once, and stored wherever parameters are."""
 
-import pickle
-
-import gymnasium
 import numpy as np
 import pytest
 
-import flockenv
 from flockenv import Flock, FlockError, FlockParameters, ParameterError, Recording, simulate
-from flockenv.cli.parameters import read_parameters
-from flockenv.runs.spec import RunSpec
 from flockenv.runs.sweep import read_sweep
 
 DISCS = ((30.0, 0.0, 8.0), (-30.0, 10.0, 3.5))
@@ -34,17 +28,6 @@ def test_any_rows_of_numbers_are_taken_and_stored_as_tuples(arena):
     assert len({arena, arena.replace(), arena.replace(walls=())}) == 2
 
 
-def test_round_trips(arena, tmp_path):
-    assert FlockParameters.from_toml(arena.to_toml()) == arena
-    assert FlockParameters.from_dict(arena.to_dict()) == arena
-    assert pickle.loads(pickle.dumps(arena)) == arena
-    (tmp_path / "arena.toml").write_text(arena.to_toml())
-    assert read_parameters(file=tmp_path / "arena.toml") == arena
-    discs = f"discs={[list(each) for each in DISCS]}"
-    from_command = read_parameters(changes=["pool=(90, 0)", discs, "walls=[[-60, 40, 0, 40]]"])
-    assert (from_command.discs, from_command.walls) == (DISCS, WALLS)
-
-
 def test_snapshots_and_recordings_hold_them(arena, tmp_path):
     flock = Flock(arena, seed=3)
     flock.advance(2.0)
@@ -59,14 +42,6 @@ def test_snapshots_and_recordings_hold_them(arena, tmp_path):
     loaded = Recording.load(tmp_path / "run.npz")
     assert loaded == run
     assert loaded.parameters == arena
-
-
-def test_a_flock_of_other_obstacles_takes_no_snapshot(arena):
-    flock = Flock(arena, seed=3)
-    before = flock.snapshot()
-    with pytest.raises(ParameterError, match="other parameters"):
-        flock.restore(Flock(arena.replace(walls=()), seed=3).snapshot())
-    assert flock.snapshot() == before
 
 
 def test_contacts_number_obstacles_after_the_walls_of_the_pool():
@@ -92,13 +67,6 @@ def test_recorded_contacts_of_other_obstacles_are_refused(arena):
     fields = {name: getattr(run, name) for name in run.__dataclass_fields__}
     with pytest.raises(ParameterError, match="contacts"):
         Recording(**(fields | {"parameters": arena.replace(discs=(), walls=())}))
-
-
-def test_runs_with_other_walls_have_other_keys(arena):
-    spec = RunSpec(parameters=arena.replace(discs=(), walls=()), seed=1, duration_s=10.0)
-    with_walls = RunSpec(parameters=arena.replace(discs=()), seed=1, duration_s=10.0)
-    assert '"walls": [[-60.0, 40.0, 0.0, 40.0]]' in with_walls.to_json()
-    assert spec.key != with_walls.key
 
 
 def test_sweeps_vary_them(tmp_path):
@@ -161,36 +129,3 @@ def test_no_room_is_an_error_before_anything_changes(arena):
     with pytest.raises(FlockError, match="boat 0 and disc 0 overlap"):
         flock.set_state([[30.0, 0.0, 0.0]] * 9, np.zeros((9, 3)))
     assert flock.snapshot() == before
-
-
-def test_environments_have_them_and_store_them(arena):
-    fields = {"n_boats": 9, "pool": (90.0, 0.0), "discs": DISCS, "walls": WALLS}
-    env = flockenv.LeadersEnv(n_leaders=2, episode_s=12.0, **fields)
-    env.reset(seed=5)
-    assert env.parameters.discs == DISCS
-    state = env.get_state()
-    rewards = [env.step(np.array([0.3, -0.2], np.float32))[1] for _ in range(30)]
-    env.set_state(state)
-    assert [env.step(np.array([0.3, -0.2], np.float32))[1] for _ in range(30)] == rewards
-
-
-def test_any_batch_gives_the_same_flocks():
-    fields = {"n_boats": 9, "n_leaders": 2, "pool": (90.0, 0.0), "discs": DISCS, "walls": WALLS}
-    runs = []
-    for num_envs in (1, 3):
-        envs = gymnasium.make_vec("flockenv/Leaders-v0", num_envs=num_envs, **fields)
-        observation, _ = envs.reset(seed=4)
-        rows = [observation[0]]
-        for _ in range(50):
-            action = np.full((num_envs, 2), 0.4, np.float32)
-            rows.append(envs.step(action)[0][0])
-        runs.append(np.array(rows))
-    assert runs[0].tobytes() == runs[1].tobytes()
-
-
-def test_files_from_before_there_were_obstacles_have_none():
-    p = FlockParameters(n_boats=3)
-    later = ("discs = []", "walls = []", "leader_speed_factor = 1.0")
-    lines = [line for line in p.to_toml().splitlines() if line not in later]
-    assert len(lines) == 29
-    assert FlockParameters.from_toml("\n".join(lines)) == p

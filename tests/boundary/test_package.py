@@ -47,20 +47,3 @@ def test_sources_without_the_compiled_simulator_say_so(tmp_path):
     )
     assert failed.returncode == 1
     assert "start Python in another folder than the clone's" in failed.stderr
-
-
-def test_core_is_an_extension_module():
-    from flockenv import _core
-
-    assert _core.__file__.endswith((".so", ".pyd"))
-
-
-def test_missing_extra_is_named():
-    code = (
-        "import sys; sys.modules['stable_baselines3'] = None\n"
-        "import flockenv\n"
-        "try: flockenv.sb3\n"
-        "except ImportError as error: print(error)"
-    )
-    done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
-    assert "flockenv[train]" in done.stdout

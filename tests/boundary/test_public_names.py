@@ -24,20 +24,6 @@ ENVIRONMENT_OPTIONS = {
 }
 
 
-def test_presets_have_the_settings_of_the_paper():
-    assert flockenv.FlockParameters.preset("experiment").leaders_reverse is False
-    for name, bw_s in (("simulation", 0.3), ("paper", 0.6)):
-        preset = flockenv.FlockParameters.preset(name)
-        assert (preset.pool, preset.n_boats, preset.n_leaders) == ("wide", 20, 0)
-        assert (preset.bw_s, preset.leaders_reverse) == (bw_s, True)
-
-
-def test_pretrained_leaders_have_a_name():
-    law = flockenv.policies.load("learned", pool="wide")
-    run = flockenv.simulate(PARAMETERS.replace(pool="wide"), 1, 0.3, policy="learned")
-    assert run == flockenv.simulate(PARAMETERS.replace(pool="wide"), 1, 0.3, policy=law)
-
-
 def test_environments_are_made_as_they_were():
     options = {"n_boats": 4, "n_leaders": 2, "target": "random", "episode_s": 1.0, "control_hz": 2}
     agents = flockenv.parallel_env(**options)
@@ -49,11 +35,6 @@ def test_environments_are_made_as_they_were():
     assert isinstance(several.unwrapped, flockenv.LeadersVectorEnv)
     observations, _ = single.reset(seed=0)
     assert np.isfinite(flockenv.policies.SteeringLaw().predict(observations)[0]).all()
-
-
-def test_leaders_are_slots_of_stable_baselines3():
-    pytest.importorskip("stable_baselines3")
-    assert flockenv.sb3.LeaderVecEnv(num_flocks=3, n_leaders=2).num_envs == 6
 
 
 @pytest.mark.parametrize("name", ENVIRONMENT_OPTIONS)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv import FlockParameters, ParameterError, Recording, order_series
+from flockenv import FlockParameters
 from flockenv.order import QUANTITIES
 from flockenv.replay.quantities import shown_quantities
 from flockenv.runs.spec import RunSpec, execute
@@ -23,24 +23,6 @@ def run():
     return flockenv.simulate(PARAMETERS, seed=3, duration_s=20.0)
 
 
-def test_the_table_starts_with_the_order_parameters_of_the_paper():
-    assert RECORDED[:6] == ["psi_o", "phi_o", "c_o", "psi_v", "phi_v", "c_v"]
-    assert {"nematic", "milling"} <= set(RECORDED)
-
-
-def test_a_flock_and_its_recording_have_the_same_values(run):
-    flock = flockenv.Flock(PARAMETERS, seed=3)
-    flock.advance(20.0)
-    assert flock.order_parameters() == run.order[-1]
-    assert set(RECORDED) <= set(dir(run.order)) & set(dir(flock.order_parameters()))
-
-
-def test_plain_arrays_have_the_values_of_the_recording(run):
-    assert order_series(run.pose[:, 1:], run.velocity[:, 1:]) == run.order
-    with pytest.raises(ParameterError, match="velocity"):
-        order_series(run.pose, run.velocity[:, 1:])
-
-
 def test_nematic_order_and_milling_from_their_definitions(run):
     x, y, heading = np.moveaxis(run.pose[:, 1:], 2, 0)
     vx, vy, _ = np.moveaxis(run.velocity[:, 1:], 2, 0)
@@ -51,13 +33,6 @@ def test_nematic_order_and_milling_from_their_definitions(run):
     expected = around.sum(axis=1)[moving] / greatest.sum(axis=1)[moving]
     assert run.order.milling[moving] == pytest.approx(expected, abs=1e-12)
     assert (run.order.milling[~moving] == 0.0).all()
-
-
-def test_recordings_keep_every_recorded_quantity(run, tmp_path):
-    run.save(tmp_path / "run.npz")
-    with np.load(tmp_path / "run.npz") as file:
-        assert {f"order_{name}" for name in RECORDED} <= set(file)
-    assert Recording.load(tmp_path / "run.npz") == run
 
 
 def test_tables_of_sweeps_have_every_averaged_quantity():

@@ -10,7 +10,6 @@ import pytest
 
 import flockenv
 from flockenv import (
-    Flock,
     FlockParameters,
     OrderSeries,
     ParameterError,
@@ -22,6 +21,17 @@ PARAMETERS = FlockParameters(n_boats=5, n_leaders=1, pool="narrow")
 RUN = simulate(PARAMETERS, seed=3, duration_s=1.0)
 
 
+class Rudders:
+    """A rudder that grows with each decision."""
+
+    def __init__(self, rudder: float, growth: float = 0.0) -> None:
+        self.rudder, self.growth = rudder, growth
+
+    def predict(self, observation, state=None):
+        self.rudder += self.growth
+        return np.full((len(observation), 1), self.rudder), state
+
+
 def test_shapes_and_dtypes():
     assert RUN.time_s.tolist() == [k / 10 for k in range(11)]
     assert RUN.phase.tolist() == ["fw"] * 11
@@ -31,17 +41,6 @@ def test_shapes_and_dtypes():
     assert all(len(getattr(RUN.order, name)) == 11 for name in ("psi_o", "c_v"))
     assert (RUN.parameters, RUN.seed, RUN.version) == (PARAMETERS, 3, flockenv.__version__)
     assert repr(RUN) == "<flockenv.Recording of 5 boats, seed 3, 11 samples to 1.0 s>"
-
-
-def test_samples_are_the_flock_at_those_times():
-    flock = Flock(PARAMETERS, seed=3)
-    run = simulate(PARAMETERS, seed=3, duration_s=6.0, sample_hz=2.0)
-    for k in range(13):
-        assert np.array_equal(run.pose[k], flock.pose)
-        assert np.array_equal(run.velocity[k], flock.velocity)
-        assert run.order[k] == flock.order_parameters()
-        assert run.phase[k] == flock.phase
-        flock.advance(0.5)
 
 
 def test_the_analysis_window_is_late_fw_and_early_nop1():
@@ -120,6 +119,8 @@ def test_the_law_by_name_is_no_policy():
         ({"seed": -1}, "seed"),
         ({"policy": "PPO"}, "policy"),
         ({"policy": object()}, "policy"),
+        ({"policy": Rudders(math.nan)}, "rudder"),
+        ({"policy": Rudders(0.0), "control_hz": 0.0}, "control_hz"),
         ({"dtype": "int32"}, "dtype"),
         ({"parameters": PARAMETERS.replace(n_boats=200)}, "n_boats"),
     ],
@@ -252,13 +253,5 @@ def test_rudders_under_the_law_are_those_of_the_poses():
 
 
 def test_rudders_of_a_policy_are_those_held_up_to_each_time():
-    class Rising:
-        def __init__(self):
-            self.calls = 0
-
-        def predict(self, observation, state=None):
-            self.calls += 1
-            return np.full((1, 1), self.calls / 4), state
-
-    run = simulate(PARAMETERS, 3, 1.0, 4.0, policy=Rising(), control_hz=2.0)
+    run = simulate(PARAMETERS, 3, 1.0, 4.0, policy=Rudders(0.0, 0.25), control_hz=2.0)
     assert run.rudder[:, 0].tolist() == [0.0, 0.25, 0.25, 0.5, 0.5]

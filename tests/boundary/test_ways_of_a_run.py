@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv import Flock, FlockParameters, ParameterError, Recording, simulate
+from flockenv import FlockParameters, ParameterError, Recording, simulate
 
 PARAMETERS = FlockParameters(n_boats=10, n_leaders=2, pool="narrow")
 
@@ -17,22 +17,6 @@ class Held:
 
     def predict(self, observation, state=None, episode_start=None):
         return np.full(len(observation), self.rudder), state
-
-
-def test_a_schedule_changes_fields_at_its_times():
-    ramp = [(4.0, {"target": "ccw", "bw_s": 1.0}), (2.0, {"bw_s": 0.6})]
-    run = simulate(PARAMETERS, 3, 6.0, 5.0, schedule=ramp)
-    flock = Flock(PARAMETERS, 3)
-    for sample in range(31):
-        assert np.array_equal(run.pose[sample], flock.pose)
-        for time_s, fields in ((2.0, {"bw_s": 0.6}), (4.0, {"bw_s": 1.0, "target": "ccw"})):
-            if flock.time_s == time_s:
-                changed = Flock(flock.parameters.replace(**fields), 3)
-                changed.set_state(flock.pose, flock.velocity, time_s, allow_overlap=True)
-                flock = changed
-        flock.advance((sample + 1) / 5 - flock.time_s)
-    assert run.parameters == PARAMETERS
-    assert run != simulate(PARAMETERS, 3, 6.0, 5.0)
 
 
 @pytest.mark.parametrize(

@@ -41,14 +41,6 @@ def test_tracks_have_the_numbers_of_the_run_they_are_of(cli, run, tmp_path):
     assert summaries[0]["psi_o_mean"] == pytest.approx(recording.analyzed().order.psi_o.mean())
 
 
-def test_nobody_heads_for_a_target_without_leaders(cli, tmp_path):
-    parameters = flockenv.FlockParameters(n_boats=6, pool="narrow")
-    flockenv.simulate(parameters, 1, 10.0).save(tmp_path / "run.npz")
-    printed = cli("analyze", str(tmp_path / "run.npz")).stdout
-    assert "rotation" in printed
-    assert "towards target" not in printed
-
-
 def test_tracks_play_beside_the_model(cli, run, tmp_path):
     tracks = tmp_path / "tracks.csv"
     cli("analyze", str(run), "--out", str(tracks))

@@ -41,12 +41,6 @@ def test_a_file_then_fields(tmp_path):
         read_parameters("simulation", file)
 
 
-def test_what_is_saved_is_read(tmp_path):
-    parameters = SIMULATION.replace(pool=(123.0, 4.5), n_boats=3, bw_s=0.7)
-    (tmp_path / "flock.toml").write_text(parameters.to_toml())
-    assert read_parameters(file=tmp_path / "flock.toml") == parameters
-
-
 @pytest.mark.parametrize("change", ["cw, ccw", "[cw, ccw]", "(cw,ccw)", '["cw", "ccw"]'])
 def test_lists_of_words_need_no_quotes(change):
     assert read_parameters(changes=["n_leaders=2", f"target={change}"]).target == ("cw", "ccw")

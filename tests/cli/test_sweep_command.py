@@ -24,15 +24,6 @@ def test_the_table_and_the_files(cli, tmp_path: Path) -> None:
     assert (out / "sweep.csv").read_bytes() == before
 
 
-def test_a_file_that_is_no_sweep_is_named(cli, tmp_path: Path) -> None:
-    spec = tmp_path / "noise.toml"
-    for text, words in ((SPEC.replace("bw_s", "bws"), "bw_s"), ("", "grid")):
-        spec.write_text(text)
-        done = cli("sweep", str(spec), "--out", str(tmp_path / "out"))
-        assert (done.returncode, words in done.stderr) == (2, True)
-    assert not (tmp_path / "out").exists()
-
-
 def test_shards_make_the_table_of_one_command(cli, tmp_path: Path) -> None:
     spec = tmp_path / "noise.toml"
     spec.write_text(SPEC)

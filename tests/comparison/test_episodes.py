@@ -1,7 +1,5 @@
 """A comparison runs every policy on the same seeds, through the environment a learner would use."""
 
-import tomllib
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,9 +9,7 @@ import pytest
 import flockenv
 from flockenv.comparison import (
     NO_LEADERS,
-    QUANTITIES,
     Case,
-    ComparisonReport,
     compare_leaders,
 )
 from flockenv.envs.observation import observation_entries
@@ -47,44 +43,22 @@ def test_results_belong_to_the_seed(parameters: flockenv.FlockParameters) -> Non
     assert alone.equals(among)
 
 
-def test_runs_without_leaders_are_frames_of_the_recording(
-    parameters: flockenv.FlockParameters,
+@pytest.mark.parametrize(
+    ("leaders", "policies"),
+    [(0, {}), (2, {"every": POLICIES["paper's law at every substep"]})],
+)
+def test_runs_outside_the_environment_are_those_of_simulate(
+    parameters: flockenv.FlockParameters, leaders: int, policies: dict[str, Any]
 ) -> None:
-    runs = compare_leaders(parameters, [0], {}, [3], 60.0)
-    env = flockenv.LeadersVectorEnv(1, params=parameters.replace(n_leaders=1))
+    runs = compare_leaders(parameters, [leaders], policies, [3], 60.0)
+    env = flockenv.LeadersVectorEnv(1, params=parameters.replace(n_leaders=max(1, leaders)))
     _, infos = env.reset(seed=[3])
-    recording = flockenv.simulate(parameters, int(infos["flock_seed"][0]), 60.0)
+    led, seed = parameters.replace(n_leaders=leaders), int(infos["flock_seed"][0])
+    recording = flockenv.simulate(led, seed, 60.0)
     late = recording.in_analysis_window & (recording.time_s > 6.0)
     assert runs["psi_o"].item() == pytest.approx(recording.order.psi_o[late].mean(), abs=1e-6)
     towards = np.cos(recording.order.phi_o - np.pi / 2) * recording.order.psi_o
     assert runs["signed_order"].item() == pytest.approx(towards[late].mean(), abs=1e-6)
-
-
-def test_every_case_is_written(parameters: flockenv.FlockParameters, tmp_path: Path) -> None:
-    folder, policies = tmp_path / "new" / "folder", dict(list(POLICIES.items())[:3])
-    case = Case(name="a", parameters=parameters, leaders=(0, 1, 2), seeds=range(2), episode_s=40.0)
-    result = ComparisonReport([case], list(policies), case.run(policies))
-    result.write(folder)
-    stored = (folder / "a.toml").read_text("utf-8")
-    assert flockenv.FlockParameters.from_toml(stored) == parameters
-    found = tomllib.loads((folder / "run.toml").read_text("utf-8"))["cases"]["a"]
-    assert found["leaders"] == [0, 1, 2]
-    assert found["episode_s"] == 40.0
-    assert found["seeds"] == {"first": 0, "number": 2}
-    assert found["environment"] == {"target": "cw"}
-    assert len(result.means) == 1 + 3 * 2
-    assert len(result.differences) == 3 * 2
-    assert len(result.lines) == 3 * len(QUANTITIES)
-    assert (folder / "leader_curve.png").read_bytes().startswith(b"\x89PNG")
-
-
-def test_a_case_says_what_it_is(parameters: flockenv.FlockParameters) -> None:
-    options = {"target": "alternate", "dropout_rate": 0.003, "control_hz": 5.0}
-    case = Case(name="a", parameters=parameters, leaders=(1,), seeds=[1], environment=options)
-    for words in ("target = alternate", "dropout_rate = 0.003", "control_hz = 5.0"):
-        assert words in case.title()
-    assert "cw" not in case.title()
-    assert case.flock_hours(3) == pytest.approx(3 * 480 / 3600)
 
 
 def test_targets_are_dealt_out_to_the_seeds(parameters: flockenv.FlockParameters) -> None:
@@ -134,19 +108,6 @@ def test_leaders_that_never_steer_are_rudders_of_zero(parameters: flockenv.Flock
     both = {"straight ahead": POLICIES["straight ahead"], "zero": lambda: zero}
     runs = compare_leaders(parameters, [2], both, [1, 2], 30.0).set_index(["policy", "seed"])
     pd.testing.assert_frame_equal(runs.loc["straight ahead"], runs.loc["zero"])
-
-
-def test_the_law_at_every_substep_is_what_simulate_does(
-    parameters: flockenv.FlockParameters,
-) -> None:
-    name = "paper's law at every substep"
-    runs = compare_leaders(parameters, [2], {name: POLICIES[name]}, [3], 60.0)
-    env = flockenv.LeadersVectorEnv(1, params=parameters.replace(n_leaders=2))
-    _, infos = env.reset(seed=[3])
-    seed = int(infos["flock_seed"][0])
-    recording = flockenv.simulate(parameters.replace(n_leaders=2), seed, 60.0)
-    late = recording.in_analysis_window & (recording.time_s > 6.0)
-    assert runs["psi_o"].item() == pytest.approx(recording.order.psi_o[late].mean(), abs=1e-6)
 
 
 def test_what_is_measured_in_steps_is_what_the_recording_says() -> None:

@@ -32,11 +32,6 @@ def test_time_limit_is_truncation_in_the_parallel_environment():
     assert all("episode_summary" in info for info in infos.values())
 
 
-def test_default_length_is_eight_minutes_and_sixteen_with_alternating_targets():
-    assert flockenv.LeadersEnv()._batch.episode_steps == 4800
-    assert flockenv.LeadersEnv(target="alternate")._batch.episode_steps == 9600
-
-
 def test_next_step_autoreset():
     venv = vector_env(autoreset_mode="next_step")
     assert venv.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP

@@ -65,15 +65,3 @@ def test_the_order_of_boats_and_normal_boats_do_not_matter():
     assert other[[0, 3, 1, 2]] == pytest.approx(plain, abs=1e-6)
     few = rows(flock_of(LEADERS[:1]), 3)
     assert not few.any()
-
-
-def test_a_block_at_the_end_leaves_the_others_where_they_are():
-    flock = flockenv.Flock(flockenv.FlockParameters(n_boats=9, n_leaders=3), seed=4)
-    plain, longer = observe(flock), observe(flock, {"fellow_leaders": 2})
-    assert longer[:, : plain.shape[1]].tobytes() == plain.tobytes()
-
-
-@pytest.mark.parametrize("count", [65, -1, 2.5, 10**30])
-def test_bad_counts_are_refused_by_name(count):
-    with pytest.raises(flockenv.ParameterError, match="observation fellow_leaders"):
-        flockenv.LeadersEnv(observation={"fellow_leaders": count})

@@ -121,6 +121,17 @@ def test_blocks_can_be_switched_off(off):
     env.reset(seed=0)
 
 
+@pytest.mark.parametrize("block", ["obstacles", "fellow_leaders"])
+def test_a_block_at_the_end_leaves_the_others_where_they_are(block):
+    parameters = flockenv.FlockParameters(n_boats=9, n_leaders=3, discs=[(140, 0, 10)])
+    flock = flockenv.Flock(parameters, seed=4)
+    plain, longer = observe(flock), observe(flock, {block: 2})
+    assert longer[:, : plain.shape[1]].tobytes() == plain.tobytes()
+    for count in (65, -1, 2.5, 10**30):
+        with pytest.raises(flockenv.ParameterError, match=f"observation {block}"):
+            flockenv.LeadersEnv(observation={block: count})
+
+
 def test_environment_and_flock_see_the_same():
     env = flockenv.LeadersEnv(episode_s=10.0)
     env.reset(seed=1)

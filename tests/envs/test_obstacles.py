@@ -63,18 +63,6 @@ def test_mirrored_where_the_target_is_counter_clockwise():
     assert rows(other, 3)[:, 2] == pytest.approx(-plain[:, 2], abs=1e-5)
 
 
-def test_a_block_at_the_end_leaves_the_others_where_they_are():
-    flock = flockenv.Flock(flockenv.FlockParameters(n_boats=9, n_leaders=3, **ARENA), seed=4)
-    plain, longer = observe(flock), observe(flock, {"obstacles": 2})
-    assert longer[:, : plain.shape[1]].tobytes() == plain.tobytes()
-
-
-@pytest.mark.parametrize("count", [65, -1, 2.5, 10**30])
-def test_bad_counts_are_refused_by_name(count):
-    with pytest.raises(flockenv.ParameterError, match="observation obstacles"):
-        flockenv.LeadersEnv(observation={"obstacles": count})
-
-
 def test_policies_of_both_versions(tmp_path):
     size = len(observation_entries())
     for blocks, width, version in (({}, size, 1), ({"obstacles": 2}, size + 8, 2)):

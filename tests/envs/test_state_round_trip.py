@@ -22,6 +22,7 @@ VARIANTS = {
     },
     "opposed": {"target": ["cw", "ccw", "ccw"], "mirror_to_target": True},
     "paper": {"preset": "paper"},
+    "obstacles": {"pool": (150.0, 0.0), "discs": [(30, 0, 8)], "walls": [(-60, 40, 0, 40)]},
     "bias": {"speed_spread_cm_s": 3.0, "turning_bias": 0.1, "current_gain": 0.1},
 }
 INTERFACES = {

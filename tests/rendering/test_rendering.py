@@ -9,8 +9,6 @@ import numpy as np
 import PIL.Image
 import pytest
 from gymnasium.wrappers import RecordVideo
-from pettingzoo.test import render_test
-from pettingzoo.utils.conversions import parallel_to_aec
 
 import flockenv
 from flockenv import rendering
@@ -138,10 +136,6 @@ def test_metadata(interface, modes):
     for wrong in {"ansi", "human"} - set(modes):
         with pytest.raises(flockenv.ParameterError, match=f"render_mode = '{wrong}'"):
             interface(render_mode=wrong, **SHORT)
-
-
-def test_pettingzoo_render_test():
-    render_test(lambda **mode: parallel_to_aec(flockenv.parallel_env(**SMALL, **mode)))
 
 
 def test_gymnasium_records_a_video(tmp_path):

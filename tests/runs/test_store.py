@@ -1,10 +1,6 @@
 """A finished run is stored whole and comes back bit for bit; whatever else lies there is named."""
 
-import os
-import resource
 import signal
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -156,24 +152,6 @@ def test_a_command_that_is_interrupted_keeps_the_runs_under_way(
     assert {spec for spec in specs if store.load(spec) is not None} == set(made)
 
 
-def test_a_full_disk_is_named_and_leaves_no_half_file(spec: RunSpec, tmp_path: Path) -> None:
-    store = RunStore(tmp_path)
-    result = execute(spec)
-    # What a full disk does, for this process only: writes beyond 1 kB fail.
-    stored = resource.getrlimit(resource.RLIMIT_FSIZE)
-    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (1024, stored[1]))
-    try:
-        with pytest.raises(StorageError, match=r"cannot be written.*resumes"):
-            store.save(spec, result)
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, stored)
-        signal.signal(signal.SIGXFSZ, handler)
-    assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
-    store.save(spec, result)
-    assert store.load(spec) is not None
-
-
 def test_an_unwritable_folder_is_named(spec: RunSpec, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(StorageError, match="file"):
@@ -187,31 +165,6 @@ def test_a_run_that_cannot_be_read_is_named_and_stays(spec: RunSpec, tmp_path: P
     with pytest.raises(StorageError, match=f"{spec.key}.*cannot be read"):
         store.load(spec)
     assert store.path(spec).is_dir()
-
-
-KILLED = """
-import os, signal, sys
-from flockenv import FlockParameters
-from flockenv._io import atomic_write
-from flockenv.runs.store import RunStore
-from flockenv.runs.spec import RunSpec, execute
-parameters = FlockParameters.preset("simulation").replace(n_boats=6, pool="narrow")
-spec = RunSpec(parameters=parameters, seed=3, duration_s=30.0)
-result = execute(spec)
-atomic_write.os.fsync = lambda number: os.kill(os.getpid(), signal.SIGKILL)
-RunStore(sys.argv[1]).save(spec, result)
-"""
-
-
-def test_a_kill_in_the_middle_of_writing_leaves_nothing_to_be_taken(
-    spec: RunSpec, tmp_path: Path
-) -> None:
-    done = subprocess.run([sys.executable, "-c", KILLED, str(tmp_path)], timeout=60, check=False)
-    assert done.returncode == -signal.SIGKILL
-    (left,) = (path for path in tmp_path.rglob("*") if path.is_file())
-    assert left.suffix == ".tmp"
-    assert os.fspath(left.parent) == os.fspath(RunStore(tmp_path).path(spec).parent)
-    assert RunStore(tmp_path).load(spec) is None
 
 
 @pytest.mark.parametrize(

@@ -53,19 +53,6 @@ def test_end_of_an_episode():
     assert len(venv.reset_infos) == 6
 
 
-def test_bootstrapping_sees_every_time_limit():
-    # PPO adds the value of the last observation where an episode was cut; it needs both keys.
-    venv = make(num_flocks=4)
-    venv.reset()
-    ends = [
-        info
-        for step in range(3 * STEPS)
-        for info in venv.step(actions_of(venv, step))[3]
-        if info.get("TimeLimit.truncated") and info.get("terminal_observation") is not None
-    ]
-    assert len(ends) == 3 * venv.num_envs
-
-
 def test_seed_gives_flock_i_the_seed_s_plus_i():
     venv = make(num_flocks=3, n_leaders=[1, 2, 3])
     assert venv.seed(10) == [10, 11, 11, 12, 12, 12]
