@@ -17,8 +17,6 @@ from flockenv.policies.base import check_action_mode
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
 from flockenv.statistics import mean_interval
 
-__all__ = ["FlockEvalCallback", "FlockEvaluation", "PerFlock", "evaluate_flocks"]
-
 
 class PerFlock(VecEnvWrapper):
     """A `LeaderVecEnv` whose rewards, ends and infos come once per flock; for evaluation only.

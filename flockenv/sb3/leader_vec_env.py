@@ -18,8 +18,6 @@ from flockenv.errors import EpisodeError, ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.rendering.frames import DEFAULT_SIZE
 
-__all__ = ["LeaderSlot", "LeaderVecEnv"]
-
 
 class LeaderSlot:
     """What stands for one environment in a `LeaderVecEnv`: one leader of one flock.

@@ -7,8 +7,6 @@ import numpy as np
 from stable_baselines3.common.monitor import ResultsWriter
 from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
 
-__all__ = ["FlockMonitor"]
-
 
 class FlockMonitor(VecEnvWrapper):
     """Write the episodes of a `LeaderVecEnv` to a ``monitor.csv``, a row per flock.

@@ -16,14 +16,6 @@ from flockenv import _core
 from flockenv.errors import ParameterError
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
 
-__all__ = [
-    "HeldNoise",
-    "SharedNoiseDistribution",
-    "SharedNoisePolicy",
-    "SharedWeightNoiseDistribution",
-    "shared_noise",
-]
-
 
 def shared_noise(venv: VecEnv, hold_s: float) -> dict[str, Any]:
     """Return the ``policy_kwargs`` of a `SharedNoisePolicy` for a vector environment.

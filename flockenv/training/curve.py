@@ -16,8 +16,6 @@ from flockenv.training.settings import TrainingSettings
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["compare_with_laws", "draw_curve", "learning_curve"]
-
 _EPISODE_S = 480.0
 
 

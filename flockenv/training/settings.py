@@ -17,8 +17,6 @@ from flockenv.parameters import FlockParameters
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import LeaderVecEnv, SharedNoisePolicy, shared_noise
 
-__all__ = ["TrainingSettings"]
-
 #: How fast a pool's order answers, and with it the horizons in s: of an episode, of the discount
 #: and of the advantages, and how long a flock's leaders hold one exploration.
 _TIMES_S: Mapping[str, Mapping[str, float]] = {
