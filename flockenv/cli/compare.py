@@ -12,7 +12,7 @@ from flockenv._io.atomic_write import write_csv, write_text
 from flockenv._io.extras import require
 from flockenv.cli.console import console, errors, print_json, progress, say
 from flockenv.cli.options import TRUST, Flocks, Printing, option, takes
-from flockenv.cli.output import prepare, printable
+from flockenv.cli.output import prepare, printable, read_policy
 from flockenv.cli.parameters import changed_fields, given_fields, read_parameters
 from flockenv.comparison.case import Case
 from flockenv.comparison.episodes import steering
@@ -154,10 +154,7 @@ def _policies(pool: Any, own: Mapping[str, Any], options: CompareOptions) -> dic
 def _read(given: Any, pool: Any, trust: bool) -> Any:
     if isinstance(given, Mapping):
         return {leader: _read(each, pool, trust) for leader, each in given.items()}
-    try:
-        return named_policy(given, pool, trust=trust)
-    except OSError as error:
-        raise ParameterError(f"--policy {given} cannot be read: {error.strerror}") from error
+    return read_policy(given, pool, trust)
 
 
 def _tasks(options: CompareOptions) -> list[Case]:

@@ -3,14 +3,18 @@
 import os
 import sys
 import webbrowser
+from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryFile
+from typing import Any
 
 import numpy as np
 
 from flockenv.cli.console import errors, say
 from flockenv.errors import ParameterError
 from flockenv.order import QUANTITIES
+from flockenv.policies.base import LeaderPolicy
+from flockenv.policies.registry import named_policy
 from flockenv.recording import Recording
 from flockenv.runs.sweep import summary
 
@@ -49,6 +53,14 @@ def load_recording(path: Path, layout: Path | None = None, *, quiet: bool = Fals
             say(f"{printable(path)}: {found}", errors)
 
     return read_tracks(path, None if layout is None else read_layout(layout), report)
+
+
+def read_policy(name: str, pool: Any, trust: bool) -> Callable[[], LeaderPolicy | str]:
+    """Return what makes the policy of a name or a file, as `named_policy`."""
+    try:
+        return named_policy(name, pool, trust=trust)
+    except OSError as error:
+        raise ParameterError(f"--policy {name} cannot be read: {error.strerror}") from error
 
 
 def prepare(*paths: Path, overwrites: bool = True) -> None:

@@ -8,10 +8,10 @@ from pathlib import Path
 from flockenv._io.atomic_write import write_text
 from flockenv.cli.console import print_json, progress, say
 from flockenv.cli.options import TRUST, Flocks, Overwriting, Printing, option, takes
-from flockenv.cli.output import in_words, prepare, printable, summary_of
+from flockenv.cli.output import in_words, prepare, printable, read_policy, summary_of
 from flockenv.cli.parameters import read_parameters
 from flockenv.errors import ParameterError
-from flockenv.policies.registry import EVERY_SUBSTEP, POLICIES, POOL_POLICIES, named_policy, quoted
+from flockenv.policies.registry import EVERY_SUBSTEP, POLICIES, POOL_POLICIES, quoted
 from flockenv.simulation import simulate
 
 _OUT = Path("results/run.npz")
@@ -48,12 +48,7 @@ def run(options: RunOptions) -> None:
     Example: `flockenv run --set n_boats=27 --set n_leaders=3 --set bw_s=0.3 --seed 7`
     """
     parameters = read_parameters(options.preset, options.params, options.changes)
-    try:
-        policy = named_policy(options.policy, parameters.pool, trust=options.trust)()
-    except OSError as error:
-        raise ParameterError(
-            f"--policy {options.policy} cannot be read: {error.strerror}"
-        ) from error
+    policy = read_policy(options.policy, parameters.pool, options.trust)()
     out = options.out or _free(_OUT)
     if out.suffix != ".npz":
         raise ParameterError(f"--out {out} is not accepted: a name that ends in .npz")
@@ -88,9 +83,7 @@ def run(options: RunOptions) -> None:
 def _free(path: Path) -> Path:
     """Return a path, or the same with the first number from 2 on, where no run is."""
     numbered = (path.with_stem(f"{path.stem}-{number}") for number in count(2))
-    ends = (".npz", ".toml")
-    return next(
-        each
-        for each in chain([path], numbered)
-        if not any(each.with_suffix(end).exists() for end in ends)
-    )
+    for each in chain([path], numbered):
+        if not (each.exists() or each.with_suffix(".toml").exists()):
+            break
+    return each
