@@ -98,20 +98,6 @@ class ContactSeries(_Columns):
     along_cm: NDArray[np.float32]
 
     @classmethod
-    def of(cls, samples: Sequence[Contacts]) -> Self:
-        """Return the series of contacts that were looked up sample by sample."""
-        pushing = [sample.force > 0.0 for sample in samples]
-
-        def joined(name: str, dtype: type) -> NDArray[Any]:
-            pairs = zip(samples, pushing, strict=True)
-            parts = [getattr(sample, name)[chosen] for sample, chosen in pairs]
-            return np.concatenate(parts).astype(dtype)
-
-        count = np.array([chosen.sum() for chosen in pushing], np.int64)
-        boats = [joined(name, np.int32) for name in ("i", "j")]
-        return cls(count, *boats, *(joined(name, np.float32) for name in _VECTORS))
-
-    @classmethod
     def of_columns(cls, columns: Mapping[str, NDArray[Any]]) -> Self:
         """Return the series with these of its columns, by name; others are left out."""
         return cls(*(columns[each.name] for each in fields(cls)))
@@ -121,9 +107,6 @@ class ContactSeries(_Columns):
         chosen = np.repeat(samples, self.count)
         each = (getattr(self, field.name)[chosen] for field in fields(self)[1:])
         return ContactSeries(self.count[samples], *each)
-
-
-_VECTORS = ("normal", "force", "point_cm", "along_cm")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -24,35 +24,25 @@ STATES = np.array(_core.COLLECTIVE_STATES)
 
 @dataclass(frozen=True)
 class Quantity:
-    """An entry of the table of quantities.
+    """An entry of the table of quantities."""
 
-    Attributes
-    ----------
-    name, label, symbol, unit
-        Its name in recordings and tables, what it is in a few words, symbol and unit (empty for
-        none).
-    meaning, source
-        What it is, with its sign; and where it is defined.
-    range
-        Least and greatest value, if there are such.
-    least_boats
-        Fewer boats leave it undefined (NaN).
-    is_averaged
-        Whether its mean over a run is shown; the mean of an angle is not.
-    kind
-        ``"recorded"``: kept with every sample of a recording; ``"derived"``: follows from recorded
-        ones and the target direction; ``"structure"``: computed from poses on request.
-    """
-
+    #: In recordings and tables; and what it is in a few words.
     name: str
     label: str
     symbol: str
+    #: Empty for none.
     unit: str
+    #: What it is, with its sign; and where it is defined.
     meaning: str
     source: str
+    #: Least and greatest value, if there are such.
     range: tuple[float, float] | None
+    #: Fewer boats leave it undefined (NaN).
     least_boats: int
+    #: Whether its mean over a run is shown; the mean of an angle is not.
     is_averaged: bool
+    #: ``"recorded"`` with every sample, ``"derived"`` from recorded ones and the target direction,
+    #: or ``"structure"``: computed from poses on request.
     kind: str
 
     @property

@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 from rich.progress import track
 
 import flockenv
-from flockenv.runs import POLICY_SEEDS
+from flockenv.runs.seeds import POLICY_SEEDS
 
 HERE = Path(__file__).parent
 FIRST_SEED = POLICY_SEEDS["paper"].first

@@ -14,33 +14,22 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:
-    """One flock in which policies are compared.
+    """One flock in which policies are compared."""
 
-    Attributes
-    ----------
-    name : str
-        Its name, which is that of its file of parameters.
-    parameters : FlockParameters
-        Of the flock, except for the number of leaders.
-    leaders : tuple of int
-        Numbers of leaders.
-    seeds : sequence of int
-        One episode each.
-    episode_s : float
-        Length of an episode in s.
-    environment : dict
-        Options of the environment that differ from its defaults.
-    targets : tuple
-        Targets that are dealt out to the seeds in turn, each as in the parameters; none: that of
-        the parameters. The signed order counts towards the target of leader 0.
-    """
-
+    #: That of its file of parameters.
     name: str
+    #: Of the flock, except for the number of leaders.
     parameters: FlockParameters
+    #: Numbers of leaders.
     leaders: tuple[int, ...]
+    #: One episode each.
     seeds: Sequence[int]
+    #: Length of an episode in s.
     episode_s: float = 480.0
+    #: Options of the environment that differ from its defaults.
     environment: Mapping[str, Any] = field(default_factory=dict)
+    #: Dealt out to the seeds in turn, each as in the parameters, whose target they replace. The
+    #: signed order counts towards the target of leader 0.
     targets: tuple[Any, ...] = ()
 
     def flock_hours(self, policies: int) -> float:

@@ -36,23 +36,14 @@ _TABLES = ("runs", "means", "differences", "lines")
 
 @dataclass(frozen=True)
 class ComparisonReport:
-    """What policies reached in some cases (extra ``plot``).
-
-    Attributes
-    ----------
-    cases : sequence of Case
-        The cases.
-    policies : sequence of str
-        Names, those first whose differences from the others are wanted.
-    runs : pandas.DataFrame
-        One row per episode: the rows of `Case.run` of all cases.
-    conditions : dict
-        What else the numbers depend on.
-    """
+    """What policies reached in some cases (extra ``plot``)."""
 
     cases: Sequence[Case]
+    #: Names, those first whose differences from the others are wanted.
     policies: Sequence[str]
+    #: One row per episode: the rows of `Case.run` of all cases.
     runs: "pd.DataFrame"
+    #: What else the numbers depend on.
     conditions: Mapping[str, Any] = field(default_factory=dict)
 
     @cached_property

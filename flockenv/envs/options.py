@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
-from flockenv.envs.observation import BLOCKS
 from flockenv.errors import (
     ParameterError,
     UnknownOptionError,
@@ -69,12 +68,9 @@ class EnvOptions:
         settings = {name: given.pop(name) for name in _SETTINGS if name in given}
         if isinstance(given.get("bw_s"), tuple | list):
             settings["bw_s"] = tuple(given.pop("bw_s"))
-        for name, known in (("observation", BLOCKS), ("reward", TERMS)):
+        for name in ("observation", "reward"):
             if isinstance(settings.get(name), Mapping):
                 settings[name] = dict(settings[name])
-                refuse_unknown(settings[name], known, f"part of {name}")
-        if isinstance(settings.get("action_mode"), str):
-            refuse_unknown((settings["action_mode"],), _core.ACTION_MODES, "action mode")
         target = settings.get("target")
         if isinstance(target, list | tuple):
             # What is no direction is refused with the settings, where it could be expected.

@@ -359,10 +359,9 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
             Fixes this episode, and those that follow without a seed. None continues with the
             next one.
         options
-            For this episode: ``target`` ("cw", "ccw", "random", "alternate" or one of "cw" and
-            "ccw" per leader), ``bw_s`` in s, ``state`` (a dictionary with pose (n, 3) and, if need
-            be, velocity (n, 3), time_s and allow_overlap as in `Flock.set_state`) or ``snapshot``
-            (bytes of `Flock.snapshot` of a flock with the same parameters, target and bw_s aside).
+            For this episode: ``target``, ``bw_s`` in s, and ``state`` or ``snapshot``, as the class
+            says of the starting state. A snapshot is of a flock with the same parameters, target
+            and bw_s aside.
 
         Returns
         -------

@@ -130,11 +130,8 @@ class LeadersVectorEnv(
             One for flock 0, each following flock having the next; or one per flock; None continues
             with the next episode.
         options
-            ``target`` ("cw", "ccw", "random", "alternate" or a tuple of "cw" and "ccw", one per
-            leader; a list has an entry for each flock), ``bw_s`` (s), ``state`` (a dictionary with
-            pose, velocity, time_s and allow_overlap as in `Flock.set_state`) or ``snapshot``
-            (bytes of `Flock.snapshot`), for the episodes that start; ``reset_mask`` (num_envs,)
-            bool.
+            Those of `LeadersEnv.reset` for the episodes that start, where a list has an entry for
+            each flock; ``reset_mask`` (num_envs,) bool.
 
         Returns
         -------

@@ -5,6 +5,7 @@ import json
 import math
 import os
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any, Self
 
 import gymnasium
@@ -29,13 +30,9 @@ _LARGEST_FILE = 5 << 20
 _OPTIONS = ("observation", "mirror_to_target", "action_mode", "decision_period_s")
 
 
-def _relu(values: NDArray[np.float32]) -> NDArray[np.float32]:
-    return np.maximum(values, np.float32(0.0))
-
-
 ACTIVATIONS: Mapping[str, Callable[[NDArray[np.float32]], NDArray[np.float32]]] = {
     "tanh": np.tanh,
-    "relu": _relu,
+    "relu": partial(np.maximum, np.float32(0.0)),
 }
 """What may stand between two layers."""
 

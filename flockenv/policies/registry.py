@@ -7,7 +7,7 @@ from typing import Any
 from flockenv.errors import ParameterError, nearest
 from flockenv.policies.base import LeaderPolicy
 from flockenv.policies.constant import RandomRudders, StraightAhead
-from flockenv.policies.laws import DampedLaw, LawPolicy, LeaningLaw, SteeringLaw
+from flockenv.policies.laws import DampedLaw, LeaningLaw, SteeringLaw
 from flockenv.policies.model import ModelPolicy, is_model_file, load_model
 from flockenv.policies.network import NetworkPolicy
 
@@ -24,14 +24,9 @@ LEARNED = "learned"
 POOLS = ("wide", "narrow")
 """The pools for which laws were tuned and leaders were trained."""
 
-LAWS: Mapping[str, Callable[..., LawPolicy]] = {
+POLICIES: Mapping[str, Callable[[], LeaderPolicy | str]] = {
     "paper's law": SteeringLaw,
     "damped law": DampedLaw,
-}
-"""Laws by name that are the same in every pool."""
-
-POLICIES: Mapping[str, Callable[[], LeaderPolicy | str]] = {
-    **LAWS,
     EVERY_SUBSTEP: lambda: EVERY_SUBSTEP,
     "straight ahead": StraightAhead,
     "random rudders": RandomRudders,
@@ -44,7 +39,6 @@ POOL_POLICIES: Mapping[str, Callable[[Any], LeaderPolicy]] = {
 }
 """Policies by name, each tuned or trained for a pool."""
 
-_LARGEST_FILE = 1 << 20
 _LONGEST_NAME = 200
 
 

@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 
 from flockenv._io.extras import require
 from flockenv._io.interrupts import end_if_interrupted, interrupted
-from flockenv.errors import ParameterError
+from flockenv.errors import refuse_unknown
 
 Item = TypeVar("Item")
 Value = TypeVar("Value")
@@ -86,15 +86,8 @@ ENGINES: Mapping[str, Engine] = {"local": threads, "ray": RayExecutor}
 
 
 def named(name: str) -> Engine:
-    """Return an engine by its name.
-
-    Raises
-    ------
-    ParameterError
-        For an unknown name, where the message lists those there are.
-    """
-    if name not in ENGINES:
-        raise ParameterError(f"engine = {name!r} is not accepted: {', '.join(ENGINES)}")
+    """Return an engine by its name; a ParameterError of an unknown one lists those there are."""
+    refuse_unknown((name,), ENGINES, "engine")
     return ENGINES[name]
 
 

@@ -12,20 +12,12 @@ FIRST_TRAINING_SEED = 1 << 32
 
 @dataclass(frozen=True, slots=True)
 class SeedRange:
-    """The seeds of one use, in equal parts for its runs.
-
-    Attributes
-    ----------
-    use : str
-        What the seeds are for.
-    first : int
-        First seed of run 0.
-    of_a_run, runs : int
-        Seeds of each run, and number of runs.
-    """
+    """The seeds of one use, in equal parts for its runs."""
 
     use: str
+    #: First seed of run 0.
     first: int
+    #: Seeds of each run, and number of runs.
     of_a_run: int
     runs: int = 1
 
