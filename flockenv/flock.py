@@ -77,16 +77,9 @@ class ContactSeries(_Columns):
     count : int64 array, shape (t,)
         How many each sample has; they follow one another in the other arrays.
     i, j : int32 array, shape (c,)
-        The boats, as in `Contacts`: j is -1 for the outer wall, -2 for the inner wall, -3 and below
-        for obstacles.
-    normal : float32 array, shape (c, 2)
-        Unit vector along which boat i is pushed, world axes.
-    force : float32 array, shape (c,)
-        Mean force over the substep before the sample in cm/s² (mass 1), above 0.
-    point_cm : float32 array, shape (c, 2)
-        Where boat i is pushed: a point of its hull, world axes.
-    along_cm : float32 array, shape (c,)
-        The same along its core, from its center to the bow.
+        The boats, as in `Contacts`.
+    normal, force, point_cm, along_cm : float32 array
+        As in `Contacts`; the force, above 0, is the mean over the substep before the sample.
     """
 
     count: NDArray[np.int64]
@@ -210,20 +203,11 @@ class Flock:
 
         Parameters
         ----------
-        parameters
-            Of the flock.
-        seed
-            Seed of all random streams, 0 to 2^64 - 1.
+        parameters, seed
+            As of the class.
         state
             ``pose`` (n, 3) and, if need be, ``velocity`` (n, 3), ``time_s`` and ``allow_overlap``,
-            as in `set_state`.
-
-        Raises
-        ------
-        ParameterError
-            For other keys, a seed out of range and what `set_state` refuses.
-        TypeError
-            For values of the wrong type.
+            as in `set_state`, whose errors these are. Other keys are refused.
         """
         return cls.of(_core.Flock.from_state(parameters, seed, state))
 

@@ -177,12 +177,7 @@ class OrderSeries(_Recorded):
     def signed_order(self, target: str | Sequence[str]) -> NDArray[np.float64]:
         """Return Ψ_o·cos(φ_o - φ_target) in [-1, 1], shape (t,), for target "cw" or "ccw".
 
-        Of a list of targets the first counts.
-
-        Raises
-        ------
-        ParameterError
-            For an unknown target.
+        Of a list of targets the first counts. Errors are those of `series`.
         """
         return self.series("signed_order", target)
 
@@ -196,10 +191,6 @@ class OrderSeries(_Recorded):
         It is the mean of cos φ over boats, so that opposed streams do not cancel as in `rotation`.
         """
         return self.series("outward")
-
-    def off_tangent(self) -> NDArray[np.float64]:
-        """Return ||φ_o| - π/2| in [0, π/2] rad, shape (t,): 0 for boats along the pool."""
-        return self.series("off_tangent")
 
     def states(
         self, speed_cm_s: float, largest_cluster: NDArray[np.float64] | None = None

@@ -32,25 +32,14 @@ class Entry(NamedTuple):
 
 
 def observation_entries(blocks: Mapping[str, Any] | None = None) -> list[Entry]:
-    """Return every entry of an observation, in order.
-
-    Parameters
-    ----------
-    blocks
-        Blocks that differ from `BLOCKS`.
-    """
+    """Return every entry of an observation, in order; blocks differ from `BLOCKS`."""
     return [Entry(**row) for row in _core.observation_table(dict(blocks or {}))]
 
 
 def observation_version(blocks: Mapping[str, Any] | None = None) -> int:
     """Return the version of the observation that has these blocks.
 
-    It is 2 with obstacles or fellow leaders, else 1.
-
-    Parameters
-    ----------
-    blocks
-        Blocks that differ from `BLOCKS`.
+    It is 2 with obstacles or fellow leaders, else 1. Blocks are those that differ from `BLOCKS`.
     """
     return _core.observation_version(dict(blocks or {}))
 

@@ -42,13 +42,10 @@ class RenderMode:
         self._window: Window | None = None
         self._shown_s: float | None = None
         self._closed = False
+        # Wrong sizes and missing extras are named before anything is simulated.
         if mode is not None:
-            self._check_now()
-
-    def _check_now(self) -> None:
-        """Refuse sizes and name missing extras before anything is simulated."""
-        renderer(*self.size)
-        if self.mode == "human":
+            renderer(*self.size)
+        if mode == "human":
             require_pygame()
 
     @property

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv.errors import ParameterError, shown
@@ -86,11 +85,8 @@ def check_contacts(contacts: ContactSeries, samples: int, parameters: FlockParam
     if (count < 0).any() or (count > c).any() or count.sum() != c:
         raise ParameterError(f"contacts.count must add up to the {c} contacts there are")
     boats, obstacles = parameters.n_boats, len(parameters.discs) + len(parameters.walls)
-    if not (_within(contacts.i, 0, boats) and _within(contacts.j, -2 - obstacles, boats)):
+    pairs = np.concatenate([contacts.i, contacts.j])
+    if c and (contacts.i.min() < 0 or pairs.min() < -2 - obstacles or pairs.max() >= boats):
         raise ParameterError(f"contacts.i and contacts.j must be among {boats} boats")
     if not (contacts.force > 0).all():
         raise ParameterError("contacts.force must be positive")
-
-
-def _within(numbers: NDArray[np.int32], low: int, end: int) -> bool:
-    return bool(((numbers >= low) & (numbers < end)).all())

@@ -13,18 +13,13 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-_COMPONENTS = {
-    "pose": ("x_cm", "y_cm", "heading_rad"),
-    "velocity": ("velocity_x_cm_s", "velocity_y_cm_s", "angular_velocity_rad_s"),
-}
-_UNITS = {
-    "x_cm": "cm",
-    "y_cm": "cm",
-    "heading_rad": "rad",
+_POSE = {"x_cm": "cm", "y_cm": "cm", "heading_rad": "rad"}
+_VELOCITY = {
     "velocity_x_cm_s": "cm s-1",
     "velocity_y_cm_s": "cm s-1",
     "angular_velocity_rad_s": "rad s-1",
 }
+"""The components of each, with their units."""
 
 
 def table_of(recording: Any, boats: bool) -> "pandas.DataFrame":
@@ -52,7 +47,7 @@ def dataset_of(recording: Any) -> "xarray.Dataset":
     by_time = {name: getattr(recording, name) for name in TIMES[1:]}
     by_time |= {name: getattr(recording.order, name) for name in ORDER}
     by_time |= recording.quantities
-    units = {each.name: each.unit or "1" for each in RECORDED} | _UNITS
+    units = {each.name: each.unit or "1" for each in RECORDED} | _POSE | _VELOCITY
     attributes = {name: {"units": units[name]} for name in units}
     variables: dict[str, Any] = {
         name: ("time_s", each, attributes.get(name)) for name, each in by_time.items()
@@ -80,8 +75,5 @@ def dataset_of(recording: Any) -> "xarray.Dataset":
 
 def _motion(recording: Any) -> dict[str, NDArray[np.floating[Any]]]:
     """Return poses and velocities by component, each (t, n)."""
-    return {
-        name: getattr(recording, array)[..., component]
-        for array, names in _COMPONENTS.items()
-        for component, name in enumerate(names)
-    }
+    columns = np.moveaxis(np.concatenate([recording.pose, recording.velocity], axis=-1), -1, 0)
+    return dict(zip((*_POSE, *_VELOCITY), columns, strict=True))

@@ -174,7 +174,8 @@ def run_sweep(
 ) -> "pd.DataFrame":
     """Make the runs of a sweep that a folder lacks, and write its table.
 
-    Writes ``sweep.csv`` and ``sweep.parquet``, and keeps finished runs in ``runs/``.
+    Writes ``sweep.csv`` and ``sweep.parquet``, and keeps finished runs in ``runs/``. Without the
+    extra ``plot`` nothing is run.
 
     Parameters
     ----------
@@ -185,19 +186,12 @@ def run_sweep(
     notify
         See `RunStore`.
     engine, progress, workers
-        See `run_missing`.
+        See `run_missing`, whose errors these are.
 
     Returns
     -------
     pandas.DataFrame
         The table, see `load_sweep`.
-
-    Raises
-    ------
-    MissingExtraError
-        Without the extra ``plot``; nothing is run then.
-    StorageError
-        If files cannot be written.
     """
     pandas = require("pandas", "plot")
     require("pyarrow", "plot")

@@ -96,11 +96,6 @@ def measure_workload(specs: Iterable[RunSpec], store: RunStore) -> Workload:
         The runs; repeated ones count once.
     store
         Where finished runs are stored; nothing is written there.
-
-    Returns
-    -------
-    Workload
-        How many runs there are, how many are stored, and what the others take.
     """
     specs = list(dict.fromkeys(specs))
     missing = [spec for spec in specs if not store.path(spec).exists()]

@@ -95,7 +95,7 @@ def test_states_and_ordering_times_of_a_recording():
     assert states.shape == run.time_s.shape
     ordered = np.char.startswith(states, "ordered")
     assert (run.order.psi_o[ordered] > 0.8).all()
-    assert (run.order.off_tangent()[ordered] < np.pi / 4).all()
+    assert (run.order.series("off_tangent")[ordered] < np.pi / 4).all()
     clusters = structure.structure_series("largest_cluster", run.parameters, run.pose)
     clustering = run.order.states(15.0, clusters) == "clustering"
     assert (states[clustering] == "disordered").all()
