@@ -33,18 +33,18 @@ const CHOICES = {
 export const LEADERS = {
   "paper's law at every substep": "the paper's law",
   "tuned law": "the tuned law",
-  learned: "the pretrained policy",
+  learned: "learned steering",
   you: "you",
 };
 /** How each of several leaders may steer, in words. */
-const OWN = { "paper's law": "the paper's law", "tuned law": "the tuned law", learned: "pretrained" };
+const OWN = { "paper's law": "the paper's law", "tuned law": "the tuned law", learned: "learned steering" };
 
 /** What may run beside a flock: what of it differs, and in words. */
 const BESIDE_CHOICES = [
   ["", "nothing"],
   ["leaders=paper's law at every substep", "the paper's law"],
   ["leaders=tuned law", "the tuned law"],
-  ["leaders=learned", "the pretrained policy"],
+  ["leaders=learned", "learned steering"],
   ["n_leaders=0", "no leaders"],
   ["n_leaders=1", "one leader"],
   ["n_leaders=4", "four leaders"],

@@ -2,31 +2,31 @@
 
 import { element } from "../flockenv/replay/words.mjs";
 
-const NOISE = "#lesson=noise&preset=experiment&n_boats=27&seed=2&speed=16";
-const OPPOSED = "#lesson=opposed&n_boats=27&n_leaders=4&bw_s=0.3&seed=5&speed=16";
+const NOISE = "#lesson=noise&preset=experiment&n_boats=27&seed=16&speed=16";
+const OPPOSED = "#lesson=opposed&n_boats=27&n_leaders=4&bw_s=0.3&seed=2&speed=16";
 
 export const LESSONS = [
   {
     name: "noise",
     title: "Noise makes motion",
     link: `${NOISE}&bw_s=0`,
-    words: "No boat leads and none looks at the others: they only bump. Each time they back up they turn at random, and this noise decides, " +
-      `as the paper found: if they [never back up](${NOISE}&bw_s=0) they jam at the wall, all heading outward (high order, no rotation), with ` +
+    words: "No boat leads and none looks at the others: they only bump. Each time they back up they turn at random, and as the paper " +
+      `found this noise decides: boats that [never back up](${NOISE}&bw_s=0) jam at the wall, all heading outward (high order, no rotation), with ` +
       `[0.6 s](${NOISE}&bw_s=0.6) or [1 s](${NOISE}&bw_s=1) in each cycle they come to circle together, and with [2.8 s](${NOISE}&bw_s=2.8) they never agree.`,
   },
   {
     name: "leaders",
     title: "One leader or four",
-    link: "#lesson=leaders&n_boats=27&n_leaders=1&bw_s=0.3&seed=7&beside.n_leaders=4&speed=16",
-    words: "A few leaders (amber) decide which way a flock circles, as the paper found, although to the others they are boats that bump like any. " +
-      "Four do it better than one: the order towards the target, which is 1 if all others circle clockwise and −1 if all circle the other way, is 0.38 with four and 0.13 with one (means of 256 flocks).",
+    link: "#lesson=leaders&n_boats=27&n_leaders=1&bw_s=0.3&seed=14&beside.n_leaders=4&speed=16",
+    words: "A few leaders (amber) decide which way a flock circles, and more of them order it more, as the paper found, although to the others they are " +
+      "boats that bump like any. The order towards the target is 1 if all others circle the leaders' way and −1 if all circle the other way: in this simulator it is 0.13 with one leader and 0.38 with four (means of 256 flocks).",
   },
   {
     name: "learned",
     title: "Learned or law",
-    link: "#lesson=learned&n_boats=27&n_leaders=4&bw_s=0.3&seed=7&beside.leaders=learned&speed=16",
-    words: "Both flocks have four leaders and start from the same places with the same noise: those of the first follow the paper's steering rule, " +
-      "those of the second learned in this simulator, by trial and error, which way to head. They lead better: the order towards the target is 0.59 with them and 0.38 with the rule (means of 256 flocks).",
+    link: "#lesson=learned&n_boats=27&n_leaders=4&bw_s=0.3&seed=14&beside.leaders=learned&speed=16",
+    words: "Both flocks have four leaders and start from the same places with the same noise. Those of the first steer by the paper's rule. Those of the " +
+      "second learned in this simulator, by trial and error, where to head, and lead better: the order towards the target is 0.59 with them and 0.38 with the rule (means of 256 flocks).",
   },
   {
     name: "forces",
@@ -39,8 +39,8 @@ export const LESSONS = [
     name: "opposed",
     title: "Opposed leaders",
     link: `${OPPOSED}&target=cw,cw,ccw,ccw`,
-    words: `With [two against two](${OPPOSED}&target=cw,cw,ccw,ccw), amber leaders clockwise and pink ones counter-clockwise, chance ` +
-      `decides whom a flock follows, and this one mostly follows the pink. With [three against one](${OPPOSED}&target=cw,cw,cw,ccw) ` +
+    words: `Not in the paper: with [two against two](${OPPOSED}&target=cw,cw,ccw,ccw), amber leaders clockwise and pink ones counter-clockwise, chance ` +
+      `decides whom a flock follows, and this one mostly follows the amber. With [three against one](${OPPOSED}&target=cw,cw,cw,ccw) ` +
       "most flocks, and this one too, follow the three.",
   },
 ];

@@ -71,12 +71,10 @@ export class LivePage {
     this.pinned = this.other.boat === undefined ? null : Number(this.other.boat);
     this.#showStory(this.other.lesson);
     const wanted = { flock: linked.flock, beside: linked.beside };
-    const isSame = this.asked && ["seed", "preset", "n_boats"].every((name) => this.asked.flock[name] === wanted.flock[name]) &&
-      Boolean(this.asked.beside) === Boolean(wanted.beside);
     // What the simulator refuses is left out, one parameter after another.
     for (let tries = 0; tries < 40; tries += 1) {
       try {
-        await this.#become(wanted, isSame ? "change" : "open", words);
+        await this.#become(wanted, "open", words);
         return;
       } catch (error) {
         if (!error.refused) {
@@ -571,7 +569,7 @@ export class LivePage {
       byId(key).previousElementSibling.replaceChildren(...legendOf(this.runs, quantity, this.time));
     }
     const scores = this.runs.filter(({ target }) => target !== null);
-    byId("score").replaceChildren(...(scores.length === 0 ? [] : ["mean order towards the target: ",
+    byId("score").replaceChildren(...(scores.length === 0 ? [] : ["mean order towards the target so far: ",
       ...scores.flatMap((each, place) => [`${place > 0 ? " · " : ""}${this.runs.length > 1 ? `${each.name} ` : ""}`,
         element("b", "", fixed(each.score, 2, true))])]));
     this.#showObserved();
