@@ -55,23 +55,6 @@ def test_starts_at_rest_without_overlap(flock):
     flock.set_state(flock.pose, flock.velocity)  # which refuses overlaps
 
 
-def test_a_lone_boat_speeds_up_as_its_closed_form(parameters):
-    p = parameters.replace(n_boats=1, n_leaders=0, pool=(math.inf, 0), c4=0.0)
-    flock = Flock(p, seed=0)
-    flock.set_state([[0.0, 0.0, 0.0]], [[0.0, 0.0, 0.0]])
-    flock.advance(1.0)
-    # Eq. (8) from rest: x = v0 (t - (1 - exp(-c0 t))/c0).
-    assert flock.pose[0] == pytest.approx([15.0 * math.exp(-1.0), 0.0, 0.0], rel=1e-4)
-
-
-def test_phases_follow_the_schedule(flock):
-    seen = []
-    for _ in range(5):
-        seen.append((flock.time_s, flock.phase))
-        flock.advance(1.0)
-    assert seen == [(0, "fw"), (1, "fw"), (2, "nop1"), (3, "bw"), (4, "nop2")]
-
-
 def test_arrays_are_copies(flock):
     pose, before = flock.pose, flock.snapshot()
     pose[:] = 0.0
@@ -211,11 +194,6 @@ def test_seeds_out_of_range_are_refused(unchanged, seed):
         Flock(unchanged.parameters, seed)
 
 
-def test_too_many_boats_for_the_pool_say_how_many_fit(parameters):
-    with pytest.raises(ParameterError, match=r"n_boats = 200 boats do not fit.* \d+ were placed"):
-        Flock(parameters.replace(n_boats=200), seed=1)
-
-
 def test_motion_that_explodes_is_a_solver_error_and_undone(parameters):
     p = parameters.replace(scheme="moreau", dt_s=0.1, c0=1e6, solver="gauss-seidel")
     flock = Flock(p, seed=1)
@@ -250,12 +228,6 @@ def test_target_moves_the_law_and_the_parameters(flock):
         flock.set_target("left")
     with pytest.raises(TypeError, match="target"):
         flock.set_target(None)
-
-
-def test_reset_is_a_new_flock(flock):
-    flock.advance(3.0)
-    flock.reset(9)
-    assert flock.snapshot() == Flock(flock.parameters, seed=9).snapshot()
 
 
 def test_copies_are_independent_and_go_on_alike(flock):

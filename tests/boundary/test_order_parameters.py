@@ -28,15 +28,6 @@ def test_clockwise_circling_is_perfect_order(parameters):
         assert getattr(order, name) == pytest.approx(getattr(expected, name)), name
 
 
-def test_leaders_count_only_if_asked(parameters):
-    flock = circling(parameters, 10, n_leaders=2)
-    pose = flock.pose
-    pose[:2, 2] += np.pi
-    flock.set_state(pose, flock.velocity)
-    assert flock.order_parameters().psi_o == pytest.approx(1.0)
-    assert flock.order_parameters(include_leaders=True).psi_o == pytest.approx(0.6)
-
-
 def test_one_boat_has_no_pair(parameters):
     order = circling(parameters, 1).order_parameters()
     assert order.psi_o == pytest.approx(1.0)

@@ -4,7 +4,6 @@ import re
 import shutil
 import subprocess
 import sys
-from importlib.resources import files
 from pathlib import Path
 
 import flockenv
@@ -25,10 +24,6 @@ OPTIONAL = (
 def test_version_is_the_one_of_cargo_toml():
     cargo = (REPOSITORY / "Cargo.toml").read_text()
     assert flockenv.__version__ == re.search(r'^version = "(.+)"$', cargo, re.MULTILINE)[1]
-
-
-def test_package_is_typed():
-    assert files(flockenv).joinpath("py.typed").is_file()
 
 
 def test_import_needs_no_optional_library():

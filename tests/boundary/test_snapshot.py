@@ -44,18 +44,21 @@ def test_a_snapshot_brings_seed_and_target_along():
     assert (other.seed, other.parameters.target) == (7, "ccw")
 
 
-def refused(blob, match=None):
+FLIPPED = [SNAPSHOT[:at] + bytes([SNAPSHOT[at] ^ 4]) + SNAPSHOT[at + 1 :] for at in (0, 9, 200)]
+
+
+@pytest.mark.parametrize(
+    "blob",
+    [b"", b"PK\x03\x04" * 100, SNAPSHOT[::-1], SNAPSHOT[:-1], SNAPSHOT + b"\0", *FLIPPED],
+    ids=range(8),
+)
+def test_bytes_that_are_no_whole_snapshot_are_refused(blob):
     """Both ways in refuse the bytes, and the flock is as it was."""
     flock = moving()
     for restore in (flock.restore, Flock.from_snapshot):
-        with pytest.raises(ParameterError, match=match):
+        with pytest.raises(ParameterError, match="snapshot"):
             restore(blob)
     assert flock.snapshot() == SNAPSHOT
-
-
-def test_foreign_bytes_are_refused():
-    for blob in (b"", b"x", b"PK\x03\x04" * 100, bytes(1000), SNAPSHOT[::-1]):
-        refused(blob, match="snapshot")
 
 
 def test_a_snapshot_of_other_parameters_is_refused():
@@ -70,22 +73,6 @@ def test_a_snapshot_of_other_parameters_is_refused():
 def test_what_is_no_bytes_is_a_type_error(value):
     with pytest.raises(TypeError, match="snapshot"):
         moving().restore(value)
-
-
-@given(st.integers(0, len(SNAPSHOT) - 1))
-def test_cut_off_snapshots_are_refused(length):
-    refused(SNAPSHOT[:length])
-
-
-def test_longer_snapshots_are_refused():
-    refused(SNAPSHOT + b"\0")
-
-
-@given(st.integers(0, 8 * len(SNAPSHOT) - 1))
-def test_flipped_bits_are_refused(bit):
-    blob = bytearray(SNAPSHOT)
-    blob[bit // 8] ^= 1 << bit % 8
-    refused(bytes(blob))
 
 
 def checksum(body: bytes) -> bytes:

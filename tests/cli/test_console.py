@@ -2,12 +2,10 @@
 
 import json
 import os
-import signal
 
 import pytest
-import typer
 
-from flockenv.cli.console import ends_on_interrupt, print_json, progress
+from flockenv.cli.console import print_json
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252", "utf-8"])
@@ -24,21 +22,3 @@ def test_json_is_ascii(capsys):
     reported = capsys.readouterr().out
     assert reported.isascii()
     assert json.loads(reported) == data
-
-
-def test_ctrl_c_ends_work_where_it_moves_on(capsys):
-    units = []
-
-    @ends_on_interrupt
-    def command():
-        with progress("at work", 3.0, quiet=False) as advance:
-            for unit in range(3):
-                signal.raise_signal(signal.SIGINT)
-                units.append(unit)
-                advance()
-
-    with pytest.raises(typer.Exit) as ended:
-        command()
-    assert (ended.value.exit_code, units) == (130, [0])
-    assert "Interrupted. What was finished before is stored." in capsys.readouterr().err
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler

@@ -49,17 +49,6 @@ def test_presets_as_json_are_the_presets(cli):
         assert all(each["source"] and each["meaning"] for each in preset["fields"].values())
 
 
-def test_shells_complete(cli):
-    line = "flockenv comp"
-    environment = {
-        "_FLOCKENV_COMPLETE": "complete_bash",
-        "COMP_WORDS": line,
-        "COMP_CWORD": "1",
-    }
-    done = cli.process(before="import sys; sys.argv[0] = 'flockenv'", **environment)
-    assert done.stdout.split() == ["compare"]
-
-
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

@@ -51,14 +51,6 @@ def test_the_nearest_come_first_at_any_distance_and_zeros_where_there_are_none()
     assert not found[3].any()
 
 
-def test_mirrored_where_the_target_is_counter_clockwise():
-    plain = rows(flock_of(LEADERS), 3, mirror_to_target=True)
-    reflected = flock_of(LEADERS, -1.0, target="ccw")
-    assert rows(reflected, 3, mirror_to_target=True) == pytest.approx(plain, abs=1e-6)
-    odd = [1, 1, -1, 1, 1, -1]
-    assert rows(reflected, 3) == pytest.approx(plain * odd, abs=1e-6)
-
-
 def test_the_order_of_boats_and_normal_boats_do_not_matter():
     plain = rows(flock_of(LEADERS), 3)
     other = rows(flock_of([LEADERS[0], LEADERS[2], LEADERS[3], LEADERS[1]]), 3)

@@ -12,7 +12,6 @@ from flockenv.policies import DampedLaw, StraightAhead
 
 SMALL = {"n_boats": 9, "n_leaders": 3, "episode_s": 6.0, "pool": "narrow"}
 MIXED = ("cw", "ccw", "cw")
-FLIP = np.array([1.0, -1.0, -1.0])
 
 
 def rollout(env, seed=3):

@@ -6,7 +6,10 @@ import pytest
 import flockenv
 from flockenv.envs.observation import observation_entries, state_entries
 
-QUIET = {"n_boats": 12, "n_leaders": 3, "c4": 0.0, "episode_s": 20.0, "mirror_to_target": True}
+BLOCKS = {"obstacles": 2, "fellow_leaders": 2}
+#: The disc is its own mirror image.
+ARENA = {"n_boats": 12, "n_leaders": 3, "observation": BLOCKS, "discs": [(140.0, 0.0, 10.0)]}
+QUIET = {**ARENA, "c4": 0.0, "episode_s": 20.0, "mirror_to_target": True}
 FLIP = np.array([1.0, -1.0, -1.0])
 
 
@@ -48,8 +51,11 @@ def test_mirror_images_are_one_task(options):
     np.testing.assert_allclose(envs[0].flock.pose * FLIP, envs[1].flock.pose, atol=1e-5)
 
 
-SIGNS = np.array([-1.0 if each.mirrored else 1.0 for each in observation_entries()], np.float32)
-STATE_SIGNS = np.array([-1.0 if each.mirrored else 1.0 for each in state_entries(12)], np.float32)
+def signs_of(entries):
+    return np.array([-1.0 if each.mirrored else 1.0 for each in entries], np.float32)
+
+
+SIGNS, STATE_SIGNS = signs_of(observation_entries(BLOCKS)), signs_of(state_entries(12))
 TERMS = {"signed_order": 1.0, "leader_velocity": 0.25, "rudder_effort": 0.125, "jam": 2.0}
 
 
@@ -64,13 +70,7 @@ TERMS = {"signed_order": 1.0, "leader_velocity": 0.25, "rudder_effort": 0.125, "
     ],
 )
 def test_mirroring_reflects_what_its_table_says_bit_for_bit(target, options):
-    parameters = {
-        "n_boats": 12,
-        "n_leaders": 3,
-        "episode_s": 8.0,
-        "reward": TERMS,
-        "target": target,
-    }
+    parameters = {**ARENA, "episode_s": 8.0, "reward": TERMS, "target": target}
     plain = flockenv.LeadersEnv(**parameters, **options)
     mirrored = flockenv.LeadersEnv(**parameters, **options, mirror_to_target=True)
     seen, _ = plain.reset(seed=3)

