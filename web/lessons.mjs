@@ -18,8 +18,8 @@ export const LESSONS = [
     name: "leaders",
     title: "One leader or four",
     link: "#lesson=leaders&n_boats=27&n_leaders=1&bw_s=0.3&seed=14&beside.n_leaders=4&speed=16",
-    words: "A few leaders (amber) decide which way a flock circles, and more of them order it more, as the paper found, although to the others they are " +
-      "boats that bump like any. The order towards the target is 1 if all others circle the leaders' way and −1 if all circle the other way: in this simulator it is 0.13 with one leader and 0.38 with four (means of 256 flocks).",
+    words: "Without leaders chance decides which way a flock circles. A few leaders (amber) decide it, and more of them order it more, as the paper found, although " +
+      "to the others they are boats that bump like any. The order towards the target is 1 if all others circle the leaders' way and −1 if all circle the other way: in this simulator it is 0.13 with one leader and 0.38 with four (means of 256 flocks).",
   },
   {
     name: "learned",

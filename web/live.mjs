@@ -27,6 +27,8 @@ const LINK_AFTER = 1000;
 export const OPENING = LESSONS[0].link;
 /** Force, in cm/s², that a bar as long as a hull is wide stands for. */
 const FORCE = 20;
+/** Seconds after the start that the map leaves out: boats start at random and at rest. */
+const SETTLING = 30;
 /** The number of no boat. */
 const NO_BOAT = 1e6;
 /** Fields whose change makes another flock of a map's. */
@@ -511,7 +513,7 @@ export class LivePage {
       // The flocks may have become others meanwhile.
       if (runs === this.runs) {
         taken.forEach((each, place) => {
-          runs[place].append(each, place === 0 ? (order) => this.map.note(runs[0].bw_s, order) : undefined);
+          runs[place].append(each, place === 0 && runs[0].end > SETTLING ? (order) => this.map.note(runs[0].bw_s, order) : undefined);
         });
         this.observed = taken[0].observation;
       }
