@@ -190,10 +190,7 @@ class Flock:
     def from_snapshot(cls, snapshot: bytes) -> Self:
         """Return the flock of a snapshot.
 
-        Raises
-        ------
-        ParameterError
-            For bytes that are no whole, unharmed snapshot.
+        A ParameterError refuses bytes that are no whole, unharmed snapshot.
         """
         return cls.of(_core.Flock.from_snapshot(snapshot))
 
@@ -214,10 +211,7 @@ class Flock:
     def reset(self, seed: int) -> None:
         """Start over with another seed, as a new flock with these parameters.
 
-        Raises
-        ------
-        ParameterError
-            If the boats do not fit the pool; the flock is unchanged then.
+        If the boats do not fit the pool, a ParameterError leaves the flock unchanged.
         """
         self.core.reset(seed)
 
@@ -314,15 +308,13 @@ class Flock:
     def set_target(self, target: str | Sequence[str]) -> None:
         """Change the direction that leaders head for by the paper's law.
 
+        A ParameterError, which leaves the flock unchanged, refuses another name, and a list of
+        another length.
+
         Parameters
         ----------
         target
             "cw" or "ccw", or a list with one per leader.
-
-        Raises
-        ------
-        ParameterError
-            For another name, and a list of another length; the flock is unchanged then.
         """
         self.core.set_target(target)
 
@@ -354,10 +346,7 @@ class Flock:
     def order_parameters(self, include_leaders: bool = False) -> OrderParameters:
         """Return the order parameters of the normal boats, or of all boats, now.
 
-        Raises
-        ------
-        ParameterError
-            If there is no such boat.
+        A ParameterError says so if there is no such boat.
         """
         return OrderParameters(*self.core.order_parameters(include_leaders))
 
@@ -375,11 +364,8 @@ class Flock:
     def restore(self, snapshot: bytes) -> None:
         """Continue from a snapshot of a flock with the same parameters, the target aside.
 
-        Raises
-        ------
-        ParameterError
-            For bytes that are no whole, unharmed snapshot, or one of a flock with other parameters;
-            the flock is unchanged then.
+        A ParameterError refuses bytes that are no whole, unharmed snapshot, or one of a flock with
+        other parameters; the flock is unchanged then.
         """
         self.core.restore(snapshot)
 

@@ -100,17 +100,14 @@ class FlockParameters:
     def preset(cls, name: str) -> Self:
         """Return a named set of parameters.
 
+        A ParameterError refuses an unknown name.
+
         Parameters
         ----------
         name
             ``"simulation"``: Table 3 with `leapfrog` and white noise, whose statistics do not
             depend on dt. ``"paper"``: Table 3 with the paper's literal scheme and per-step noise.
             ``"experiment"``: Table 1, with constants fitted to Section 4.
-
-        Raises
-        ------
-        ParameterError
-            For an unknown name.
         """
         return cls(**_core.changed_fields(name, {}))
 
@@ -118,10 +115,7 @@ class FlockParameters:
     def preset_sources(cls, name: str) -> dict[str, str]:
         """Return where each number of a preset comes from, by field.
 
-        Raises
-        ------
-        ParameterError
-            For an unknown name.
+        A ParameterError refuses an unknown name.
         """
         return _core.preset_sources(name)
 
@@ -132,12 +126,8 @@ class FlockParameters:
         The length of the backward phase, in s, at which mean Ψ_o of leaderless runs falls through
         the middle between its ordered and its disordered level; measured by
         ``baselines/critical_noise.py`` for Table 3's presets in both named pools, and for
-        ``"experiment"`` in ``"narrow"``.
-
-        Raises
-        ------
-        ParameterError
-            For an unknown preset or pool, and for a pool in which it has not been measured.
+        ``"experiment"`` in ``"narrow"``. A ParameterError refuses an unknown preset or pool, and a
+        pool in which it has not been measured.
         """
         bw_s = _core.critical_bw_s(preset, pool)
         if bw_s is None:
@@ -171,16 +161,13 @@ class FlockParameters:
     def from_dict(cls, values: Mapping[str, Any]) -> Self:
         """Return parameters from fields by name.
 
+        Errors are those of the class.
+
         Parameters
         ----------
         values
             Any of the fields. ``"preset"`` may name the preset whose values the missing fields
             take, ``"simulation"`` otherwise.
-
-        Raises
-        ------
-        ParameterError, TypeError
-            As for the class.
         """
         if not isinstance(values, Mapping):
             raise TypeError(f"parameters must be a mapping of fields, not {type(values).__name__}")
@@ -195,12 +182,7 @@ class FlockParameters:
     def from_toml(cls, text: str) -> Self:
         """Return parameters from TOML; keys are those of `from_dict`.
 
-        Raises
-        ------
-        ParameterError
-            For text that is no TOML, and as for the class.
-        TypeError
-            For what is no text, and as for the class.
+        Errors are those of the class; text that is no TOML is a ParameterError, too.
         """
         return cls.from_dict(read_toml(text, "the text of parameters"))
 

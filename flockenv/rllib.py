@@ -33,21 +33,18 @@ class LeadersModule(TorchRLModule, ValueFunctionAPI):
     """RLlib's module for ``flockenv/Leaders-v0``: each leader's action from its own observation.
 
     RLlib steps many environments at once only where each has one agent. `LeadersVectorEnv` is such
-    an environment: its agent observes all leaders and steers all. This module takes the
-    observation apart again, so that all leaders share one network, and gives the value of the
-    whole observation. It is for PPO and other algorithms with a value function, and for continuous
+    an environment: its agent observes all leaders and steers all. This module takes the observation
+    apart again, so that all leaders share one network, and gives the value of the whole
+    observation. It is for PPO and other algorithms with a value function, and for continuous
     actions.
 
     ``RLModuleSpec(LeadersModule, model_config={"hidden": (64, 64)})``
 
     ``model_config`` may hold ``hidden`` (sizes of the hidden layers of both networks),
     ``activation`` (a name in `flockenv.policies.network.ACTIVATIONS`) and ``first_log_std`` (the
-    logarithm of the first standard deviation of an action, shared by all leaders and learned).
-
-    Raises
-    ------
-    ParameterError
-        For unknown entries of ``model_config``, and for spaces of other environments.
+    logarithm of the first standard deviation of an action, shared by all leaders and learned). A
+    ParameterError names unknown entries of ``model_config``, and refuses spaces of other
+    environments.
     """
 
     def setup(self) -> None:

@@ -138,12 +138,7 @@ def compare_leaders(
 def steering(policy: Steering, pool: Any) -> Any:
     """Return what steers: a policy, a dictionary with one per leader, or `EVERY_SUBSTEP`.
 
-    Raises
-    ------
-    ParameterError
-        For unknown names, files that are no policy, and pools that a policy is not made for.
-    OSError
-        If a file cannot be opened.
+    Errors are those of `flockenv.policies.load`, also for unknown names.
     """
     if isinstance(policy, Mapping):
         return {leader: steering(each, pool) for leader, each in policy.items()}

@@ -231,10 +231,7 @@ class LeadersVectorEnv(
     def leader_rewards(self) -> NDArray[np.float64]:
         """Return each leader's own reward of the last step, shape (num_envs, k).
 
-        Raises
-        ------
-        EpisodeError
-            Before the first step.
+        An EpisodeError says so before the first step.
         """
         if self._rewards is None:
             raise EpisodeError("leader_rewards was called before the first step")

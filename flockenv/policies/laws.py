@@ -123,10 +123,7 @@ class DampedLaw(LawPolicy):
     def tuned(cls, pool: str, **layout: Any) -> Self:
         """Return the tuned law of a named pool, for a layout of the observations.
 
-        Raises
-        ------
-        ParameterError
-            For other pools.
+        A ParameterError refuses other pools.
         """
         return cls(*dict(_core.Law.named("tuned law", pool).gains).values(), **layout)
 
@@ -258,10 +255,7 @@ class LeaningLaw(LawPolicy):
     def from_json(cls, text: str) -> Self:
         """Return the law of a JSON text, as `to_json` gives it.
 
-        Raises
-        ------
-        ParameterError
-            For a text that is no whole law.
+        A ParameterError refuses a text that is no whole law.
         """
         law = cls.__new__(cls)
         law._read(text)
@@ -271,12 +265,7 @@ class LeaningLaw(LawPolicy):
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """Read a law from its JSON file, in which nothing is executed.
 
-        Raises
-        ------
-        OSError
-            If the file cannot be opened.
-        ParameterError
-            For a file that is no whole law.
+        Errors are those of `flockenv.policies.load`.
         """
         content = read_limited(path, f"{path} is no policy")
         try:
@@ -288,10 +277,7 @@ class LeaningLaw(LawPolicy):
     def learned(cls, pool: str) -> Self:
         """Return the pretrained leaders of a named pool.
 
-        Raises
-        ------
-        ParameterError
-            For other pools.
+        A ParameterError refuses other pools.
         """
         return cls.from_json(_core.Law.named("learned", pool).to_json())
 
@@ -316,10 +302,7 @@ class LeaningLaw(LawPolicy):
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the law to a JSON file, whole or not at all.
 
-        Raises
-        ------
-        OSError
-            If the file cannot be written; what was there before is still there.
+        If it cannot be written, which is an OSError, what was there before is still there.
         """
         write_text(path, self.to_json() + "\n")
 

@@ -94,12 +94,7 @@ class ModelPolicy:
         """Return rudders for observations, as `LeaderPolicy`.
 
         A model of k leaders takes each k that follow each other for a flock; `deterministic` is the
-        model's.
-
-        Raises
-        ------
-        ParameterError
-            If the leaders are no multiple of the model's, too.
+        model's. A ParameterError refuses leaders that are no multiple of the model's, too.
         """
         if isinstance(observation, Mapping):
             stacked = np.stack([observed(each) for each in observation.values()])

@@ -184,10 +184,7 @@ class NetworkPolicy(RowPolicy):
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the policy to an ``.npz`` file, whole or not at all.
 
-        Raises
-        ------
-        OSError
-            If the file cannot be written; what was there before is still there.
+        If it cannot be written, which is an OSError, what was there before is still there.
         """
         header, arrays = self._contents()
         version = observation_version(self.observation)
@@ -209,12 +206,7 @@ class NetworkPolicy(RowPolicy):
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """Read a network from its ``.npz`` file, in which nothing is executed.
 
-        Raises
-        ------
-        OSError
-            If the file cannot be opened.
-        ParameterError
-            For a file that is no whole network, or was made for another version of the observation.
+        Errors are those of `flockenv.policies.load`.
         """
         arrays = read_arrays(path, _LARGEST_FILE)
         try:

@@ -167,12 +167,8 @@ class Recording:
         """Return the flock at the last sample up to a time, as far as it was recorded.
 
         Contacts and the state of the noise are no part of it: such a flock has the poses, the
-        velocities and the time of the sample, and does not move on as the recorded one did.
-
-        Raises
-        ------
-        ParameterError
-            For a time outside the recording, and a recording without samples or poses.
+        velocities and the time of the sample, and does not move on as the recorded one did. Errors
+        are those of `state_at`.
         """
         state = self.state_at(time_s)
         there = self._there(self._sample_at(time_s))
@@ -224,6 +220,8 @@ class Recording:
     def to_dataframe(self, *, boats: bool = False) -> "pandas.DataFrame":
         """Return the recording as a table of pandas (extra ``plot``).
 
+        Without pandas, a MissingExtraError says what to install.
+
         Parameters
         ----------
         boats
@@ -237,16 +235,13 @@ class Recording:
             quantities of your own; or
             ``boat``, ``is_leader``, ``id`` (of tracked boats), ``x_cm``, ``y_cm``, ``heading_rad``,
             ``velocity_x_cm_s``, ``velocity_y_cm_s`` and ``angular_velocity_rad_s``.
-
-        Raises
-        ------
-        MissingExtraError
-            If pandas is not installed.
         """
         return table_of(self, boats)
 
     def to_xarray(self) -> "xarray.Dataset":
         """Return the recording as a dataset of xarray (extra ``sweep``).
+
+        Without xarray, a MissingExtraError says what to install.
 
         Returns
         -------
@@ -256,11 +251,6 @@ class Recording:
             ``velocity_y_cm_s`` and ``angular_velocity_rad_s`` by time and boat. Coordinate
             ``is_leader`` by boat, and ``id`` of tracked boats. Numbers have an attribute ``units``.
             Attributes: ``seed``, ``version``, and ``parameters`` as TOML.
-
-        Raises
-        ------
-        MissingExtraError
-            If xarray is not installed.
         """
         return dataset_of(self)
 

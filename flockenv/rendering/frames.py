@@ -25,10 +25,11 @@ def frame(
     to a time in s. Both take a width and a height.
 
     It shows the pool (in open water the part where the boats are), the boats with a mark towards
-    the bow, leaders in amber, and in the corners the time and phase, the target and bw,
-    Ψ_o and the signed order towards the target; without leaders there is no target, and Ψ_o·sin φ_o
-    (positive clockwise) stands in its place, as it does where leaders have opposite targets. Then
-    those with a counter-clockwise one are purple. Several threads may draw at a time.
+    the bow, leaders in amber, and in the corners the time and phase, the target and bw, Ψ_o and the
+    signed order towards the target; without leaders there is no target, and Ψ_o·sin φ_o (positive
+    clockwise) stands in its place, as it does where leaders have opposite targets. Then those with
+    a counter-clockwise one are purple. Several threads may draw at a time. A ParameterError refuses
+    a size out of range, and a time outside the recording.
 
     Parameters
     ----------
@@ -41,11 +42,6 @@ def frame(
     -------
     numpy.ndarray
         Shape (height, width, 3), uint8: red, green, blue.
-
-    Raises
-    ------
-    ParameterError
-        For a size out of range, and a time outside the recording.
     """
     if not isinstance(flock, Flock):
         raise TypeError(f"a frame is of a Flock or a Recording, not of {shown(flock)}")

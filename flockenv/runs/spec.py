@@ -85,15 +85,12 @@ class RunSpec:
 def execute(spec: RunSpec) -> Recording:
     """Make a run: a pure function, the same bits in any thread, process and machine.
 
+    Errors are those of `simulate`.
+
     Returns
     -------
     Recording
         What the spec keeps, in the precision of float32.
-
-    Raises
-    ------
-    FlockError
-        As for `simulate`.
     """
     run = simulate(
         spec.parameters,

@@ -61,10 +61,7 @@ class RunStore:
     def save(self, spec: RunSpec, run: Recording) -> None:
         """Keep the finished run of a spec.
 
-        Raises
-        ------
-        StorageError
-            If it cannot be written, for example to a full disk.
+        A StorageError says that it cannot be written, for example to a full disk.
         """
         path = self.path(spec)
         try:
@@ -79,10 +76,7 @@ class RunStore:
     def load(self, spec: RunSpec) -> Recording | None:
         """Return the stored run of a spec, or None if there is none that can be used.
 
-        Raises
-        ------
-        StorageError
-            If the file is there but can neither be read nor renamed.
+        A StorageError names a file that is there but can neither be read nor renamed.
         """
         path = self.path(spec)
         if not path.exists():

@@ -59,12 +59,9 @@ class SweepSpec:
 def read_sweep(path: str | os.PathLike[str]) -> SweepSpec:
     """Read and check a sweep's file; every value is checked before anything runs.
 
-    Raises
-    ------
-    ParameterError
-        For a file that cannot be read or is no TOML, unknown keys and fields (with the nearest
-        name), axes that are no lists, and values that `FlockParameters` or `RunSpec` refuse. The
-        message names the file.
+    A ParameterError names the file that cannot be read or is no TOML, its unknown keys and fields
+    (with the nearest name), axes that are no lists, and values that `FlockParameters` or `RunSpec`
+    refuse.
     """
     values = read_toml_file(path, str(path))
     try:
@@ -267,12 +264,7 @@ def load_sweep(path: str | os.PathLike[str]) -> "pd.DataFrame":
 def to_xarray(table: "pd.DataFrame") -> Any:
     """Return the table of a sweep as an `xarray.Dataset` over its fields and seeds.
 
-    Combinations that no grid has are NaN.
-
-    Raises
-    ------
-    MissingExtraError
-        Without the extra ``sweep``.
+    Combinations that no grid has are NaN. A MissingExtraError says so without the extra ``sweep``.
     """
     require("xarray", "sweep")
     axes = [*table.columns[: table.columns.get_loc("seed")], "seed"]

@@ -43,10 +43,7 @@ class Shard:
     def parse(cls, text: str) -> "Shard":
         """Return the shard that a text such as "3/8" names.
 
-        Raises
-        ------
-        ParameterError
-            For any other text, and as for the class.
+        A ParameterError refuses any other text, and as the class does.
         """
         found = re.fullmatch(r"(\d{1,9})/(\d{1,9})", text, re.ASCII)
         if found is None:

@@ -53,17 +53,14 @@ class Difference:
 def paired_difference(ours: Iterable[float], theirs: Iterable[float], seed: int = 0) -> Difference:
     """Compare two policies seed by seed.
 
+    A ValueError refuses different numbers of values.
+
     Parameters
     ----------
     ours, theirs
         One value a seed, in the same order.
     seed
         Seed of the bootstrap.
-
-    Raises
-    ------
-    ValueError
-        For different numbers of values.
     """
     ours, theirs = np.asarray(list(ours), float), np.asarray(list(theirs), float)
     if ours.shape != theirs.shape:

@@ -45,10 +45,7 @@ class Line:
 def fit_line(x: Iterable[float], y: Iterable[float]) -> Line:
     """Fit y = intercept + slope x, one point per run.
 
-    Raises
-    ------
-    ValueError
-        For fewer than three points or a single x.
+    A ValueError refuses fewer than three points or a single x.
     """
     stats = require("scipy.stats", "plot")
     x, y = np.asarray(list(x), float), np.asarray(list(y), float)

@@ -77,12 +77,8 @@ def pair_distribution(pose: ArrayLike, edges: ArrayLike) -> NDArray[np.float64]:
 def mean_square_displacement(pose: ArrayLike, lags: Sequence[int]) -> NDArray[np.float64]:
     """Return the mean-square displacement of a boat after some numbers of samples, in cm².
 
-    Means are over boats and over all pairs of samples so far apart; NaN where there are none.
-
-    Raises
-    ------
-    ParameterError
-        For poses of a shape other than (t, n, 3), and negative lags.
+    Means are over boats and over all pairs of samples so far apart; NaN where there are none. A
+    ParameterError refuses poses of a shape other than (t, n, 3), and negative lags.
     """
     return _core.lagged_motion(_poses(pose), _samples(lags))[0]
 

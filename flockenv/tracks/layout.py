@@ -127,10 +127,7 @@ class TrackLayout:
 def read_layout(path: str | os.PathLike[str]) -> TrackLayout:
     """Return the layout in a TOML file: its fields, where "" is no heading and a pool is needed.
 
-    Raises
-    ------
-    ParameterError
-        If it cannot be read, or is no layout; the message names the file.
+    A ParameterError names a file that cannot be read, or is no layout.
     """
     values = read_toml_file(path, str(path))
     try:
