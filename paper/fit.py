@@ -29,7 +29,7 @@ RANGES = {
     "c4": (0.01, 0.2),
 }
 """Where the other constants are drawn, equal ratios with equal chances. c1 follows from them: a
-backing boat turns at ±1 rad/s (Table 1), which is sqrt(c3 v / c1) by eq. (9)."""
+backing boat turns at w = ±1 rad/s (Table 1), where c1·w² = c3·v·c0²/(c0² + w²) (eqs. 8 and 9)."""
 CANDIDATES, BEST, PRESET = 240, 12, -1
 """Candidates that are drawn and that are fitted, and the number of the preset among them."""
 SCREENED_S = tuple(round(0.4 * place, 1) for place in range(1, 8))
@@ -53,7 +53,8 @@ def constants(candidate: int) -> Row:
         name: float(f"{low * (high / low) ** share:.4g}")
         for (name, (low, high)), share in zip(RANGES.items(), shares, strict=True)
     }
-    c1 = float(f"{drawn['c3'] * drawn['reverse_speed_cm_s']:.4g}")
+    lag = drawn["c0"] ** 2 / (drawn["c0"] ** 2 + 1.0)
+    c1 = float(f"{drawn['c3'] * drawn['reverse_speed_cm_s'] * lag:.4g}")
     return MEASURED | drawn | {"c1": c1}
 
 
