@@ -1,5 +1,6 @@
 """A headless Chromium, and the replay page as one who clicks and reads it."""
 
+import json
 import math
 import os
 import shutil
@@ -116,23 +117,86 @@ def open_link(chromium) -> Callable[[Path, str], "ReplayPage"]:
     return opened
 
 
-class ReplayPage:
-    def __init__(self, driver, address: str, *, waits: bool = True) -> None:
-        self.driver = driver
-        driver.get_log("browser")
-        driver.get_log("performance")
-        # From one fragment of a page to another nothing would be loaded.
-        driver.get("about:blank")
-        driver.get(address)
-        if waits:
-            self.wait()
+class Page:
+    """A page in the browser, as one who clicks and reads it."""
 
-    def wait(self) -> None:
-        """Wait until the page has started, or failed to."""
+    def __init__(self, driver) -> None:
+        self.driver = driver
+
+    def open(self, address: str) -> None:
+        # From one fragment of a page to another nothing would be loaded.
+        self.driver.get("about:blank")
+        self.complaints()
+        self.driver.get_log("performance")
+        self.driver.get(address)
+
+    def script(self, source: str, *arguments):
+        return self.driver.execute_script(source, *arguments)
+
+    def until(self, source: str, *arguments):
         # Installed for these tests alone: nothing of it may be needed to collect them.
         from selenium.webdriver.support.ui import WebDriverWait
 
-        WebDriverWait(self.driver, 30).until(lambda _: self.state())
+        wait = WebDriverWait(self.driver, 60, poll_frequency=0.05)
+        return wait.until(lambda _: self.script(source, *arguments))
+
+    def state(self) -> str | None:
+        return self.script("return document.body.dataset.ready")
+
+    def find(self, selector: str, run: int | None = None):
+        scope = "" if run is None else f".run[data-run='{run}'] "
+        return self.driver.find_element("css selector", scope + selector)
+
+    def text(self, selector: str, run: int | None = None) -> str:
+        return self.find(selector, run).text
+
+    def actions(self):
+        from selenium.webdriver.common.action_chains import ActionChains
+
+        return ActionChains(self.driver)
+
+    def press(self, *names: str) -> None:
+        from selenium.webdriver.common.keys import Keys
+
+        self.actions().send_keys(*(getattr(Keys, name, name) for name in names)).perform()
+
+    def choose(self, selector: str, value: str) -> None:
+        from selenium.webdriver.support.ui import Select
+
+        Select(self.find(selector)).select_by_value(value)
+
+    def complaints(self) -> list[str]:
+        return [each["message"] for each in self.driver.get_log("browser")]
+
+    def requested(self) -> list[str]:
+        """What the page asked for since it was opened, its own address included."""
+        log = [json.loads(each["message"]) for each in self.driver.get_log("performance")]
+        sent = (each["message"] for each in log)
+        return [
+            each["params"]["request"]["url"]
+            for each in sent
+            if each["method"] == "Network.requestWillBeSent"
+        ]
+
+
+@pytest.fixture
+def emulated(chromium) -> Iterator[Callable[[str, str], None]]:
+    """Set a feature of the media, such as a color scheme, until the test ends."""
+
+    def emulate(name: str, value: str) -> None:
+        features = [{"name": name, "value": value}]
+        chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
+
+    yield emulate
+    chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+
+
+class ReplayPage(Page):
+    def __init__(self, driver, address: str, *, waits: bool = True) -> None:
+        super().__init__(driver)
+        self.open(address)
+        if waits:  # Until the page has started, or failed to.
+            self.until("return document.body.dataset.ready")
 
     def rest(self) -> None:
         """Pause at the start, in real time."""
@@ -147,27 +211,6 @@ class ReplayPage:
     def is_playing(self) -> bool:
         return self.find("#play").get_attribute("aria-label") == "Pause"
 
-    def link(self) -> str:
-        return self.script("return location.hash")
-
-    def actions(self):
-        from selenium.webdriver.common.action_chains import ActionChains
-
-        return ActionChains(self.driver)
-
-    def state(self) -> str | None:
-        return self.script("return document.body.dataset.ready")
-
-    def script(self, source: str, *arguments):
-        return self.driver.execute_script(source, *arguments)
-
-    def find(self, selector: str, run: int | None = None):
-        scope = "" if run is None else f".run[data-run='{run}'] "
-        return self.driver.find_element("css selector", scope + selector)
-
-    def text(self, selector: str, run: int | None = None) -> str:
-        return self.find(selector, run).text
-
     def number(self, selector: str, run: int | None = None) -> float:
         return number(self.text(selector, run))
 
@@ -178,16 +221,11 @@ class ReplayPage:
         self.find(selector).click()
 
     def press(self, *names: str) -> None:
-        from selenium.webdriver.common.keys import Keys
-
-        keys = [getattr(Keys, name, name) for name in names]
-        self.actions().send_keys(*keys).perform()
+        super().press(*names)
         self.wait_until_drawn()
 
     def choose(self, selector: str, value: str) -> None:
-        from selenium.webdriver.support.ui import Select
-
-        Select(self.find(selector)).select_by_value(value)
+        super().choose(selector, value)
         self.wait_until_drawn()
 
     def click_at(self, selector: str, share: float) -> None:

@@ -1,7 +1,6 @@
 """Law: the live page shows the simulator's own flock, does what is clicked, says what it cannot."""
 
 import base64
-import json
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -10,6 +9,8 @@ import pytest
 
 import flockenv
 
+from .conftest import Page, resize
+
 pytestmark = pytest.mark.live
 
 PHONE, LAPTOP = (390, 844), (1280, 800)
@@ -17,38 +18,18 @@ FLOCK = "#n_boats=12&n_leaders=2&bw_s=0.3&seed=7"
 """A small flock, which is there at once."""
 
 
-class LivePage:
+class LivePage(Page):
     def __init__(self, driver, file: Path, size: tuple[int, int]) -> None:
-        self.driver, self.file = driver, file
-        metrics = {"width": size[0], "height": size[1], "deviceScaleFactor": 1}
-        driver.execute_cdp_cmd(
-            "Emulation.setDeviceMetricsOverride", {**metrics, "mobile": size[0] < 500}
-        )
+        super().__init__(driver)
+        self.file = file
+        resize(driver, *size)
 
     def go(self, fragment: str = FLOCK, *, plays: bool = False) -> "LivePage":
-        self.driver.get("about:blank")
-        self.driver.get_log("browser")
-        self.driver.get_log("performance")
-        self.driver.get(self.file.as_uri() + fragment)
+        self.open(self.file.as_uri() + fragment)
         self.until("return document.body.dataset.ready")
         if not plays and self.script("return window.page?.playing"):
             self.click("#play")
         return self
-
-    def script(self, source: str, *arguments):
-        return self.driver.execute_script(source, *arguments)
-
-    def until(self, source: str, *arguments):
-        from selenium.webdriver.support.ui import WebDriverWait
-
-        wait = WebDriverWait(self.driver, 60, poll_frequency=0.05)
-        return wait.until(lambda _: self.script(source, *arguments))
-
-    def find(self, selector: str):
-        return self.driver.find_element("css selector", selector)
-
-    def text(self, selector: str) -> str:
-        return self.find(selector).text
 
     def click(self, selector: str) -> None:
         self.script(
@@ -57,10 +38,8 @@ class LivePage:
         self.find(selector).click()
 
     def choose(self, selector: str, value: str) -> None:
-        from selenium.webdriver.support.ui import Select
-
         self.unfold(selector)
-        Select(self.find(selector)).select_by_value(value)
+        super().choose(selector, value)
         self.wait()
 
     def unfold(self, selector: str) -> None:
@@ -75,13 +54,6 @@ class LivePage:
     def wait(self) -> None:
         """Wait until the simulator has answered all its questions."""
         self.until("return !page.changing && !page.advancing && page.simulator.open.size === 0")
-
-    def press(self, *names: str) -> None:
-        from selenium.webdriver.common.action_chains import ActionChains
-        from selenium.webdriver.common.keys import Keys
-
-        keys = [getattr(Keys, name, name) for name in names]
-        ActionChains(self.driver).send_keys(*keys).perform()
 
     def run_to(self, seconds: float) -> None:
         """Let the flock run fast until this time at least, and pause."""
@@ -104,9 +76,6 @@ class LivePage:
 
     def status(self) -> str:
         return self.text("#status")
-
-    def complaints(self) -> list[str]:
-        return [each["message"] for each in self.driver.get_log("browser")]
 
 
 @pytest.fixture(scope="session")
@@ -132,12 +101,7 @@ def test_it_opens_and_plays_without_a_network_or_a_complaint(open_live):
     live.until("return page.time > 5")
     live.wait()
     assert live.complaints() == []
-    log = [json.loads(entry["message"])["message"] for entry in live.driver.get_log("performance")]
-    requested = [
-        each["params"]["request"]["url"]
-        for each in log
-        if each["method"] == "Network.requestWillBeSent"
-    ]
+    requested = live.requested()
     assert requested
     assert [url for url in requested if not url.startswith(("file:", "data:", "blob:"))] == []
 
@@ -323,8 +287,6 @@ def test_the_arrow_keys_steer_one_leader(live):
 
 
 def test_a_thumb_steers_on_a_phone(open_live):
-    from selenium.webdriver.common.action_chains import ActionChains
-
     live = open_live(PHONE).go(f"{FLOCK}&leaders=you&beside.leaders=paper's law at every substep")
     thumb = live.find("#thumb")
     # In reach wherever the page is scrolled.
@@ -337,13 +299,13 @@ def test_a_thumb_steers_on_a_phone(open_live):
         assert box["height"] >= 44
     live.click("#play")
     width = thumb.size["width"]
-    held = ActionChains(live.driver).move_to_element(thumb).click_and_hold()
+    held = live.actions().move_to_element(thumb).click_and_hold()
     held.move_by_offset(round(-0.25 * width), 0).perform()
     assert live.script("return page.rudder") == pytest.approx(0.5, abs=0.15)
     now = live.script("return page.runs[0].end")
     live.until("return page.runs[0].end > arguments[0] + 1", now)
     assert live.script("return page.runs[0].rudder(0, page.runs[0].length - 1)") > 0.3
-    ActionChains(live.driver).release().perform()
+    live.actions().release().perform()
     assert live.script("return page.rudder") == 0
     assert thumb.get_attribute("value") == "0"
 
@@ -637,16 +599,12 @@ def test_texts_of_the_flock_are_shown_and_copied(live, chromium):
 @pytest.mark.parametrize(
     "fragment", ["", "#n_boats=27&n_leaders=4&seed=7&beside.n_leaders=1&boat=0"]
 )
-def test_nothing_is_wider_than_the_window(open_live, chromium, size, scheme, fragment):
-    features = [{"name": "prefers-color-scheme", "value": scheme}]
-    chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
-    try:
-        live = open_live(size).go(fragment)
-        assert live.script("return document.documentElement.scrollWidth <= innerWidth")
-        ground = live.script("return getComputedStyle(document.body).backgroundColor")
-        assert (ground == "rgb(20, 25, 31)") == (scheme == "dark")
-    finally:
-        chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+def test_nothing_is_wider_than_the_window(open_live, emulated, size, scheme, fragment):
+    emulated("prefers-color-scheme", scheme)
+    live = open_live(size).go(fragment)
+    assert live.script("return document.documentElement.scrollWidth <= innerWidth")
+    ground = live.script("return getComputedStyle(document.body).backgroundColor")
+    assert (ground == "rgb(20, 25, 31)") == (scheme == "dark")
 
 
 def test_everything_is_reached_by_the_keyboard_and_has_a_name(live):
@@ -674,17 +632,13 @@ def test_everything_is_reached_by_the_keyboard_and_has_a_name(live):
     assert unnamed == []
 
 
-def test_less_motion_is_respected_and_it_plays_when_asked(open_live, chromium):
-    features = [{"name": "prefers-reduced-motion", "value": "reduce"}]
-    chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
-    try:
-        live = open_live().go("", plays=True)
-        assert not live.script("return page.playing")
-        live.script("document.activeElement.blur()")
-        live.press(" ")
-        live.until("return page.time > 0.5")
-    finally:
-        chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+def test_less_motion_is_respected_and_it_plays_when_asked(open_live, emulated):
+    emulated("prefers-reduced-motion", "reduce")
+    live = open_live().go("", plays=True)
+    assert not live.script("return page.playing")
+    live.script("document.activeElement.blur()")
+    live.press(" ")
+    live.until("return page.time > 0.5")
 
 
 def test_the_file_is_small(file):

@@ -20,14 +20,9 @@ def test_it_opens_playing_at_its_most_decisive_minute(open_page, pages, law, dam
         assert f"opens at {moment:g} s" in page.text("#note")
 
 
-def test_it_rests_where_less_motion_is_wanted(open_page, pages, chromium):
-    features = [{"name": "prefers-reduced-motion", "value": "reduce"}]
-    chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
-    try:
-        page = open_page(pages / "one.html", rests=False)
-        assert not page.is_playing()
-    finally:
-        chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+def test_it_rests_where_less_motion_is_wanted(open_page, pages, emulated):
+    emulated("prefers-reduced-motion", "reduce")
+    assert not open_page(pages / "one.html", rests=False).is_playing()
 
 
 def test_a_link_leads_to_a_time_and_a_speed(open_link, pages, law):

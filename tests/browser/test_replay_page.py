@@ -1,7 +1,6 @@
 """Law: a replay shows what the recording says, and needs no network."""
 
 import dataclasses
-import json
 import time
 
 import numpy as np
@@ -22,13 +21,8 @@ def test_it_opens_without_a_network_or_a_complaint(page, law):
     assert f"flockenv {law.version}" in page.text(".origin", 0)
     page.click("#play")
     time.sleep(0.5)
-    assert page.driver.get_log("browser") == []
-    log = [json.loads(entry["message"])["message"] for entry in page.driver.get_log("performance")]
-    requested = [
-        each["params"]["request"]["url"]
-        for each in log
-        if each["method"] == "Network.requestWillBeSent"
-    ]
+    assert page.complaints() == []
+    requested = page.requested()
     assert requested
     assert [url for url in requested if not url.startswith(("file:", "data:", "blob:"))] == []
 
@@ -38,8 +32,7 @@ def test_its_policy_forbids_the_network(page):
         const done = arguments[0];
         fetch("http://127.0.0.1:9/").then(() => done("sent"), () => done("refused"))"""
     assert page.driver.execute_async_script(source) == "refused"
-    log = " ".join(entry["message"] for entry in page.driver.get_log("browser"))
-    assert "Content Security Policy" in log
+    assert "Content Security Policy" in " ".join(page.complaints())
 
 
 def test_scrubbing_shows_the_recordings_numbers(page, law):
@@ -181,4 +174,4 @@ def test_without_contacts_or_normal_boats(open_page, parameters, tmp_path):
     assert page.state() == "true"
     assert not page.find("#forces").is_enabled()
     assert page.text(".psi", 0) == "–"
-    assert page.driver.get_log("browser") == []
+    assert page.complaints() == []
