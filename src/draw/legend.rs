@@ -7,7 +7,7 @@ use crate::analysis::OrderParameters;
 use crate::flock::Flock;
 use crate::integrator::Phase;
 use crate::parameters::Target;
-use tiny_skia::{Pixmap, PixmapMut, Rect, Transform};
+use tiny_skia::Pixmap;
 
 /// The shorter side of a frame over the size of its letters.
 const SIDE_OVER_SIZE: f32 = 46.0;
@@ -50,9 +50,9 @@ impl Legend {
         let mut sheet = Sheet {
             width: canvas.width() as f32,
             height: canvas.height() as f32,
-            canvas: canvas.as_mut(),
+            canvas,
             typeface,
-            em: typeface.size(),
+            em: typeface.size,
         };
         sheet.clock(flock, grid_cm);
         sheet.task(flock);
@@ -76,7 +76,7 @@ fn signed_text(number: f64) -> String {
 
 /// A frame being written on; lines count from the top or the bottom edge.
 struct Sheet<'a> {
-    canvas: PixmapMut<'a>,
+    canvas: &'a mut Pixmap,
     typeface: &'a Typeface,
     width: f32,
     height: f32,
@@ -167,24 +167,15 @@ impl Sheet<'_> {
         };
         let text = format!("{words} {}", signed_text(signed));
         self.write_to_right(&text, self.bottom(), INK);
-        let (length, color) = (
-            half * signed.abs() as f32,
-            if signed < 0.0 { AGAINST } else { TOWARDS },
-        );
-        let x = if signed < 0.0 {
-            middle - length
+        let length = half * signed.abs() as f32;
+        if signed < 0.0 {
+            self.gauge(middle - length, length, AGAINST);
         } else {
-            middle
-        };
-        self.gauge(x, length, color);
+            self.gauge(middle, length, TOWARDS);
+        }
         let (tick, height) = (0.12 * self.em, 0.8 * self.em);
-        self.bar(
-            middle - tick / 2.0,
-            self.gauge_top() - 0.2 * self.em,
-            tick,
-            height,
-            INK,
-        );
+        let top = self.gauge_top() - 0.2 * self.em;
+        self.bar(middle - tick / 2.0, top, tick, height, INK);
     }
 
     fn top(&self, line: u8) -> f32 {
@@ -205,8 +196,7 @@ impl Sheet<'_> {
     }
 
     fn write(&mut self, text: &str, x: f32, baseline: f32, ink: Rgb) {
-        self.typeface
-            .write(&mut self.canvas, text, x, baseline, ink);
+        self.typeface.write(self.canvas, text, x, baseline, ink);
     }
 
     /// Returns where the text starts.
@@ -217,10 +207,6 @@ impl Sheet<'_> {
     }
 
     fn bar(&mut self, x: f32, y: f32, width: f32, height: f32, color: Rgb) {
-        if let Some(rect) = Rect::from_xywh(x, y, width, height) {
-            let paint = color.paint();
-            self.canvas
-                .fill_rect(rect, &paint, Transform::identity(), None);
-        }
+        color.bar(self.canvas, x, y, width, height);
     }
 }

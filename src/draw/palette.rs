@@ -1,6 +1,6 @@
 //! Colors of a frame: Okabe and Ito's set, which color-blind eyes distinguish too, on pale water.
 
-use tiny_skia::{Color, Paint};
+use tiny_skia::{Color, FillRule, LineCap, Paint, PathBuilder, Pixmap, Rect, Stroke, Transform};
 
 /// An opaque color.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,5 +48,32 @@ impl Rgb {
         let mut paint = Paint::default();
         paint.set_color(self.color());
         paint
+    }
+
+    /// Fills a path.
+    pub(super) fn fill(self, canvas: &mut Pixmap, path: PathBuilder) {
+        if let Some(path) = path.finish() {
+            let (paint, rule) = (self.paint(), FillRule::Winding);
+            canvas.fill_path(&path, &paint, rule, Transform::identity(), None);
+        }
+    }
+
+    /// Draws a path as a line with round ends.
+    pub(super) fn stroke(self, canvas: &mut Pixmap, path: PathBuilder, width: f32) {
+        let stroke = Stroke {
+            width,
+            line_cap: LineCap::Round,
+            ..Stroke::default()
+        };
+        if let Some(path) = path.finish() {
+            canvas.stroke_path(&path, &self.paint(), &stroke, Transform::identity(), None);
+        }
+    }
+
+    /// Fills a rectangle.
+    pub(super) fn bar(self, canvas: &mut Pixmap, x: f32, y: f32, width: f32, height: f32) {
+        if let Some(rect) = Rect::from_xywh(x, y, width, height) {
+            canvas.fill_rect(rect, &self.paint(), Transform::identity(), None);
+        }
     }
 }

@@ -51,14 +51,6 @@ impl View {
         }
     }
 
-    /// A world direction as one of the frame.
-    pub(super) fn direction(world: Vec2) -> Point {
-        Point {
-            x: world.x as f32,
-            y: -world.y as f32,
-        }
-    }
-
     /// A length in pixels.
     pub(super) fn length(&self, cm: f64) -> f32 {
         (cm * self.scale) as f32

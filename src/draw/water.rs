@@ -5,7 +5,7 @@ use super::view::View;
 use crate::geometry::Vec2;
 use crate::parameters::{FlockParameters, Target};
 use std::f64::consts::PI;
-use tiny_skia::{FillRule, LineCap, Path, PathBuilder, Pixmap, Point, Rect, Stroke, Transform};
+use tiny_skia::{FillRule, PathBuilder, Pixmap, Point, Rect, Transform};
 
 /// Pixels between lines of open water's grid, at least.
 const LEAST_SPACING: f64 = 60.0;
@@ -59,38 +59,26 @@ fn obstacles(canvas: &mut Pixmap, parameters: &FlockParameters, view: &View) {
     for each in &parameters.walls {
         let ends = [(each.x0_cm, each.y0_cm), (each.x1_cm, each.y1_cm)];
         let [start, end] = ends.map(|(x, y)| view.pixel(Vec2::new(x, y)));
-        let farthest = start
-            .x
-            .abs()
-            .max(start.y.abs())
-            .max(end.x.abs())
-            .max(end.y.abs());
-        if farthest < FARTHEST {
+        if [start.x, start.y, end.x, end.y]
+            .iter()
+            .all(|at| at.abs() < FARTHEST)
+        {
             let mut path = PathBuilder::new();
             path.move_to(start.x, start.y);
             path.line_to(end.x, end.y);
-            stroke(canvas, path, wall, WALL);
+            WALL.stroke(canvas, path, wall);
         }
     }
     for (inset, color) in [(0.0, WALL), (wall, GROUND)] {
         for each in &parameters.discs {
             let center = Vec2::new(each.x_cm, each.y_cm);
-            disc(
-                canvas,
-                view,
-                center,
-                view.length(each.radius_cm) - inset,
-                color,
-            );
+            let radius = view.length(each.radius_cm) - inset;
+            disc(canvas, view, center, radius, color);
         }
     }
     if parameters.pool.has_outer_wall() {
-        shore(
-            canvas,
-            view,
-            view.length(parameters.pool.outer_radius_cm),
-            wall,
-        );
+        let radius = view.length(parameters.pool.outer_radius_cm);
+        shore(canvas, view, radius, wall);
     }
 }
 
@@ -119,9 +107,9 @@ fn disc(canvas: &mut Pixmap, view: &View, center: Vec2, radius: f32, color: Rgb)
     if !in_reach {
         return;
     }
-    if let Some(path) = PathBuilder::from_circle(center.x, center.y, radius) {
-        fill(canvas, &path, color);
-    }
+    let mut path = PathBuilder::new();
+    path.push_circle(center.x, center.y, radius);
+    color.fill(canvas, path);
 }
 
 /// A small cross: the origin, which outward and clockwise refer to.
@@ -135,7 +123,7 @@ fn cross(canvas: &mut Pixmap, center: Point, half: f32) {
         path.move_to(center.x - x, center.y - y);
         path.line_to(center.x + x, center.y + y);
     }
-    stroke(canvas, path, half / 3.0, TARGET);
+    TARGET.stroke(canvas, path, half / 3.0);
 }
 
 /// Lines at round distances from the world's origin, so that motion shows in open water.
@@ -154,9 +142,7 @@ fn grid(canvas: &mut Pixmap, view: &View) {
             (at.x.round(), 0.0, 1.0, height),
             (0.0, at.y.round(), width, 1.0),
         ] {
-            if let Some(rect) = Rect::from_xywh(x, y, w, h) {
-                canvas.fill_rect(rect, &GRID.paint(), Transform::identity(), None);
-            }
+            GRID.bar(canvas, x, y, w, h);
         }
     }
 }
@@ -188,17 +174,15 @@ fn arrow(canvas: &mut Pixmap, center: Point, radius: f32, target: Target) {
     let (start, end) = (-0.5 * PI + turn * 0.25 * PI, -0.5 * PI + turn * 1.8 * PI);
     let mut path = PathBuilder::new();
     for step in 0..=SEGMENTS {
-        let (x, y) = at(
-            start + (end - start) * f64::from(step) / f64::from(SEGMENTS),
-            radius,
-        );
+        let share = f64::from(step) / f64::from(SEGMENTS);
+        let (x, y) = at(start + (end - start) * share, radius);
         if step == 0 {
             path.move_to(x, y);
         } else {
             path.line_to(x, y);
         }
     }
-    stroke(canvas, path, width, TARGET);
+    TARGET.stroke(canvas, path, width);
     let mut tip = PathBuilder::new();
     let (x, y) = at(end + turn * f64::from(head / radius), radius);
     tip.move_to(x, y);
@@ -207,28 +191,5 @@ fn arrow(canvas: &mut Pixmap, center: Point, radius: f32, target: Target) {
         tip.line_to(x, y);
     }
     tip.close();
-    if let Some(tip) = tip.finish() {
-        fill(canvas, &tip, TARGET);
-    }
-}
-
-fn stroke(canvas: &mut Pixmap, path: PathBuilder, width: f32, color: Rgb) {
-    let stroke = Stroke {
-        width,
-        line_cap: LineCap::Round,
-        ..Stroke::default()
-    };
-    if let Some(path) = path.finish() {
-        canvas.stroke_path(&path, &color.paint(), &stroke, Transform::identity(), None);
-    }
-}
-
-fn fill(canvas: &mut Pixmap, path: &Path, color: Rgb) {
-    canvas.fill_path(
-        path,
-        &color.paint(),
-        FillRule::Winding,
-        Transform::identity(),
-        None,
-    );
+    TARGET.fill(canvas, tip);
 }
