@@ -69,6 +69,7 @@ pub enum FlockError {
 
 impl FlockError {
     /// A [`FlockError::Parameter`] from anything printable.
+    #[cold]
     pub fn parameter(
         field: &'static str,
         value: impl std::fmt::Display,
@@ -85,6 +86,7 @@ impl FlockError {
     ///
     /// # Errors
     /// [`FlockError::Parameter`].
+    #[inline]
     pub(crate) fn unless(
         is_accepted: bool,
         field: &'static str,

@@ -47,14 +47,15 @@ impl OrderParameters {
             orientations.add(frame.components(hull.axis));
             motions.add(frame.components(velocity.linear));
         }
-        let (orientations, motions) = (orientations.mean(), motions.mean());
+        let [psi_o, phi_o, c_o] = orientations.mean();
+        let [psi_v, phi_v, c_v] = motions.mean();
         Ok(Self {
-            psi_o: orientations.length,
-            phi_o: orientations.angle,
-            c_o: orientations.pair_mean,
-            psi_v: motions.length,
-            phi_v: motions.angle,
-            c_v: motions.pair_mean,
+            psi_o,
+            phi_o,
+            c_o,
+            psi_v,
+            phi_v,
+            c_v,
         })
     }
 
@@ -75,13 +76,6 @@ impl OrderParameters {
     }
 }
 
-/// Mean of a set of vectors, and of the dot products of its pairs.
-struct VectorMean {
-    length: f64,
-    angle: f64,
-    pair_mean: f64,
-}
-
 #[derive(Default)]
 struct VectorSum {
     count: f64,
@@ -96,13 +90,11 @@ impl VectorSum {
         self.squares += vector.norm_squared();
     }
 
-    fn mean(&self) -> VectorMean {
+    /// Length and angle of the mean vector, and the mean of the dot products of pairs.
+    fn mean(&self) -> [f64; 3] {
         let mean = self.sum / self.count;
-        VectorMean {
-            length: mean.norm(),
-            angle: libm::atan2(mean.y, mean.x),
-            // Σ_{i<j} v_i·v_j = (|Σv|² − Σ|v|²)/2; 0/0 for one boat.
-            pair_mean: (self.sum.norm_squared() - self.squares) / (self.count * (self.count - 1.0)),
-        }
+        // Σ_{i<j} v_i·v_j = (|Σv|² − Σ|v|²)/2; 0/0 for one boat.
+        let pairs = (self.sum.norm_squared() - self.squares) / (self.count * (self.count - 1.0));
+        [mean.norm(), libm::atan2(mean.y, mean.x), pairs]
     }
 }

@@ -188,15 +188,29 @@ impl Quantity {
     }
 }
 
-/// How many quantities summaries of episodes hold means of.
-pub(crate) const SUMMARIZED: usize = {
-    let (mut count, mut place) = (0, 0);
+/// How many quantities are recorded, and of how many summaries of episodes hold means.
+const COUNTS: [usize; 2] = {
+    let (mut recorded, mut summarized, mut place) = (0, 0, 0);
     while place < QUANTITIES.len() {
-        count += QUANTITIES[place].is_summarized() as usize;
+        let quantity = &QUANTITIES[place];
+        if matches!(quantity.formula, Formula::Recorded(_)) {
+            assert!(
+                place == recorded,
+                "recorded quantities come first in the table"
+            );
+            recorded += 1;
+        }
+        summarized += quantity.is_summarized() as usize;
         place += 1;
     }
-    count
+    [recorded, summarized]
 };
+
+/// How many quantities are recorded.
+pub const RECORDED: usize = COUNTS[0];
+
+/// How many quantities summaries of episodes hold means of.
+pub(crate) const SUMMARIZED: usize = COUNTS[1];
 
 /// The quantities that summaries of episodes hold means of, in the order of the table.
 pub(crate) fn summarized() -> impl Iterator<Item = &'static Quantity> {
@@ -215,22 +229,6 @@ pub(crate) fn summarized_values(boats: &Boats, target: Target) -> [f64; SUMMARIZ
     }
     values
 }
-
-/// How many quantities are recorded.
-pub const RECORDED: usize = {
-    let (mut count, mut place) = (0, 0);
-    while place < QUANTITIES.len() {
-        if matches!(QUANTITIES[place].formula, Formula::Recorded(_)) {
-            assert!(
-                place == count,
-                "recorded quantities come first in the table"
-            );
-            count += 1;
-        }
-        place += 1;
-    }
-    count
-};
 
 /// The recorded quantities of a sample, in the order of the table.
 pub type Recorded = [f64; RECORDED];

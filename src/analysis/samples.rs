@@ -39,7 +39,7 @@ impl Samples {
     /// The boats that are there, one time after another.
     pub fn present(&self) -> impl Iterator<Item = Vec<Pose>> {
         self.each()
-            .map(|rows| rows.iter().filter(|row| is_there(row)).copied().collect())
+            .map(|rows| rows.iter().filter(|row| row.is_finite()).copied().collect())
     }
 
     /// The recorded quantities, at each time, of the boats that have both a pose and a velocity; NaN where there is
@@ -54,7 +54,7 @@ impl Samples {
         times
             .map(|(poses, rows)| {
                 let both = poses.iter().zip(rows);
-                let both = both.filter(|(pose, row)| is_there(pose) && is_there(row));
+                let both = both.filter(|(pose, row)| pose.is_finite() && row.is_finite());
                 let (poses, velocities): (Vec<_>, Vec<_>) =
                     both.map(|(pose, row)| (*pose, velocity(row))).unzip();
                 HullPose::replace_all(&mut hulls, &poses);
@@ -65,8 +65,4 @@ impl Samples {
             })
             .collect()
     }
-}
-
-fn is_there(row: &Pose) -> bool {
-    row.position.iter().all(|number| number.is_finite()) && row.heading.is_finite()
 }

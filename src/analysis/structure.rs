@@ -1,5 +1,6 @@
 //! Where boats are relative to each other, to the wall and to where they were.
 
+use crate::contact::{join, root};
 use crate::geometry::lap_frame::orientation;
 use crate::geometry::{Hull, HullPose, Pose, Vec2, outer_wall_gap, pair_gaps};
 use crate::parameters::FlockParameters;
@@ -34,13 +35,19 @@ pub fn jam_sizes(poses: &[Pose], parameters: &FlockParameters) -> Vec<usize> {
 fn cluster_sizes(poses: &[Pose], parameters: &FlockParameters) -> Vec<usize> {
     let hull = Hull::new(parameters);
     let hulls: Vec<HullPose> = poses.iter().map(HullPose::new).collect();
-    let mut clusters = Clusters::new(hulls.len());
-    for (i, a) in hulls.iter().enumerate() {
-        for (j, b) in hulls.iter().enumerate().take(i) {
-            pair_gaps(a, b, hull, IN_TOUCH_CM, |_, _| clusters.join(i, j));
+    let mut parent: Vec<u32> = (0..hulls.len() as u32).collect();
+    for (i, a) in (0..).zip(&hulls) {
+        for (j, b) in (0..i).zip(&hulls) {
+            let touch = |_, _| join(&mut parent, i, j);
+            pair_gaps((a, hull), (b, hull), IN_TOUCH_CM, touch);
         }
     }
-    clusters.sizes()
+    let mut sizes = vec![0; hulls.len()];
+    for boat in 0..hulls.len() as u32 {
+        sizes[root(&mut parent, boat) as usize] += 1;
+    }
+    sizes.retain(|&size| size > 0);
+    sizes
 }
 
 /// Part of the boats within [`IN_TOUCH_CM`] of the outer wall; NaN of none.
@@ -150,35 +157,4 @@ fn lagged_mean(samples: &[&[Pose]], lag: usize, value: impl Fn(&Pose, &Pose) -> 
         }
     }
     sum / count
-}
-
-/// Disjoint sets.
-struct Clusters(Vec<usize>);
-
-impl Clusters {
-    fn new(count: usize) -> Self {
-        Self((0..count).collect())
-    }
-
-    fn root(&mut self, mut of: usize) -> usize {
-        while self.0[of] != of {
-            self.0[of] = self.0[self.0[of]];
-            of = self.0[of];
-        }
-        of
-    }
-
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b)] = a.min(b);
-    }
-
-    fn sizes(&mut self) -> Vec<usize> {
-        let mut sizes = vec![0; self.0.len()];
-        for boat in 0..self.0.len() {
-            sizes[self.root(boat)] += 1;
-        }
-        sizes.retain(|&size| size > 0);
-        sizes
-    }
 }

@@ -17,7 +17,7 @@ pub struct ContactDetector {
     pool: Pool,
     /// Candidate pairs.
     pub(crate) neighbors: NeighborList,
-    obstacles: NearObstacles,
+    pub(super) obstacles: NearObstacles,
     skin: f64,
     /// How near something has to be to each boat to count: two boats that are nearer than both together.
     reaches: Vec<f64>,
@@ -178,7 +178,7 @@ impl ContactDetector {
                 let (first, second) = (boat.min(partner), boat.max(partner));
                 let (a, b) = (&boats[first as usize], &boats[second as usize]);
                 let near = reach + self.reaches[partner as usize];
-                pair_gaps(a, b, self.hull, near, |feature, gap| {
+                pair_gaps((a, self.hull), (b, self.hull), near, |feature, gap| {
                     contacts.push(Contact::of_pair(first, second, feature, gap));
                 });
             }
@@ -273,7 +273,8 @@ impl ContactDetector {
         let (hull, margin) = (self.hull, 2.0 * self.hull.reach());
         let boat = &boats[contact.boat as usize];
         if let Some(second) = contact.second() {
-            pair_gaps(boat, &boats[second], hull, margin, |feature, gap| {
+            let second = (&boats[second], hull);
+            pair_gaps((boat, hull), second, margin, |feature, gap| {
                 note_end(&mut gaps, feature, &gap);
             });
             return gaps;
@@ -307,8 +308,8 @@ impl ContactDetector {
             ),
             Partner::InnerWall => inner_wall_gap(first, self.hull, self.pool.inner_radius_cm),
             Partner::Boat(second) => {
-                let second = &boats[second as usize];
-                pair_gap(contact.feature, first, second, self.hull)
+                let second = (&boats[second as usize], self.hull);
+                pair_gap(contact.feature, (first, self.hull), second)
             }
             Partner::Obstacle(number) => {
                 let obstacle = &self.obstacles.obstacles[number as usize];

@@ -59,8 +59,7 @@ impl Islands {
         let parent = self.parent.as_mut_slice();
         for contact in contacts {
             if let Partner::Boat(second) = contact.partner {
-                let (a, b) = (root(parent, contact.boat), root(parent, second));
-                parent[a.max(b) as usize] = a.min(b);
+                join(parent, contact.boat, second);
             }
         }
         // Parents come before their children.
@@ -90,7 +89,14 @@ impl Islands {
     }
 }
 
-fn root(parent: &mut [u32], mut boat: u32) -> u32 {
+/// Has two boats belong together, in sets whose first boats are the last of their parents.
+pub(crate) fn join(parent: &mut [u32], a: u32, b: u32) {
+    let (a, b) = (root(parent, a), root(parent, b));
+    parent[a.max(b) as usize] = a.min(b);
+}
+
+/// The first boat of a boat's set.
+pub(crate) fn root(parent: &mut [u32], mut boat: u32) -> u32 {
     loop {
         let above = parent[boat as usize];
         if above == boat {

@@ -26,6 +26,7 @@ pub use depenetration::KeepGoing;
 pub(crate) use depenetration::push_apart;
 pub use detection::ContactDetector;
 pub use island::Islands;
+pub(crate) use island::{join, root};
 pub use problem::{ContactProblem, InverseInertia};
 pub(crate) use resolver::{ContactOutcome, ContactResolver};
 pub use statistics::Statistics;

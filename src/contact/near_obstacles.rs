@@ -1,6 +1,6 @@
 //! Which obstacles each boat may touch soon: a list that is as good as the neighbor list, and made again with it.
 
-use crate::geometry::{NeighborList, Obstacle, Vec2};
+use crate::geometry::{NeighborList, Obstacle};
 
 /// The obstacles of a pool, and for each boat those near it.
 #[derive(Debug, Clone, Default)]
@@ -40,7 +40,7 @@ impl NearObstacles {
         self.starts.push(0);
         for &center in neighbors.reference() {
             let obstacles = self.obstacles.iter().enumerate();
-            let near = obstacles.filter(|(_, obstacle)| is_within(obstacle, center, reach));
+            let near = obstacles.filter(|(_, obstacle)| obstacle.distance(center) <= reach);
             self.near.extend(near.map(|(number, _)| number as u32));
             self.starts.push(self.near.len() as u32);
         }
@@ -51,12 +51,4 @@ impl NearObstacles {
         let boat = boat as usize;
         &self.near[self.starts[boat] as usize..self.starts[boat + 1] as usize]
     }
-}
-
-/// Whether an obstacle is nearer than `reach` to a place; first by the circle about it.
-fn is_within(obstacle: &Obstacle, place: Vec2, reach: f64) -> bool {
-    let (center, radius) = obstacle.circle();
-    let farthest = radius + reach;
-    (place - center).norm_squared() <= farthest * farthest
-        && (matches!(obstacle, Obstacle::Disc { .. }) || obstacle.distance(place) <= reach)
 }

@@ -7,8 +7,8 @@
 //! other, and pushing as at the substep's start opens nothing.
 
 use super::ContactProblem;
+use super::solver::ContactSolver;
 use super::velocity_bias::VelocityBias;
-use crate::geometry::Velocity;
 
 /// Part of an island's energy that a curve may seem to add. Its true share is of third order in dt: in
 /// wide and `narrow`, free or jammed, below 0.01 at dt = 0.01 to 0.05 s in all but 6 of
@@ -27,6 +27,21 @@ pub(super) fn may_drive(problem: &ContactProblem, impulses: &[f64], bias: Veloci
     (0..impulses.len()).any(|k| impulses[k] > 0.0 && adds_much(k))
 }
 
+/// Whether a boat of an island has its flank pushed from opposite sides. Looking ahead, either contact would turn it back
+/// against the other one, where a plastic impact stops the turn.
+fn turns_back(island: &[u32], problem: &ContactProblem, impulses: &[f64]) -> bool {
+    let contacts = island.iter().map(|&k| k as usize);
+    let pushed = contacts
+        .filter(|&k| impulses[k] > 0.0)
+        .map(|k| &problem.contacts[k]);
+    let flanks: Vec<_> = pushed.filter(|contact| contact.gap.bend != 0.0).collect();
+    let mut pairs = flanks
+        .iter()
+        .enumerate()
+        .flat_map(|(k, a)| flanks[..k].iter().map(move |b| (a, b)));
+    pairs.any(|(a, b)| a.boat == b.boat && a.gap.normal.dot(&b.gap.normal) < 0.0)
+}
+
 /// Finds islands that contacts drive, with its scratch space.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Passivity {
@@ -34,20 +49,32 @@ pub(super) struct Passivity {
 }
 
 impl Passivity {
-    /// For a new set of contacts of so many boats.
-    pub(super) fn reset(&mut self, boats: usize) {
+    /// The contacts of the islands that contacts drive, or turn back between obstacles.
+    #[cold]
+    pub(super) fn driven(
+        &mut self,
+        solver: &ContactSolver,
+        problem: &ContactProblem,
+        bias: VelocityBias,
+        has_obstacles: bool,
+    ) -> Vec<usize> {
         self.counted.clear();
-        self.counted.resize(boats, false);
+        self.counted.resize(problem.free.len(), false);
+        let islands = (0..solver.islands().len()).map(|island| solver.islands().contacts(island));
+        let driven = islands.filter(|island| {
+            self.is_driven(island, solver, problem, bias)
+                || has_obstacles && turns_back(island, problem, &solver.impulses)
+        });
+        driven.flatten().map(|&k| k as usize).collect()
     }
 
     /// Whether the contacts of an island, given by their numbers, add to the energy of its boats, beyond
     /// what opening overlaps takes.
-    pub(super) fn is_driven(
+    fn is_driven(
         &mut self,
         island: &[u32],
+        solver: &ContactSolver,
         problem: &ContactProblem,
-        impulses: &[f64],
-        velocities: &[Velocity],
         bias: VelocityBias,
     ) -> bool {
         let (mut before, mut after) = (0.0, 0.0);
@@ -57,10 +84,10 @@ impl Passivity {
             for boat in boats.into_iter().flatten() {
                 if !std::mem::replace(&mut self.counted[boat], true) {
                     before += problem.energy(boat, problem.free);
-                    after += problem.energy(boat, velocities);
+                    after += problem.energy(boat, &solver.velocities);
                 }
             }
-            before += impulses[k as usize] * (-bias.of_gap(&contact.gap)).max(0.0);
+            before += solver.impulses[k as usize] * (-bias.of_gap(&contact.gap)).max(0.0);
         }
         after > (1.0 + ALLOWED) * before
     }

@@ -9,7 +9,7 @@ use super::velocity_bias::VelocityBias;
 use super::warm_start::{CachedImpulse, WarmStartCache};
 use super::{Contact, ContactDetector, ContactProblem, InverseInertia, Statistics};
 use crate::clock::{seconds, ticks};
-use crate::geometry::{HullPose, NeighborList, Pose, Vec2, Velocity, cross};
+use crate::geometry::{HullPose, Pose, Vec2, Velocity, cross};
 use crate::parameters::{FlockParameters, Scheme, Solver};
 
 /// Relinearization passes after which a substep is taken as it is.
@@ -30,9 +30,12 @@ pub(crate) enum ContactOutcome {
 /// Finds and solves the contacts of a flock, substep after substep.
 #[derive(Debug, Clone)]
 pub(crate) struct ContactResolver {
-    detector: ContactDetector,
-    solver: ContactSolver,
-    contacts: Vec<Contact>,
+    /// Geometry of the flock and its pool.
+    pub(crate) detector: ContactDetector,
+    /// Impulses of the contacts found last, in cm/s, and the velocities of the last solve.
+    pub(crate) solver: ContactSolver,
+    /// The contacts found last.
+    pub(crate) contacts: Vec<Contact>,
     biases: Vec<f64>,
     /// Whether each contact carried an impulse in the substep before.
     persistent: Vec<bool>,
@@ -85,36 +88,6 @@ impl ContactResolver {
     pub(crate) fn set_threads(&mut self, threads: usize) {
         self.detector.set_threads(threads);
         self.solver.set_threads(threads);
-    }
-
-    /// The contacts found last.
-    pub(crate) fn contacts(&self) -> &[Contact] {
-        &self.contacts
-    }
-
-    /// Impulses of the contacts found last, in cm/s.
-    pub(crate) fn impulses(&self) -> &[f64] {
-        &self.solver.impulses
-    }
-
-    /// The velocities of the last solve.
-    pub(crate) fn velocities(&self) -> &[Velocity] {
-        &self.solver.velocities
-    }
-
-    /// Geometry of the flock and its pool.
-    pub(crate) fn detector(&self) -> &ContactDetector {
-        &self.detector
-    }
-
-    /// Geometry of the flock and its pool, to detect contacts with.
-    pub(crate) fn detector_mut(&mut self) -> &mut ContactDetector {
-        &mut self.detector
-    }
-
-    /// Candidate pairs of boats.
-    pub(crate) fn neighbors(&self) -> &NeighborList {
-        &self.detector.neighbors
     }
 
     /// Contacts that carried an impulse in the last substep.
@@ -215,8 +188,8 @@ impl ContactResolver {
         self.trial.overlaps(&self.detector, &self.contacts, allowed)
     }
 
-    /// Solves the contacts found last for free velocities and effective inertia; the result is in
-    /// [`Self::velocities`]. Poses are those at the substep's start.
+    /// Solves the contacts found last for free velocities and effective inertia; the result is in `solver`. Poses are
+    /// those at the substep's start.
     ///
     /// [`ContactOutcome::TooLong`] changes nothing but the statistics.
     pub(crate) fn resolve(
@@ -263,7 +236,7 @@ impl ContactResolver {
         ContactOutcome::Solved
     }
 
-    /// Has velocity biases follow from the gaps at hand alone in islands that would be driven otherwise; returns
+    /// Has velocity biases follow from the gaps at hand alone in islands that would be driven or turned back otherwise; returns
     /// whether there are any.
     fn stop_driving(
         &mut self,
@@ -272,30 +245,26 @@ impl ContactResolver {
         bias: VelocityBias,
     ) -> bool {
         let Self {
+            detector,
             contacts,
             biases,
             solver,
             passivity,
             ..
         } = self;
-        let (impulses, velocities) = (&solver.impulses, &solver.velocities);
         let problem = ContactProblem {
             contacts,
             inertia,
             free,
             biases,
         };
-        if !passivity::may_drive(&problem, impulses, bias) {
+        if !passivity::may_drive(&problem, &solver.impulses, bias) {
             return false;
         }
-        passivity.reset(free.len());
-        let islands = (0..solver.islands().len()).map(|island| solver.islands().contacts(island));
-        let driven: Vec<_> = islands
-            .filter(|island| passivity.is_driven(island, &problem, impulses, velocities, bias))
-            .flatten()
-            .collect();
-        for &&k in &driven {
-            biases[k as usize] = bias.of_gap(&contacts[k as usize].gap);
+        let has_obstacles = !detector.obstacles.obstacles.is_empty();
+        let driven = passivity.driven(solver, &problem, bias, has_obstacles);
+        for &k in &driven {
+            biases[k] = bias.of_gap(&contacts[k].gap);
         }
         !driven.is_empty()
     }

@@ -54,13 +54,15 @@ impl Trial {
             other
                 .is_some_and(|other| (other.boat, other.partner) == (contact.boat, contact.partner))
         };
-        let has_twin = is_twin(contacts.get(k + 1))
-            || is_twin(k.checked_sub(1).and_then(|before| contacts.get(before)));
+        let has_twin = || {
+            is_twin(contacts.get(k + 1))
+                || is_twin(k.checked_sub(1).and_then(|before| contacts.get(before)))
+        };
         let gaps = detector.end_gaps_at(contact, &self.hulls);
         match (gaps[end], gaps[1 - end]) {
-            (Some(same), Some(other)) if !has_twin => same.min(other),
+            (Some(same), Some(other)) if !has_twin() => same.min(other),
             (Some(same), _) => same,
-            (None, Some(other)) if !has_twin => other,
+            (None, Some(other)) if !has_twin() => other,
             (None, _) => own(),
         }
     }

@@ -180,9 +180,8 @@ impl EnvBatch {
         assert_eq!(out.len(), self.rows * size, "one row per leader");
         let mut rest = out;
         for env in &mut self.envs {
-            let (own, others) = rest.split_at_mut(env.parameters().n_leaders * size);
-            env.observe(own);
-            rest = others;
+            let own = rest.split_off_mut(..env.parameters().n_leaders * size);
+            env.observe(own.unwrap_or_default());
         }
     }
 
@@ -279,20 +278,17 @@ fn shares<'a>(
     );
     assert_eq!(rewards.len(), actions.len(), "one reward a leader");
     assert_eq!(out.truncated.len(), envs.len(), "one flag a flock");
-    let mut shares = Vec::with_capacity(envs.len());
-    for (env, truncated) in envs.iter_mut().zip(out.truncated) {
+    let share = |(env, truncated): (&'a mut FlockEnv, _)| {
         let leaders = env.parameters().n_leaders;
-        let (own_actions, other_actions) = actions.split_at(leaders);
-        let (own_rows, other_rows) = observations.split_at_mut(leaders * size);
-        let (own_rewards, other_rewards) = rewards.split_at_mut(leaders);
-        shares.push(Share {
-            env,
-            actions: own_actions,
-            observations: own_rows,
-            rewards: own_rewards,
+        Share {
+            actions: actions.split_off(..leaders).unwrap_or_default(),
+            observations: observations
+                .split_off_mut(..leaders * size)
+                .unwrap_or_default(),
+            rewards: rewards.split_off_mut(..leaders).unwrap_or_default(),
             truncated,
-        });
-        (actions, observations, rewards) = (other_actions, other_rows, other_rewards);
-    }
-    shares
+            env,
+        }
+    };
+    envs.iter_mut().zip(out.truncated).map(share).collect()
 }

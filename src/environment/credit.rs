@@ -63,8 +63,8 @@ impl ContactCredit {
     /// Adds the contacts of the substep just taken.
     pub(crate) fn add(&mut self, flock: &Integrator) {
         let normal = flock.poses.len() - self.leaders;
-        let contacts = flock.contacts.contacts().iter();
-        for (contact, &impulse) in contacts.zip(flock.contacts.impulses()) {
+        let contacts = flock.contacts.contacts.iter();
+        for (contact, &impulse) in contacts.zip(&flock.contacts.solver.impulses) {
             let Some(boat) = contact.second().filter(|_| impulse > 0.0) else {
                 continue;
             };

@@ -10,7 +10,7 @@ use super::{EnvSettings, EpisodeSchedule, EpisodeSummary, Reward, RewardTerms, S
 use crate::analysis::OrderParameters;
 use crate::analysis::quantities::Boats;
 use crate::boat::DampedLaw;
-use crate::clock::seconds;
+use crate::clock::{Ticks, seconds};
 use crate::error::{FlockError, Result};
 use crate::flock::Flock;
 use crate::integrator::{Integrator, Steering};
@@ -243,17 +243,21 @@ impl Episode {
     ) -> Result<()> {
         // A rudder that was chosen in the mirrored view stays what it is when the target turns round.
         let mirror_to = settings.mirror_to_target.then(|| self.targets().clone());
+        self.state.terms.fill([0.0; TERMS]);
+        rewards.fill(0.0);
         let mut taken = 0;
         while taken == 0 || (taken < settings.period_steps() && !self.state.ended) {
             self.command(settings, actions, mirror_to.as_ref());
-            self.advance(settings, servo)?;
-            self.compute_rewards(settings, rewards, taken == 0);
+            let elapsed = self.advance(settings, servo)?;
+            self.pay(settings, rewards);
+            self.note_order(elapsed);
             self.advance_schedule()?;
             taken += 1;
         }
-        let taken = f64::from(taken);
-        let terms = self.state.terms.iter_mut().flatten();
-        terms.for_each(|term| *term /= taken);
+        if taken > 1 {
+            let terms = self.state.terms.iter_mut().flatten();
+            terms.for_each(|term| *term /= f64::from(taken));
+        }
         Ok(())
     }
 
@@ -277,14 +281,15 @@ impl Episode {
         self.commands = commands;
     }
 
-    /// Moves the flock through a control step.
-    fn advance(&mut self, settings: &EnvSettings, servo: &Servo) -> Result<()> {
+    /// Moves the flock through a control step; returns the time from the episode's start to its end.
+    fn advance(&mut self, settings: &EnvSettings, servo: &Servo) -> Result<Ticks> {
         let state = &mut self.state;
         for (rudder, &command) in state.rudders.iter_mut().zip(&self.commands) {
             *rudder = servo.moved(*rudder, command);
         }
-        let step = state.schedule.step;
-        let end = state.flock.time() + settings.time_of(step + 1) - settings.time_of(step);
+        let [before, elapsed] =
+            [state.schedule.step, state.schedule.step + 1].map(|step| settings.time_of(step));
+        let end = state.flock.time() + elapsed - before;
         let steering = Steering::Held(&state.rudders);
         let advanced = match &mut state.credit {
             None => state.flock.advance_to(end, steering),
@@ -302,21 +307,10 @@ impl Episode {
             credit.remember(&state.flock.integrator, 1.0 / settings.control_hz);
         }
         state.order = state.flock.order_parameters(false).ok();
-        Ok(())
+        Ok(elapsed)
     }
 
-    /// Rewards of the control step just taken, with the target that held in it: the first since a decision, or added
-    /// to those before.
-    fn compute_rewards(&mut self, settings: &EnvSettings, rewards: &mut [f64], is_first: bool) {
-        if is_first {
-            self.state.terms.fill([0.0; TERMS]);
-            rewards.fill(0.0);
-        }
-        self.pay(settings, rewards);
-        self.note_order(settings);
-    }
-
-    /// Adds each leader's terms and reward.
+    /// Adds each leader's terms and reward of the control step just taken, with the target that held in it.
     fn pay(&mut self, settings: &EnvSettings, rewards: &mut [f64]) {
         let EpisodeState {
             flock,
@@ -351,7 +345,7 @@ impl Episode {
 
     /// Takes note of the order, and of everything that is averaged where the step ends in the analysis window, after
     /// the first tenth of the episode.
-    fn note_order(&mut self, settings: &EnvSettings) {
+    fn note_order(&mut self, elapsed: Ticks) {
         let EpisodeState {
             flock,
             schedule,
@@ -364,8 +358,7 @@ impl Episode {
             return;
         };
         let (step, steps) = (u64::from(schedule.step) + 1, u64::from(schedule.steps));
-        let time_s = seconds(settings.time_of(schedule.step + 1));
-        statistics.watch_order(order, time_s, 2 * step >= steps);
+        statistics.watch_order(order, seconds(elapsed), 2 * step >= steps);
         if 10 * step <= steps || !flock.schedule().in_analysis_window(flock.time()) {
             return;
         }

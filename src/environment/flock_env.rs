@@ -135,9 +135,9 @@ impl FlockEnv {
         observations: &mut [f32],
         rewards: &mut [f64],
     ) -> Result<bool> {
-        rewards.fill(0.0);
         self.check_ready(settings.autoreset_mode)?;
         if self.episode.as_ref().is_some_and(Episode::has_ended) {
+            rewards.fill(0.0);
             self.start_next(settings, observations)?;
             return Ok(false);
         }

@@ -1,7 +1,5 @@
 //! The task that leaders are trained on: episodes, observations, rewards, many flocks at once.
 
-mod action;
-mod averages;
 mod batch;
 mod credit;
 mod drawn;
@@ -15,15 +13,13 @@ mod schedule;
 mod settings;
 mod statistics;
 
-pub use action::LARGEST_LEAN;
-pub use averages::Averages;
 pub use batch::{BatchRows, EnvBatch};
 pub use drawn::{Drawn, TargetChoice};
 pub use episode::Episode;
 pub use flock_env::FlockEnv;
 pub use reset::{ResetRequest, Start};
 pub use reward::{Reward, RewardTerm, RewardTerms, RewardWeights, TERMS};
-pub use rudder::Servo;
+pub use rudder::{LARGEST_LEAN, Servo};
 pub use schedule::{EpisodeSchedule, EpisodeSeeds};
 pub use settings::{ActionMode, Autoreset, EnvSettings};
-pub use statistics::{EpisodeSummary, LeaderSummary, ORDERED_WITHIN, TOWARDS_TARGET};
+pub use statistics::{Averages, EpisodeSummary, LeaderSummary, ORDERED_WITHIN, TOWARDS_TARGET};

@@ -56,11 +56,6 @@ impl EpisodeSchedule {
         Targets::One(if is_even { first } else { first.opposite() })
     }
 
-    /// The reference direction of the same control step: the target of all leaders, or leader 0's.
-    pub fn target(&self) -> Target {
-        self.targets().reference()
-    }
-
     /// How many of so many leaders have targets of their own: all or none.
     pub(crate) fn own_targets(&self, leaders: usize) -> usize {
         match self.targets {

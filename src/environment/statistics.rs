@@ -1,10 +1,9 @@
 //! Sums over an episode, and the summary given at its end.
 
-use super::Averages;
 use super::{EpisodeSchedule, RewardTerm, RewardTerms, TERMS};
 use crate::analysis::OrderParameters;
 use crate::analysis::collective_state::OrderingWatch;
-use crate::analysis::quantities::Boats;
+use crate::analysis::quantities::{Boats, SUMMARIZED, summarized, summarized_values};
 use crate::parameters::{Target, Value, named_fields};
 use std::f64::consts::PI;
 
@@ -13,6 +12,29 @@ pub const TOWARDS_TARGET: f64 = 0.5;
 /// How far off the tangent a flock counts as ordered: as eq. (7) prints it, and wider, since a boat that
 /// slides along the wall heads outward of it.
 pub const ORDERED_WITHIN: [f64; 2] = [PI / 20.0, PI / 4.0];
+
+/// Sums of the summarized quantities, or their means.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct Averages([f64; SUMMARIZED]);
+
+impl Averages {
+    /// Adds what the quantities of boats are now.
+    fn add(&mut self, boats: &Boats, target: Target) {
+        for (sum, value) in self.0.iter_mut().zip(summarized_values(boats, target)) {
+            *sum += value;
+        }
+    }
+
+    /// Sums over a count of steps as means.
+    fn over(&self, steps: f64) -> Self {
+        Self(self.0.map(|sum| sum / steps))
+    }
+
+    /// Names and values, in the order of the table.
+    pub fn named(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        summarized().map(|each| each.name).zip(self.0)
+    }
+}
 
 /// Sums over the control steps of an episode.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]

@@ -19,12 +19,12 @@ impl Flock {
     /// Contacts and near-contacts of the last substep: gaps now, forces as means over the last change of velocity.
     pub fn contacts(&self) -> Vec<ContactForce> {
         let resolver = &self.integrator.contacts;
-        let detector = resolver.detector();
+        let detector = &resolver.detector;
         let hull = detector.hull();
         resolver
-            .contacts()
+            .contacts
             .iter()
-            .zip(resolver.impulses())
+            .zip(&resolver.solver.impulses)
             .map(|(contact, &impulse)| {
                 let gap = detector.gap_at(contact, &self.integrator.boats);
                 let force = if impulse > 0.0 {

@@ -82,16 +82,8 @@ impl Flock {
     /// Starts over with another seed: as a new flock with these parameters.
     ///
     /// # Errors
-    /// [`FlockError::Placement`]; the flock is unchanged then.
-    pub fn reset(&mut self, seed: u64) -> Result<()> {
-        self.reset_while(&|| true, seed)
-    }
-
-    /// As [`Self::reset`], asking now and then whether to continue.
-    ///
-    /// # Errors
     /// As for [`Self::new_while`]; the flock is unchanged then.
-    pub fn reset_while(&mut self, keep_going: KeepGoing, seed: u64) -> Result<()> {
+    pub fn reset(&mut self, keep_going: KeepGoing, seed: u64) -> Result<()> {
         let next = Self::new_while(keep_going, self.parameters.clone(), seed)?;
         self.replace(next);
         Ok(())
@@ -128,7 +120,8 @@ impl Flock {
 
     fn share_out(&mut self, threads: usize) {
         self.threads = threads;
-        self.integrator.set_threads(self.shared_threads());
+        let shared = self.shared_threads();
+        self.integrator.contacts.set_threads(shared);
     }
 
     /// How many threads a flock of this size is shared out to.
@@ -203,7 +196,7 @@ impl Flock {
     pub fn set_target(&mut self, target: impl Into<Targets>) -> Result<()> {
         let target = target.into();
         target.check(self.parameters.n_leaders)?;
-        self.integrator.set_target(target.clone());
+        self.integrator.parameters.target.clone_from(&target);
         self.parameters.target = target;
         Ok(())
     }

@@ -190,7 +190,8 @@ impl Region {
             if !clear {
                 break;
             }
-            pair_gaps(boat, other, self.hull, clearance, |_, _| clear = false);
+            let (first, second) = ((boat, self.hull), (other, self.hull));
+            pair_gaps(first, second, clearance, |_, _| clear = false);
         }
         clear
     }

@@ -60,22 +60,10 @@ impl Sampling {
 }
 
 /// How a recording keeps poses and velocities.
-pub trait Real: Copy + Send + Default {
-    /// The nearest number of this type.
-    fn nearest(value: f64) -> Self;
-}
+pub trait Real: Copy + Default + nalgebra::RealField {}
 
-impl Real for f64 {
-    fn nearest(value: f64) -> Self {
-        value
-    }
-}
-
-impl Real for f32 {
-    fn nearest(value: f64) -> Self {
-        value as Self
-    }
-}
+impl Real for f64 {}
+impl Real for f32 {}
 
 /// Contacts that carried a force, sample after sample.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -165,11 +153,11 @@ impl<T: Real> Recording<T> {
             .push(flock.schedule().in_analysis_window(flock.time()));
         for pose in flock.poses() {
             let numbers = [pose.position.x, pose.position.y, pose.heading];
-            self.pose.extend(numbers.map(T::nearest));
+            self.pose.extend(numbers.map(nalgebra::convert::<_, T>));
         }
         for velocity in flock.velocities() {
             let numbers = [velocity.linear.x, velocity.linear.y, velocity.angular];
-            self.velocity.extend(numbers.map(T::nearest));
+            self.velocity.extend(numbers.map(nalgebra::convert::<_, T>));
         }
         let leaders = 0..flock.parameters().n_leaders;
         match rudder {

@@ -112,7 +112,7 @@ fn refuse_overlap(
     let mut contacts = Vec::new();
     integrator
         .contacts
-        .detector_mut()
+        .detector
         .detect(&integrator.boats, 0.0, &mut contacts);
     integrator.contacts.forget();
     let deepest = contacts

@@ -61,7 +61,7 @@ impl Feature {
 const TOUCHING_CORES: f64 = 1e-9;
 
 /// A hull with its pose.
-type Placed<'a> = (&'a HullPose, Hull);
+pub type Placed<'a> = (&'a HullPose, Hull);
 
 /// Two hulls and what their gaps share.
 struct Pair<'a> {
@@ -170,26 +170,10 @@ impl<'a> Pair<'a> {
     }
 }
 
-/// The contacts of two hulls of one shape with a gap below `margin`: none, one or two, handed to `found`.
+/// The contacts of two hulls with a gap below `margin`: none, one or two, handed to `found`. The second hull is of any
+/// length above 0 or of the first's shape.
 #[inline]
-pub fn pair_gaps(
-    a: &HullPose,
-    b: &HullPose,
-    hull: Hull,
-    margin: f64,
-    found: impl FnMut(Feature, Gap),
-) {
-    capsule_gaps((a, hull), (b, hull), margin, found);
-}
-
-/// The contacts of any two hulls with a gap below `margin`, the second of any length above 0 or of the first's shape.
-#[inline]
-pub(crate) fn capsule_gaps(
-    first: Placed,
-    second: Placed,
-    margin: f64,
-    mut found: impl FnMut(Feature, Gap),
-) {
+pub fn pair_gaps(first: Placed, second: Placed, margin: f64, mut found: impl FnMut(Feature, Gap)) {
     let ((a, hull_a), (b, hull_b)) = (first, second);
     let reach = hull_a.reach() + hull_b.reach() + margin;
     let distance_squared = (b.center - a.center).norm_squared();
@@ -223,15 +207,9 @@ pub(crate) fn capsule_gaps(
     }
 }
 
-/// The gap of a known contact at other poses of its hulls, which have one shape.
-#[inline]
-pub fn pair_gap(feature: Feature, a: &HullPose, b: &HullPose, hull: Hull) -> Gap {
-    capsule_gap(feature, (a, hull), (b, hull))
-}
-
 /// The gap of a known contact at other poses of its hulls.
 #[inline]
-pub(super) fn capsule_gap(feature: Feature, first: Placed, second: Placed) -> Gap {
+pub fn pair_gap(feature: Feature, first: Placed, second: Placed) -> Gap {
     let pair = Pair::new(first, second);
     let Some(side) = feature.side() else {
         return crossed_gap(first, second);

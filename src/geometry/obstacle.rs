@@ -1,7 +1,6 @@
 //! Obstacles in the water, which do not move.
 
-use super::gap::capsule_gap;
-use super::{Feature, Gap, Hull, HullPose, Vec2, capsule_gaps, inner_wall_gap};
+use super::{Feature, Gap, Hull, HullPose, Vec2, inner_wall_gap, pair_gap, pair_gaps};
 use crate::parameters::{Disc, FlockParameters, Wall};
 
 /// What stands in the water.
@@ -57,14 +56,6 @@ impl Obstacle {
         discs.chain(walls).collect()
     }
 
-    /// A circle that it lies in: center and radius in cm.
-    pub(crate) fn circle(&self) -> (Vec2, f64) {
-        match self {
-            Self::Disc { center, radius } => (*center, *radius),
-            Self::Wall { pose, half_length } => (pose.center, *half_length),
-        }
-    }
-
     /// The point of its core, which a disc has at its center, that is nearest to a place, and its radius about that.
     fn core(&self, place: Vec2) -> (Vec2, f64) {
         match self {
@@ -105,7 +96,7 @@ impl Obstacle {
                     found(Feature::Flank, gap);
                 }
             }
-            Self::Wall { pose, half_length } => capsule_gaps(
+            Self::Wall { pose, half_length } => pair_gaps(
                 (boat, hull),
                 (pose, wall_hull(*half_length)),
                 margin,
@@ -126,7 +117,7 @@ impl Obstacle {
             }
             Self::Wall { pose, half_length } => {
                 let wall = (pose, wall_hull(*half_length));
-                beside_wall(feature, capsule_gap(feature, (boat, hull), wall), hull)
+                beside_wall(feature, pair_gap(feature, (boat, hull), wall), hull)
             }
         }
     }

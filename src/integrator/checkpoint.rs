@@ -40,7 +40,7 @@ impl Integrator {
         into.last.clone_from(&self.last);
         into.warm_start.clear();
         into.warm_start.extend(self.contacts.warm_start_impulses());
-        let neighbors = self.contacts.neighbors();
+        let neighbors = &self.contacts.detector.neighbors;
         into.neighbor_reference.0.clear();
         into.neighbor_reference
             .0
@@ -56,10 +56,7 @@ impl Integrator {
         self.last.clone_from(&checkpoint.last);
         self.contacts.set_warm_start(&checkpoint.warm_start);
         let (reference, cutoff) = &checkpoint.neighbor_reference;
-        self.contacts
-            .detector_mut()
-            .neighbors
-            .restore(reference, *cutoff);
+        self.contacts.detector.neighbors.restore(reference, *cutoff);
         self.step_length_s = checkpoint.step_length_s;
         self.statistics = checkpoint.statistics;
     }

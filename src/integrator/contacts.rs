@@ -23,7 +23,7 @@ impl Integrator {
             ..
         } = self;
         if !contacts.find(poses, boats, free, dt, statistics) {
-            if contacts.detector().may_pass_walls(free, dt) {
+            if contacts.detector.may_pass_walls(free, dt) {
                 return ContactOutcome::TooLong;
             }
             contacts.clear_warm_start();
@@ -32,7 +32,7 @@ impl Integrator {
         }
         let outcome = contacts.resolve(poses, free, inertia, dt, shorter_possible, statistics);
         if outcome == ContactOutcome::Solved {
-            self.velocities.copy_from_slice(contacts.velocities());
+            self.velocities.copy_from_slice(&contacts.solver.velocities);
         }
         outcome
     }

@@ -42,11 +42,11 @@ pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
         }
         flock
             .velocities
-            .copy_from_slice(flock.contacts.velocities());
+            .copy_from_slice(&flock.contacts.solver.velocities);
         flock.drift(dt);
         return StepOutcome::Taken;
     }
-    if contacts.detector().may_pass_walls(velocities, dt) {
+    if contacts.detector.may_pass_walls(velocities, dt) {
         return StepOutcome::TooLong;
     }
     contacts.clear_warm_start();

@@ -5,7 +5,7 @@ use crate::boat::{Drive, FreeMotion};
 use crate::clock::ticks;
 use crate::contact::{ContactResolver, InverseInertia, Statistics};
 use crate::geometry::{HullPose, Pose, Velocity};
-use crate::parameters::{FlockParameters, Scheme, Targets};
+use crate::parameters::{FlockParameters, Scheme};
 use crate::random::{BrownianPaths, Stream};
 use rand::RngExt;
 
@@ -73,16 +73,6 @@ impl Integrator {
         self.step_length_s = 0.0;
         self.contacts.forget();
         self.update_boats();
-    }
-
-    /// Has the work of a substep shared out to so many threads.
-    pub(crate) fn set_threads(&mut self, threads: usize) {
-        self.contacts.set_threads(threads);
-    }
-
-    /// Changes where leaders steer to.
-    pub(crate) fn set_target(&mut self, target: Targets) {
-        self.parameters.target = target;
     }
 
     /// Works out the direction vectors of the poses.

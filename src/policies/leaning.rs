@@ -44,7 +44,8 @@ pub struct Judged {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LeaningLaw {
-    format: Format,
+    #[serde(deserialize_with = "known_format")]
+    format: u32,
     /// Name of the pool that it is for, as whose usual values its features are standardized.
     pub pool: String,
     /// How it was judged.
@@ -69,25 +70,14 @@ pub struct LeaningLaw {
 }
 
 /// The only format so far.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Format;
-
 const FORMAT: u32 = 1;
 
-impl Serialize for Format {
-    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        FORMAT.serialize(serializer)
-    }
-}
-
-impl<'de> Deserialize<'de> for Format {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        match u32::deserialize(deserializer)? {
-            FORMAT => Ok(Self),
-            other => Err(serde::de::Error::custom(format!(
-                "format = {other} is not accepted: this version of flockenv reads format {FORMAT}"
-            ))),
-        }
+fn known_format<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<u32, D::Error> {
+    match u32::deserialize(deserializer)? {
+        FORMAT => Ok(FORMAT),
+        other => Err(serde::de::Error::custom(format!(
+            "format = {other} is not accepted: this version of flockenv reads format {FORMAT}"
+        ))),
     }
 }
 

@@ -90,12 +90,8 @@ impl PyEnvBatch {
     #[getter]
     fn sizes(&self) -> Result<(usize, u32, u32)> {
         let batch = self.0.read()?;
-        let settings = batch.settings();
-        Ok((
-            batch.observation_size(),
-            settings.steps(),
-            settings.period_steps(),
-        ))
+        let (settings, size) = (batch.settings(), batch.observation_size());
+        Ok((size, settings.steps(), settings.period_steps()))
     }
 
     #[getter]
@@ -159,11 +155,8 @@ impl PyEnvBatch {
     /// The observations that the last episode ended with: (leaders, size).
     fn final_observation<'py>(&self, py: Python<'py>, flock: usize) -> Rows<'py, f32> {
         let size = self.0.read()?.observation_size();
-        rows_of(
-            py,
-            self.env(flock, |env| env.final_observation().to_vec())?,
-            size,
-        )
+        let observations = self.env(flock, |env| env.final_observation().to_vec())?;
+        rows_of(py, observations, size)
     }
 
     /// Features of every flock in the frame of its target, (flocks, features), or of each leader's flock in the frame
@@ -178,12 +171,7 @@ impl PyEnvBatch {
 
     /// Global states of every flock, which have equally many boats: (flocks, state size).
     fn states<'py>(&self, py: Python<'py>) -> Rows<'py, f32> {
-        let size = self
-            .0
-            .read()?
-            .envs()
-            .first()
-            .map_or(1, FlockEnv::state_size);
+        let size = self.env(0, FlockEnv::state_size)?;
         self.gathered(py, size, |env, _| {
             filled(env.state_size(), |out| env.observe_state(out))
         })

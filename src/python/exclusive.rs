@@ -3,7 +3,6 @@
 use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
 use pyo3::prelude::*;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -60,29 +59,19 @@ pub(super) fn interruptible<T: Send>(
     work: impl FnOnce(KeepGoing) -> Result<T> + Send,
 ) -> PyResult<T> {
     let caller = thread::current().id();
-    let looked = Mutex::new(Instant::now());
-    let raised = Mutex::new(None);
-    let stopped = AtomicBool::new(false);
-    let look = || {
-        let mut looked = looked.lock().unwrap_or_else(PoisonError::into_inner);
-        if looked.elapsed() >= PATIENCE {
-            if let Some(error) = Python::attach(|py| py.check_signals().err()) {
-                *raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
-                stopped.store(true, Ordering::Relaxed);
-            }
-            *looked = Instant::now();
-        }
-    };
+    let last_look = Mutex::new((Instant::now(), None));
     let keep_going = || {
-        if thread::current().id() == caller {
-            look();
+        let mut last_look = last_look.lock().unwrap_or_else(PoisonError::into_inner);
+        let (at, raised) = &mut *last_look;
+        if raised.is_none() && thread::current().id() == caller && at.elapsed() >= PATIENCE {
+            *raised = Python::attach(|py| py.check_signals().err());
+            *at = Instant::now();
         }
-        !stopped.load(Ordering::Relaxed)
+        raised.is_none()
     };
     let outcome = py.detach(|| work(&keep_going));
-    let raised = raised.into_inner().unwrap_or_else(PoisonError::into_inner);
-    match raised {
-        Some(error) => Err(error),
-        None => Ok(outcome?),
-    }
+    let (_, raised) = last_look
+        .into_inner()
+        .unwrap_or_else(PoisonError::into_inner);
+    raised.map_or_else(|| Ok(outcome?), Err)
 }

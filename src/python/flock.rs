@@ -14,24 +14,16 @@ use crate::parameters::{Field, FlockParameters, Targets, Value, text_of};
 use numpy::{Element, PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
-use std::sync::{Mutex, PoisonError, RwLockReadGuard};
+use std::sync::{Mutex, PoisonError};
 
 /// A flock for one thread at a time.
 #[pyclass(name = "Flock", module = "flockenv._core", frozen)]
-pub(super) struct PyFlock(Exclusive<Flock>);
+pub(super) struct PyFlock(pub(super) Exclusive<Flock>);
 
 impl PyFlock {
     /// A flock for Python.
     pub(super) fn of(flock: Flock) -> Self {
         Self(Exclusive::new(flock, "the flock"))
-    }
-
-    /// The flock, to read.
-    ///
-    /// # Errors
-    /// [`FlockError::InUse`] while another thread changes it.
-    pub(super) fn read(&self) -> Result<RwLockReadGuard<'_, Flock>> {
-        self.0.read()
     }
 }
 
@@ -67,55 +59,59 @@ impl PyFlock {
         let seed = seed_from(seed)?;
         let mut flock = self.0.write()?;
         let flock = &mut *flock;
-        interruptible(py, |keep_going| flock.reset_while(keep_going, seed))
+        interruptible(py, |keep_going| flock.reset(keep_going, seed))
     }
 
     #[getter]
     fn parameters(&self) -> Result<Value> {
-        let flock = self.read()?;
+        let flock = self.0.read()?;
         Ok(Field::values(FlockParameters::FIELDS, flock.parameters()))
     }
 
     #[getter]
     fn seed(&self) -> Result<u64> {
-        Ok(self.read()?.seed())
+        Ok(self.0.read()?.seed())
     }
 
     #[getter]
     fn pose<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        rows_of(py, pose_numbers(self.read()?.poses()).collect(), 3)
+        rows_of(py, pose_numbers(self.0.read()?.poses()).collect(), 3)
     }
 
     #[getter]
     fn velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        rows_of(py, velocity_numbers(self.read()?.velocities()).collect(), 3)
+        rows_of(
+            py,
+            velocity_numbers(self.0.read()?.velocities()).collect(),
+            3,
+        )
     }
 
     #[getter]
     fn time_s(&self) -> Result<f64> {
-        Ok(self.read()?.time_s())
+        Ok(self.0.read()?.time_s())
     }
 
     #[getter]
     fn in_analysis_window(&self) -> Result<bool> {
-        let flock = self.read()?;
+        let flock = self.0.read()?;
         Ok(flock.schedule().in_analysis_window(flock.time()))
     }
 
     #[getter]
     fn phase(&self) -> Result<&'static str> {
-        Ok(self.read()?.phase().phase.name())
+        Ok(self.0.read()?.phase().phase.name())
     }
 
     /// What the substeps since the flock was made did, by name.
     #[getter]
     fn statistics(&self) -> Result<Value> {
-        Ok(self.read()?.statistics().named())
+        Ok(self.0.read()?.statistics().named())
     }
 
     #[getter]
     fn threads(&self) -> Result<usize> {
-        Ok(self.read()?.threads())
+        Ok(self.0.read()?.threads())
     }
 
     #[setter]
@@ -125,7 +121,7 @@ impl PyFlock {
     }
 
     fn set_state(&self, state: &Bound<'_, PyAny>) -> PyResult<()> {
-        let state = state_from(state, self.read()?.parameters().n_boats)?;
+        let state = state_from(state, self.0.read()?.parameters().n_boats)?;
         let (poses, velocities) = (&state.poses, &state.velocities);
         let mut flock = self.0.write()?;
         Ok(flock.set_state(poses, velocities, state.time_s, state.allow_overlap)?)
@@ -144,7 +140,7 @@ impl PyFlock {
         rudder: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
         let seconds = given(seconds, "seconds")?;
-        let rudder = rudders_from(rudder, &*self.read()?)?;
+        let rudder = rudders_from(rudder, &*self.0.read()?)?;
         let mut flock = self.0.write()?;
         let flock = &mut *flock;
         let end = flock.end_of(seconds)?;
@@ -155,7 +151,7 @@ impl PyFlock {
     }
 
     fn steering_law<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyArray1<f64>>> {
-        let flock = self.read()?;
+        let flock = self.0.read()?;
         let leaders = 0..flock.parameters().n_leaders;
         let rudders = leaders.map(|leader| flock.steering_law(leader));
         Ok(PyArray1::from_iter(py, rudders))
@@ -163,16 +159,16 @@ impl PyFlock {
 
     /// The recorded quantities, in the order of the table.
     fn order_parameters(&self, include_leaders: bool) -> Result<Recorded> {
-        self.read()?.recorded(include_leaders)
+        self.0.read()?.recorded(include_leaders)
     }
 
     /// Contacts and near-contacts of the last substep, by column.
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        contact_columns::<i64, f64>(py, &self.read()?.contacts(), |x| x)
+        contact_columns::<i64, f64>(py, &self.0.read()?.contacts(), |x| x)
     }
 
     fn snapshot<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyBytes>> {
-        Ok(PyBytes::new(py, &self.read()?.snapshot()))
+        Ok(PyBytes::new(py, &self.0.read()?.snapshot()))
     }
 
     fn restore(&self, snapshot: &[u8]) -> Result<()> {
@@ -180,12 +176,12 @@ impl PyFlock {
     }
 
     fn copy(&self) -> Result<Self> {
-        Ok(Self::of(self.read()?.clone()))
+        Ok(Self::of(self.0.read()?.clone()))
     }
 
     /// A square picture as the bytes of a PNG file.
     fn png<'py>(&self, py: Python<'py>, pixels: u32) -> Result<Bound<'py, PyBytes>> {
-        let png = py.detach(|| FrameRenderer::new(pixels, pixels)?.png(&*self.read()?))?;
+        let png = py.detach(|| FrameRenderer::new(pixels, pixels)?.png(&*self.0.read()?))?;
         Ok(PyBytes::new(py, &png))
     }
 }
@@ -308,7 +304,7 @@ impl PyFrameRenderer {
         let (shape, frame) = py.detach(|| -> Result<_> {
             let mut renderer = self.0.lock().unwrap_or_else(PoisonError::into_inner);
             let shape = [renderer.height() as usize, renderer.width() as usize, 3];
-            Ok((shape, renderer.draw(&*flock.read()?)))
+            Ok((shape, renderer.draw(&*flock.0.read()?)))
         })?;
         PyArray1::from_vec(py, frame).reshape(shape)
     }

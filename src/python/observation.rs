@@ -55,7 +55,7 @@ pub(super) fn observe<'py>(
     mirror_to_target: bool,
     rudder: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-    let flock = flock.read()?;
+    let flock = flock.0.read()?;
     let rudders = rudders_from(rudder, &flock)?.unwrap_or_default();
     observed(py, &flock, layout_from(blocks, mirror_to_target)?, &rudders)
 }

@@ -74,7 +74,7 @@ fn recorded<'py, T: Real + Element>(
     let changes = plan.changes.iter();
     let changes = changes.map(|(time_s, change)| Ok((ticks(*time_s), change_from(change)?)));
     let changes = changes.collect::<PyResult<Vec<_>>>()?;
-    let mut recorder = Recorder::<T>::new(flock.read()?.clone(), sampling)?.with_changes(changes);
+    let mut recorder = Recorder::<T>::new(flock.0.read()?.clone(), sampling)?.with_changes(changes);
     if plan.contacts {
         recorder = recorder.with_contacts();
     }

@@ -40,7 +40,7 @@ fn targets_alternate_by_quarters() {
         (9600, Target::Clockwise),
     ] {
         episode.step = step;
-        assert_eq!(episode.target(), target, "at step {step}");
+        assert_eq!(episode.targets().reference(), target, "at step {step}");
     }
 }
 
@@ -52,7 +52,7 @@ fn random_targets_are_even_and_noise_levels_uniform() {
         .collect();
     let clockwise = episodes
         .iter()
-        .filter(|(episode, _)| episode.target() == Target::Clockwise)
+        .filter(|(episode, _)| episode.targets().reference() == Target::Clockwise)
         .count();
     assert!((1850..2150).contains(&clockwise), "{clockwise}");
     let levels = || {

@@ -59,7 +59,7 @@ fn steering_law_can_be_read_from_the_observation() {
         for _ in 0..3999 {
             let written = step(&mut batch, &actions).unwrap();
             let episode = batch.envs()[0].episode().unwrap();
-            let reflected = mirror_to_target && episode.schedule().target().sign() < 0.0;
+            let reflected = mirror_to_target && episode.targets().reference().sign() < 0.0;
             for (leader, row) in written.observations.chunks_exact(size).enumerate() {
                 actions[leader] = law.action(row);
                 let expected = episode.flock().steering_law(leader);

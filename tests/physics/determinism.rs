@@ -135,7 +135,7 @@ fn a_reset_flock_is_a_new_flock() {
     let p = busy(Scheme::Leapfrog, Noise::White);
     let mut flock = Flock::new(p.clone(), 1).expect("room");
     flock.advance(2.0, None).expect("finite motion");
-    flock.reset(5).expect("room");
+    flock.reset(&|| true, 5).expect("room");
     let mut fresh = Flock::new(p, 5).expect("room");
     assert!(flock.snapshot() == fresh.snapshot());
     assert_eq!(advanced(&mut flock, &[1.0]), advanced(&mut fresh, &[1.0]));

@@ -19,15 +19,8 @@ const HULL: Hull = Hull {
 
 fn gaps(a: &Pose, b: &Pose, margin: f64) -> Vec<(Feature, Gap)> {
     let mut found = Vec::new();
-    pair_gaps(
-        &HullPose::new(a),
-        &HullPose::new(b),
-        HULL,
-        margin,
-        |f, g| {
-            found.push((f, g));
-        },
-    );
+    let [a, b] = [a, b].map(HullPose::new);
+    pair_gaps((&a, HULL), (&b, HULL), margin, |f, g| found.push((f, g)));
     found
 }
 
@@ -193,7 +186,7 @@ proptest! {
             for direction in 0..3 {
                 let at = |s: f64| {
                     let (moved, b) = (HullPose::new(&displaced(&a, direction, s)), HullPose::new(&b));
-                    pair_gap(feature, &moved, &b, HULL).gap
+                    pair_gap(feature, (&moved, HULL), (&b, HULL)).gap
                 };
                 let measured = (at(step) - at(-step)) / (2.0 * step);
                 // A kink (an end passing the other's end) may lie within the step: slopes change by
@@ -201,7 +194,7 @@ proptest! {
                 prop_assert!((measured - slope(&gap, true, direction)).abs() < 1e-3);
                 let at = |s: f64| {
                     let (a, moved) = (HullPose::new(&a), HullPose::new(&displaced(&b, direction, s)));
-                    pair_gap(feature, &a, &moved, HULL).gap
+                    pair_gap(feature, (&a, HULL), (&moved, HULL)).gap
                 };
                 let measured = (at(step) - at(-step)) / (2.0 * step);
                 prop_assert!((measured - slope(&gap, false, direction)).abs() < 1e-3);

@@ -8,8 +8,8 @@
 //! free boat is driven past the spin at which c1·w³ = (c2·s − c3·w)·u·ẋ.
 
 use crate::support::{
-    OPEN_WATER, VELOCITY_SCHEMES, deepest_overlap, driven, flock_of, inert, kinetic_energy,
-    take_substeps,
+    OPEN_WATER, R, VELOCITY_SCHEMES, deepest_overlap, disc_at, driven, flock_of, inert,
+    kinetic_energy, take_substeps,
 };
 use flockenv::geometry::Velocity;
 use flockenv::parameters::{Pool, Preset, Scheme};
@@ -98,6 +98,32 @@ fn spinning_hulls_in_a_channel_never_gain_energy() {
                     );
                     before = now;
                 }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_flank_between_obstacles_is_not_turned_back() {
+    // A post above the flank ahead of one below it: a counter-clockwise spin carries the hull into both, which stops it.
+    // The smaller their distance along the hull, the further looking ahead along the curves would throw the spin back.
+    for scheme in VELOCITY_SCHEMES {
+        for (above, below) in [(0.25, -0.08), (0.4, 0.1), (2.4, -2.1), (-1.0, -1.6)] {
+            for (radius, spin) in [(0.1, 4.0), (0.5, 1.6), (6.0, 3.0), (30.0, 0.7)] {
+                let p = FlockParameters {
+                    pool: OPEN_WATER,
+                    discs: vec![
+                        disc_at(below, -(R + radius), radius),
+                        disc_at(above, R + radius, radius),
+                    ],
+                    dt_s: 0.02,
+                    ..inert(scheme)
+                };
+                let mut flock = flock_of(&p, &[([0.0; 3], [0.0, 0.0, spin])]);
+                let before = kinetic_energy(&flock);
+                flock.advance(0.02, None).expect("finite motion");
+                let kept = kinetic_energy(&flock) / before;
+                assert!(kept < 1e-4, "{scheme:?} {below} {above} {radius}: {kept}");
             }
         }
     }

@@ -144,7 +144,7 @@ fn a_failed_reset_leaves_the_flock_as_it_was() {
     flock.advance(0.5, None).expect("finite motion");
     let before = flock.snapshot();
     for seed in 1..6 {
-        if flock.reset(seed).is_err() {
+        if flock.reset(&|| true, seed).is_err() {
             assert!(flock.snapshot() == before);
         } else {
             assert_eq!(flock.seed(), seed);

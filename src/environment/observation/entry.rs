@@ -6,26 +6,20 @@ use crate::parameters::{FlockParameters, Value, named_fields};
 
 /// The physical value that an observed 1.0 stands for (and, for the radius, what 0.0 stands for).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs, reason = "`description` says what each is")]
 pub enum Scale {
-    /// The number itself.
     Plain,
-    /// −1 where the center of a boat touching the inner wall (or the pool's center) is, +1 where that
-    /// of a boat touching the outer wall is. Open water: ±1 are 0 and 40 boat radii off the inner wall.
     Radial,
-    /// Six boat radii.
     Length,
-    /// The faster of the two preferred speeds; 15 cm/s where both are 0.
     Speed,
-    /// 2 rad/s.
     AngularVelocity,
-    /// 2 s.
     TimeLeft,
-    /// 1 s.
     Second,
 }
 
 impl Scale {
-    /// In words, for documentation.
+    /// In words. Radii are those of the centers of boats that touch the walls; where a pool has no inner wall its center
+    /// is -1, and in open water +1 is 40 boat radii farther. The speed is the faster of the two preferred ones.
     pub fn description(self) -> &'static str {
         match self {
             Self::Plain => "1",
@@ -62,6 +56,7 @@ pub(crate) fn speed_scale_cm_s(parameters: &FlockParameters) -> f64 {
     if fastest > 0.0 { fastest } else { 15.0 }
 }
 
+/// As [`Scale::description`] says.
 fn radial(parameters: &FlockParameters) -> (f64, f64) {
     let (pool, radius) = (parameters.pool, Hull::new(parameters).radius);
     let inner = if pool.has_inner_wall() {

@@ -1,6 +1,6 @@
 //! Islands of one and two contacts, which need no guess and no factor.
 
-use super::rows::TOLERANCE;
+use super::rows::{TOLERANCE, residual};
 use super::{BlockPivoting, EXACT, SolveReport};
 use crate::contact::ContactProblem;
 use crate::geometry::Velocity;
@@ -29,15 +29,8 @@ impl BlockPivoting {
         let impulse = (-right / (diagonal * (1.0 + self.regularization))).max(0.0);
         impulses[k] = impulse;
         problem.apply(k, impulse, velocities);
-        let compliance = if self.regularization < TOLERANCE {
-            0.0
-        } else {
-            self.regularization
-        };
-        let speed = diagonal * impulse;
-        let residual = speed
-            .min(problem.slack(k, velocities) + compliance * speed)
-            .abs();
+        let slack = problem.slack(k, velocities);
+        let residual = residual(diagonal * impulse, slack, self.regularization);
         if residual > report.residual || residual.is_nan() {
             report.residual = residual;
         }

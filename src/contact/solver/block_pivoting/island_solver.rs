@@ -1,7 +1,7 @@
 //! Block principal pivoting on one island.
 
 use super::factor::Factor;
-use super::rows::{Rows, TOLERANCE};
+use super::rows::{Rows, TOLERANCE, residual};
 use crate::contact::ContactProblem;
 use crate::contact::solver::{EXACT, SolveReport};
 use crate::geometry::Velocity;
@@ -182,14 +182,8 @@ impl IslandSolver {
 
     /// The larger of the natural residual and the worst so far; NaN if anything is.
     fn worst_residual(&self, regularization: f64, worst: f64) -> f64 {
-        let compliance = if regularization < TOLERANCE {
-            0.0
-        } else {
-            regularization
-        };
         self.rows.rows.iter().fold(worst, |worst, row| {
-            let speed = row.diagonal * row.impulse;
-            let residual = speed.min(row.slack + compliance * speed).abs();
+            let residual = residual(row.diagonal * row.impulse, row.slack, regularization);
             if residual > worst || residual.is_nan() {
                 residual
             } else {

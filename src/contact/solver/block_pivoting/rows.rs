@@ -10,6 +10,18 @@ pub(super) const NONE: u32 = u32::MAX;
 /// The place of the walls among an island's bodies: at rest, and nothing moves them.
 pub(super) const WALLS: u32 = 0;
 
+/// How far a row is from its law, of its impulse times A_kk (cm/s) and its slack. A regularized problem is meant to give
+/// way.
+#[inline]
+pub(super) fn residual(speed: f64, slack: f64, regularization: f64) -> f64 {
+    let compliance = if regularization < TOLERANCE {
+        0.0
+    } else {
+        regularization
+    };
+    speed.min(slack + compliance * speed).abs()
+}
+
 /// Linear and angular parts of a row of J, or of a velocity.
 pub(super) type Motion = [f64; 3];
 

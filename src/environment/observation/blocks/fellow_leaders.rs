@@ -1,10 +1,8 @@
 //! The fellow leaders nearest to a leader, at any distance.
 
 use super::super::entry::{Entry, FLAG, Scale, UNIT};
-use super::{Seen, WriteBlock};
-use crate::error::Result;
+use super::{Seen, WriteBlock, nearest_first};
 use crate::geometry::{LapFrame, cross};
-use crate::parameters::FlockParameters;
 
 /// One fellow leader; all zero where there are fewer than places.
 #[rustfmt::skip]
@@ -17,18 +15,11 @@ pub(super) const FELLOW_LEADER: [Entry; 6] = [
     Entry::new("sin_orientation", "", Scale::Plain, UNIT, "its sine: 1 heads clockwise").odd(),
 ];
 
-/// Finds fellow leaders, with its memory.
+/// Writes [`FELLOW_LEADER`].
 #[derive(Debug, Clone, Default)]
-pub(super) struct FellowLeaders {
-    /// Squared distances of the other leaders, and their numbers.
-    found: Vec<(f64, usize)>,
-}
+pub(super) struct FellowLeaders;
 
 impl WriteBlock for FellowLeaders {
-    fn new(_parameters: &FlockParameters) -> Result<Self> {
-        Ok(Self::default())
-    }
-
     /// Nearest by center distance first, equally near ones in the order of boats; zeros where there are fewer.
     fn write(&mut self, seen: &Seen, repeats: usize, physical: &mut Vec<f64>) {
         let (view, leader) = (seen.view, seen.leader);
@@ -40,11 +31,7 @@ impl WriteBlock for FellowLeaders {
             let away = view.poses[other].position - own;
             (away.norm_squared(), other)
         });
-        self.found.clear();
-        self.found.extend(squares);
-        self.found
-            .sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        for &(_, other) in self.found.iter().take(repeats) {
+        for other in nearest_first(squares, repeats) {
             let place = view.poses[other].position;
             let frame = LapFrame::at(place);
             let orientation = frame.components(view.hulls[other].axis);

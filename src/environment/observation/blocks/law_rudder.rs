@@ -2,7 +2,7 @@
 
 use super::super::course::CourseView;
 use super::super::entry::{Entry, Scale, UNIT};
-use super::{Seen, WriteBlock};
+use super::{MadeFor, Seen, WriteBlock};
 use crate::boat::DampedLaw;
 use crate::error::Result;
 use crate::parameters::FlockParameters;
@@ -20,14 +20,16 @@ pub(super) struct LawRudder {
     courses: CourseView,
 }
 
-impl WriteBlock for LawRudder {
-    fn new(parameters: &FlockParameters) -> Result<Self> {
+impl MadeFor for LawRudder {
+    fn made_for(parameters: &FlockParameters) -> Result<Self> {
         Ok(Self {
             law: DampedLaw::tuned("observation law_rudder", "true", parameters.pool.name())?,
             courses: CourseView::new(parameters)?,
         })
     }
+}
 
+impl WriteBlock for LawRudder {
     fn write(&mut self, seen: &Seen, _repeats: usize, physical: &mut Vec<f64>) {
         let course = self.courses.course(seen.view, seen.leader, 0.0);
         physical.push(self.law.rudder(&course));

@@ -6,7 +6,7 @@ use super::neighbors::{NEIGHBOR, Neighbors};
 use super::order::{ORDER, Order};
 use super::own::{OWN, Own};
 use super::phase::{PHASE, Phase};
-use super::{Seen, WriteBlock};
+use super::{MadeFor, Seen, WriteBlock};
 use crate::error::{FlockError, Result};
 use crate::parameters::FlockParameters;
 
@@ -16,13 +16,8 @@ pub const LEAN_FEATURES: usize = 29;
 /// The pools in which the features are standardized.
 const POOLS: [&str; 2] = ["wide", "narrow"];
 
-/// A number that the lean depends on.
-struct Feature {
-    name: &'static str,
-    /// Mean and standard deviation in each of [`POOLS`].
-    usual: [(f64, f64); POOLS.len()],
-    meaning: &'static str,
-}
+/// A number that the lean depends on, with its mean and standard deviation in each of [`POOLS`].
+type Feature = (Entry, [(f64, f64); POOLS.len()]);
 
 /// Standardized features are bounded by this; beyond are flocks far from those that were measured.
 const BOUND: f64 = 20.0;
@@ -67,21 +62,15 @@ const fn feature(
     usual: [(f64, f64); POOLS.len()],
     meaning: &'static str,
 ) -> Feature {
-    Feature {
-        name,
-        usual,
-        meaning,
-    }
+    let entry = Entry::new(name, "", Scale::Plain, (-BOUND, BOUND), meaning);
+    (entry, usual)
 }
 
 /// The features as entries of an observation. They are the same for both targets, so that mirroring changes none.
 pub(super) const ENTRIES: [Entry; LEAN_FEATURES] = {
-    let bounds = (-BOUND, BOUND);
-    let mut entries = [Entry::new("", "", Scale::Plain, bounds, ""); LEAN_FEATURES];
-    let mut place = 0;
+    let (mut entries, mut place) = ([FEATURES[0].0; LEAN_FEATURES], 0);
     while place < LEAN_FEATURES {
-        let Feature { name, meaning, .. } = FEATURES[place];
-        entries[place] = Entry::new(name, "", Scale::Plain, bounds, meaning);
+        entries[place] = FEATURES[place].0;
         place += 1;
     }
     entries
@@ -107,7 +96,7 @@ pub struct LeanFeatures {
 impl LeanFeatures {
     /// Names of the features, in order.
     pub fn names() -> impl Iterator<Item = &'static str> {
-        FEATURES.iter().map(|feature| feature.name)
+        ENTRIES.iter().map(|entry| entry.name)
     }
 
     /// For checked parameters, standardized as is usual in a pool.
@@ -120,10 +109,10 @@ impl LeanFeatures {
         let neighbors = neighbors.take(SEEN_NEIGHBORS * NEIGHBOR.len());
         let entries = OWN.iter().chain(&PHASE).chain(neighbors).chain(&ORDER);
         Ok(Self {
-            usual: FEATURES.map(|feature| feature.usual[place]),
+            usual: FEATURES.map(|(_, usual)| usual[place]),
             scaling: Scaling::new(entries.copied(), parameters),
-            neighbors: Neighbors::new(parameters)?,
-            order: Order::new(parameters)?,
+            neighbors: Neighbors::default(),
+            order: Order::default(),
             physical: Vec::with_capacity(VIEW),
         })
     }
@@ -170,11 +159,13 @@ impl LeanFeatures {
     }
 }
 
-impl WriteBlock for LeanFeatures {
-    fn new(parameters: &FlockParameters) -> Result<Self> {
+impl MadeFor for LeanFeatures {
+    fn made_for(parameters: &FlockParameters) -> Result<Self> {
         Self::standardized(parameters, parameters.pool.name())
     }
+}
 
+impl WriteBlock for LeanFeatures {
     fn write(&mut self, seen: &Seen, _repeats: usize, physical: &mut Vec<f64>) {
         physical.extend(self.standard(seen));
     }

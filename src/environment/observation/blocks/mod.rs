@@ -44,16 +44,35 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// What writes the physical values of a block, with its memory.
-trait WriteBlock: Sized {
+/// What is made for a flock. Whatever has a default is made for every flock.
+trait MadeFor: Sized {
     /// For checked parameters.
     ///
     /// # Errors
-    /// [`crate::FlockError::Parameter`] for flocks that the block is not made for.
-    fn new(parameters: &FlockParameters) -> Result<Self>;
+    /// [`crate::FlockError::Parameter`] for flocks that it is not made for.
+    fn made_for(parameters: &FlockParameters) -> Result<Self>;
+}
 
+impl<T: Default> MadeFor for T {
+    fn made_for(_parameters: &FlockParameters) -> Result<Self> {
+        Ok(Self::default())
+    }
+}
+
+/// What writes the physical values of a block, with its memory.
+trait WriteBlock: MadeFor {
     /// Adds the values of a block that occurs so often, in the order of its entries.
     fn write(&mut self, seen: &Seen, repeats: usize, physical: &mut Vec<f64>);
+}
+
+/// So many of what is counted with distances, or all if there are fewer: nearest first, equally near ones in order.
+fn nearest_first(
+    distances: impl Iterator<Item = (f64, usize)>,
+    wanted: usize,
+) -> impl Iterator<Item = usize> {
+    let mut found: Vec<_> = distances.collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.into_iter().take(wanted).map(|(_, number)| number)
 }
 
 /// Declares blocks in the order of an observation: name, entries, writer, how often each occurs by default and whether
@@ -101,7 +120,7 @@ macro_rules! declare_blocks {
             pub(super) fn new(repeats: &[usize; Block::COUNT], parameters: &FlockParameters) -> Result<Self> {
                 Ok(Self { $($module: match repeats[Block::$block as usize] {
                     0 => None,
-                    count => Some((count, $module::$writer::new(parameters)?)),
+                    count => Some((count, $module::$writer::made_for(parameters)?)),
                 },)+ })
             }
 

@@ -3,9 +3,7 @@
 use super::super::entry::{Entry, FLAG, Scale, TWICE, UNIT};
 use super::super::nearest::Nearest;
 use super::{Seen, WriteBlock};
-use crate::error::Result;
 use crate::geometry::cross;
-use crate::parameters::FlockParameters;
 
 /// One neighbor; all zero where there are fewer boats than places.
 #[rustfmt::skip]
@@ -21,14 +19,10 @@ pub(super) const NEIGHBOR: [Entry; 8] = [
 ];
 
 /// Writes [`NEIGHBOR`] for the nearest boats, nearest first.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Neighbors(Nearest);
 
 impl WriteBlock for Neighbors {
-    fn new(_parameters: &FlockParameters) -> Result<Self> {
-        Ok(Self(Nearest::default()))
-    }
-
     fn write(&mut self, seen: &Seen, repeats: usize, physical: &mut Vec<f64>) {
         let (view, own) = (seen.view, &seen.view.hulls[seen.leader]);
         let filled = physical.len() + repeats * NEIGHBOR.len();

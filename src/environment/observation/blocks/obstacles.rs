@@ -1,7 +1,7 @@
 //! The obstacles nearest to leaders.
 
 use super::super::entry::{Entry, FLAG, Scale};
-use super::{Seen, WriteBlock};
+use super::{MadeFor, Seen, WriteBlock, nearest_first};
 use crate::error::Result;
 use crate::geometry::{Hull, Obstacle};
 use crate::parameters::FlockParameters;
@@ -15,35 +15,30 @@ pub(super) const OBSTACLE: [Entry; 4] = [
     Entry::new("gap", "cm", Scale::Length, (-1.0, 4.0), "distance between the leader's hull and the obstacle, negative for overlap"),
 ];
 
-/// Finds the nearest obstacles, with its memory.
+/// Finds the nearest obstacles.
 #[derive(Debug, Clone)]
 pub(super) struct NearestObstacles {
     hull: Hull,
     obstacles: Vec<Obstacle>,
-    /// Obstacles and their distances from a leader's center.
-    found: Vec<(f64, usize)>,
 }
 
-impl WriteBlock for NearestObstacles {
-    fn new(parameters: &FlockParameters) -> Result<Self> {
+impl MadeFor for NearestObstacles {
+    fn made_for(parameters: &FlockParameters) -> Result<Self> {
         Ok(Self {
             hull: Hull::new(parameters),
             obstacles: Obstacle::all(parameters),
-            found: Vec::new(),
         })
     }
+}
 
+impl WriteBlock for NearestObstacles {
     /// Nearest to the leader's center first, equally near ones in the order of obstacles; zeros where there are fewer.
     fn write(&mut self, seen: &Seen, repeats: usize, physical: &mut Vec<f64>) {
         let leader = &seen.view.hulls[seen.leader];
         let filled = physical.len() + repeats * OBSTACLE.len();
         let obstacles = self.obstacles.iter().enumerate();
         let distances = obstacles.map(|(number, each)| (each.distance(leader.center), number));
-        self.found.clear();
-        self.found.extend(distances);
-        self.found
-            .sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        for &(_, number) in self.found.iter().take(repeats) {
+        for number in nearest_first(distances, repeats) {
             let obstacle = &self.obstacles[number];
             let nearest = obstacle.nearest(leader.center) - leader.center;
             let distance = seen.frame.components(nearest);

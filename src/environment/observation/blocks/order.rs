@@ -3,8 +3,6 @@
 use super::super::entry::{Entry, Scale, TWICE, UNIT};
 use super::super::view::FlockView;
 use super::{Seen, WriteBlock};
-use crate::error::Result;
-use crate::parameters::FlockParameters;
 
 /// Order parameters of the normal boats, as vectors in LAP axes.
 #[rustfmt::skip]
@@ -20,10 +18,6 @@ pub(super) const ORDER: [Entry; 4] = [
 pub(super) struct Order([f64; ORDER.len()]);
 
 impl WriteBlock for Order {
-    fn new(_parameters: &FlockParameters) -> Result<Self> {
-        Ok(Self::default())
-    }
-
     fn write(&mut self, seen: &Seen, _repeats: usize, physical: &mut Vec<f64>) {
         if seen.leader == 0 {
             self.0 = order(seen.view);

@@ -4,9 +4,7 @@ use super::super::entry::{Entry, Scale, TWICE, UNIT};
 use super::super::view::FlockView;
 use super::{Seen, WriteBlock};
 use crate::boat::misalignment;
-use crate::error::Result;
 use crate::geometry::LapFrame;
-use crate::parameters::FlockParameters;
 
 /// The leader itself.
 #[rustfmt::skip]
@@ -22,14 +20,10 @@ pub(crate) const OWN: [Entry; 8] = [
 ];
 
 /// Writes [`OWN`].
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Own;
 
 impl WriteBlock for Own {
-    fn new(_parameters: &FlockParameters) -> Result<Self> {
-        Ok(Self)
-    }
-
     fn write(&mut self, seen: &Seen, _repeats: usize, physical: &mut Vec<f64>) {
         physical.extend(own(seen.view, seen.leader, &seen.frame));
     }

@@ -4,8 +4,6 @@ use super::super::entry::{Entry, FLAG, Scale};
 use super::super::view::FlockView;
 use super::{Seen, WriteBlock};
 use crate::clock::seconds;
-use crate::error::Result;
-use crate::parameters::FlockParameters;
 
 /// Where in the cycle the flock is.
 #[rustfmt::skip]
@@ -19,14 +17,10 @@ pub(crate) const PHASE: [Entry; 6] = [
 ];
 
 /// Writes [`PHASE`].
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Phase;
 
 impl WriteBlock for Phase {
-    fn new(_parameters: &FlockParameters) -> Result<Self> {
-        Ok(Self)
-    }
-
     fn write(&mut self, seen: &Seen, _repeats: usize, physical: &mut Vec<f64>) {
         physical.extend(phase(seen.view));
     }

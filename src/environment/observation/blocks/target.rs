@@ -2,8 +2,6 @@
 
 use super::super::entry::{Entry, Scale, UNIT};
 use super::{Seen, WriteBlock};
-use crate::error::Result;
-use crate::parameters::FlockParameters;
 
 /// The direction to lead in.
 #[rustfmt::skip]
@@ -12,14 +10,10 @@ pub(crate) const TARGET: [Entry; 1] = [
 ];
 
 /// Writes [`TARGET`].
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Target;
 
 impl WriteBlock for Target {
-    fn new(_parameters: &FlockParameters) -> Result<Self> {
-        Ok(Self)
-    }
-
     fn write(&mut self, seen: &Seen, _repeats: usize, physical: &mut Vec<f64>) {
         physical.push(seen.view.targets.of(seen.leader).sign());
     }
