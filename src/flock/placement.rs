@@ -28,7 +28,9 @@ const GROWTH: [f64; 8] = [0.5, 0.65, 0.78, 0.87, 0.93, 0.97, 0.99, 1.0];
 const CLEARANCE: f64 = 1e-3;
 /// Open water gets this many hull areas a boat, as dilute as 20 boats in the `wide` pool.
 const OPEN_WATER_AREAS: f64 = 25.0;
-/// Places that show how much of the water discs take up: good to about a percent.
+/// Halvings of the difference between an outer radius of open water that suffices and one that does not.
+const HALVINGS: u32 = 10;
+/// Places that show how much of the water obstacles take up: good to about a percent.
 const SURVEYED: u32 = 1024;
 
 /// Places all boats of checked parameters.
@@ -88,6 +90,8 @@ struct Region {
     outer: f64,
     /// In cm², without what obstacles take up.
     area: f64,
+    /// How often a boat's place is drawn before rejection gives up.
+    tries: usize,
 }
 
 impl Region {
@@ -99,26 +103,44 @@ impl Region {
         } else {
             0.0
         };
-        let outer = if pool.has_outer_wall() {
-            pool.outer_radius_cm - hull.radius
-        } else {
-            let area = OPEN_WATER_AREAS * hull.area() * parameters.n_boats as f64;
-            let discs = parameters
-                .discs
-                .iter()
-                .map(|disc| disc.radius_cm * disc.radius_cm);
-            (area / PI + inner * inner + discs.sum::<f64>()).sqrt()
-        };
         let mut region = Self {
             hull,
             pool,
             obstacles: Obstacle::all(parameters),
             inner,
-            outer,
+            outer: pool.outer_radius_cm - hull.radius,
             area: 0.0,
+            tries: TRIES_PER_BOAT,
         };
+        if !pool.has_outer_wall() {
+            region.enclose(OPEN_WATER_AREAS * hull.area() * parameters.n_boats as f64);
+        }
         region.area = region.free_area();
         region
+    }
+
+    /// Takes as much of open water as gives the centers of boats an area in cm² besides what obstacles take up: about
+    /// the pool's center, and no farther than it has to.
+    fn enclose(&mut self, area: f64) {
+        let inner = self.inner * self.inner;
+        let share = |outer: f64| self.free_share(inner, outer * outer, self.hull.radius);
+        // To a rounding, and to a place of the survey.
+        let suffices = |outer: f64| share(outer) * PI * (outer * outer - inner) >= 0.999 * area;
+        let least = (area / PI + inner).sqrt();
+        let (mut low, mut high) = (least, least);
+        while !suffices(high) {
+            (low, high) = (high, 2.0 * high);
+        }
+        for _ in 0..if low < high { HALVINGS } else { 0 } {
+            let middle = 0.5 * (low + high);
+            if suffices(middle) {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        let tries = TRIES_PER_BOAT as f64 / share(high);
+        (self.outer, self.tries) = (high, tries.ceil() as usize);
     }
 
     fn holds_a_boat(&self) -> bool {
@@ -128,17 +150,13 @@ impl Region {
     fn free_area(&self) -> f64 {
         let (inner, outer) = (self.inner - self.hull.radius, self.outer + self.hull.radius);
         let (inner, outer) = (inner.max(0.0) * inner.max(0.0), outer * outer);
-        PI * (outer - inner) * self.free_share(inner, outer)
+        PI * (outer - inner) * self.free_share(inner, outer, 0.0)
     }
 
-    /// Part of the water between two squared radii that no disc takes up, found at places spread
-    /// evenly along a spiral.
-    fn free_share(&self, inner: f64, outer: f64) -> f64 {
-        if !self
-            .obstacles
-            .iter()
-            .any(|each| matches!(each, Obstacle::Disc { .. }))
-        {
+    /// Part of the water between two squared radii that is so far from every obstacle, found at places spread evenly
+    /// along a spiral.
+    fn free_share(&self, inner: f64, outer: f64, clearance: f64) -> f64 {
+        if self.obstacles.is_empty() {
             return 1.0;
         }
         // The golden angle: every turn of the spiral falls between earlier ones.
@@ -147,10 +165,15 @@ impl Region {
             let share = (f64::from(place) + 0.5) / f64::from(SURVEYED);
             let (sin, cos) = libm::sincos(golden * f64::from(place));
             let place = Vec2::new(cos, sin) * (inner + share * (outer - inner)).sqrt();
-            let mut obstacles = self.obstacles.iter();
-            obstacles.all(|obstacle| obstacle.distance(place) >= 0.0)
+            self.is_open(place, clearance)
         });
         free.count() as f64 / f64::from(SURVEYED)
+    }
+
+    /// Whether a place is so far from every obstacle.
+    fn is_open(&self, place: Vec2, clearance: f64) -> bool {
+        let mut obstacles = self.obstacles.iter();
+        obstacles.all(|obstacle| obstacle.distance(place) >= clearance)
     }
 
     /// A uniform place with a uniform heading.
@@ -235,7 +258,7 @@ fn greedily(
     let mut poses = Vec::new();
     let mut placed: Vec<HullPose> = Vec::new();
     while poses.len() < boats && keep_going() {
-        let found = (0..TRIES_PER_BOAT).find_map(|_| {
+        let found = (0..region.tries).find_map(|_| {
             let pose = region.draw(rng);
             let boat = HullPose::new(&pose);
             region
@@ -256,7 +279,14 @@ fn by_growth(
     rng: &mut StreamRng,
     keep_going: KeepGoing,
 ) -> Vec<Pose> {
-    let mut poses: Vec<Pose> = (0..boats).map(|_| region.draw(rng)).collect();
+    let mut start = || loop {
+        let pose = region.draw(rng);
+        // What starts deep in an obstacle of open water would have a long way out.
+        if region.pool.has_outer_wall() || region.is_open(pose.position, region.hull.radius) {
+            return pose;
+        }
+    };
+    let mut poses: Vec<Pose> = (0..boats).map(|_| start()).collect();
     for size in GROWTH {
         // The last sizes are a little more than the hull, so that gaps stay open.
         let radius = parameters.boat_radius_cm * size * (1.0 + CLEARANCE);

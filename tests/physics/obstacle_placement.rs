@@ -28,15 +28,46 @@ fn boats_never_start_inside() {
 }
 
 #[test]
-fn boats_start_around_a_disc_in_open_water() {
-    let p = FlockParameters {
-        pool: OPEN_WATER,
-        n_boats: 12,
-        discs: vec![disc_at(0.0, 0.0, 500.0)],
-        ..table_3()
-    };
-    let flock = Flock::new(p, 1).expect("room");
-    assert!(deepest_overlap(&flock) == 0.0);
+fn boats_start_near_the_center_of_open_water_whatever_stands_there() {
+    // Twenty boats without obstacles start within sqrt(20·25·128.5 cm²/π) = 143 cm. A disc about the center moves them
+    // outward, and one far away not at all; the room between two discs of a kilometer is 20 cm wide at the center.
+    let grid = (-7..=7).flat_map(|i| {
+        let at = 9.0 * f64::from(i);
+        [wall((at, -63.0), (at, 63.0)), wall((-63.0, at), (63.0, at))]
+    });
+    let scenes = [
+        (vec![disc_at(0.0, 0.0, 500.0)], vec![], 500.0, 530.0),
+        (vec![disc_at(0.0, 0.0, 1e5)], vec![], 1e5, 1.001e5),
+        (vec![disc_at(3e5, 0.0, 1e5)], vec![], 0.0, 143.0),
+        (vec![disc_at(-1e5, 0.0, 1e5)], vec![], 0.0, 250.0),
+        (
+            vec![disc_at(-1.0001e5, 0.0, 1e5), disc_at(1.0001e5, 0.0, 1e5)],
+            vec![],
+            0.0,
+            3e3,
+        ),
+        (vec![], grid.collect(), 60.0, 190.0),
+    ];
+    for (number, (discs, walls, nearest, farthest)) in scenes.into_iter().enumerate() {
+        let p = FlockParameters {
+            pool: OPEN_WATER,
+            n_boats: 20,
+            discs,
+            walls,
+            ..table_3()
+        };
+        for seed in 0..5 {
+            let flock = Flock::new(p.clone(), seed).expect("water without end");
+            assert!(deepest_overlap(&flock) == 0.0);
+            for pose in flock.poses() {
+                let distance = pose.position.norm();
+                assert!(
+                    (nearest..farthest).contains(&distance),
+                    "scene {number}: {distance}"
+                );
+            }
+        }
+    }
 }
 
 #[test]
