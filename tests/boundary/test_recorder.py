@@ -36,18 +36,19 @@ def test_targets_change_after_the_sample_at_their_time():
 
 
 def test_boats_keep_their_share_of_the_way_between_the_walls():
-    changed = {"pool": (120.0, 40.0), "bw_s": 0.2}
-    run = simulate(PARAMETERS, 3, 8.0, 5.0, schedule=[(3.2, changed)])
+    pool, noise = {"pool": (120.0, 40.0), "bw_s": 0.2}, {"c4": 0.05}
+    run = simulate(PARAMETERS, 3, 8.0, 5.0, schedule=[(6.4, noise), (3.2, pool)])
     flock = Flock(PARAMETERS, 3)
     for place in range(41):
         advance_to(flock, place / 5)
         assert same(run, place, flock)
-        if place == 16:
+        if place in (16, 32):
             pose = flock.pose
-            distance = np.hypot(pose[:, 0], pose[:, 1])
-            share = (distance - 48.5) / (90.0 - 48.5)
-            pose[:, :2] *= ((40.0 + share * (120.0 - 40.0)) / distance)[:, None]
-            moved = Flock(PARAMETERS.replace(**changed), 3)
+            if place == 16:
+                distance = np.hypot(pose[:, 0], pose[:, 1])
+                share = (distance - 48.5) / (90.0 - 48.5)
+                pose[:, :2] *= ((40.0 + share * (120.0 - 40.0)) / distance)[:, None]
+            moved = Flock(flock.parameters.replace(**{16: pool, 32: noise}[place]), 3)
             moved.set_state(pose, flock.velocity, flock.time_s, allow_overlap=True)
             flock = moved
     assert run.parameters == PARAMETERS
