@@ -54,8 +54,6 @@ def test_presets_as_json_are_the_presets(cli):
     [
         (["run", "--jason"], "--jason"),
         (["run", "--set", "n_bots=3"], "did you mean 'n_boats'"),
-        (["run", "--preset", "simulaton"], "simulation"),
-        (["run", "--policy", "dampd law"], "damped law"),
         (["run", "--policy", "{}/none.npz"], "cannot be read"),
         (["run", "--policy", "{}/file.npz"], "file.npz"),
         (["run", "--out", "{}/run.txt"], ".npz"),
@@ -69,12 +67,9 @@ def test_presets_as_json_are_the_presets(cli):
         (["replay", "{}/file.npz", "--gif", "{}/page.png"], ".gif"),
         (["replay", "{}/file.npz", "{}/file.npz", "--mp4", "{}/a.mp4"], "show one recording"),
         (["replay", "{}/file.npz", "--name", "a", "--name", "b"], "2 times for 1"),
-        (["analyze", "{}/none.npz"], "none.npz cannot be read"),
-        (["analyze", "{}/file.npz", "--out", "{}/run.xlsx"], ".npz, .csv, .parquet, .gsd"),
         (["sweep", "{}/none.toml"], "cannot be read"),
         (["sweep", "{}/spec.toml", "--out", "{}/file.npz/out"], "cannot be written"),
         (["sweep", "{}/spec.toml", "--engine", "lokal"], "local"),
-        (["sweep", "{}/spec.toml", "--shard", "3/2"], "shard 3/2"),
         (["sweep", "{}/spec.toml", "--shard", "half"], "such as 3/8"),
     ],
 )

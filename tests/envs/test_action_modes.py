@@ -3,7 +3,6 @@
 An action held for a decision period is that action given in each of its control steps.
 """
 
-import gymnasium
 import numpy as np
 import pytest
 
@@ -131,28 +130,6 @@ def test_the_reward_horizon_makes_sums_over_it_means():
         one, other = plain.step([0.5, 0.5]), scaled.step([0.5, 0.5])
         assert other[1] == pytest.approx(one[1] / 200.0, rel=1e-12)
         assert other[4]["reward_terms"] == one[4]["reward_terms"]
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"action_mode": "leen"}, 'one of "rudder", "heading", "lean"'),
-        ({"action_mode": "lean", "pool": (100.0, 40.0)}, "wide and narrow"),
-        ({"decision_period_s": 0.25}, "0.2 and 0.3 s are nearest"),
-        ({"decision_period_s": 0.04}, "0.1 s is nearest"),
-        ({"decision_period_s": 0.0}, "whole number of control steps"),
-        ({"decision_period_s": float("nan")}, "whole number of control steps"),
-        ({"decision_period_s": -1.0}, "whole number of control steps"),
-        ({"reward_horizon_s": 0.0}, "positive number"),
-        ({"reward": {"contact_pusch": 1.0}}, '"contact_push"'),
-        ({"observation": {"law_ruder": True}}, '"law_rudder"'),
-        ({"observation": {"law_rudder": True}, "pool": (100.0, 40.0)}, "wide and narrow"),
-        ({"decision_periods": 1.0}, "did you mean 'decision_period_s'"),
-    ],
-)
-def test_bad_options_are_refused_by_name(options, message):
-    with pytest.raises((ParameterError, TypeError), match=message):
-        gymnasium.make("flockenv/Leaders-v0", **options)
 
 
 def lean_policy(period=0.5):

@@ -55,6 +55,15 @@ def interface(request):
         ({"physics": "coarse"}, '"default", "training"'),
         ({"physics": 1}, "physics"),
         ({"physics": "training", "dt_s": 0.1}, "physics = 'training' and dt_s are both given"),
+        ({"action_mode": "leen"}, 'one of "rudder", "heading", "lean"'),
+        ({"action_mode": "lean", "pool": (100.0, 40.0)}, "wide and narrow"),
+        ({"decision_period_s": 0.25}, "0.2 and 0.3 s are nearest"),
+        ({"decision_period_s": 0.04}, "0.1 s is nearest"),
+        ({"decision_period_s": 0.0}, "whole number of control steps"),
+        ({"decision_period_s": float("nan")}, "whole number of control steps"),
+        ({"decision_period_s": -1.0}, "whole number of control steps"),
+        ({"reward_horizon_s": 0.0}, "positive number"),
+        ({"observation": {"law_rudder": True}, "pool": (100.0, 40.0)}, "wide and narrow"),
     ],
 )
 def test_options(interface, options, message):
