@@ -84,7 +84,8 @@ def train(options: TrainOptions) -> None:
     write_csv(out / "comparison.csv", rows)
     means = rows.groupby("policy", sort=False)["signed_order"].mean()
     laws = {str(name): float(order) for name, order in means.drop("trained").items()}
-    training.draw_curve(training.learning_curve(out), laws, out / "curve.png")
+    curve = training.learning_curve(out, settings.venv().decisions_hz)
+    training.draw_curve(curve, laws, out / "curve.png")
     if options.as_json:
         print_json({"signed_order": means.to_dict(), "model": str(out / training.MODEL)})
         return

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _EPISODE_S = 480.0
 
 
-def learning_curve(folder: Path, decisions_hz: float = 1.0, points: int = 40) -> "pd.DataFrame":
+def learning_curve(folder: Path, decisions_hz: float, points: int = 40) -> "pd.DataFrame":
     """Return the mean signed order of a training's episodes against flock-hours.
 
     Parameters
