@@ -35,8 +35,8 @@ ROWS = 20_000
 class Constant(StraightAhead):
     """The same action at all times, as an end of a direction."""
 
-    def __init__(self, value: float) -> None:
-        super().__init__(mirror_to_target=True)
+    def __init__(self, value: float, **layout: Any) -> None:
+        super().__init__(**{"mirror_to_target": True, **layout})
         self.value = value
 
     def predict(self, observation: Any, *_: Any, **__: Any) -> tuple[Any, None]:
@@ -44,10 +44,10 @@ class Constant(StraightAhead):
         return np.full_like(actions, self.value), None
 
 
-def policy_of(name: str, pool: str) -> Any:
-    """Return a policy by name or file, or the constant action of a number."""
+def policy_of(name: str, pool: str, **layout: Any) -> Any:
+    """Return a policy by name or file, or the constant action of a number in a layout."""
     try:
-        return Constant(float(name))
+        return Constant(float(name), **layout)
     except ValueError:
         return named_policy(name, pool)()
 
@@ -105,7 +105,10 @@ def significance(values: np.ndarray, samples: int) -> tuple[float, float]:
 
 def measured(options: argparse.Namespace) -> list[dict[str, Any]]:
     """Return z per million samples of each reward and horizon."""
-    policies = [policy_of(name, options.pool) for name in (options.start, options.to)]
+    other = policy_of(options.to, options.pool)
+    layout = {"observation": other.observation, "mirror_to_target": other.mirror_to_target}
+    period_s = getattr(other, "decision_period_s", None) or 1.0
+    policies = policy_of(options.start, options.pool, **layout), other
     env = LeaderVecEnv(
         options.flocks,
         pool=options.pool,
@@ -114,11 +117,11 @@ def measured(options: argparse.Namespace) -> list[dict[str, Any]]:
         bw_s=flockenv.FlockParameters.critical_bw_s("simulation", options.pool),
         action_mode=options.action_mode,
         control_hz=10.0 if options.action_mode == "lean" else 5.0,
-        decision_period_s=1.0 if options.action_mode == "lean" else None,
+        decision_period_s=period_s if options.action_mode == "lean" else None,
         episode_s=60.0 * options.minutes,
         reward=dict.fromkeys(REWARDS, 1.0),
         physics="training",
-        mirror_to_target=getattr(policies[0], "mirror_to_target", False),
+        **layout,
     )
     seeds = POLICY_SEEDS["training"].seeds(options.flocks, options.seed)
     random = np.random.default_rng(options.seed)

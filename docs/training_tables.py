@@ -1,12 +1,8 @@
-"""The tables of the pages about training: the easy environment, settings, signals of rewards."""
+"""The tables of the pages about training: the easy environment, seeds, signals of rewards."""
 
 from committed_data import interval, markdown, one, rows
 
-SIGNALS = {
-    "rudders in `wide`": ("results/signals.csv", "wide"),
-    "rudders in `narrow`": ("results/signals.csv", "narrow"),
-    "leans in `wide`": ("results/signals_ppo_weights.csv", "wide"),
-}
+SIGNALS = (("rudder", "wide"), ("rudder", "narrow"), ("lean", "wide"))
 
 
 def signals() -> str:
@@ -14,30 +10,20 @@ def signals() -> str:
     body = []
     for reward in ("leader_velocity", "contact_push", "signed_order"):
         cells = [f"`{reward}`"]
-        for file, pool in SIGNALS.values():
-            wanted = {"pool": pool, "reward": reward, "horizon_s": "30.0"}
-            if any(row["reward"] == reward for row in rows(file)):
-                row = one(file, **wanted)
-                cells.append(f"{float(row['z_per_million']):+.1f} ± {float(row['error']):.1f}")
-            else:
-                cells.append("")
+        for mode, pool in SIGNALS:
+            row = one("results/signals.csv", pool=pool, action_mode=mode, reward=reward)
+            cells.append(f"{float(row['z_per_million']):+.1f} ± {float(row['error']):.1f}")
         body.append(cells)
-    return markdown(["reward", *SIGNALS], body)
+    return markdown(["reward", *(f"{mode}s in `{pool}`" for mode, pool in SIGNALS)], body)
 
 
-def settings() -> str:
-    """Return how trainings with different settings compare with the tuned law."""
-    body = [
-        [
-            row["change"],
-            f"`{row['pool']}`",
-            row["seeds"],
-            row["flock_hours"],
-            interval(row, "difference", "low", "high", "+.3f"),
-        ]
-        for row in rows("training/settings.csv")
-    ]
-    return markdown(["setting", "pool", "seeds", "flock-hours", "minus the tuned law"], body)
+def seeds() -> str:
+    """Return what each training by the forty lines reached, and the laws in its flocks."""
+    body = []
+    for row in rows("training/wide/evaluation.csv"):
+        gain = interval(row, "gain", "gain_low", "gain_high", "+.3f") if row["gain"] else ""
+        body.append([row["policy"], interval(row, "signed_order", "low", "high"), gain])
+    return markdown(["policy", "signed order", "minus the tuned law"], body)
 
 
 def easy() -> str:
@@ -55,5 +41,5 @@ def easy() -> str:
     return markdown(["policy", "processor time (s)", "signed order", "minus paper's law"], body)
 
 
-TRAINING_TABLES = {"easy": easy, "signals": signals, "training-settings": settings}
+TRAINING_TABLES = {"easy": easy, "signals": signals, "training-seeds": seeds}
 """How each table is made."""

@@ -20,7 +20,7 @@ from flockenv.sb3 import LeaderVecEnv, SharedNoisePolicy, shared_noise
 #: How fast a pool's order answers, and with it the horizons in s: of an episode, of the discount
 #: and of the advantages, and how long a flock's leaders hold one exploration.
 _TIMES_S: Mapping[str, Mapping[str, float]] = {
-    "wide": {"episode": 480.0, "discount": 200.0, "advantage": 80.0, "hold": 120.0},
+    "wide": {"episode": 480.0, "discount": 200.0, "advantage": 80.0, "hold": 240.0},
     "narrow": {"episode": 240.0, "discount": 60.0, "advantage": 27.0, "hold": 60.0},
 }
 #: The lean features alone, by which leaders lean.
@@ -41,8 +41,7 @@ class TrainingSettings:
     """Settings of PPO with one policy shared by all leaders; checked once, to and from TOML.
 
     Leaders lean by a linear function of the lean features, and all leaders of a flock explore by
-    the same perturbed weights, which are held for a minute or two
-    (`flockenv.sb3.SharedNoisePolicy`).
+    the same perturbed weights, which are held for minutes (`flockenv.sb3.SharedNoisePolicy`).
 
     Attributes
     ----------
@@ -69,7 +68,7 @@ class TrainingSettings:
 
     pool: str = "wide"
     n_leaders: int = 3
-    flock_hours: float = 2000.0
+    flock_hours: float = 400.0
     num_flocks: int = 128
     seed: int = 0
     environment: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
@@ -113,7 +112,7 @@ class TrainingSettings:
             "action_mode": "lean",
             "decision_period_s": 2.0,
             "episode_s": times["episode"],
-            "reward_horizon_s": times["discount"],
+            "reward_horizon_s": 40.0,  # returns of order 1, which a critic learns soonest
             "physics": "training",
         }
         return LeaderVecEnv(self.num_flocks, **{**options, **self.environment})
@@ -132,7 +131,7 @@ class TrainingSettings:
             "n_steps": n_steps,
             "batch_size": max(2, n_steps * venv.num_envs // 8),
             "n_epochs": 4,
-            "learning_rate": LinearSchedule(1.5e-3, 0.0, 1.0),
+            "learning_rate": LinearSchedule(2e-3, 0.0, 1.0),
             "gamma": 1.0 - 1.0 / (times["discount"] * hz),
             "gae_lambda": 1.0 - 1.0 / (times["advantage"] * hz),
             "use_sde": True,
@@ -142,7 +141,7 @@ class TrainingSettings:
         policy = {
             **shared_noise(venv, times["hold"]),
             "net_arch": {"pi": [], "vf": [64, 64]},
-            "log_std_init": -2.6,
+            "log_std_init": -2.4,
             "squash_output": bool(options["use_sde"]),
             **(options.pop("policy_kwargs", None) or {}),
         }

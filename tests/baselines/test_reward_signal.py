@@ -5,6 +5,8 @@ import csv
 import numpy as np
 import pytest
 
+from flockenv.policies import LeaningLaw
+
 
 def found_with(random, slope: float, flocks: int = 400, leaders: int = 2, steps: int = 30):
     """Made-up episodes: the reward is `slope` times the score, and noise."""
@@ -43,6 +45,13 @@ def test_it_measures_a_velocity_that_a_law_raises(script, tmp_path) -> None:
     assert all(np.isfinite(float(row["z_per_million"])) for row in found.values())
     leans = ["--action-mode", "lean", "--shared", "--hold-s", "2", "--flocks", "4"]
     script.main([*leans, "--minutes", "0.2", "--out", str(out)])
+    # Towards a policy that observes lean features alone and decides every two seconds.
+    LeaningLaw("narrow", 0.1, {}, decision_period_s=2.0).save(tmp_path / "policy.json")
+    script.main(
+        [*leans, "--to", str(tmp_path / "policy.json"), "--minutes", "0.2", "--out", str(out)]
+    )
+    with out.open(newline="") as file:
+        assert {row["samples"] for row in csv.DictReader(file)} == {str(4 * 3 * 6)}
 
 
 def test_odd_numbers_of_flocks_are_refused(script, capsys) -> None:
