@@ -47,23 +47,20 @@ def test_bow_to_bow_forces_are_the_motors(parameters):
     assert contacts.point_cm[pushing] == pytest.approx(np.zeros((1, 2)), abs=1e-9)
 
 
-def test_the_outer_wall_is_minus_one(parameters):
-    flock = at(parameters, [992.5, 0.0, 0.0])
+@pytest.mark.parametrize(
+    ("pool", "x_cm", "heading", "wall"),
+    [((1000.0, 0), 992.5, 0.0, -1), ("narrow", 56.0, np.pi, -2)],
+)
+def test_walls_are_negative_numbers(parameters, pool, x_cm, heading, wall):
+    flock = Flock(parameters.replace(n_boats=1, n_leaders=0, c4=0.0, pool=pool), seed=1)
+    flock.set_state([[x_cm, 0.0, heading]], np.zeros((1, 3)))
     flock.advance(1.0)
     contacts = flock.contacts()
     pushing = contacts.force > 0
-    assert contacts.j[pushing].tolist() == [-1]
-    assert contacts.point_cm[pushing] == pytest.approx(np.array([[1000.0, 0.0]]))
-    assert contacts.force[pushing] == pytest.approx([15.0], rel=1e-9)
-
-
-def test_the_inner_wall_is_minus_two(parameters):
-    p = parameters.replace(n_boats=1, n_leaders=0, c4=0.0)
-    flock = Flock(p, seed=1)
-    flock.set_state([[56.0, 0.0, np.pi]], [[0.0, 0.0, 0.0]])
-    flock.advance(1.0)
-    contacts = flock.contacts()
-    assert contacts.j[contacts.force > 0].tolist() == [-2]
+    assert contacts.j[pushing].tolist() == [wall]
+    point_cm = {-1: 1000.0, -2: 48.5}[wall]
+    assert contacts.point_cm[pushing] == pytest.approx(np.array([[point_cm, 0.0]]), abs=1e-9)
+    assert contacts.force[pushing] == pytest.approx([15.0], rel=1e-6)
 
 
 def test_a_flank_touches_where_the_other_bow_is(parameters):

@@ -7,21 +7,6 @@ import pytest
 import flockenv
 
 PARAMETERS = flockenv.FlockParameters(n_boats=4, n_leaders=1, pool="narrow")
-#: An environment takes each of these; fields of the parameters stand for all of theirs.
-ENVIRONMENT_OPTIONS = {
-    "preset": {"preset": "paper"},
-    "params": {"params": PARAMETERS},
-    "fields": {"n_boats": 5, "bw_s": 0.4, "pool": "narrow"},
-    "target": {"target": "random"},
-    "episode_s": {"episode_s": 960.0},
-    "control_hz": {"control_hz": 5.0},
-    "reward": {"reward": {"signed_order": 1.0, "leader_velocity": 0.5}},
-    "observation": {"observation": {"neighbors": 4, "order": False}},
-    "action_mode": {"action_mode": "lean"},
-    "decision_period_s": {"decision_period_s": 0.5},
-    "physics": {"physics": "training"},
-    "render_mode": {"render_mode": "rgb_array"},
-}
 
 
 def test_environments_are_made_as_they_were():
@@ -35,16 +20,6 @@ def test_environments_are_made_as_they_were():
     assert isinstance(several.unwrapped, flockenv.LeadersVectorEnv)
     observations, _ = single.reset(seed=0)
     assert np.isfinite(flockenv.policies.SteeringLaw().predict(observations)[0]).all()
-
-
-@pytest.mark.parametrize("name", ENVIRONMENT_OPTIONS)
-def test_environments_take_their_options_in_every_form(name):
-    option = ENVIRONMENT_OPTIONS[name]
-    flockenv.parallel_env(**option)
-    gymnasium.make("flockenv/Leaders-v0", **option)
-    gymnasium.make_vec("flockenv/Leaders-v0", num_envs=1, **option)
-    if name != "render_mode":
-        flockenv.sb3.LeaderVecEnv(1, **option)
 
 
 @pytest.mark.parametrize(

@@ -94,21 +94,19 @@ def test_order_is_equal_to_the_same_series_without_times(run):
 
 
 @pytest.mark.parametrize(
-    ("method", "package", "extra"),
-    [("to_dataframe", "pandas", "plot"), ("to_xarray", "xarray", "sweep")],
+    ("use", "module", "extra"),
+    [
+        (lambda run: run.to_dataframe(), "pandas", "plot"),
+        (lambda run: run.to_xarray(), "xarray", "sweep"),
+        (lambda run: run.order.plot(), "matplotlib.pyplot", "plot"),
+    ],
 )
-def test_a_missing_library_is_named_with_its_extra(run, monkeypatch, method, package, extra):
-    monkeypatch.setitem(sys.modules, package, None)
-    with pytest.raises(
-        MissingExtraError, match=rf"{package} is not installed: .*flockenv\[{extra}\]"
-    ):
-        getattr(run, method)()
-
-
-def test_matplotlib_that_is_missing_is_named_with_its_extra(run, monkeypatch):
-    monkeypatch.setitem(sys.modules, "matplotlib.pyplot", None)
-    with pytest.raises(MissingExtraError, match=r"matplotlib is not .*flockenv\[plot\]"):
-        run.order.plot()
+def test_a_missing_library_is_named_with_its_extra(run, monkeypatch, use, module, extra):
+    monkeypatch.setitem(sys.modules, module, None)
+    package = module.partition(".")[0]
+    words = rf"{package} is not installed: .*flockenv\[{extra}\]"
+    with pytest.raises(MissingExtraError, match=words):
+        use(run)
 
 
 @pytest.mark.parametrize("name", ["m.csv", "m.parquet", "m", "m.npz.gz"])

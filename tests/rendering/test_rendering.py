@@ -73,24 +73,15 @@ def test_a_frame_without_leaders_shows_no_target():
     np.testing.assert_array_equal(*pictures)
 
 
-@pytest.mark.parametrize("size", [(63, 100), (100, 4097), (2**40, 100)])
+@pytest.mark.parametrize("size", [(63, 100), (100, 4097), (2**40, 100), (100.5, 100), (None, 100)])
 def test_wrong_sizes(size):
-    with pytest.raises(flockenv.ParameterError, match=r"width|height"):
+    with pytest.raises((flockenv.ParameterError, TypeError), match=r"width|height"):
         rendering.frame(flock(), *size)
-    with pytest.raises(flockenv.ParameterError, match=r"width|height"):
+    with pytest.raises((flockenv.ParameterError, TypeError), match=r"width|height"):
         flockenv.LeadersEnv(render_mode="rgb_array", render_size=size, **SHORT)
-
-
-@pytest.mark.parametrize("size", [(100.5, 100), ("a", 100), (None, 100), (True, 100)])
-def test_sizes_of_wrong_type(size):
-    with pytest.raises((TypeError, flockenv.ParameterError), match="width"):
-        rendering.frame(flock(), *size)
-
-
-@pytest.mark.parametrize("size", [600, (600,), (1, 2, 3), None])
-def test_render_size_is_a_pair(size):
-    with pytest.raises(flockenv.ParameterError, match="render_size"):
-        flockenv.LeadersEnv(render_mode="rgb_array", render_size=size, **SHORT)
+    for pair in (600, size[:1], (*size, 3), None):
+        with pytest.raises(flockenv.ParameterError, match="render_size"):
+            flockenv.LeadersEnv(render_mode="rgb_array", render_size=pair, **SHORT)
 
 
 def test_faces_show_the_same_flock():
