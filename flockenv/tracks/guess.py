@@ -10,7 +10,7 @@ import tomli_w
 from flockenv._io.atomic_write import write_text
 from flockenv.errors import ParameterError
 from flockenv.tracks.layout import TrackLayout, read_layout
-from flockenv.tracks.reader import read_table
+from flockenv.tracks.reader import numbers_of, read_table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -57,7 +57,7 @@ def guess_layout(path: str | os.PathLike[str]) -> tuple[TrackLayout, dict[str, s
                 f"{path}: no column looks like {field!r} ({', '.join(_NAMES[field])}) among "
                 f"{', '.join(map(str, table.columns))}: describe the columns in {beside}"
             )
-    points = table[[fields["x"], fields["y"]]].to_numpy(np.float64)
+    points = np.stack([numbers_of(table, str(fields[axis])) for axis in "xy"], axis=-1)
     points = points[np.isfinite(points).all(axis=1)]
     if len(points) == 0:
         raise ParameterError(f"{path}: no row has a position")
@@ -74,7 +74,7 @@ def guess_layout(path: str | os.PathLike[str]) -> tuple[TrackLayout, dict[str, s
     if str(fields["frame"]).lower() in _FRAMES:
         fields["fps"] = _FPS
     if fields["heading"]:
-        largest = np.nanmax(np.abs(table[fields["heading"]].to_numpy(np.float64)), initial=0.0)
+        largest = np.nanmax(np.abs(numbers_of(table, str(fields["heading"]))), initial=0.0)
         fields["heading_unit"] = "deg" if largest > 2 * np.pi + 1e-6 else "rad"
     sure = () if not fields["heading"] else ("heading",)
     doubts = {name: text for name, text in _DOUBTS.items() if name in fields and name not in sure}

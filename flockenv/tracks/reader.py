@@ -199,14 +199,14 @@ def _rows(table: "pd.DataFrame", layout: TrackLayout) -> "pd.DataFrame":
         if name not in table:
             there = ", ".join(map(str, table.columns))
             raise ParameterError(f"column {name!r} is missing; there are {there}")
-    frames, x, y = (_numbers(table, name) for name in (layout.frame, layout.x, layout.y))
+    frames, x, y = (numbers_of(table, name) for name in (layout.frame, layout.x, layout.y))
     if not np.isfinite(frames).all():
         raise ParameterError(f"column {layout.frame!r} has rows without a number")
     up = -1.0 if layout.y_down else 1.0
     if layout.heading is None:
         heading = np.zeros(len(table))
     elif isinstance(layout.heading, str):
-        heading = _numbers(table, layout.heading)
+        heading = numbers_of(table, layout.heading)
         largest = np.nanmax(np.abs(heading), initial=0.0)
         if layout.heading_unit == "deg":
             heading = np.radians(heading)
@@ -216,7 +216,7 @@ def _rows(table: "pd.DataFrame", layout: TrackLayout) -> "pd.DataFrame":
                 "degrees, say heading_unit = 'deg'"
             )
     else:
-        x_tail, y_tail, x_head, y_head = (_numbers(table, name) for name in layout.heading)
+        x_tail, y_tail, x_head, y_head = (numbers_of(table, name) for name in layout.heading)
         heading = _direction(x_head - x_tail, y_head - y_tail)
     rows = table[[layout.id]].convert_dtypes().set_axis(["id"], axis=1)
     return rows.assign(
@@ -227,7 +227,8 @@ def _rows(table: "pd.DataFrame", layout: TrackLayout) -> "pd.DataFrame":
     )
 
 
-def _numbers(table: "pd.DataFrame", name: str) -> NDArray[np.float64]:
+def numbers_of(table: "pd.DataFrame", name: str) -> NDArray[np.float64]:
+    """Return a column, NaN where nothing stands; a ParameterError names one of other things."""
     try:
         return table[name].to_numpy(dtype=np.float64, na_value=np.nan)
     except (TypeError, ValueError) as error:

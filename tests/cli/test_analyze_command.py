@@ -59,9 +59,11 @@ def test_gsd(cli, run, tmp_path):
 def test_mistakes_are_one_line_with_exit_code_2(cli, run, tmp_path):
     (tmp_path / "alone.csv").write_text("frame,id,x,y,heading\n0,0,0,0,0\n")
     (tmp_path / "nameless.csv").write_text("frame,who,x,y\n0,0,0,0\n")
+    (tmp_path / "words.csv").write_text("frame,id,x,y\n0,0,left,0\n")
     (tmp_path / "layout.toml").write_text('pool = "narrow"\nx = "x_cm"\n')
     for arguments, words in (
         (["analyze", "nameless.csv"], "no column looks like 'id'"),
+        (["analyze", "words.csv"], "column 'x' holds other things than numbers"),
         (["analyze", "alone.csv", "--layout", "layout.toml"], "column 'x_cm' is missing"),
         (["analyze", "absent.npz"], "absent.npz cannot be read"),
         (["analyze", "run.npz", "--out", "run.xlsx"], ".npz, .csv, .parquet, .gsd"),
