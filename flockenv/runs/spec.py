@@ -24,6 +24,8 @@ first tenth; of all samples; or these and all poses and velocities."""
 class RunSpec:
     """One run to be made: hashable, picklable, and all that its result depends on.
 
+    A ParameterError refuses a value out of range, and an unknown name.
+
     Attributes
     ----------
     parameters : FlockParameters
@@ -38,11 +40,6 @@ class RunSpec:
         Name of a policy, such as "learned"; the paper's law at every substep by default.
     keep : str
         What is stored of the run, one of `KEEP`.
-
-    Raises
-    ------
-    ParameterError
-        For a value out of range or an unknown name.
     """
 
     parameters: FlockParameters

@@ -17,7 +17,8 @@ class Shard:
     """One of several shares of many runs, for machines that know nothing of each other.
 
     The hash of a run's spec decides which shard makes it. Shards never overlap, hold about equally
-    many runs, and are the same at each call and on each machine.
+    many runs, and are the same at each call and on each machine. A ParameterError refuses a number
+    that is not among them.
 
     Attributes
     ----------
@@ -25,11 +26,6 @@ class Shard:
         Which share, 1 to `of`.
     of : int
         How many there are.
-
-    Raises
-    ------
-    ParameterError
-        For a number that is not among them.
     """
 
     number: int

@@ -76,8 +76,8 @@ def guess_layout(path: str | os.PathLike[str]) -> tuple[TrackLayout, dict[str, s
     if fields["heading"]:
         largest = np.nanmax(np.abs(numbers_of(table, str(fields["heading"]))), initial=0.0)
         fields["heading_unit"] = "deg" if largest > 2 * np.pi + 1e-6 else "rad"
-    sure = () if not fields["heading"] else ("heading",)
-    doubts = {name: text for name, text in _DOUBTS.items() if name in fields and name not in sure}
+    known = {"heading"} if fields["heading"] else set()
+    doubts = {name: text for name, text in _DOUBTS.items() if name in fields.keys() - known}
     lines = ["# Guessed from the table beside this file. Check the lines that say so."]
     for name, value in fields.items():
         line = tomli_w.dumps({name: value}, multiline_strings=False).strip().replace("\n", " ")

@@ -131,14 +131,9 @@ def read_table(path: Path) -> "pd.DataFrame":
 def _recording(
     table: "pd.DataFrame", layout: TrackLayout, report: Callable[[TrackReport], object]
 ) -> Recording:
-    rows = _rows(table, layout)
-    frames = np.unique(rows["frame"])
-    is_placed = np.isfinite(rows[["x", "y", "heading"]].to_numpy()).all(axis=1)
-    rows = rows[rows["id"].notna() & is_placed]
+    every = _rows(table, layout)
+    frames, rows = np.unique(every["frame"]), _whole(every)
     missing = len(table) - len(rows)
-    if len(rows) == 0:
-        raise ParameterError("no row has a name, a position and a heading")
-    rows = rows.astype({"id": str}).sort_values(["id", "frame"])
     # By their length, then alphabet, so that 2 comes before 10.
     names = sorted(rows["id"].unique(), key=lambda name: (len(name), name))
     if len(frames) * len(names) > max(_FEW, _SPARSEST * len(table)):
@@ -146,10 +141,6 @@ def _recording(
             f"{len(names)} names in {len(frames)} frames are too many for {len(table)} rows: join "
             "fragments of tracks, or read a part of the file"
         )
-    counts = rows.value_counts(["id", "frame"])
-    if counts.iloc[0] > 1:
-        name, frame = counts.index[0]
-        raise ParameterError(f"{name!r} is there {counts.iloc[0]} times in frame {frame:g}")
     per_s = 1.0 if layout.fps is None else layout.fps
     rows, jumps = _without_jumps(rows, layout.max_speed_cm_s / per_s)
     at = (
@@ -178,16 +169,17 @@ def _recording(
         leaders=layout.leaders,
         target=layout.target,
     )
-    found = TrackReport(
-        frames=len(frames),
-        boats=len(names),
-        samples=int(there.sum()),
-        missing=missing,
-        jumps=jumps,
-        broken=int(broken.sum()),
-        lone=int((there & np.isnan(velocity[..., 0])).sum()),
+    report(
+        TrackReport(
+            frames=len(frames),
+            boats=len(names),
+            samples=int(there.sum()),
+            missing=missing,
+            jumps=jumps,
+            broken=int(broken.sum()),
+            lone=int((there & np.isnan(velocity[..., 0])).sum()),
+        )
     )
-    report(found)
     return recording
 
 
@@ -225,6 +217,20 @@ def _rows(table: "pd.DataFrame", layout: TrackLayout) -> "pd.DataFrame":
         y=(y - layout.center[1]) * layout.cm_per_unit * up,
         heading=up * heading,
     )
+
+
+def _whole(rows: "pd.DataFrame") -> "pd.DataFrame":
+    """Return the rows with a name and a pose, by name, then frame; no name is there twice."""
+    is_placed = np.isfinite(rows[["x", "y", "heading"]].to_numpy()).all(axis=1)
+    rows = rows[rows["id"].notna() & is_placed]
+    if len(rows) == 0:
+        raise ParameterError("no row has a name, a position and a heading")
+    rows = rows.astype({"id": str}).sort_values(["id", "frame"])
+    counts = rows.value_counts(["id", "frame"])
+    if counts.iloc[0] > 1:
+        name, frame = counts.index[0]
+        raise ParameterError(f"{name!r} is there {counts.iloc[0]} times in frame {frame:g}")
+    return rows
 
 
 def numbers_of(table: "pd.DataFrame", name: str) -> NDArray[np.float64]:
