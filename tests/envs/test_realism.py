@@ -86,15 +86,6 @@ def test_dropouts_do_not_depend_on_the_policy():
     np.testing.assert_array_equal(gaps(1.0), gaps(-1.0))
 
 
-def rudders(env, commands):
-    env.reset(seed=0)
-    found = []
-    for command in commands:
-        env.step(np.array(command))
-        found.append(env._batch.core.rudders().ravel().copy())
-    return np.array(found)
-
-
 def test_the_rudder_that_stands_is_observed():
     env = flockenv.LeadersEnv(**OPTIONS, rudder_rate_per_s=1.0, rudder_lag_s=0.1)
     env.reset(seed=0)
