@@ -9,7 +9,8 @@ from study import FIRST_SEED, Row, Study, flock
 
 from flockenv.statistics.structure import jam_sizes
 
-RUNS = 8
+RUNS, MORE_RUNS = 8, 24
+"""Seeds of each cell, and of those cells in which eight had shown both states lasting."""
 LITERAL_C4 = 0.1 * math.sqrt(0.02)
 """White noise as strong as the literal one of Table 3 at dt = 0.02 s, in rad/s^1.5."""
 C4 = (round(LITERAL_C4, 4), 0.1, 0.03, 0.05, 0.02, 0.2)
@@ -34,7 +35,8 @@ def outer_radius_cm(n_boats: int, coverage: float) -> float:
 def design() -> list[Row]:
     """Return the map: the literal noise and the extremes of c4 first, small flocks first.
 
-    At a coverage of 0.5 rotation ends within minutes, so that fewer boats at the wall come next.
+    At a coverage of 0.5 rotation ends within minutes, so that fewer boats at the wall come next. At
+    0.3 and low noise most runs of both starts last, so that more of them come after that.
     """
     literal = {"scheme": "paper", "noise_scheme": "per-step", "dt_s": 0.02}
     white = {"scheme": "leapfrog", "noise_scheme": "white", "dt_s": 0.1}
@@ -43,6 +45,7 @@ def design() -> list[Row]:
     less = [
         (n, share, white | {"c4": c4}) for share in (0.3, 0.2) for c4 in C4[:3] for n in (100, 200)
     ]
+    both = [(n, 0.3, white | {"c4": c4}) for c4 in (C4[0], C4[2]) for n in (400, 200, 100)]
     third = [(400, 0.5, white | {"c4": c4}) for c4 in C4[:3]]
     rest = [
         (n, coverage, white | {"c4": c4})
@@ -52,7 +55,7 @@ def design() -> list[Row]:
     ]
     finer = [(n, 0.5, white | {"c4": C4[0], "dt_s": 0.02}) for n in (100, 200)]
     cells: list[tuple[int, float, Row]] = []
-    for cell in first + second + less + third + finer + rest:
+    for cell in first + second + less + both + third + finer + rest:
         if cell not in cells:
             cells.append(cell)
     return [
@@ -65,7 +68,7 @@ def design() -> list[Row]:
             "seed": seed,
         }
         for n, coverage, noise in cells
-        for seed in range(RUNS)
+        for seed in range(MORE_RUNS if (n, coverage, noise) in both else RUNS)
         for start in STARTED
     ]
 
