@@ -112,7 +112,7 @@ class TrainingSettings:
             "action_mode": "lean",
             "decision_period_s": 2.0,
             "episode_s": times["episode"],
-            "reward_horizon_s": 40.0,  # returns of order 1, which a critic learns soonest
+            "reward_horizon_s": 40.0,  # returns of order 1, for the critic
             "physics": "training",
         }
         return LeaderVecEnv(self.num_flocks, **{**options, **self.environment})
