@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from claim import Claims, Interval, bca, mean, proportion, write_claims
-from study import COLORS, Options, main, picture, write
+from study import COLORS, Options, curve, main, picture, write
 from transition_runs import STARTED, STUDY
 
 from flockenv.statistics import kaplan_meier
@@ -61,12 +61,12 @@ def doubling(table: pd.DataFrame, start: str) -> Interval:
 
 
 def judge(table: pd.DataFrame) -> Claims:
-    """Judge rules 1 and 2 of transition.md, at coverage 0.5 and each noise."""
+    """Judge rules 1 to 3 of transition.md, at each coverage and noise."""
     claims = Claims("5.2, left open", "")
-    at_half = table[table["coverage"] == 0.5]
-    for (scheme, c4, dt_s), group in at_half.groupby(["scheme", "c4", "dt_s"], sort=False):
+    by = ["coverage", "scheme", "c4", "dt_s"]
+    for (coverage, scheme, c4, dt_s), group in table.groupby(by, sort=False):
         noise = "per-step" if scheme == "paper" else "white"
-        claims.reading = f"{scheme}, {noise} c4 = {c4:g}, dt = {dt_s:g} s, coverage 0.5"
+        claims.reading = f"{scheme}, {noise} c4 = {c4:g}, dt = {dt_s:g} s, coverage {coverage:g}"
         for start, words in STARTED.items():
             chosen = group[group["start"] == start]
             for n, runs in chosen.groupby("n_boats"):
@@ -116,7 +116,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
                         [1.0, *left.share, left.share_at(math.inf)],
                         where="post",
                         color=color,
-                        label=f"n = {n} ({len(runs)} runs)",
+                        label=f"n = {n:g} ({len(runs)} runs)",
                     )
                 axes.set_ylim(-0.05, 1.05)
             title = "literal" if scheme == "paper" else "white"
@@ -127,12 +127,34 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         panels[0, 0].legend(loc="lower left", fontsize=6)
 
 
+def draw_map(options: Options, table: pd.DataFrame) -> None:
+    """Draw the share of flocks that stay for two hours against the wall coverage."""
+    white = table[(table["scheme"] == "leapfrog") & (table["dt_s"] == 0.1)]
+    noises = list(white.groupby("c4"))
+    with picture(options, "transition_map", height_cm=5.5) as figure:
+        panels = figure.subplots(1, max(len(noises), 1), sharey=True, squeeze=False)[0]
+        for axes, (c4, group) in zip(panels, noises, strict=False):
+            for color, (start, words) in zip(COLORS, STARTED.items(), strict=False):
+                for marker, (n, runs) in zip(
+                    "os^D", group[group["start"] == start].groupby("n_boats"), strict=False
+                ):
+                    kept = [(x, each["exited"] == 0) for x, each in runs.groupby("coverage")]
+                    shares = [proportion(stays.sum(), len(stays)) for _, stays in kept]
+                    x = [coverage + 0.004 * "os^D".index(marker) for coverage, _ in kept]
+                    label = f"{words}, n = {n:g}"
+                    curve(axes, x, shares, color=color, marker=marker, label=label)
+            axes.set(xlabel="wall coverage", title=f"white, c4 = {c4:g}", ylim=(-0.05, 1.05))
+        panels[0].set_ylabel("share that stays for 2 h")
+        figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+
+
 def script(options: Options) -> None:
     """Make the map, judge and draw it."""
     table = STUDY.results(options)
     write_claims(options, "transition", judge(table))
     if len(table):
         draw(options, table)
+        draw_map(options, table)
         lines = cells(table).to_csv(index=False, float_format="%.3g")
         write(options.out / "results" / "transition_cells.csv", lines.encode())
 
