@@ -14,7 +14,7 @@ from flockenv.policies import LeaningLaw
 from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
 from flockenv.sb3 import LeaderVecEnv, SharedNoisePolicy, shared_noise
 
-seed, hours, tests = map(int, sys.argv[1:] + ["0", "400", "512"][len(sys.argv) - 1 :])
+seed, hours, tests = map(int, sys.argv[1:] + ["0", "2000", "512"][len(sys.argv) - 1 :])
 out, flock = f"results/train_leaders/{seed}", {"pool": "wide", "n_boats": 27, "bw_s": 0.31}
 off = {"own": False, "phase": False, "target": False, "neighbors": 0, "order": False}
 task = {"observation": {**off, "lean_features": True}, "action_mode": "lean", "target": "random"}

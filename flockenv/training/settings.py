@@ -68,7 +68,7 @@ class TrainingSettings:
 
     pool: str = "wide"
     n_leaders: int = 3
-    flock_hours: float = 400.0
+    flock_hours: float = 2000.0
     num_flocks: int = 128
     seed: int = 0
     environment: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
