@@ -116,7 +116,9 @@ def judge(table: pd.DataFrame, found: int) -> Claims:
 
     The preset is replaced only where the first claim holds.
     """
-    claims = Claims("4.3", f"measured current and spread, candidate {found}, narrow, n = 27")
+    claims = Claims(
+        "4.3", f"measured current and spread (candidate {found}, white), narrow, n = 27"
+    )
     both = [*groups(table, found), *groups(table, PRESET)]
     half = len(both) // 2
     claims.add(
