@@ -18,15 +18,15 @@ export const LESSONS = [
     name: "leaders",
     title: "One leader or four",
     link: "#lesson=leaders&n_boats=27&n_leaders=1&bw_s=0.3&seed=14&beside.n_leaders=4&speed=16",
-    words: "Without leaders chance decides which way a flock circles. A few leaders (amber) decide it, and more of them order it more, as the paper found, although " +
+    words: "Without leaders chance decides which way a flock circles, and a few leaders (amber) decide it, the more the better, as the paper found, although " +
       "to the others they are boats that bump like any. The order towards the target is 1 if all others circle the leaders' way and −1 if all circle the other way: in this simulator it is 0.13 with one leader and 0.38 with four (means of 256 flocks).",
   },
   {
     name: "learned",
     title: "Learned or law",
     link: "#lesson=learned&n_boats=27&n_leaders=4&bw_s=0.3&seed=14&beside.leaders=learned&speed=16",
-    words: "Both flocks have four leaders and start from the same places with the same noise. Those of the first steer by the paper's rule. Those of the " +
-      "second learned in this simulator, by trial and error, where to head, and lead better: the order towards the target is 0.59 with them and 0.38 with the rule (means of 256 flocks).",
+    words: "Both flocks have four leaders and the same start and noise; those of the first steer by the paper's rule, and those of the second learned in this " +
+      "simulator, by trial and error, where to head. They lead better: the order towards the target is 0.59 with learned leaders and 0.38 with the rule (means of 256 flocks).",
   },
   {
     name: "forces",
