@@ -78,7 +78,7 @@ class ContactSeries(_Columns):
         How many each sample has; they follow one another in the other arrays.
     i, j : int32 array, shape (c,)
         The boats, as in `Contacts`.
-    normal, force, point_cm, along_cm : float32 array
+    normal, force, point_cm, along_cm : float32 array, shapes (c, 2), (c,), (c, 2), (c,)
         As in `Contacts`; the force, above 0, is the mean over the substep before the sample.
     """
 

@@ -75,5 +75,5 @@ def dataset_of(recording: Any) -> "xarray.Dataset":
 
 def _motion(recording: Any) -> dict[str, NDArray[np.floating[Any]]]:
     """Return poses and velocities by component, each (t, n)."""
-    columns = np.moveaxis(np.concatenate([recording.pose, recording.velocity], axis=-1), -1, 0)
+    columns = (*np.moveaxis(recording.pose, -1, 0), *np.moveaxis(recording.velocity, -1, 0))
     return dict(zip((*_POSE, *_VELOCITY), columns, strict=True))

@@ -236,8 +236,8 @@ impl ContactResolver {
         ContactOutcome::Solved
     }
 
-    /// Has velocity biases follow from the gaps at hand alone in islands that would be driven or turned back otherwise; returns
-    /// whether there are any.
+    /// Has velocity biases follow from the gaps at hand alone in islands that would be driven or turned back
+    /// otherwise; returns whether there are any.
     fn stop_driving(
         &mut self,
         free: &[Velocity],

@@ -169,7 +169,7 @@ class Page:
         return [each["message"] for each in self.driver.get_log("browser")]
 
     def requested(self) -> list[str]:
-        """What the page asked for since it was opened, its own address included."""
+        """What the page requested since it was opened, its own address included."""
         log = [json.loads(each["message"]) for each in self.driver.get_log("performance")]
         sent = (each["message"] for each in log)
         return [
