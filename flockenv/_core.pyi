@@ -41,14 +41,12 @@ __all__ = [
     "env_defaults",
     "flat_actions",
     "jam_sizes",
-    "lagged_motion",
     "lap_orientation",
     "observation_table",
     "observation_version",
     "observe",
     "order_columns",
     "ordering_time_s",
-    "pair_counts",
     "physics_fields",
     "pool_radii_cm",
     "preset_sources",
@@ -103,8 +101,6 @@ def order_columns(pose: _Floats, velocity: _Floats) -> _Columns: ...
 def structure_series(name: str, parameters: _Parameters, pose: _Floats) -> _Floats: ...
 def jam_sizes(parameters: _Parameters, pose: _Floats) -> list[list[int]]: ...
 def lap_orientation(pose: _Floats) -> _Floats: ...
-def pair_counts(pose: _Floats, edges: _Floats) -> list[_Floats]: ...
-def lagged_motion(pose: _Floats, lags: list[int]) -> list[_Floats]: ...
 def record(flock: Flock, duration_s: float, plan: dict[str, Any]) -> dict[str, Any]: ...
 def flat_actions(
     actions: ArrayLike, shape: Sequence[int], levels: int | None, name: str = "actions"

@@ -1,6 +1,4 @@
-"""Where boats are: relative to each other, to the wall, and to where they were."""
-
-from collections.abc import Sequence
+"""Where boats are: relative to each other and to the wall."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -47,51 +45,6 @@ def jam_sizes(parameters: FlockParameters, pose: ArrayLike) -> list[NDArray[np.i
     return [np.sort(np.array(sizes, np.int64)) for sizes in found]
 
 
-def pair_distribution(pose: ArrayLike, edges: ArrayLike) -> NDArray[np.float64]:
-    """Return how much likelier pairs of boats are at a distance than independent boats.
-
-    Independent boats have the same distances from the pool's center as those found, and polar
-    angles of their own: the walls' part in where boats are is divided out.
-
-    Parameters
-    ----------
-    pose
-        Shape (t, n, 3), as in a `Recording`.
-    edges
-        Edges of b bins of the distance of centers in cm, increasing, shape (b + 1,).
-
-    Returns
-    -------
-    float64 array, shape (b,)
-        1 for independent boats; NaN where none could be.
-
-    Raises
-    ------
-    ParameterError
-        For another shape, and edges that do not increase.
-    """
-    found, expected = _core.pair_counts(_poses(pose), np.asarray(edges, np.float64))
-    return np.divide(found, expected, out=np.full_like(found, np.nan), where=expected > 0.0)
-
-
-def mean_square_displacement(pose: ArrayLike, lags: Sequence[int]) -> NDArray[np.float64]:
-    """Return the mean-square displacement of a boat after some numbers of samples, in cm².
-
-    Means are over boats and over all pairs of samples so far apart; NaN where there are none. A
-    ParameterError refuses poses of a shape other than (t, n, 3), and negative lags.
-    """
-    return _core.lagged_motion(_poses(pose), _samples(lags))[0]
-
-
-def heading_correlation(pose: ArrayLike, lags: Sequence[int]) -> NDArray[np.float64]:
-    """Return the mean cosine of a boat's turn after some numbers of samples: 1 for none.
-
-    Means and errors are those of `mean_square_displacement`. Boats keep their heading for about as
-    long as this stays above 1/e, their persistence time.
-    """
-    return _core.lagged_motion(_poses(pose), _samples(lags))[1]
-
-
 def _poses(pose: ArrayLike) -> NDArray[np.float64]:
     poses = np.ma.asarray(pose, np.float64).filled(np.nan)
     if poses.ndim != 3:
@@ -102,9 +55,3 @@ def _poses(pose: ArrayLike) -> NDArray[np.float64]:
             "pose is not accepted: finite numbers, or rows of NaN for boats that are not there"
         )
     return poses
-
-
-def _samples(lags: Sequence[int]) -> list[int]:
-    if any(lag < 0 for lag in lags):
-        raise ParameterError(f"lags = {list(lags)} is not accepted: numbers of samples, at least 0")
-    return [int(lag) for lag in lags]

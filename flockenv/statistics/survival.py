@@ -4,7 +4,6 @@ A run without the event says that its time is longer than the run, no more: its 
 To leave such runs out, or to count them with the length of the run, makes all times too short.
 """
 
-import math
 import warnings
 from dataclasses import dataclass
 from typing import Any
@@ -40,19 +39,10 @@ class Survival:
     runs: int
     events: int
 
-    @property
-    def median_s(self) -> tuple[float, float, float]:
-        """Median time and its interval in s; infinite if too few runs had the event for one."""
-        return self._passes(self.share), self._passes(self.low), self._passes(self.high)
-
     def share_at(self, time_s: float) -> float:
         """Return the share of the runs that wait longer than a time in s."""
         place = int(np.searchsorted(self.time_s, time_s, side="right"))
         return 1.0 if place == 0 else float(self.share[place - 1])
-
-    def _passes(self, share: NDArray[np.float64]) -> float:
-        passed = np.flatnonzero(share <= 0.5)
-        return float(self.time_s[passed[0]]) if len(passed) else math.inf
 
 
 def kaplan_meier(times_s: ArrayLike, until_s: ArrayLike) -> Survival:

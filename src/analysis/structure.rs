@@ -1,4 +1,4 @@
-//! Where boats are relative to each other, to the wall and to where they were.
+//! Where boats are relative to each other and to the wall.
 
 use crate::contact::{join, root};
 use crate::geometry::lap_frame::orientation;
@@ -69,92 +69,4 @@ pub fn polarization(poses: &[Pose]) -> f64 {
         .iter()
         .fold(Vec2::zeros(), |sum, pose| sum + HullPose::new(pose).axis);
     sum.norm() / poses.len() as f64
-}
-
-/// Pairs by the distance of their centers, beside those expected of independent boats.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PairCounts {
-    /// Edges of the bins in cm, increasing.
-    pub edges: Vec<f64>,
-    /// Pairs found in each bin.
-    pub found: Vec<f64>,
-    /// Pairs that boats at the same radii would have there on average, were their polar angles
-    /// independent and uniform.
-    pub expected: Vec<f64>,
-}
-
-impl PairCounts {
-    /// No pairs yet.
-    pub fn new(edges: Vec<f64>) -> Self {
-        let zeros = vec![0.0; edges.len().saturating_sub(1)];
-        Self {
-            edges,
-            found: zeros.clone(),
-            expected: zeros,
-        }
-    }
-
-    /// Adds the pairs of boats at one time.
-    pub fn add(&mut self, poses: &[Pose]) {
-        for (i, a) in poses.iter().enumerate() {
-            for b in &poses[..i] {
-                let distance = (a.position - b.position).norm();
-                let place = self.edges.partition_point(|&edge| edge <= distance);
-                if (1..self.edges.len()).contains(&place) {
-                    self.found[place - 1] += 1.0;
-                }
-                let (ra, rb) = (a.position.norm(), b.position.norm());
-                let below = |edge: f64| chance_below(edge, ra, rb);
-                let mut last = below(self.edges[0]);
-                for (bin, &edge) in self.expected.iter_mut().zip(&self.edges[1..]) {
-                    let next = below(edge);
-                    *bin += next - last;
-                    last = next;
-                }
-            }
-        }
-    }
-}
-
-/// Chance that points at two radii and independent angles are nearer than a distance: the law of
-/// cosines, solved for the angle.
-fn chance_below(distance: f64, ra: f64, rb: f64) -> f64 {
-    let cosine = (ra * ra + rb * rb - distance * distance) / (2.0 * ra * rb);
-    if cosine.is_nan() {
-        // Both at the center.
-        return f64::from(u8::from(distance > 0.0));
-    }
-    libm::acos(cosine.clamp(-1.0, 1.0)) / PI
-}
-
-/// Mean over boats and starting samples of the squared displacement after `lag` samples, in cm².
-/// Samples are of equally many boats, of which those whose pose is NaN are left out; NaN for a lag that no
-/// two samples are apart.
-pub fn mean_square_displacement(samples: &[&[Pose]], lag: usize) -> f64 {
-    lagged_mean(samples, lag, |then, now| {
-        (now.position - then.position).norm_squared()
-    })
-}
-
-/// Mean over boats and starting samples of cos(α(t + lag) − α(t)): 1 while boats keep their heading.
-pub fn heading_correlation(samples: &[&[Pose]], lag: usize) -> f64 {
-    lagged_mean(samples, lag, |then, now| {
-        libm::cos(now.heading - then.heading)
-    })
-}
-
-fn lagged_mean(samples: &[&[Pose]], lag: usize, value: impl Fn(&Pose, &Pose) -> f64) -> f64 {
-    let pairs = samples.iter().zip(samples.iter().skip(lag));
-    let (mut sum, mut count) = (0.0, 0.0);
-    for (then, now) in pairs {
-        for (then, now) in then.iter().zip(now.iter()) {
-            let value = value(then, now);
-            // Not a number where a boat is not there.
-            if value.is_finite() {
-                sum += value;
-                count += 1.0;
-            }
-        }
-    }
-    sum / count
 }

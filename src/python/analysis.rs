@@ -7,7 +7,7 @@ use crate::analysis::OrderParameters;
 use crate::analysis::collective_state::{CollectiveState, ordering_time};
 use crate::analysis::quantities::{Formula, QUANTITIES, RECORDED, Recorded, quantity};
 use crate::analysis::samples::Samples;
-use crate::analysis::structure::{self, PairCounts};
+use crate::analysis::structure;
 use crate::error::FlockError;
 use crate::geometry::Pose;
 use crate::geometry::lap_frame::orientation;
@@ -17,10 +17,8 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArra
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// A number at each time or in each bin.
+/// A number at each time.
 type Series<'py> = PyResult<Bound<'py, PyArray1<f64>>>;
-/// Found and expected pairs in each bin, or two curves of the same lags.
-type Pairs<'py> = PyResult<[Bound<'py, PyArray1<f64>>; 2]>;
 
 /// Columns of the table's recorded quantities, by name: arrays (t,).
 pub(super) fn columns<'py>(py: Python<'py>, series: &[Recorded]) -> PyResult<Bound<'py, PyDict>> {
@@ -179,42 +177,6 @@ pub(super) fn lap_orientation<'py>(
     let samples = samples(&pose, "pose")?;
     let angles = samples.rows().iter().map(orientation);
     rows_of(py, angles.collect(), samples.shape().1)
-}
-
-/// Pairs by distance, over all times.
-#[pyfunction]
-pub(super) fn pair_counts<'py>(
-    py: Python<'py>,
-    pose: PyReadonlyArray3<'py, f64>,
-    edges: PyReadonlyArray1<'py, f64>,
-) -> Pairs<'py> {
-    let samples = samples(&pose, "pose")?;
-    let edges = edges.to_vec()?;
-    let rising = edges.windows(2).all(|pair| pair[0] < pair[1]);
-    let are_edges = edges.len() >= 2 && rising && edges.iter().all(|edge| edge.is_finite());
-    let accepted = "at least two finite distances in cm, increasing";
-    FlockError::unless(are_edges, "edges", format!("{edges:?}"), accepted)?;
-    let mut counts = PairCounts::new(edges);
-    py.detach(|| samples.present().for_each(|poses| counts.add(&poses)));
-    Ok([counts.found, counts.expected].map(|each| PyArray1::from_vec(py, each)))
-}
-
-/// Mean-square displacement in cm² and heading correlation after each lag, in samples.
-#[pyfunction]
-pub(super) fn lagged_motion<'py>(
-    py: Python<'py>,
-    pose: PyReadonlyArray3<'py, f64>,
-    lags: Vec<usize>,
-) -> Pairs<'py> {
-    let samples = samples(&pose, "pose")?;
-    let rows: Vec<&[Pose]> = samples.each().collect();
-    let means = [
-        structure::mean_square_displacement,
-        structure::heading_correlation,
-    ];
-    let curves: [Vec<f64>; 2] =
-        py.detach(|| means.map(|mean| lags.iter().map(|&lag| mean(&rows, lag)).collect()));
-    Ok(curves.map(|each| PyArray1::from_vec(py, each)))
 }
 
 /// Poses, or velocities, of an array of shape (t, n, 3).

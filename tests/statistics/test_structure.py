@@ -13,15 +13,6 @@ PARAMETERS = flockenv.FlockParameters.preset("experiment").replace(n_boats=3)
 POSE = np.array([[[60.0, 0.0, 0.0], [60.0, 10.2, 0.0], [-82.4, 0.0, np.pi]]] * 4)
 
 
-def test_clusters_and_the_wall_are_shares_of_the_boats():
-    assert structure.structure_series("largest_cluster", PARAMETERS, POSE) == pytest.approx(
-        [2 / 3] * 4
-    )
-    assert structure.structure_series("on_outer_wall", PARAMETERS, POSE) == pytest.approx(
-        [1 / 3] * 4
-    )
-
-
 def test_jams_are_boats_in_touch_that_face_outward():
     around = np.arange(8) * 10.3 / 80.0
     jam = np.stack([80 * np.cos(around), 80 * np.sin(around), around], axis=1)
@@ -42,42 +33,16 @@ def test_polarization_is_the_length_of_the_mean_heading():
     assert polarization(absent) == pytest.approx([1 / 3, 1, np.nan, 1 / 3], nan_ok=True)
 
 
-def test_displacement_and_turns_by_lag():
-    pose = np.zeros((5, 1, 3))
-    pose[:, 0, 0] = 2.0 * np.arange(5)
-    pose[:, 0, 2] = 0.1 * np.arange(5)
-    lags = [0, 1, 4, 5]
-    assert structure.mean_square_displacement(pose, lags)[:3] == pytest.approx([0, 4, 64])
-    assert structure.heading_correlation(pose, lags)[:3] == pytest.approx(np.cos([0, 0.1, 0.4]))
-    assert np.isnan(structure.mean_square_displacement(pose, lags)[3])
-
-
-def test_pairs_are_counted_by_distance_and_nan_where_none_can_be():
-    # One pair is 10.2 cm apart, two are 142 cm apart.
-    near, between, far, beyond = structure.pair_distribution(POSE, [0, 20, 120, 300, 400])
-    assert near > 1.0
-    assert between == 0.0
-    assert far > 1.0
-    assert np.isnan(beyond)
-
-
 @pytest.mark.parametrize("pose", [np.zeros((3, 3)), np.zeros((2, 3, 2)), np.zeros((2, 0, 3))])
 def test_other_shapes_are_refused(pose):
     with pytest.raises(flockenv.ParameterError, match="pose"):
         structure.structure_series("on_outer_wall", PARAMETERS, pose)
-    with pytest.raises(flockenv.ParameterError, match="pose"):
-        structure.mean_square_displacement(pose, [1])
 
 
 def test_other_arguments_are_refused():
     for name in ("psi_o", "signed_order", "clusters"):
         with pytest.raises(flockenv.ParameterError, match=name):
             structure.structure_series(name, PARAMETERS, POSE)
-    for edges in ([1.0], [2.0, 1.0], [0.0, np.nan]):
-        with pytest.raises(flockenv.ParameterError, match="edges"):
-            structure.pair_distribution(POSE, edges)
-    with pytest.raises(flockenv.ParameterError, match="lags"):
-        structure.heading_correlation(POSE, [-1])
 
 
 def test_states_and_ordering_times_of_a_recording():
