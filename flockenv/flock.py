@@ -258,20 +258,6 @@ class Flock:
         """What the substeps since the flock was made did."""
         return Statistics(**self.core.statistics)
 
-    @property
-    def threads(self) -> int:
-        """Threads that the substeps of 200 boats or more are shared out to: 1 to 1024.
-
-        It is 1 by default. The motion is the same, bit for bit. Snapshots and pickles do not hold
-        the number; `restore` and `reset` leave it. There are never more threads than
-        RAYON_NUM_THREADS, or than cores if that is not set.
-        """
-        return self.core.threads
-
-    @threads.setter
-    def threads(self, threads: int) -> None:
-        self.core.threads = threads
-
     def set_state(
         self,
         pose: ArrayLike,

@@ -42,7 +42,6 @@ def simulate(
     start: Start | None = None,
     schedule: Schedule = (),
     quantities: Mapping[str, Callable[[Recording], ArrayLike]] | None = None,
-    threads: int = 1,
 ) -> Recording:
     """Run a flock and record it: a pure function of its arguments.
 
@@ -95,8 +94,6 @@ def simulate(
         Quantities of your own, by name: functions that take the recording and return an array (t,),
         a number for each sample. They are kept in its attribute ``quantities``, in its file and in
         its tables.
-    threads
-        Threads that each substep of 200 boats or more is shared out to; see `Flock.threads`.
 
     Returns
     -------
@@ -123,7 +120,6 @@ def simulate(
     seats = _seats(policy, parameters)
     changes = _changes(parameters, schedule)
     flock = Flock(parameters, seed) if start is None else _started(parameters, seed, start)
-    flock.threads = threads
     precision = np.dtype(dtype)
     if precision not in PRECISIONS:
         raise ParameterError(f"dtype = {precision} is not accepted: float64 or float32")

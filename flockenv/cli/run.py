@@ -31,7 +31,6 @@ class RunOptions(Flocks, Overwriting, Printing):
     seed: int = option(0, "Seed of placement and noise.", min=0)
     minutes: float = option(8.0, "Length of the run.", min=0.0)
     hz: float = option(10.0, "Samples per second.")
-    threads: int = option(1, "Threads for 200 boats or more; same result.", min=1, max=1024)
     contacts: bool = option(True, "Record contact forces too.", "--contacts/--no-contacts")
     out: Path | None = option(
         None, "The recording. [results/run.npz, numbered where that is taken]"
@@ -63,7 +62,6 @@ def run(options: RunOptions) -> None:
             options.hz,
             policy,
             contacts=options.contacts,
-            threads=options.threads,
             progress=advance,
         )
     recording.save(out)

@@ -71,7 +71,7 @@ impl Depenetration {
             if smallest >= -allowed || !keep_going() {
                 return smallest;
             }
-            self.displace(detector, poses, boats);
+            self.displace(poses, boats);
         }
         detector.detect(boats, margin, &mut self.contacts);
         smallest_gap(&self.contacts)
@@ -91,7 +91,7 @@ impl Depenetration {
         let wide = wide_margin(detector);
         for _ in 0..MOST_PASSES {
             detector.detect(boats, wide, &mut self.contacts);
-            self.displace(detector, poses, boats);
+            self.displace(poses, boats);
             // The list is rebuilt where the wide margin asks for it, whether or not another pass comes: contacts come
             // in its order, and results made before rest on that.
             detector.update(boats, wide);
@@ -106,14 +106,8 @@ impl Depenetration {
     }
 
     /// One pass, for the contacts at hand.
-    fn displace(
-        &mut self,
-        detector: &ContactDetector,
-        poses: &mut [Pose],
-        boats: &mut Vec<HullPose>,
-    ) {
+    fn displace(&mut self, poses: &mut [Pose], boats: &mut Vec<HullPose>) {
         self.passes += 1;
-        self.solver.set_threads(detector.threads());
         self.biases.clear();
         self.biases.extend(
             self.contacts

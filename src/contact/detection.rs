@@ -6,9 +6,8 @@ use crate::geometry::{
     Feature, Gap, Hull, HullPose, NeighborList, Obstacle, Velocity, inner_wall_gap, outer_wall_gap,
     pair_gap, pair_gaps,
 };
-use crate::parallel;
 use crate::parameters::{FlockParameters, Pool};
-use std::ops::{Range, RangeInclusive};
+use std::ops::RangeInclusive;
 
 /// Geometry of a flock: hulls, walls, obstacles and the neighbor list.
 #[derive(Debug, Clone)]
@@ -21,13 +20,7 @@ pub struct ContactDetector {
     skin: f64,
     /// How near something has to be to each boat to count: two boats that are nearer than both together.
     reaches: Vec<f64>,
-    threads: usize,
-    /// Contacts found by other threads, part after part of the flock.
-    parts: Vec<Vec<Contact>>,
 }
-
-/// Parts of a flock for each thread: one that is done early takes another.
-const PARTS_A_THREAD: usize = 2;
 
 impl ContactDetector {
     /// For checked parameters.
@@ -42,25 +35,7 @@ impl ContactDetector {
             obstacles: NearObstacles::new(Obstacle::all(parameters)),
             skin,
             reaches: Vec::new(),
-            threads: 1,
-            parts: Vec::new(),
         }
-    }
-
-    /// Has contacts sought by so many threads; which are found does not depend on how many.
-    pub(crate) fn set_threads(&mut self, threads: usize) {
-        self.threads = threads;
-        let others = if threads > 1 {
-            PARTS_A_THREAD * threads - 1
-        } else {
-            0
-        };
-        self.parts.resize_with(others, Vec::new);
-    }
-
-    /// How many threads seek contacts.
-    pub(super) fn threads(&self) -> usize {
-        self.threads
     }
 
     /// The hull that all boats share.
@@ -127,46 +102,10 @@ impl ContactDetector {
     ) {
         contacts.clear();
         self.update(boats, margin);
-        if self.threads == 1 {
-            self.detect_among(0..boats.len(), boats, margin, contacts);
-            return;
-        }
-        let mut parts = std::mem::take(&mut self.parts);
-        let size = boats.len().div_ceil(parts.len() + 1);
-        let outputs = std::iter::once(&mut *contacts).chain(&mut parts);
-        let tasks = outputs.enumerate();
-        parallel::hand_out(&mut vec![(); self.threads], tasks, |(), (number, found)| {
-            let start = (number * size).min(boats.len());
-            let end = (start + size).min(boats.len());
-            found.clear();
-            self.detect_among(start..end, boats, margin, found);
-        });
-        for part in &parts {
-            contacts.extend_from_slice(part);
-        }
-        self.parts = parts;
-    }
-
-    /// Has the neighbor list hold everything nearer than `margin`.
-    pub(super) fn update(&mut self, boats: &[HullPose], margin: f64) {
-        let distance = 2.0 * self.hull.reach() + margin;
-        self.neighbors
-            .update(boats.iter().map(|boat| boat.center), distance, self.skin);
-        self.obstacles.update(&self.neighbors);
-    }
-
-    /// Adds the contacts of the boats at some places of the neighbor list.
-    fn detect_among(
-        &self,
-        places: Range<usize>,
-        boats: &[HullPose],
-        margin: f64,
-        contacts: &mut Vec<Contact>,
-    ) {
         // Of a boat and a wall only one moves.
         let open = self.open_water(0.5 * margin);
         let has_obstacles = !self.obstacles.obstacles.is_empty();
-        for (boat, partners) in self.neighbors.groups(places) {
+        for (boat, partners) in self.neighbors.groups() {
             let (pose, reach) = (&boats[boat as usize], self.reaches[boat as usize]);
             if !open.contains(&pose.center.norm_squared()) {
                 self.detect_walls(boat, pose, reach, contacts);
@@ -183,6 +122,14 @@ impl ContactDetector {
                 });
             }
         }
+    }
+
+    /// Has the neighbor list hold everything nearer than `margin`.
+    pub(super) fn update(&mut self, boats: &[HullPose], margin: f64) {
+        let distance = 2.0 * self.hull.reach() + margin;
+        self.neighbors
+            .update(boats.iter().map(|boat| boat.center), distance, self.skin);
+        self.obstacles.update(&self.neighbors);
     }
 
     /// Whether moving with these velocities for `dt` might take a boat through a wall that has no

@@ -84,12 +84,6 @@ impl ContactResolver {
         }
     }
 
-    /// Has contacts found and solved by so many threads.
-    pub(crate) fn set_threads(&mut self, threads: usize) {
-        self.detector.set_threads(threads);
-        self.solver.set_threads(threads);
-    }
-
     /// Contacts that carried an impulse in the last substep.
     pub(crate) fn warm_start_impulses(&self) -> impl Iterator<Item = CachedImpulse> {
         self.warm_start_cache.impulses()

@@ -32,7 +32,7 @@ impl Flock {
                 if !self.parameters().has_same_water(parameters) {
                     next.refuse_overlapped_obstacles()?;
                 }
-                self.replace(next);
+                *self = next;
             }
         }
         Ok(())

@@ -10,7 +10,6 @@ use crate::geometry::{HullPose, Pose, Velocity};
 use crate::integrator::{
     Checkpoint, Integrator, PhaseMoment, PhaseSchedule, Steering, StepOutcome, Substep,
 };
-use crate::parallel;
 use crate::parameters::{FlockParameters, Targets};
 
 /// The latest time a flock may reach: 10⁹ s.
@@ -26,14 +25,10 @@ pub struct Flock {
     pub(crate) integrator: Integrator,
     /// The motion before the last advance, to return to if it fails.
     before: Box<Checkpoint>,
-    threads: usize,
 }
 
 /// Work between two points at which a long run can be ended: about 30 ms.
 pub(crate) const BOAT_SUBSTEPS_A_PIECE: u64 = 200_000;
-/// Flocks of fewer boats are moved by one thread: the others would wake up too late.
-const SHARED_BOATS: usize = 200;
-const MOST_THREADS: usize = 1024;
 /// Part of `dt_s` below which no substep is cut for the sake of walls without thickness.
 const SHORTEST_SHARE: Ticks = 1024;
 const TOO_FAST: &str = "a boat is so fast that it might pass through a wall: it would move by more than half \
@@ -72,7 +67,6 @@ impl Flock {
             schedule: PhaseSchedule::new(&parameters),
             integrator: Integrator::new(&parameters, seed),
             before: Box::default(),
-            threads: 1,
             seed,
             time: 0,
             parameters,
@@ -84,53 +78,8 @@ impl Flock {
     /// # Errors
     /// As for [`Self::new_while`]; the flock is unchanged then.
     pub fn reset(&mut self, keep_going: KeepGoing, seed: u64) -> Result<()> {
-        let next = Self::new_while(keep_going, self.parameters.clone(), seed)?;
-        self.replace(next);
+        *self = Self::new_while(keep_going, self.parameters.clone(), seed)?;
         Ok(())
-    }
-
-    /// Takes on the state of another flock, but not its threads.
-    pub(super) fn replace(&mut self, next: Self) {
-        let threads = self.threads;
-        *self = next;
-        self.share_out(threads);
-    }
-
-    /// How many threads a substep is shared out to.
-    pub fn threads(&self) -> usize {
-        self.threads
-    }
-
-    /// Has the substeps of a flock of 200 boats or more shared out to so many threads, 1 by default. The motion is
-    /// the same, bit for bit, and snapshots do not hold the number.
-    ///
-    /// # Errors
-    /// [`FlockError::Parameter`] for no thread, and for more than 1024.
-    pub fn set_threads(&mut self, threads: usize) -> Result<()> {
-        let is_accepted = (1..=MOST_THREADS).contains(&threads);
-        FlockError::unless(
-            is_accepted,
-            "threads",
-            threads,
-            "a whole number from 1 to 1024",
-        )?;
-        self.share_out(threads);
-        Ok(())
-    }
-
-    fn share_out(&mut self, threads: usize) {
-        self.threads = threads;
-        let shared = self.shared_threads();
-        self.integrator.contacts.set_threads(shared);
-    }
-
-    /// How many threads a flock of this size is shared out to.
-    fn shared_threads(&self) -> usize {
-        if self.parameters.n_boats < SHARED_BOATS {
-            1
-        } else {
-            self.threads
-        }
     }
 
     /// The parameters.
@@ -259,16 +208,10 @@ impl Flock {
     /// # Errors
     /// [`FlockError::Solver`] if numbers left their range; the flock is unchanged then.
     pub fn advance_to(&mut self, end: Ticks, steering: Steering) -> Result<()> {
-        let other_threads = self.shared_threads() - 1;
-        let mut advance = || self.advance_watched(end, steering, &mut |_| {});
-        if other_threads > 0 {
-            parallel::inside(other_threads, advance)
-        } else {
-            advance()
-        }
+        self.advance_watched(end, steering, &mut |_| {})
     }
 
-    /// As [`Self::advance_to`] on one thread, showing the motion after every substep.
+    /// As [`Self::advance_to`], showing the motion after every substep.
     pub(crate) fn advance_watched(
         &mut self,
         end: Ticks,

@@ -107,7 +107,7 @@ impl Flock {
                 "the snapshot is of a flock with other parameters".to_owned(),
             ));
         }
-        self.replace(restored);
+        *self = restored;
         Ok(())
     }
 

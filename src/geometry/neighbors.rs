@@ -2,7 +2,6 @@
 //! it. The list is a function of the centers it was built from, so a snapshot keeps those.
 
 use super::Vec2;
-use std::ops::Range;
 
 /// Candidate pairs, in an order that follows the polar angle around the pool: contacts listed in this
 /// order give the contact matrix a narrow envelope.
@@ -80,11 +79,10 @@ impl NeighborList {
         self.cutoff
     }
 
-    /// Boats by polar angle, those at some places of that order, each with the candidate partners that come before
-    /// it.
-    pub(crate) fn groups(&self, places: Range<usize>) -> impl Iterator<Item = (u32, &[u32])> {
-        let ranges = self.starts[places.start..=places.end].windows(2);
-        self.order[places].iter().zip(ranges).map(|(&boat, range)| {
+    /// Boats by polar angle, each with the candidate partners that come before it.
+    pub(crate) fn groups(&self) -> impl Iterator<Item = (u32, &[u32])> {
+        let ranges = self.starts.windows(2);
+        self.order.iter().zip(ranges).map(|(&boat, range)| {
             let range = range[0] as usize..range[1] as usize;
             (boat, &self.partners[range])
         })

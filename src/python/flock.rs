@@ -109,17 +109,6 @@ impl PyFlock {
         Ok(self.0.read()?.statistics().named())
     }
 
-    #[getter]
-    fn threads(&self) -> Result<usize> {
-        Ok(self.0.read()?.threads())
-    }
-
-    #[setter]
-    fn set_threads(&self, threads: &Bound<'_, PyAny>) -> PyResult<()> {
-        let threads = given(threads, "threads")?;
-        Ok(self.0.write()?.set_threads(threads)?)
-    }
-
     fn set_state(&self, state: &Bound<'_, PyAny>) -> PyResult<()> {
         let state = state_from(state, self.0.read()?.parameters().n_boats)?;
         let (poses, velocities) = (&state.poses, &state.velocities);

@@ -5,8 +5,6 @@ import os
 import subprocess
 import sys
 
-import pytest
-
 import flockenv
 
 SCRIPT = """
@@ -28,20 +26,3 @@ def test_processes_and_thread_counts_agree():
     here = flockenv.simulate(p, seed=5, duration_s=30.0)
     hashes.add(hashlib.sha256(here.pose.tobytes() + here.velocity.tobytes()).hexdigest())
     assert len(hashes) == 1
-
-
-def test_a_flock_keeps_its_threads(parameters):
-    flock = flockenv.Flock(parameters, 0)
-    assert flock.threads == 1
-    flock.threads = 3
-    flock.restore(flockenv.Flock(parameters, 1).snapshot())
-    assert flock.threads == 3
-    flock.reset(2)
-    assert flock.threads == 3
-    for wrong in (0, 1025, -1, 2**70):
-        with pytest.raises(flockenv.ParameterError, match="threads"):
-            flock.threads = wrong
-    for wrong in (True, "2", None):
-        with pytest.raises(TypeError, match="threads"):
-            flock.threads = wrong
-    assert flock.threads == 3

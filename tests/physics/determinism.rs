@@ -3,9 +3,8 @@
 //!
 //! On paper: nothing, zero bits of difference.
 
-use crate::support::{NOISES, OPEN_WATER, SCHEMES, bits, busy};
-use flockenv::geometry::{Pose, Velocity};
-use flockenv::parameters::{Noise, Pool, Preset, Scheme, Solver, Target};
+use crate::support::{NOISES, SCHEMES, bits, busy};
+use flockenv::parameters::{Noise, Scheme, Solver, Target};
 use flockenv::{Flock, FlockParameters};
 use rayon::prelude::*;
 
@@ -139,86 +138,4 @@ fn a_reset_flock_is_a_new_flock() {
     let mut fresh = Flock::new(p, 5).expect("room");
     assert!(flock.snapshot() == fresh.snapshot());
     assert_eq!(advanced(&mut flock, &[1.0]), advanced(&mut fresh, &[1.0]));
-}
-
-/// A jam in `narrow`, scaled beyond 50 boats: its islands hold most of the contacts.
-fn jam(n_boats: usize, relinearizations: usize) -> FlockParameters {
-    let scale = (n_boats as f64 / 50.0).sqrt().max(1.0);
-    FlockParameters {
-        n_boats,
-        pool: Pool {
-            outer_radius_cm: scale * Pool::NARROW.outer_radius_cm,
-            inner_radius_cm: scale * Pool::NARROW.inner_radius_cm,
-        },
-        nop1_s: 0.0,
-        bw_s: 0.0,
-        nop2_s: 0.0,
-        relinearizations,
-        ..FlockParameters::preset(Preset::Simulation)
-    }
-}
-
-#[test]
-fn a_flock_shared_out_to_threads_moves_as_on_one() {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(4).build();
-    let pool = pool.expect("threads");
-    for (boats, relinearizations) in [(27, 0), (200, 0), (200, 1), (200, 2), (1000, 0)] {
-        let p = jam(boats, relinearizations);
-        let mut flock = Flock::new(p.clone(), 5).expect("room");
-        flock
-            .advance(if boats < 1000 { 6.0 } else { 2.0 }, None)
-            .expect("finite motion");
-        let start = flock.snapshot();
-        let alone = advanced(&mut flock, &[0.5]);
-        for threads in 1..=4 {
-            let mut shared = Flock::new(p.clone(), 9).expect("room");
-            shared.set_threads(threads).expect("some threads");
-            shared.restore(&start).expect("a snapshot of such a flock");
-            assert_eq!(shared.threads(), threads);
-            let found = pool.install(|| advanced(&mut shared, &[0.5]));
-            assert_eq!(found, alone, "{boats} boats, {threads} threads");
-            assert_eq!(shared.statistics(), flock.statistics());
-            assert!(shared.snapshot() == flock.snapshot());
-        }
-    }
-}
-
-#[test]
-fn a_pile_of_overlapping_hulls_shared_out_to_threads_moves_as_on_one() {
-    // Ten heaps of 30 hulls, each an island whose constraints contradict each other.
-    let p = FlockParameters {
-        n_boats: 300,
-        pool: OPEN_WATER,
-        ..FlockParameters::preset(Preset::Simulation)
-    };
-    let pose = |boat: usize| {
-        let (heap, turn) = (boat % 10, boat as f64);
-        let spread = 0.3 * turn.sqrt();
-        Pose::new(
-            100.0 * heap as f64 + spread * turn.cos(),
-            spread * turn.sin(),
-            turn,
-        )
-    };
-    let poses: Vec<Pose> = (0..300).map(pose).collect();
-    let rest = vec![Velocity::default(); 300];
-    let run = |threads| {
-        let mut flock = Flock::new(p.clone(), 1).expect("room");
-        flock.set_threads(threads).expect("some threads");
-        flock.set_state(&poses, &rest, 0.0, true).expect("finite");
-        // Not inside a pool: the flock finds its own way to the threads.
-        advanced(&mut flock, &[0.2, 0.013])
-    };
-    assert_eq!(run(2), run(1));
-    assert_eq!(run(3), run(1));
-}
-
-#[test]
-fn no_thread_and_far_too_many_are_refused() {
-    let mut flock = Flock::new(jam(27, 0), 1).expect("room");
-    for threads in [0, 1025, usize::MAX] {
-        let error = flock.set_threads(threads).expect_err("out of range");
-        assert!(error.to_string().contains("threads"), "{error}");
-    }
-    assert_eq!(flock.threads(), 1);
 }

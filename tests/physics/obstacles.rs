@@ -257,29 +257,6 @@ fn the_same_seed_gives_the_same_bits_at_any_cut_and_through_a_snapshot() {
 }
 
 #[test]
-fn any_number_of_threads_gives_the_same_bits() {
-    let p = FlockParameters {
-        n_boats: 240,
-        n_leaders: 0,
-        pool: Pool {
-            outer_radius_cm: 300.0,
-            inner_radius_cm: 0.0,
-        },
-        ..arena(Scheme::Leapfrog, Noise::White)
-    };
-    let run = |threads| {
-        let mut flock = Flock::new(p.clone(), 5).expect("room");
-        flock.set_threads(threads).expect("a number of threads");
-        flock.advance(6.0, None).expect("finite motion");
-        (bits(&flock), *flock.statistics())
-    };
-    let alone = run(1);
-    assert!(alone.1.contacts > 1000);
-    assert_eq!(alone, run(2));
-    assert_eq!(alone, run(5));
-}
-
-#[test]
 fn boats_far_from_many_obstacles_meet_none() {
     // 300 posts on a ring of radius 150 cm, boats in its middle and through it: only near ones are contacts.
     let posts = (0..300).map(|i| {

@@ -4,7 +4,7 @@
 use flockenv::{Flock, FlockParameters};
 use flockenv_benches::Scene;
 use flockenv_benches::measure::Effort;
-use flockenv_benches::table::{Table, number, quartiles, text};
+use flockenv_benches::table::{Table, number, text};
 use peak_alloc::PeakAlloc;
 use std::path::Path;
 use std::time::Instant;
@@ -28,7 +28,6 @@ fn main() {
         "dt_s",
         "us_per_step",
         "times_real_time",
-        "two_threads_faster",
         "contacts_per_step",
         "bytes",
         "bytes_per_boat",
@@ -65,7 +64,6 @@ fn row(boats: usize, effort: Effort) -> Vec<String> {
     let copy = std::hint::black_box(flock.clone());
     let bytes_in_use = (ALLOCATOR.current_usage() - before) as f64 - bytes;
     drop(copy);
-    let two_threads_faster = two_threads_faster(&flock, timed_s);
     let done = *flock.statistics();
     let (steps, n) = ((done.substeps - warm.substeps) as f64, boats as f64);
     let entries = done.most_factor_entries as f64;
@@ -74,7 +72,6 @@ fn row(boats: usize, effort: Effort) -> Vec<String> {
         number(DT_S),
         number(time * 1e6 / steps),
         number(timed_s / time),
-        number(two_threads_faster),
         number((done.contacts - warm.contacts) as f64 / steps),
         number(bytes),
         number(bytes / n),
@@ -82,26 +79,4 @@ fn row(boats: usize, effort: Effort) -> Vec<String> {
         number(entries),
         number(entries / n),
     ]
-}
-
-/// Flocks of fewer boats keep to one thread.
-const SHARED_BOATS: usize = 200;
-
-/// How many times as fast the same motion is on two threads: median over turns of 1 s.
-fn two_threads_faster(flock: &Flock, timed_s: f64) -> Option<f64> {
-    if flock.poses().len() < SHARED_BOATS {
-        return None;
-    }
-    let (mut alone, mut shared) = (flock.clone(), flock.clone());
-    shared.set_threads(2).expect("a number of threads");
-    let turn = |flock: &mut Flock| {
-        let start = Instant::now();
-        flock.advance(1.0, None).expect("the motion stays finite");
-        start.elapsed().as_secs_f64()
-    };
-    let ratios: Vec<f64> = (0..timed_s as usize)
-        .map(|_| turn(&mut alone) / turn(&mut shared))
-        .collect();
-    assert_eq!(alone.poses(), shared.poses(), "the same bits");
-    Some(quartiles(&ratios)[1])
 }

@@ -29,18 +29,6 @@ pub struct SolveReport {
     pub islands: u64,
 }
 
-impl SolveReport {
-    /// Adds what was done for other islands. A residual that is NaN stays.
-    fn add(&mut self, other: &Self) {
-        self.iterations += other.iterations;
-        self.factored_rows += other.factored_rows;
-        self.factor_entries += other.factor_entries;
-        if other.residual > self.residual || other.residual.is_nan() {
-            self.residual = other.residual;
-        }
-    }
-}
-
 /// Residual in cm/s that counts as solved.
 pub const EXACT: f64 = 1e-10;
 
@@ -84,11 +72,6 @@ impl ContactSolver {
     pub fn keeping_factors(mut self, keeps: bool) -> Self {
         self.pivoting.keeps_factors = keeps;
         self
-    }
-
-    /// Has islands solved on so many threads; the solution does not depend on how many.
-    pub fn set_threads(&mut self, threads: usize) {
-        self.pivoting.set_threads(threads);
     }
 
     /// Takes on a new set of contacts; `active` and `impulses` must hold a guess for each.
