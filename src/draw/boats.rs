@@ -46,12 +46,9 @@ fn draw_boat(canvas: &mut Pixmap, view: &View, hull: Hull, boat: &HullPose, colo
     let radius = view.length(hull.radius).max(LEAST_RADIUS);
     let outline = (OUTLINE.0 * radius).max(OUTLINE.1).min(0.3 * radius);
     let inner = radius - outline;
-    let [stern, bow] = [-1.0, 1.0].map(|side| view.pixel(boat.end(side, hull.half_length)));
+    let ends = [-1.0, 1.0].map(|side| view.pixel(boat.end(side, hull.half_length)));
     for (half_width, color) in [(radius, INK), (inner, colors[0])] {
-        let mut core = PathBuilder::new();
-        core.move_to(stern.x, stern.y);
-        core.line_to(bow.x, bow.y);
-        color.stroke(canvas, core, 2.0 * half_width);
+        color.line(canvas, ends, 2.0 * half_width);
     }
     if radius >= LEAST_MARKED {
         let share = f64::from(inner / radius);

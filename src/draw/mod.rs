@@ -20,7 +20,7 @@ use view::View;
 pub struct FrameRenderer {
     canvas: Pixmap,
     legend: Legend,
-    backgrounds: Vec<Background>,
+    background: Option<Background>,
 }
 
 /// Water, walls and obstacles of a pool, as they look with a target.
@@ -43,8 +43,6 @@ impl FrameRenderer {
     pub const SHORTEST: u32 = 64;
     /// The longest side of a frame, in pixels.
     pub const LONGEST: u32 = 4096;
-    /// Most backgrounds at a time: both targets of two pools.
-    const MOST_BACKGROUNDS: usize = 4;
 
     /// For frames of this size in pixels.
     ///
@@ -61,7 +59,7 @@ impl FrameRenderer {
         Ok(Self {
             legend: Legend::new(width, height),
             canvas,
-            backgrounds: Vec::new(),
+            background: None,
         })
     }
 
@@ -113,15 +111,12 @@ impl FrameRenderer {
         }
         let same =
             |each: &Background| each.target == target && each.parameters.has_same_water(parameters);
-        if let Some(found) = self.backgrounds.iter().find(|each| same(each)) {
-            self.canvas.data_mut().copy_from_slice(found.image.data());
+        if let Some(kept) = self.background.as_ref().filter(|kept| same(kept)) {
+            self.canvas.data_mut().copy_from_slice(kept.image.data());
             return;
         }
         water::draw(&mut self.canvas, parameters, target, view);
-        if self.backgrounds.len() == Self::MOST_BACKGROUNDS {
-            self.backgrounds.remove(0);
-        }
-        self.backgrounds.push(Background {
+        self.background = Some(Background {
             parameters: parameters.clone(),
             target,
             image: self.canvas.clone(),

@@ -1,6 +1,8 @@
 //! Colors of a frame: Okabe and Ito's set, which color-blind eyes distinguish too, on pale water.
 
-use tiny_skia::{Color, FillRule, LineCap, Paint, PathBuilder, Pixmap, Rect, Stroke, Transform};
+use tiny_skia::{
+    Color, FillRule, LineCap, Paint, PathBuilder, Pixmap, Point, Rect, Stroke, Transform,
+};
 
 /// An opaque color.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,8 +20,6 @@ pub(super) const GRID: Rgb = Rgb(0xC6, 0xD8, 0xE4);
 pub(super) const INK: Rgb = Rgb(0x1F, 0x2A, 0x36);
 /// Text that stands back.
 pub(super) const FAINT: Rgb = Rgb(0x8A, 0x93, 0x9C);
-/// Empty parts of the gauges.
-pub(super) const TRACK: Rgb = Rgb(0xDD, 0xDC, 0xD6);
 /// Normal boats.
 pub(super) const NORMAL: Rgb = Rgb(0x00, 0x72, 0xB2);
 /// Direction marks of normal boats.
@@ -30,10 +30,6 @@ pub(super) const LEADER: Rgb = Rgb(0xF0, 0xA2, 0x02);
 pub(super) const OPPONENT: Rgb = Rgb(0xCC, 0x79, 0xA7);
 /// Direction marks of leaders.
 pub(super) const LEADER_MARK: Rgb = INK;
-/// Order towards the target.
-pub(super) const TOWARDS: Rgb = Rgb(0x00, 0x9E, 0x73);
-/// Order against the target.
-pub(super) const AGAINST: Rgb = Rgb(0xD5, 0x5E, 0x00);
 /// The arrow that shows the target.
 pub(super) const TARGET: Rgb = Rgb(0xC3, 0xC9, 0xCE);
 
@@ -67,6 +63,27 @@ impl Rgb {
         };
         if let Some(path) = path.finish() {
             canvas.stroke_path(&path, &self.paint(), &stroke, Transform::identity(), None);
+        }
+    }
+
+    /// Draws a straight line with round ends.
+    pub(super) fn line(self, canvas: &mut Pixmap, [start, end]: [Point; 2], width: f32) {
+        let mut path = PathBuilder::new();
+        path.move_to(start.x, start.y);
+        path.line_to(end.x, end.y);
+        self.stroke(canvas, path, width);
+    }
+
+    /// Covers a part of a pixel, if it is in the frame.
+    pub(super) fn blend(self, canvas: &mut Pixmap, (column, row): (i64, i64), coverage: f32) {
+        let (width, height) = (i64::from(canvas.width()), i64::from(canvas.height()));
+        if (0..width).contains(&column) && (0..height).contains(&row) {
+            let place = 4 * (row * width + column) as usize;
+            let pixel = canvas.data_mut()[place..].iter_mut();
+            for (under, over) in pixel.zip([self.0, self.1, self.2]) {
+                let (below, above) = (f32::from(*under), f32::from(over));
+                *under = (below + coverage.min(1.0) * (above - below)).round() as u8;
+            }
         }
     }
 
