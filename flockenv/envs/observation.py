@@ -10,10 +10,10 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv import _core
 from flockenv.flock import Flock
 
-#: Newest version of the observation: of its entries, their order, scales and bounds.
+#: Version of the observation: of its entries, their order, scales and bounds.
 OBSERVATION_VERSION: int = _core.OBSERVATION_VERSION
 
-#: The blocks with their defaults: on or off, and how many neighbors, obstacles or fellow leaders.
+#: The blocks with their defaults: on or off, and how many neighbors or obstacles.
 BLOCKS: dict[str, Any] = _core.env_defaults()["observation"]
 
 
@@ -34,14 +34,6 @@ class Entry(NamedTuple):
 def observation_entries(blocks: Mapping[str, Any] | None = None) -> list[Entry]:
     """Return every entry of an observation, in order; blocks differ from `BLOCKS`."""
     return [Entry(**row) for row in _core.observation_table(dict(blocks or {}))]
-
-
-def observation_version(blocks: Mapping[str, Any] | None = None) -> int:
-    """Return the version of the observation that has these blocks.
-
-    It is 2 with obstacles or fellow leaders, else 1. Blocks are those that differ from `BLOCKS`.
-    """
-    return _core.observation_version(dict(blocks or {}))
 
 
 def flock_feature_entries() -> list[Entry]:

@@ -52,10 +52,9 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
     on. All entries are in the local-angle polar (LAP) frame of the leader's own position, outward
     and clockwise. They are scaled (the unit of an entry stands behind ×), and clipped at their
     bounds; the share of clipped numbers is reported at the end of the episode. The entries of
-    `neighbors` repeat for each of the nearest boats, nearest first, those of `obstacles` for each
-    of the nearest discs and walls, and those of `fellow_leaders` for each of the nearest other
-    leaders, however far they are. The blocks `law_rudder`, `obstacles`, `fellow_leaders` and
-    `lean_features` are off unless `observation` switches them on.
+    `neighbors` repeat for each of the nearest boats, nearest first, and those of `obstacles` for
+    each of the nearest discs and walls. The blocks `law_rudder`, `obstacles` and `lean_features`
+    are off unless `observation` switches them on.
 
     - own
       - `radial_position` in [-1.1, 1.1], -1 at the inner, +1 at the outer wall: distance from the
@@ -108,15 +107,6 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
       - `clockwise_distance` in [-4, 4] × 6 boat radii: the same along the leader's clockwise axis
       - `gap` in [-1, 4] × 6 boat radii: distance between the leader's hull and the obstacle,
         negative for overlap
-    - fellow_leaders
-      - `fellow` in [0, 1]: 1 where there is such a leader
-      - `cos_angle` in [-1, 1]: cosine of the angle along the ring, at the pool's center, from the
-        observing leader to it
-      - `sin_angle` in [-1, 1]: its sine: positive where it is clockwise
-      - `radial_distance` in [-4, 4] × 6 boat radii: how much farther than the observing leader it
-        is from the pool's center
-      - `cos_orientation` in [-1, 1]: cosine of its LAP orientation, in its own LAP frame
-      - `sin_orientation` in [-1, 1]: its sine: 1 heads clockwise
     - lean_features, all in [-20, 20] and standardized as in the pool
       - `radial_position`: distance from the pool's center, -1 at the inner and 1 at the outer wall
       - `outward_velocity`: velocity away from the center over the preferred speed
@@ -307,8 +297,8 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
     - `decision_period_s` = `None`: time in s from one decision to the next, a whole number of
       control steps, through which a step holds its action; None: one control step
     - `observation` = `{'own': True, 'phase': True, 'target': True, 'neighbors': 6, 'order': True,
-      'law_rudder': False, 'obstacles': 0, 'fellow_leaders': 0, 'lean_features': False}`: blocks
-      that differ from the default layout, such as `{'order': False, 'neighbors': 4}`
+      'law_rudder': False, 'obstacles': 0, 'lean_features': False}`: blocks that differ from the
+      default layout, such as `{'order': False, 'neighbors': 4}`
     - `mirror_to_target` = `False`: reflect observation, state and action where the target is ccw,
       so that both directions are one task
     - `dropout_rate` = `0.0`: chance that the camera loses a boat in a frame and shows where it was
@@ -327,8 +317,7 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
     - `render_size` = `(600, 600)`: width and height of a frame in pixels, 64 to 4096
 
     ## Version history
-    - v0, observation version 1: initial version. Where the block `obstacles` or `fellow_leaders` is
-      on, it is added at the end, and the version of the observation is 2.
+    - v0, observation version 1: initial version.
     """
 
     metadata: dict[str, Any] = {  # noqa: RUF012 - Gymnasium's own declaration

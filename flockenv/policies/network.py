@@ -14,12 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
 from flockenv._io.array_file import read_arrays, write_arrays
-from flockenv.envs.observation import (
-    BLOCKS,
-    OBSERVATION_VERSION,
-    ObservationSpace,
-    observation_version,
-)
+from flockenv.envs.observation import BLOCKS, OBSERVATION_VERSION, ObservationSpace
 from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.policies.base import RowPolicy
 
@@ -187,8 +182,7 @@ class NetworkPolicy(RowPolicy):
         If it cannot be written, which is an OSError, what was there before is still there.
         """
         header, arrays = self._contents()
-        version = observation_version(self.observation)
-        whole = {"format": FORMAT, "observation_version": version, **header}
+        whole = {"format": FORMAT, "observation_version": OBSERVATION_VERSION, **header}
         text = json.dumps({**whole, "made": self.provenance}, sort_keys=True)
         write_arrays(path, {"header": np.array(text), **arrays})
 
@@ -214,10 +208,10 @@ class NetworkPolicy(RowPolicy):
             if header["format"] != FORMAT:
                 raise ParameterError(f"format = {shown(header['format'])}, not {FORMAT!r}")
             version = header["observation_version"]
-            if version not in range(1, OBSERVATION_VERSION + 1):
+            if version != OBSERVATION_VERSION:
                 raise ParameterError(
-                    f"it was made for version {shown(version)} of the observation; this package "
-                    f"has versions up to {OBSERVATION_VERSION}: train it again"
+                    f"it was made for version {shown(version)} of the observation, not "
+                    f"{OBSERVATION_VERSION}: train it again"
                 )
             places = range(len(arrays) // 2)
             return cls(

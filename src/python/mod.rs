@@ -31,8 +31,8 @@ mod _core {
 
     #[pymodule_export]
     use super::analysis::{
-        collective_states, derived_series, jam_sizes, lap_orientation,
-        order_columns, ordering_time_s, sampled_analysis_window, structure_series,
+        collective_states, derived_series, jam_sizes, lap_orientation, order_columns,
+        ordering_time_s, sampled_analysis_window, structure_series,
     };
     #[pymodule_export]
     use super::arrays::flat_actions;
@@ -43,7 +43,7 @@ mod _core {
     #[pymodule_export]
     use super::law::{PyLaw, PyObservedLaw};
     #[pymodule_export]
-    use super::observation::{observation_table, observation_version, observe, state_table};
+    use super::observation::{observation_table, observe, state_table};
     #[pymodule_export]
     use super::recording::record;
     #[pymodule_export]

@@ -17,12 +17,6 @@ pub(super) fn layout_from(blocks: &Bound<'_, PyAny>, mirror: bool) -> PyResult<O
     Ok(layout.mirrored(mirror))
 }
 
-/// Version of an observation with these blocks.
-#[pyfunction]
-pub(super) fn observation_version(blocks: &Bound<'_, PyAny>) -> PyResult<u32> {
-    Ok(layout_from(blocks, false)?.version())
-}
-
 /// Every entry of an observation with these blocks, in order.
 #[pyfunction]
 pub(super) fn observation_table(blocks: &Bound<'_, PyAny>) -> PyResult<Vec<Value>> {

@@ -30,6 +30,7 @@ fn targets_alternate_by_quarters() {
         ..EnvSettings::default()
     };
     assert_eq!(plan.steps(), 9600);
+    assert_eq!(EnvSettings::default().steps(), 4800);
     let (mut episode, _) = EpisodeSchedule::new(&plan, &plan.target, 0);
     for (step, target) in [
         (0, Target::CounterClockwise),

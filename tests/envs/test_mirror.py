@@ -6,7 +6,7 @@ import pytest
 import flockenv
 from flockenv.envs.observation import observation_entries, state_entries
 
-BLOCKS = {"obstacles": 2, "fellow_leaders": 2}
+BLOCKS = {"obstacles": 2}
 #: The disc is its own mirror image.
 ARENA = {"n_boats": 12, "n_leaders": 3, "observation": BLOCKS, "discs": [(140.0, 0.0, 10.0)]}
 QUIET = {**ARENA, "c4": 0.0, "episode_s": 20.0, "mirror_to_target": True}

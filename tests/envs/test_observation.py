@@ -121,15 +121,14 @@ def test_blocks_can_be_switched_off(off):
     env.reset(seed=0)
 
 
-@pytest.mark.parametrize("block", ["obstacles", "fellow_leaders"])
-def test_a_block_at_the_end_leaves_the_others_where_they_are(block):
+def test_a_block_at_the_end_leaves_the_others_where_they_are():
     parameters = flockenv.FlockParameters(n_boats=9, n_leaders=3, discs=[(140, 0, 10)])
     flock = flockenv.Flock(parameters, seed=4)
-    plain, longer = observe(flock), observe(flock, {block: 2})
+    plain, longer = observe(flock), observe(flock, {"obstacles": 2})
     assert longer[:, : plain.shape[1]].tobytes() == plain.tobytes()
     for count in (65, -1, 2.5, 10**30):
-        with pytest.raises(flockenv.ParameterError, match=f"observation {block}"):
-            flockenv.LeadersEnv(observation={block: count})
+        with pytest.raises(flockenv.ParameterError, match="observation obstacles"):
+            flockenv.LeadersEnv(observation={"obstacles": count})
 
 
 def test_environment_and_flock_see_the_same():
@@ -158,16 +157,6 @@ def test_clip_rate_counts_what_is_clipped():
     info = env.step(np.zeros(1))[4]
     assert 0.05 < info["episode_summary"]["clip_rate"] < 0.4
     assert observation in env.observation_space
-
-
-def test_observations_stay_inside_their_space():
-    venv = flockenv.LeadersVectorEnv(8, pool="narrow", bw_s=(0.0, 1.0), target="random")
-    venv.reset(seed=0)
-    for _ in range(300):
-        observations, *_ = venv.step(venv.action_space.sample())
-        assert observations in venv.observation_space
-        assert np.isfinite(observations).all()
-    assert all(venv._batch.core.summary(flock)["clip_rate"] < 0.01 for flock in range(8))
 
 
 def test_state_describes_every_boat():

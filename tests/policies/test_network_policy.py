@@ -166,7 +166,7 @@ def changed(policy, tmp_path, **entries):
     ("entries", "message"),
     [
         ({"observation_version": OBSERVATION_VERSION + 1}, "version .* of the observation"),
-        ({"observation_version": str(OBSERVATION_VERSION)}, "version '2' of the observation"),
+        ({"observation_version": str(OBSERVATION_VERSION)}, "version '1' of the observation"),
         ({"format": "something else"}, "format = 'something else'"),
         ({"weight_1": np.zeros((8, 3))}, "layer 1 has weights"),
         ({"other": np.zeros(3), "another": np.zeros(3)}, "it has no 'weight_3'"),
@@ -199,3 +199,11 @@ def test_damaged_and_foreign_files(tmp_path):
     flockenv.simulate(flockenv.FlockParameters(), 1, 1.0).save(tmp_path / "run.npz")
     with pytest.raises(flockenv.ParameterError, match=r"run\.npz is no .*: it has no 'header'"):
         load(tmp_path / "run.npz")
+
+
+def test_a_file_that_inflates_is_refused_unread(tmp_path, monkeypatch):
+    network().save(tmp_path / "policy.npz")
+    monkeypatch.setattr("flockenv.policies.network._LARGEST_FILE", 1000)
+    monkeypatch.setattr("zipfile.ZipFile.read", lambda *_: pytest.fail("read"))
+    with pytest.raises(flockenv.ParameterError, match="bytes of 1000 that are accepted"):
+        load(tmp_path / "policy.npz")

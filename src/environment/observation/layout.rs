@@ -5,11 +5,10 @@ use super::entry::{BOAT, CLOCK, Entry};
 use crate::error::{FlockError, Result};
 use crate::parameters::{Kind, Setting, Value, wrong_kind};
 
-/// Newest version of the observation: of the entries, their order, scales and bounds. A policy belongs to the one of
-/// its layout.
-pub const OBSERVATION_VERSION: u32 = 2;
+/// Version of the observation: of the entries, their order, scales and bounds. A policy belongs to the one of its file.
+pub const OBSERVATION_VERSION: u32 = 1;
 
-/// The most neighbors, the most obstacles and the most fellow leaders that a leader may observe.
+/// The most neighbors, and the most obstacles, that a leader may observe.
 pub(crate) const MOST_NEIGHBORS: usize = 64;
 
 /// Which blocks are on.
@@ -55,7 +54,7 @@ impl ObservationLayout {
     /// Checks the layout.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] if nothing is observed, or too many neighbors, obstacles or fellow leaders.
+    /// [`FlockError::Parameter`] if nothing is observed, or too many neighbors or obstacles.
     pub fn check(&self) -> Result<()> {
         for &block in Block::ALL {
             let repeats = self.repeats(block);
@@ -71,26 +70,17 @@ impl ObservationLayout {
         FlockError::unless(self.size() > 0, "observation", "no block", accepted)
     }
 
-    /// The version of the observation that has this layout: 1 without obstacles and fellow leaders.
-    pub fn version(&self) -> u32 {
-        if self.has(Block::Obstacles) || self.has(Block::FellowLeaders) {
-            OBSERVATION_VERSION
-        } else {
-            1
-        }
-    }
-
     /// Whether a block is on.
     pub fn has(&self, block: Block) -> bool {
         self.repeats(block) > 0
     }
 
-    /// How often a block occurs: 0 or 1, or the number of neighbors, obstacles or fellow leaders.
+    /// How often a block occurs: 0 or 1, or the number of neighbors or obstacles.
     pub fn repeats(&self, block: Block) -> usize {
         self.repeats[block as usize]
     }
 
-    /// Has a block occur so often: 0 or 1, or the number of neighbors, obstacles or fellow leaders.
+    /// Has a block occur so often: 0 or 1, or the number of neighbors or obstacles.
     pub fn repeat(&mut self, block: Block, repeats: usize) {
         self.repeats[block as usize] = if block.is_counted() {
             repeats

@@ -1,7 +1,6 @@
 //! The blocks of an observation. Each has a file with its entries and what writes their physical values, and is
 //! declared here: `mod` and one line of [`declare_blocks`].
 
-mod fellow_leaders;
 mod law_rudder;
 mod lean_features;
 mod neighbors;
@@ -65,16 +64,6 @@ trait WriteBlock: MadeFor {
     fn write(&mut self, seen: &Seen, repeats: usize, physical: &mut Vec<f64>);
 }
 
-/// So many of what is counted with distances, or all if there are fewer: nearest first, equally near ones in order.
-fn nearest_first(
-    distances: impl Iterator<Item = (f64, usize)>,
-    wanted: usize,
-) -> impl Iterator<Item = usize> {
-    let mut found: Vec<_> = distances.collect();
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    found.into_iter().take(wanted).map(|(_, number)| number)
-}
-
 /// Declares blocks in the order of an observation: name, entries, writer, how often each occurs by default and whether
 /// it may occur more than once, as that of a neighbor does.
 macro_rules! declare_blocks {
@@ -102,7 +91,7 @@ macro_rules! declare_blocks {
                 match self { $(Self::$block => concat!("observation ", $name),)+ }
             }
 
-            /// Its entries; those of a counted block are one neighbor's, obstacle's or leader's.
+            /// Its entries; those of a counted block are one neighbor's or obstacle's.
             pub(crate) fn entries(self) -> &'static [Entry] {
                 match self { $(Self::$block => &$module::$entries,)+ }
             }
@@ -151,8 +140,6 @@ declare_blocks! {
     LawRudder = "law_rudder": law_rudder::{LAW_RUDDER, LawRudder}, 0 once;
     /// The nearest obstacles.
     Obstacles = "obstacles": obstacles::{OBSTACLE, NearestObstacles}, 0 counted;
-    /// The nearest fellow leaders, at any distance.
-    FellowLeaders = "fellow_leaders": fellow_leaders::{FELLOW_LEADER, FellowLeaders}, 0 counted;
     /// What the lean of a leader depends on, mirrored to the target and standardized.
     LeanFeatures = "lean_features": lean_features::{ENTRIES, LeanFeatures}, 0 once;
 }

@@ -1,7 +1,7 @@
 //! The obstacles nearest to leaders.
 
 use super::super::entry::{Entry, FLAG, Scale};
-use super::{MadeFor, Seen, WriteBlock, nearest_first};
+use super::{MadeFor, Seen, WriteBlock};
 use crate::error::Result;
 use crate::geometry::{Hull, Obstacle};
 use crate::parameters::FlockParameters;
@@ -36,10 +36,13 @@ impl WriteBlock for NearestObstacles {
     fn write(&mut self, seen: &Seen, repeats: usize, physical: &mut Vec<f64>) {
         let leader = &seen.view.hulls[seen.leader];
         let filled = physical.len() + repeats * OBSTACLE.len();
-        let obstacles = self.obstacles.iter().enumerate();
-        let distances = obstacles.map(|(number, each)| (each.distance(leader.center), number));
-        for number in nearest_first(distances, repeats) {
-            let obstacle = &self.obstacles[number];
+        let distances = self
+            .obstacles
+            .iter()
+            .map(|each| each.distance(leader.center));
+        let mut found: Vec<_> = distances.zip(&self.obstacles).collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (_, obstacle) in found.into_iter().take(repeats) {
             let nearest = obstacle.nearest(leader.center) - leader.center;
             let distance = seen.frame.components(nearest);
             let mut gap = f64::INFINITY;
