@@ -43,10 +43,10 @@ def load_recording(path: Path, layout: Path | None = None, *, quiet: bool = Fals
             raise ParameterError(f"{path} cannot be read: {error.strerror}") from error
     beside = path.with_suffix(".toml")
     if layout is None and path.exists() and not beside.exists():
-        _, doubts = guess_layout(path)
-        say(f"{printable(path)} has no description; {printable(beside)} is a guess. Check:", errors)
-        for name, meaning in doubts.items():
-            say(f"  {name}: {meaning}", errors)
+        checks = guess_layout(path)
+        say(f"{printable(path)} has no description; {printable(beside)} is a guess:", errors)
+        for line in checks:
+            say(f"  {line}", errors)
 
     def report(found: TrackReport) -> None:
         if not quiet:

@@ -88,7 +88,7 @@ def recording_of(
         raise ParameterError(f"ids holds {len(names)} names for {poses.shape[1]} boats")
     order = _leaders_first(names, [str(each) for each in leaders])
     poses[..., 2] = unwrapped(poses[..., 2])
-    motion = (velocities(times, poses) if motion is None else motion)[:, order]
+    motion = (velocities(times, poses)[0] if motion is None else motion)[:, order]
     poses = poses[:, order]
     radius, shape = hull
     parameters = FlockParameters(
@@ -124,25 +124,23 @@ def recording_of(
 
 
 def velocities(
-    time_s: NDArray[np.float64],
-    pose: NDArray[np.float64],
-    broken: NDArray[np.bool_] | None = None,
-) -> NDArray[np.float64]:
+    time_s: NDArray[np.float64], pose: NDArray[np.float64], fastest_cm_s: float = np.inf
+) -> tuple[NDArray[np.float64], int]:
     """Return differences of poses, of shape (t, n, 3), in cm/s, cm/s and rad/s.
 
     Central ones where a boat is there before and after, one-sided ones at the ends of its tracks,
-    NaN where it is there for one sample only. No difference is taken across steps that are
-    `broken`, of shape (t - 1, n).
+    NaN where it is there for one sample only. No difference is taken across steps that are faster
+    than a speed, whose number is returned too.
     """
     there = ~np.isnan(pose[..., 0])
     steps = np.diff(pose, axis=0) / np.diff(time_s)[:, None, None]
-    if broken is not None:
-        steps[broken] = np.nan
+    broken = np.hypot(steps[..., 0], steps[..., 1]) > fastest_cm_s
+    steps[broken] = np.nan
     none = np.full((1, *pose.shape[1:]), np.nan)
     before, after = np.concatenate([none, steps]), np.concatenate([steps, none])
     mean = (before + after) / 2
     found = np.where(np.isnan(mean), np.where(np.isnan(before), after, before), mean)
-    return np.where(there[..., None], found, np.nan)
+    return np.where(there[..., None], found, np.nan), int(broken.sum())
 
 
 def _numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:

@@ -1,19 +1,14 @@
 """A first description of tracks that have none, from the names and the numbers of their columns."""
 
+import json
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
-import tomli_w
 
 from flockenv._io.atomic_write import write_text
 from flockenv.errors import ParameterError
-from flockenv.tracks.layout import TrackLayout, read_layout
 from flockenv.tracks.reader import numbers_of, read_table
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 _NAMES = {
     "frame": ("frame", "frame_number", "frames", "time_s", "time", "t", "timestamp", "step"),
@@ -22,24 +17,15 @@ _NAMES = {
     "y": ("y_cm", "y", "pos_y", "y_px", "position_y", "centroid_y", "center_y"),
     "heading": ("heading_rad", "heading", "heading_deg", "theta", "angle", "orientation", "alpha"),
 }
-_DOUBTS = {
-    "pool": "outer and inner radius in cm: the circle about all positions stands here",
-    "center": "center of the pool in units of the file: the middle of all positions",
-    "cm_per_unit": "how many cm a unit of x and y has: 1 stands for cm",
-    "y_down": "whether y points down, as in pictures",
-    "fps": "frames per second of the camera; without it the column of frames holds times in s",
-    "heading": "a column of headings; without one they are the directions of motion",
-}
 _FRAMES = ("frame", "frame_number", "frames", "step")
-_FPS = 25.0
 _MARGIN = 1.02
 
 
-def guess_layout(path: str | os.PathLike[str]) -> tuple[TrackLayout, dict[str, str]]:
+def guess_layout(path: str | os.PathLike[str]) -> list[str]:
     """Write a description of tracks beside their table, guessed from the table.
 
-    The description is the TOML file of the table's name. Returned are the layout as it was written,
-    and the fields that nothing in the table says, each with what to check.
+    The description is the TOML file of the table's name. Returned are its lines that nothing in the
+    table says, each with what to check.
 
     Raises
     ------
@@ -50,42 +36,43 @@ def guess_layout(path: str | os.PathLike[str]) -> tuple[TrackLayout, dict[str, s
     """
     path = Path(path)
     beside, table = path.with_suffix(".toml"), read_table(path)
-    fields: dict[str, object] = {field: _column(table, field) for field in _NAMES}
+    there = {str(name).strip().lower(): str(name) for name in table.columns}
+    columns = {
+        field: next((there[name] for name in names if name in there), "")
+        for field, names in _NAMES.items()
+    }
     for field in ("frame", "id", "x", "y"):
-        if not fields[field]:
+        if not columns[field]:
             raise ParameterError(
                 f"{path}: no column looks like {field!r} ({', '.join(_NAMES[field])}) among "
                 f"{', '.join(map(str, table.columns))}: describe the columns in {beside}"
             )
-    points = np.stack([numbers_of(table, str(fields[axis])) for axis in "xy"], axis=-1)
+    points = np.stack([numbers_of(table, columns[axis]) for axis in "xy"], axis=-1)
     points = points[np.isfinite(points).all(axis=1)]
     if len(points) == 0:
         raise ParameterError(f"{path}: no row has a position")
     low, high = points.min(axis=0), points.max(axis=0)
-    center = (low + high) / 2
+    x, y = center = (low + high) / 2
     radius = float(np.hypot(*(points - center).T).max()) * _MARGIN or 1.0
-    fields |= {
-        "pool": [round(radius, 1), 0.0],
-        "center": [round(float(each), 2) for each in center],
-        "cm_per_unit": 1.0,
-        # Pictures count from their upper left corner.
-        "y_down": bool((low >= 0.0).all()),
+    known = [f"{field} = {json.dumps(name, ensure_ascii=False)}" for field, name in columns.items()]
+    # Pictures count from their upper left corner.
+    is_down = json.dumps(bool((low >= 0.0).all()))
+    doubts = {
+        f"pool = [{radius:.1f}, 0.0]": "outer and inner radius in cm, here of the circle about all "
+        "positions",
+        f"center = [{x:.2f}, {y:.2f}]": "center of the pool in units of the file, here the middle "
+        "of all positions",
+        "cm_per_unit = 1.0": "how many cm a unit of x and y has",
+        f"y_down = {is_down}": "whether y points down, as in pictures",
     }
-    if str(fields["frame"]).lower() in _FRAMES:
-        fields["fps"] = _FPS
-    if fields["heading"]:
-        largest = np.nanmax(np.abs(numbers_of(table, str(fields["heading"]))), initial=0.0)
-        fields["heading_unit"] = "deg" if largest > 2 * np.pi + 1e-6 else "rad"
-    known = {"heading"} if fields["heading"] else set()
-    doubts = {name: text for name, text in _DOUBTS.items() if name in fields.keys() - known}
-    lines = ["# Guessed from the table beside this file. Check the lines that say so."]
-    for name, value in fields.items():
-        line = tomli_w.dumps({name: value}, multiline_strings=False).strip().replace("\n", " ")
-        lines.append(f"{line}  # check: {doubts[name]}" if name in doubts else line)
-    write_text(beside, "\n".join(lines) + "\n")
-    return read_layout(beside), doubts
-
-
-def _column(table: "pd.DataFrame", field: str) -> str:
-    names = {str(name).strip().lower(): str(name) for name in table.columns}
-    return next((names[each] for each in _NAMES[field] if each in names), "")
+    if columns["frame"].lower() in _FRAMES:
+        doubts["fps = 25.0"] = "frames per second; without it the column of frames holds times in s"
+    if columns["heading"]:
+        largest = np.nanmax(np.abs(numbers_of(table, columns["heading"])), initial=0.0)
+        known.append(f'heading_unit = "{"deg" if largest > 2 * np.pi + 1e-6 else "rad"}"')
+    else:
+        doubts[known.pop()] = "a column; without one headings are the directions of motion"
+    checks = [f"{line}  # check: {meaning}" for line, meaning in doubts.items()]
+    first = "# Guessed from the table beside this file. Check the lines that say so."
+    write_text(beside, "\n".join([first, *known, *checks]) + "\n")
+    return checks

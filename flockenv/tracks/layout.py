@@ -86,8 +86,7 @@ class TrackLayout:
     y_down : bool
         Whether y points down, as in pictures; headings then turn clockwise with rising angle.
     max_speed_cm_s : float
-        Nothing moves faster: a sample that it takes more to reach from both sides is left out, and
-        no velocity is taken across a step that is faster.
+        Nothing moves faster: no velocity is taken across a step that is.
 
     Raises
     ------

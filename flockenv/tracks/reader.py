@@ -40,12 +40,9 @@ class TrackReport:
         Poses that are used.
     missing : int
         Rows without a name, a position or a heading, which are left out.
-    jumps : int
-        Samples left out because it took more than the greatest speed to reach them from the sample
-        before and to reach the one after.
     broken : int
-        Other steps above the greatest speed, such as names that were exchanged: both samples are
-        used, and no velocity is taken across.
+        Steps above the greatest speed, such as of wrong detections and of names that were
+        exchanged: both samples are used, and no velocity is taken across.
     lone : int
         Samples without a neighbor in time. They have no velocity, and no quantity counts them.
     """
@@ -54,15 +51,14 @@ class TrackReport:
     boats: int
     samples: int
     missing: int
-    jumps: int
     broken: int
     lone: int
 
     def __str__(self) -> str:
         return (
             f"{self.samples} poses of {self.boats} boats in {self.frames} frames; left out: "
-            f"{self.missing} rows without a name or a pose, {self.jumps} jumps; steps too fast for "
-            f"a velocity: {self.broken}; samples without a velocity: {self.lone}"
+            f"{self.missing} rows without a name or a pose; steps too fast for a velocity: "
+            f"{self.broken}; samples without a velocity: {self.lone}"
         )
 
 
@@ -142,22 +138,19 @@ def _recording(
             "fragments of tracks, or read a part of the file"
         )
     per_s = 1.0 if layout.fps is None else layout.fps
-    rows, jumps = _without_jumps(rows, layout.max_speed_cm_s / per_s)
     at = (
         np.searchsorted(frames, rows["frame"]),
         rows["id"].map({name: place for place, name in enumerate(names)}),
     )
     pose = np.full((len(frames), len(names), 3), np.nan)
     pose[at] = rows[["x", "y", "heading"]].to_numpy()
-    broken = np.zeros(pose.shape[:2], bool)
-    broken[at] = _too_fast(rows, layout.max_speed_cm_s / per_s)
     times = (frames - frames[0]) / per_s
     if layout.heading is None:
-        motion = velocities(times, pose, broken[1:])
+        motion, _ = velocities(times, pose, layout.max_speed_cm_s)
         pose[..., 2] = _direction(motion[..., 0], motion[..., 1])
         pose[np.isnan(pose[..., 2])] = np.nan
     pose[..., 2] = unwrapped(pose[..., 2])
-    velocity = velocities(times, pose, broken[1:])
+    velocity, broken = velocities(times, pose, layout.max_speed_cm_s)
     there = np.isfinite(pose[..., 0])
     recording = recording_of(
         times,
@@ -175,8 +168,7 @@ def _recording(
             boats=len(names),
             samples=int(there.sum()),
             missing=missing,
-            jumps=jumps,
-            broken=int(broken.sum()),
+            broken=broken,
             lone=int((there & np.isnan(velocity[..., 0])).sum()),
         )
     )
@@ -244,23 +236,3 @@ def numbers_of(table: "pd.DataFrame", name: str) -> NDArray[np.float64]:
 def _direction(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the angle of vectors, in radians; NaN for none."""
     return np.where((x == 0.0) & (y == 0.0), np.nan, np.arctan2(y, x))
-
-
-def _without_jumps(rows: "pd.DataFrame", most_cm: float) -> "tuple[pd.DataFrame, int]":
-    """Return the rows but for those that only faster steps than the greatest reach, their number.
-
-    Rows follow each other by name, then frame.
-    """
-    too_fast = _too_fast(rows, most_cm)
-    # A track's first and last sample have no other side.
-    first, last = ~rows["id"].duplicated(), ~rows["id"].duplicated(keep="last")
-    leaves_too_fast = np.append(too_fast[1:], False)
-    jumps = (too_fast | first) & (leaves_too_fast | last) & ~(first & last)
-    return rows[~jumps], int(jumps.sum())
-
-
-def _too_fast(rows: "pd.DataFrame", most_cm: float) -> NDArray[np.bool_]:
-    """Return which rows a step of more than so many cm per frame reaches."""
-    frames, x, y = rows.groupby("id")[["frame", "x", "y"]].diff().to_numpy().T
-    too_fast: NDArray[np.bool_] = np.hypot(x, y) > most_cm * frames
-    return too_fast

@@ -92,7 +92,7 @@ def test_a_table_without_a_description_gets_one_to_check(cli, tmp_path):
     assert json.loads(done.stdout)["milling_mean"] == pytest.approx(1.0, abs=0.01)
     text = (tmp_path / "robots.toml").read_text()
     for field in ("pool", "center", "cm_per_unit", "y_down", "fps"):
-        assert f"  {field}: " in done.stderr
+        assert f"  {field} = " in done.stderr
         assert any(line.startswith(field) and "# check: " in line for line in text.splitlines())
     layout = flockenv.tracks.read_layout(tmp_path / "robots.toml")
     assert (layout.id, layout.heading, layout.heading_unit) == ("robot", "theta", "deg")
