@@ -5,7 +5,6 @@ import json
 import os
 import zipfile
 from collections.abc import Mapping
-from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any
 
@@ -209,21 +208,8 @@ def _policy_of(data: Mapping[str, Any]) -> Any:
     """Return the policy with new weights, as its algorithm would make it."""
     kind, options = data["policy_class"], dict(data["policy_kwargs"])
     options.pop("device", None)
-    takes = _arguments(kind)
-    if "use_sde" in takes:
-        options.setdefault("use_sde", data["use_sde"])
-    if "lr_schedule" in takes:
-        options["lr_schedule"] = lambda _: 0.0
-    return kind(data["observation_space"], data["action_space"], **options)
-
-
-def _arguments(kind: type) -> set[str]:
-    """Return the names of a class's arguments, with those that it hands on to its bases."""
-    found: set[str] = set()
-    for base in kind.__mro__:
-        if "__init__" in vars(base):
-            parameters = signature(vars(base)["__init__"]).parameters.values()
-            found |= {each.name for each in parameters}
-            if all(each.kind is not Parameter.VAR_KEYWORD for each in parameters):
-                break
-    return found
+    arguments = data["observation_space"], data["action_space"], lambda _: 0.0
+    try:
+        return kind(*arguments, **{"use_sde": data["use_sde"], **options})
+    except TypeError:  # Those of algorithms without this exploration, such as DQN, do not take it.
+        return kind(*arguments, **options)
