@@ -7,13 +7,6 @@ import flockenv
 from flockenv import Flock, FlockParameters
 
 
-def at(parameters, *poses, **changes):
-    p = parameters.replace(n_boats=len(poses), n_leaders=0, c4=0.0, **changes)
-    flock = Flock(p.replace(pool=(1000.0, 0)), seed=1)
-    flock.set_state(poses, np.zeros((len(poses), 3)))
-    return flock
-
-
 def test_none_before_the_first_substep(flock):
     contacts = flock.contacts()
     assert isinstance(contacts, flockenv.Contacts)
@@ -35,18 +28,6 @@ def test_shapes_and_dtypes(flock):
     assert (contacts.j >= -2).all()
 
 
-def test_bow_to_bow_forces_are_the_motors(parameters):
-    flock = at(parameters, [-7.5, 0.0, 0.0], [7.5, 0.0, np.pi])
-    flock.advance(1.0)
-    contacts = flock.contacts()
-    pushing = contacts.force > 0
-    assert (contacts.i[pushing], contacts.j[pushing]) == ([0], [1])
-    assert contacts.normal[pushing] == pytest.approx(np.array([[-1.0, 0.0]]))
-    assert contacts.force[pushing] == pytest.approx([15.0], rel=1e-9)
-    assert contacts.gap_cm[pushing] == pytest.approx([0.0], abs=1e-9)
-    assert contacts.point_cm[pushing] == pytest.approx(np.zeros((1, 2)), abs=1e-9)
-
-
 @pytest.mark.parametrize(
     ("pool", "x_cm", "heading", "wall"),
     [((1000.0, 0), 992.5, 0.0, -1), ("narrow", 56.0, np.pi, -2)],
@@ -61,26 +42,6 @@ def test_walls_are_negative_numbers(parameters, pool, x_cm, heading, wall):
     point_cm = {-1: 1000.0, -2: 48.5}[wall]
     assert contacts.point_cm[pushing] == pytest.approx(np.array([[point_cm, 0.0]]), abs=1e-9)
     assert contacts.force[pushing] == pytest.approx([15.0], rel=1e-6)
-
-
-def test_a_flank_touches_where_the_other_bow_is(parameters):
-    # Boat 1 heads down at the flank of boat 0, 1 cm ahead of its middle.
-    flock = at(parameters, [0.0, 0.0, 0.0], [1.0, 12.5, -np.pi / 2])
-    flock.advance(0.1)
-    contacts = flock.contacts()
-    pushed = contacts.force > 0
-    assert contacts.normal[pushed] == pytest.approx(np.array([[0.0, -1.0]]), abs=0.2)
-    offset = contacts.point_cm[pushed][0] - flock.pose[0, :2]
-    across = np.array([-np.sin(flock.pose[0, 2]), np.cos(flock.pose[0, 2])])
-    assert offset @ across == pytest.approx(5.0, abs=1e-9)
-    bow = flock.pose[1, :2] + 2.5 * np.array([np.cos(flock.pose[1, 2]), np.sin(flock.pose[1, 2])])
-    assert np.linalg.norm(contacts.point_cm[pushed][0] - bow) == pytest.approx(5.0, abs=1e-3)
-
-
-def test_none_after_a_state_was_set(flock):
-    flock.advance(10.0)
-    flock.set_state(flock.pose, flock.velocity, allow_overlap=True)
-    assert len(flock.contacts()) == 0
 
 
 def test_places_along_the_cores_give_the_points_back():

@@ -62,16 +62,6 @@ def test_arrays_are_copies(flock):
     assert flock.snapshot() == before
 
 
-def test_advance_by_parts_is_advance_by_the_whole(flock):
-    other = copy.copy(flock)
-    flock.advance(5.0)
-    for _ in range(50):
-        other.advance(0.1)
-    assert np.array_equal(flock.pose, other.pose)
-    other.advance(0)
-    assert other.time_s == 5.0
-
-
 def test_a_long_advance_works_in_pieces_that_change_nothing(flock):
     other = copy.copy(flock)
     flock.advance(1000.0)  # 600 000 boat-substeps: more than one piece
@@ -107,17 +97,6 @@ def test_rudders_of_any_layout_do_the_same(flock, form):
     flock.advance(1.0, rudder=rudder)
     other.advance(1.0, rudder=form(rudder))
     assert np.array_equal(flock.pose, other.pose)
-
-
-def test_states_of_any_layout_do_the_same(flock):
-    flock.advance(2.0)
-    pose, velocity = flock.pose, flock.velocity
-    for form in (np.asfortranarray, lambda a: a.tolist(), lambda a: np.dstack([a, a])[..., 0]):
-        other = Flock(flock.parameters, seed=7)
-        other.set_state(form(pose), form(velocity), time_s=2.0, allow_overlap=True)
-        assert np.array_equal(other.pose, pose)
-        assert np.array_equal(other.velocity, velocity)
-        assert other.time_s == 2.0
 
 
 @pytest.mark.parametrize("seconds", BAD_SECONDS)
@@ -186,20 +165,13 @@ def test_overlaps_are_refused_unless_allowed(flock):
     assert np.isfinite(flock.pose).all()
 
 
-@pytest.mark.parametrize("seed", [-1, 2**64, pytest.param(10**5000, id="huge"), 1.5, math.nan])
-def test_seeds_out_of_range_are_refused(unchanged, seed):
-    with pytest.raises(ParameterError, match="seed"):
-        unchanged.reset(seed)
-    with pytest.raises(ParameterError, match="seed"):
-        Flock(unchanged.parameters, seed)
-
-
 def test_motion_that_explodes_is_a_solver_error_and_undone(parameters):
     p = parameters.replace(scheme="moreau", dt_s=0.1, c0=1e6, solver="gauss-seidel")
     flock = Flock(p, seed=1)
     pose = flock.pose
-    with pytest.raises(SolverError, match="range"):
+    with pytest.raises(RuntimeError, match="range") as raised:
         flock.advance(60.0)
+    assert isinstance(raised.value, SolverError)
     assert flock.time_s == 0.0
     assert np.array_equal(flock.pose, pose)
 
@@ -239,18 +211,6 @@ def test_copies_are_independent_and_go_on_alike(flock):
     assert flock.snapshot() == before
     flock.advance(2.0)
     assert all(other.snapshot() == flock.snapshot() for other in others)
-
-
-def test_repr_names_what_it_is(flock):
-    assert repr(flock) == "<flockenv.Flock of 12 boats, 2 of them leaders, seed 7, time 0 s>"
-
-
-def test_statistics_count_the_substeps(flock):
-    flock.advance(1.0)
-    statistics = flock.statistics
-    assert statistics.substeps == 50
-    assert statistics.unsolved == 0
-    assert statistics.worst_residual_cm_s <= 1e-10
 
 
 def test_a_flock_from_a_state_is_one_that_was_put_there():

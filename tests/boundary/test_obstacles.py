@@ -44,24 +44,6 @@ def test_snapshots_and_recordings_hold_them(arena, tmp_path):
     assert loaded.parameters == arena
 
 
-def test_contacts_number_obstacles_after_the_walls_of_the_pool():
-    p = FlockParameters(
-        n_boats=2,
-        pool=(90.0, 0.0),
-        c4=0.0,
-        bw_s=0.0,
-        discs=[(40, 0, 10)],
-        walls=[(-40, -50, -40, 50)],
-    )
-    flock = Flock(p, seed=1)
-    flock.set_state([[22.5, 0, 0], [-32.5, 0, np.pi]], np.zeros((2, 3)))
-    flock.advance(1.0)
-    contacts = flock.contacts()
-    assert sorted(zip(contacts.i, contacts.j, strict=True)) == [(0, -3), (1, -4)]
-    assert contacts.force == pytest.approx(15.0, abs=1e-6)
-    assert contacts.point_cm == pytest.approx(np.array([[30.0, 0], [-40.0, 0]]), abs=1e-9)
-
-
 def test_recorded_contacts_of_other_obstacles_are_refused(arena):
     run = simulate(arena, 3, 40.0, contacts=True)
     fields = {name: getattr(run, name) for name in run.__dataclass_fields__}

@@ -23,18 +23,6 @@ def run():
     return flockenv.simulate(PARAMETERS, seed=3, duration_s=20.0)
 
 
-def test_nematic_order_and_milling_from_their_definitions(run):
-    x, y, heading = np.moveaxis(run.pose[:, 1:], 2, 0)
-    vx, vy, _ = np.moveaxis(run.velocity[:, 1:], 2, 0)
-    doubled = np.exp(2j * (np.arctan2(y, x) - heading))
-    assert run.order.nematic == pytest.approx(np.abs(doubled.mean(axis=1)), abs=1e-12)
-    around, greatest = y * vx - x * vy, np.hypot(x, y) * np.hypot(vx, vy)
-    moving = greatest.sum(axis=1) > 0
-    expected = around.sum(axis=1)[moving] / greatest.sum(axis=1)[moving]
-    assert run.order.milling[moving] == pytest.approx(expected, abs=1e-12)
-    assert (run.order.milling[~moving] == 0.0).all()
-
-
 def test_tables_of_sweeps_have_every_averaged_quantity():
     result = execute(RunSpec(parameters=PARAMETERS, seed=3, duration_s=20.0))
     row = summary(result)

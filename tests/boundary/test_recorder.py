@@ -102,15 +102,3 @@ def test_progress_is_reported_with_and_without_a_policy():
         assert len(reported) > 2
         assert 1200.0 < sum(reported) <= 1800.0
         assert min(reported) > 0.0
-
-
-def test_the_law_in_an_environment_is_the_law_in_a_run():
-    env = flockenv.LeadersEnv(params=PARAMETERS, episode_s=20.0)
-    law = flockenv.policies.SteeringLaw()
-    observation, info = env.reset(seed=4)
-    rewards, truncated = [], False
-    while not truncated:
-        observation, reward, _, truncated, _ = env.step(law.predict(observation)[0])
-        rewards.append(reward)
-    run = simulate(PARAMETERS, int(info["flock_seed"]), 20.0, policy=law)
-    assert rewards == pytest.approx(run.order.signed_order("cw")[1:], abs=1e-9)

@@ -43,11 +43,6 @@ def test_shapes_and_dtypes():
     assert repr(RUN) == "<flockenv.Recording of 5 boats, seed 3, 11 samples to 1.0 s>"
 
 
-def test_the_analysis_window_is_late_fw_and_early_nop1():
-    run = simulate(PARAMETERS, seed=3, duration_s=4.3, sample_hz=4.0)
-    assert run.time_s[run.in_analysis_window].tolist() == [1.0, 1.25, 1.5, 1.75, 2.0, 2.25]
-
-
 @pytest.mark.parametrize(
     ("duration_s", "sample_hz", "samples"),
     [
@@ -193,22 +188,6 @@ def test_a_run_goes_on_from_a_snapshot_with_the_same_bits():
     assert rest.order == flockenv.OrderSeries(
         *(getattr(whole.order, each.name)[400:] for each in RECORDED)
     )
-
-
-def test_a_run_starts_where_it_is_given():
-    first = flockenv.simulate(PARAMETERS, 3, 10.0)
-    state = {"pose": first.pose[-1], "velocity": first.velocity[-1], "time_s": 10.0}
-    state["allow_overlap"] = True
-    law = flockenv.policies.SteeringLaw()
-    for policy in (None, law):
-        run = flockenv.simulate(PARAMETERS, 4, 5.0, policy=policy, start=state)
-        assert np.array_equal(run.pose[0], first.pose[-1])
-        assert run.time_s[[0, -1]].tolist() == [10.0, 15.0]
-    flock = flockenv.Flock(PARAMETERS, 4)
-    flock.set_state(first.pose[-1], first.velocity[-1], 10.0, allow_overlap=True)
-    flock.advance(5.0)
-    again = flockenv.simulate(PARAMETERS, 4, 5.0, 0.2, start=state)
-    assert np.array_equal(again.pose[-1], flock.pose)
 
 
 def test_a_start_that_the_flock_cannot_have_is_refused():

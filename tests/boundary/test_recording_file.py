@@ -63,14 +63,6 @@ def test_contacts_are_the_flocks_that_carried_a_force():
     assert np.array_equal(alone.pose, run.pose)
 
 
-def test_contacts_under_a_policy():
-    crowd = PARAMETERS.replace(n_boats=20, bw_s=0.0)
-    law = flockenv.policies.SteeringLaw()
-    run = simulate(crowd, seed=3, duration_s=10.0, policy=law, contacts=True)
-    assert len(run.contacts.i) > 200
-    assert load(saved(run)) == run
-
-
 @pytest.mark.parametrize("compressed", [False, True])
 @pytest.mark.parametrize("dtype", ["float64", "float32"])
 def test_a_file_gives_back_the_same(tmp_path, compressed, dtype):
@@ -97,12 +89,6 @@ def test_a_missing_file_is_an_os_error(tmp_path):
         Recording.load(tmp_path / "none.npz")
     with pytest.raises(FileNotFoundError):
         RUN.save(tmp_path / "none" / "run.npz")
-
-
-@pytest.mark.parametrize("blob", [b"", b"text", b"PK\x03\x04", bytes(1000), b"flockst1" * 20])
-def test_foreign_files_are_refused(blob):
-    with pytest.raises(ParameterError, match=r"run\.npz is no whole, unharmed \.npz file"):
-        load(blob)
 
 
 def with_arrays(**changes) -> bytes:
@@ -194,17 +180,6 @@ def test_what_steered_is_recorded():
         assert run.policy == name
         assert load(saved(run)).policy == name
     assert re.fullmatch(r"sha256:[0-9a-f]{12}", learned.digest)
-
-
-def test_pickled_objects_are_never_loaded(tmp_path):
-    class Trap:
-        def __reduce__(self):
-            return Path.touch, (tmp_path / "executed",)
-
-    blob = with_arrays(pose=np.array([Trap()], dtype=object))
-    with pytest.raises(ParameterError):
-        load(blob)
-    assert not (tmp_path / "executed").exists()
 
 
 def test_rudders_are_saved_checked_and_may_be_missing():

@@ -2,13 +2,11 @@
 
 import copy
 import pickle
-import sys
 
 import numpy as np
 import pytest
 
 import flockenv
-from flockenv._io.extras import MissingExtraError
 from flockenv.order import RECORDED
 
 PARAMETERS = flockenv.FlockParameters(n_boats=5, n_leaders=2, pool="narrow")
@@ -91,22 +89,6 @@ def test_order_is_equal_to_the_same_series_without_times(run):
     plain = flockenv.OrderSeries(*(getattr(run.order, each.name) for each in RECORDED))
     assert run.order == plain == pickle.loads(pickle.dumps(run.order))
     assert np.array_equal(pickle.loads(pickle.dumps(run.order)).time_s, run.time_s)
-
-
-@pytest.mark.parametrize(
-    ("use", "module", "extra"),
-    [
-        (lambda run: run.to_dataframe(), "pandas", "plot"),
-        (lambda run: run.to_xarray(), "xarray", "sweep"),
-        (lambda run: run.order.plot(), "matplotlib.pyplot", "plot"),
-    ],
-)
-def test_a_missing_library_is_named_with_its_extra(run, monkeypatch, use, module, extra):
-    monkeypatch.setitem(sys.modules, module, None)
-    package = module.partition(".")[0]
-    words = rf"{package} is not installed: .*flockenv\[{extra}\]"
-    with pytest.raises(MissingExtraError, match=words):
-        use(run)
 
 
 @pytest.mark.parametrize("name", ["m.csv", "m.parquet", "m", "m.npz.gz"])

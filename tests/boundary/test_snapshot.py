@@ -22,20 +22,6 @@ def moving(parameters=PARAMETERS):
 SNAPSHOT = moving().snapshot()
 
 
-@pytest.mark.parametrize("preset", FlockParameters.presets())
-@pytest.mark.parametrize("seconds", [0.0, 1.0, 2.013, 3.5])
-def test_continuing_is_bit_identical(preset, seconds):
-    p = FlockParameters.preset(preset).replace(n_boats=20, n_leaders=3, pool="narrow")
-    flock, other = Flock(p, seed=7), Flock(p, seed=8)
-    flock.advance(seconds)
-    other.restore(flock.snapshot())
-    third = Flock.from_snapshot(flock.snapshot())
-    for each in (flock, other, third):
-        each.advance(7.01)
-    assert np.array_equal(other.pose, flock.pose)
-    assert flock.snapshot() == other.snapshot() == third.snapshot()
-
-
 def test_a_snapshot_brings_seed_and_target_along():
     flock = moving()
     flock.set_target("ccw")

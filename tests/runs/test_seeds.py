@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from flockenv import ParameterError
-from flockenv.runs.seeds import POLICY_SEEDS
+from flockenv import LeadersVectorEnv, ParameterError
+from flockenv.runs.seeds import POLICY_SEEDS, check_evaluation_seeds
 
 REPOSITORY = Path(__file__).parents[2]
 MAKERS = [*(REPOSITORY / "baselines").glob("*.py"), *(REPOSITORY / "flockenv").rglob("*.py")]
@@ -42,3 +42,23 @@ def test_each_use_that_makes_policies_has_one_script():
 def test_seeds_that_a_use_has_not_are_refused(arguments, words):
     with pytest.raises(ParameterError, match=words):
         POLICY_SEEDS["law tuning"].seeds(*arguments)
+
+
+@pytest.mark.parametrize(
+    "use",
+    [
+        lambda huge: check_evaluation_seeds([huge]),
+        lambda huge: check_evaluation_seeds(range(huge)),
+        lambda huge: POLICY_SEEDS["training"].seeds(huge),
+        lambda huge: LeadersVectorEnv(huge),
+        lambda huge: LeadersVectorEnv(2).reset(seed=[huge, 1]),
+    ],
+)
+def test_whole_numbers_that_python_cannot_print_are_named_errors(use):
+    with pytest.raises(ParameterError, match=r"a value that cannot be printed|seed = 4294967296"):
+        use(10**5000)
+
+
+def test_a_long_range_of_seeds_is_checked_at_once():
+    check_evaluation_seeds(range(1 << 32))
+    check_evaluation_seeds(range(0))

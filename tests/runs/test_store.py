@@ -1,13 +1,11 @@
 """A finished run is stored whole and comes back bit for bit; whatever else lies there is named."""
 
-import signal
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import flockenv
-from flockenv._io.interrupts import noted_interrupts
 from flockenv.order import ORDER
 from flockenv.runs import store as run_store
 from flockenv.runs.spec import KEEP, RunSpec, execute
@@ -128,28 +126,6 @@ def test_only_missing_runs_are_made_and_failures_cost_no_others(
     before = store.path(spec).stat().st_mtime_ns
     assert run_missing([spec], store) == {}
     assert store.path(spec).stat().st_mtime_ns == before
-
-
-def test_a_command_that_is_interrupted_keeps_the_runs_under_way(
-    spec: RunSpec, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    store, made = RunStore(tmp_path), []
-    specs = [RunSpec(parameters=spec.parameters, seed=seed, duration_s=30.0) for seed in range(9)]
-    once = iter(
-        [signal.SIGINT]
-    )  # Two runs are made at a time, and a second press ends the process.
-
-    def pressed(spec: RunSpec) -> flockenv.Recording:
-        made.append(spec)
-        for number in once:
-            signal.raise_signal(number)
-        return execute(spec)
-
-    monkeypatch.setattr(run_store, "execute", pressed)
-    with noted_interrupts(), pytest.raises(KeyboardInterrupt):
-        run_missing(specs, store)
-    assert 0 < len(made) < len(specs)
-    assert {spec for spec in specs if store.load(spec) is not None} == set(made)
 
 
 def test_an_unwritable_folder_is_named(spec: RunSpec, tmp_path: Path) -> None:

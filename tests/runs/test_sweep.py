@@ -71,19 +71,6 @@ def test_the_table_holds_what_the_runs_have(tmp_path: Path) -> None:
     assert load_sweep(tmp_path / "out").equals(table)
 
 
-def test_a_sweep_resumes(tmp_path: Path) -> None:
-    sweep = read(tmp_path, SPEC)
-    run_sweep(sweep, tmp_path / "one")
-    run_sweep(SweepSpec(sweep.axes, sweep.runs[:5]), tmp_path / "other", workers=1)
-    before = {path: path.stat().st_mtime_ns for path in (tmp_path / "other").rglob("*.npz")}
-    assert len(before) == 5
-    run_sweep(sweep, tmp_path / "other", workers=1)
-    assert all(path.stat().st_mtime_ns == time for path, time in before.items())
-    for name in ("sweep.csv", "sweep.parquet"):
-        one, other = ((tmp_path / folder / name).read_bytes() for folder in ("one", "other"))
-        assert one == other
-
-
 def test_as_xarray(tmp_path: Path) -> None:
     table = run_sweep(read(tmp_path, SPEC), tmp_path / "out")
     dataset = to_xarray(table)
@@ -91,16 +78,6 @@ def test_as_xarray(tmp_path: Path) -> None:
     point = {"n_boats": 8, "pool": "narrow", "bw_s": 0.5, "seed": 1}
     assert float(dataset["psi_o_mean"].sel(point)) == table["psi_o_mean"].iloc[-1]
     assert np.isnan(dataset["psi_o_mean"].sel(n_boats=8, pool="120x20")).all()
-
-
-def test_a_run_that_fails_is_a_row_that_says_why(tmp_path: Path) -> None:
-    text = "minutes = 0.5\nseeds = 1\n[grid]\nn_boats = [6, 900]\npool = ['narrow']\n"
-    table = run_sweep(read(tmp_path, text), tmp_path / "out")
-    assert table["failure"].iloc[0] == ""
-    assert "fit" in table["failure"].iloc[1]
-    assert np.isfinite(table["psi_o_mean"].iloc[0])
-    assert np.isnan(table["psi_o_mean"].iloc[1])
-    assert load_sweep(tmp_path / "out").equals(table)
 
 
 GRID = "[[grid]]\nbw_s = [0.1]\n"
@@ -116,17 +93,11 @@ GRID = "[[grid]]\nbw_s = [0.1]\n"
         ("minutes = 1\nseeds = 1\n", "grid is missing"),
         ("minutes = 1\nseeds = 0\n" + GRID, "seeds = 0"),
         ("minutes = 1\nseeds = [1, 1]\n" + GRID, "different seeds"),
-        ("minutes = 1\nseeds = [-1]\n" + GRID, "seed = -1"),
         ("seeds = 1\n" + GRID, "minutes = None"),
-        ("minutes = -1\nseeds = 1\n" + GRID, "duration_s"),
         ("minutes = 1\nseeds = 1\nseedz = 1\n" + GRID, "did you mean 'seeds'"),
         ("minutes = 1\nseeds = 1\nc4 = 1\n" + GRID, r"\[fixed\]"),
-        ("preset = 'papr'\nminutes = 1\nseeds = 1\n" + GRID, "paper"),
-        ("minutes = 1\nseeds = 1\nkeep = 'all'\n" + GRID, "window"),
-        ("minutes = 1\nseeds = 1\npolicy = 'lernd'\n" + GRID, "did you mean 'learned'"),
         ("minutes = 1\nseeds = 1\n[fixed]\nbw_s = 0.2\n" + GRID, "both under"),
         ("minutes = 1\nseeds = 1\n" + GRID + "[[grid]]\nc4 = [0.1]", "same fields.*bw_s, c4"),
-        ("minutes = 1\nseeds = 1\n[[grid]]\nbw_s = [-0.1]", "bw_s"),
         ("minutes = 1\nseeds = 1000000\n[[grid]]\nbw_s = [0.1, 0.2]", "2000000 runs"),
         ("minutes = \n", "no TOML"),
     ],

@@ -23,16 +23,6 @@ def test_shards_hold_every_run_once_in_its_order(of):
         assert share == sorted(share, key=specs.index)
 
 
-def test_the_hash_of_the_spec_decides():
-    spec = SPECS[0]
-    assert Shard(int(spec.key, 16) % 1000 + 1, 1000).runs_of([spec]) == [spec]
-
-
-def test_texts():
-    assert Shard.parse("3/8") == Shard(3, 8)
-    assert str(Shard(3, 8)) == "3/8"
-
-
 @pytest.mark.parametrize("text", ["", "3", "3/", "/8", "3/8/9", "-1/8", "1.5/8", "a/b", "٣/٨"])
 def test_other_texts_are_refused(text):
     with pytest.raises(flockenv.ParameterError, match="such as 3/8"):
