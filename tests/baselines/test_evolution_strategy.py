@@ -10,10 +10,6 @@ from flockenv.policies import load
 SMALL = ["--pairs", "4", "--episodes", "2", "--flock-hours", str(3 * 8 / 60)]
 
 
-def test_ranks_are_spread_about_zero(script) -> None:
-    np.testing.assert_allclose(script.ranks(np.array([3.0, -1.0, 10.0])), [0.0, -0.5, 0.5])
-
-
 def test_candidates_steer_by_their_own_weights(script) -> None:
     weights = np.array([[1.0, 0.0, 0.5], [0.0, -2.0, 0.0]])
     seen = np.array([[0.1, 0.2, 0.3, 0.4], [0.1, 0.2, 0.3, 0.4]])

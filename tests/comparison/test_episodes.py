@@ -12,8 +12,7 @@ from flockenv.comparison import (
     Case,
     compare_leaders,
 )
-from flockenv.envs.observation import observation_entries
-from flockenv.policies import NetworkPolicy, StraightAhead
+from flockenv.policies import StraightAhead
 from flockenv.policies.registry import POLICIES
 from flockenv.runs.seeds import POLICY_SEEDS
 
@@ -100,14 +99,6 @@ def test_what_cannot_be_compared_is_refused_first(
     with pytest.raises(flockenv.ParameterError, match=words):
         compare_leaders(parameters, leaders, policies, [1], 5.0, seconds.append, environment)
     assert seconds == []
-
-
-def test_leaders_that_never_steer_are_rudders_of_zero(parameters: flockenv.FlockParameters) -> None:
-    size = len(observation_entries())
-    zero = NetworkPolicy([np.zeros((size, 1))], [[0.0]])
-    both = {"straight ahead": POLICIES["straight ahead"], "zero": lambda: zero}
-    runs = compare_leaders(parameters, [2], both, [1, 2], 30.0).set_index(["policy", "seed"])
-    pd.testing.assert_frame_equal(runs.loc["straight ahead"], runs.loc["zero"])
 
 
 def test_what_is_measured_in_steps_is_what_the_recording_says() -> None:

@@ -105,26 +105,6 @@ def test_a_file_keeps_every_bit(tmp_path):
     assert random_law().digest != law.digest
 
 
-@pytest.mark.parametrize("target", ["cw", "ccw"])
-@pytest.mark.parametrize("period", [None, 0.5])
-@pytest.mark.parametrize("pool", POOLS)
-def test_a_run_is_an_episode_of_the_same_flock(pool, period, target):
-    law = random_law(pool, decision_period_s=period)
-    options = {"n_boats": 9, "n_leaders": 3, "pool": pool, "target": target}
-    env = flockenv.LeadersEnv(
-        **options,
-        observation=law.observation,
-        mirror_to_target=True,
-        action_mode=law.action_mode,
-        decision_period_s=period,
-    )
-    seen, info = env.reset(seed=4)
-    for _ in range(round(20.0 / (period or 0.1))):
-        seen, *_ = env.step(law.predict(seen)[0])
-    run = flockenv.simulate(env.flock.parameters, int(info["flock_seed"]), 20.0, policy=law)
-    assert run.pose[-1].tobytes() == env.flock.pose.tobytes()
-
-
 def text(change) -> str:
     values = json.loads(random_law().to_json())
     change(values)

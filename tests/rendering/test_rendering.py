@@ -1,40 +1,22 @@
 """Law: pictures are a function of the flock alone, in every interface, and need no display."""
 
-import copy
-import warnings
 from concurrent.futures import ThreadPoolExecutor
 
 import gymnasium
 import numpy as np
 import PIL.Image
 import pytest
-from gymnasium.wrappers import RecordVideo
 
 import flockenv
 from flockenv import rendering
 
 SHORT = {"n_boats": 8, "n_leaders": 2, "episode_s": 3.0}
 SMALL = {**SHORT, "render_size": (160, 120)}
-POOLS = ["wide", "narrow", (100.0, 0.0), (float("inf"), 0.0), (float("inf"), 30.0)]
 
 
 def flock(**fields):
     given = {"n_boats": 8, "n_leaders": 2, **fields}
     return flockenv.Flock(flockenv.FlockParameters().replace(**given), seed=3)
-
-
-@pytest.mark.parametrize("pool", POOLS, ids=str)
-@pytest.mark.parametrize("target", ["cw", "ccw"])
-def test_frames_of_every_pool(pool, target):
-    scene = flock(pool=pool, target=target)
-    scene.advance(5.0)
-    picture = rendering.frame(scene, 320, 240)
-    assert picture.shape == (240, 320, 3)
-    assert picture.dtype == np.uint8
-    assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 20
-    np.testing.assert_array_equal(picture, rendering.frame(copy.copy(scene), 320, 240))
-    scene.advance(1.0)
-    assert (picture != rendering.frame(scene, 320, 240)).any()
 
 
 def test_a_frame_of_a_recording_is_that_of_its_flock():
@@ -63,14 +45,6 @@ def test_frames_may_be_drawn_in_several_threads():
             together = threads.map(lambda scene: rendering.frame(scene, 160, 120), scenes)
             for ours, theirs in zip(alone, together, strict=True):
                 np.testing.assert_array_equal(ours, theirs)
-
-
-def test_a_frame_without_leaders_shows_no_target():
-    pictures = [
-        rendering.frame(flock(n_leaders=0, pool="narrow", target=target), 300, 300)
-        for target in ("cw", "ccw")
-    ]
-    np.testing.assert_array_equal(*pictures)
 
 
 @pytest.mark.parametrize("size", [(63, 100), (100, 4097), (2**40, 100), (100.5, 100), (None, 100)])
@@ -127,27 +101,6 @@ def test_metadata(interface, modes):
     for wrong in {"ansi", "human"} - set(modes):
         with pytest.raises(flockenv.ParameterError, match=f"render_mode = '{wrong}'"):
             interface(render_mode=wrong, **SHORT)
-
-
-def test_gymnasium_records_a_video(tmp_path):
-    moviepy = pytest.importorskip("moviepy")
-    env = gymnasium.make("flockenv/Leaders-v0", render_mode="rgb_array", **SMALL)
-    env = RecordVideo(env, str(tmp_path / "videos"), disable_logger=True)
-    env.reset(seed=0)
-    over = False
-    while not over:
-        over = env.step(np.zeros(2, np.float32))[3]
-    env.close()
-    (path,) = tmp_path.glob("videos/*.mp4")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        clip = moviepy.VideoFileClip(str(path))
-    assert clip.size == [160, 120]
-    assert clip.fps == pytest.approx(10.0)
-    # 30 steps and the start, at 10 frames per second.
-    assert clip.duration == pytest.approx(3.1, abs=0.15)
-    assert np.ptp(clip.get_frame(1.0)) > 100
-    clip.close()
 
 
 def plain(level):

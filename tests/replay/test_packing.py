@@ -59,15 +59,6 @@ def test_plain_numbers_are_exact(values):
     assert unpacked(packer.text())["x"].ravel().tolist() == values.tolist()
 
 
-def test_the_same_numbers_give_the_same_text():
-    def text() -> str:
-        packer = Packer()
-        packer.add("x", np.sin(np.arange(1000.0)), 1e-3)
-        return packer.text()
-
-    assert text() == text()
-
-
 @pytest.mark.parametrize("differences", [0, 1])
 def test_smooth_series_take_less_than_their_quanta(differences):
     packer = Packer()

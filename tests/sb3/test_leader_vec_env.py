@@ -12,9 +12,7 @@ sb3 = pytest.importorskip("stable_baselines3")
 
 from stable_baselines3 import PPO  # noqa: E402
 from stable_baselines3.common.env_util import is_wrapped  # noqa: E402
-from stable_baselines3.common.evaluation import evaluate_policy  # noqa: E402
 from stable_baselines3.common.monitor import Monitor  # noqa: E402
-from stable_baselines3.common.vec_env import VecCheckNan, VecMonitor, VecNormalize  # noqa: E402
 
 from flockenv.sb3 import LeaderVecEnv  # noqa: E402
 
@@ -91,18 +89,6 @@ def test_attributes_and_methods_of_slots():
     assert venv.get_attr("render_mode") == [None] * 6
 
 
-def test_wrappers_evaluation_and_ppo():
-    venv = VecMonitor(VecCheckNan(make(num_flocks=4)))
-    model = PPO("MlpPolicy", venv, n_steps=16, batch_size=64, n_epochs=2, seed=1, device="cpu")
-    model.learn(1024)
-    assert len(model.ep_info_buffer) > 0
-    mean, _ = evaluate_policy(model, venv, n_eval_episodes=8)
-    assert np.isfinite(mean)
-    normalized = VecNormalize(make())
-    normalized.reset()
-    normalized.step(actions_of(normalized, 0))
-
-
 def test_discrete_rudders():
     venv = make(rudder_levels=5)
     assert venv.action_space == gymnasium.spaces.Discrete(5)
@@ -156,11 +142,6 @@ def test_counts_and_seeds_are_checked():
     for bad in (-1, 2**64 - 2):
         with pytest.raises(flockenv.ParameterError, match="seed = "):
             venv.seed(bad)
-    for bad in ("1", True):
-        with pytest.raises(TypeError, match="seed must be an integer"):
-            venv.seed(bad)
-    with pytest.raises(flockenv.ParameterError, match=r"seed = 1\.5 is not accepted"):
-        venv.seed(1.5)
     venv.seed(2**64 - 3)
     venv.reset()
 

@@ -150,22 +150,9 @@ def test_copies_and_pickles_continue_with_the_same_bits(state):
     [
         ({"num_flocks": 0}, "num_flocks = 0 is not accepted"),
         ({"num_flocks": 10**9}, "num_flocks = 1000000000 is not accepted"),
-        ({"n_leaders": 0}, "n_leaders = 0"),
         ({"state": "boat"}, "'boat' is no state: did you mean 'boats'"),
-        ({"n_boat": 3}, "did you mean 'n_boats'"),
-        ({"rudder_levels": 1}, "rudder_levels"),
     ],
 )
 def test_bad_options_are_named(options, message):
     with pytest.raises(ParameterError, match=message):
         made(**options)
-
-
-def test_bad_actions_move_nothing():
-    env = made()
-    env.set_seed(4)
-    step = acted(env, np.full((3, 2), np.nan))
-    before = env._batch.core.to_bytes()
-    with pytest.raises(ParameterError, match="NaN"):
-        env.step(step)
-    assert env._batch.core.to_bytes() == before

@@ -9,7 +9,6 @@ import torch
 from stable_baselines3 import PPO
 
 from flockenv import InUseError, ParameterError, training
-from flockenv.policies import load
 from flockenv.training import Progress, TrainingError, TrainingSettings
 
 
@@ -69,12 +68,6 @@ def test_resuming_reads_weights_and_the_optimizer(tiny: TrainingSettings, tmp_pa
         strict=True,
     ):
         assert torch.equal(own["exp_avg"], other["exp_avg"])
-
-
-def test_the_model_steers_wherever_a_policy_does(tiny: TrainingSettings, tmp_path: Path) -> None:
-    training.train(tiny, tmp_path)
-    policy = load(tmp_path / "model.zip", trust=True)
-    assert (policy.action_mode, policy.leaders) == ("lean", 1)
 
 
 @pytest.mark.parametrize("content", [b"", b"no archive"])
@@ -146,13 +139,3 @@ def test_a_full_disk_is_named(
     monkeypatch.setattr("flockenv.training.run.atomic_write", full)
     with pytest.raises(TrainingError, match=r"No space left .* there is no checkpoint yet"):
         training.train(tiny, tmp_path)
-
-
-def test_trained_leaders_are_compared_with_the_laws(
-    tiny: TrainingSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("flockenv.training.curve._EPISODE_S", 8.0)
-    model = training.train(tiny, tmp_path)
-    rows = training.compare_with_laws(model, tiny, episodes=2)
-    assert list(rows.groupby("policy").size()) == [2, 2, 2]
-    assert rows["signed_order"].notna().all()

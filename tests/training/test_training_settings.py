@@ -5,7 +5,6 @@ from pathlib import Path
 import pytest
 
 from flockenv import ParameterError
-from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.training import TrainingSettings
 
 
@@ -64,8 +63,3 @@ def test_what_environment_and_ppo_refuse_is_named(changes: dict[str, object], wo
     settings = TrainingSettings.from_dict(changes)
     with pytest.raises(ParameterError, match=words):
         settings.model(settings.venv())
-
-
-def test_trainings_take_no_seeds_that_judge(tiny: TrainingSettings) -> None:
-    first, judging = POLICY_SEEDS["training"].every, POLICY_SEEDS["evaluation"].every
-    assert first.start >= judging.stop
