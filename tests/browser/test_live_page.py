@@ -310,22 +310,6 @@ def test_a_thumb_steers_on_a_phone(open_live):
     assert thumb.get_attribute("value") == "0"
 
 
-def test_a_phone_shows_one_of_two_flocks(open_live):
-    live = open_live(PHONE).go(f"{FLOCK}&beside.n_leaders=1")
-    for shown in (1, 0):
-        live.click(f".switch button:nth-child({shown + 1})")
-        seen = [live.find(f".run[data-run='{k}'] canvas").is_displayed() for k in (0, 1)]
-        assert seen == [shown == 0, shown == 1]
-        pressed = live.driver.find_elements("css selector", ".switch [aria-pressed='true']")
-        assert [each.text for each in pressed] == [
-            live.script("return page.runs[arguments[0]].name", shown)
-        ]
-        painted = live.script(
-            "return document.querySelectorAll('.run canvas')[arguments[0]].width", shown
-        )
-        assert painted > 300
-
-
 def test_every_scene_is_a_link_to_a_flock(open_live):
     live = open_live().go()
     names = live.script(
@@ -358,27 +342,6 @@ def test_a_link_is_followed_where_the_address_is_written_at_the_same_moment(live
         history.replaceState(null, '', '#n_boats=12&seed=7');"""
     )
     live.until("return page.runs[0].boats === 9")
-
-
-def test_noise_makes_motion(open_live):
-    """At bw_s = 0 the flock jams, at 0.6 and 1 s it circles, at 2.8 s it does neither."""
-    live = open_live().go("")
-    seen = {}
-    for bw_s in ("0", "0.6", "1", "2.8"):
-        live.click(f"#story a[href$='bw_s={bw_s}']")
-        live.wait()
-        assert live.parameters()["bw_s"] == bw_s
-        live.click("#again")
-        live.wait()
-        live.run_to(240.0)
-        names = live.script("return page.quantities.map(({key}) => key)")
-        series = dict(zip(names, live.rows("series").T, strict=True))
-        late = (live.rows("in_analysis_window")[:, 0] > 0) & (live.rows("time_s")[:, 0] > 120.0)
-        seen[bw_s] = (series["psi_o"][late].mean(), abs(series["rotation"][late].mean()))
-    assert seen["0"][0] > 0.7
-    assert seen["0"][1] < 0.4
-    assert min(seen["0.6"][1], seen["1"][1]) > 0.7
-    assert seen["2.8"][0] < 0.4
 
 
 def test_a_change_while_a_link_is_followed_is_one_of_the_links_flock(live):

