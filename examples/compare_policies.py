@@ -7,8 +7,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from flockenv import FlockParameters
-from flockenv.comparison import compare_leaders
+from flockenv.comparison import NO_LEADERS, compare_leaders
 from flockenv.policies import SteeringLaw
+from flockenv.statistics import summarize
 
 flocks, minutes = map(int, sys.argv[1:] + ["16", "4"][len(sys.argv) - 1 :])
 out = Path("results/compare_policies")
@@ -31,13 +32,16 @@ parameters = FlockParameters(pool="wide", n_boats=27, bw_s=0.31)
 policies = {"gentle": Gentle(), "paper's law": "paper's law", "tuned law": "tuned law"}
 runs = compare_leaders(parameters, [0, 1, 3], policies, range(flocks), 60.0 * minutes)
 runs.to_csv(out / "runs.csv", index=False)
-means = runs.groupby(["policy", "leaders"])["signed_order"].agg(["mean", "sem"])
-print(means.round(3))
+means = summarize(runs, ["policy", "leaders"], ["signed_order"])  # with 95 % intervals
+print(means.round(3).to_string(index=False))
 
-for name in policies:
-    curve = means.loc[name]
-    plt.errorbar(curve.index, curve["mean"], curve["sem"], marker="o", label=name)
+for place, name in enumerate(policies):
+    curve = means[means["policy"].isin([NO_LEADERS, name])]  # one flock without leaders for all
+    order = curve["signed_order"]
+    ends = [order - curve["signed_order_low"], curve["signed_order_high"] - order]
+    plt.errorbar(curve["leaders"] + 0.05 * place, order, ends, marker="o", capsize=3, label=name)
+plt.xticks(means["leaders"].unique())
 plt.xlabel("leaders among 27 boats")
-plt.ylabel("signed order")
+plt.ylabel(f"signed order, 95 % intervals of {flocks} flocks")
 plt.legend()
 plt.savefig(out / "leader_curve.png")

@@ -91,9 +91,8 @@ def compare(options: CompareOptions) -> None:
     prepare(options.out / "runs.csv")
     result = _compared(options, cases, policies)
     if own:
-        name = next(iter(own))
-        pool = cases[0].parameters.pool
-        policy = steering(policies[cases[0].name][name], pool)
+        case, name = cases[0], next(iter(own))
+        policy = steering(policies[case.name][name], case.parameters.pool)
         write_text(options.out / "card.md", result.card(name, policy))
     tables = {"means": result.means, "differences": result.differences}
     if options.suite:
@@ -239,13 +238,16 @@ def _own_policies(options: CompareOptions) -> dict[str, Any]:
     """Return the user's policies by name: as given, or a dictionary of these by leader."""
     given, names = options.policy or [], options.name or []
     if names and len(names) != len(given):
-        raise ParameterError(f"--name was given {len(names)} times for {len(given)} policies")
+        many = f"{len(names)} --name for {len(given)} --policy"
+        raise ParameterError(f"{many}: name all of yours, in order, or none")
     own: dict[str, Any] = {}
     for place, text in enumerate(given):
         is_each = text.startswith("leader_")
         is_file = text.endswith(FILES) and not is_each
         name = printable(names[place] if names else Path(text).stem if is_file else text)
         if name in own or (name in REFERENCES and text != name):
+            if names:
+                raise ParameterError(f"--name {name} is not accepted: another policy has this name")
             name = printable(text)
         if name in own:
             raise ParameterError(f"--policy {text} is given twice: give one another --name")

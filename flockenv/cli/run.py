@@ -81,7 +81,5 @@ def run(options: RunOptions) -> None:
 def _free(path: Path) -> Path:
     """Return a path, or the same with the first number from 2 on, where no run is."""
     numbered = (path.with_stem(f"{path.stem}-{number}") for number in count(2))
-    for each in chain([path], numbered):
-        if not (each.exists() or each.with_suffix(".toml").exists()):
-            break
-    return each
+    paths = chain([path], numbered)
+    return next(p for p in paths if not (p.exists() or p.with_suffix(".toml").exists()))

@@ -63,7 +63,7 @@ def compare_leaders(
     parameters
         Of the flock; its number of leaders is replaced.
     leaders
-        Numbers of leaders; 0 is run once, whatever the policies.
+        Numbers of leaders; 0 is run once, whatever the policies, as the policy `NO_LEADERS`.
     policies
         How leaders steer, by the name to list it under, such as
         ``{"mine": model, "paper's law": "paper's law"}``; see `Steering`. A function makes a policy
@@ -101,6 +101,8 @@ def compare_leaders(
             f"{most} leaders among n_boats = {parameters.n_boats} are not accepted: at least one "
             "normal boat, as order is theirs (on the command line fewer `--leaders`, or more boats)"
         )
+    if NO_LEADERS in policies:
+        raise ParameterError(f"{NO_LEADERS!r} is no name for a policy: flocks without one have it")
     parameters.replace(n_leaders=most)
     steers: dict[str, Any] = {NO_LEADERS: None} if 0 in leaders else {}
     for name, policy in policies.items():
@@ -237,7 +239,6 @@ def _simulated(
     # The environment derives a flock's seed from its own, which pairs the runs.
     some = parameters.replace(n_leaders=max(1, parameters.n_leaders))
     _, infos = _environment(some, len(seeds), duration_s, {}).reset(seed=list(seeds))
-    names = (*QUANTITIES, *ORDERING_TIMES)
     is_each = isinstance(policy, Mapping)
     if is_each:
         policy = _first(policy, parameters.n_leaders)
@@ -263,4 +264,4 @@ def _simulated(
 
     # Policies in Python may draw from a generator of their own: one run after another.
     rows = in_order(run, infos["flock_seed"].tolist(), 1 if is_each else None)
-    return dict(zip(names, np.array(rows).T, strict=True))
+    return dict(zip((*QUANTITIES, *ORDERING_TIMES), np.array(rows).T, strict=True))

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from flockenv._io.atomic_write import atomic_write
 from flockenv.comparison.episodes import NO_LEADERS
+from flockenv.statistics import CONFIDENCE
 
 # Okabe and Ito's, which every kind of eye distinguishes, and three that differ from them.
 COLORS = {"paper's law": "#0072b2", "tuned law": "#e69f00", "learned": "#009e73"}
@@ -64,6 +65,7 @@ def leader_curve(
             frameon=False,
             loc="outside lower center",
             ncols=3,
+            title=f"bars: {CONFIDENCE:.0%} intervals of the mean",
         )
         with atomic_write(path) as file:
             figure.savefig(file, dpi=200, format=path.suffix.removeprefix("."))

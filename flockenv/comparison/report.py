@@ -131,7 +131,8 @@ class ComparisonReport:
         table.add_column("", overflow="fold")
         table.add_column("leaders", no_wrap=True)
         policies = [name for name in self.means["policy"].unique() if name != NO_LEADERS]
-        for name in policies or [NO_LEADERS]:
+        columns = policies or [NO_LEADERS]
+        for name in columns:
             table.add_column(Text(name), min_width=12, overflow="fold")
         for case in self.cases:
             own = self.means[self.means["case"] == case.name]
@@ -139,8 +140,8 @@ class ComparisonReport:
             for k in sorted(own["leaders"].unique()):
                 found = own[own["leaders"] == k].set_index("policy")
                 # Flocks without leaders are the same for all policies.
-                names = policies if k > 0 else [NO_LEADERS]
-                cells = [_plus_minus(found.loc[name]) for name in names if name in found.index]
+                names = columns if k > 0 else [NO_LEADERS] * len(columns)
+                cells = [_plus_minus(found.loc[n]) if n in found.index else "" for n in names]
                 table.add_row(Text(title), str(k), *cells)
                 title = ""
         return table
@@ -164,7 +165,8 @@ class ComparisonReport:
     def card(self, name: str, policy: Any) -> str:
         """Return a policy's model card as Markdown: its provenance and its comparison."""
         lines = [f"# {name}", "", f"The policy is `{policy!r}`.", ""]
-        lines += [f"- {key}: `{text}`" for key, text in _provenance(policy).items()]
+        provenance = getattr(policy, "provenance", None) or {}
+        lines += [f"- {key}: `{text}`" for key, text in provenance.items()]
         made = f"`{self.conditions.get('command', '')}` made this with flockenv {__version__}."
         lines += ["", "## Comparison", "", made, ""]
         lines += [
@@ -175,11 +177,6 @@ class ComparisonReport:
         Console(file=printed, width=120).print(self.table())
         text = "\n".join(line.rstrip() for line in printed.getvalue().splitlines())
         return "\n".join([*lines, "", "```text", text, "", self.in_words(), "```", ""])
-
-
-def _provenance(policy: Any) -> Mapping[str, str]:
-    found: Mapping[str, str] | None = getattr(policy, "provenance", None)
-    return found or {}
 
 
 def _plus_minus(row: Mapping[str, Any]) -> str:

@@ -32,6 +32,9 @@ def test_a_table_of_ten_rows_and_the_files(cli, tmp_path: Path, colors_in) -> No
     rows = [line.split() for line in done.stdout.splitlines()]
     numbers = [each for each in rows if "±" in " ".join(each)]
     cases = [row[0] for row in numbers if row[0].startswith(("wide", "narrow"))]
+    # Flocks without leaders are those of every policy.
+    _, *cells = next(row[1:] for row in numbers if row[1] == "0")
+    assert cells[:2] == cells[2:4] == cells[4:]
     assert cases == ["wide-bw-0.31", "narrow-bw-0.45"]
     assert len(numbers) - 1 == 10, "one row per pool and number of leaders, and the caption"
     assert colors_in(tmp_path / "leader_curve.png") == {*REFERENCES}
@@ -150,7 +153,9 @@ def test_a_table_in_80_columns(cli, tmp_path: Path) -> None:
         (["--set", "target=cw,ccw"], "one target"),
         (["--set", "pool=[90, 10]"], "bw_s=1.0`"),
         (["--policy", "damped law", "--policy", "damped law"], "given twice"),
-        (["--policy", "damped law", "--name", "a", "--name", "b"], "2 times for 1"),
+        (["--policy", "damped law", "--name", "a", "--name", "b"], "2 --name for 1 --policy"),
+        (["--policy", "damped law", "--name", "learned"], "another policy has this name"),
+        (["--policy", "damped law", "--name", "no leaders"], "is no name for a policy"),
         (["--policy", "{}/broken.npz"], "broken.npz"),
         (["--policy", "{}/missing.npz"], "missing.npz"),
         (["--only"], "without --policy"),

@@ -66,17 +66,19 @@ def _minutes_in_seconds(monkeypatch):
     """Let trainings on the pages take three rollouts, and comparisons two flocks each."""
     from stable_baselines3 import PPO
 
-    from flockenv import comparison
+    from flockenv.comparison import case
 
-    learn, compare = PPO.learn, comparison.compare_leaders
+    learn, compare = PPO.learn, case.compare_leaders
 
-    def compared(*arguments, **options):
-        return compare(*arguments, **{**options, "seeds": range(2)})
+    def compared(parameters, leaders, policies, seeds, *others):
+        return compare(parameters, leaders, policies, seeds[:2], *others)
 
     monkeypatch.setattr(
-        PPO, "learn", lambda model, samples: learn(model, 3 * model.n_steps * model.n_envs)
+        PPO,
+        "learn",
+        lambda model, _, **options: learn(model, 3 * model.n_steps * model.n_envs, **options),
     )
-    monkeypatch.setattr(comparison, "compare_leaders", compared)
+    monkeypatch.setattr(case, "compare_leaders", compared)
 
 
 @pytest.mark.parametrize("page", EXECUTED)
