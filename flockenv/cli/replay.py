@@ -60,7 +60,7 @@ def _page(options: ReplayOptions) -> None:
     paths = [path for path in (options.first, options.second) if path is not None]
     names = options.name or [path.stem for path in paths]
     if len(names) != len(paths):
-        raise ParameterError(f"--name was given {len(names)} times for {len(paths)} recordings")
+        raise ParameterError(f"{len(names)} --name for {len(paths)} recordings: name all or none")
     if len(set(names)) < len(names):
         names = [f"{name} ({place})" for place, name in enumerate(names, 1)]
     page = options.html or options.first.with_suffix(".html")
