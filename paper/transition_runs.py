@@ -10,11 +10,11 @@ from study import FIRST_SEED, Row, Study, flock
 from flockenv.statistics.structure import jam_sizes
 
 RUNS, MORE_RUNS = 8, 24
-"""Seeds of each cell, and of those cells in which eight had shown both states lasting."""
+"""Seeds of each cell, and of those cells in which both states may last."""
 LITERAL_C4 = 0.1 * math.sqrt(0.02)
 """White noise as strong as the literal one of Table 3 at dt = 0.02 s, in rad/s^1.5."""
 C4 = (round(LITERAL_C4, 4), 0.1, 0.03, 0.05, 0.02, 0.2)
-COVERAGES = (0.5, 0.3, 0.7, 0.2, 1.0)
+COVERAGES = (0.5, 0.3, 0.4, 0.35, 0.7, 0.2, 1.0)
 STARTED = {"one-jam": "in one jam", "rotating": "rotating"}
 _STARTS = {"one-jam": one_jam, "rotating": rotating}
 
@@ -35,8 +35,9 @@ def outer_radius_cm(n_boats: int, coverage: float) -> float:
 def design() -> list[Row]:
     """Return the map: the literal noise and the extremes of c4 first, small flocks first.
 
-    At a coverage of 0.5 rotation ends within minutes, so that fewer boats at the wall come next. At
-    0.3 and low noise most runs of both starts last, so that more of them come after that.
+    At a coverage of 0.5 rotation ends within minutes, so that fewer boats at the wall come next.
+    Between 0.3 and 0.5 the state that lasts changes, so that two more coverages come there at the
+    lowest noise, as many runs of them as at 0.3, where most runs of both starts last.
     """
     literal = {"scheme": "paper", "noise_scheme": "per-step", "dt_s": 0.02}
     white = {"scheme": "leapfrog", "noise_scheme": "white", "dt_s": 0.1}
@@ -47,6 +48,7 @@ def design() -> list[Row]:
     ]
     both = [(n, 0.3, white | {"c4": c4}) for c4 in (C4[0], C4[2]) for n in (400, 200, 100)]
     third = [(400, 0.5, white | {"c4": c4}) for c4 in C4[:3]]
+    between = [(n, share, white | {"c4": C4[0]}) for share in (0.4, 0.35) for n in (100, 200, 400)]
     rest = [
         (n, coverage, white | {"c4": c4})
         for n in (100, 200, 400, 800)
@@ -55,7 +57,7 @@ def design() -> list[Row]:
     ]
     finer = [(n, 0.5, white | {"c4": C4[0], "dt_s": 0.02}) for n in (100, 200)]
     cells: list[tuple[int, float, Row]] = []
-    for cell in first + second + less + both + third + finer + rest:
+    for cell in first + second + less + between + both + third + finer + rest:
         if cell not in cells:
             cells.append(cell)
     return [
@@ -68,7 +70,7 @@ def design() -> list[Row]:
             "seed": seed,
         }
         for n, coverage, noise in cells
-        for seed in range(MORE_RUNS if (n, coverage, noise) in both else RUNS)
+        for seed in range(MORE_RUNS if (n, coverage, noise) in both + between else RUNS)
         for start in STARTED
     ]
 
