@@ -163,7 +163,7 @@ def draw(options: Options, table: pd.DataFrame, found: int) -> None:
             axes.axvline(lost_s, color="0.6", linestyle="--", zorder=0)
             axes.set(xlabel="backward duration bw (s)", title=f"{leaders} leaders")
         panels[0].set_ylabel("mean Ψₒ")
-        panels[0].legend()
+        panels[0].legend(loc="lower left")
 
 
 def script(options: Options) -> None:
