@@ -36,7 +36,7 @@ for bw_s in (0.1, 0.3, 0.6):
     )
     run.save(out / f"bw_{bw_s}.npz")
     late = run.analyzed()
-    print(f"bw = {bw_s} s: {late.quantities['neighbor_alignment'].mean():.2f}, "
+    print(f"bw = {bw_s} s: alignment = {late.quantities['neighbor_alignment'].mean():.2f}, "
           f"Ψ_o = {late.order.psi_o.mean():.2f}")  # fmt: skip
     plt.plot(run.time_s, run.quantities["neighbor_alignment"], label=f"bw = {bw_s} s")
 plt.xlabel("time (s)")

@@ -10,6 +10,7 @@ import gymnasium
 import numpy as np
 
 import flockenv
+from flockenv.statistics import mean_interval
 
 flocks, seconds = map(int, sys.argv[1:] + ["8", "60"][len(sys.argv) - 1 :])
 
@@ -32,6 +33,7 @@ for policy in (flockenv.policies.SteeringLaw(), flockenv.policies.StraightAhead(
         action, _ = policy.predict(observation)
         observation, reward, terminated, truncated, info = envs.step(action)
         total += reward
-    mean = total / (10 * seconds)
-    print(f"{type(policy).__name__}: {mean.mean():.3f} ± {mean.std(ddof=1) / flocks**0.5:.3f}")
+    mean, low, high = mean_interval(total / (10 * seconds))
+    name = type(policy).__name__
+    print(f"{name}: {mean:.3f} [{low:.3f}, {high:.3f}], 95 % interval of {flocks} flocks")
 envs.close()
