@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-matplotlib = pytest.importorskip("matplotlib")
+plt = pytest.importorskip("matplotlib.pyplot")
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SMALL = {
     "compare_policies.py": ["2", "1"],
@@ -19,10 +19,10 @@ SMALL = {
 
 @pytest.fixture(autouse=True)
 def _without_a_screen(tmp_path, monkeypatch):
-    matplotlib.use("agg")
+    plt.switch_backend("agg")
     monkeypatch.chdir(tmp_path)
     yield
-    matplotlib.pyplot.close("all")
+    plt.close("all")
 
 
 @pytest.mark.parametrize("name", SMALL)
