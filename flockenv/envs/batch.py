@@ -152,28 +152,12 @@ class LeaderBatch:
         if summary is None:
             return {}
         if self._own_reward is not None:
-            own = self._paid[self._flock_of_row == flock]
-            summary["total_reward"] = float(own.mean())
-            if "leader_total_rewards" in summary:
-                summary["leader_total_rewards"] = own
+            summary["total_reward"] = float(self._paid[self._flock_of_row == flock].mean())
         return {"episode_summary": {**summary, "flock_seed": np.uint64(summary["flock_seed"])}}
 
     def reward_terms(self) -> dict[str, NDArray[np.float64]]:
         """Return each term of the last step's reward, one number per row."""
         return dict(zip(TERMS, self.core.reward_terms().T, strict=True))
-
-
-def leader_summary(summary: Mapping[str, Any], leader: int) -> dict[str, Any]:
-    """Return a leader's part of the summary of an episode; empty where all have one target."""
-    if "leader_targets" not in summary:
-        return {}
-    names = {
-        "total_reward": "leader_total_rewards",
-        "signed_order": "leader_signed_orders",
-        "share_towards_target": "leader_shares_towards_target",
-    }
-    own = {name: float(summary[of][leader]) for name, of in names.items() if of in summary}
-    return {"target": "cw" if summary["leader_targets"][leader] > 0 else "ccw", **own}
 
 
 def drawn_seed(random: np.random.Generator) -> int:

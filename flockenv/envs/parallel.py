@@ -10,7 +10,7 @@ from pettingzoo import ParallelEnv
 
 from flockenv import _core
 from flockenv.envs.base import SingleEnvironmentBase
-from flockenv.envs.batch import drawn_seed, leader_summary
+from flockenv.envs.batch import drawn_seed
 from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.render_mode import RENDER_MODES
 from flockenv.envs.spaces import leader_action_space
@@ -44,9 +44,7 @@ class LeadersParallelEnv(
     ## Rewards
     Each agent gets the weighted sum of the terms, its own where they are a leader's own or towards
     its own target. Each step's infos have the agent's `"reward_terms"`, the last ones the
-    `"episode_summary"`; those of a reset are empty. Where each leader has a target of its own the
-    last infos of an agent have a `"leader_summary"` of its own: `target`, `total_reward`,
-    `signed_order` and `share_towards_target`.
+    `"episode_summary"`; those of a reset are empty.
 
     ## Version history
     - v0: as `LeadersEnv`.
@@ -174,11 +172,8 @@ class LeadersParallelEnv(
             for leader, agent in enumerate(self.agents)
         }
         if over:
-            for leader, info in enumerate(infos.values()):
+            for info in infos.values():
                 info.update(self._batch.end_info(0))
-                own = leader_summary(info.get("episode_summary", {}), leader)
-                if own:
-                    info["leader_summary"] = own
         return infos
 
     def _by_agent(self, rows: NDArray[np.float32]) -> Observations:

@@ -53,8 +53,8 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
     and clockwise. They are scaled (the unit of an entry stands behind ×), and clipped at their
     bounds; the share of clipped numbers is reported at the end of the episode. The entries of
     `neighbors` repeat for each of the nearest boats, nearest first, and those of `obstacles` for
-    each of the nearest discs and walls. The blocks `law_rudder`, `obstacles` and `lean_features`
-    are off unless `observation` switches them on.
+    each of the nearest discs and walls. The blocks `obstacles` and `lean_features` are off unless
+    `observation` switches them on.
 
     - own
       - `radial_position` in [-1.1, 1.1], -1 at the inner, +1 at the outer wall: distance from the
@@ -97,9 +97,6 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
         psi_v*cos(phi_v)
       - `mean_clockwise_velocity` in [-2, 2] × preferred speed: mean velocity, clockwise part:
         psi_v*sin(phi_v)
-    - law_rudder
-      - `law_rudder` in [-1, 1]: rudder of the pool's tuned law, which reads what the leader sees of
-        itself
     - obstacles
       - `there` in [0, 1]: 1 where there is such an obstacle
       - `outward_distance` in [-4, 4] × 6 boat radii: its nearest point, seen from the leader's
@@ -272,9 +269,8 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
     signed order above 0.5); `ordering_time_s` and `ordering_time_wide_s` (eq. 7, with the angle
     π/20 as printed and with π/4); and `clip_rate`. An ordering time that never came is infinite. An
     episode that ends before its first analysis window has no means over it: those entries are left
-    out. Where each leader has a target of its own the summary also has arrays (k,):
-    `leader_targets` (+1 clockwise, -1 counter-clockwise), `leader_total_rewards`,
-    `leader_signed_orders` and `leader_shares_towards_target`, each towards the leader's own.
+    out. Where each leader has a target of its own, `signed_order` and `share_towards_target` are
+    towards that of leader 0.
 
     ## Arguments
     Any field of `FlockParameters`, where `n_boats` is 27 and `n_leaders` 3 unless given, and:
@@ -297,8 +293,8 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
     - `decision_period_s` = `None`: time in s from one decision to the next, a whole number of
       control steps, through which a step holds its action; None: one control step
     - `observation` = `{'own': True, 'phase': True, 'target': True, 'neighbors': 6, 'order': True,
-      'law_rudder': False, 'obstacles': 0, 'lean_features': False}`: blocks that differ from the
-      default layout, such as `{'order': False, 'neighbors': 4}`
+      'obstacles': 0, 'lean_features': False}`: blocks that differ from the default layout, such as
+      `{'order': False, 'neighbors': 4}`
     - `mirror_to_target` = `False`: reflect observation, state and action where the target is ccw,
       so that both directions are one task
     - `dropout_rate` = `0.0`: chance that the camera loses a boat in a frame and shows where it was

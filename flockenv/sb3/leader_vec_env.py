@@ -9,7 +9,7 @@ from stable_baselines3.common.vec_env import VecEnv
 
 from flockenv import _core
 from flockenv.envs.base import ManyFlocks
-from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, leader_summary, seeds_from
+from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
 from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.options import EnvOptions
 from flockenv.envs.render_mode import RenderMode
@@ -80,9 +80,7 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
 
     ## Rewards
     Each slot gets the weighted sum of the terms, its own where they are a leader's own.
-    `reward_terms()` returns those of the last step. Where each leader has a target of its own, each
-    slot's last info has a `"leader_summary"` of its own: `target`, `total_reward`, `signed_order`
-    and `share_towards_target`.
+    `reward_terms()` returns those of the last step.
 
     `reward` may also be a function of this environment, which is called once the flocks have moved,
     before those that ended start again, and which returns rewards (slots,), or (flocks,) for all
@@ -250,9 +248,6 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
                 "terminal_flock_features": features[slot],
             }
             summary = infos[slot]["episode_summary"]
-            own = leader_summary(summary, leader)
-            if own:
-                infos[slot]["leader_summary"] = own
             if leader == 0:
                 # As `Monitor` does, but for the time: infos depend on seeds alone.
                 decisions = -(-summary["steps"] // self._batch.period_steps)

@@ -5,7 +5,7 @@ use super::observation::{
     Camera, CourseView, FlockFeatures, FlockView, Lens, Observer, StateObserver,
 };
 use super::reset::check_flock;
-use super::statistics::{EpisodeStatistics, LeaderSummary, LeaderSums};
+use super::statistics::EpisodeStatistics;
 use super::{EnvSettings, EpisodeSchedule, EpisodeSummary, Reward, RewardTerms, Servo, TERMS};
 use crate::analysis::OrderParameters;
 use crate::analysis::quantities::Boats;
@@ -26,8 +26,6 @@ pub(crate) struct EpisodeState {
     camera: Option<Camera>,
     terms: Vec<RewardTerms>,
     statistics: EpisodeStatistics,
-    /// Where each leader has a target of its own, the sums of each.
-    leader_sums: Vec<LeaderSums>,
     ended: bool,
     /// What the leaders' contacts do, where a reward asks for it.
     credit: Option<ContactCredit>,
@@ -47,7 +45,6 @@ impl EpisodeState {
             camera: lens.map(|lens| Camera::new(lens, schedule.flock_seed, leaders, &flock)),
             terms: vec![[0.0; TERMS]; leaders],
             statistics: EpisodeStatistics::default(),
-            leader_sums: vec![LeaderSums::default(); schedule.own_targets(leaders)],
             ended: false,
             credit: credit.then(|| ContactCredit::new(leaders, boats)),
             order: None,
@@ -65,7 +62,6 @@ impl EpisodeState {
             && self.terms.len() == leaders
             && self.schedule.steps == settings.steps()
             && self.schedule.targets() == self.flock.parameters().target
-            && self.leader_sums.len() == self.schedule.own_targets(leaders)
             && credit.is_some() == settings.reward.need_credit()
             && credit.is_none_or(|credit| credit.fits(leaders, boats))
             && camera.is_some() == Lens::new(settings).is_some()
@@ -182,19 +178,6 @@ impl Episode {
     pub fn summary(&self) -> EpisodeSummary {
         let bw_s = self.state.flock.parameters().bw_s;
         self.state.statistics.summary(&self.state.schedule, bw_s)
-    }
-
-    /// Statistics so far of each leader, where each has a target of its own; empty otherwise.
-    pub fn leader_summaries(&self) -> Vec<LeaderSummary> {
-        let targets = self.targets();
-        let leaders = self.state.leader_sums.iter().enumerate();
-        leaders
-            .map(|(leader, sums)| {
-                self.state
-                    .statistics
-                    .summary_of(sums, targets.of(leader), targets.reference())
-            })
-            .collect()
     }
 
     /// The leaders' targets of the control step that comes next.
@@ -318,7 +301,6 @@ impl Episode {
             order,
             terms,
             statistics,
-            leader_sums,
             credit,
             ..
         } = &mut self.state;
@@ -333,9 +315,6 @@ impl Episode {
             let terms = reward.terms(&view, leader, &credit);
             let paid = settings.reward_factor() * settings.reward.total(&terms);
             statistics.add_reward(share, &terms, paid);
-            if let Some(own) = leader_sums.get_mut(leader) {
-                own.add_reward(paid);
-            }
             *sum += paid;
             sums.iter_mut()
                 .zip(terms)
@@ -350,7 +329,6 @@ impl Episode {
             flock,
             schedule,
             statistics,
-            leader_sums,
             order,
             ..
         } = &mut self.state;
@@ -369,9 +347,6 @@ impl Episode {
             order: *order,
         };
         statistics.add_window(&boats, parameters.target.reference());
-        for (leader, own) in leader_sums.iter_mut().enumerate() {
-            own.add_window(order, parameters.target.of(leader));
-        }
     }
 
     /// Moves the episode's clock on: targets change, the camera takes its picture.

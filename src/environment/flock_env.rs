@@ -2,7 +2,6 @@
 
 use super::episode::EpisodeState;
 use super::observation::{FlockFeatures, StateObserver};
-use super::statistics::LeaderSummary;
 use super::{Autoreset, EnvSettings, Episode, EpisodeSeeds, EpisodeSummary, ResetRequest, Servo};
 use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
@@ -14,7 +13,6 @@ pub(crate) struct StoredEnv<E = EpisodeState> {
     seeds: Option<EpisodeSeeds>,
     episode: Option<E>,
     finished: Option<EpisodeSummary>,
-    finished_leaders: Vec<LeaderSummary>,
     final_observation: Vec<f32>,
 }
 
@@ -28,7 +26,6 @@ pub struct FlockEnv {
     seeds: Option<EpisodeSeeds>,
     episode: Option<Episode>,
     finished: Option<EpisodeSummary>,
-    finished_leaders: Vec<LeaderSummary>,
     final_observation: Vec<f32>,
 }
 
@@ -42,7 +39,6 @@ impl FlockEnv {
             seeds: None,
             episode: None,
             finished: None,
-            finished_leaders: Vec::new(),
             final_observation: Vec::new(),
             parameters,
         }
@@ -66,11 +62,6 @@ impl FlockEnv {
     /// Summary of the last episode that reached its end.
     pub fn finished(&self) -> Option<&EpisodeSummary> {
         self.finished.as_ref()
-    }
-
-    /// Each leader's summary of the same episode, where each had a target of its own; empty otherwise.
-    pub fn finished_leaders(&self) -> &[LeaderSummary] {
-        &self.finished_leaders
     }
 
     /// The last observations of the last episode that ended under [`Autoreset::SameStep`].
@@ -150,7 +141,6 @@ impl FlockEnv {
             return Ok(false);
         }
         self.finished = Some(episode.summary());
-        self.finished_leaders = episode.leader_summaries();
         if settings.autoreset_mode == Autoreset::SameStep {
             self.final_observation.clear();
             self.final_observation.extend_from_slice(observations);
@@ -220,7 +210,6 @@ impl FlockEnv {
             seeds: self.seeds,
             episode: self.episode.as_ref().map(Episode::state),
             finished: self.finished,
-            finished_leaders: self.finished_leaders.clone(),
             final_observation: self.final_observation.clone(),
         }
     }
@@ -245,7 +234,6 @@ impl FlockEnv {
         restored.seeds = stored.seeds;
         restored.episode = episode;
         restored.finished = stored.finished;
-        restored.finished_leaders = stored.finished_leaders;
         restored.final_observation = stored.final_observation;
         Ok(restored)
     }

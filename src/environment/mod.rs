@@ -22,4 +22,4 @@ pub use reward::{Reward, RewardTerm, RewardTerms, RewardWeights, TERMS};
 pub use rudder::{LARGEST_LEAN, Servo};
 pub use schedule::{EpisodeSchedule, EpisodeSeeds};
 pub use settings::{ActionMode, Autoreset, EnvSettings};
-pub use statistics::{Averages, EpisodeSummary, LeaderSummary, ORDERED_WITHIN, TOWARDS_TARGET};
+pub use statistics::{Averages, EpisodeSummary, ORDERED_WITHIN, TOWARDS_TARGET};

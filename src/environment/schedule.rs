@@ -56,14 +56,6 @@ impl EpisodeSchedule {
         Targets::One(if is_even { first } else { first.opposite() })
     }
 
-    /// How many of so many leaders have targets of their own: all or none.
-    pub(crate) fn own_targets(&self, leaders: usize) -> usize {
-        match self.targets {
-            Targets::Each(_) => leaders,
-            Targets::One(_) => 0,
-        }
-    }
-
     /// Whether the targets change in the course of the episode.
     pub(crate) fn alternates(&self) -> bool {
         self.alternates

@@ -58,26 +58,6 @@ impl EpisodeStatistics {
         }
     }
 
-    /// The summary of a leader with these sums and this target, where the statistics are towards the reference
-    /// direction.
-    pub(super) fn summary_of(
-        &self,
-        sums: &LeaderSums,
-        target: Target,
-        reference: Target,
-    ) -> LeaderSummary {
-        let window = f64::from(self.window_steps);
-        let averages = self.averages.over(window);
-        let signed_order = averages.named().find(|(name, _)| *name == "signed_order");
-        let towards = target.sign() * reference.sign();
-        LeaderSummary {
-            target,
-            total_reward: sums.reward,
-            signed_order: towards * signed_order.map_or(f64::NAN, |(_, mean)| mean),
-            share_towards_target: f64::from(sums.steps_towards_target) / window,
-        }
-    }
-
     /// Adds a step inside the analysis window.
     pub(super) fn add_window(&mut self, boats: &Boats, target: Target) {
         self.window_steps += 1;
@@ -121,9 +101,9 @@ impl EpisodeStatistics {
 }
 
 impl EpisodeSummary {
-    /// The summary by name, with arrays of what each leader with a target of its own has. Means over an analysis window
-    /// that the episode did not reach are left out, as there is no NaN.
-    pub fn named(&self, leaders: &[LeaderSummary]) -> Value {
+    /// The summary by name. Means over an analysis window that the episode did not reach are left out, as there is no
+    /// NaN.
+    pub fn named(&self) -> Value {
         let terms = RewardTerm::ALL
             .iter()
             .map(|term| term.name())
@@ -132,60 +112,14 @@ impl EpisodeSummary {
         let means = self.averages.named().chain([share]);
         let means = means.filter(|(_, mean)| !mean.is_nan());
         let [printed, wide] = self.ordering_times_s;
-        type Column = (&'static str, fn(&LeaderSummary) -> f64);
-        let columns: [Column; 4] = [
-            ("leader_targets", |each| each.target.sign()),
-            ("leader_total_rewards", |each| each.total_reward),
-            ("leader_signed_orders", |each| each.signed_order),
-            ("leader_shares_towards_target", |each| {
-                each.share_towards_target
-            }),
-        ];
-        let columns = columns.map(|(name, value)| (name, leaders.iter().map(value)));
-        let columns = columns.into_iter().filter_map(|(name, values)| {
-            let is_whole = values.len() > 0 && !values.clone().any(f64::is_nan);
-            is_whole.then(|| (name, Value::Array(values.collect())))
-        });
         let first = named_fields!(self; flock_seed bw_s steps total_reward clip_rate);
         let times = [("ordering_time_s", printed), ("ordering_time_wide_s", wide)];
         let numbers = means
             .chain(times)
             .map(|(name, number)| (name, number.into()));
         let each = first.into_iter().chain([("reward_terms", terms.collect())]);
-        each.chain(numbers).chain(columns).collect()
+        each.chain(numbers).collect()
     }
-}
-
-/// What is summed up of one leader that has a target of its own.
-#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
-pub(crate) struct LeaderSums {
-    reward: f64,
-    steps_towards_target: u32,
-}
-
-impl LeaderSums {
-    /// Adds the reward of a control step.
-    pub(super) fn add_reward(&mut self, reward: f64) {
-        self.reward += reward;
-    }
-
-    /// Adds a step inside the analysis window.
-    pub(super) fn add_window(&mut self, order: &OrderParameters, target: Target) {
-        self.steps_towards_target += u32::from(order.signed_order(target) > TOWARDS_TARGET);
-    }
-}
-
-/// One leader's summary of an episode in which each has a target of its own.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct LeaderSummary {
-    /// Its target.
-    pub target: Target,
-    /// Sum of its rewards.
-    pub total_reward: f64,
-    /// Signed order towards its target, a mean as those of [`EpisodeSummary::averages`].
-    pub signed_order: f64,
-    /// Part of the same steps in which that exceeds [`TOWARDS_TARGET`].
-    pub share_towards_target: f64,
 }
 
 /// The summary of an episode.

@@ -7,7 +7,7 @@ use super::value::{given, seed_from, set_given, value_from};
 use crate::analysis::OrderParameters;
 use crate::environment::observation::FlockFeatures;
 use crate::environment::{
-    BatchRows, EnvBatch, EnvSettings, Episode, FlockEnv, ResetRequest, Start, TERMS,
+    BatchRows, EnvBatch, EnvSettings, Episode, EpisodeSummary, FlockEnv, ResetRequest, Start, TERMS,
 };
 use crate::error::{FlockError, Result};
 use crate::parameters::{Field, FlockParameters, Setting, Value, named_fields, text_of};
@@ -246,17 +246,12 @@ impl PyEnvBatch {
 
     /// Summary of the episode under way.
     fn summary(&self, flock: usize) -> Result<Value> {
-        self.episode_of(flock, |episode| {
-            episode.summary().named(&episode.leader_summaries())
-        })
+        self.episode_of(flock, |episode| episode.summary().named())
     }
 
     /// Summary of the last episode that reached its end.
     fn finished(&self, flock: usize) -> Result<Option<Value>> {
-        self.env(flock, |env| {
-            let summary = env.finished();
-            summary.map(|summary| summary.named(env.finished_leaders()))
-        })
+        self.env(flock, |env| env.finished().map(EpisodeSummary::named))
     }
 
     fn to_bytes<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyBytes>> {

@@ -3,7 +3,7 @@
 use crate::support::{Written, batch, parameters, seeded, settings, step};
 use flockenv::Flock;
 use flockenv::environment::RewardWeights;
-use flockenv::environment::observation::{Block, FlockFeatures};
+use flockenv::environment::observation::FlockFeatures;
 use flockenv::environment::{ActionMode, EnvBatch, EnvSettings, ResetRequest, TargetChoice};
 use flockenv::parameters::Target::{self, Clockwise, CounterClockwise};
 use flockenv::parameters::{FlockParameters, Targets, Value};
@@ -75,7 +75,6 @@ fn a_leader_sees_and_is_rewarded_as_if_its_target_were_everybodys() {
     compare(|_| ());
     compare(|own| own.mirror_to_target = true);
     compare(|own| {
-        own.observation.repeat(Block::LawRudder, 1);
         (own.dropout_rate, own.delay_frames) = (0.3, 1);
     });
 }
@@ -146,32 +145,25 @@ fn the_papers_law_steers_each_leader_to_its_own_target() {
 }
 
 #[test]
-fn summaries_are_each_leaders_own() {
-    let mut batch = batch(towards(300, each(&MIXED)), &[3], 2);
-    let mut totals = [0.0; 3];
-    for _ in 0..300 {
-        let written = step(&mut batch, &[0.2, -0.2, 0.5]).unwrap();
-        for (total, reward) in totals.iter_mut().zip(written.rewards) {
-            *total += reward;
+fn the_summary_is_towards_the_target_of_leader_0() {
+    let summary = |target| {
+        let mut batch = batch(towards(300, target), &[3], 2);
+        let mut total = 0.0;
+        for _ in 0..300 {
+            let written = step(&mut batch, &[0.2, -0.2, 0.5]).unwrap();
+            total += written.rewards.iter().sum::<f64>() / 3.0;
         }
-    }
-    let env = &batch.envs()[0];
-    let leaders = env.finished_leaders();
-    let whole = env.finished().unwrap();
-    let order = whole
-        .averages
-        .named()
-        .find(|(name, _)| *name == "signed_order");
-    for (leader, (own, target)) in leaders.iter().zip(MIXED).enumerate() {
-        assert_eq!(own.target, target);
-        assert_eq!(own.total_reward, totals[leader]);
-        assert_eq!(own.signed_order, target.sign() * order.unwrap().1);
-    }
-    assert_eq!(leaders[0].share_towards_target, whole.share_towards_target);
-    assert!(leaders[0].share_towards_target + leaders[1].share_towards_target <= 1.0);
-    assert!(leaders[0].signed_order != 0.0);
-    let mean: f64 = totals.iter().sum::<f64>() / 3.0;
-    assert!((whole.total_reward - mean).abs() < 1e-9 * mean.abs().max(1.0));
+        let found = *batch.envs()[0].finished().unwrap();
+        assert!((found.total_reward - total).abs() < 1e-9 * total.abs().max(1.0));
+        let mut means = found.averages.named();
+        let order = means.find(|(name, _)| *name == "signed_order").unwrap().1;
+        (order, found.share_towards_target)
+    };
+    let mixed = summary(each(&MIXED));
+    assert_eq!(mixed, summary(TargetChoice::Fixed(Clockwise.into())));
+    assert!(mixed.0 != 0.0);
+    let ccw = summary(TargetChoice::Fixed(CounterClockwise.into()));
+    assert!((ccw.0 + mixed.0).abs() < 1e-12);
 }
 
 #[test]
@@ -239,7 +231,7 @@ fn what_is_drawn_or_alternates_stands_alone() {
 }
 
 #[test]
-fn restored_batches_go_on_bit_for_bit_with_the_leaders_sums() {
+fn restored_batches_go_on_bit_for_bit() {
     let mut own = towards(12, each(&MIXED));
     own.mirror_to_target = true;
     let mut original = batch(own, &[3, 3], 0);
@@ -248,13 +240,10 @@ fn restored_batches_go_on_bit_for_bit_with_the_leaders_sums() {
         assert_eq!(copy.to_bytes(), original.to_bytes());
         let actions = [f64::from(time).sin(), 0.2, -0.7, 1.0, -1.0, 0.0];
         assert_eq!(step(&mut original, &actions), step(&mut copy, &actions));
-        assert_eq!(
-            copy.envs()[1].finished_leaders(),
-            original.envs()[1].finished_leaders()
-        );
+        assert_eq!(copy.envs()[1].finished(), original.envs()[1].finished());
         assert_eq!(copy.to_bytes(), original.to_bytes());
     }
-    assert_eq!(original.envs()[1].finished_leaders().len(), 3);
+    assert!(original.envs()[1].finished().is_some());
 }
 
 #[test]
@@ -267,9 +256,7 @@ fn targets_of_an_episode_may_be_requested() {
     own.reset(&[Some(request)]).unwrap();
     let episode = own.envs()[0].episode().unwrap();
     assert_eq!(*episode.targets(), Targets::Each(MIXED.to_vec()));
-    assert_eq!(episode.leader_summaries().len(), 3);
     own.reset(&[seeded(3)]).unwrap();
     let episode = own.envs()[0].episode().unwrap();
     assert_eq!(*episode.targets(), Clockwise.into());
-    assert!(episode.leader_summaries().is_empty());
 }

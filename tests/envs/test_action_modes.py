@@ -176,17 +176,3 @@ def test_levels_stand_for_leans_too():
     options = {"pool": "narrow", "action_mode": "lean"}
     levels = rolled(20, 3, rudder_levels=5, **options)
     assert same(levels, rolled(20, 0.5, **options))
-
-
-@pytest.mark.parametrize("pool", POOLS)
-def test_the_law_rudder_is_observed(pool):
-    env = LeadersVectorEnv(2, n_boats=9, n_leaders=2, pool=pool, observation={"law_rudder": True})
-    seen, _ = env.reset(seed=0)
-    law = DampedLaw.tuned(pool, observation={"law_rudder": True})
-    for _ in range(50):
-        rudders = law.predict(seen)[0]
-        np.testing.assert_array_equal(seen.reshape(2, 2, -1)[..., -1], rudders)
-        seen = env.step(rudders)[0]
-    assert np.abs(rudders).max() > 0.0
-    outside = flockenv.envs.observation.observe(env._batch.flock(0), {"law_rudder": True})
-    assert outside.shape == (2, seen.shape[1] // 2)

@@ -63,7 +63,7 @@ def interface(request):
         ({"decision_period_s": float("nan")}, "whole number of control steps"),
         ({"decision_period_s": -1.0}, "whole number of control steps"),
         ({"reward_horizon_s": 0.0}, "positive number"),
-        ({"observation": {"law_rudder": True}, "pool": (100.0, 40.0)}, "wide and narrow"),
+        ({"observation": {"lean_features": True}, "pool": (100.0, 40.0)}, "wide and narrow"),
     ],
 )
 def test_options(interface, options, message):

@@ -41,8 +41,8 @@ impl Observer {
     /// For a checked layout and checked parameters.
     ///
     /// # Errors
-    /// [`crate::FlockError::Parameter`] for blocks that are not made for the flock, such as `law_rudder` in a pool in
-    /// which the law has not been tuned.
+    /// [`crate::FlockError::Parameter`] for blocks that are not made for the flock, such as `lean_features` in a
+    /// pool in which they are not standardized.
     pub fn new(layout: ObservationLayout, parameters: &FlockParameters) -> Result<Self> {
         let entries = layout.entries().into_iter().map(|(_, _, entry)| entry);
         let scaling = Scaling::new(entries, parameters);

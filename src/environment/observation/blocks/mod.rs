@@ -1,7 +1,6 @@
 //! The blocks of an observation. Each has a file with its entries and what writes their physical values, and is
 //! declared here: `mod` and one line of [`declare_blocks`].
 
-mod law_rudder;
 mod lean_features;
 mod neighbors;
 mod obstacles;
@@ -136,8 +135,6 @@ declare_blocks! {
     Neighbors = "neighbors": neighbors::{NEIGHBOR, Neighbors}, 6 counted;
     /// Order parameters of the normal boats.
     Order = "order": order::{ORDER, Order}, 1 once;
-    /// The rudder of the pool's tuned law.
-    LawRudder = "law_rudder": law_rudder::{LAW_RUDDER, LawRudder}, 0 once;
     /// The nearest obstacles.
     Obstacles = "obstacles": obstacles::{OBSTACLE, NearestObstacles}, 0 counted;
     /// What the lean of a leader depends on, mirrored to the target and standardized.
