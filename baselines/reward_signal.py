@@ -22,12 +22,12 @@ from typing import Any
 import numpy as np
 
 import flockenv
-from flockenv.policies import StraightAhead
+from flockenv.policies import LeaningLaw, StraightAhead
 from flockenv.policies.registry import named_policy
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import LeaderVecEnv
 
-REWARDS = ("leader_velocity", "contact_push", "signed_order")
+REWARDS = ("leader_velocity", "contact_push", "contact_alignment", "signed_order")
 #: Rows that a baseline is fitted to, about.
 ROWS = 20_000
 
@@ -106,6 +106,9 @@ def significance(values: np.ndarray, samples: int) -> tuple[float, float]:
 def measured(options: argparse.Namespace) -> list[dict[str, Any]]:
     """Return z per million samples of each reward and horizon."""
     other = policy_of(options.to, options.pool)
+    if options.action_mode == "lean" and isinstance(other, LeaningLaw):
+        period_s = other.decision_period_s or 2.0
+        other = LeaningLaw(other.pool, other.bias, other.weights, decision_period_s=period_s)
     layout = {"observation": other.observation, "mirror_to_target": other.mirror_to_target}
     period_s = getattr(other, "decision_period_s", None) or 1.0
     policies = policy_of(options.start, options.pool, **layout), other

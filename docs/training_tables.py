@@ -8,7 +8,7 @@ SIGNALS = (("rudder", "wide"), ("rudder", "narrow"), ("lean", "wide"))
 def signals() -> str:
     """Return z per million samples of each reward, for a horizon of 30 s."""
     body = []
-    for reward in ("leader_velocity", "contact_push", "signed_order"):
+    for reward in ("leader_velocity", "contact_push", "contact_alignment", "signed_order"):
         cells = [f"`{reward}`"]
         for mode, pool in SIGNALS:
             row = one("results/signals.csv", pool=pool, action_mode=mode, reward=reward)

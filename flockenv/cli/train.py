@@ -20,7 +20,7 @@ class TrainOptions(Printing):
 
     pool: str | None = option(None, "wide or narrow. [wide]")
     leaders: int | None = option(None, "Leaders of each flock. [3]")
-    flock_hours: float | None = option(None, "When to stop: hours of all flocks together. [2000]")
+    flock_hours: float | None = option(None, "When to stop: hours of all flocks together. [500]")
     seed: int | None = option(None, "Number of the training. [0]")
     change: list[str] | None = option(
         None, "Change an option of the environment; repeatable.", "--set", metavar="NAME=VALUE"

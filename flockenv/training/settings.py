@@ -68,7 +68,7 @@ class TrainingSettings:
 
     pool: str = "wide"
     n_leaders: int = 3
-    flock_hours: float = 2000.0
+    flock_hours: float = 500.0
     num_flocks: int = 128
     seed: int = 0
     environment: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
@@ -110,7 +110,8 @@ class TrainingSettings:
             "mirror_to_target": True,
             "observation": _OBSERVATION,
             "action_mode": "lean",
-            "decision_period_s": 2.0,
+            "decision_period_s": 1.0,
+            "reward": {"signed_order": 1.0, "contact_alignment": 30.0},
             "episode_s": times["episode"],
             "reward_horizon_s": 40.0,  # returns of order 1, for the critic
             "physics": "training",

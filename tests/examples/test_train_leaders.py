@@ -17,7 +17,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "train_leaders.py"
 def test_it_trains_compares_and_draws(tmp_path, monkeypatch, capsys):
     assert len(EXAMPLE.read_text(encoding="utf-8").splitlines()) <= 40
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("sys.argv", [str(EXAMPLE), "3", "9", "2"])
+    monkeypatch.setattr("sys.argv", [str(EXAMPLE), "3", "17", "2"])
     pyplot.switch_backend("agg")
     try:
         runpy.run_path(str(EXAMPLE))
