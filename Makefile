@@ -54,7 +54,10 @@ TEST_EXTRAS := --extra train --extra plot --extra search --extra render --extra 
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
+# Only where a recipe says so: compilers leave a core idle for a minute each.
+ifndef PARALLEL
 .NOTPARALLEL:
+endif
 .PHONY: help test-pages test-other bench setup build compare live test lint format test-rust test-python coverage test-js test-browser test-live test-wheel test-oldest \
         test-benchmarl test-rllib test-ray test-slurm validate docs wheel audit licenses tables replay-animation publish-check release-check \
         instructions throughput env-benchmarl env-rllib soak fuzz speed-vs-error \
@@ -66,7 +69,10 @@ help: ## list the commands
 compare: build ## set up, then print and plot the paper's leader-count curve
 	$(BIN)/flockenv compare $(COMPARE_ARGS)
 
-test: lint test-rust test-python ## set up, then check style and types and run all tests
+test: ## set up, then check style and types and run all tests
+	@cargo --version > /dev/null || { echo "A Rust toolchain is needed: cargo was not found." >&2; exit 1; }
+	$(MAKE) --no-print-directory PARALLEL=yes --jobs 2 --output-sync=line lint test-rust
+	$(MAKE) --no-print-directory test-python
 
 setup: $(STAMPS)/test
 
