@@ -344,6 +344,6 @@ ifeq ($(and $(wildcard flockenv/_core.*.so flockenv/_core.*.pyd),$(shell grep -l
 .PHONY: $(CORE)
 endif
 
-$(CORE): $(RUST_SOURCES) pyproject.toml | $(STAMPS)/compare
+$(CORE): $(RUST_SOURCES) pyproject.toml | $(STAMPS)/$(if $(PARALLEL),test,compare)
 	VIRTUAL_ENV="$(CURDIR)/$(VENV)" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv $(CODEGEN)
 	@touch $@
