@@ -71,7 +71,7 @@ compare: build ## set up, then print and plot the paper's leader-count curve
 
 test: ## set up, then check style and types and run all tests
 	@cargo --version > /dev/null || { echo "A Rust toolchain is needed: cargo was not found." >&2; exit 1; }
-	$(MAKE) --no-print-directory PARALLEL=yes --jobs 2 --output-sync=line lint test-rust
+	$(MAKE) --no-print-directory PARALLEL=yes --jobs 2 lint test-rust
 	$(MAKE) --no-print-directory test-python
 
 setup: $(STAMPS)/test
