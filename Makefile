@@ -57,6 +57,9 @@ TEST_EXTRAS := --extra train --extra plot --extra search --extra render --extra 
 # Only where a recipe says so: compilers leave a core idle for a minute each.
 ifndef PARALLEL
 .NOTPARALLEL:
+else
+# Cargo would look for job slots in make's flags, which are not handed on to it.
+export CARGO_MAKEFLAGS :=
 endif
 .PHONY: help test-pages test-other bench setup build compare live test lint format test-rust test-python coverage test-js test-browser test-live test-wheel test-oldest \
         test-benchmarl test-rllib test-ray test-slurm validate docs wheel audit licenses tables replay-animation publish-check release-check \
