@@ -102,6 +102,11 @@ impl ContactDetector {
     ) {
         contacts.clear();
         self.update(boats, margin);
+        self.detect_listed(boats, margin, contacts);
+    }
+
+    /// Adds the contacts of the neighbor list.
+    fn detect_listed(&self, boats: &[HullPose], margin: f64, contacts: &mut Vec<Contact>) {
         // Of a boat and a wall only one moves.
         let open = self.open_water(0.5 * margin);
         let has_obstacles = !self.obstacles.obstacles.is_empty();

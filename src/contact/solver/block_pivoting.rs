@@ -126,12 +126,13 @@ impl BlockPivoting {
         velocities: &mut [Velocity],
         report: &mut SolveReport,
     ) {
+        let places = &mut self.places;
         for &number in &self.left {
             let number = number as usize;
             let island = &mut self.islands[if self.keeps_factors { number } else { 0 }];
             island.is_built &= self.keeps_factors;
             let contacts = islands.contacts(number);
-            island.build(problem, contacts, active, impulses, &mut self.places);
+            island.build(problem, contacts, active, impulses, places);
             island.set_right(problem, &self.rights);
             island.solve(self.regularization, report);
             for (contact, is_active, impulse) in island.solution() {
