@@ -72,8 +72,7 @@ help: ## list the commands
 compare: build ## set up, then print and plot the paper's leader-count curve
 	$(BIN)/flockenv compare $(COMPARE_ARGS)
 
-test: ## set up, then check style and types and run all tests
-	@cargo --version > /dev/null || { echo "A Rust toolchain is needed: cargo was not found." >&2; exit 1; }
+test: $(STAMPS)/venv ## set up, then check style and types and run all tests
 	$(MAKE) --no-print-directory PARALLEL=yes --jobs 2 lint test-rust
 	$(MAKE) --no-print-directory test-python
 
