@@ -117,6 +117,8 @@ impl BlockPivoting {
     }
 
     /// Solves the islands that are left.
+    // Not part of its caller: a jam took 0.4 % more instructions so.
+    #[inline(never)]
     fn solve_left(
         &mut self,
         problem: &ContactProblem,
