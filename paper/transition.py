@@ -34,7 +34,7 @@ def cells(table: pd.DataFrame) -> pd.DataFrame:
         counts = runs.apply(state, axis=1).value_counts().to_dict()
         line = dict(zip(by, key, strict=True)) | {"runs": len(runs)}
         line |= {"stay": int((runs["exited"] == 0).sum()), "hours": runs["stayed_min"].sum() / 60}
-        lines.append(line | {"drift_per_h": mean(steady)} | counts)
+        lines.append(line | {"drift_per_h": mean(steady)[0]} | counts)
     return pd.DataFrame(lines)
 
 
