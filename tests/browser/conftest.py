@@ -1,4 +1,4 @@
-"""A headless Chromium, and the replay page as one who clicks and reads it."""
+"""A headless Chromium, and the replay page and the live page as one who clicks and reads them."""
 
 import json
 import math
@@ -14,6 +14,9 @@ import flockenv
 from flockenv.replay import write_replay
 
 SIZE = (1366, 768)
+PHONE, LAPTOP = (390, 844), (1280, 800)
+FLOCK = "#n_boats=12&n_leaders=2&bw_s=0.3&seed=7"
+"""A small flock, which is there at once."""
 OUTER_CM = 90.0
 """Of the pool of `parameters`."""
 # Nothing that a fresh browser does on its own account.
@@ -292,3 +295,80 @@ def number(text: str) -> float:
     """The number that a text starts with."""
     word = text.split()[0].replace("−", "-")
     return math.nan if word == "–" else float(word)
+
+
+class LivePage(Page):
+    def __init__(self, driver, file: Path, size: tuple[int, int]) -> None:
+        super().__init__(driver)
+        self.file = file
+        resize(driver, *size)
+
+    def go(self, fragment: str = FLOCK, *, plays: bool = False) -> "LivePage":
+        self.open(self.file.as_uri() + fragment)
+        self.until("return document.body.dataset.ready")
+        if not plays and self.script("return window.page?.playing"):
+            self.click("#play")
+        return self
+
+    def click(self, selector: str) -> None:
+        self.script(
+            "document.querySelector(arguments[0]).scrollIntoView({block: 'center'})", selector
+        )
+        self.find(selector).click()
+
+    def choose(self, selector: str, value: str) -> None:
+        self.unfold(selector)
+        super().choose(selector, value)
+        self.wait()
+
+    def unfold(self, selector: str) -> None:
+        """Open what an element is folded in."""
+        source = """
+            const folded = document.querySelector(arguments[0]).closest("details");
+            if (folded) {
+              folded.open = true;
+            }"""
+        self.script(source, selector)
+
+    def wait(self) -> None:
+        """Wait until the simulator has answered all its questions."""
+        self.until("return !page.changing && !page.advancing && page.simulator.open.size === 0")
+
+    def run_to(self, seconds: float) -> None:
+        """Let the flock run fast until this time at least, and pause."""
+        self.choose("#speed", "64")
+        self.click("#play")
+        self.until("return page.runs[0].end >= arguments[0]", seconds)
+        self.click("#play")
+        self.wait()
+
+    def rows(self, name: str, run: int = 0) -> np.ndarray:
+        """All samples that the page holds of a column, a row each."""
+        source = """
+            const run = page.runs[arguments[0]];
+            return Array.from(run.raw[arguments[1]].from(0)).concat(run.length)"""
+        *numbers, samples = self.script(source, run, name)
+        return np.array(numbers).reshape(int(samples), -1)
+
+    def parameters(self, run: int = 0) -> dict[str, str]:
+        return self.script("return page.runs[arguments[0]].parameters", run)
+
+    def status(self) -> str:
+        return self.text("#status")
+
+
+@pytest.fixture(scope="session")
+def file(pytestconfig) -> Path:
+    return pytestconfig.rootpath / "web" / "live.html"
+
+
+@pytest.fixture
+def open_live(chromium, file) -> Iterator[Callable[..., LivePage]]:
+    yield lambda size=LAPTOP: LivePage(chromium, file, size)
+    # Its flock would continue beside the next test.
+    chromium.get("about:blank")
+
+
+@pytest.fixture
+def live(open_live) -> LivePage:
+    return open_live().go()

@@ -1,0 +1,103 @@
+"""Law: a link to the live page shows its flock, and one that cannot be followed is named."""
+
+import numpy as np
+import pytest
+
+pytestmark = pytest.mark.live
+
+
+def test_every_scene_is_a_link_to_a_flock(open_live):
+    live = open_live().go()
+    names = live.script(
+        "return [...document.querySelectorAll('#lessons a')].map((a) => a.dataset.lesson)"
+    )
+    assert names == ["noise", "leaders", "learned", "forces", "opposed"]
+    for name in names:
+        live.click(f"#lessons a[data-lesson='{name}']")
+        live.until(
+            "return page.other.lesson === arguments[0] && page.simulator.open.size === 0", name
+        )
+        assert (
+            live.find(f"#lessons a[data-lesson='{name}']").get_attribute("aria-current") == "true"
+        )
+        assert len(live.text("#story")) > 100
+        live.run_to(live.script("return page.runs[0].end") + 3.0)
+        for link in live.driver.find_elements("css selector", "#story a"):
+            link.click()
+            live.wait()
+            assert live.script("return page.other.lesson") == name
+            assert link.get_attribute("aria-current") == "true"
+            # A story that stays is not written again: the keyboard's focus remains.
+            assert link.is_displayed()
+    assert live.complaints() == []
+
+
+def test_a_link_is_followed_where_the_address_is_written_at_the_same_moment(live):
+    live.script(
+        """location.hash = '#n_boats=9&seed=3';
+        history.replaceState(null, '', '#n_boats=12&seed=7');"""
+    )
+    live.until("return page.runs[0].boats === 9")
+
+
+def test_a_change_while_a_link_is_followed_is_one_of_the_links_flock(live):
+    link = "#n_boats=9&seed=3&beside.n_leaders=1"
+    live.script("page.follow(arguments[0]); page.set('bw_s', '0.5')", link)
+    live.wait()
+    for run, leaders in ((0, "0"), (1, "1")):
+        found = live.parameters(run)
+        assert (found["n_boats"], found["n_leaders"], found["bw_s"]) == ("9", leaders, "0.5")
+    # What is refused is not what later changes start from.
+    live.script("page.set('pool', 'none')")
+    live.wait()
+    live.script("page.set('c4', '0.2')")
+    live.wait()
+    assert (live.parameters()["pool"], live.parameters()["c4"]) == ("wide", "0.2")
+
+
+def test_a_link_shows_the_same_flock_again(open_live):
+    live = open_live().go("#n_boats=9&bw_s=0.2&pool=narrow&seed=3&beside.bw_s=0.8&speed=4&forces=1")
+    live.run_to(5.0)
+    pose = live.rows("pose", 1)[:51]
+    live.until("return location.hash.includes('speed=64')")
+    fragment = live.script("return location.hash")
+    live.go(fragment)
+    assert live.parameters(1)["bw_s"] == "0.8"
+    assert live.find("#forces").is_selected()
+    live.run_to(5.0)
+    assert np.array_equal(live.rows("pose", 1)[:51], pose)
+
+
+@pytest.mark.parametrize(
+    ("fragment", "words"),
+    [
+        ("#n_boats=1000000", "n_boats is 2 to 300 on this page"),
+        ("#n_boats=NaN&bw_s=Infinity", "bw_s = inf is not accepted"),
+        ("#bw_s=NaN", "bw_s = NaN is not accepted"),
+        ("#n_leaders=5&n_boats=3", "n_leaders = 5 is not accepted: 0 to n_boats = 3"),
+        ("#pool=<img src=x onerror=alert(1)>", "pool = "),
+        ("#leaders=<script>window.stolen=1</script>", "leaders = <script>window.stolen=1</script>"),
+        ("#n_leaders=3&leaders=learned,paper's law", "one policy for each of 3 leaders"),
+        ("#n_leaders=2&leaders=learned,you", "leaders = you is not accepted"),
+        ("#n_boats=2&n_leaders=2&leaders=learned,tuned law", ""),
+        ("#seed=-1", "seed = -1 is not accepted"),
+        ("#preset=none", "preset = "),
+        ("#wheels=4", "this page knows no such parameter"),
+        ("#n_boats=300&pool=narrow", "boats do not fit the pool"),
+        ("#target=cw,cw,ccw", "target = [cw, cw, ccw] is not accepted"),
+        ("#speed_cm_s=1e300", "speed_cm_s = "),
+        ("#c1=1e6&c3=1e6&dt_s=1&n_boats=40", ""),
+        ("#%E0%A4%A&=&&&==", "this page knows no such parameter"),
+    ],
+)
+def test_a_link_that_cannot_be_followed_is_named_and_not_executed(open_live, fragment, words):
+    live = open_live().go(fragment)
+    assert live.script("return document.body.dataset.ready") == "true"
+    assert words in live.status()
+    assert len(live.status()) < 400
+    assert live.script("return window.stolen") is None
+    assert live.script("return document.querySelectorAll('#status *').length") == 0
+    live.choose("#speed", "8")
+    live.click("#play")
+    live.until("return page.runs[0].end > 1 || page.broken")
+    assert live.complaints() == []

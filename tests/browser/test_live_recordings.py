@@ -1,0 +1,102 @@
+"""Law: the live page saves and loads recordings, and refuses what is none in words."""
+
+import base64
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import flockenv
+
+pytestmark = pytest.mark.live
+
+
+@pytest.fixture
+def downloads(chromium, tmp_path) -> Path:
+    behavior = {"behavior": "allow", "downloadPath": str(tmp_path), "eventsEnabled": False}
+    chromium.execute_cdp_cmd("Browser.setDownloadBehavior", behavior)
+    return tmp_path
+
+
+def test_a_recording_is_saved_loaded_and_played(live, downloads):
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    live.run_to(8.0)
+    live.script("document.getElementById('take').open = true")
+    live.click("#save")
+    saved = downloads / "flock.npz"
+    WebDriverWait(live.driver, 30).until(lambda _: saved.exists() and saved.stat().st_size > 0)
+    recording = flockenv.Recording.load(saved)
+    native = flockenv.simulate(recording.parameters, 7, recording.duration_s)
+    assert recording.parameters == flockenv.FlockParameters(n_boats=12, n_leaders=2, bw_s=0.3)
+    assert recording == native
+    # Times, and the file that Python writes, are played alike.
+    packed = downloads / "packed.npz"
+    recording.save(packed, compressed=True)
+    for file in (saved, packed):
+        live.go()
+        live.script("document.getElementById('take').open = true")
+        live.find("#open").send_keys(str(file))
+        live.until("return page.recorded")
+        assert file.name in live.status()
+        assert np.array_equal(live.rows("pose").reshape(-1, 12, 3), recording.pose)
+        assert live.find("#scrub").is_displayed()
+        live.choose("#speed", "64")
+        live.click("#play")
+        live.until("return !page.playing")
+        assert live.script("return page.time") == pytest.approx(recording.time_s[-1])
+        assert live.complaints() == []
+    live.click("#again")
+    live.wait()
+    assert not live.script("return page.recorded")
+    assert live.parameters()["n_boats"] == "12"
+
+
+def test_a_file_is_dropped_onto_the_page(live, tmp_path):
+    parameters = flockenv.FlockParameters(n_boats=5, n_leaders=1)
+    recording = flockenv.simulate(parameters, 3, 4.0, contacts=True)
+    recording.save(tmp_path / "dropped.npz")
+    drop = """
+        const [name, text] = arguments;
+        const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+        const data = new DataTransfer();
+        data.items.add(new File([bytes], name));
+        const options = {bubbles: true, cancelable: true, dataTransfer: data};
+        document.body.dispatchEvent(new DragEvent("drop", options))"""
+    for name, content in (("dropped.npz", None), ("picture.png", b"\x89PNG\r\n"), ("a", b"")):
+        content = (tmp_path / name).read_bytes() if content is None else content
+        live.script(drop, name, base64.b64encode(content).decode())
+        live.until(
+            "return document.getElementById('status').textContent.startsWith(arguments[0])", name
+        )
+        assert ("cannot be shown" in live.status()) == (name != "dropped.npz")
+    # What was shown before stays.
+    assert np.array_equal(live.rows("pose").reshape(-1, 5, 3), recording.pose)
+    # Words that are no file are dropped in vain.
+    live.script("document.body.dispatchEvent(new DragEvent('drop', {bubbles: true}))")
+    assert live.complaints() == []
+
+
+def test_what_is_no_recording_is_refused_in_words(live, tmp_path):
+    files = {
+        "text.npz": b"<script>alert(1)</script>",
+        "empty.npz": b"",
+        "half.npz": None,
+        "other.npz": None,
+    }
+    recording = flockenv.simulate(flockenv.FlockParameters(n_boats=3), 1, 1.0)
+    recording.save(tmp_path / "whole.npz")
+    files["half.npz"] = (tmp_path / "whole.npz").read_bytes()[:2000]
+    np.savez(tmp_path / "arrays.npz", a=np.zeros(3))
+    files["other.npz"] = (tmp_path / "arrays.npz").read_bytes()
+    live.script("document.getElementById('take').open = true")
+    for name, content in files.items():
+        (tmp_path / name).write_bytes(content)
+        live.find("#open").send_keys(str(tmp_path / name))
+        live.until(
+            "return document.getElementById('status').textContent.startsWith(arguments[0])", name
+        )
+        assert f"{name} cannot be shown: " in live.status()
+        assert not live.script("return page.recorded")
+    live.run_to(2.0)
+    assert live.complaints() == []
