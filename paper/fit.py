@@ -36,7 +36,8 @@ SCREENED_S = tuple(round(0.4 * place, 1) for place in range(8))
 SCREENING, FITTING = range(2), range(2, 2 + SEEDS)
 HELD_OUT = range(2 + 2 * SEEDS, 2 + 3 * SEEDS)
 """Seeds; no choice depends on the last. Those between were the held-out ones of a first fit of 240
-candidates without the target of jams: it lost order at 1.52 and 1.85 s, and did not jam."""
+candidates without the target of jams; its best, 83, lost order at 1.52 and 1.85 s and jammed less.
+"""
 
 # What Sections 4.3 and 6 say in numbers, and how far from it counts as one: order is lost at 1.4 s
 # without leaders and at 2.0 s with three; Ψ_o is near 1 in order and below 0.3 in disorder; jams
