@@ -7,9 +7,9 @@ Each folder is of one seed. The flocks are those in which the example itself com
 follow from a hash. Brackets hold 95 % intervals, and differences are paired by flock.
 
 The design was fixed before these trainings: seeds 0, 1 and 2 with 500 flock-hours each, judged in
-512 flocks at the default physics against the tuned law. Time allowed seed 0 alone, and the first
-256 flocks. The reward, the width of the exploration and the time between decisions were chosen by
-trainings with other seeds, of 1500 flock-hours together, and by 512 other flocks.
+512 flocks at the default physics against the tuned law. The reward, the width of the exploration
+and the time between decisions were chosen by trainings with other seeds, of 1500 flock-hours
+together, and by 512 other flocks.
 """
 
 import argparse

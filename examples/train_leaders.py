@@ -29,7 +29,7 @@ model.set_logger(configure(out, ["csv"]))
 env.seed(POLICY_SEEDS["training"].seeds(1, run=seed)[0])
 model.policy.log_std.requires_grad_(False)  # the exploration stays as wide as it starts
 model.learn(3 * 3600 * hours).logger.close()  # three leaders decide every second
-law = LeaningLaw.from_model(model, "wide")  # which leans anew at each control step:
+law = LeaningLaw.from_model(model, "wide")  # its copy decides at every control step:
 LeaningLaw("wide", law.bias, law.weights).save(f"{out}/policy.json")
 print(f"{time.process_time() / 60:.1f} minutes of one core")
 ladder = {"paper's law": "paper's law", "tuned law": "tuned law", "mine": f"{out}/policy.json"}
