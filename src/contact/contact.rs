@@ -3,9 +3,7 @@
 use crate::geometry::{Feature, Gap, Hull, HullPose, Vec2, Velocity};
 
 /// What a boat is near to.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
-)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Partner {
     /// Another boat, always of a larger index.
     Boat(u32),
@@ -34,11 +32,11 @@ pub struct Contact {
 pub type ContactKey = (u32, Partner, Feature);
 
 impl Contact {
-    /// A contact of two boats.
-    pub(crate) fn of_pair(first: u32, second: u32, feature: Feature, gap: Gap) -> Self {
+    /// A contact of a boat with a partner.
+    pub(super) fn new(boat: u32, partner: Partner, feature: Feature, gap: Gap) -> Self {
         Self {
-            boat: first,
-            partner: Partner::Boat(second),
+            boat,
+            partner,
             feature,
             gap,
         }

@@ -53,32 +53,9 @@ impl Depenetration {
         }
     }
 
-    /// Displaces poses until no overlap exceeds `allowed` (cm, positive), `most_passes` are made or
-    /// `keep_going` says no; returns the smallest gap seen last.
-    pub(super) fn run(
-        &mut self,
-        detector: &mut ContactDetector,
-        poses: &mut [Pose],
-        boats: &mut Vec<HullPose>,
-        allowed: f64,
-        most_passes: u32,
-        keep_going: KeepGoing,
-    ) -> f64 {
-        let margin = wide_margin(detector);
-        for _ in 0..most_passes {
-            detector.detect(boats, margin, &mut self.contacts);
-            let smallest = smallest_gap(&self.contacts);
-            if smallest >= -allowed || !keep_going() {
-                return smallest;
-            }
-            self.displace(poses, boats);
-        }
-        detector.detect(boats, margin, &mut self.contacts);
-        smallest_gap(&self.contacts)
-    }
-
-    /// As [`Self::run`] where an overlap is known to exceed `allowed`, and fills `found` with what is nearer than
-    /// `margin` afterwards. That also shows whether another pass is needed: overlaps are found with any margin.
+    /// Displaces poses, of which an overlap is known to exceed `allowed` (cm, positive), until none does, and fills
+    /// `found` with what is nearer than `margin` afterwards. That also shows whether another pass is needed: overlaps
+    /// are found with any margin.
     pub(super) fn open_overlaps(
         &mut self,
         detector: &mut ContactDetector,
@@ -108,16 +85,13 @@ impl Depenetration {
     /// One pass, for the contacts at hand.
     fn displace(&mut self, poses: &mut [Pose], boats: &mut Vec<HullPose>) {
         self.passes += 1;
+        let gaps = self.contacts.iter().map(|contact| contact.gap.gap);
         self.biases.clear();
-        self.biases.extend(
-            self.contacts
-                .iter()
-                .map(|contact| contact.gap.gap.max(-self.largest_step_cm)),
-        );
+        self.biases
+            .extend(gaps.map(|gap| gap.max(-self.largest_step_cm)));
+        let overlap = self.biases.iter().map(|&gap| gap < 0.0);
         self.solver.active.clear();
-        self.solver
-            .active
-            .extend(self.biases.iter().map(|&gap| gap < 0.0));
+        self.solver.active.extend(overlap);
         self.solver.impulses.clear();
         self.solver.impulses.resize(self.contacts.len(), 0.0);
         self.solver.reset(poses.len(), &self.contacts);
@@ -148,7 +122,7 @@ fn smallest_gap(contacts: &[Contact]) -> f64 {
     gaps.fold(f64::INFINITY, f64::min)
 }
 
-/// Moves hulls apart until none overlaps, for placement; returns the smallest gap reached.
+/// Moves hulls apart, for placement, until none overlaps, `most_passes` are made or `keep_going` says no.
 pub(crate) fn push_apart(
     detector: &mut ContactDetector,
     poses: &mut [Pose],
@@ -156,15 +130,16 @@ pub(crate) fn push_apart(
     gyration_radius: f64,
     most_passes: u32,
     keep_going: KeepGoing,
-) -> f64 {
+) {
     let mut boats = Vec::with_capacity(poses.len());
     HullPose::replace_all(&mut boats, poses);
-    Depenetration::new(poses.len(), boat_radius, gyration_radius).run(
-        detector,
-        poses,
-        &mut boats,
-        0.0,
-        most_passes,
-        keep_going,
-    )
+    let mut projection = Depenetration::new(poses.len(), boat_radius, gyration_radius);
+    let margin = wide_margin(detector);
+    for _ in 0..most_passes {
+        detector.detect(&boats, margin, &mut projection.contacts);
+        if smallest_gap(&projection.contacts) >= 0.0 || !keep_going() {
+            return;
+        }
+        projection.displace(poses, &mut boats);
+    }
 }

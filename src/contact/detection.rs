@@ -43,18 +43,12 @@ impl ContactDetector {
         self.hull
     }
 
-    /// No point of a hull moves faster at this velocity.
-    #[inline]
-    pub(crate) fn speed(&self, velocity: &Velocity) -> f64 {
-        velocity.linear.norm_squared().sqrt() + self.hull.half_length * velocity.angular.abs()
-    }
-
     /// The largest of the speeds of hulls at these velocities.
     #[inline]
     fn fastest(&self, velocities: &[Velocity]) -> f64 {
         let mut fastest = 0.0;
         for velocity in velocities {
-            let speed = self.speed(velocity);
+            let speed = self.hull.speed(velocity);
             if speed > fastest {
                 fastest = speed;
             }
@@ -73,14 +67,10 @@ impl ContactDetector {
     ) -> f64 {
         let fastest = self.fastest(velocities);
         let room = 0.5 * (fastest * dt + 1e-3 * self.hull.radius);
-        let mut reaches = std::mem::take(&mut self.reaches);
-        reaches.clear();
-        reaches.extend(
-            velocities
-                .iter()
-                .map(|velocity| self.speed(velocity) * dt + room),
-        );
-        self.reaches = reaches;
+        let hull = self.hull;
+        let reaches = velocities.iter().map(|each| hull.speed(each) * dt + room);
+        self.reaches.clear();
+        self.reaches.extend(reaches);
         let margin = 3.0 * fastest * dt + 1e-3 * self.hull.radius;
         self.detect_within_reach(boats, margin, contacts);
         margin
@@ -123,7 +113,7 @@ impl ContactDetector {
                 let (a, b) = (&boats[first as usize], &boats[second as usize]);
                 let near = reach + self.reaches[partner as usize];
                 pair_gaps((a, self.hull), (b, self.hull), near, |feature, gap| {
-                    contacts.push(Contact::of_pair(first, second, feature, gap));
+                    contacts.push(Contact::new(first, Partner::Boat(second), feature, gap));
                 });
             }
         }
@@ -160,10 +150,7 @@ impl ContactDetector {
     }
 
     fn detect_walls(&self, boat: u32, pose: &HullPose, margin: f64, contacts: &mut Vec<Contact>) {
-        let Pool {
-            outer_radius_cm: outer,
-            inner_radius_cm: inner,
-        } = self.pool;
+        let (outer, inner) = (self.pool.outer_radius_cm, self.pool.inner_radius_cm);
         let distance = pose.center.norm_squared().sqrt();
         if self.pool.has_outer_wall() && distance + self.hull.reach() + margin > outer {
             let ends = if self.hull.half_length > 0.0 { 2 } else { 1 };
@@ -175,24 +162,15 @@ impl ContactDetector {
                 }
                 let gap = outer_wall_gap(pose, side, self.hull, outer);
                 if gap.gap < margin {
-                    contacts.push(Contact {
-                        boat,
-                        partner: Partner::OuterWall,
-                        feature,
-                        gap,
-                    });
+                    contacts.push(Contact::new(boat, Partner::OuterWall, feature, gap));
                 }
             }
         }
         if self.pool.has_inner_wall() && distance - self.hull.reach() - margin < inner {
             let gap = inner_wall_gap(pose, self.hull, inner);
             if gap.gap < margin {
-                contacts.push(Contact {
-                    boat,
-                    partner: Partner::InnerWall,
-                    feature: Feature::Flank,
-                    gap,
-                });
+                let feature = Feature::Flank;
+                contacts.push(Contact::new(boat, Partner::InnerWall, feature, gap));
             }
         }
     }
@@ -208,12 +186,7 @@ impl ContactDetector {
         for &number in self.obstacles.of(boat) {
             let obstacle = &self.obstacles.obstacles[number as usize];
             obstacle.gaps(pose, self.hull, margin, &mut |feature, gap| {
-                contacts.push(Contact {
-                    boat,
-                    partner: Partner::Obstacle(number),
-                    feature,
-                    gap,
-                });
+                contacts.push(Contact::new(boat, Partner::Obstacle(number), feature, gap));
             });
         }
     }

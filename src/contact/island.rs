@@ -1,7 +1,6 @@
 //! Islands: boats joined by contacts. Each is a contact problem of its own.
 
 use super::{Contact, Partner};
-use std::ops::Range;
 
 /// Contacts grouped by island, each group in the order of detection.
 #[derive(Debug, Clone, Default)]
@@ -69,23 +68,13 @@ impl Islands {
     }
 
     /// How many islands have contacts.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.starts.len().saturating_sub(1)
-    }
-
-    /// Whether there is no island.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// Where the contacts of an island stand, island by island.
-    pub fn range(&self, island: usize) -> Range<usize> {
-        self.starts[island] as usize..self.starts[island + 1] as usize
     }
 
     /// The contacts of an island.
     pub fn contacts(&self, island: usize) -> &[u32] {
-        &self.members[self.range(island)]
+        &self.members[self.starts[island] as usize..self.starts[island + 1] as usize]
     }
 }
 

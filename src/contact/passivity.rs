@@ -60,7 +60,7 @@ impl Passivity {
     ) -> Vec<usize> {
         self.counted.clear();
         self.counted.resize(problem.free.len(), false);
-        let islands = (0..solver.islands().len()).map(|island| solver.islands().contacts(island));
+        let islands = (0..solver.islands().count()).map(|island| solver.islands().contacts(island));
         let driven = islands.filter(|island| {
             self.is_driven(island, solver, problem, bias)
                 || has_obstacles && turns_back(island, problem, &solver.impulses)

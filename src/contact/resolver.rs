@@ -238,27 +238,20 @@ impl ContactResolver {
         inertia: &[InverseInertia],
         bias: VelocityBias,
     ) -> bool {
-        let Self {
-            detector,
-            contacts,
-            biases,
-            solver,
-            passivity,
-            ..
-        } = self;
         let problem = ContactProblem {
-            contacts,
+            contacts: &self.contacts,
             inertia,
             free,
-            biases,
+            biases: &self.biases,
         };
-        if !passivity::may_drive(&problem, &solver.impulses, bias) {
+        if !passivity::may_drive(&problem, &self.solver.impulses, bias) {
             return false;
         }
-        let has_obstacles = !detector.obstacles.obstacles.is_empty();
-        let driven = passivity.driven(solver, &problem, bias, has_obstacles);
+        let has_obstacles = !self.detector.obstacles.obstacles.is_empty();
+        let passivity = &mut self.passivity;
+        let driven = passivity.driven(&self.solver, &problem, bias, has_obstacles);
         for &k in &driven {
-            biases[k] = bias.of_gap(&contacts[k].gap);
+            self.biases[k] = bias.of_gap(&self.contacts[k].gap);
         }
         !driven.is_empty()
     }
@@ -312,7 +305,7 @@ impl ContactResolver {
         let left_over = 1.0 - dt / dt.max(self.whole_substep_s);
         let mut deepest = 0.0_f64;
         for (k, contact) in self.contacts.iter().enumerate() {
-            let speed = |boat: usize| self.detector.speed(&velocities[boat]);
+            let speed = |boat: usize| self.detector.hull().speed(&velocities[boat]);
             let closing = speed(contact.boat as usize) + contact.second().map_or(0.0, speed);
             if contact.gap.gap <= closing * dt && contact.gap.gap >= -self.penetration_slop {
                 let end_gap = self.trial.gap(&self.detector, &self.contacts, k)

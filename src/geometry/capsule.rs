@@ -1,6 +1,6 @@
 //! The hull of a boat: a segment swept by a disc (Section 5.1, figure 13).
 
-use super::{Pose, Vec2};
+use super::{Pose, Vec2, Velocity};
 use crate::parameters::FlockParameters;
 use wide::{f64x4, u64x4};
 
@@ -25,6 +25,12 @@ impl Hull {
     /// Distance from the center to the farthest point of the hull.
     pub fn reach(&self) -> f64 {
         self.radius + self.half_length
+    }
+
+    /// No point of the hull moves faster at this velocity, in cm/s.
+    #[inline]
+    pub(crate) fn speed(&self, velocity: &Velocity) -> f64 {
+        velocity.linear.norm_squared().sqrt() + self.half_length * velocity.angular.abs()
     }
 
     /// Area in cm².

@@ -28,9 +28,7 @@ pub struct Gap {
 }
 
 /// Where on a hull a contact is.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
-)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Feature {
     /// Towards the stern.
     Stern,
@@ -235,30 +233,24 @@ fn crossed_gap((a, hull_a): Placed, (b, hull_b): Placed) -> Gap {
         arm_j: cross(q - b.center, normal),
         bend: 0.0,
     };
-    let mut least: Option<(f64, Gap)> = None;
-    for side in [-1.0, 1.0] {
-        let across_b = turned_left(b.axis);
+    let (across_a, across_b) = (turned_left(a.axis), turned_left(b.axis));
+    let end_of_a = |side: f64| {
         let p = a.end(side, h_a);
         let depth = across_b.dot(&(p - b.center));
         let q = p - across_b * depth;
-        let candidate_a = (depth, across_b * -sign(depth), p, q);
-
-        let across_a = turned_left(a.axis);
+        let gap = along(-depth.abs(), across_b * -sign(depth), p, q);
+        (depth.abs(), gap)
+    };
+    let end_of_b = |side: f64| {
         let q = b.end(side, h_b);
         let depth = across_a.dot(&(q - a.center));
         let p = q - across_a * depth;
-        let candidate_b = (depth, across_a * sign(depth), p, q);
-
-        for (depth, normal, p, q) in [candidate_a, candidate_b] {
-            if least.is_none_or(|(known, _)| depth.abs() < known) {
-                least = Some((depth.abs(), along(-depth.abs(), normal, p, q)));
-            }
-        }
-    }
-    least.map_or_else(
-        || along(0.0, turned_left(a.axis), a.center, b.center),
-        |(_, gap)| gap,
-    )
+        let gap = along(-depth.abs(), across_a * sign(depth), p, q);
+        (depth.abs(), gap)
+    };
+    let others = [end_of_b(-1.0), end_of_a(1.0), end_of_b(1.0)].into_iter();
+    let least = others.fold(end_of_a(-1.0), |a, b| if b.0 < a.0 { b } else { a });
+    least.1
 }
 
 fn sign(value: f64) -> f64 {

@@ -130,12 +130,8 @@ impl NeighborList {
     }
 
     fn sort_by_angle(&mut self) {
-        let mut keyed: Vec<(f64, u32)> = self
-            .reference
-            .iter()
-            .enumerate()
-            .map(|(boat, center)| (turn(center), boat as u32))
-            .collect();
+        let turns = self.reference.iter().map(turn);
+        let mut keyed: Vec<(f64, u32)> = turns.zip(0..).collect();
         keyed.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         self.order.clear();
         self.order.extend(keyed.iter().map(|&(_, boat)| boat));

@@ -13,16 +13,8 @@ impl Integrator {
     pub(super) fn solve_contacts(&mut self, substep: &Substep) -> ContactOutcome {
         let dt = seconds(substep.length);
         let shorter_possible = dt > SHORTEST_SHARE * self.parameters.dt_s;
-        let Self {
-            contacts,
-            poses,
-            boats,
-            free,
-            inertia,
-            statistics,
-            ..
-        } = self;
-        if !contacts.find(poses, boats, free, dt, statistics) {
+        let (contacts, free, statistics) = (&mut self.contacts, &self.free, &mut self.statistics);
+        if !contacts.find(&mut self.poses, &mut self.boats, free, dt, statistics) {
             if contacts.detector.may_pass_walls(free, dt) {
                 return ContactOutcome::TooLong;
             }
@@ -30,6 +22,7 @@ impl Integrator {
             self.velocities.copy_from_slice(free);
             return ContactOutcome::Untouched;
         }
+        let (poses, inertia) = (&self.poses, &self.inertia);
         let outcome = contacts.resolve(poses, free, inertia, dt, shorter_possible, statistics);
         if outcome == ContactOutcome::Solved {
             self.velocities.copy_from_slice(&contacts.solver.velocities);

@@ -21,20 +21,10 @@ pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
 
 /// Fills `free` with velocities after an explicit Euler step.
 pub(super) fn explicit_velocities(flock: &mut Integrator, dt: f64) {
-    let Integrator {
-        free,
-        velocities,
-        boats,
-        drives,
-        motion,
-        ..
-    } = flock;
-    free.clear();
-    free.extend(
-        velocities
-            .iter()
-            .zip(&*boats)
-            .zip(&*drives)
-            .map(|((velocity, boat), drive)| motion.explicit(velocity, boat.axis, drive, dt)),
-    );
+    let motion = &flock.motion;
+    let boats = flock.velocities.iter().zip(&flock.boats).zip(&flock.drives);
+    let free =
+        boats.map(|((velocity, boat), drive)| motion.explicit(velocity, boat.axis, drive, dt));
+    flock.free.clear();
+    flock.free.extend(free);
 }

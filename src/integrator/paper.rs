@@ -22,21 +22,13 @@ pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
     flock.draw_substep_noise(substep);
     flock.fill_drives(substep);
     explicit_velocities(flock, dt);
-    let Integrator {
-        contacts,
-        poses,
-        boats,
-        velocities,
-        inertia,
-        statistics,
-        parameters,
-        ..
-    } = flock;
+    let (contacts, statistics) = (&mut flock.contacts, &mut flock.statistics);
+    let (poses, velocities) = (&mut flock.poses, &flock.velocities);
     // The displacement that minimizes (A.4) is dt times the velocity nearest to the old one.
-    let near = contacts.find(poses, boats, velocities, dt, statistics);
-    let allowed = parameters.overlap_tolerance_cm.max(ROUNDING);
+    let near = contacts.find(poses, &mut flock.boats, velocities, dt, statistics);
+    let allowed = flock.parameters.overlap_tolerance_cm.max(ROUNDING);
     if near && contacts.overlaps_after(poses, velocities, dt, allowed) {
-        let outcome = contacts.resolve(poses, velocities, inertia, dt, false, statistics);
+        let outcome = contacts.resolve(poses, velocities, &flock.inertia, dt, false, statistics);
         if outcome == ContactOutcome::TooLong {
             return StepOutcome::TooLong;
         }

@@ -69,7 +69,7 @@ impl BlockPivoting {
             .extend(contacts.map(|(contact, bias)| contact.gap_rate(problem.free) + bias));
         let mut report = SolveReport::default();
         self.left.clear();
-        for number in 0..islands.len() {
+        for number in 0..islands.count() {
             let contacts = islands.contacts(number);
             if self.solve_directly(problem, contacts, active, impulses, velocities, &mut report) {
                 report.iterations += 1;

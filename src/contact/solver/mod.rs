@@ -78,7 +78,7 @@ impl ContactSolver {
     pub fn reset(&mut self, boats: usize, contacts: &[Contact]) {
         debug_assert_eq!(self.active.len(), contacts.len());
         self.islands.find(boats, contacts);
-        self.pivoting.reset(boats, self.islands.len());
+        self.pivoting.reset(boats, self.islands.count());
     }
 
     /// The islands of the contacts taken on last.
@@ -109,12 +109,11 @@ impl ContactSolver {
             Solver::Clarabel => clarabel::solve(problem, &mut self.impulses, &mut self.velocities),
         };
         if kind != Solver::BlockPivoting {
-            self.active
-                .iter_mut()
-                .zip(&self.impulses)
-                .for_each(|(active, &impulse)| *active = impulse > 0.0);
+            let carry = self.impulses.iter().map(|&impulse| impulse > 0.0);
+            self.active.clear();
+            self.active.extend(carry);
         }
-        report.islands = self.islands.len() as u64;
+        report.islands = self.islands.count() as u64;
         report
     }
 }

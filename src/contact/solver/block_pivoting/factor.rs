@@ -12,16 +12,11 @@ use super::rows::{NONE, Row, Rows, WALLS};
 const GROUP: usize = 2;
 
 /// An entry of L.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Entry {
     column: u32,
     value: f64,
 }
-
-const NO_ENTRY: Entry = Entry {
-    column: 0,
-    value: 0.0,
-};
 
 /// A row of L.
 #[derive(Debug, Clone, Copy)]
@@ -174,7 +169,7 @@ impl Factor {
         let start = self.used;
         let most = start + k + GROUP;
         if self.entries.len() < most {
-            self.entries.resize(2 * most, NO_ENTRY);
+            self.entries.resize(2 * most, Entry::default());
         }
         let (nodes, work) = (self.nodes.as_mut_slice(), self.work.as_mut_slice());
         let (known, new) = self.entries.split_at_mut(start);

@@ -27,7 +27,7 @@ pub(super) type Motion = [f64; 3];
 
 /// One row of J and of J·M⁻¹, with its part of the solution. A contact with a wall has the walls as its
 /// second body, so that all rows look alike.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Row {
     /// The contact it belongs to.
     pub contact: u32,
@@ -51,7 +51,7 @@ pub(super) struct Row {
 }
 
 /// A boat of an island.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Body {
     /// Its number in the flock; none for the walls.
     pub boat: u32,
@@ -73,27 +73,16 @@ fn add(velocity: &mut Motion, response: &Motion, impulse: f64) {
 }
 
 impl Body {
-    const WALLS: Self = Self {
-        boat: NONE,
-        free: [0.0; 3],
-        velocity: [0.0; 3],
-    };
+    /// At rest, of that number in the flock.
+    fn new(boat: u32) -> Self {
+        Self {
+            boat,
+            ..Self::default()
+        }
+    }
 }
 
 impl Row {
-    const EMPTY: Self = Self {
-        contact: NONE,
-        bodies: [WALLS; 2],
-        jacobian: [[0.0; 3]; 2],
-        response: [[0.0; 3]; 2],
-        diagonal: 0.0,
-        bias: 0.0,
-        right: 0.0,
-        impulse: 0.0,
-        slack: 0.0,
-        is_active: false,
-    };
-
     /// Sets J and J·M⁻¹ on one side; returns that side's part of A_kk.
     #[inline]
     fn set_side(&mut self, side: usize, jacobian: Motion, inertia: &InverseInertia) -> f64 {
@@ -116,16 +105,9 @@ impl Row {
     /// Changes velocities by an impulse at the row.
     #[inline]
     fn push(&self, impulse: f64, bodies: &mut [Body]) {
-        add(
-            &mut bodies[self.bodies[0] as usize].velocity,
-            &self.response[0],
-            impulse,
-        );
-        add(
-            &mut bodies[self.bodies[1] as usize].velocity,
-            &self.response[1],
-            impulse,
-        );
+        let [first, second] = self.bodies.map(|body| body as usize);
+        add(&mut bodies[first].velocity, &self.response[0], impulse);
+        add(&mut bodies[second].velocity, &self.response[1], impulse);
     }
 
     /// Whether the contact pulls, or overlaps although it carries nothing.
@@ -159,8 +141,8 @@ impl Rows {
     /// Lays out the rows of some contacts. `places` is scratch space, [`NONE`] for every boat.
     pub(super) fn build(&mut self, problem: &ContactProblem, contacts: &[u32], places: &mut [u32]) {
         self.bodies.clear();
-        self.bodies.push(Body::WALLS);
-        self.rows.resize(contacts.len(), Row::EMPTY);
+        self.bodies.push(Body::new(NONE));
+        self.rows.resize(contacts.len(), Row::default());
         for (number, &k) in contacts.iter().enumerate() {
             let contact = &problem.contacts[k as usize];
             let first = self.body(contact.boat, places);
@@ -189,8 +171,7 @@ impl Rows {
         let place = &mut places[boat as usize];
         if *place == NONE {
             *place = self.bodies.len() as u32;
-            self.bodies.push(Body::WALLS);
-            self.bodies[*place as usize].boat = boat;
+            self.bodies.push(Body::new(boat));
         }
         *place
     }
