@@ -50,13 +50,9 @@ impl Law {
     /// # Errors
     /// [`FlockError::Parameter`] for other laws, and as for [`LeaningLaw::to_json`].
     pub fn to_json(&self) -> Result<String> {
-        match self {
-            Self::Leaning(law) => law.to_json(),
-            Self::Paper | Self::Damped(_) => {
-                let accepted = "a leaning law: only those are stored";
-                Err(FlockError::parameter("law", "without weights", accepted))
-            }
-        }
+        let accepted = "a leaning law: only those are stored";
+        let refuse = || FlockError::parameter("law", "without weights", accepted);
+        self.leaning().ok_or_else(refuse)?.to_json()
     }
 
     /// Checks its numbers.
@@ -71,9 +67,12 @@ impl Law {
         }
     }
 
-    /// Whether it looks at lean features.
-    pub(super) fn leans(&self) -> bool {
-        matches!(self, Self::Leaning(_))
+    /// The leaning law, which looks at lean features, if it is one.
+    pub(super) fn leaning(&self) -> Option<&LeaningLaw> {
+        match self {
+            Self::Leaning(law) => Some(law),
+            Self::Paper | Self::Damped(_) => None,
+        }
     }
 
     /// The rudder on a course, which is about a heading that leans where the law does: in [−1, 1], with the precision of

@@ -24,15 +24,16 @@ impl ObservedLaw {
     pub fn new(law: Law, layout: &ObservationLayout) -> Result<Self> {
         law.check()?;
         let features = layout.offset(Block::LeanFeatures);
-        let is_met = features.is_some() || !law.leans();
+        let is_met = features.is_some() || law.leaning().is_none();
         let accepted = "a leaning law reads this block; switch it on";
         FlockError::unless(is_met, "observation", "lean_features: off", accepted)?;
-        let holds = matches!(&law, Law::Leaning(law) if law.decision_period_s.is_some());
+        let leaning = law.leaning();
+        let holds = leaning.is_some_and(|law| law.decision_period_s.is_some());
         let courses = (!holds).then(|| CourseReader::new(layout)).transpose()?;
         Ok(Self {
             size: layout.size(),
             courses,
-            features: features.filter(|_| law.leans()),
+            features: features.filter(|_| leaning.is_some()),
             law,
         })
     }
@@ -45,12 +46,10 @@ impl ObservedLaw {
     /// The action for one observation, in the observation's own sense where it is mirrored: a rudder, or a lean where the
     /// law holds leans. It depends on nothing else, such as other observations of a batch.
     pub fn action(&self, observation: &[f32]) -> f64 {
-        let lean = match (&self.law, self.features) {
-            (Law::Leaning(law), Some(place)) => {
-                f64::from(law.action(&observation[place..place + LEAN_FEATURES]))
-            }
-            _ => 0.0,
-        };
+        let lean = self.law.leaning().zip(self.features);
+        let lean = lean.map_or(0.0, |(law, place)| {
+            f64::from(law.action(&observation[place..place + LEAN_FEATURES]))
+        });
         match &self.courses {
             Some(courses) => {
                 let course = courses.course(observation, LARGEST_LEAN * lean);

@@ -31,13 +31,11 @@ struct Views {
 
 impl Views {
     fn new(law: &Law, parameters: &FlockParameters) -> Result<Self> {
-        let features = match law {
-            Law::Leaning(law) => Some(LeanFeatures::standardized(parameters, Some(&law.pool))?),
-            Law::Paper | Law::Damped(_) => None,
-        };
+        let features = law.leaning().map(|law| Some(law.pool.as_str()));
+        let features = features.map(|pool| LeanFeatures::standardized(parameters, pool));
         Ok(Self {
             courses: CourseView::new(parameters)?,
-            features,
+            features: features.transpose()?,
             parameters: parameters.clone(),
         })
     }
@@ -51,10 +49,7 @@ impl Pilot {
     /// control steps apart.
     pub fn new(law: Law, parameters: &FlockParameters, control_hz: f64) -> Result<Self> {
         law.check()?;
-        let period = match &law {
-            Law::Leaning(law) => law.decision_period_s,
-            Law::Paper | Law::Damped(_) => None,
-        };
+        let period = law.leaning().and_then(|law| law.decision_period_s);
         let period = period
             .map(|period| whole_steps("decision_period_s", period, control_hz, "control steps"));
         Ok(Self {
@@ -74,10 +69,8 @@ impl Pilot {
         if *flock.parameters() != self.views.parameters {
             self.views = Views::new(&self.law, flock.parameters())?;
         }
-        let order = match self.views.features {
-            Some(_) => flock.order_parameters(false).ok(),
-            None => None,
-        };
+        let features = self.views.features.as_ref();
+        let order = features.and_then(|_| flock.order_parameters(false).ok());
         let view = FlockView::new(flock, &[], order.as_ref());
         if self.held == 0 {
             self.lean(&view);
@@ -89,7 +82,7 @@ impl Pilot {
     }
 
     fn lean(&mut self, view: &FlockView) {
-        if let (Law::Leaning(law), Some(features)) = (&self.law, &mut self.views.features) {
+        if let (Some(law), Some(features)) = (self.law.leaning(), &mut self.views.features) {
             for (leader, lean) in self.leans.iter_mut().enumerate() {
                 let seen = features.observed(view, leader);
                 *lean = LARGEST_LEAN * f64::from(law.action(&seen));
