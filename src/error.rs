@@ -98,6 +98,15 @@ impl FlockError {
         }
         Err(Self::parameter(field, value, accepted))
     }
+
+    /// Refuses bytes or what they hold for a reason, unless they fit.
+    ///
+    /// # Errors
+    /// [`FlockError::Snapshot`].
+    pub(crate) fn unless_fitting(fits: bool, why: &str) -> Result<()> {
+        fits.then_some(())
+            .ok_or_else(|| Self::Snapshot(why.to_owned()))
+    }
 }
 
 /// Shorthand for results with a [`FlockError`].

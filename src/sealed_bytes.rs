@@ -32,15 +32,13 @@ pub(crate) fn unseal<T: DeserializeOwned>(magic: &Magic, bytes: &[u8]) -> Result
     let Some((found, rest)) = bytes.split_first_chunk::<8>() else {
         return refuse("the bytes are too short to be a snapshot");
     };
-    if found != magic {
-        return refuse("the bytes are no flockenv snapshot of this kind and format");
-    }
+    let why = "the bytes are no flockenv snapshot of this kind and format";
+    FlockError::unless_fitting(found == magic, why)?;
     let Some((sum, body)) = rest.split_first_chunk::<8>() else {
         return refuse("the snapshot is cut off");
     };
-    if u64::from_le_bytes(*sum) != crc_32(body) {
-        return refuse("the snapshot is damaged or cut off (checksum differs)");
-    }
+    let why = "the snapshot is damaged or cut off (checksum differs)";
+    FlockError::unless_fitting(u64::from_le_bytes(*sum) == crc_32(body), why)?;
     postcard::from_bytes(body).map_err(|error| {
         FlockError::Snapshot(format!("the snapshot's content is not readable: {error}"))
     })

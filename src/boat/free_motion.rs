@@ -41,13 +41,8 @@ pub struct FreeMotion {
 impl FreeMotion {
     /// The constants of checked parameters.
     pub fn new(parameters: &FlockParameters) -> Self {
-        let p = parameters;
-        Self {
-            c0: p.c0,
-            c1: p.c1,
-            c2: p.c2,
-            c3: p.c3,
-        }
+        let &FlockParameters { c0, c1, c2, c3, .. } = parameters;
+        Self { c0, c1, c2, c3 }
     }
 
     /// Linear acceleration, eq. (8), with drag relative to the water.

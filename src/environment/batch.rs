@@ -164,8 +164,8 @@ impl EnvBatch {
         let size = settings.observation.size();
         for (env, next) in self.envs.iter_mut().zip(prepared?) {
             if let Some(next) = next {
-                env.start(next);
-                env.observe_start(&mut vec![0.0; size * env.parameters().n_leaders]);
+                let mut unread = vec![0.0; size * env.parameters().n_leaders];
+                env.start(next, &mut unread);
             }
         }
         Ok(())
@@ -200,9 +200,8 @@ impl EnvBatch {
         let (settings, members, states): (EnvSettings, Vec<_>, Vec<StoredEnv>) =
             unseal(&MAGIC, bytes)?;
         let mut batch = Self::new(settings, members)?;
-        if states.len() != batch.envs.len() {
-            return Err(FlockError::Snapshot("the batch is not whole".to_owned()));
-        }
+        let is_whole = states.len() == batch.envs.len();
+        FlockError::unless_fitting(is_whole, "the batch is not whole")?;
         for (env, stored) in batch.envs.iter_mut().zip(states) {
             *env = env.restored(&batch.settings, stored)?;
         }
@@ -215,18 +214,10 @@ impl EnvBatch {
     /// [`FlockError::Snapshot`]; the batch is unchanged then.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
         let restored = Self::from_bytes(bytes)?;
-        let members = |batch: &Self| -> Vec<FlockParameters> {
-            batch
-                .envs
-                .iter()
-                .map(|env| env.parameters().clone())
-                .collect()
-        };
-        if restored.settings != self.settings || members(&restored) != members(self) {
-            return Err(FlockError::Snapshot(
-                "the state is of an environment with other options".to_owned(),
-            ));
-        }
+        let [own, other] =
+            [&*self, &restored].map(|batch| batch.envs.iter().map(FlockEnv::parameters));
+        let is_same = restored.settings == self.settings && own.eq(other);
+        FlockError::unless_fitting(is_same, "the state is of an environment with other options")?;
         *self = restored;
         Ok(())
     }

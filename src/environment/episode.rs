@@ -74,14 +74,8 @@ impl EpisodeState {
 
     /// What leaders see: through the camera, if there is one.
     fn seen(&self) -> FlockView<'_> {
-        let mut view = self.view();
-        if let Some(camera) = &self.camera {
-            view.poses = &camera.seen().poses;
-            view.velocities = &camera.seen().velocities;
-            view.hulls = camera.hulls();
-            view.order = camera.order();
-        }
-        view
+        let (view, camera) = (self.view(), self.camera.as_ref());
+        camera.map_or(view, |camera| camera.through(view))
     }
 }
 
@@ -128,11 +122,8 @@ impl Episode {
         mut state: EpisodeState,
     ) -> Result<Self> {
         check_flock(&state.flock, parameters)?;
-        if !state.fits(settings, parameters) {
-            return Err(FlockError::Snapshot(
-                "the state holds an episode that this environment cannot have".to_owned(),
-            ));
-        }
+        let why = "the state holds an episode that this environment cannot have";
+        FlockError::unless_fitting(state.fits(settings, parameters), why)?;
         let (seed, leaders) = (state.schedule.flock_seed, parameters.n_leaders);
         let camera = Lens::new(settings).zip(state.camera);
         state.camera = camera.map(|(lens, camera)| camera.restored(lens, seed, leaders));
@@ -295,26 +286,20 @@ impl Episode {
 
     /// Adds each leader's terms and reward of the control step just taken, with the target that held in it.
     fn pay(&mut self, settings: &EnvSettings, rewards: &mut [f64]) {
-        let EpisodeState {
-            flock,
-            rudders,
-            order,
-            terms,
-            statistics,
-            credit,
-            ..
-        } = &mut self.state;
-        let view = FlockView::new(flock, rudders, order.as_ref());
+        let state = &mut self.state;
+        let flock = &state.flock;
+        let view = FlockView::new(flock, &state.rudders, state.order.as_ref());
         let reward = Reward::new(flock.parameters(), &view);
         let (share, step_s) = (1.0 / rewards.len() as f64, 1.0 / settings.control_hz);
-        for (leader, (sums, sum)) in terms.iter_mut().zip(rewards).enumerate() {
+        for (leader, (sums, sum)) in state.terms.iter_mut().zip(rewards).enumerate() {
             let target = view.targets.of(leader);
-            let credit = credit.as_ref().map_or_else(LeaderCredit::default, |each| {
+            let credit = state.credit.as_ref();
+            let credit = credit.map_or_else(LeaderCredit::default, |each| {
                 each.of(leader, &flock.integrator, target, step_s)
             });
             let terms = reward.terms(&view, leader, &credit);
             let paid = settings.reward_factor() * settings.reward.total(&terms);
-            statistics.add_reward(share, &terms, paid);
+            state.statistics.add_reward(share, &terms, paid);
             *sum += paid;
             sums.iter_mut()
                 .zip(terms)
@@ -325,36 +310,31 @@ impl Episode {
     /// Takes note of the order, and of everything that is averaged where the step ends in the analysis window, after
     /// the first tenth of the episode.
     fn note_order(&mut self, elapsed: Ticks) {
-        let EpisodeState {
-            flock,
-            schedule,
-            statistics,
-            order,
-            ..
-        } = &mut self.state;
-        let Some(order) = order else {
+        let (flock, statistics) = (&self.state.flock, &mut self.state.statistics);
+        let Some(order) = self.state.order else {
             return;
         };
+        let schedule = &self.state.schedule;
         let (step, steps) = (u64::from(schedule.step) + 1, u64::from(schedule.steps));
-        statistics.watch_order(order, seconds(elapsed), 2 * step >= steps);
+        statistics.watch_order(&order, seconds(elapsed), 2 * step >= steps);
         if 10 * step <= steps || !flock.schedule().in_analysis_window(flock.time()) {
             return;
         }
-        let parameters = flock.parameters();
+        let (hulls, velocities) = flock.measured(false);
         let boats = Boats {
-            hulls: &flock.hulls()[parameters.n_leaders..],
-            velocities: &flock.velocities()[parameters.n_leaders..],
-            order: *order,
+            hulls,
+            velocities,
+            order,
         };
-        statistics.add_window(&boats, parameters.target.reference());
+        statistics.add_window(&boats, flock.parameters().target.reference());
     }
 
     /// Moves the episode's clock on: targets change, the camera takes its picture.
     fn advance_schedule(&mut self) -> Result<()> {
         let state = &mut self.state;
         state.schedule.step += 1;
-        state.ended = state.schedule.is_over();
-        if state.schedule.alternates() {
+        state.ended = state.schedule.step >= state.schedule.steps;
+        if state.schedule.alternates {
             state.flock.set_target(state.schedule.targets())?;
         }
         if let Some(camera) = &mut state.camera {

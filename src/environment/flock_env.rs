@@ -89,8 +89,10 @@ impl FlockEnv {
         Ok((seeds, Episode::new(settings, schedule, flock)?))
     }
 
-    /// Starts a prepared episode.
-    pub fn start(&mut self, (seeds, episode): (EpisodeSeeds, Episode)) {
+    /// Starts a prepared episode, and writes its first observations.
+    pub(crate) fn start(&mut self, prepared: (EpisodeSeeds, Episode), observations: &mut [f32]) {
+        let (seeds, mut episode) = prepared;
+        episode.observe_and_count(observations);
         (self.seeds, self.episode) = (Some(seeds), Some(episode));
     }
 
@@ -150,16 +152,9 @@ impl FlockEnv {
     }
 
     fn start_next(&mut self, settings: &EnvSettings, observations: &mut [f32]) -> Result<()> {
-        self.start(self.prepare(settings, &ResetRequest::default(), &|| true)?);
-        self.observe_start(observations);
+        let next = self.prepare(settings, &ResetRequest::default(), &|| true)?;
+        self.start(next, observations);
         Ok(())
-    }
-
-    /// Writes the first observations of an episode.
-    pub(crate) fn observe_start(&mut self, out: &mut [f32]) {
-        if let Some(episode) = &mut self.episode {
-            episode.observe_and_count(out);
-        }
     }
 
     /// Writes the observations as they are now, zeros before the first reset.
@@ -225,11 +220,8 @@ impl FlockEnv {
             .map(|episode| Episode::restored(settings, &self.parameters, episode))
             .transpose()?;
         let found = stored.final_observation.len();
-        if (found != 0 && found != whole) || (episode.is_some() && stored.seeds.is_none()) {
-            return Err(FlockError::Snapshot(
-                "the state is of another environment".to_owned(),
-            ));
-        }
+        let is_own = [0, whole].contains(&found) && (episode.is_none() || stored.seeds.is_some());
+        FlockError::unless_fitting(is_own, "the state is of another environment")?;
         let mut restored = Self::new(settings, self.parameters.clone());
         restored.seeds = stored.seeds;
         restored.episode = episode;

@@ -73,11 +73,6 @@ pub(super) fn check_flock(flock: &Flock, parameters: &FlockParameters) -> Result
         bw_s: parameters.bw_s,
         ..flock.parameters().clone()
     };
-    if same == *parameters {
-        return Ok(());
-    }
-    Err(FlockError::Snapshot(
-        "the snapshot is of a flock with other parameters than the environment's, target and bw_s aside"
-            .to_owned(),
-    ))
+    let why = "the snapshot is of a flock with other parameters than the environment's, target and bw_s aside";
+    FlockError::unless_fitting(same == *parameters, why)
 }

@@ -92,10 +92,8 @@ impl RewardWeights {
 
     /// Whether a term from the leaders' contacts has a weight.
     pub(crate) fn need_credit(&self) -> bool {
-        let weights = RewardTerm::ALL.iter().zip(self.0);
-        weights
-            .into_iter()
-            .any(|(term, weight)| term.is_credit() && weight != 0.0)
+        let mut weights = RewardTerm::ALL.iter().zip(self.0);
+        weights.any(|(term, weight)| term.is_credit() && weight != 0.0)
     }
 
     /// The weighted sum.

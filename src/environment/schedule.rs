@@ -17,14 +17,15 @@ pub struct EpisodeSchedule {
     pub steps: u32,
     /// The targets; those of the first quarter where they alternate.
     targets: Targets,
-    alternates: bool,
+    /// Whether they change in the course of the episode.
+    pub(super) alternates: bool,
 }
 
 impl EpisodeSchedule {
     /// Draws an episode, and the share of a range at which its backward duration lies. Both are drawn from the flock's
     /// seed whether they are used or not, so that neither depends on the other being fixed.
     pub fn new(settings: &EnvSettings, target: &TargetChoice, flock_seed: u64) -> (Self, f64) {
-        let mut rng = Stream::Episode.rng(flock_seed);
+        let mut rng = Stream::EPISODE.rng(flock_seed);
         let share: f64 = rng.random_range(0.0..1.0);
         let drawn = if rng.next_u64() & 1 == 0 {
             Target::Clockwise
@@ -56,19 +57,9 @@ impl EpisodeSchedule {
         Targets::One(if is_even { first } else { first.opposite() })
     }
 
-    /// Whether the targets change in the course of the episode.
-    pub(crate) fn alternates(&self) -> bool {
-        self.alternates
-    }
-
     /// Part of the episode that is over, in [0, 1].
     pub fn elapsed(&self) -> f64 {
         f64::from(self.step) / f64::from(self.steps)
-    }
-
-    /// Whether the time limit is reached.
-    pub(crate) fn is_over(&self) -> bool {
-        self.step >= self.steps
     }
 }
 
@@ -93,7 +84,7 @@ impl EpisodeSeeds {
         if episode == 0 {
             return self.seed;
         }
-        let mut rng = Stream::EpisodeSeeds.rng(self.seed);
+        let mut rng = Stream::EPISODE_SEEDS.rng(self.seed);
         rng.set_stream(episode);
         rng.next_u64()
     }

@@ -94,12 +94,8 @@ impl EnvSettings {
         self.observation.check()?;
         self.steering_law(parameters)?;
         if let Some(period) = self.decision_period_s {
-            whole_steps(
-                "decision_period_s",
-                period,
-                self.control_hz,
-                "control steps",
-            )?;
+            let (name, steps) = ("decision_period_s", "control steps");
+            whole_steps(name, period, self.control_hz, steps)?;
         }
         Observer::new(self.layout(), parameters)?;
         for block in [Block::Order, Block::LeanFeatures] {

@@ -1,6 +1,6 @@
 //! Sums over an episode, and the summary given at its end.
 
-use super::{EpisodeSchedule, RewardTerm, RewardTerms, TERMS};
+use super::{EpisodeSchedule, RewardTerm, RewardTerms};
 use crate::analysis::OrderParameters;
 use crate::analysis::collective_state::OrderingWatch;
 use crate::analysis::quantities::{Boats, SUMMARIZED, summarized, summarized_values};
@@ -18,18 +18,6 @@ pub const ORDERED_WITHIN: [f64; 2] = [PI / 20.0, PI / 4.0];
 pub struct Averages([f64; SUMMARIZED]);
 
 impl Averages {
-    /// Adds what the quantities of boats are now.
-    fn add(&mut self, boats: &Boats, target: Target) {
-        for (sum, value) in self.0.iter_mut().zip(summarized_values(boats, target)) {
-            *sum += value;
-        }
-    }
-
-    /// Sums over a count of steps as means.
-    fn over(&self, steps: f64) -> Self {
-        Self(self.0.map(|sum| sum / steps))
-    }
-
     /// Names and values, in the order of the table.
     pub fn named(&self) -> impl Iterator<Item = (&'static str, f64)> {
         summarized().map(|each| each.name).zip(self.0)
@@ -61,7 +49,10 @@ impl EpisodeStatistics {
     /// Adds a step inside the analysis window.
     pub(super) fn add_window(&mut self, boats: &Boats, target: Target) {
         self.window_steps += 1;
-        self.averages.add(boats, target);
+        let values = summarized_values(boats, target);
+        for (sum, value) in self.averages.0.iter_mut().zip(values) {
+            *sum += value;
+        }
         self.steps_towards_target += u32::from(boats.order.signed_order(target) > TOWARDS_TARGET);
     }
 
@@ -81,18 +72,14 @@ impl EpisodeStatistics {
     /// The summary of an episode with these statistics and this backward duration.
     pub(super) fn summary(&self, schedule: &EpisodeSchedule, bw_s: f64) -> EpisodeSummary {
         let steps = f64::from(schedule.step);
-        let mut terms = [0.0; TERMS];
-        for (mean, sum) in terms.iter_mut().zip(&self.terms) {
-            *mean = sum / steps;
-        }
         let window = f64::from(self.window_steps);
         EpisodeSummary {
             flock_seed: schedule.flock_seed,
             bw_s,
             steps: schedule.step,
             total_reward: self.reward,
-            terms,
-            averages: self.averages.over(window),
+            terms: self.terms.map(|sum| sum / steps),
+            averages: Averages(self.averages.0.map(|sum| sum / window)),
             share_towards_target: f64::from(self.steps_towards_target) / window,
             ordering_times_s: self.ordering.map(|watch| watch.ordering_time_s()),
             clip_rate: self.clipped as f64 / self.observed as f64,

@@ -171,12 +171,8 @@ impl Flock {
         let accepted = "a finite duration of at least 0 s";
         FlockError::unless(is_duration, "seconds", duration_s, accepted)?;
         let end = self.time + ticks(duration_s);
-        FlockError::unless(
-            end <= LATEST,
-            "seconds",
-            duration_s,
-            "an end before time_s = 1e9",
-        )?;
+        let accepted = "an end before time_s = 1e9";
+        FlockError::unless(end <= LATEST, "seconds", duration_s, accepted)?;
         Ok(end)
     }
 
@@ -327,7 +323,8 @@ impl Flock {
         quantities::recorded(hulls, velocities)
     }
 
-    fn measured(&self, include_leaders: bool) -> (&[HullPose], &[Velocity]) {
+    /// Hulls and velocities of the normal boats, or of all.
+    pub(crate) fn measured(&self, include_leaders: bool) -> (&[HullPose], &[Velocity]) {
         let leaders = self.parameters.n_leaders;
         let first = if include_leaders { 0 } else { leaders };
         (&self.hulls()[first..], &self.velocities()[first..])

@@ -43,9 +43,9 @@ pub(super) fn place(
     seed: u64,
     keep_going: KeepGoing,
 ) -> Result<Vec<Pose>> {
-    let mut rng = Stream::Placement.rng(seed);
+    let mut rng = Stream::PLACEMENT.rng(seed);
     let region = Region::new(parameters);
-    if !region.holds_a_boat() {
+    if region.outer <= region.inner {
         return Err(FlockError::Placement {
             requested: parameters.n_boats,
             placed: 0,
@@ -143,10 +143,6 @@ impl Region {
         (self.outer, self.tries) = (high, tries.ceil() as usize);
     }
 
-    fn holds_a_boat(&self) -> bool {
-        self.outer > self.inner
-    }
-
     fn free_area(&self) -> f64 {
         let (inner, outer) = (self.inner - self.hull.radius, self.outer + self.hull.radius);
         let (inner, outer) = (inner.max(0.0) * inner.max(0.0), outer * outer);
@@ -188,17 +184,13 @@ impl Region {
     }
 
     fn is_inside(&self, boat: &HullPose, clearance: f64) -> bool {
-        let Pool {
-            outer_radius_cm,
-            inner_radius_cm,
-        } = self.pool;
-        let clear_of_outer = !self.pool.has_outer_wall()
-            || [-1.0, 1.0].iter().all(|&side| {
-                outer_wall_gap(boat, side, self.hull, outer_radius_cm).gap > clearance
-            });
+        let (outer, inner) = (self.pool.outer_radius_cm, self.pool.inner_radius_cm);
+        let is_clear_of_outer = |side| outer_wall_gap(boat, side, self.hull, outer).gap > clearance;
+        let clear_of_outer =
+            !self.pool.has_outer_wall() || [-1.0, 1.0].into_iter().all(is_clear_of_outer);
         let clear_of_walls = clear_of_outer
             && (!self.pool.has_inner_wall()
-                || inner_wall_gap(boat, self.hull, inner_radius_cm).gap > clearance);
+                || inner_wall_gap(boat, self.hull, inner).gap > clearance);
         clear_of_walls
             && self.obstacles.iter().all(|obstacle| {
                 let mut clear = true;
@@ -232,6 +224,7 @@ impl Region {
     }
 }
 
+/// Adds boats one by one; none where one finds no place.
 fn by_rejection(
     boats: usize,
     region: &Region,
@@ -243,33 +236,19 @@ fn by_rejection(
     if boats as f64 * region.hull.area() > 0.4 * region.area || boats > 4000 {
         return None;
     }
-    let poses = greedily(boats, region, rng, keep_going);
-    (poses.len() == boats).then_some(poses)
-}
-
-/// Adds boats one by one until one finds no place.
-fn greedily(
-    boats: usize,
-    region: &Region,
-    rng: &mut StreamRng,
-    keep_going: KeepGoing,
-) -> Vec<Pose> {
     let clearance = CLEARANCE * region.hull.radius;
-    let mut poses = Vec::new();
-    let mut placed: Vec<HullPose> = Vec::new();
+    let (mut poses, mut placed) = (Vec::new(), Vec::new());
     while poses.len() < boats && keep_going() {
-        let found = (0..region.tries).find_map(|_| {
+        let (pose, boat) = (0..region.tries).find_map(|_| {
             let pose = region.draw(rng);
             let boat = HullPose::new(&pose);
-            region
-                .is_clear(&boat, &placed, clearance)
-                .then_some((pose, boat))
-        });
-        let Some((pose, boat)) = found else { break };
+            let is_clear = region.is_clear(&boat, &placed, clearance);
+            is_clear.then_some((pose, boat))
+        })?;
         poses.push(pose);
         placed.push(boat);
     }
-    poses
+    (poses.len() == boats).then_some(poses)
 }
 
 fn by_growth(

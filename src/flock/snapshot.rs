@@ -57,12 +57,9 @@ impl Snapshot {
                 .flatten()
                 .chain([&motion.step_length_s, cutoff])
                 .all(|value| value.is_finite());
-        if sizes && finite && self.time <= LATEST {
-            return Ok(self);
-        }
-        Err(FlockError::Snapshot(
-            "the snapshot holds a state that no flock can have".to_owned(),
-        ))
+        let why = "the snapshot holds a state that no flock can have";
+        FlockError::unless_fitting(sizes && finite && self.time <= LATEST, why)?;
+        Ok(self)
     }
 }
 
@@ -102,11 +99,8 @@ impl Flock {
             target: self.parameters.target.clone(),
             ..restored.parameters.clone()
         };
-        if same != self.parameters {
-            return Err(FlockError::Snapshot(
-                "the snapshot is of a flock with other parameters".to_owned(),
-            ));
-        }
+        let why = "the snapshot is of a flock with other parameters";
+        FlockError::unless_fitting(same == self.parameters, why)?;
         *self = restored;
         Ok(())
     }

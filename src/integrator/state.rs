@@ -39,7 +39,10 @@ impl Integrator {
     pub(crate) fn new(parameters: &FlockParameters, seed: u64) -> Self {
         let n = parameters.n_boats;
         let p = parameters;
-        let density = 1.0 / (p.gyration_radius_cm * p.gyration_radius_cm);
+        let inertia = InverseInertia {
+            linear: 1.0,
+            angular: 1.0 / (p.gyration_radius_cm * p.gyration_radius_cm),
+        };
         Self {
             motion: FreeMotion::new(p),
             speed_factors: speed_factors(p, seed),
@@ -51,13 +54,7 @@ impl Integrator {
             noise_increments: vec![0.0; n],
             drives: Vec::with_capacity(n),
             free: Vec::with_capacity(n),
-            inertia: vec![
-                InverseInertia {
-                    linear: 1.0,
-                    angular: density
-                };
-                n
-            ],
+            inertia: vec![inertia; n],
             last: LastSubstep::default(),
             statistics: Statistics::default(),
             step_length_s: 0.0,
@@ -113,7 +110,7 @@ fn speed_factors(parameters: &FlockParameters, seed: u64) -> Vec<f64> {
     if p.speed_spread_cm_s == 0.0 {
         return Vec::new();
     }
-    let mut rng = Stream::SpeedSpread.rng(seed);
+    let mut rng = Stream::SPEED_SPREAD.rng(seed);
     let spread = p.speed_spread_cm_s / p.speed_cm_s;
     (0..p.n_boats)
         .map(|_| 1.0 + spread * rng.random_range(-1.0..=1.0))

@@ -137,10 +137,7 @@ impl FlockParameters {
     }
 
     fn check_pool(&self) -> Result<()> {
-        let Pool {
-            outer_radius_cm: outer,
-            inner_radius_cm: inner,
-        } = self.pool;
+        let (outer, inner) = (self.pool.outer_radius_cm, self.pool.inner_radius_cm);
         let is_pool = (0.0..=Range::LARGE).contains(&inner)
             && outer > inner
             && (outer <= Range::LARGE || outer == f64::INFINITY);

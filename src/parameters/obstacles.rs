@@ -103,11 +103,8 @@ impl ObstacleRow for Wall {
         let along = -(self.x0_cm * x + self.y0_cm * y) / (x * x + y * y);
         let along = along.clamp(0.0, 1.0);
         let nearest = libm::hypot(self.x0_cm + along * x, self.y0_cm + along * y);
-        let ends = [
-            libm::hypot(self.x0_cm, self.y0_cm),
-            libm::hypot(self.x1_cm, self.y1_cm),
-        ];
-        (nearest, ends[0].max(ends[1]))
+        let start = libm::hypot(self.x0_cm, self.y0_cm);
+        (nearest, start.max(libm::hypot(self.x1_cm, self.y1_cm)))
     }
 }
 

@@ -34,11 +34,8 @@ impl Pool {
     pub fn named(name: &str) -> Result<Self> {
         let found = Self::NAMED.iter().find(|(known, _)| *known == name);
         found.map(|&(_, pool)| pool).ok_or_else(|| {
-            FlockError::parameter(
-                "pool",
-                format!("{name:?}"),
-                "\"wide\", \"narrow\" or (outer_radius_cm, inner_radius_cm)",
-            )
+            let accepted = "\"wide\", \"narrow\" or (outer_radius_cm, inner_radius_cm)";
+            FlockError::parameter("pool", format!("{name:?}"), accepted)
         })
     }
 

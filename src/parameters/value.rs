@@ -16,8 +16,6 @@ pub enum Value {
     Real(f64),
     /// A name.
     Name(String),
-    /// Real numbers, one per leader.
-    Array(Vec<f64>),
     /// Several values.
     List(Vec<Self>),
     /// Values by name.
@@ -71,7 +69,6 @@ made_of! {
     real: f64 => Self::Real(real);
     name: &str => Self::Name(name.to_owned());
     name: String => Self::Name(name);
-    values: Vec<Self> => Self::List(values);
     range: (f64, f64) => Self::reals([range.0, range.1]);
 }
 
@@ -119,7 +116,6 @@ impl fmt::Display for Value {
                     .map(|(name, value)| format!("{name}: {value}"));
                 write!(formatter, "{{{}}}", values.collect::<Vec<_>>().join(", "))
             }
-            Self::Array(numbers) => write!(formatter, "{numbers:?}"),
             Self::Other => formatter.write_str("something else"),
         }
     }

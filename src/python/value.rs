@@ -1,10 +1,8 @@
 //! Values of parameters, options and arguments from Python, and to it. Every refusal names the field and shows what was
 //! given: a value out of range is a `ParameterError`, a value of the wrong type a `TypeError`.
 
-use super::error::refusal;
 use crate::error::FlockError;
 use crate::parameters::{Field, FlockParameters, Setting, Value};
-use numpy::PyArray1;
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -71,7 +69,6 @@ impl<'py> IntoPyObject<'py> for Value {
             Self::Count(count) => count.into_bound_py_any(py),
             Self::Real(real) => real.into_bound_py_any(py),
             Self::Name(name) => name.into_bound_py_any(py),
-            Self::Array(numbers) => Ok(PyArray1::from_vec(py, numbers).into_any()),
             Self::List(values) => Ok(PyTuple::new(py, values)?.into_any()),
             Self::Map(values) => Ok(values.into_py_dict(py)?.into_any()),
         }
@@ -147,11 +144,8 @@ impl<'py> FromPyObject<'_, 'py> for FlockParameters {
 }
 
 /// The error of a value that is out of range.
-pub(super) fn not_accepted(name: &str, value: &Bound<'_, PyAny>, accepted: &str) -> PyErr {
-    refusal(format!(
-        "{name} = {} is not accepted: {accepted}",
-        shown(value)
-    ))
+fn not_accepted(name: &'static str, value: &Bound<'_, PyAny>, accepted: &str) -> PyErr {
+    FlockError::parameter(name, shown(value), accepted).into()
 }
 
 /// The `TypeError` for an argument.

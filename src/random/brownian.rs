@@ -18,7 +18,7 @@ struct KeyedNormals {
 
 impl KeyedNormals {
     fn new(seed: u64, boats: usize) -> Self {
-        let mut words = Stream::Noise.rng(seed);
+        let mut words = Stream::NOISE.rng(seed);
         Self {
             keys: (0..boats).map(|_| words.next_u64()).collect(),
             ziggurat: Ziggurat::new(),

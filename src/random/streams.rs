@@ -9,41 +9,29 @@ use rand_chacha::ChaCha8Rng;
 /// A stream's generator.
 pub(crate) type StreamRng = ChaCha8Rng;
 
-/// The streams of a flock.
+/// A stream of a flock, by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Stream {
-    /// Initial positions and headings.
-    Placement,
-    /// η of eq. (9).
-    Noise,
-    /// Tracking drop-outs of the observation.
-    Sensing,
-    /// Per-boat differences of speed.
-    SpeedSpread,
-    /// An episode's target and backward duration.
-    Episode,
-    /// Seeds of an environment's episodes after the first.
-    EpisodeSeeds,
-}
+pub(crate) struct Stream(&'static str);
 
 impl Stream {
-    fn name(self) -> &'static [u8] {
-        match self {
-            Self::Placement => b"placement",
-            Self::Noise => b"noise",
-            Self::Sensing => b"sensing",
-            Self::SpeedSpread => b"speed-spread",
-            Self::Episode => b"episode",
-            Self::EpisodeSeeds => b"episode-seeds",
-        }
-    }
+    /// Initial positions and headings.
+    pub(crate) const PLACEMENT: Self = Self("placement");
+    /// η of eq. (9).
+    pub(crate) const NOISE: Self = Self("noise");
+    /// Tracking drop-outs of the observation.
+    pub(crate) const SENSING: Self = Self("sensing");
+    /// Per-boat differences of speed.
+    pub(crate) const SPEED_SPREAD: Self = Self("speed-spread");
+    /// An episode's target and backward duration.
+    pub(crate) const EPISODE: Self = Self("episode");
+    /// Seeds of an environment's episodes after the first.
+    pub(crate) const EPISODE_SEEDS: Self = Self("episode-seeds");
 
     /// The generator of this stream for a seed, at its start.
     pub(crate) fn rng(self, seed: u64) -> StreamRng {
         let mut key = [0_u8; 32];
         key[..8].copy_from_slice(&seed.to_le_bytes());
-        let name = self.name();
-        key[8..8 + name.len()].copy_from_slice(name);
+        key[8..8 + self.0.len()].copy_from_slice(self.0.as_bytes());
         ChaCha8Rng::from_seed(key)
     }
 }

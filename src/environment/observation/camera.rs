@@ -1,6 +1,7 @@
 //! The camera between flock and leaders: frames with drop-outs, and one frame late, as in the experiment
 //! (0.3 % of the boats were not recognized in a frame, Section 3.1). Off by default and free then.
 
+use super::view::FlockView;
 use crate::analysis::OrderParameters;
 use crate::environment::EnvSettings;
 use crate::flock::Flock;
@@ -90,7 +91,7 @@ impl Camera {
     pub(crate) fn expose(&mut self, leaders: usize, flock: &Flock) {
         let (poses, velocities) = (flock.poses(), flock.velocities());
         self.frame += 1;
-        let mut rng = Stream::Sensing.rng(self.seed);
+        let mut rng = Stream::SENSING.rng(self.seed);
         rng.set_stream(self.frame);
         self.before.copy_from(&self.now);
         for boat in 0..poses.len() {
@@ -112,23 +113,23 @@ impl Camera {
         (self.hulls, self.order) = (hulls, order);
     }
 
-    /// The frame that leaders see now.
-    pub(crate) fn seen(&self) -> &Frame {
+    /// The view of a flock as leaders see it now.
+    pub(crate) fn through<'a>(&'a self, flock: FlockView<'a>) -> FlockView<'a> {
+        FlockView {
+            poses: &self.seen().poses,
+            velocities: &self.seen().velocities,
+            hulls: &self.hulls,
+            order: self.order.as_ref(),
+            ..flock
+        }
+    }
+
+    fn seen(&self) -> &Frame {
         if self.lens.is_late {
             &self.before
         } else {
             &self.now
         }
-    }
-
-    /// Direction vectors of the frame that leaders see.
-    pub(crate) fn hulls(&self) -> &[HullPose] {
-        &self.hulls
-    }
-
-    /// Order parameters of that frame.
-    pub(crate) fn order(&self) -> Option<&OrderParameters> {
-        self.order.as_ref()
     }
 
     /// Whether stored frames are of so many boats.

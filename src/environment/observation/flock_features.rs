@@ -9,7 +9,6 @@ use crate::parameters::{FlockParameters, Target};
 
 /// Boats of the two groups: normal ones and leaders.
 const GROUPS: usize = 2;
-const SIZE: usize = GROUPS * GROUP.len() + NEAR_LEADERS.len() + PHASE.len() + CLOCK.len();
 
 /// All features of a flock in order, each with its block.
 pub fn flock_feature_entries() -> Vec<(&'static str, Entry)> {
@@ -51,7 +50,7 @@ pub struct FlockFeatures {
 
 impl FlockFeatures {
     /// How many there are.
-    pub const SIZE: usize = SIZE;
+    pub const SIZE: usize = GROUPS * GROUP.len() + NEAR_LEADERS.len() + PHASE.len() + CLOCK.len();
 
     /// For checked parameters.
     pub fn new(parameters: &FlockParameters) -> Self {
@@ -71,7 +70,7 @@ impl FlockFeatures {
             .map(|boat| self.seen(view, target, boat))
             .collect();
         let (leaders, normal) = seen.split_at(view.leaders);
-        let mut features = Vec::with_capacity(SIZE);
+        let mut features = Vec::with_capacity(Self::SIZE);
         features.extend(moments(normal));
         features.extend(moments(leaders));
         features.extend(self.near_leaders(leaders, normal));

@@ -89,10 +89,6 @@ impl ObservationLayout {
         };
     }
 
-    pub(super) fn all_repeats(&self) -> &[usize; Block::COUNT] {
-        &self.repeats
-    }
-
     /// Where a block starts, if it is on.
     pub fn offset(&self, wanted: Block) -> Option<usize> {
         let before = Block::ALL.iter().take(wanted as usize);

@@ -6,7 +6,7 @@ use super::view::{FlockView, Scaling};
 use super::{ObservationLayout, state_entries};
 use crate::error::Result;
 use crate::flock::Flock;
-use crate::geometry::{LapFrame, Vec2};
+use crate::geometry::LapFrame;
 use crate::parameters::FlockParameters;
 
 /// What the leaders of a flock observe without an environment, one after another, given the rudders as they stand.
@@ -49,7 +49,7 @@ impl Observer {
         Ok(Self {
             physical: Vec::with_capacity(scaling.len()),
             scaling,
-            writers: Writers::new(layout.all_repeats(), parameters)?,
+            writers: Writers::new(&layout, parameters)?,
             layout,
         })
     }
@@ -118,18 +118,16 @@ fn boat_state(view: &FlockView, boat: usize) -> [f64; BOAT.len()] {
     let frame = LapFrame::at(pose.position);
     let orientation = frame.components(view.hulls[boat].axis);
     let lap_velocity = frame.components(velocity.linear);
-    let polar: Vec2 = frame.outward;
-    let is_leader = boat < view.leaders;
     [
         pose.position.norm(),
-        polar.x,
-        polar.y,
+        frame.outward.x,
+        frame.outward.y,
         orientation.x,
         orientation.y,
         lap_velocity.x,
         lap_velocity.y,
         -velocity.angular,
         view.rudders.get(boat).copied().unwrap_or_default(),
-        f64::from(u8::from(is_leader)),
+        f64::from(u8::from(boat < view.leaders)),
     ]
 }

@@ -14,6 +14,7 @@ pub(crate) use own::{OWN, own};
 pub(crate) use phase::{PHASE, phase};
 pub(crate) use target::TARGET;
 
+use super::ObservationLayout;
 use super::entry::Entry;
 use super::view::FlockView;
 use crate::error::Result;
@@ -101,12 +102,12 @@ macro_rules! declare_blocks {
         pub(super) struct Writers { $($module: Option<(usize, $module::$writer)>,)+ }
 
         impl Writers {
-            /// For checked parameters and how often each block occurs.
+            /// For a layout and checked parameters.
             ///
             /// # Errors
             /// [`crate::FlockError::Parameter`] for flocks that one of the blocks is not made for.
-            pub(super) fn new(repeats: &[usize; Block::COUNT], parameters: &FlockParameters) -> Result<Self> {
-                Ok(Self { $($module: match repeats[Block::$block as usize] {
+            pub(super) fn new(layout: &ObservationLayout, parameters: &FlockParameters) -> Result<Self> {
+                Ok(Self { $($module: match layout.repeats(Block::$block) {
                     0 => None,
                     count => Some((count, $module::$writer::made_for(parameters)?)),
                 },)+ })
