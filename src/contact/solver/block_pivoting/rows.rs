@@ -105,7 +105,7 @@ impl Row {
     /// Changes velocities by an impulse at the row.
     #[inline]
     fn push(&self, impulse: f64, bodies: &mut [Body]) {
-        let [first, second] = self.bodies.map(|body| body as usize);
+        let (first, second) = (self.bodies[0] as usize, self.bodies[1] as usize);
         add(&mut bodies[first].velocity, &self.response[0], impulse);
         add(&mut bodies[second].velocity, &self.response[1], impulse);
     }
