@@ -10,6 +10,9 @@ The design was fixed before these trainings: seeds 0, 1 and 2 with 500 flock-hou
 512 flocks at the default physics against the tuned law. The reward, the width of the exploration
 and the time between decisions were chosen by trainings with other seeds, of 1500 flock-hours
 together, and by 512 other flocks.
+
+A second design was fixed after those: the same settings and flocks with 2000 flock-hours a seed,
+the most that 15 minutes of one core allow.
 """
 
 import argparse
