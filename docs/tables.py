@@ -13,7 +13,6 @@ from pathlib import Path
 from committed_data import (
     DIFFERENCES,
     MEANS,
-    POOLS,
     difference,
     markdown,
     one,
@@ -52,20 +51,12 @@ def leader_count() -> str:
     """Return what `make compare` prints."""
     file = "leaders/leader_count.csv"
     policies = ("paper's law", "tuned law", "learned")
-    columns = [(pool, policy) for pool in POOLS for policy in policies]
-    none = {pool: order(one(file, pool=pool, policy="no leaders", leaders="0")) for pool in POOLS}
-    body = [
-        ["0", *(none[pool] if policy == policies[0] else "" for pool, policy in columns)],
-        *(
-            [k, *(order(one(file, pool=pool, policy=name, leaders=k)) for pool, name in columns)]
-            for k in ("1", "2", "3", "4")
-        ),
-    ]
-    slopes = [one(file, pool=pool, policy=name, leaders="slope") for pool, name in columns]
+    body = [["0", order(one(file, policy="no leaders", leaders="0")), "", ""]]
+    for k in ("1", "2", "3", "4"):
+        body.append([k, *(order(one(file, policy=name, leaders=k)) for name in policies)])
+    slopes = [one(file, policy=name, leaders="slope") for name in policies]
     body.append(["slope per leader", *(f"{float(row['signed_order']):.3f}" for row in slopes)])
-    titles = {"paper's law": "paper's law"}
-    header = [f"`{pool}`: {titles[name]}" if name in titles else name for pool, name in columns]
-    return markdown(["leaders", *header], body)
+    return markdown(["leaders", *policies], body)
 
 
 def leaders_of(case: str) -> str:

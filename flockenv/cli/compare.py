@@ -3,7 +3,7 @@
 import json
 import shlex
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,7 @@ from flockenv.comparison.report import ComparisonReport
 from flockenv.comparison.suite import REFERENCE, scores_table, tasks_named
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
-from flockenv.policies.registry import FILES, POOLS, named_policy
+from flockenv.policies.registry import FILES, named_policy
 
 REFERENCES = ("learned", "tuned law", "paper's law")
 """What policies are compared with, unless `--only` is given."""
@@ -44,7 +44,7 @@ class CompareOptions(Flocks, Printing):
     only: bool = option(False, f"Leave out {', '.join(REFERENCES)}.", "--only")
     trust: bool = option(False, TRUST, "--trust")
     pool: list[str] | None = option(
-        None, "Which pool, repeatable. [wide and narrow, or that of the parameters]"
+        None, "Which pool, repeatable. [wide, or that of the parameters]"
     )
     bw_s: list[float] | None = option(None, "Noise: backward duration in s, repeatable. [critical]")
     leaders: str | None = option(None, "As in 0-4 or 1,3. [0-4; 1-4 with --env]", metavar="NUMBERS")
@@ -74,8 +74,8 @@ _OF_FLOCKS = (
 def compare(options: CompareOptions) -> None:
     """Print and plot order against the number of leaders, for your policies and others.
 
-    Runs each policy on the same seeds: 27 boats in both pools, at the critical noise of each,
-    unless the options say otherwise. Differences are those of your first policy from the others.
+    Runs each policy on the same seeds: 27 boats in the pool `wide`, at its critical noise, unless
+    the options say otherwise. Differences are those of your first policy from the others.
     Writes `runs.csv`, `means.csv`, `differences.csv`, `lines.csv`, `leader_curve.png`, `run.toml`
     (seeds, policies, environment), the parameters of each case, which `--params` reads, and the
     card of your first policy, `card.md`.
@@ -206,8 +206,8 @@ def _numbers(text: str) -> tuple[int, ...]:
 def _parameters(options: CompareOptions) -> list[FlockParameters]:
     """Return the parameters for each pool and backward duration.
 
-    Fields that neither the file nor a change names are the preset's, except for 27 boats, both
-    pools, and the critical noise of each pool. `--pool` and `--bw-s` count before all of them.
+    Fields that neither the file nor a change names are the preset's, except for 27 boats and
+    the critical noise of each pool. `--pool` and `--bw-s` count before all of them.
     """
     given = given_fields(options.preset, options.params, options.changes)
     if "n_leaders" in changed_fields(options.changes or ()):
@@ -219,9 +219,8 @@ def _parameters(options: CompareOptions) -> list[FlockParameters]:
         )
     base = read_parameters(options.preset, options.params, options.changes)
     base = base.replace(n_boats=given.get("n_boats", _BOATS))
-    own: Sequence[Any] = [base.pool] if "pool" in given else POOLS
     found = []
-    for pool in options.pool or own:
+    for pool in options.pool or [base.pool]:
         levels = options.bw_s or ([base.bw_s] if "bw_s" in given else [])
         preset = given.get("preset", "simulation")
         for bw_s in levels or [FlockParameters.critical_bw_s(preset, pool)]:

@@ -25,8 +25,9 @@ def learned(folder: Path, name: str = "leaning.npz") -> str:
     return str(folder / name)
 
 
-def test_a_table_of_ten_rows_and_the_files(cli, tmp_path: Path, colors_in) -> None:
-    done = cli("compare", *SHORT, "--leaders", "0-4", "--out", str(tmp_path))
+def test_a_table_of_five_rows_a_pool_and_the_files(cli, tmp_path: Path, colors_in) -> None:
+    both = ["--pool", "wide", "--pool", "narrow"]
+    done = cli("compare", *SHORT, *both, "--leaders", "0-4", "--out", str(tmp_path))
     assert done.returncode == 0, done.stderr
     assert "F = " not in done.stdout
     rows = [line.split() for line in done.stdout.splitlines()]
