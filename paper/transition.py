@@ -101,11 +101,13 @@ def judge(table: pd.DataFrame) -> Claims:
 
 def draw(options: Options, table: pd.DataFrame) -> None:
     """Draw how many runs are still in the state they started in, by noise and size."""
-    shown = table[table["coverage"] == 0.5]
-    noises = list(shown.groupby(["scheme", "c4", "dt_s"], sort=False))
+    shown = table[
+        (table["coverage"] == 0.5) & ((table["dt_s"] == 0.1) | (table["scheme"] == "paper"))
+    ]
+    noises = list(shown.groupby(["scheme", "c4"]))
     with picture(options, "transition", height_cm=9.0) as figure:
         panels = figure.subplots(2, max(len(noises), 1), sharex=True, sharey=True, squeeze=False)
-        for column, ((scheme, c4, dt_s), group) in zip(panels.T, noises, strict=False):
+        for column, ((scheme, c4), group) in zip(panels.T, noises, strict=True):
             for axes, start in zip(column, STARTED, strict=True):
                 chosen = group[group["start"] == start]
                 for color, (n, runs) in zip(COLORS, chosen.groupby("n_boats"), strict=False):
@@ -119,33 +121,44 @@ def draw(options: Options, table: pd.DataFrame) -> None:
                         label=f"n = {n:g} ({len(runs)} runs)",
                     )
                 axes.set_ylim(-0.05, 1.05)
-            title = "literal" if scheme == "paper" else "white"
-            column[0].set_title(f"{title}, c4 = {c4:g}\ndt = {dt_s:g} s")
-            column[1].set_xlabel("time (min)")
-        panels[0, 0].set_ylabel("still in one jam")
-        panels[1, 0].set_ylabel("still rotating")
-        panels[0, 0].legend(loc="lower left", fontsize=6)
+            column[0].set_title("literal" if scheme == "paper" else f"c4 = {c4:g}")
+        _label(figure, panels, "time (min)", "still {}")
 
 
 def draw_map(options: Options, table: pd.DataFrame) -> None:
     """Draw the share of flocks that stay for two hours against the wall coverage."""
     white = table[(table["scheme"] == "leapfrog") & (table["dt_s"] == 0.1)]
     noises = list(white.groupby("c4"))
-    with picture(options, "transition_map", height_cm=5.5) as figure:
-        panels = figure.subplots(1, max(len(noises), 1), sharey=True, squeeze=False)[0]
-        for axes, (c4, group) in zip(panels, noises, strict=False):
-            for color, (start, words) in zip(COLORS, STARTED.items(), strict=False):
-                for marker, (n, runs) in zip(
-                    "os^D", group[group["start"] == start].groupby("n_boats"), strict=False
-                ):
+    with picture(options, "transition_map", height_cm=9.0) as figure:
+        panels = figure.subplots(2, max(len(noises), 1), sharex=True, sharey=True, squeeze=False)
+        for column, (c4, group) in zip(panels.T, noises, strict=True):
+            for axes, start in zip(column, STARTED, strict=True):
+                sizes = group[group["start"] == start].groupby("n_boats")
+                for place, (n, runs) in enumerate(sizes):
                     kept = [(x, each["exited"] == 0) for x, each in runs.groupby("coverage")]
                     shares = [proportion(stays.sum(), len(stays)) for _, stays in kept]
-                    x = [coverage + 0.004 * "os^D".index(marker) for coverage, _ in kept]
-                    label = f"{words}, n = {n:g}"
-                    curve(axes, x, shares, color=color, marker=marker, label=label)
-            axes.set(xlabel="wall coverage", title=f"white, c4 = {c4:g}", ylim=(-0.05, 1.05))
-        panels[0].set_ylabel("share that stays for 2 h")
-        figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+                    x = [coverage + 0.006 * place for coverage, _ in kept]
+                    curve(
+                        axes,
+                        x,
+                        shares,
+                        color=COLORS[place],
+                        marker="os^D"[place],
+                        label=f"n = {n:g}",
+                    )
+                axes.set_ylim(-0.05, 1.05)
+            column[0].set_title(f"c4 = {c4:g}")
+        _label(figure, panels, "wall coverage", "stays {}")
+
+
+def _label(figure: Any, panels: Any, across: str, up: str) -> None:
+    """Name axes and sizes; the first noise has all sizes."""
+    for axes, words in zip(panels[:, 0], STARTED.values(), strict=True):
+        axes.set_ylabel(up.format(words))
+    for axes in panels[1]:
+        axes.set_xlabel(across)
+    handles, labels = panels[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=4)
 
 
 def script(options: Options) -> None:
