@@ -48,7 +48,7 @@ SPEED_DOCS := $(if $(SPEED_ARGS),benches/target/trial,docs)
 
 # Which extras each front door needs, out of pyproject.toml.
 COMPARE_EXTRAS := --extra plot
-OLDEST_EXTRAS := --extra plot --extra render --extra sweep
+OLDEST_EXTRAS := --extra plot --extra render --extra video --extra sweep
 AUDIT_EXTRAS := --extra train --extra plot --extra search --extra render --extra ray --extra sweep --extra tracks
 TEST_EXTRAS := --extra train --extra plot --extra search --extra render --extra sweep --extra tracks --extra test --extra dev
 

@@ -25,6 +25,7 @@ def test_the_joint_reward_is_the_mean_over_leaders():
 
 
 def test_vector_environment_and_slots_have_each_leaders_rewards():
+    pytest.importorskip("stable_baselines3")
     from flockenv.sb3 import LeaderVecEnv
 
     parallel = flockenv.parallel_env(**SMALL, target=MIXED)
@@ -51,6 +52,7 @@ def test_vector_environment_and_slots_have_each_leaders_rewards():
 
 
 def test_flock_features_of_slots_are_towards_their_own_targets():
+    pytest.importorskip("stable_baselines3")
     from flockenv.sb3 import LeaderVecEnv
 
     def features(target):
