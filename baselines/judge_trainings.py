@@ -1,6 +1,6 @@
 """Judge trainings by `examples/train_leaders.py` in the same fresh flocks, and draw their curves.
 
-    for seed in 0 1 2; do python examples/train_leaders.py $seed 500 16; done
+    for seed in 0 1 2; do python examples/train_leaders.py $seed 2000 16; done
     python baselines/judge_trainings.py results/train_leaders/* --out docs/training/wide
 
 Each folder is of one seed. The flocks are those in which the example itself compares; their seeds
