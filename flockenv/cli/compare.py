@@ -220,8 +220,8 @@ def _parameters(options: CompareOptions) -> list[FlockParameters]:
     base = read_parameters(options.preset, options.params, options.changes)
     base = base.replace(n_boats=given.get("n_boats", _BOATS))
     found = []
-    pools: list[Any] = list(options.pool or [base.pool])
-    for pool in pools:
+    own: list[Any] = [base.pool]
+    for pool in options.pool or own:
         levels = options.bw_s or ([base.bw_s] if "bw_s" in given else [])
         preset = given.get("preset", "simulation")
         for bw_s in levels or [FlockParameters.critical_bw_s(preset, pool)]:
