@@ -40,7 +40,8 @@ def design() -> list[Row]:
     Between 0.3 and 0.5 the state that lasts changes, so that two more coverages come there at the
     lowest noise, as many runs of them as at 0.3, where most runs of both starts last. Between 0.2
     and 0.3 neither state is shown to last in 400 boats, so that 0.25 comes with them. Then come the
-    largest flocks at the lowest noise, where both states may last longest, and the rest of the map.
+    largest flocks at the lowest noise, where both states may last longest, then flocks of 400 where
+    those of 200 leave the answer open, and the rest of the map.
     """
     literal = {"scheme": "paper", "noise_scheme": "per-step", "dt_s": 0.02}
     white = {"scheme": "leapfrog", "noise_scheme": "white", "dt_s": 0.1}
@@ -54,6 +55,7 @@ def design() -> list[Row]:
     shares = (0.4, 0.35, 0.25)
     between = [(n, share, white | {"c4": C4[0]}) for share in shares for n in (100, 200, 400)]
     largest = [(800, share, white | {"c4": C4[0]}) for share in (0.25, 0.3, 0.35, 0.2, 0.4, 0.5)]
+    left_open = [(400, 0.4, white | {"c4": c4}) for c4 in (0.03, 0.02)]
     rest = [
         (n, coverage, white | {"c4": c4})
         for n in (100, 200, 400, 800)
@@ -62,7 +64,7 @@ def design() -> list[Row]:
     ]
     finer = [(n, 0.5, white | {"c4": C4[0], "dt_s": 0.02}) for n in (100, 200)]
     cells: list[tuple[int, float, Row]] = []
-    for cell in first + second + less + between + both + third + finer + largest + rest:
+    for cell in first + second + less + between + both + third + finer + largest + left_open + rest:
         if cell not in cells:
             cells.append(cell)
     return [
