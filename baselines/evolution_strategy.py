@@ -1,15 +1,17 @@
 """Search a leader policy with an evolution strategy, in NumPy.
 
     python baselines/evolution_strategy.py                         # an easy flock, two minutes
-    python baselines/evolution_strategy.py --task wide --flock-hours 2000 --out results/wide
+    python baselines/evolution_strategy.py --task wide --flock-hours 500 \\
+        --sigma 0.3 --learning-rate 0.1 --out results/wide
 
 The policy is linear in what a leader observes. Gaussian perturbations of its weights are tried in
 antithetic pairs, one flock for each, all in one batch of the simulator. The candidates of a
 generation steer the same episode, so that they differ by their weights alone. Their mean rewards
 are replaced by ranks, and Adam follows the estimated gradient (Salimans et al. 2017). An
-interrupted command resumes from its last generation. The result is a policy file:
+interrupted command resumes from its last generation. The result is a policy file: `policy.json`, a
+law, where leaders lean, and `policy.npz` otherwise.
 
-    flockenv compare --policy "paper's law" --policy results/evolution/policy.npz
+    flockenv compare --policy "paper's law" --policy results/wide/policy.json
 """
 
 import argparse
@@ -24,8 +26,10 @@ import numpy as np
 from provenance import provenance_of
 
 import flockenv
+from flockenv._core import LARGEST_LEAN
 from flockenv._io.array_file import read_arrays, write_arrays
-from flockenv.policies import NetworkPolicy
+from flockenv.policies import LeaningLaw, NetworkPolicy
+from flockenv.policies.laws import LEAN_FEATURES
 from flockenv.runs.seeds import POLICY_SEEDS
 
 SEEDS = POLICY_SEEDS["evolution strategy"]
@@ -33,9 +37,9 @@ DECAY_1, DECAY_2 = 0.9, 0.99
 
 
 def lean(pool: str, episode_s: float) -> dict[str, Any]:
-    """Return the options in which three leaders lean about the tangent, which is the tuned law.
+    """Return the task of examples/train_leaders.py: three leaders lean about the tangent.
 
-    They see the lean features alone, as those of examples/train_leaders.py.
+    No lean is the tuned law, from which the search starts. The reward is the order alone.
     """
     others = dict.fromkeys(("own", "phase", "target", "order"), False)
     return {
@@ -45,7 +49,7 @@ def lean(pool: str, episode_s: float) -> dict[str, Any]:
         "bw_s": flockenv.FlockParameters.critical_bw_s("simulation", pool),
         "observation": {**others, "neighbors": 0, "lean_features": True},
         "action_mode": "lean",
-        "decision_period_s": 2.0,
+        "decision_period_s": 1.0,
         "episode_s": episode_s,
         "physics": "training",
     }
@@ -146,8 +150,8 @@ def stored_state(path: Path, identity: str) -> dict[str, Any] | None:
     return arrays
 
 
-def search(options: argparse.Namespace, command: str) -> NetworkPolicy:
-    """Search, and write the policy and the learning curve."""
+def search(options: argparse.Namespace, command: str) -> np.ndarray:
+    """Search, write the policy and the learning curve, and return the weights."""
     env, start = environment(options.task, 2 * options.pairs), time.perf_counter()
     size = env.single_observation_space.shape[0] // env.num_leaders
     free = ("out", "flock_hours", "episodes")
@@ -166,23 +170,30 @@ def search(options: argparse.Namespace, command: str) -> NetworkPolicy:
     header = "flock_hours,mean_reward,signed_order"
     np.savetxt(options.out / "curve.csv", rows, "%.5g", ",", header=header, comments="")
     generations, decisions_hz = int(state["generation"]), env.metadata["render_fps"]
-    policy = NetworkPolicy(
-        [state["average"][:-1, None]],
-        [state["average"][-1:]],
-        observation=env.single_observation_space.options["observation"],
-        mirror_to_target=True,
-        action_mode=TASKS[options.task].get("action_mode", "rudder"),
-        decision_period_s=TASKS[options.task].get("decision_period_s"),
-        provenance=provenance_of(
-            command,
-            seed=options.seed,
-            samples=round(generations * hours * 3600 * env.num_leaders * decisions_hz),
-            wall_s=time.perf_counter() - start,
-            flock_hours=generations * hours,
-        ),
+    provenance = provenance_of(
+        command,
+        seed=options.seed,
+        samples=round(generations * hours * 3600 * env.num_leaders * decisions_hz),
+        wall_s=time.perf_counter() - start,
+        flock_hours=generations * hours,
     )
-    policy.save(options.out / "policy.npz")
-    return policy
+    save(options, env, state["average"], provenance)
+    return np.asarray(state["average"])
+
+
+def save(
+    options: argparse.Namespace, env: Any, weights: np.ndarray, provenance: dict[str, str]
+) -> None:
+    """Write the policy: a law of leans, or a network."""
+    if TASKS[options.task].get("action_mode") == "lean":
+        *leans, bias = map(float, LARGEST_LEAN * weights)
+        named = dict(zip(LEAN_FEATURES, leans, strict=True))
+        law = LeaningLaw(options.task, bias, named, bound="clip", provenance=provenance)
+        law.save(options.out / "policy.json")
+        return
+    observation = env.single_observation_space.options["observation"]
+    layout = {"observation": observation, "mirror_to_target": True, "provenance": provenance}
+    NetworkPolicy([weights[:-1, None]], [weights[-1:]], **layout).save(options.out / "policy.npz")
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -200,22 +211,16 @@ def main(arguments: list[str] | None = None) -> None:
     if min(options.pairs, options.episodes) < 2:
         parser.error("--pairs and --episodes are at least 2")
     given = sys.argv[1:] if arguments is None else arguments
-    policy = search(options, shlex.join(["python", "baselines/evolution_strategy.py", *given]))
-    env, seeds = environment(options.task, options.episodes), range(options.episodes)
-    for name, each in (("evolved", policy), ("no search", zero_like(policy))):
-        found = episode(env, list(seeds), lambda seen, each=each: each.predict(seen)[0])
-        for what, values in zip(("mean reward", "signed order"), found, strict=True):
+    weights = search(options, shlex.join(["python", "baselines/evolution_strategy.py", *given]))
+    env, seeds = environment(options.task, options.episodes), list(range(options.episodes))
+    for name, each in (("evolved", weights), ("no search", 0.0 * weights)):
+        steer = linear(np.tile(each, (options.episodes, 1)), env.num_leaders)
+        for what, values in zip(
+            ("mean reward", "signed order"), episode(env, seeds, steer), strict=True
+        ):
             half = 1.96 * values.std(ddof=1) / np.sqrt(options.episodes)
             print(f"{name}: {what} {values.mean():.3f} ± {half:.3f}")
-    print(f"written to {options.out / 'policy.npz'}")
-
-
-def zero_like(policy: NetworkPolicy) -> NetworkPolicy:
-    """Return the policy that the search started from."""
-    zeros = [[0 * each for each in layers] for layers in (policy.weights, policy.biases)]
-    layout = {name: getattr(policy, name) for name in ("observation", "action_mode")}
-    period = policy.decision_period_s
-    return NetworkPolicy(*zeros, mirror_to_target=True, decision_period_s=period, **layout)
+    print(f"written to {options.out}")
 
 
 if __name__ == "__main__":

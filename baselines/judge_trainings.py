@@ -3,8 +3,18 @@
     for seed in 0 1 2; do python examples/train_leaders.py $seed 2000 16; done
     python baselines/judge_trainings.py results/train_leaders/* --out docs/training/wide
 
-Each folder is of one seed. The flocks are those in which the example itself compares; their seeds
-follow from a hash. Brackets hold 95 % intervals, and differences are paired by flock.
+    for seed in 0 1 2 3 4; do
+        python examples/train_leaders.py $seed 500 16
+        python baselines/train_with_trpo.py $seed 500 results/trpo/$seed
+        python baselines/evolution_strategy.py --task wide --flock-hours 500 --seed $seed \\
+            --sigma 0.3 --learning-rate 0.1 --out results/evolution/$seed
+    done
+    python baselines/judge_trainings.py results/train_leaders/* results/trpo/* \\
+        results/evolution/* --out docs/training/algorithms
+
+Each folder is of one seed, and the folder around it of one algorithm. The flocks are those in which
+the example itself compares; their seeds follow from a hash. Brackets hold 95 % intervals, and
+differences are paired by flock.
 
 The design was fixed before these trainings: seeds 0, 1 and 2 with 500 flock-hours each, judged in
 512 flocks at the default physics against the tuned law. The reward, the width of the exploration
@@ -13,6 +23,12 @@ together, and by 512 other flocks.
 
 A second design was fixed after those: the same settings and flocks with 2000 flock-hours a seed,
 the most that 15 minutes of one core allow.
+
+A third design, of algorithms, was fixed before its trainings: PPO as above, TRPO and an evolution
+strategy, seeds 0 to 4 with 500 flock-hours each, in the same flocks. The mean over the seeds of an
+algorithm has an interval of Student's distribution. Four target divergences of TRPO and six
+settings of the evolution strategy were tried before, with seed 10 and 250 flock-hours each, and
+judged in 512 other flocks. The evolution strategy is paid for the order alone.
 """
 
 import argparse
@@ -44,10 +60,17 @@ def curve(folder: Path) -> pd.DataFrame:
     )
 
 
+def several(folders: list[Path]) -> bool:
+    """Return whether the trainings are of several algorithms."""
+    return len({each.parent for each in folders}) > 1
+
+
 def judged(folders: list[Path], flocks: int) -> pd.DataFrame:
     """Return the mean order of each training and law, and its difference from the tuned law."""
     policies: dict[str, Any] = {name: name for name in LAWS}
-    policies |= {f"seed {each.name}": str(each / "policy.json") for each in folders}
+    for each in folders:
+        algorithm = each.parent.name if several(folders) else "seed"
+        policies[f"{algorithm} {each.name}"] = str(each / "policy.json")
     parameters = FlockParameters(pool="wide", n_boats=27, bw_s=0.31)
     seeds = release_seeds("train_leaders", flocks)
     runs = compare_leaders(parameters, [3], policies, seeds, 480.0)
@@ -60,6 +83,18 @@ def judged(folders: list[Path], flocks: int) -> pd.DataFrame:
             gain = paired_difference(orders[name], orders["tuned law"])
             row |= {"gain": gain.mean, "gain_low": gain.low, "gain_high": gain.high}
         rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def algorithms(table: pd.DataFrame) -> pd.DataFrame:
+    """Return the mean gain of each algorithm over its seeds."""
+    trained = table[~table["policy"].isin(LAWS)]
+    rows = []
+    for name, own in trained.groupby(trained["policy"].str.rsplit(n=1).str[0], sort=False):
+        orders, (gain, low, high) = own["signed_order"], mean_interval(own["gain"])
+        row = {"algorithm": name, "seeds": len(own), "signed_order": orders.mean()}
+        row |= {"lowest": orders.min(), "highest": orders.max()}
+        rows.append(row | {"gain": gain, "gain_low": low, "gain_high": high})
     return pd.DataFrame(rows)
 
 
@@ -80,11 +115,16 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--out", type=Path, default=Path("results/judged"))
     options = parser.parse_args(arguments)
     options.out.mkdir(parents=True, exist_ok=True)
-    table, curves = judged(options.folders, options.flocks), pd.concat(map(curve, options.folders))
-    table.to_csv(options.out / "evaluation.csv", index=False, float_format="%.4f")
-    curves.to_csv(options.out / "learning_curves.csv", index=False, float_format="%.4f")
-    draw(curves, options.out / "learning_curves.png")
-    print(table.round(3).to_string(index=False))
+    tables = {"evaluation": judged(options.folders, options.flocks)}
+    if several(options.folders):
+        tables["algorithms"] = algorithms(tables["evaluation"])
+    else:
+        tables["learning_curves"] = pd.concat(map(curve, options.folders))
+        draw(tables["learning_curves"], options.out / "learning_curves.png")
+    for name, table in tables.items():
+        table.to_csv(options.out / f"{name}.csv", index=False, float_format="%.4f")
+        if name != "learning_curves":
+            print(table.round(3).to_string(index=False))
 
 
 if __name__ == "__main__":
