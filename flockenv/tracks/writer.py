@@ -3,7 +3,6 @@
 import math
 import os
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ from flockenv import _core
 from flockenv._io.atomic_write import atomic_write, write_csv, write_text
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError
+from flockenv.parameters import FlockParameters
 from flockenv.recording import Recording
 
 EXPORTS = (".csv", ".parquet", ".gsd")
@@ -74,19 +74,17 @@ def export(recording: Recording, path: str | os.PathLike[str]) -> list[Path]:
 
 def _layout_text(recording: Recording) -> str:
     """Return the layout of the exported table, as TOML."""
-    parameters = recording.parameters
-    names = range(parameters.n_boats) if recording.ids is None else recording.ids.tolist()
+    parameters, ids = recording.parameters, recording.ids
+    names = range(parameters.n_boats) if ids is None else ids
+    columns = {"frame": "time_s", "x": "x_cm", "y": "y_cm", "heading": "heading_rad"}
     layout = {
-        "frame": "time_s",
-        "id": "boat" if recording.ids is None else "id",
-        "x": "x_cm",
-        "y": "y_cm",
-        "heading": "heading_rad",
-        "pool": parameters.pool,
-        "hull": [parameters.boat_radius_cm, parameters.boat_shape],
-        "target": parameters.target,
-        "leaders": [str(each) for each in names][: parameters.n_leaders],
+        **columns,
+        "id": "boat" if ids is None else "id",
         "wrapped": False,
+        "pool": parameters.pool,
+        "hull": (parameters.boat_radius_cm, parameters.boat_shape),
+        "target": parameters.target,
+        "leaders": [str(each) for each in names[: parameters.n_leaders]],
     }
     note = "# Columns and units of the table beside this file, for flockenv.\n"
     return note + tomli_w.dumps(layout)
@@ -94,47 +92,38 @@ def _layout_text(recording: Recording) -> str:
 
 def _write_gsd(recording: Recording, path: Path) -> None:
     hoomd: Any = require("gsd.hoomd", "tracks")
-    # The library opens names, not files: it is made elsewhere first.
-    with TemporaryDirectory() as folder:
-        written = Path(folder, "made.gsd")
-        with hoomd.open(str(written), "w") as file:
-            file.extend(_gsd_frame(hoomd, recording, sample) for sample in range(len(recording)))
-        with atomic_write(path) as file:
-            file.write(written.read_bytes())
+    # The library opens names, not files.
+    with atomic_write(path) as file, hoomd.open(file.name, "w") as frames:
+        frames.extend(_gsd_frame(hoomd, recording, sample) for sample in range(len(recording)))
 
 
 def _gsd_frame(hoomd: Any, recording: Recording, sample: int) -> Any:
-    parameters = recording.parameters
     pose = recording.pose[sample].astype(np.float64)
-    there = np.isfinite(pose[:, 0])
-    boats, pose = np.flatnonzero(there), pose[there]
-    velocity = np.nan_to_num(recording.velocity[sample].astype(np.float64)[there])
-    flat, half = np.zeros((len(pose), 1)), pose[:, 2] / 2
+    boats = np.flatnonzero(np.isfinite(pose[:, 0]))
+    pose, velocity = pose[boats], np.nan_to_num(recording.velocity[sample, boats])
+    half, zero = pose[:, 2] / 2, np.zeros(len(boats))
     frame = hoomd.Frame()
     frame.configuration.step = sample
     frame.configuration.dimensions = 2
     frame.configuration.box = [_box_cm(recording)] * 2 + [0, 0, 0, 0]
     particles = frame.particles
-    particles.N = len(pose)
+    particles.N = len(boats)
     particles.types = ["boat", "leader"]
-    particles.typeid = (boats < parameters.n_leaders).astype(np.uint32)
-    particles.position = np.hstack([pose[:, :2], flat])
+    particles.type_shapes = [_shape(recording.parameters)] * 2
+    particles.typeid = boats < recording.parameters.n_leaders
+    particles.diameter = np.full(len(boats), 2 * recording.parameters.boat_radius_cm)
+    particles.position = np.column_stack([pose[:, :2], zero])
+    particles.velocity = np.column_stack([velocity[:, :2], zero])
     # A turn about z by the heading, from a hull along x.
-    particles.orientation = np.stack([np.cos(half), 0 * half, 0 * half, np.sin(half)], axis=1)
-    particles.velocity = np.hstack([velocity[:, :2], flat])
-    particles.diameter = np.full(len(pose), 2 * parameters.boat_radius_cm)
-    particles.type_shapes = [_shape(recording)] * 2
-    frame.log = {
-        "time_s": np.array([recording.time_s[sample]]),
-        "particles/boat": boats.astype(np.uint32),
-    }
+    particles.orientation = np.column_stack([np.cos(half), zero, zero, np.sin(half)])
+    time_s = recording.time_s[[sample]]
+    frame.log = {"time_s": time_s, "particles/boat": boats.astype(np.uint32)}
     return frame
 
 
-def _shape(recording: Recording) -> dict[str, Any]:
+def _shape(parameters: FlockParameters) -> dict[str, Any]:
     """Return the hull as GSD's schema has it: a line swept by a disc."""
-    radius = recording.parameters.boat_radius_cm
-    half = recording.parameters.boat_shape * radius
+    radius, half = parameters.boat_radius_cm, parameters.boat_shape * parameters.boat_radius_cm
     if half == 0.0:
         return {"type": "Sphere", "diameter": 2 * radius}
     return {"type": "Polygon", "rounding_radius": radius, "vertices": [[-half, 0.0], [half, 0.0]]}
@@ -142,8 +131,8 @@ def _shape(recording: Recording) -> dict[str, Any]:
 
 def _box_cm(recording: Recording) -> float:
     """Return the side of a square about the pool, or about where boats are in open water."""
-    outer, _ = _core.pool_radii_cm(recording.parameters.pool)
-    margin = 4 * (1 + recording.parameters.boat_shape) * recording.parameters.boat_radius_cm
-    if math.isfinite(outer):
-        return 2 * outer + margin
-    return 2 * float(np.nanmax(np.abs(recording.pose[..., :2]))) + margin
+    parameters = recording.parameters
+    reach, _ = _core.pool_radii_cm(parameters.pool)
+    if math.isinf(reach):
+        reach = float(np.nanmax(np.abs(recording.pose[..., :2])))
+    return 2 * reach + 4 * (1 + parameters.boat_shape) * parameters.boat_radius_cm
