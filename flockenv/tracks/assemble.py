@@ -8,9 +8,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
 from flockenv.errors import ParameterError, refuse_unknown
-from flockenv.order import OrderSeries, order_series
+from flockenv.order import order_series
 from flockenv.parameters import FlockParameters
-from flockenv.recording import PHASES, Recording
+from flockenv.recording import PHASES, PRECISIONS, Recording
+from flockenv.recording.checks import check_array
 
 _FASTEST_CM_S = 1000.0
 _MOST_OUTSIDE = 0.1
@@ -69,53 +70,46 @@ def recording_of(
         for names that are unknown or there twice.
     """
     times, poses = _numbers("time_s", time_s), _numbers("pose", pose)
-    motion = None if velocity is None else _numbers("velocity", velocity)
-    if times.ndim != 1 or poses.shape != (len(times), *poses.shape[1:2], 3) or 0 in poses.shape:
-        raise ParameterError(
-            f"pose has shape {poses.shape} for time_s of shape {times.shape}, expected (t, n, 3) "
-            "for t times"
-        )
-    if motion is not None and motion.shape != poses.shape:
-        raise ParameterError(
-            f"velocity has shape {motion.shape}, expected {poses.shape}, that of pose"
-        )
-    if not (np.isfinite(times).all() and (np.diff(times) > 0.0).all()) or np.isinf(poses).any():
-        raise ParameterError("time_s must increase, and pose hold finite numbers or rows of NaN")
+    shape = (times.size, np.atleast_2d(poses).shape[1], 3)
+    check_array("time_s", times, shape[:1], PRECISIONS)
+    check_array("pose", poses, shape, PRECISIONS, gaps=True)
+    if not (np.diff(times) > 0.0).all():
+        raise ParameterError("time_s must increase")
     if np.isnan(poses).all():
         raise ParameterError("pose is not accepted: it is NaN everywhere, no boat is ever there")
-    names = [str(each) for each in (range(poses.shape[1]) if ids is None else ids)]
-    if len(names) != poses.shape[1]:
-        raise ParameterError(f"ids holds {len(names)} names for {poses.shape[1]} boats")
+    names = [str(each) for each in (range(shape[1]) if ids is None else ids)]
+    if len(names) != shape[1]:
+        raise ParameterError(f"ids holds {len(names)} names for {shape[1]} boats")
     order = _leaders_first(names, [str(each) for each in leaders])
     poses[..., 2] = unwrapped(poses[..., 2])
-    motion = (velocities(times, poses)[0] if motion is None else motion)[:, order]
-    poses = poses[:, order]
-    radius, shape = hull
+    motion = velocities(times, poses)[0] if velocity is None else _numbers("velocity", velocity)
+    check_array("velocity", motion, shape, PRECISIONS, gaps=True)
+    poses, motion = poses[:, order], motion[:, order]
+    radius, half_length = hull
     parameters = FlockParameters(
         n_boats=len(names),
         n_leaders=len(leaders),
         pool=pool,
         boat_radius_cm=radius,
-        boat_shape=shape,
+        boat_shape=half_length,
         target=target if isinstance(target, str) else tuple(target),
         discs=discs,
         walls=walls,
     )
     _check_units(poses, motion, parameters)
     # Without phases all samples count.
-    phases = np.full(times.shape, "") if phase is None else np.asarray(phase, np.str_)
-    analyzed = np.ones(times.shape, bool)
+    phases, analyzed = np.full(times.shape, ""), np.ones(times.shape, bool)
     if phase is not None:
+        phases = np.asarray(phase, np.str_)
         analyzed = _core.sampled_analysis_window(times, phases.tolist())
-    normal = poses[:, len(leaders) :], motion[:, len(leaders) :]
-    undefined = len(names) == len(leaders)
+    is_leader = np.arange(len(names)) < len(leaders)
     return Recording(
         time_s=times,
         phase=phases.astype(PHASES.dtype),
         in_analysis_window=analyzed,
         pose=poses,
         velocity=motion,
-        order=OrderSeries(np.full(len(times), np.nan)) if undefined else order_series(*normal),
+        order=order_series(poses, np.where(is_leader[:, None], np.nan, motion)),
         parameters=parameters,
         seed=0,
         version=_core.__version__,
@@ -132,15 +126,13 @@ def velocities(
     NaN where it is there for one sample only. No difference is taken across steps that are faster
     than a speed, whose number is returned too.
     """
-    there = ~np.isnan(pose[..., 0])
     steps = np.diff(pose, axis=0) / np.diff(time_s)[:, None, None]
     broken = np.hypot(steps[..., 0], steps[..., 1]) > fastest_cm_s
     steps[broken] = np.nan
     none = np.full((1, *pose.shape[1:]), np.nan)
     before, after = np.concatenate([none, steps]), np.concatenate([steps, none])
     mean = (before + after) / 2
-    found = np.where(np.isnan(mean), np.where(np.isnan(before), after, before), mean)
-    return np.where(there[..., None], found, np.nan), int(broken.sum())
+    return np.where(np.isnan(mean), np.fmax(before, after), mean), int(broken.sum())
 
 
 def _numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:
@@ -156,8 +148,8 @@ def _leaders_first(names: list[str], leaders: list[str]) -> list[int]:
     refuse_unknown(leaders, names, "leader among the ids")
     if len(set(leaders)) < len(leaders) or len(set(names)) < len(names):
         raise ParameterError("ids or leaders holds a name more than once")
-    first = [names.index(name) for name in leaders]
-    return first + [place for place in range(len(names)) if place not in set(first)]
+    ranks = {name: rank for rank, name in enumerate(leaders)}
+    return sorted(range(len(names)), key=lambda place: ranks.get(names[place], len(ranks)))
 
 
 def unwrapped(heading: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -173,8 +165,7 @@ def _check_units(
     pose: NDArray[np.float64], velocity: NDArray[np.float64], parameters: FlockParameters
 ) -> None:
     speed = np.hypot(velocity[..., 0], velocity[..., 1])
-    speed = speed[:, np.isfinite(speed).any(axis=0)]
-    fastest = np.nanmedian(speed, axis=0).max(initial=0.0)
+    fastest = np.nanmedian(speed[:, ~np.isnan(speed).all(axis=0)], axis=0).max(initial=0.0)
     if fastest > _FASTEST_CM_S:
         raise ParameterError(
             f"a boat moves at {fastest / 100:.3g} m/s in the median, above "
@@ -182,7 +173,7 @@ def _check_units(
         )
     outer_cm, _ = _core.pool_radii_cm(parameters.pool)
     distance = np.hypot(pose[..., 0], pose[..., 1])
-    outside = float(np.mean(distance[np.isfinite(distance)] > outer_cm))
+    outside = np.mean(distance[~np.isnan(distance)] > outer_cm)
     if outside > _MOST_OUTSIDE:
         raise ParameterError(
             f"{outside:.0%} of the centers lie outside the pool of radius {outer_cm:g} cm: are "
