@@ -1,9 +1,8 @@
 """Doors for data: tracks of real flocks in, recordings out to tables and GSD."""
 
 from flockenv.tracks.assemble import recording_of
-from flockenv.tracks.guess import guess_layout
-from flockenv.tracks.layout import TrackLayout, read_layout
-from flockenv.tracks.reader import SUFFIXES, TrackReport, read_tracks
+from flockenv.tracks.layout import SUFFIXES, TrackLayout, guess_layout, read_layout
+from flockenv.tracks.reader import TrackReport, read_tracks
 from flockenv.tracks.writer import EXPORTS, export
 
 __all__ = [

@@ -1,69 +1,82 @@
-"""How tracks lie in a file: columns, units, scale; written in TOML beside the file."""
+"""How tracks lie in a table: columns, units, scale; written in TOML beside the table."""
 
+import json
 import math
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
+from flockenv._io.array_file import is_special
+from flockenv._io.atomic_write import write_text
+from flockenv._io.extras import require
 from flockenv._io.toml import read_toml_file
 from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.parameters import FlockParameters
 
+if TYPE_CHECKING:
+    import pandas as pd
 
-def _is_number(value: Any) -> bool:
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    return is_number and math.isfinite(value)
+SUFFIXES = (".csv", ".parquet", ".pq")
+"""Endings of files that `read_tracks` takes."""
+
+_NAMES = {
+    "frame": ("frame", "frame_number", "frames", "time_s", "time", "t", "timestamp", "step"),
+    "id": ("id", "track_id", "track", "boat", "robot", "animal", "individual", "particle", "name"),
+    "x": ("x_cm", "x", "pos_x", "x_px", "position_x", "centroid_x", "center_x"),
+    "y": ("y_cm", "y", "pos_y", "y_px", "position_y", "centroid_y", "center_y"),
+    "heading": ("heading_rad", "heading", "heading_deg", "theta", "angle", "orientation", "alpha"),
+}
+"""Names that columns often have, in small letters."""
 
 
-def _is_positive(value: Any) -> bool:
-    return _is_number(value) and value > 0.0
-
-
-def _is_text(value: Any) -> bool:
+def _is_name(value: Any) -> bool:
     return isinstance(value, str)
 
 
-def _are(holds: Callable[[Any], bool], values: Any, count: int | None = None) -> bool:
-    is_long_enough = isinstance(values, tuple) and count in (None, len(values))
-    return is_long_enough and all(map(holds, values))
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-_CHECKS: tuple[tuple[str, Callable[[Any], bool], tuple[str, ...]], ...] = (
-    ("the name of a column", _is_text, ("frame", "id", "x", "y")),
-    ("true or false", lambda value: isinstance(value, bool), ("wrapped", "y_down")),
-    ("rad or deg", lambda value: value in ("rad", "deg"), ("heading_unit",)),
-    ("a positive number", _is_positive, ("cm_per_unit", "max_speed_cm_s")),
-    ("a positive number", lambda value: value is None or _is_positive(value), ("fps",)),
-    ("two numbers", lambda value: _are(_is_number, value, 2), ("hull", "center")),
-    ("a list of names", lambda value: _are(_is_text, value), ("leaders",)),
-    (
-        "cw, ccw, or one of them per leader",
-        lambda value: _is_text(value) or _are(_is_text, value),
-        ("target",),
-    ),
-    (
+def _are(holds: Callable[[Any], bool], values: Any) -> bool:
+    return isinstance(values, tuple) and all(map(holds, values))
+
+
+_Heading = str | tuple[str, str, str, str] | None
+_KINDS: dict[Any, tuple[Callable[[Any], bool], str]] = {
+    str: (_is_name, "the name of a column"),
+    bool: (lambda value: isinstance(value, bool), "true or false"),
+    float: (lambda value: _is_number(value) and value > 0.0, "a positive number"),
+    float | None: (lambda value: value is None or _KINDS[float][0](value), "a positive number"),
+    Literal["rad", "deg"]: (lambda value: value in ("rad", "deg"), "rad or deg"),
+    tuple[float, float]: (lambda value: _are(_is_number, value) and len(value) == 2, "two numbers"),
+    tuple[str, ...]: (lambda value: _are(_is_name, value), "a list of names"),
+    _Heading: (
+        lambda value: (
+            value is None or _is_name(value) or (_are(_is_name, value) and len(value) == 4)
+        ),
         "a column, or the columns x, y of the tail and x, y of the head",
-        lambda value: value is None or _is_text(value) or _are(_is_text, value, 4),
-        ("heading",),
     ),
-)
+}
+"""What fields of a layout take, by their annotation; of the others FlockParameters says it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrackLayout:
     """How tracks lie in a table with one row per frame and animal, robot or boat.
 
+    A ParameterError refuses a value out of range or of another kind.
+
     Attributes
     ----------
-    pool : str or tuple of float
-        As for `recording_of`.
-    hull : tuple of float
+    pool, hull, target
         As for `recording_of`.
     leaders : tuple of str
         Names of those that lead.
-    target : str or tuple of str
-        As for `recording_of`.
     frame : str
         Column of frame numbers, or of times in s where `fps` is None.
     fps : float or None
@@ -87,11 +100,6 @@ class TrackLayout:
         Whether y points down, as in pictures; headings then turn clockwise with rising angle.
     max_speed_cm_s : float
         Nothing moves faster: no velocity is taken across a step that is.
-
-    Raises
-    ------
-    ParameterError
-        For a value out of range or of another kind.
     """
 
     pool: Any
@@ -103,8 +111,8 @@ class TrackLayout:
     id: str = "id"
     x: str = "x"
     y: str = "y"
-    heading: str | tuple[str, str, str, str] | None = "heading"
-    heading_unit: str = "rad"
+    heading: _Heading = "heading"
+    heading_unit: Literal["rad", "deg"] = "rad"
     wrapped: bool = True
     cm_per_unit: float = 1.0
     center: tuple[float, float] = (0.0, 0.0)
@@ -112,13 +120,14 @@ class TrackLayout:
     max_speed_cm_s: float = 200.0
 
     def __post_init__(self) -> None:
-        for accepted, holds, names in _CHECKS:
-            for name in names:
-                value = getattr(self, name)
-                if not holds(value):
-                    raise ParameterError(f"{name} = {shown(value)} is not accepted: {accepted}")
+        for each in fields(self):
+            value = getattr(self, each.name)
+            holds, accepted = _KINDS.get(each.type, (None, ""))
+            if holds and not holds(value):
+                raise ParameterError(f"{each.name} = {shown(value)} is not accepted: {accepted}")
+        count = len(self.leaders)
         try:
-            FlockParameters(pool=self.pool)
+            FlockParameters(n_boats=count + 1, n_leaders=count, pool=self.pool, target=self.target)
         except TypeError as error:
             raise ParameterError(str(error)) from error
 
@@ -129,18 +138,135 @@ def read_layout(path: str | os.PathLike[str]) -> TrackLayout:
     A ParameterError names a file that cannot be read, or is no layout.
     """
     values = read_toml_file(path, str(path))
+    for name, value in values.items():
+        if isinstance(value, list):
+            values[name] = tuple(map(str, value)) if name == "leaders" else tuple(value)
     try:
         refuse_unknown(values, [each.name for each in fields(TrackLayout)], "field of a layout")
         if "pool" not in values:
             raise ParameterError(
-                'pool is missing: "narrow", "wide", or the outer and the inner radius in cm'
+                'pool is missing: "narrow", "wide", or [outer, inner] radius in cm'
             )
-        if isinstance(values.get("leaders"), list):
-            values["leaders"] = list(map(str, values["leaders"]))
-        plain: dict[str, Any] = {
-            name: tuple(value) if isinstance(value, list) else value
-            for name, value in values.items()
-        }
-        return TrackLayout(**{**plain, "heading": plain.get("heading", "heading") or None})
+        return TrackLayout(**{**values, "heading": values.get("heading", "heading") or None})
     except ParameterError as error:
         raise ParameterError(f"{path}: {error}") from error
+
+
+def guess_layout(path: str | os.PathLike[str]) -> list[str]:
+    """Write a description of tracks beside their table, guessed from the table.
+
+    The description is the TOML file of the table's name. Returned are its lines that nothing in the
+    table says, each with what to check. A ParameterError names a file that is no table, or of which
+    no column has a name that says what it is; nothing is written then.
+    """
+    path = Path(path)
+    beside, table = path.with_suffix(".toml"), read_table(path)
+    there = {str(name).strip().lower(): str(name) for name in table.columns}
+    columns = {
+        field: next(filter(None, map(there.get, names)), "") for field, names in _NAMES.items()
+    }
+    for field in ("frame", "id", "x", "y"):
+        if not columns[field]:
+            raise ParameterError(
+                f"{path}: no column looks like {field!r} ({', '.join(_NAMES[field])}) among "
+                f"{', '.join(map(str, table.columns))}: describe the columns in {beside}"
+            )
+    points = np.stack([_numbers(table, columns[axis]) for axis in "xy"], axis=-1)
+    points = points[np.isfinite(points).all(axis=1)]
+    if len(points) == 0:
+        raise ParameterError(f"{path}: no row has a position")
+    low, high = points.min(axis=0), points.max(axis=0)
+    x, y = center = (low + high) / 2
+    radius = float(np.hypot(*(points - center).T).max()) * 1.02 or 1.0
+    known = [f"{field} = {json.dumps(name, ensure_ascii=False)}" for field, name in columns.items()]
+    doubts = {
+        f"pool = [{radius:.1f}, 0.0]": "outer and inner radius in cm, here about all positions",
+        f"center = [{x:.2f}, {y:.2f}]": "the pool's, in units of the file, here of all positions",
+        "cm_per_unit = 1.0": "how many cm a unit of x and y has",
+        # Pictures count from their upper left corner.
+        f"y_down = {json.dumps(bool((low >= 0.0).all()))}": "whether y points down, as in pictures",
+    }
+    if columns["frame"].lower().startswith(("frame", "step")):
+        doubts["fps = 25.0"] = "frames per second; without it the column of frames holds times in s"
+    if columns["heading"]:
+        unit = "deg" if _are_degrees(_numbers(table, columns["heading"])) else "rad"
+        known.append(f'heading_unit = "{unit}"')
+    else:
+        doubts[known.pop()] = "a column; without one headings are the directions of motion"
+    checks = [f"{line}  # check: {meaning}" for line, meaning in doubts.items()]
+    first = "# Guessed from the table beside this file. Check the lines that say so."
+    write_text(beside, "\n".join([first, *known, *checks]) + "\n")
+    return checks
+
+
+def read_table(path: Path) -> "pd.DataFrame":
+    """Return the rows of a CSV or Parquet file; a ParameterError names one that is none."""
+    pandas, ending = require("pandas", "plot"), path.suffix.lower()
+    if ending not in SUFFIXES:
+        raise ParameterError(f"{path}: it ends in none of {', '.join(SUFFIXES)}")
+    read = pandas.read_csv if ending == ".csv" else pandas.read_parquet
+    try:
+        if is_special(path):
+            raise ParameterError("a device, a pipe or a socket")
+        table: pd.DataFrame = read(path)
+    except Exception as error:  # Parsers raise errors of many unrelated classes.
+        raise ParameterError(f"{path} cannot be read as a table: {error}") from error
+    return table
+
+
+def rows_of(table: "pd.DataFrame", layout: TrackLayout) -> "pd.DataFrame":
+    """Return frame, id, x and y in cm and heading in rad, from the center of the pool, y up."""
+    frame, x, y = (_numbers(table, name) for name in (layout.frame, layout.x, layout.y))
+    if not np.isfinite(frame).all():
+        raise ParameterError(f"column {layout.frame!r} has rows without a number")
+    up = -1.0 if layout.y_down else 1.0
+    rows = _column(table, layout.id).convert_dtypes().to_frame("id")
+    return rows.assign(
+        frame=frame,
+        x=(x - layout.center[0]) * layout.cm_per_unit,
+        y=(y - layout.center[1]) * layout.cm_per_unit * up,
+        heading=_headings(table, layout) * up,
+    )
+
+
+def _headings(table: "pd.DataFrame", layout: TrackLayout) -> NDArray[np.float64]:
+    """Return headings in rad from x to y of the table, and 0 where the table has none."""
+    if layout.heading is None:
+        return np.zeros(len(table))
+    if not isinstance(layout.heading, str):
+        x_tail, y_tail, x_head, y_head = (_numbers(table, name) for name in layout.heading)
+        return direction(x_head - x_tail, y_head - y_tail)
+    heading = _numbers(table, layout.heading)
+    if layout.heading_unit == "deg":
+        return np.radians(heading)
+    if layout.wrapped and _are_degrees(heading):
+        raise ParameterError(
+            f"headings reach {np.nanmax(np.abs(heading)):.4g}, more than a full turn in radians: "
+            "if they are in degrees, say heading_unit = 'deg'"
+        )
+    return heading
+
+
+def direction(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the angle of vectors, in radians; NaN for none."""
+    return np.where((x == 0.0) & (y == 0.0), np.nan, np.arctan2(y, x))
+
+
+def _are_degrees(heading: NDArray[np.float64]) -> bool:
+    return bool(np.nanmax(np.abs(heading), initial=0.0) > 2 * np.pi + 1e-6)
+
+
+def _column(table: "pd.DataFrame", name: str) -> "pd.Series[Any]":
+    if name not in table:
+        there = ", ".join(map(str, table.columns))
+        raise ParameterError(f"column {name!r} is missing; there are {there}")
+    return table[name]
+
+
+def _numbers(table: "pd.DataFrame", name: str) -> NDArray[np.float64]:
+    """Return a column, NaN where nothing stands."""
+    column = _column(table, name)
+    try:
+        return column.to_numpy(dtype=np.float64, na_value=np.nan)
+    except (TypeError, ValueError) as error:
+        raise ParameterError(f"column {name!r} holds other things than numbers") from error
