@@ -13,6 +13,8 @@ from flockenv.parameters import FlockParameters
 from flockenv.recording import PHASES, PRECISIONS, Recording
 from flockenv.recording.checks import check_array
 
+Floats = NDArray[np.float64]
+
 _FASTEST_CM_S = 1000.0
 _MOST_OUTSIDE = 0.1
 
@@ -117,9 +119,7 @@ def recording_of(
     )
 
 
-def velocities(
-    time_s: NDArray[np.float64], pose: NDArray[np.float64], fastest_cm_s: float = np.inf
-) -> tuple[NDArray[np.float64], int]:
+def velocities(time_s: Floats, pose: Floats, fastest_cm_s: float = np.inf) -> tuple[Floats, int]:
     """Return differences of poses, of shape (t, n, 3), in cm/s, cm/s and rad/s.
 
     Central ones where a boat is there before and after, one-sided ones at the ends of its tracks,
@@ -135,7 +135,21 @@ def velocities(
     return np.where(np.isnan(mean), np.fmax(before, after), mean), int(broken.sum())
 
 
-def _numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:
+def unwrapped(heading: Floats) -> Floats:
+    """Return headings without jumps of full turns, each boat's from sample to sample it is in."""
+    whole = heading.copy()
+    for boat in whole.T:
+        there = ~np.isnan(boat)
+        boat[there] = np.unwrap(boat[there])
+    return whole
+
+
+def direction(x: Floats, y: Floats) -> Floats:
+    """Return the angle of vectors, in radians; NaN for none."""
+    return np.where((x == 0.0) & (y == 0.0), np.nan, np.arctan2(y, x))
+
+
+def _numbers(name: str, values: ArrayLike) -> Floats:
     try:
         # What is masked is not there.
         return np.array(np.ma.asarray(values, np.float64).filled(np.nan))
@@ -152,19 +166,8 @@ def _leaders_first(names: list[str], leaders: list[str]) -> list[int]:
     return sorted(range(len(names)), key=lambda place: ranks.get(names[place], len(ranks)))
 
 
-def unwrapped(heading: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return headings without jumps of full turns, each boat's from sample to sample it is in."""
-    whole = heading.copy()
-    for boat in whole.T:
-        there = ~np.isnan(boat)
-        boat[there] = np.unwrap(boat[there])
-    return whole
-
-
-def _check_units(
-    pose: NDArray[np.float64], velocity: NDArray[np.float64], parameters: FlockParameters
-) -> None:
-    speed = np.hypot(velocity[..., 0], velocity[..., 1])
+def _check_units(pose: Floats, velocity: Floats, parameters: FlockParameters) -> None:
+    distance, speed = (np.hypot(each[..., 0], each[..., 1]) for each in (pose, velocity))
     fastest = np.nanmedian(speed[:, ~np.isnan(speed).all(axis=0)], axis=0).max(initial=0.0)
     if fastest > _FASTEST_CM_S:
         raise ParameterError(
@@ -172,7 +175,6 @@ def _check_units(
             f"{_FASTEST_CM_S / 100:g} m/s: are positions in cm and times in s?"
         )
     outer_cm, _ = _core.pool_radii_cm(parameters.pool)
-    distance = np.hypot(pose[..., 0], pose[..., 1])
     outside = np.mean(distance[~np.isnan(distance)] > outer_cm)
     if outside > _MOST_OUTSIDE:
         raise ParameterError(

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flockenv._io.array_file import is_special
 from flockenv._io.atomic_write import write_text
@@ -17,6 +16,7 @@ from flockenv._io.extras import require
 from flockenv._io.toml import read_toml_file
 from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.parameters import FlockParameters
+from flockenv.tracks.assemble import Floats, direction
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -42,10 +42,11 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-def _are(holds: Callable[[Any], bool], values: Any) -> bool:
-    return isinstance(values, tuple) and all(map(holds, values))
+def _are(holds: Callable[[Any], bool], values: Any, count: int | None = None) -> bool:
+    return isinstance(values, tuple) and all(map(holds, values)) and count in (None, len(values))
 
 
+_FULL_TURN = 2 * np.pi + 1e-6
 _Heading = str | tuple[str, str, str, str] | None
 _KINDS: dict[Any, tuple[Callable[[Any], bool], str]] = {
     str: (_is_name, "the name of a column"),
@@ -53,12 +54,10 @@ _KINDS: dict[Any, tuple[Callable[[Any], bool], str]] = {
     float: (lambda value: _is_number(value) and value > 0.0, "a positive number"),
     float | None: (lambda value: value is None or _KINDS[float][0](value), "a positive number"),
     Literal["rad", "deg"]: (lambda value: value in ("rad", "deg"), "rad or deg"),
-    tuple[float, float]: (lambda value: _are(_is_number, value) and len(value) == 2, "two numbers"),
+    tuple[float, float]: (lambda value: _are(_is_number, value, 2), "two numbers"),
     tuple[str, ...]: (lambda value: _are(_is_name, value), "a list of names"),
     _Heading: (
-        lambda value: (
-            value is None or _is_name(value) or (_are(_is_name, value) and len(value) == 4)
-        ),
+        lambda value: value is None or _is_name(value) or _are(_is_name, value, 4),
         "a column, or the columns x, y of the tail and x, y of the head",
     ),
 }
@@ -144,9 +143,7 @@ def read_layout(path: str | os.PathLike[str]) -> TrackLayout:
     try:
         refuse_unknown(values, [each.name for each in fields(TrackLayout)], "field of a layout")
         if "pool" not in values:
-            raise ParameterError(
-                'pool is missing: "narrow", "wide", or [outer, inner] radius in cm'
-            )
+            raise ParameterError('pool is missing: "narrow", "wide", or two radii in cm')
         return TrackLayout(**{**values, "heading": values.get("heading", "heading") or None})
     except ParameterError as error:
         raise ParameterError(f"{path}: {error}") from error
@@ -178,7 +175,6 @@ def guess_layout(path: str | os.PathLike[str]) -> list[str]:
     low, high = points.min(axis=0), points.max(axis=0)
     x, y = center = (low + high) / 2
     radius = float(np.hypot(*(points - center).T).max()) * 1.02 or 1.0
-    known = [f"{field} = {json.dumps(name, ensure_ascii=False)}" for field, name in columns.items()]
     doubts = {
         f"pool = [{radius:.1f}, 0.0]": "outer and inner radius in cm, here about all positions",
         f"center = [{x:.2f}, {y:.2f}]": "the pool's, in units of the file, here of all positions",
@@ -188,11 +184,12 @@ def guess_layout(path: str | os.PathLike[str]) -> list[str]:
     }
     if columns["frame"].lower().startswith(("frame", "step")):
         doubts["fps = 25.0"] = "frames per second; without it the column of frames holds times in s"
-    if columns["heading"]:
-        unit = "deg" if _are_degrees(_numbers(table, columns["heading"])) else "rad"
-        known.append(f'heading_unit = "{unit}"')
-    else:
-        doubts[known.pop()] = "a column; without one headings are the directions of motion"
+    if not columns["heading"]:
+        del columns["heading"]
+        doubts['heading = ""'] = "a column; without one headings are the directions of motion"
+    elif np.nanmax(np.abs(_numbers(table, columns["heading"])), initial=0.0) > _FULL_TURN:
+        columns["heading_unit"] = "deg"
+    known = [f"{field} = {json.dumps(name, ensure_ascii=False)}" for field, name in columns.items()]
     checks = [f"{line}  # check: {meaning}" for line, meaning in doubts.items()]
     first = "# Guessed from the table beside this file. Check the lines that say so."
     write_text(beside, "\n".join([first, *known, *checks]) + "\n")
@@ -229,7 +226,7 @@ def rows_of(table: "pd.DataFrame", layout: TrackLayout) -> "pd.DataFrame":
     )
 
 
-def _headings(table: "pd.DataFrame", layout: TrackLayout) -> NDArray[np.float64]:
+def _headings(table: "pd.DataFrame", layout: TrackLayout) -> Floats:
     """Return headings in rad from x to y of the table, and 0 where the table has none."""
     if layout.heading is None:
         return np.zeros(len(table))
@@ -237,23 +234,13 @@ def _headings(table: "pd.DataFrame", layout: TrackLayout) -> NDArray[np.float64]
         x_tail, y_tail, x_head, y_head = (_numbers(table, name) for name in layout.heading)
         return direction(x_head - x_tail, y_head - y_tail)
     heading = _numbers(table, layout.heading)
-    if layout.heading_unit == "deg":
-        return np.radians(heading)
-    if layout.wrapped and _are_degrees(heading):
+    largest = np.nanmax(np.abs(heading), initial=0.0)
+    if layout.heading_unit == "rad" and layout.wrapped and largest > _FULL_TURN:
         raise ParameterError(
-            f"headings reach {np.nanmax(np.abs(heading)):.4g}, more than a full turn in radians: "
-            "if they are in degrees, say heading_unit = 'deg'"
+            f"headings reach {largest:.4g}, more than a full turn in radians: if they are in "
+            "degrees, say heading_unit = 'deg'"
         )
-    return heading
-
-
-def direction(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the angle of vectors, in radians; NaN for none."""
-    return np.where((x == 0.0) & (y == 0.0), np.nan, np.arctan2(y, x))
-
-
-def _are_degrees(heading: NDArray[np.float64]) -> bool:
-    return bool(np.nanmax(np.abs(heading), initial=0.0) > 2 * np.pi + 1e-6)
+    return np.radians(heading) if layout.heading_unit == "deg" else heading
 
 
 def _column(table: "pd.DataFrame", name: str) -> "pd.Series[Any]":
@@ -263,7 +250,7 @@ def _column(table: "pd.DataFrame", name: str) -> "pd.Series[Any]":
     return table[name]
 
 
-def _numbers(table: "pd.DataFrame", name: str) -> NDArray[np.float64]:
+def _numbers(table: "pd.DataFrame", name: str) -> Floats:
     """Return a column, NaN where nothing stands."""
     column = _column(table, name)
     try:

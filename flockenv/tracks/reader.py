@@ -7,12 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flockenv.errors import ParameterError
 from flockenv.recording import Recording
-from flockenv.tracks.assemble import recording_of, unwrapped, velocities
-from flockenv.tracks.layout import TrackLayout, direction, read_layout, read_table, rows_of
+from flockenv.tracks.assemble import Floats, direction, recording_of, unwrapped, velocities
+from flockenv.tracks.layout import TrackLayout, read_layout, read_table, rows_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -22,7 +21,7 @@ _SPARSEST = 16
 """Arrays hold a pose for each frame and name; above `_FEW` a row must be there for so many."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class TrackReport:
     """What of tracks was used, and what was left out.
 
@@ -107,21 +106,12 @@ def _recording(
     flock = {name: getattr(layout, name) for name in ("pool", "hull", "leaders", "target")}
     recording = recording_of(time_s, pose, velocity=velocity, ids=names, **flock)
     there = ~np.isnan(pose[..., 0])
-    found = TrackReport(
-        frames=len(frames),
-        boats=len(names),
-        samples=int(there.sum()),
-        missing=missing,
-        broken=broken,
-        lone=int((there & np.isnan(velocity[..., 0])).sum()),
-    )
-    report(found)
+    samples, lone = int(there.sum()), int((there & np.isnan(velocity[..., 0])).sum())
+    report(TrackReport(len(frames), len(names), samples, missing, broken, lone))
     return recording
 
 
-def _poses(
-    every: "pd.DataFrame",
-) -> tuple[list[str], NDArray[np.float64], NDArray[np.float64]]:
+def _poses(every: "pd.DataFrame") -> tuple[list[str], Floats, Floats]:
     """Return the names (n,), frames (t,) and poses (t, n, 3) of rows with a name and a pose."""
     is_placed = np.isfinite(every[["x", "y", "heading"]].to_numpy()).all(axis=1)
     rows = every[every["id"].notna() & is_placed].astype({"id": str})

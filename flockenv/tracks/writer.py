@@ -20,25 +20,14 @@ EXPORTS = (".csv", ".parquet", ".gsd")
 
 
 def export(recording: Recording, path: str | os.PathLike[str]) -> list[Path]:
-    """Write the poses of a recording for other programs.
+    """Write the poses of a recording for other programs, and return the files that were written.
 
-    A CSV or Parquet table (extra ``plot``) has one row per sample and boat, with the columns of
-    `Recording.to_dataframe`, and beside it a layout in TOML, with which `read_tracks` reads it. A
-    GSD file (extra ``tracks``) has one frame per sample in the schema of HOOMD-blue: positions and
-    the box in cm, orientations as quaternions about z, velocities in cm/s, the types "boat" and
-    "leader" with their hull, and ``time_s`` and the number of each boat in the log.
-
-    Parameters
-    ----------
-    recording
-        With poses.
-    path
-        The file; its ending decides.
-
-    Returns
-    -------
-    list of Path
-        What was written.
+    The ending of the path decides. A CSV or Parquet table (extra ``plot``) has one row per sample
+    and boat, with the columns of `Recording.to_dataframe`, and beside it a layout in TOML, with
+    which `read_tracks` reads it. A GSD file (extra ``tracks``) has one frame per sample in the
+    schema of HOOMD-blue: positions and the box in cm, orientations as quaternions about z,
+    velocities in cm/s, the types "boat" and "leader" with their hull, and ``time_s`` and the number
+    of each boat in the log.
 
     Raises
     ------
@@ -60,24 +49,23 @@ def export(recording: Recording, path: str | os.PathLike[str]) -> list[Path]:
     if ending == ".gsd":
         _write_gsd(recording, path)
         return [path]
-    table = recording.to_dataframe(boats=True)
+    table, beside = recording.to_dataframe(boats=True), path.with_suffix(".toml")
     if ending == ".csv":
         write_csv(path, table)
     else:
         require("pyarrow", "plot")
         with atomic_write(path) as file:
             table.to_parquet(file, index=False)
-    beside = path.with_suffix(".toml")
-    write_text(beside, _layout_text(recording))
+    note = "# Columns and units of the table beside this file, for flockenv.\n"
+    write_text(beside, note + tomli_w.dumps(_layout(recording)))
     return [path, beside]
 
 
-def _layout_text(recording: Recording) -> str:
-    """Return the layout of the exported table, as TOML."""
+def _layout(recording: Recording) -> dict[str, Any]:
     parameters, ids = recording.parameters, recording.ids
     names = range(parameters.n_boats) if ids is None else ids
     columns = {"frame": "time_s", "x": "x_cm", "y": "y_cm", "heading": "heading_rad"}
-    layout = {
+    return {
         **columns,
         "id": "boat" if ids is None else "id",
         "wrapped": False,
@@ -86,39 +74,43 @@ def _layout_text(recording: Recording) -> str:
         "target": parameters.target,
         "leaders": [str(each) for each in names[: parameters.n_leaders]],
     }
-    note = "# Columns and units of the table beside this file, for flockenv.\n"
-    return note + tomli_w.dumps(layout)
 
 
 def _write_gsd(recording: Recording, path: Path) -> None:
     hoomd: Any = require("gsd.hoomd", "tracks")
+    parameters = recording.parameters
+    reach, _ = _core.pool_radii_cm(parameters.pool)
+    if math.isinf(reach):  # Open water: as far as there are boats.
+        reach = float(np.nanmax(np.abs(recording.pose[..., :2])))
+    side = 2 * reach + 4 * (1 + parameters.boat_shape) * parameters.boat_radius_cm
     # The library opens names, not files.
     with atomic_write(path) as file, hoomd.open(file.name, "w") as frames:
-        frames.extend(_gsd_frame(hoomd, recording, sample) for sample in range(len(recording)))
+        for sample in range(len(recording)):
+            frame = hoomd.Frame()
+            frame.configuration.step = sample
+            frame.configuration.dimensions = 2
+            frame.configuration.box = [side, side, 0, 0, 0, 0]
+            frame.log["time_s"] = recording.time_s[[sample]]
+            _put_boats(frame, recording, sample)
+            frames.append(frame)
 
 
-def _gsd_frame(hoomd: Any, recording: Recording, sample: int) -> Any:
+def _put_boats(frame: Any, recording: Recording, sample: int) -> None:
+    parameters, particles = recording.parameters, frame.particles
     pose = recording.pose[sample].astype(np.float64)
     boats = np.flatnonzero(np.isfinite(pose[:, 0]))
     pose, velocity = pose[boats], np.nan_to_num(recording.velocity[sample, boats])
     half, zero = pose[:, 2] / 2, np.zeros(len(boats))
-    frame = hoomd.Frame()
-    frame.configuration.step = sample
-    frame.configuration.dimensions = 2
-    frame.configuration.box = [_box_cm(recording)] * 2 + [0, 0, 0, 0]
-    particles = frame.particles
     particles.N = len(boats)
     particles.types = ["boat", "leader"]
-    particles.type_shapes = [_shape(recording.parameters)] * 2
-    particles.typeid = boats < recording.parameters.n_leaders
-    particles.diameter = np.full(len(boats), 2 * recording.parameters.boat_radius_cm)
+    particles.type_shapes = [_shape(parameters)] * 2
+    particles.typeid = boats < parameters.n_leaders
+    particles.diameter = np.full(len(boats), 2 * parameters.boat_radius_cm)
     particles.position = np.column_stack([pose[:, :2], zero])
     particles.velocity = np.column_stack([velocity[:, :2], zero])
     # A turn about z by the heading, from a hull along x.
     particles.orientation = np.column_stack([np.cos(half), zero, zero, np.sin(half)])
-    time_s = recording.time_s[[sample]]
-    frame.log = {"time_s": time_s, "particles/boat": boats.astype(np.uint32)}
-    return frame
+    frame.log["particles/boat"] = boats.astype(np.uint32)
 
 
 def _shape(parameters: FlockParameters) -> dict[str, Any]:
@@ -127,12 +119,3 @@ def _shape(parameters: FlockParameters) -> dict[str, Any]:
     if half == 0.0:
         return {"type": "Sphere", "diameter": 2 * radius}
     return {"type": "Polygon", "rounding_radius": radius, "vertices": [[-half, 0.0], [half, 0.0]]}
-
-
-def _box_cm(recording: Recording) -> float:
-    """Return the side of a square about the pool, or about where boats are in open water."""
-    parameters = recording.parameters
-    reach, _ = _core.pool_radii_cm(parameters.pool)
-    if math.isinf(reach):
-        reach = float(np.nanmax(np.abs(recording.pose[..., :2])))
-    return 2 * reach + 4 * (1 + parameters.boat_shape) * parameters.boat_radius_cm

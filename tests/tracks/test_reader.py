@@ -167,7 +167,11 @@ def test_names_are_sorted_as_numbers():
         (line(x=np.nan), {}, "no row has a name, a position and a heading"),
         (line(heading="left"), {}, "'heading' holds other things than numbers"),
         (line(frame=np.nan), {}, "'frame' has rows without a number"),
-        (line().drop(columns="y"), {}, "'y' is missing; there are frame, id, x, heading"),
+        (
+            line().drop(columns="y"),
+            {},
+            "'y' is missing; there are frame, id, x, heading",
+        ),
         (line().iloc[:0], {}, "no row has a name"),
         (line(), {"cm_per_unit": 0.0}, "cm_per_unit = 0.0"),
         (line(), {"fps": -1.0}, "fps = -1.0"),
