@@ -166,7 +166,7 @@ def guess_layout(path: str | os.PathLike[str]) -> list[str]:
         if not columns[field]:
             raise ParameterError(
                 f"{path}: no column looks like {field!r} ({', '.join(_NAMES[field])}) among "
-                f"{', '.join(map(str, table.columns))}: describe the columns in {beside}"
+                f"{', '.join(map(str, table))}: describe the columns in {beside}"
             )
     points = np.stack([_numbers(table, columns[axis]) for axis in "xy"], axis=-1)
     points = points[np.isfinite(points).all(axis=1)]
@@ -245,8 +245,7 @@ def _headings(table: "pd.DataFrame", layout: TrackLayout) -> Floats:
 
 def _column(table: "pd.DataFrame", name: str) -> "pd.Series[Any]":
     if name not in table:
-        there = ", ".join(map(str, table.columns))
-        raise ParameterError(f"column {name!r} is missing; there are {there}")
+        raise ParameterError(f"column {name!r} is missing; there are {', '.join(map(str, table))}")
     return table[name]
 
 

@@ -16,10 +16,6 @@ from flockenv.tracks.layout import TrackLayout, read_layout, read_table, rows_of
 if TYPE_CHECKING:
     import pandas as pd
 
-_FEW = 1 << 22
-_SPARSEST = 16
-"""Arrays hold a pose for each frame and name; above `_FEW` a row must be there for so many."""
-
 
 @dataclass(frozen=True, slots=True)
 class TrackReport:
@@ -124,7 +120,8 @@ def _poses(every: "pd.DataFrame") -> tuple[list[str], Floats, Floats]:
     # By their length, then alphabet, so that 2 comes before 10.
     names = sorted(rows["id"].unique(), key=lambda name: (len(name), name))
     frames = np.unique(every["frame"])
-    if len(frames) * len(names) > max(_FEW, _SPARSEST * len(every)):
+    # Arrays hold a pose for each frame and name: in large ones every sixteenth must be there.
+    if len(frames) * len(names) > max(1 << 22, 16 * len(every)):
         raise ParameterError(
             f"{len(names)} names in {len(frames)} frames are too many for {len(every)} rows: join "
             "fragments of tracks, or read a part of the file"
