@@ -2,6 +2,12 @@
 
 from committed_data import interval, markdown, one, rows
 
+ALGORITHMS = {
+    "train_leaders": "PPO (the forty lines)",
+    "trpo": "TRPO",
+    "evolution": "evolution strategy",
+}
+"""Algorithms by the folders of their trainings."""
 SIGNALS = (("rudder", "wide"), ("rudder", "narrow"), ("lean", "wide"))
 
 
@@ -26,6 +32,19 @@ def seeds() -> str:
     return markdown(["policy", "signed order", "minus the tuned law"], body)
 
 
+def algorithms() -> str:
+    """Return what each algorithm reached in the mean of its seeds."""
+    body = []
+    for row in rows("training/algorithms/algorithms.csv"):
+        mean, *ends = (f"{float(row[name]):.3f}" for name in ("signed_order", "lowest", "highest"))
+        gain = interval(row, "gain", "gain_low", "gain_high", "+.3f")
+        name = ALGORITHMS[row["algorithm"]]
+        body.append([name, row["seeds"], mean, " to ".join(ends), gain])
+    return markdown(
+        ["algorithm", "seeds", "signed order", "of single seeds", "minus the tuned law"], body
+    )
+
+
 def easy() -> str:
     """Return what each training in the easy environment reached, and the laws in its flocks."""
     body = []
@@ -41,5 +60,10 @@ def easy() -> str:
     return markdown(["policy", "processor time (s)", "signed order", "minus paper's law"], body)
 
 
-TRAINING_TABLES = {"easy": easy, "signals": signals, "training-seeds": seeds}
+TRAINING_TABLES = {
+    "algorithms": algorithms,
+    "easy": easy,
+    "signals": signals,
+    "training-seeds": seeds,
+}
 """How each table is made."""
