@@ -7,46 +7,56 @@ import numpy as np
 import pandas as pd
 import pytest
 
-TINY = ["--episodes", "2", "--minutes", "0.2", "--quiet"]
+TINY = ["--episodes", "2", "--minutes", "0.2", "--flocks", "1", "--leaders", "3", "--quiet"]
 
 
-def test_it_keeps_every_candidate(script, tmp_path: Path, capsys) -> None:
+def test_it_keeps_every_candidate(script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    judged = {"signed_order": 0.4, "low": 0.3, "high": 0.5, "beyond": 0.01}
+    monkeypatch.setattr(script, "judged", lambda *_: judged)
     for name in ("one", "other"):
         script.main([*TINY, "--generations", "2", "--out", str(tmp_path / name)])
-    found = tomllib.loads((tmp_path / "one" / "gains.toml").read_text())
-    again = tomllib.loads((tmp_path / "other" / "gains.toml").read_text())
-    assert found["made"]["command"].startswith("python baselines/tune_laws.py --episodes 2")
-    for pool in script.POOLS:
-        gains = found["damped law"][pool]
-        assert gains.keys() == script.RANGES.keys()
-        assert gains == again["damped law"][pool]
-        table = pd.read_csv(tmp_path / "one" / f"damped-law-{pool}.csv")
-        assert list(table) == ["generation", *script.RANGES, "signed_order"]
-        assert table["generation"].nunique() == 2
-        assert np.isfinite(table["signed_order"]).all()
+    found, again = (pd.read_csv(tmp_path / name / "gains.csv") for name in ("one", "other"))
+    pd.testing.assert_frame_equal(found, again)
+    assert list(found) == ["pool", "leaders", *script.RANGES, *judged]
+    assert list(found["pool"]) == list(script.POOLS)
+    made = tomllib.loads((tmp_path / "one" / "made.toml").read_text())
+    assert made["command"].startswith("python baselines/tune_laws.py --episodes 2")
+    for pool, row in found.set_index("pool").iterrows():
+        table = pd.read_csv(tmp_path / "one" / f"damped-law-{pool}-3.csv")
+        assert list(table) == ["generation", *script.RANGES, "signed_order", "search"]
+        ends = table[table["generation"] == -1]
+        candidates = table.drop(ends.index)
+        assert list(ends["search"]) == [0, 1]
+        assert set(candidates["generation"]) == {0, 1}
+        assert np.isfinite(candidates["signed_order"]).all()
+        for gain in script.RANGES:
+            assert row[gain] == pytest.approx(np.exp(np.log(ends[gain]).mean()), rel=0.005)
 
 
 def test_it_climbs(script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """On scores that are known instead of the flock's."""
 
-    def known(parameters, policy, seeds, duration_s):
-        score = -(np.log(policy.gains["gain"] / 7.0) ** 2)
-        return {"signed_order": np.full(len(seeds), score)}
+    def known(parameters, policy, seeds, duration_s, options=None):
+        gain = 1.0 if policy == "tuned law" else policy.gains["gain"]
+        return {"signed_order": np.full(len(seeds), -(np.log(gain / 7.0) ** 2))}
 
     monkeypatch.setattr(script, "run_episodes", known)
     arguments = ["--pool", "narrow", "--generations", "25"]
     script.main([*TINY, *arguments, "--out", str(tmp_path)])
-    found = tomllib.loads((tmp_path / "gains.toml").read_text())
-    assert found["damped law"]["narrow"]["gain"] == pytest.approx(7.0, rel=0.05)
+    found = pd.read_csv(tmp_path / "gains.csv").loc[0]
+    assert found["gain"] == pytest.approx(7.0, rel=0.05)
+    assert found["beyond"] == pytest.approx(np.log(7.0) ** 2, rel=0.05)
 
 
-def test_seeds_are_for_training(script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    seen: list[int] = []
+def test_seeds_of_searches_are_for_training(
+    script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen: dict[bool, list[int]] = {True: [], False: []}
 
-    def noted(parameters, policy, seeds, duration_s):
-        seen.extend(seeds)
+    def noted(parameters, policy, seeds, duration_s, options=None):
+        seen[options is not None].extend(seeds)
         return {"signed_order": np.zeros(len(seeds))}
 
     monkeypatch.setattr(script, "run_episodes", noted)
     script.main([*TINY, "--generations", "2", "--pool", "narrow", "--out", str(tmp_path)])
-    assert min(seen) >= 2**32
+    assert min(seen[True]) >= 2**32 > max(seen[False])
