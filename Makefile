@@ -230,7 +230,7 @@ test-rllib: env-rllib
 # The tasks of BenchMARL and its learners, in .venv-benchmarl.
 test-benchmarl: env-benchmarl
 	OMP_NUM_THREADS=1 .venv-benchmarl/bin/python -m pytest -m "benchmarl or not benchmarl" tests/benchmarl \
-	  tests/torchrl $(PYTEST_ARGS)
+	  tests/torchrl tests/baselines/test_train_with_benchmarl.py $(PYTEST_ARGS)
 
 # Ray core without RLlib pins nothing, but what it starts outlives a test that fails: kept apart.
 # The ray engine on a real local Ray, in .venv-ray.
