@@ -16,7 +16,8 @@ The design was fixed before the searches: the gains found are judged against the
 law of a pool gets new gains where those for three leaders gain more than 0.01 with an interval
 above 0; in any case the table stands beside that of the pretrained leaders.
 
-Every candidate is written to results/tune_laws, and the judged gains to gains.csv beside them.
+Every candidate is written to results/tune_laws, and the judged gains to gains.csv beside them. A
+search whose candidates stand there is not made again.
 """
 
 import argparse
@@ -91,21 +92,25 @@ def search(pool: str, leaders: int, seed: int, options: argparse.Namespace) -> p
 
 
 def tuned(pool: str, leaders: int, options: argparse.Namespace) -> dict[str, float]:
-    """Return the means of what the searches found, having written every candidate."""
+    """Return the means of what the searches found, written with every candidate, or read again."""
     seeds = range(options.seed, options.seed + options.searches)
-    tables = pd.concat(search(pool, leaders, each, options) for each in seeds)
-    write_csv(options.out / f"damped-law-{pool}-{leaders}.csv", tables)
+    path = options.out / f"damped-law-{pool}-{leaders}.csv"
+    if not path.exists():
+        write_csv(path, pd.concat(search(pool, leaders, each, options) for each in seeds))
+    tables = pd.read_csv(path)
     ends = tables.loc[tables["generation"] == -1, list(RANGES)]
     return law(np.log(ends).mean().to_numpy())
 
 
-def judged(pool: str, leaders: int, gains: dict[str, float], flocks: int) -> dict[str, float]:
+def judged(
+    pool: str, leaders: int, gains: dict[str, float], flocks: int, duration_s: float = 480.0
+) -> dict[str, float]:
     """Return the order by these gains in fresh flocks, and the difference from the tuned law."""
     seeds = release_seeds("tune_laws", flocks)
     parameters = flock_parameters(pool, leaders)
     ours, theirs = (
-        run_episodes(parameters, each, seeds, 480.0)["signed_order"]
-        for each in (DampedLaw(**gains), "tuned law")
+        run_episodes(parameters, each, seeds, duration_s)["signed_order"]
+        for each in (DampedLaw(**gains), DampedLaw.tuned(pool))
     )
     order, low, high = mean_interval(ours)
     gain = paired_difference(ours, theirs)

@@ -37,7 +37,7 @@ def test_it_climbs(script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     """On scores that are known instead of the flock's."""
 
     def known(parameters, policy, seeds, duration_s, options=None):
-        gain = 1.0 if policy == "tuned law" else policy.gains["gain"]
+        gain = policy.gains["gain"] if options else 7.0 * np.e
         return {"signed_order": np.full(len(seeds), -(np.log(gain / 7.0) ** 2))}
 
     monkeypatch.setattr(script, "run_episodes", known)
@@ -45,7 +45,27 @@ def test_it_climbs(script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     script.main([*TINY, *arguments, "--out", str(tmp_path)])
     found = pd.read_csv(tmp_path / "gains.csv").loc[0]
     assert found["gain"] == pytest.approx(7.0, rel=0.05)
-    assert found["beyond"] == pytest.approx(np.log(7.0) ** 2, rel=0.05)
+
+
+def test_gains_are_judged_against_the_tuned_law(script) -> None:
+    tuned = script.DampedLaw.tuned("wide").gains
+    found = script.judged("wide", 3, tuned, 2, 60.0)
+    assert found["beyond"] == found["beyond_low"] == found["beyond_high"] == 0.0
+    other = script.judged("wide", 3, {**tuned, "gain": 9.0}, 2, 60.0)
+    assert other["beyond"] == pytest.approx(other["signed_order"] - found["signed_order"])
+    assert other["beyond"] != 0.0
+
+
+def test_a_finished_search_is_not_made_again(
+    script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(script, "judged", lambda *_: {"signed_order": 0.4})
+    arguments = [*TINY, "--generations", "1", "--pool", "wide", "--out", str(tmp_path)]
+    script.main(arguments)
+    first = (tmp_path / "gains.csv").read_bytes()
+    monkeypatch.setattr(script, "search", None)
+    script.main(arguments)
+    assert (tmp_path / "gains.csv").read_bytes() == first
 
 
 def test_seeds_of_searches_are_for_training(
