@@ -1,6 +1,4 @@
-"""BenchMARL's learners: each saves a policy that steers, and says what made it."""
-
-from pathlib import Path
+"""BenchMARL's learners: each saves a policy that every command takes, and says what made it."""
 
 import pytest
 
@@ -8,20 +6,14 @@ from flockenv import FlockParameters
 from flockenv.comparison import run_episodes
 from flockenv.policies import NetworkPolicy
 
-pytestmark = [
-    pytest.mark.benchmarl,
-    pytest.mark.timeout(600),
-    # BenchMARL's own use of libraries that have moved on.
-    pytest.mark.filterwarnings("ignore"),
-]
+pytestmark = [pytest.mark.benchmarl, pytest.mark.filterwarnings("ignore")]
 
 pytest.importorskip("benchmarl")
 
 
+@pytest.mark.timeout(600)
 @pytest.mark.parametrize("name", ["ippo", "mappo"])
-def test_a_training_saves_a_policy(
-    script, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_training_saves_a_policy(script, name, tmp_path, monkeypatch) -> None:
     monkeypatch.setattr(script, "FLOCKS", 4)
     monkeypatch.setattr(script, "DECISIONS", 8)
     monkeypatch.setitem(script.TASK, "episode_s", 8.0)
@@ -30,5 +22,4 @@ def test_a_training_saves_a_policy(
     assert policy.provenance["flock_hours"] == f"{64 / 3600:.6g}"
     assert policy.provenance["samples"] == "192"
     flock = FlockParameters(pool="wide", n_boats=9, n_leaders=3, bw_s=script.TASK["bw_s"])
-    runs = run_episodes(flock, policy, [0], 5.0)
-    assert abs(runs["signed_order"][0]) <= 1
+    assert abs(run_episodes(flock, policy, [0], 5.0)["signed_order"][0]) <= 1

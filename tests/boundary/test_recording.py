@@ -9,12 +9,7 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv import (
-    FlockParameters,
-    OrderSeries,
-    ParameterError,
-    simulate,
-)
+from flockenv import FlockParameters, OrderSeries, ParameterError, simulate
 from flockenv.order import RECORDED
 
 PARAMETERS = FlockParameters(n_boats=5, n_leaders=1, pool="narrow")

@@ -10,13 +10,7 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv import (
-    Flock,
-    FlockParameters,
-    ParameterError,
-    Recording,
-    simulate,
-)
+from flockenv import Flock, FlockParameters, ParameterError, Recording, simulate
 
 PARAMETERS = FlockParameters(n_boats=5, n_leaders=1, pool="narrow")
 RUN = simulate(PARAMETERS, seed=3, duration_s=1.0)

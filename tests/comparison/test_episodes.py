@@ -7,11 +7,7 @@ import pandas as pd
 import pytest
 
 import flockenv
-from flockenv.comparison import (
-    NO_LEADERS,
-    Case,
-    compare_leaders,
-)
+from flockenv.comparison import NO_LEADERS, Case, compare_leaders
 from flockenv.policies import StraightAhead
 from flockenv.policies.registry import POLICIES
 from flockenv.runs.seeds import POLICY_SEEDS

@@ -11,13 +11,7 @@ import pytest
 
 from flockenv.comparison import suite
 from flockenv.comparison.report import ComparisonReport
-from flockenv.comparison.suite import (
-    EPISODES,
-    REFERENCE,
-    TASKS,
-    aggregate,
-    scores_table,
-)
+from flockenv.comparison.suite import EPISODES, REFERENCE, TASKS, aggregate, scores_table
 from flockenv.errors import ParameterError
 from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
 

@@ -6,11 +6,7 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv.envs.observation import (
-    observation_entries,
-    observe,
-    state_entries,
-)
+from flockenv.envs.observation import observation_entries, observe, state_entries
 
 OPEN = {"pool": (200.0, 0.0), "c4": 0.0}
 

@@ -7,13 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from flockenv.statistics import (
-    FEW,
-    bootstrap_interval,
-    mean_interval,
-    paired_difference,
-    summarize,
-)
+from flockenv.statistics import FEW, bootstrap_interval, mean_interval, paired_difference, summarize
 
 
 def test_few_values_have_students_interval() -> None:
