@@ -37,8 +37,8 @@ from flockenv.statistics import mean_interval
 FLOCKS, LEADERS, DECISIONS_HZ = 128, 3, 2.5
 #: Place of `forward_velocity` among the lean features.
 FORWARD_VELOCITY = 3
-#: Flock-hours of the two stages, and flocks that judge during and after the training.
-HOURS, JUDGES = (50.0, 1000.0), (256, 512)
+#: Flock-hours of the two stages; flocks that judge during and after the training, and for how long.
+HOURS, JUDGES, JUDGED_S = (50.0, 1000.0), (256, 512), 480.0
 COLUMNS = ("policy", "stage", "flock_hours", "cpu_s", "signed_order", "low", "high")
 OFF = {"own": False, "phase": False, "target": False, "neighbors": 0, "order": False}
 
@@ -128,7 +128,7 @@ def judged(
     pool: str, policies: dict[str, Any], seeds: range, known: dict[str, Any]
 ) -> list[dict[str, Any]]:
     """Return the mean signed order of each policy, with its 95 % interval."""
-    runs = compare_leaders(FlockParameters(**flock(pool)), [LEADERS], policies, seeds, 480.0)
+    runs = compare_leaders(FlockParameters(**flock(pool)), [LEADERS], policies, seeds, JUDGED_S)
     rows = []
     for name, own in runs.groupby("policy", sort=False):
         mean = dict(zip(COLUMNS[-3:], mean_interval(own["signed_order"]), strict=True))

@@ -39,8 +39,7 @@ def test_results_belong_to_the_seed(parameters: flockenv.FlockParameters) -> Non
 
 
 @pytest.mark.parametrize(
-    ("leaders", "policies"),
-    [(0, {}), (2, {"every": POLICIES["paper's law at every substep"]})],
+    ("leaders", "policies"), [(0, {}), (2, {"every": POLICIES["paper's law at every substep"]})]
 )
 def test_runs_outside_the_environment_are_those_of_simulate(
     parameters: flockenv.FlockParameters, leaders: int, policies: dict[str, Any]
@@ -64,12 +63,7 @@ def test_targets_are_dealt_out_to_the_seeds(parameters: flockenv.FlockParameters
     orders = []
     for targets in (opposed, opposed[::-1]):
         case = Case(
-            name="a",
-            parameters=led,
-            leaders=(2,),
-            seeds=[3, 4],
-            episode_s=40.0,
-            targets=targets,
+            name="a", parameters=led, leaders=(2,), seeds=[3, 4], episode_s=40.0, targets=targets
         )
         orders.append(case.run(straight).set_index("seed")["signed_order"].sort_index())
     # Leaders that never steer move the same, whatever they are told.
@@ -126,11 +120,7 @@ def test_training_seeds_are_refused(parameters: flockenv.FlockParameters) -> Non
 def test_a_policy_for_each_leader(parameters: flockenv.FlockParameters) -> None:
     """Leaders of which each has the same law move as with that law; others do not."""
     both = {"leader_0": "damped law", "leader_1": POLICIES["damped law"]}
-    policies = {
-        "one": "damped law",
-        "both": both,
-        "pair": {**both, "leader_1": "straight ahead"},
-    }
+    policies = {"one": "damped law", "both": both, "pair": {**both, "leader_1": "straight ahead"}}
     runs = compare_leaders(parameters, [1, 2], policies, [1, 2], 30.0)
     orders = {name: own["signed_order"].tolist() for name, own in runs.groupby("policy")}
     assert orders["both"] == pytest.approx(orders["one"], abs=1e-9)

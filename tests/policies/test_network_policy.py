@@ -77,13 +77,7 @@ def test_a_torch_network_becomes_a_policy(activation, squashed, outputs, tmp_pat
         (lambda nn: [nn.Linear(SIZE, 3)], {}, r"layer 0 has weights \(67, 3\)"),
         (lambda nn: [nn.Linear(5, 1)], {}, r"layer 0 has weights \(5, 1\)"),
         (
-            lambda nn: [
-                nn.Linear(SIZE, 4),
-                nn.Tanh(),
-                nn.Linear(4, 4),
-                nn.ReLU(),
-                nn.Linear(4, 1),
-            ],
+            lambda nn: [nn.Linear(SIZE, 4), nn.Tanh(), nn.Linear(4, 4), nn.ReLU(), nn.Linear(4, 1)],
             {},
             "one and the same activation",
         ),

@@ -1,0 +1,24 @@
+"""From nothing: untrained leaders hold their rudders, and the curve ends beside the laws."""
+
+import pandas as pd
+import pytest
+
+pytest.importorskip("stable_baselines3")
+
+
+def test_a_short_run(script, tmp_path, monkeypatch) -> None:
+    for name, small in {
+        "HOURS": (0.02, 0.02),
+        "JUDGES": (2, 3),
+        "JUDGED_S": 2.0,
+        "FLOCKS": 1,
+    }.items():
+        monkeypatch.setattr(script, name, small)
+    for model in script.stages("narrow", 5):
+        assert not model.predict(model.env.reset(), deterministic=True)[0].any()
+    script.main("narrow", 5, tmp_path)
+    rows = pd.read_csv(tmp_path / "curve.csv")
+    assert list(rows["policy"][-4:]) == ["paper's law", "damped law", "tuned law", "PPO"]
+    assert rows["flock_hours"].dropna().is_monotonic_increasing
+    assert rows["stage"].nunique() == 3
+    assert (tmp_path / "model.zip").exists()
