@@ -17,13 +17,14 @@ of 100 to 500 flock-hours each, chose the features, the rewards, the noise and 2
 second in `wide`. Among them were networks with two hidden layers and the default observation.
 """
 
-import csv
 import sys
 import time
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
 import torch
+from matplotlib.figure import Figure
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
@@ -136,6 +137,21 @@ def judged(
     return rows
 
 
+def draw(folder: Path, pool: str) -> None:
+    """Draw the learning curves of all seeds of a pool, and the laws as level lines."""
+    axes = (figure := Figure((6.4, 3.6), layout="constrained")).subplots()
+    for path in sorted(folder.glob(f"{pool}_*/curve.csv")):
+        rows = pd.read_csv(path)
+        own = rows[(rows["policy"] == "PPO") & (rows["stage"] != "end")]
+        axes.plot(own["cpu_s"] / 60, own["signed_order"], ".-", label=path.parent.name)
+    for name, style in {"paper's law": "--", "damped law": "-.", "tuned law": ":"}.items():
+        level = rows.loc[rows["policy"] == name, "signed_order"].item()
+        axes.axhline(level, color="0.4", lw=1, ls=style, label=name)
+    axes.set(xlabel="processor time of the training (min)", ylabel="mean signed order")
+    axes.legend(frameon=False, fontsize=8)
+    figure.savefig(folder / f"{pool}.png", dpi=150)
+
+
 def main(pool: str, seed: int, folder: Path) -> None:
     """Train, and write the curve and the model."""
     torch.set_num_threads(1)
@@ -151,11 +167,9 @@ def main(pool: str, seed: int, folder: Path) -> None:
     ladder = {name: name for name in ("paper's law", "damped law", "tuned law")}
     fresh, end = release_seeds("from_nothing", JUDGES[1]), {"cpu_s": curve.cpu_s}
     rows += judged(pool, {**ladder, "PPO": models[-1]}, fresh, {**end, "stage": "end"})
-    with (folder / "curve.csv").open("w", encoding="utf-8", newline="") as file:
-        table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        table.writeheader()
-        for row in rows:
-            table.writerow({n: round(v, 4) if isinstance(v, float) else v for n, v in row.items()})
+    table = pd.DataFrame(rows)[list(COLUMNS)]
+    table.to_csv(folder / "curve.csv", index=False, float_format="%.4f")
+    draw(folder.parent, pool)
     print(f"written to {folder}")
 
 

@@ -16,9 +16,10 @@ def test_a_short_run(script, tmp_path, monkeypatch) -> None:
         monkeypatch.setattr(script, name, small)
     for model in script.stages("narrow", 5):
         assert not model.predict(model.env.reset(), deterministic=True)[0].any()
-    script.main("narrow", 5, tmp_path)
-    rows = pd.read_csv(tmp_path / "curve.csv")
+    script.main("narrow", 5, tmp_path / "narrow_5")
+    rows = pd.read_csv(tmp_path / "narrow_5" / "curve.csv")
     assert list(rows["policy"][-4:]) == ["paper's law", "damped law", "tuned law", "PPO"]
     assert rows["flock_hours"].dropna().is_monotonic_increasing
     assert rows["stage"].nunique() == 3
-    assert (tmp_path / "model.zip").exists()
+    assert (tmp_path / "narrow_5" / "model.zip").exists()
+    assert (tmp_path / "narrow.png").exists()
