@@ -41,11 +41,12 @@ def cells(table: pd.DataFrame) -> pd.DataFrame:
 def doubling(table: pd.DataFrame, start: str) -> Interval:
     """Return by what the rate of exits is multiplied as the flock doubles, largest over smallest.
 
-    A half exit is added to each size, so that sizes without exits have a rate too.
+    A half exit is added to each size, so that sizes without exits have a rate too. Where no run of
+    any size leaves its start there is nothing to compare.
     """
     chosen = table[table["start"] == start]
     sizes = sorted(chosen["n_boats"].unique())
-    if len(sizes) < 3:
+    if len(sizes) < 3 or not chosen["exited"].any():
         return math.nan, math.nan, math.nan
     groups = [
         chosen.loc[chosen["n_boats"] == n, ["stayed_min", "exited"]].to_numpy() for n in sizes
