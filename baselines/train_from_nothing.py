@@ -143,7 +143,12 @@ def draw(folder: Path, pool: str) -> None:
     for path in sorted(folder.glob(f"{pool}_*/curve.csv")):
         rows = pd.read_csv(path)
         own = rows[(rows["policy"] == "PPO") & (rows["stage"] != "end")]
-        axes.plot(own["cpu_s"] / 60, own["signed_order"], ".-", label=path.parent.name)
+        axes.plot(
+            own["cpu_s"] / 60,
+            own["signed_order"],
+            ".-",
+            label=f"seed {path.parent.name.removeprefix(f'{pool}_')}",
+        )
     for name, style in {"paper's law": "--", "damped law": "-.", "tuned law": ":"}.items():
         level = rows.loc[rows["policy"] == name, "signed_order"].item()
         axes.axhline(level, color="0.4", lw=1, ls=style, label=name)

@@ -14,6 +14,7 @@ from committed_data import (
     DIFFERENCES,
     MEANS,
     difference,
+    interval,
     markdown,
     one,
     order,
@@ -101,6 +102,18 @@ def leader_motion() -> str:
     return markdown(header, body)
 
 
+def tuned_laws() -> str:
+    """Return what tuning for each number of leaders adds to the tuned law."""
+    body = []
+    for row in rows("leaders/tuned_laws/gains.csv"):
+        gains = ", ".join(row[name] for name in ("gain", "backward_gain", "damping"))
+        mean = interval(row, "signed_order", "low", "high")
+        more = interval(row, "beyond", "beyond_low", "beyond_high", "+.3f")
+        body.append([f"`{row['pool']}`", row["leaders"], gains, mean, more])
+    header = ["pool", "leaders", "gain, backward gain, damping", "signed order"]
+    return markdown([*header, "minus the tuned law"], body)
+
+
 def parameters() -> str:
     """Return what the core declares of each parameter, with the values of the presets."""
     presets = {name: FlockParameters.preset(name).to_dict() for name in FlockParameters.presets()}
@@ -123,6 +136,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "leaders-wide": lambda: leaders_of("wide-bw-0.31"),
     "leaders-narrow": lambda: leaders_of("narrow-bw-0.45"),
     "leader-motion": leader_motion,
+    "tuned-laws": tuned_laws,
     **TRAINING_TABLES,
 }
 """How each table is made."""

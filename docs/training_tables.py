@@ -45,6 +45,19 @@ def algorithms() -> str:
     )
 
 
+def nothing() -> str:
+    """Return what leaders from nothing reached, and the laws in their flocks."""
+    body = []
+    for seed in range(3):
+        table = f"training/from_nothing/wide_{seed}/curve.csv"
+        *laws, end = rows(table, stage="end")
+        for law in laws if seed == 0 else ():
+            body.append([law["policy"], "", interval(law, "signed_order", "low", "high")])
+        minutes = f"{float(end['cpu_s']) / 60:.1f}"
+        body.append([f"seed {seed}", minutes, interval(end, "signed_order", "low", "high")])
+    return markdown(["policy", "minutes of one core", "signed order"], body)
+
+
 def easy() -> str:
     """Return what each training in the easy environment reached, and the laws in its flocks."""
     body = []
@@ -63,6 +76,7 @@ def easy() -> str:
 TRAINING_TABLES = {
     "algorithms": algorithms,
     "easy": easy,
+    "from-nothing": nothing,
     "signals": signals,
     "training-seeds": seeds,
 }
