@@ -150,7 +150,7 @@ test-oldest: $(STAMPS)/venv ## the oldest supported versions, in .venv-oldest
 	VIRTUAL_ENV="$(CURDIR)/.venv-oldest" $(BIN)/uv pip install -r pyproject.toml $(OLDEST_EXTRAS) \
 	  --resolution lowest-direct
 	VIRTUAL_ENV="$(CURDIR)/.venv-oldest" $(BIN)/uv pip install hypothesis pytest pytest-timeout
-	VIRTUAL_ENV="$(CURDIR)/.venv-oldest" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
+	VIRTUAL_ENV="$(CURDIR)/.venv-oldest" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv $(CODEGEN)
 	OMP_NUM_THREADS=1 .venv-oldest/bin/python -m pytest -W ignore::DeprecationWarning \
 	  tests/boundary tests/envs tests/policies tests/rendering tests/runs tests/statistics \
 	  tests/comparison tests/cli $(PYTEST_ARGS)
@@ -213,13 +213,13 @@ env-rllib: $(STAMPS)/test
 	$(PYTHON) -m venv .venv-rllib
 	VIRTUAL_ENV="$(CURDIR)/.venv-rllib" $(BIN)/uv pip install -r pyproject.toml --extra ray hypothesis pytest \
 	  pytest-timeout "torch>=2.5" --excludes requirements-excluded.txt
-	VIRTUAL_ENV="$(CURDIR)/.venv-rllib" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
+	VIRTUAL_ENV="$(CURDIR)/.venv-rllib" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv $(CODEGEN)
 
 env-benchmarl: $(STAMPS)/test
 	$(PYTHON) -m venv .venv-benchmarl
 	VIRTUAL_ENV="$(CURDIR)/.venv-benchmarl" $(BIN)/uv pip install -r pyproject.toml --extra benchmarl hypothesis \
 	  pytest pytest-timeout --excludes requirements-excluded.txt
-	VIRTUAL_ENV="$(CURDIR)/.venv-benchmarl" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
+	VIRTUAL_ENV="$(CURDIR)/.venv-benchmarl" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv $(CODEGEN)
 
 test-other: test-$(OTHER) ## OTHER=rllib, benchmarl, ray or slurm: what needs an environment of its own
 
@@ -238,7 +238,7 @@ test-ray: $(STAMPS)/test
 	$(PYTHON) -m venv .venv-ray
 	VIRTUAL_ENV="$(CURDIR)/.venv-ray" $(BIN)/uv pip install -r pyproject.toml --extra plot --extra sweep "ray>=2.40" \
 	  hypothesis pytest pytest-timeout
-	VIRTUAL_ENV="$(CURDIR)/.venv-ray" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv
+	VIRTUAL_ENV="$(CURDIR)/.venv-ray" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --release --locked --uv $(CODEGEN)
 	.venv-ray/bin/python -m pytest -m ray tests/runs/test_executors.py tests/cluster
 
 # The recipe for Slurm on a real one of one node, started here (Linux, root).
