@@ -40,6 +40,7 @@ FLOCKS, LEADERS, DECISIONS_HZ = 128, 3, 2.5
 FORWARD_VELOCITY = 3
 #: Flock-hours of the two stages; flocks that judge during and after the training, and for how long.
 HOURS, JUDGES, JUDGED_S = (50.0, 1000.0), (256, 512), 480.0
+LAWS = ("paper's law", "damped law", "tuned law")
 COLUMNS = ("policy", "stage", "flock_hours", "cpu_s", "signed_order", "low", "high")
 OFF = {"own": False, "phase": False, "target": False, "neighbors": 0, "order": False}
 
@@ -142,14 +143,14 @@ def draw(folder: Path, pool: str) -> None:
     axes = (figure := Figure((6.4, 3.6), layout="constrained")).subplots()
     for path in sorted(folder.glob(f"{pool}_*/curve.csv")):
         rows = pd.read_csv(path)
-        own = rows[(rows["policy"] == "PPO") & (rows["stage"] != "end")]
+        own = rows[rows["stage"] != "end"]
         axes.plot(
             own["cpu_s"] / 60,
             own["signed_order"],
             ".-",
             label=f"seed {path.parent.name.removeprefix(f'{pool}_')}",
         )
-    for name, style in {"paper's law": "--", "damped law": "-.", "tuned law": ":"}.items():
+    for name, style in zip(LAWS, ("--", "-.", ":"), strict=True):
         level = rows.loc[rows["policy"] == name, "signed_order"].item()
         axes.axhline(level, color="0.4", lw=1, ls=style, label=name)
     axes.set(xlabel="processor time of the training (min)", ylabel="mean signed order")
@@ -169,9 +170,9 @@ def main(pool: str, seed: int, folder: Path) -> None:
             model.policy.action_net.load_state_dict(weights)
         model.learn(round(HOURS[stage] * LEADERS * DECISIONS_HZ * 3600), callback=curve)
     models[-1].save(folder / "model.zip")
-    ladder = {name: name for name in ("paper's law", "damped law", "tuned law")}
     fresh, end = release_seeds("from_nothing", JUDGES[1]), {"cpu_s": curve.cpu_s}
-    rows += judged(pool, {**ladder, "PPO": models[-1]}, fresh, {**end, "stage": "end"})
+    policies = {**dict(zip(LAWS, LAWS, strict=True)), "PPO": models[-1]}
+    rows += judged(pool, policies, fresh, {**end, "stage": "end"})
     table = pd.DataFrame(rows)[list(COLUMNS)]
     table.to_csv(folder / "curve.csv", index=False, float_format="%.4f")
     draw(folder.parent, pool)

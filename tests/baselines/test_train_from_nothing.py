@@ -7,19 +7,14 @@ pytest.importorskip("stable_baselines3")
 
 
 def test_a_short_run(script, tmp_path, monkeypatch) -> None:
-    for name, small in {
-        "HOURS": (0.02, 0.02),
-        "JUDGES": (2, 3),
-        "JUDGED_S": 2.0,
-        "FLOCKS": 1,
-    }.items():
-        monkeypatch.setattr(script, name, small)
+    small = {"HOURS": (0.02, 0.02), "JUDGES": (2, 3), "JUDGED_S": 2.0, "FLOCKS": 1}
+    for name, value in small.items():
+        monkeypatch.setattr(script, name, value)
     for model in script.stages("narrow", 5):
         assert not model.predict(model.env.reset(), deterministic=True)[0].any()
     script.main("narrow", 5, tmp_path / "narrow_5")
     rows = pd.read_csv(tmp_path / "narrow_5" / "curve.csv")
-    assert list(rows["policy"][-4:]) == ["paper's law", "damped law", "tuned law", "PPO"]
+    assert list(rows["policy"][-4:]) == [*script.LAWS, "PPO"]
     assert rows["flock_hours"].dropna().is_monotonic_increasing
     assert rows["stage"].nunique() == 3
-    assert (tmp_path / "narrow_5" / "model.zip").exists()
-    assert (tmp_path / "narrow.png").exists()
+    assert all((tmp_path / name).exists() for name in ("narrow_5/model.zip", "narrow.png"))

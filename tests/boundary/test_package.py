@@ -32,11 +32,8 @@ def test_import_needs_no_optional_library():
 
 
 def test_sources_without_the_compiled_simulator_say_so(tmp_path):
-    shutil.copytree(
-        REPOSITORY / "flockenv",
-        tmp_path / "flockenv",
-        ignore=shutil.ignore_patterns("*.so", "*.pyd"),
-    )
+    compiled = shutil.ignore_patterns("*.so", "*.pyd")
+    shutil.copytree(REPOSITORY / "flockenv", tmp_path / "flockenv", ignore=compiled)
     failed = subprocess.run(
         [sys.executable, "-c", "import flockenv"], cwd=tmp_path, capture_output=True, text=True
     )

@@ -227,12 +227,7 @@ def test_vector_seeds_options_and_masks():
             flockenv.LeadersVectorEnv(**bad)
 
 
-@pytest.mark.parametrize(
-    "env",
-    [flockenv.LeadersEnv(), flockenv.LeadersParallelEnv(), flockenv.LeadersVectorEnv(2)],
-    ids=["single", "parallel", "vector"],
-)
 @pytest.mark.parametrize("name", ["observe", "state"])
-def test_nothing_is_observed_before_the_first_reset(env, name):
+def test_nothing_is_observed_before_the_first_reset(interface, name):
     with pytest.raises(flockenv.EpisodeError, match="reset has not been called yet"):
-        getattr(env, name)()
+        getattr(interface(), name)()
