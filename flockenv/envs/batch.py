@@ -106,6 +106,8 @@ class LeaderBatch:
 
     def _rewards(self, returned: Any) -> NDArray[np.float64]:
         rows = len(self._flock_of_row)
+        if np.ma.is_masked(returned):
+            raise ParameterError("the function of reward returned something masked: numbers alone")
         try:
             found = np.array(returned, np.float64)
         except (TypeError, ValueError) as error:

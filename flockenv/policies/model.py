@@ -5,6 +5,7 @@ import json
 import os
 import zipfile
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -118,7 +119,8 @@ class ModelPolicy:
         if episode_start is not None:
             starts = np.ravel(episode_start)
             episode_start = np.repeat(starts, len(items) // len(starts))
-        actions, state = self.model.predict(items, state, episode_start, deterministic)
+        with _row_by_row()():
+            actions, state = self.model.predict(items, state, episode_start, deterministic)
         given = np.asarray(actions, np.float64).reshape(rows)
         if self._levels is not None:
             given = np.array(_core.rudders_of_levels(given.tolist(), self._levels))
@@ -129,6 +131,31 @@ class ModelPolicy:
         name = self.provenance.get("file", type(self.model).__name__)
         takes = "one leader" if self.leaders == 1 else f"{self.leaders} leaders at once"
         return f"{type(self).__name__}({name}, {takes}, {self.control_hz:g} Hz)"
+
+
+@cache
+def _row_by_row() -> Any:
+    """Return a mode of torch in which no row of a linear layer depends on how many there are."""
+    linear = require("torch", "train").nn.functional.linear
+
+    class RowByRow(require("torch.overrides", "train").TorchFunctionMode):  # type: ignore[misc]
+        def __torch_function__(
+            self, function: Any, types: Any, arguments: Any = (), options: Any = None
+        ) -> Any:
+            return (_each_alone if function is linear else function)(*arguments, **(options or {}))
+
+    return RowByRow
+
+
+def _each_alone(rows: Any, weight: Any, bias: Any = None) -> Any:
+    """Return what torch's linear layer does, one row after another."""
+    flat = rows.reshape(-1, rows.shape[-1])
+    found = rows.new_empty((len(flat), len(weight)))
+    for place, row in enumerate(flat):
+        # A copy is aligned as every other, and sums of products may depend on that.
+        found[place] = weight @ row.clone()
+    found = found.reshape(*rows.shape[:-1], len(weight))
+    return found if bias is None else found + bias
 
 
 def _levels_of(space: gymnasium.Space[Any], leaders: int) -> int | None:

@@ -302,7 +302,8 @@ class Recording:
         found = {}
         for name, function in functions.items():
             try:
-                found[name] = np.array(function(self), np.float64)
+                # What is masked is not there.
+                found[name] = np.ma.asarray(function(self), np.float64).filled(np.nan)
             except (TypeError, ValueError) as error:
                 raise ParameterError(f"quantity {name!r} is not accepted: numbers") from error
         return replace(self, quantities={**self.quantities, **found})

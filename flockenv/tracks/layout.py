@@ -139,7 +139,11 @@ def read_layout(path: str | os.PathLike[str]) -> TrackLayout:
     values = read_toml_file(path, str(path))
     for name, value in values.items():
         if isinstance(value, list):
-            values[name] = tuple(map(str, value)) if name == "leaders" else tuple(value)
+            values[name] = tuple(value)
+    # Boats may be numbered, but `true` is no number.
+    numbered = values.get("leaders", ())
+    if isinstance(numbered, tuple):
+        values["leaders"] = tuple(str(each) if type(each) is int else each for each in numbered)
     try:
         refuse_unknown(values, [each.name for each in fields(TrackLayout)], "field of a layout")
         if "pool" not in values:
@@ -188,7 +192,10 @@ def guess_layout(path: str | os.PathLike[str]) -> list[str]:
         del columns["heading"]
         doubts['heading = ""'] = "a column; without one headings are the directions of motion"
     elif np.nanmax(np.abs(_numbers(table, columns["heading"])), initial=0.0) > _FULL_TURN:
-        columns["heading_unit"] = "deg"
+        if columns["heading"].lower().endswith("rad"):
+            doubts["wrapped = false"] = "headings go on counting beyond a full turn"
+        else:
+            doubts['heading_unit = "deg"'] = "headings exceed a full turn in rad"
     known = [f"{field} = {json.dumps(name, ensure_ascii=False)}" for field, name in columns.items()]
     checks = [f"{line}  # check: {meaning}" for line, meaning in doubts.items()]
     first = "# Guessed from the table beside this file. Check the lines that say so."
@@ -217,7 +224,9 @@ def rows_of(table: "pd.DataFrame", layout: TrackLayout) -> "pd.DataFrame":
     if not np.isfinite(frame).all():
         raise ParameterError(f"column {layout.frame!r} has rows without a number")
     up = -1.0 if layout.y_down else 1.0
-    rows = _column(table, layout.id).convert_dtypes().to_frame("id")
+    ids = _column(table, layout.id)
+    # Blank names are none.
+    rows = ids.mask(ids.astype(str).str.strip() == "").convert_dtypes().to_frame("id")
     return rows.assign(
         frame=frame,
         x=(x - layout.center[0]) * layout.cm_per_unit,

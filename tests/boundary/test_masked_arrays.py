@@ -32,6 +32,10 @@ def test_masked_states_rudders_and_masks_are_refused():
         env.reset(options={"reset_mask": masked(np.array([True, True]), 1)})
     assert (flock.snapshot(), env.get_state()) == before
     flock.set_state(np.ma.masked_array(flock.pose), flock.velocity)
+    own = {"reward": lambda env: masked(np.ones(env.num_envs), 1)}
+    (paid := flockenv.LeadersVectorEnv(2, params=PARAMETERS, **own)).reset(seed=0)
+    with pytest.raises(flockenv.ParameterError, match="masked"):
+        paid.step(np.zeros((2, 2)))
 
 
 def test_boats_that_are_masked_are_not_there():
@@ -42,6 +46,8 @@ def test_boats_that_are_masked_are_not_there():
     assert found == flockenv.order_series(gone, velocity)
     by_mask = structure_series("on_outer_wall", PARAMETERS, masked(pose, 0, 1))
     assert by_mask == structure_series("on_outer_wall", PARAMETERS, gone)
+    own = {"mine": lambda run: masked(run.time_s, 1)}
+    assert np.isnan(flockenv.simulate(PARAMETERS, 0, 1.0, quantities=own).quantities["mine"][1])
 
 
 @pytest.mark.parametrize("policy", [flockenv.policies.SteeringLaw(), "model"])

@@ -75,8 +75,7 @@ def law(parameters) -> flockenv.Recording:
 
 @pytest.fixture(scope="session")
 def damped(parameters) -> flockenv.Recording:
-    policy = flockenv.policies.DampedLaw()
-    return flockenv.simulate(parameters, 7, 90.0, policy=policy, contacts=True)
+    return flockenv.simulate(parameters, 7, 90.0, policy="damped law", contacts=True)
 
 
 @pytest.fixture(scope="session")
@@ -204,9 +203,7 @@ class ReplayPage(Page):
     def rest(self) -> None:
         """Pause at the start, in real time."""
         self.script("""
-            if (player.playing) {
-              player.toggle();
-            }
+            if (player.playing) player.toggle();
             player.controls.speed.value = 1;
             player.seek(player.start)""")
         self.wait_until_drawn()
@@ -242,8 +239,7 @@ class ReplayPage(Page):
         """Move the pointer to a place on a run's canvas."""
         canvas = self.find("canvas", run)
         x, y = x - canvas.size["width"] / 2, y - canvas.size["height"] / 2
-        move = self.actions().move_to_element_with_offset(canvas, round(x), round(y))
-        move.perform()
+        self.actions().move_to_element_with_offset(canvas, round(x), round(y)).perform()
         self.wait_until_drawn()
 
     def wait_until_drawn(self) -> None:
@@ -311,9 +307,8 @@ class LivePage(Page):
         return self
 
     def click(self, selector: str) -> None:
-        self.script(
-            "document.querySelector(arguments[0]).scrollIntoView({block: 'center'})", selector
-        )
+        source = "document.querySelector(arguments[0]).scrollIntoView({block: 'center'})"
+        self.script(source, selector)
         self.find(selector).click()
 
     def choose(self, selector: str, value: str) -> None:
@@ -325,9 +320,7 @@ class LivePage(Page):
         """Open what an element is folded in."""
         source = """
             const folded = document.querySelector(arguments[0]).closest("details");
-            if (folded) {
-              folded.open = true;
-            }"""
+            if (folded) folded.open = true;"""
         self.script(source, selector)
 
     def wait(self) -> None:

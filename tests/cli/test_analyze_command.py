@@ -91,7 +91,7 @@ def test_a_table_without_a_description_gets_one_to_check(cli, tmp_path):
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["milling_mean"] == pytest.approx(1.0, abs=0.01)
     text = (tmp_path / "robots.toml").read_text()
-    for field in ("pool", "center", "cm_per_unit", "y_down", "fps"):
+    for field in ("pool", "center", "cm_per_unit", "y_down", "fps", "heading_unit"):
         assert f"  {field} = " in done.stderr
         assert any(line.startswith(field) and "# check: " in line for line in text.splitlines())
     layout = flockenv.tracks.read_layout(tmp_path / "robots.toml")
@@ -100,3 +100,6 @@ def test_a_table_without_a_description_gets_one_to_check(cli, tmp_path):
     assert layout.center == pytest.approx((300, 200), abs=2)
     again = cli("analyze", tmp_path / "robots.csv")
     assert "guess" not in again.stderr, "a description that is there is not written over"
+    (tmp_path / "turns.csv").write_text("frame,robot,x,y,heading_rad\n0,a,1,2,50.0\n")
+    checks = flockenv.tracks.guess_layout(tmp_path / "turns.csv")
+    assert [each.split(" =")[0] for each in checks][-1] == "wrapped"

@@ -17,8 +17,7 @@ def test_consoles_without_greek_letters(cli, encoding, tmp_path):
 
 
 def test_json_is_ascii(capsys):
-    data = {"Ψ": [os.fsdecode(b"\xff.npz"), None]}
-    print_json(data)
+    print_json(data := {"Ψ": [os.fsdecode(b"\xff.npz"), None]})
     reported = capsys.readouterr().out
     assert reported.isascii()
     assert json.loads(reported) == data

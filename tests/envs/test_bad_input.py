@@ -7,6 +7,7 @@ import flockenv
 from flockenv import EpisodeError, FlockError, ParameterError
 
 OPTIONS = {"n_boats": 9, "n_leaders": 2, "episode_s": 1.0}
+NOTHING = dict.fromkeys(["own", "phase", "target", "order", "neighbors"], 0)
 INTERFACES = {
     "single": lambda **options: flockenv.LeadersEnv(**options),
     "parallel": lambda **options: flockenv.parallel_env(**options),
@@ -45,10 +46,7 @@ def interface(request):
         ({"rudder_rate_per_s": 0.0}, "rudder_rate_per_s = 0"),
         ({"reward": {"signed_order": float("nan")}}, "signed_order: NaN"),
         ({"observation": {"neighbors": 65}}, "neighbors = 65"),
-        (
-            {"observation": dict.fromkeys(["own", "phase", "target", "order", "neighbors"], 0)},
-            "observation",
-        ),
+        ({"observation": NOTHING}, "observation"),
         ({"n_leaders": 9}, "n_boats > n_leaders"),
         ({"render_mode": "ansi"}, "render_mode = 'ansi'"),
         ({"dt_s": 0.0}, "dt_s = 0"),

@@ -81,6 +81,8 @@ def test_a_file_steers_as_the_model(model, file):
         rudders, _ = policy.predict(observations)
         assert (rudders.shape, rudders.dtype) == ((3, 2), np.float32)
         np.testing.assert_allclose(rudders, expected, atol=1e-6)
+    many = np.random.default_rng(5).standard_normal((64, observations.shape[1]))
+    assert own.predict(many)[0].tolist() == [own.predict(each)[0].tolist() for each in many]
 
 
 def test_every_interface_gets_the_same_rudders(model):

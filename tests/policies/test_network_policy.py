@@ -99,17 +99,11 @@ def test_a_torch_network_of_all_leaders_at_once_is_refused():
     torch = pytest.importorskip("torch")
     two = flockenv.LeadersVectorEnv(1, n_leaders=2).single_observation_space
     assert NetworkPolicy.from_module(torch.nn.Linear(SIZE, 1), two).weights[0].shape == (SIZE, 1)
+    layers = torch.nn.Linear(2 * SIZE, 2), torch.nn.Tanh(), torch.nn.Linear(2, 2)
     with pytest.raises(flockenv.ParameterError, match=rf"layer 0 has weights \({2 * SIZE}, 2\)"):
-        NetworkPolicy.from_module(
-            torch.nn.Sequential(
-                torch.nn.Linear(2 * SIZE, 2), torch.nn.Tanh(), torch.nn.Linear(2, 2)
-            ),
-            two,
-        )
+        NetworkPolicy.from_module(torch.nn.Sequential(*layers), two)
     with pytest.raises(flockenv.ParameterError, match="space = Box"):
-        NetworkPolicy.from_module(
-            torch.nn.Linear(SIZE, 1), two.__class__.__mro__[1](-1, 1, (SIZE,))
-        )
+        NetworkPolicy.from_module(torch.nn.Linear(SIZE, 1), type(two).__mro__[1](-1, 1, (SIZE,)))
 
 
 @pytest.mark.parametrize("policy", [network(), StraightAhead(), RandomRudders(3)])
@@ -120,12 +114,16 @@ def test_every_form_of_observation(policy):
         assert actions.dtype == np.float32
         assert (np.abs(actions) <= 1).all()
     actions, _ = policy.predict({"leader_0": np.zeros(SIZE), "leader_1": np.zeros(SIZE)})
-    assert {name: each.shape for name, each in actions.items()} == {
-        "leader_0": (1,),
-        "leader_1": (1,),
-    }
+    shapes = {name: each.shape for name, each in actions.items()}
+    assert shapes == {"leader_0": (1,), "leader_1": (1,)}
     with pytest.raises(flockenv.ParameterError, match=f"multiple of {SIZE}, "):
         policy.predict(np.zeros(SIZE + 1))
+
+
+def test_a_leader_does_as_it_would_alone():
+    seen = np.random.default_rng(5).standard_normal((200, SIZE)).astype(np.float32)
+    policy = network()
+    assert policy.predict(seen)[0].tolist() == [policy.predict(each)[0].tolist() for each in seen]
 
 
 def test_a_file_keeps_every_bit(tmp_path):

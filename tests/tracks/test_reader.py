@@ -132,7 +132,7 @@ def test_boats_that_come_and_go():
 
 
 def test_rows_without_a_name_are_left_out_and_counted():
-    for names in ([1.0, 2.0, np.nan], ["ann", "bob", None]):
+    for names in ([1.0, 2.0, np.nan], ["ann", "bob", None], ["ann", "bob", " "]):
         table = line(id=pd.Series(np.resize(np.array(names, object), 30)).infer_objects())
         recording, report = read_and_counted(table, OPEN)
         assert recording.ids.tolist() == [str(each).removesuffix(".0") for each in names[:2]]
@@ -236,6 +236,7 @@ def test_files_that_are_none(tmp_path):
         ("pool = 5", "pool must be a pool's name or"),
         ("pool = 'narrow'\ntarget = 5", "target must be a string or a list of strings, not 5"),
         ("pool = 'narrow'\nleaders = 5", "leaders = 5 is not accepted: a list of names"),
+        ("pool = 'narrow'\nleaders = [true]", "leaders = (True,) is not accepted"),
         ("fps = 5", "pool is missing"),
         ("pool = ", "is no TOML"),
     ],
