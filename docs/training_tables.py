@@ -8,6 +8,8 @@ ALGORITHMS = {
     "evolution": "evolution strategy",
 }
 """Algorithms by the folders of their trainings."""
+BASELINES = {"ppo": "PPO", "evolution": "evolution strategy", "ippo": "IPPO", "mappo": "MAPPO"}
+"""The suite's baselines by the names of their rows."""
 SIGNALS = (("rudder", "wide"), ("rudder", "narrow"), ("lean", "wide"))
 
 
@@ -48,14 +50,31 @@ def algorithms() -> str:
 def nothing() -> str:
     """Return what leaders from nothing reached, and the laws in their flocks."""
     body = []
-    for seed in range(3):
-        table = f"training/from_nothing/wide_{seed}/curve.csv"
-        *laws, end = rows(table, stage="end")
-        for law in laws if seed == 0 else ():
-            body.append([law["policy"], "", interval(law, "signed_order", "low", "high")])
-        minutes = f"{float(end['cpu_s']) / 60:.1f}"
-        body.append([f"seed {seed}", minutes, interval(end, "signed_order", "low", "high")])
-    return markdown(["policy", "minutes of one core", "signed order"], body)
+    for pool, seeds in {"wide": (0, 1, 2)}.items():
+        ends = [rows(f"training/from_nothing/{pool}_{n}/curve.csv", stage="end") for n in seeds]
+        for law in ends[0][:-1]:
+            body.append([pool, law["policy"], "", interval(law, "signed_order", "low", "high")])
+        for seed, (*_, end) in zip(seeds, ends, strict=True):
+            minutes = f"{float(end['cpu_s']) / 60:.1f}"
+            order = interval(end, "signed_order", "low", "high")
+            body.append([pool, f"{end['policy']}, seed {seed}", minutes, order])
+    return markdown(["pool", "policy", "minutes of one core", "signed order"], body)
+
+
+def baselines() -> str:
+    """Return the scores of the suite's baselines, means over three seeds."""
+    header, body = [], []
+    for algorithm, called in BASELINES.items():
+        for hours in (100, 1000):
+            names = [f"{algorithm}-{hours}-{seed}" for seed in range(3)]
+            seeds = [rows("suite/baselines.csv", policy=name) for name in names]
+            header = [row["task"] for row in seeds[0][:-1]]
+            scores = [[float(row["score"]) for row in own[:-1]] for own in seeds]
+            means = [f"{sum(own) / 3:+.3f}" for own in zip(*scores, strict=True)]
+            lowest, *_, highest = sorted(own[-1] for own in scores)
+            ends = f"{means[-1]} ({lowest:+.3f} to {highest:+.3f})"
+            body.append([called, str(hours), *means[:-1], ends])
+    return markdown(["algorithm", "flock-hours", *header], body)
 
 
 def easy() -> str:
@@ -78,6 +97,7 @@ TRAINING_TABLES = {
     "easy": easy,
     "from-nothing": nothing,
     "signals": signals,
+    "suite-baselines": baselines,
     "training-seeds": seeds,
 }
 """How each table is made."""

@@ -32,7 +32,6 @@ PAGES = sorted(
 )
 # Made by readers and commands, ids of environments, and names of BenchMARL's tasks.
 NO_FILES_YET = {
-    "baselines/suite",
     "docs/_build/html",
     "flockenv/Order-easy-v0",
     "flockenv/Leaders-v0",
