@@ -2,8 +2,8 @@
 
 import json
 import zipfile
-from collections.abc import Callable
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from io import BufferedIOBase
 from pathlib import Path
@@ -86,16 +86,19 @@ def train(settings: TrainingSettings, folder: Path, report: Report = lambda prog
         If weights are not finite or a file cannot be written; the last checkpoint is intact.
     """
     folder = Path(folder)
-    if (folder / CHECKPOINT).exists():
-        raise ParameterError(f"{folder} holds a run already: resume it, or name another folder")
     venv = settings.venv()
     model = settings.model(venv)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        write_text(folder / SETTINGS, settings.to_toml())
+        with _held(folder):
+            if (folder / CHECKPOINT).exists():
+                raise ParameterError(
+                    f"{folder} holds a run already: resume it, or name another folder"
+                )
+            write_text(folder / SETTINGS, settings.to_toml())
+            return _advance(settings, folder, model, venv, report)
     except OSError as error:
         raise TrainingError(f"{folder} cannot be written: {error}") from error
-    return _advance(settings, folder, model, venv, report)
 
 
 def resume(
@@ -125,16 +128,17 @@ def resume(
     path, settings = folder / CHECKPOINT, stored_settings(folder, flock_hours)
     venv = settings.venv()
     model = settings.model(venv)
-    try:
-        model.set_parameters(str(path), device="cpu")
-        with zipfile.ZipFile(path) as archive:
-            model.num_timesteps = int(json.loads(archive.read("data"))["num_timesteps"])
-    # What a damaged archive makes zipfile, pickle and torch raise is not one kind of error.
-    except Exception as error:
-        raise ParameterError(
-            f"{path} is no checkpoint of these settings: {type(error).__name__}: {error}"
-        ) from error
-    return _advance(settings, folder, model, venv, report)
+    with _held(folder):
+        try:
+            model.set_parameters(str(path), device="cpu")
+            with zipfile.ZipFile(path) as archive:
+                model.num_timesteps = int(json.loads(archive.read("data"))["num_timesteps"])
+        # What a damaged archive makes zipfile, pickle and torch raise is not one kind of error.
+        except Exception as error:
+            raise ParameterError(
+                f"{path} is no checkpoint of these settings: {type(error).__name__}: {error}"
+            ) from error
+        return _advance(settings, folder, model, venv, report)
 
 
 def stored_settings(folder: Path, flock_hours: float | None = None) -> TrainingSettings:
@@ -143,6 +147,16 @@ def stored_settings(folder: Path, flock_hours: float | None = None) -> TrainingS
         raise ParameterError(f"{folder} holds no checkpoint to resume")
     settings = TrainingSettings.from_file(Path(folder) / SETTINGS)
     return settings if flock_hours is None else settings.replace(flock_hours=flock_hours)
+
+
+@contextmanager
+def _held(folder: Path) -> Iterator[None]:
+    """Keep other trainings out of a folder."""
+    try:
+        with FileLock(folder / ".lock", blocking=False):
+            yield
+    except Timeout as error:
+        raise InUseError(f"{folder} is in use by another process: name another, or wait") from error
 
 
 def _advance(
@@ -158,12 +172,6 @@ def _advance(
     torch.set_num_threads(1)
     try:
         with ExitStack() as stack:
-            try:
-                stack.enter_context(FileLock(folder / ".lock", blocking=False))
-            except Timeout as error:
-                raise InUseError(
-                    f"{folder} is in use by another process: name another, or wait"
-                ) from error
             monitor = FlockMonitor(venv, str(folder / str(done)), ("signed_order",))
             stack.callback(monitor.close)
             model.set_env(monitor)
