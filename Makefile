@@ -167,7 +167,10 @@ audit: $(STAMPS)/audit ## licenses, sources and known vulnerabilities of what th
 	if cargo deny --locked fetch db; then cargo deny --locked --all-features check advisories; \
 	  else echo "NOT CHECKED: advisories on crates, their database is out of reach"; test -z "$(AUDIT)"; fi
 	$(UV) pip compile --quiet --universal pyproject.toml $(AUDIT_EXTRAS) --output-file $(STAMPS)/requirements.txt
-	$(BIN)/pip-audit $(AUDIT) --disable-pip --no-deps --requirement $(STAMPS)/requirements.txt
+	$(BIN)/pip-audit $(AUDIT) --disable-pip --no-deps --requirement $(STAMPS)/requirements.txt > $(STAMPS)/audit.txt 2>&1; \
+	  found=$$?; cat $(STAMPS)/audit.txt; \
+	  if grep -q "could not be audited" $(STAMPS)/audit.txt; then echo "NOT CHECKED: advisories on the Python packages above"; fi; \
+	  exit $$found
 
 # Collect the notices of the crates that are compiled in, into LICENSES.
 licenses:

@@ -220,7 +220,8 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
     ## Rewards
     The weighted sum of the terms below, mean over leaders; `signed_order` with weight 1 unless
     `reward` says otherwise, for all leaders or, as a list of dictionaries, for each. Each step's
-    info has the `"reward_terms"`, the last one the `"episode_summary"`.
+    info has the `"reward_terms"`, the last one the `"episode_summary"`. A return is the sum over an
+    episode's steps: divided by their number it is the mean signed order from the start on.
 
     - `signed_order`: psi_o*cos(phi_o - phi_target) of the normal boats, in [-1, 1]; the same for
       all leaders with one target

@@ -122,9 +122,9 @@ def test_simulates_and_draws_as_here(installed):
 
 def test_command_line_works(installed, page_runs):
     assert "compare" in installed.run("flockenv", "--help")
-    assert installed.run("flockenv", "--version") == installed.run(
-        "python", "-c", "import flockenv; print(flockenv.__version__)"
-    )
+    version = installed.run("python", "-c", "import flockenv; print(flockenv.__version__)")
+    assert installed.run("flockenv", "--version") == version
+    installed.run("flockenv", "demo", "--minutes", "0.2", "--no-open", "--quiet")
     installed.run("flockenv", "run", "--minutes", "0.2", "--out", "run.npz", "--quiet")
     installed.run("flockenv", "replay", "run.npz", "--quiet")
     assert page_runs(installed.folder / "run.html") == [("run", "0", 121, 20)]
