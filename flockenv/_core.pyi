@@ -42,6 +42,7 @@ __all__ = [
     "flat_actions",
     "jam_sizes",
     "lap_orientation",
+    "linear",
     "observation_table",
     "observe",
     "order_columns",
@@ -104,6 +105,9 @@ def record(flock: Flock, duration_s: float, plan: dict[str, Any]) -> dict[str, A
 def flat_actions(
     actions: ArrayLike, shape: Sequence[int], levels: int | None, name: str = "actions"
 ) -> _Floats: ...
+def linear(
+    rows: NDArray[np.float32], weight: NDArray[np.float32], bias: NDArray[np.float32]
+) -> NDArray[np.float32]: ...
 def env_defaults() -> dict[str, Any]: ...
 def rudders_of_levels(levels: list[float], rudder_levels: int) -> list[float]: ...
 def observation_table(blocks: dict[str, Any]) -> list[dict[str, Any]]: ...

@@ -3,9 +3,10 @@
 import hashlib
 import json
 import os
+import sys
 import zipfile
 from collections.abc import Mapping
-from functools import cache
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +33,10 @@ class ModelPolicy:
     ``gymnasium.make("flockenv/Leaders-v0")``), for flocks with k leaders. Numbers of levels, the
     actions of environments with `rudder_levels`, become rudders. Where the model's environment is
     a `VecNormalize`, observations are normalized as there; a file of a model does not hold that.
+
+    What a leader does is independent of how many are steered at once where the network has linear
+    layers with hyperbolic tangents or rectifiers between them, as `MlpPolicy` by default. PyTorch
+    may round the rows of other layers by their place.
 
     Parameters
     ----------
@@ -119,7 +124,7 @@ class ModelPolicy:
         if episode_start is not None:
             starts = np.ravel(episode_start)
             episode_start = np.repeat(starts, len(items) // len(starts))
-        with _row_by_row()():
+        with _each_alone():
             actions, state = self.model.predict(items, state, episode_start, deterministic)
         given = np.asarray(actions, np.float64).reshape(rows)
         if self._levels is not None:
@@ -133,29 +138,30 @@ class ModelPolicy:
         return f"{type(self).__name__}({name}, {takes}, {self.control_hz:g} Hz)"
 
 
-@cache
-def _row_by_row() -> Any:
-    """Return a mode of torch in which no row of a linear layer depends on how many there are."""
-    linear = require("torch", "train").nn.functional.linear
+def _each_alone() -> AbstractContextManager[Any]:
+    """Return a mode of torch in which no row of a linear layer depends on the others."""
+    torch = sys.modules.get("torch")
+    return _mode_of(torch) if torch else nullcontext()
 
-    class RowByRow(require("torch.overrides", "train").TorchFunctionMode):  # type: ignore[misc]
+
+def _mode_of(torch: Any) -> Any:
+    linear = torch.nn.functional.linear
+
+    class EachAlone(torch.overrides.TorchFunctionMode):  # type: ignore[misc]
         def __torch_function__(
             self, function: Any, types: Any, arguments: Any = (), options: Any = None
         ) -> Any:
-            return (_each_alone if function is linear else function)(*arguments, **(options or {}))
+            return (_linear if function is linear else function)(*arguments, **(options or {}))
 
-    return RowByRow
+    return EachAlone()
 
 
-def _each_alone(rows: Any, weight: Any, bias: Any = None) -> Any:
-    """Return what torch's linear layer does, one row after another."""
-    flat = rows.reshape(-1, rows.shape[-1])
-    found = rows.new_empty((len(flat), len(weight)))
-    for place, row in enumerate(flat):
-        # A copy is aligned as every other, and sums of products may depend on that.
-        found[place] = weight @ row.clone()
-    found = found.reshape(*rows.shape[:-1], len(weight))
-    return found if bias is None else found + bias
+def _linear(input: Any, weight: Any, bias: Any = None) -> Any:  # noqa: A002 - torch's names
+    """Return what torch's linear layer does, by the core."""
+    rows = input.reshape(-1, input.shape[-1])
+    added = weight.new_zeros(len(weight)) if bias is None else bias
+    arrays = (each.detach().float().cpu().numpy() for each in (rows, weight.T, added))
+    return input.new_tensor(_core.linear(*arrays)).reshape(*input.shape[:-1], len(weight))
 
 
 def _levels_of(space: gymnasium.Space[Any], leaders: int) -> int | None:

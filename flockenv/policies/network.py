@@ -159,11 +159,7 @@ class NetworkPolicy(RowPolicy):
     def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
         between, values = ACTIVATIONS[self.activation], rows
         for place, (weight, bias) in enumerate(self._layers):
-            # Input by input: the sums of a matrix product depend on how many rows there are.
-            sums = np.repeat(bias[None].astype(np.float64), len(rows), axis=0)
-            for column, each in enumerate(weight.astype(np.float64)):
-                sums += values[:, column, None] * each
-            values = sums.astype(np.float32)
+            values = _core.linear(values, weight, bias)
             if place < len(self._layers) - 1:
                 values = between(values)
         return np.clip(values, -1.0, 1.0)[:, 0]

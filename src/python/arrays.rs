@@ -3,8 +3,8 @@
 use super::error::refusal;
 use super::value::{sequence_length, value_from, wrong_type};
 use numpy::{
-    Element, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray,
-    PyUntypedArrayMethods,
+    Element, IntoPyArray, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods,
+    PyReadonlyArray1, PyReadonlyArray2, PyUntypedArray, PyUntypedArrayMethods,
 };
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -155,6 +155,30 @@ pub(super) fn flat_actions<'py>(
         return Err(refusal(format!("{name} must be integers, {accepted}")));
     }
     Ok(PyArray1::from_vec(actions.py(), values))
+}
+
+/// Rows times a matrix plus a bias: each row alone and in one order, while a product of matrices rounds by place.
+#[pyfunction]
+pub(super) fn linear<'py>(
+    rows: PyReadonlyArray2<'py, f32>,
+    weight: PyReadonlyArray2<'py, f32>,
+    bias: PyReadonlyArray1<'py, f32>,
+) -> PyResult<Bound<'py, PyArray2<f32>>> {
+    let shape = [rows.shape()[1], bias.len()];
+    if weight.shape() != shape {
+        return Err(wrong_shape("weight", weight.shape(), &shape_text(&shape)));
+    }
+    let weight: Vec<f64> = weight.as_array().iter().map(|&each| each.into()).collect();
+    let mut sums = numpy::ndarray::Array2::<f64>::zeros((rows.shape()[0], bias.len()));
+    sums += &bias.as_array().mapv(f64::from);
+    for (row, mut sums) in rows.as_array().outer_iter().zip(sums.outer_iter_mut()) {
+        for (&seen, weights) in row.iter().zip(weight.chunks_exact(bias.len().max(1))) {
+            for (sum, each) in sums.iter_mut().zip(weights) {
+                *sum += f64::from(seen) * each;
+            }
+        }
+    }
+    Ok(sums.mapv(|sum| sum as f32).into_pyarray(rows.py()))
 }
 
 /// The error of an array of another shape.

@@ -35,7 +35,7 @@ mod _core {
         ordering_time_s, sampled_analysis_window, structure_series,
     };
     #[pymodule_export]
-    use super::arrays::flat_actions;
+    use super::arrays::{flat_actions, linear};
     #[pymodule_export]
     use super::batch::PyEnvBatch;
     #[pymodule_export]
