@@ -303,7 +303,7 @@ class Recording:
         for name, function in functions.items():
             try:
                 # What is masked is not there.
-                found[name] = np.ma.asarray(function(self), np.float64).filled(np.nan)
+                found[name] = np.ma.array(function(self), np.float64).filled(np.nan).copy()
             except (TypeError, ValueError) as error:
                 raise ParameterError(f"quantity {name!r} is not accepted: numbers") from error
         return replace(self, quantities={**self.quantities, **found})

@@ -35,7 +35,7 @@ _NAMES = {
 
 
 def _is_name(value: Any) -> bool:
-    return isinstance(value, str)
+    return isinstance(value, str) and bool(value.strip())
 
 
 def _is_number(value: Any) -> bool:
@@ -191,6 +191,8 @@ def guess_layout(path: str | os.PathLike[str]) -> list[str]:
     if not columns["heading"]:
         del columns["heading"]
         doubts['heading = ""'] = "a column; without one headings are the directions of motion"
+    elif columns["heading"].lower().endswith("deg"):
+        columns["heading_unit"] = "deg"
     elif np.nanmax(np.abs(_numbers(table, columns["heading"])), initial=0.0) > _FULL_TURN:
         if columns["heading"].lower().endswith("rad"):
             doubts["wrapped = false"] = "headings go on counting beyond a full turn"

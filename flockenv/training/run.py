@@ -153,10 +153,13 @@ def stored_settings(folder: Path, flock_hours: float | None = None) -> TrainingS
 def _held(folder: Path) -> Iterator[None]:
     """Keep other trainings out of a folder."""
     try:
-        with FileLock(folder / ".lock", blocking=False):
-            yield
+        held = FileLock(folder / ".lock", blocking=False).acquire()
     except Timeout as error:
         raise InUseError(f"{folder} is in use by another process: name another, or wait") from error
+    except OSError as error:
+        raise TrainingError(f"{folder} cannot be held: {error}") from error
+    with held:
+        yield
 
 
 def _advance(
