@@ -1,6 +1,8 @@
 """The tables of the pages about training: the easy environment, seeds, signals of rewards."""
 
-from committed_data import interval, markdown, one, rows
+from committed_data import DOCS, interval, markdown, one, rows
+
+from flockenv.policies import load
 
 ALGORITHMS = {
     "train_leaders": "PPO (the forty lines)",
@@ -10,6 +12,7 @@ ALGORITHMS = {
 """Algorithms by the folders of their trainings."""
 BASELINES = {"ppo": "PPO", "evolution": "evolution strategy", "ippo": "IPPO", "mappo": "MAPPO"}
 """The suite's baselines by the names of their rows."""
+ENTRIES = DOCS.parent / "baselines" / "suite"
 SIGNALS = (("rudder", "wide"), ("rudder", "narrow"), ("lean", "wide"))
 
 
@@ -62,19 +65,25 @@ def nothing() -> str:
 
 
 def baselines() -> str:
-    """Return the scores of the suite's baselines, means over three seeds."""
+    """Return the scores of the suite's baselines, means over three seeds, and what was simulated.
+
+    A KeyError refuses a policy whose file does not say from how many flock-hours and steps it is.
+    """
     header, body = [], []
     for algorithm, called in BASELINES.items():
         for hours in (100, 1000):
             names = [f"{algorithm}-{hours}-{seed}" for seed in range(3)]
+            (file,) = ENTRIES.glob(f"*/{names[0]}.*")
+            made = load(file).provenance
             seeds = [rows("suite/baselines.csv", policy=name) for name in names]
             header = [row["task"] for row in seeds[0][:-1]]
             scores = [[float(row["score"]) for row in own[:-1]] for own in seeds]
             means = [f"{sum(own) / 3:+.3f}" for own in zip(*scores, strict=True)]
             lowest, *_, highest = sorted(own[-1] for own in scores)
+            budget = [f"{float(made['flock_hours']):.0f}", f"{int(made['samples']):,}"]
             ends = f"{means[-1]} ({lowest:+.3f} to {highest:+.3f})"
-            body.append([called, str(hours), *means[:-1], ends])
-    return markdown(["algorithm", "flock-hours", *header], body)
+            body.append([called, *budget, *means[:-1], ends])
+    return markdown(["algorithm", "flock-hours", "environment steps", *header], body)
 
 
 def easy() -> str:
