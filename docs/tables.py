@@ -71,6 +71,21 @@ def leaders_of(case: str) -> str:
     return markdown(["leaders", *LADDER, "learned minus tuned law"], body)
 
 
+def leaders_close() -> str:
+    """Return learned leaders and the tuned law in more flocks, where they are close."""
+    body = []
+    for pool, case, leaders in (
+        ("wide", "wide-bw-0.31", "1"),
+        ("narrow", "narrow-bw-0.45", "1234"),
+    ):
+        for k in leaders:
+            known = {"case": case, "leaders": k}
+            means = (one("leaders/close_means.csv", policy=name, **known) for name in LADDER[2:])
+            added = one("leaders/close_differences.csv", policy="learned", **known)
+            body.append([f"`{pool}`", k, *(order(row) for row in means), difference(added)])
+    return markdown(["pool", "leaders", *LADDER[2:], "learned minus tuned law"], body)
+
+
 def leader_motion() -> str:
     """Return how leaders head and where they are."""
     body = [
@@ -135,6 +150,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "leader-count": leader_count,
     "leaders-wide": lambda: leaders_of("wide-bw-0.31"),
     "leaders-narrow": lambda: leaders_of("narrow-bw-0.45"),
+    "leaders-close": leaders_close,
     "leader-motion": leader_motion,
     "tuned-laws": tuned_laws,
     **TRAINING_TABLES,
