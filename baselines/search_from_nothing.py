@@ -27,14 +27,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from cmaes import CMA
-from evolution_strategy import episode
+from evolution_strategy import SEEDS, episode
 from provenance import provenance_of
 from train_from_nothing import JUDGES, LAWS, LEADERS, OFF, draw, flock, judged
 
 from flockenv import LeadersVectorEnv, _core
 from flockenv.policies import NetworkPolicy
 from flockenv.policies.laws import LEAN_FEATURES
-from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
+from flockenv.runs.seeds import release_seeds
 
 CANDIDATES, EPISODE_S, SIGMA = 128, 60.0, 0.5
 GENERATIONS, JUDGED_EVERY = 960, 120
@@ -108,7 +108,7 @@ def search(pool: str, seed: int, folder: Path) -> None:
     for generation in range(1, GENERATIONS + 1):
         start = time.process_time()
         candidates = [cma.ask() for _ in range(CANDIDATES)]
-        seeds = list(POLICY_SEEDS["evolution strategy"].seeds(1, seed, generation)) * CANDIDATES
+        seeds = list(SEEDS.seeds(1, seed, generation)) * CANDIDATES
         rewards, _ = episode(env, seeds, steering(of_length(np.array(candidates))))
         cma.tell(list(zip(candidates, -rewards, strict=True)))
         means.append(of_length(cma.mean))
