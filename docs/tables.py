@@ -20,6 +20,7 @@ from committed_data import (
     order,
     rows,
 )
+from readme_numbers import findings, speed
 from training_tables import TRAINING_TABLES
 
 from flockenv import FlockParameters
@@ -147,12 +148,14 @@ def parameters() -> str:
 
 TABLES: dict[str, Callable[[], str]] = {
     "parameters": parameters,
+    "findings": findings,
     "leader-count": leader_count,
     "leaders-wide": lambda: leaders_of("wide-bw-0.31"),
     "leaders-narrow": lambda: leaders_of("narrow-bw-0.45"),
     "leaders-close": leaders_close,
     "leader-motion": leader_motion,
     "tuned-laws": tuned_laws,
+    "speed": speed,
     **TRAINING_TABLES,
 }
 """How each table is made."""
