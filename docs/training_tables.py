@@ -53,14 +53,16 @@ def algorithms() -> str:
 def nothing() -> str:
     """Return what leaders from nothing reached, and the laws in their flocks."""
     body = []
-    for pool, seeds in {"wide": (0, 1, 2)}.items():
+    for pool, seeds in {"wide": (0, 1, 2), "narrow": (2, 3, 4)}.items():
         ends = [rows(f"training/from_nothing/{pool}_{n}/curve.csv", stage="end") for n in seeds]
         for law in ends[0][:-1]:
-            body.append([pool, law["policy"], "", interval(law, "signed_order", "low", "high")])
+            body.append(
+                [f"`{pool}`", law["policy"], "", interval(law, "signed_order", "low", "high")]
+            )
         for seed, (*_, end) in zip(seeds, ends, strict=True):
             minutes = f"{float(end['cpu_s']) / 60:.1f}"
             order = interval(end, "signed_order", "low", "high")
-            body.append([pool, f"{end['policy']}, seed {seed}", minutes, order])
+            body.append([f"`{pool}`", f"{end['policy']}, seed {seed}", minutes, order])
     return markdown(["pool", "policy", "minutes of one core", "signed order"], body)
 
 
