@@ -1,5 +1,7 @@
 """The tables of the pages about training: the easy environment, seeds, signals of rewards."""
 
+from collections.abc import Mapping
+
 from committed_data import DOCS, interval, markdown, one, rows
 
 from flockenv.policies import load
@@ -66,17 +68,23 @@ def nothing() -> str:
     return markdown(["pool", "policy", "minutes of one core", "signed order"], body)
 
 
-def baselines() -> str:
-    """Return the scores of the suite's baselines, means over three seeds, and what was simulated.
+def made_by(entry: str) -> Mapping[str, str]:
+    """Return what made a policy of the suite; a LookupError refuses one that does not say it."""
+    (file,) = ENTRIES.glob(f"*/{entry}.*")
+    made = load(file).provenance
+    missing = {"command", "flock_hours", "samples"} - made.keys()
+    if missing:
+        raise LookupError(f"{file.name} does not say its {', '.join(sorted(missing))}")
+    return made
 
-    A KeyError refuses a policy whose file does not say from how many flock-hours and steps it is.
-    """
+
+def baselines() -> str:
+    """Return the scores of the suite's baselines, means over three seeds, and their budgets."""
     header, body = [], []
     for algorithm, called in BASELINES.items():
         for hours in (100, 1000):
             names = [f"{algorithm}-{hours}-{seed}" for seed in range(3)]
-            (file,) = ENTRIES.glob(f"*/{names[0]}.*")
-            made = load(file).provenance
+            made, *_ = map(made_by, names)
             seeds = [rows("suite/baselines.csv", policy=name) for name in names]
             header = [row["task"] for row in seeds[0][:-1]]
             scores = [[float(row["score"]) for row in own[:-1]] for own in seeds]
