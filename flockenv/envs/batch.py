@@ -107,7 +107,9 @@ class LeaderBatch:
     def _rewards(self, returned: Any) -> NDArray[np.float64]:
         rows = len(self._flock_of_row)
         if np.ma.is_masked(returned):
-            raise ParameterError("the function of reward returned something masked: numbers alone")
+            raise ParameterError(
+                "what reward returned is masked, which is not accepted: numbers alone"
+            )
         try:
             found = np.array(returned, np.float64)
         except (TypeError, ValueError) as error:

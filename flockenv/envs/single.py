@@ -218,10 +218,9 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
     - `episode_elapsed` in [0, 1] of clock: part of the episode that is over
 
     ## Rewards
-    The weighted sum of the terms below, mean over leaders; `signed_order` with weight 1 unless
-    `reward` says otherwise, for all leaders or, as a list of dictionaries, for each. Each step's
-    info has the `"reward_terms"`, the last one the `"episode_summary"`. A return is the sum over an
-    episode's steps: divided by their number it is the mean signed order from the start on.
+    The weighted sum of the terms below, mean over leaders, as `reward` has it for all leaders or,
+    as a list of dictionaries, for each; `signed_order` alone by default, whose return per control
+    step is the mean signed order. Infos have `"reward_terms"`, the last one `"episode_summary"`.
 
     - `signed_order`: psi_o*cos(phi_o - phi_target) of the normal boats, in [-1, 1]; the same for
       all leaders with one target

@@ -7,6 +7,7 @@ import sys
 import zipfile
 from collections.abc import Mapping
 from contextlib import AbstractContextManager, nullcontext
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -141,10 +142,12 @@ class ModelPolicy:
 def _each_alone() -> AbstractContextManager[Any]:
     """Return a mode of torch in which no row of a linear layer depends on the others."""
     torch = sys.modules.get("torch")
-    return _mode_of(torch) if torch else nullcontext()
+    return _mode_of(torch)() if torch else nullcontext()
 
 
+@cache
 def _mode_of(torch: Any) -> Any:
+    """Return the class of such modes: it cannot be written before torch is imported."""
     linear = torch.nn.functional.linear
 
     class EachAlone(torch.overrides.TorchFunctionMode):  # type: ignore[misc]
@@ -153,7 +156,7 @@ def _mode_of(torch: Any) -> Any:
         ) -> Any:
             return (_linear if function is linear else function)(*arguments, **(options or {}))
 
-    return EachAlone()
+    return EachAlone
 
 
 def _linear(input: Any, weight: Any, bias: Any = None) -> Any:  # noqa: A002 - torch's names

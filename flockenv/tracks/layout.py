@@ -139,11 +139,9 @@ def read_layout(path: str | os.PathLike[str]) -> TrackLayout:
     values = read_toml_file(path, str(path))
     for name, value in values.items():
         if isinstance(value, list):
-            values[name] = tuple(value)
-    # Boats may be numbered, but `true` is no number.
-    numbered = values.get("leaders", ())
-    if isinstance(numbered, tuple):
-        values["leaders"] = tuple(str(each) if type(each) is int else each for each in numbered)
+            # Boats may be numbered, but `true` is no number.
+            is_names = name == "leaders"
+            values[name] = tuple(str(v) if is_names and type(v) is int else v for v in value)
     try:
         refuse_unknown(values, [each.name for each in fields(TrackLayout)], "field of a layout")
         if "pool" not in values:
@@ -195,7 +193,7 @@ def guess_layout(path: str | os.PathLike[str]) -> list[str]:
         columns["heading_unit"] = "deg"
     elif np.nanmax(np.abs(_numbers(table, columns["heading"])), initial=0.0) > _FULL_TURN:
         if columns["heading"].lower().endswith("rad"):
-            doubts["wrapped = false"] = "headings go on counting beyond a full turn"
+            doubts["wrapped = false"] = "headings exceed a full turn in rad"
         else:
             doubts['heading_unit = "deg"'] = "headings exceed a full turn in rad"
     known = [f"{field} = {json.dumps(name, ensure_ascii=False)}" for field, name in columns.items()]

@@ -25,6 +25,6 @@ def test_a_short_run(script, tmp_path, monkeypatch) -> None:
         monkeypatch.setattr(script, name, value)
     monkeypatch.setattr("train_from_nothing.JUDGED_S", 2.0)
     script.search("narrow", 5, tmp_path / "narrow_5")
-    rows = pd.read_csv(tmp_path / "narrow_5" / "curve.csv")
-    assert set(rows.loc[rows["stage"] == "end", "policy"]) == {"CMA-ES", *script.LAWS}
+    judged = list(pd.read_csv(tmp_path / "narrow_5" / "curve.csv")["policy"])
+    assert judged[-4:] == ["paper's law", "damped law", "tuned law", "CMA-ES"]
     assert script.NetworkPolicy.load(tmp_path / "narrow_5" / "policy.npz").provenance["seed"] == "5"

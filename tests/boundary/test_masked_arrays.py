@@ -46,8 +46,10 @@ def test_boats_that_are_masked_are_not_there():
     assert found == flockenv.order_series(gone, velocity)
     by_mask = structure_series("on_outer_wall", PARAMETERS, masked(pose, 0, 1))
     assert by_mask == structure_series("on_outer_wall", PARAMETERS, gone)
-    own = {"mine": lambda run: masked(run.time_s, 1)}
-    assert np.isnan(flockenv.simulate(PARAMETERS, 0, 1.0, quantities=own).quantities["mine"][1])
+    own = {"mine": lambda run: masked(run.time_s, 1), "time": lambda run: run.time_s}
+    run = flockenv.simulate(PARAMETERS, 0, 1.0, quantities=own)
+    assert np.isnan(run.quantities["mine"]).tolist() == [False, True] + [False] * 9
+    assert not np.shares_memory(run.quantities["time"], run.time_s)
 
 
 @pytest.mark.parametrize("policy", [flockenv.policies.SteeringLaw(), "model"])

@@ -103,3 +103,6 @@ def test_a_table_without_a_description_gets_one_to_check(cli, tmp_path):
     (tmp_path / "turns.csv").write_text("frame,robot,x,y,heading_rad\n0,a,1,2,50.0\n")
     checks = flockenv.tracks.guess_layout(tmp_path / "turns.csv")
     assert [each.split(" =")[0] for each in checks][-1] == "wrapped"
+    (tmp_path / "small.csv").write_text("frame,robot,x,y,heading_deg\n0,a,1,2,5.0\n")
+    flockenv.tracks.guess_layout(tmp_path / "small.csv")
+    assert flockenv.tracks.read_layout(tmp_path / "small.toml").heading_unit == "deg"

@@ -48,9 +48,7 @@ def test_shards_make_the_table_of_one_command(cli, tmp_path: Path) -> None:
         assert (tmp_path / "out" / name).read_bytes() == (tmp_path / "alone" / name).read_bytes()
 
 
-def test_runs_that_fail_are_counted_and_end_the_command_with_exit_code_1(
-    cli, tmp_path: Path
-) -> None:
+def test_runs_that_fail_are_counted_and_end_in_exit_code_1(cli, tmp_path: Path) -> None:
     spec = tmp_path / "crowd.toml"
     spec.write_text('minutes = 0.1\nseeds = 2\n[[grid]]\nn_boats = [6, 400]\npool = ["narrow"]\n')
     sweep = ["sweep", str(spec), "--quiet", "--out", str(tmp_path / "out")]

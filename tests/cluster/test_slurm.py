@@ -33,9 +33,7 @@ def states(environment: dict[str, str], job: str) -> set[str]:
     return set(lines.split())
 
 
-def test_an_array_with_a_requeued_job_makes_the_table_of_one_machine(
-    slurm: dict[str, str], tmp_path: Path
-) -> None:
+def test_a_requeued_array_makes_the_whole_table(slurm: dict[str, str], tmp_path: Path) -> None:
     environment = slurm | {"PATH": f"{BIN}:{slurm['PATH']}"}
     (tmp_path / "spec.toml").write_text(SPEC)
     array = submit(environment, tmp_path, "--array=1-4")

@@ -43,9 +43,7 @@ def test_what_is_built_stays(clone: Path) -> None:
 @pytest.mark.parametrize(
     ("built", "codegen"), [("core-avx2", ""), ("core", "-- -C target-feature=+avx2")]
 )
-def test_what_is_for_another_processor_is_built_again(
-    clone: Path, built: str, codegen: str
-) -> None:
+def test_for_another_processor_it_is_built_again(clone: Path, built: str, codegen: str) -> None:
     for stamp in (clone / ".venv" / ".stamps").glob("core*"):
         if stamp.name != built:
             stamp.unlink()

@@ -113,9 +113,7 @@ def test_a_run_under_a_wrong_name_is_not_taken(spec: RunSpec, tmp_path: Path) ->
         assert store.load(spec) is None
 
 
-def test_only_missing_runs_are_made_and_failures_cost_no_others(
-    spec: RunSpec, tmp_path: Path
-) -> None:
+def test_missing_runs_are_made_and_failures_cost_no_others(spec: RunSpec, tmp_path: Path) -> None:
     store = RunStore(tmp_path)
     impossible = RunSpec(parameters=spec.parameters.replace(n_boats=900), seed=0, duration_s=30.0)
     seen: list[RunSpec] = []

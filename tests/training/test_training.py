@@ -71,9 +71,7 @@ def test_resuming_reads_weights_and_the_optimizer(tiny: TrainingSettings, tmp_pa
 
 
 @pytest.mark.parametrize("content", [b"", b"no archive"])
-def test_damaged_checkpoints_are_named(
-    tiny: TrainingSettings, tmp_path: Path, content: bytes
-) -> None:
+def test_damaged_checkpoints(tiny: TrainingSettings, tmp_path: Path, content: bytes) -> None:
     training.train(tiny, tmp_path)
     (tmp_path / "checkpoint.zip").write_bytes(content)
     with pytest.raises(ParameterError, match="is no checkpoint of these settings"):
@@ -105,18 +103,22 @@ def test_a_checkpoint_of_other_settings_is_refused(tiny: TrainingSettings, tmp_p
 
 def test_a_folder_takes_one_training_at_a_time(tiny: TrainingSettings, tmp_path: Path) -> None:
     def meanwhile(progress: Progress) -> None:
-        with pytest.raises(InUseError, match="is in use by another process"):
-            training.resume(tmp_path)
+        for start in (training.resume, lambda folder: training.train(tiny.replace(seed=9), folder)):
+            with pytest.raises(InUseError, match="is in use by another process"):
+                start(tmp_path)
 
     training.train(tiny, tmp_path, meanwhile)
+    assert TrainingSettings.from_file(tmp_path / "settings.toml") == tiny
     # The file stays, so that no two hold different ones of its name; it holds nobody up.
     assert (tmp_path / ".lock").exists()
     training.resume(tmp_path, report=meanwhile)
+    (tmp_path / ".lock").unlink()
+    (tmp_path / ".lock").mkdir()
+    with pytest.raises(training.TrainingError, match="cannot be held"):
+        training.resume(tmp_path)
 
 
-def test_weights_that_are_no_numbers_end_the_training(
-    tiny: TrainingSettings, tmp_path: Path
-) -> None:
+def test_weights_of_nan_end_the_training(tiny: TrainingSettings, tmp_path: Path) -> None:
     def spoil(progress: Progress) -> None:
         if progress.samples == 128:
             model.policy.action_net.weight.data.fill_(torch.nan)
