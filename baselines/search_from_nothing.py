@@ -3,13 +3,14 @@
     for seed in 2 3 4; do python baselines/search_from_nothing.py narrow $seed; done
 
 A rudder, chosen ten times per second, is linear in the 29 lean features, which know no law, and a
-constant, with other weights where the boat backs up, as a rudder works in reverse there. All 60
-weights are 0 at first. CMA-ES (Hansen's covariance matrix adaptation, from the package cmaes)
-searches their direction, and their length is fixed. A candidate steers one flock from rest for
-a minute, and its score is the mean of what its leaders' own contacts push and turn, and of their
-own velocity. All candidates of a generation start in the same state. Scores of chaotic flocks are
-so noisy that the mean of the candidates never settles; the result is its average over the second
-half of the search, a network of four hidden units that every command takes.
+constant. A boat that backs up has weights of its own, as a rudder works in reverse there. The
+length of the 60 weights is fixed, and CMA-ES (Hansen's covariance matrix adaptation, from the
+package cmaes) searches their direction, at first in all directions alike. A candidate steers one
+flock from rest for a minute, and its score is the weighted mean of `contact_push`,
+`contact_alignment` and `leader_velocity`. All candidates of a generation start in the same state.
+Scores of chaotic flocks are so noisy that the mean of the candidates never settles. The result is
+its average over the second half of the search: a network of four hidden units that every command
+takes.
 
 The learning curve and its end are those of train_from_nothing.py. Needs the extras search and sb3.
 
@@ -25,11 +26,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 from cmaes import CMA
 from evolution_strategy import SEEDS, episode
 from provenance import provenance_of
-from train_from_nothing import JUDGES, LAWS, LEADERS, OFF, draw, flock, judged
+from train_from_nothing import JUDGES, LEADERS, OFF, flock, judged, write
 
 from flockenv import LeadersVectorEnv, _core
 from flockenv.policies import NetworkPolicy
@@ -125,12 +125,7 @@ def search(pool: str, seed: int, folder: Path) -> None:
         validation = release_seeds("from_nothing validation", JUDGES[0])
         rows += judged(pool, {"CMA-ES": found}, validation, point)
         print(rows[-1], flush=True)
-    policies = {**dict(zip(LAWS, LAWS, strict=True)), "CMA-ES": found}
-    fresh, end = release_seeds("from_nothing", JUDGES[1]), {"cpu_s": cpu_s}
-    rows += judged(pool, policies, fresh, {**end, "stage": "end"})
-    pd.DataFrame(rows).to_csv(folder / "curve.csv", index=False, float_format="%.4f")
-    draw(folder.parent, pool)
-    print(f"written to {folder}")
+    write(pool, {"CMA-ES": found}, rows, folder)
 
 
 if __name__ == "__main__":

@@ -138,6 +138,17 @@ def judged(
     return rows
 
 
+def write(pool: str, policy: dict[str, Any], rows: list[dict[str, Any]], folder: Path) -> None:
+    """Judge the policy beside the laws in fresh flocks, and write and draw the learning curve."""
+    end = {"stage": "end", "cpu_s": rows[-1]["cpu_s"]}
+    policies = {**dict(zip(LAWS, LAWS, strict=True)), **policy}
+    last = judged(pool, policies, release_seeds("from_nothing", JUDGES[1]), end)
+    table = pd.DataFrame(rows + last)[list(COLUMNS)]
+    table.to_csv(folder / "curve.csv", index=False, float_format="%.4f")
+    draw(folder.parent, pool)
+    print(f"written to {folder}")
+
+
 def draw(folder: Path, pool: str) -> None:
     """Draw the learning curves of all seeds of a pool, and the laws as level lines."""
     axes = (figure := Figure((6.4, 3.6), layout="constrained")).subplots()
@@ -170,13 +181,7 @@ def main(pool: str, seed: int, folder: Path) -> None:
             model.policy.action_net.load_state_dict(weights)
         model.learn(round(HOURS[stage] * LEADERS * DECISIONS_HZ * 3600), callback=curve)
     models[-1].save(folder / "model.zip")
-    fresh, end = release_seeds("from_nothing", JUDGES[1]), {"cpu_s": curve.cpu_s}
-    policies = {**dict(zip(LAWS, LAWS, strict=True)), "PPO": models[-1]}
-    rows += judged(pool, policies, fresh, {**end, "stage": "end"})
-    table = pd.DataFrame(rows)[list(COLUMNS)]
-    table.to_csv(folder / "curve.csv", index=False, float_format="%.4f")
-    draw(folder.parent, pool)
-    print(f"written to {folder}")
+    write(pool, {"PPO": models[-1]}, rows, folder)
 
 
 if __name__ == "__main__":

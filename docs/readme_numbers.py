@@ -24,10 +24,9 @@ def speed() -> str:
     )
 
 
-def lost(reading: str, quantity: str) -> float:
+def lost(reading: str, quantity: str) -> str:
     """Return at which backward duration order is lost, in s."""
-    found = [row for row in rows(CLAIMS, quantity=quantity) if row["reading"].startswith(reading)]
-    return float(found[0]["measured"])
+    return f"{float(one(CLAIMS, reading=reading, quantity=quantity)['measured']):.2f}"
 
 
 def at(bw_s: str, name: str) -> float:
@@ -40,31 +39,26 @@ def at(bw_s: str, name: str) -> float:
 
 def findings() -> str:
     """Return which of the paper's answers hold."""
-    alone, led = "critical bw (s), no leaders", "critical bw (s), 3 leaders, CW"
-    boats = "critical bw (s), k = 0"
-    tolerances = [lost(f"paper, {cm} cm, n = 20", boats) for cm in ("0.1", "0.001")]
-    fitted = [
-        float(row["measured"])
-        for row in rows(CLAIMS, figure="fit")
-        if row["quantity"] == "critical bw (s), best candidate, held-out seeds"
-    ]
-    jammed, turning, lost_at = 100 * at("0.0", "jammed"), at("1.0", "abs_m"), at("2.8", "abs_m")
+    boats, water = "critical bw (s), k = 0", "experiment (leapfrog, white), narrow, n = 27"
+    fit = rows(CLAIMS, quantity="critical bw (s), best candidate, held-out seeds")
+    alone, led = (f"{float(row['measured']):.2f}" for row in fit)
     return (
         "- **Noise makes motion.** At bw = 0, 27 boats are jammed in "
-        f"{jammed:.0f} % of the frames, with a mean rotation |m| of {at('0.0', 'abs_m'):.2f}. At "
-        f"1.0 s |m| is {turning:.2f} with hardly a jam, and at 2.8 s it is {lost_at:.2f}: the "
-        "order is gone (24 runs of 8 minutes per level without leaders, preset `experiment`, pool "
-        "`narrow`, white noise).\n"
+        f"{100 * at('0.0', 'jammed'):.0f} % of the frames, with a mean rotation |m| of "
+        f"{at('0.0', 'abs_m'):.2f}. At 1.0 s |m| is {at('1.0', 'abs_m'):.2f} with hardly a jam, "
+        f"and at 2.8 s it is {at('2.8', 'abs_m'):.2f}: the order is gone (24 runs of 8 minutes "
+        "per level without leaders, preset `experiment`, pool `narrow`, white noise).\n"
         "- **The noise at which order is lost depends on choices that the paper leaves open.** "
-        "In `wide` 20 boats without leaders lose it at "
-        f"{lost('simulation, n = 20', boats):.2f} s with white noise and the default integrator. "
-        "With noise and steps as the paper prints them it is "
-        f"{tolerances[0]:.2f} to {tolerances[1]:.2f} s, depending on how much overlap of boats a "
+        f"In `wide` 20 boats without leaders lose it at {lost('simulation, n = 20', boats)} s "
+        "with white noise and the default integrator. With noise and steps as the paper prints "
+        f"them it is {lost('paper, 0.1 cm, n = 20', boats)} to "
+        f"{lost('paper, 0.001 cm, n = 20', boats)} s, depending on how much overlap of boats a "
         "step tolerates, which the paper does not give (24 runs of 30 minutes per level). The "
         "paper has 0.6 to 0.8 s.\n"
         "- **What leaders add depends on the water.** Three of them hardly move the loss of "
         "order with the preset `experiment`, whose boats back up more slowly "
-        f"({lost('experiment', alone):.2f} to {lost('experiment', led):.2f} s), and move it "
-        f"from {fitted[0]:.2f} to {fitted[1]:.2f} s with the current that the paper measured "
-        "(`narrow`, white noise, 24 runs at each of 15 noises). The paper has 1.4 s and 2.0 s."
+        f"({lost(water, 'critical bw (s), no leaders')} to "
+        f"{lost(water, 'critical bw (s), 3 leaders, CW')} s), and move it from {alone} to {led} s "
+        "with the current that the paper measured (`narrow`, white noise, 24 runs at each of 15 "
+        "noises). The paper has 1.4 s and 2.0 s."
     )
