@@ -118,7 +118,7 @@ impl Work {
     fn count(&self, state: &[u8]) -> Result<Done, Failure> {
         match self {
             Self::Flock(parameters) => {
-                let mut flock = Flock::from_snapshot(state)?;
+                let mut flock = Flock::from_snapshot(state, None)?;
                 flock.advance(0.05, None)?;
                 let before = *flock.statistics();
                 let duration_s = if parameters.n_boats > 100 { 0.5 } else { 6.0 };

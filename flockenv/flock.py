@@ -187,12 +187,12 @@ class Flock:
         return flock
 
     @classmethod
-    def from_snapshot(cls, snapshot: bytes) -> Self:
-        """Return the flock of a snapshot.
+    def from_snapshot(cls, snapshot: bytes, noise_seed: int | None = None) -> Self:
+        """Return the flock of a snapshot, with its noise or other noise, as `restore` has it.
 
         A ParameterError refuses bytes that are no whole, unharmed snapshot.
         """
-        return cls.of(_core.Flock.from_snapshot(snapshot))
+        return cls.of(_core.Flock.from_snapshot(snapshot, noise_seed))
 
     @classmethod
     def from_state(cls, parameters: FlockParameters, seed: int, state: Mapping[str, Any]) -> Self:
@@ -224,6 +224,11 @@ class Flock:
     def seed(self) -> int:
         """Seed of all random streams."""
         return self.core.seed
+
+    @property
+    def noise_seed(self) -> int | None:
+        """Seed of the noise if the flock continues a snapshot with other noise; None otherwise."""
+        return self.core.noise_seed
 
     @property
     def pose(self) -> NDArray[np.float64]:
@@ -347,13 +352,27 @@ class Flock:
         """Return the whole state; continuing from it is bit-identical on the same machine."""
         return self.core.snapshot()
 
-    def restore(self, snapshot: bytes) -> None:
+    def restore(self, snapshot: bytes, noise_seed: int | None = None) -> None:
         """Continue from a snapshot of a flock with the same parameters, the target aside.
 
-        A ParameterError refuses bytes that are no whole, unharmed snapshot, or one of a flock with
-        other parameters; the flock is unchanged then.
+        Parameters
+        ----------
+        snapshot
+            Bytes of `snapshot`.
+        noise_seed
+            None: the noise of the snapshot, so that all flocks that continue from it meet the same
+            noise. A whole number: other noise from here on, the same for every flock with this
+            number, and never the noise of a flock whose `seed` it is.
+
+        Raises
+        ------
+        ParameterError
+            For bytes that are no whole, unharmed snapshot, or that are one of a flock with other
+            parameters, and for a noise_seed out of range; the flock is unchanged then.
+        TypeError
+            For a noise_seed that is no whole number.
         """
-        self.core.restore(snapshot)
+        self.core.restore(snapshot, noise_seed)
 
     def __copy__(self) -> Self:
         return self.of(self.core.copy())

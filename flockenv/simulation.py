@@ -40,6 +40,7 @@ def simulate(
     contacts: bool = False,
     progress: Callable[[float], object] | None = None,
     start: Start | None = None,
+    noise_seed: int | None = None,
     schedule: Schedule = (),
     quantities: Mapping[str, Callable[[Recording], ArrayLike]] | None = None,
 ) -> Recording:
@@ -84,6 +85,8 @@ def simulate(
         seed: under the law the run continues with the same bits. A dictionary with ``pose`` (n, 3)
         and, if need be, ``velocity`` (n, 3), ``time_s`` and ``allow_overlap``, as in
         `Flock.set_state`. A recording: its last sample.
+    noise_seed
+        Of a start from a snapshot: other noise from there on, as `Flock.restore` has it.
     schedule
         What changes on the way: pairs of a time in s from the start of the run and a dictionary of
         the parameters' fields that have other values from then on, after the sample at that time:
@@ -105,9 +108,9 @@ def simulate(
     ParameterError
         For arguments out of range, unknown names of policies and pools that a policy is not made
         for, policies whose actions are no rudders, boats that do not fit the pool, a start that
-        this flock cannot have, a schedule that changes n_boats or n_leaders, quantities of another
-        shape or with the name of one that there is, rudders that are NaN, and a recording of more
-        than 16 GiB; nothing is returned then.
+        this flock cannot have, a noise_seed without a snapshot, a schedule that changes n_boats or
+        n_leaders, quantities of another shape or with the name of one that there is, rudders that
+        are NaN, and a recording of more than 16 GiB; nothing is returned then.
     OSError
         If a policy's file cannot be opened.
     TypeError
@@ -119,7 +122,7 @@ def simulate(
         raise TypeError(f"parameters must be FlockParameters, not {shown(parameters)}")
     seats = _seats(policy, parameters)
     changes = _changes(parameters, schedule)
-    flock = Flock(parameters, seed) if start is None else _started(parameters, seed, start)
+    flock = _started(parameters, seed, start, noise_seed)
     precision = np.dtype(dtype)
     if precision not in PRECISIONS:
         raise ParameterError(f"dtype = {precision} is not accepted: float64 or float32")
@@ -271,7 +274,16 @@ def _changes(
     return changes
 
 
-def _started(parameters: FlockParameters, seed: int, start: Start) -> Flock:
+def _started(
+    parameters: FlockParameters, seed: int, start: Start | None, noise_seed: int | None
+) -> Flock:
+    if noise_seed is not None and not isinstance(start, bytes):
+        raise ParameterError(
+            f"noise_seed = {shown(noise_seed)} is not accepted: it goes with a snapshot as start, "
+            "which it continues with other noise"
+        )
+    if start is None:
+        return Flock(parameters, seed)
     if isinstance(start, Recording):
         start = start.state_at(start.duration_s if len(start) == 0 else float(start.time_s[-1]))
     if isinstance(start, Mapping):
@@ -281,7 +293,7 @@ def _started(parameters: FlockParameters, seed: int, start: Start) -> Flock:
             "start must be a snapshot (bytes), a dictionary with pose and perhaps velocity and "
             f"time_s, or a recording, not {shown(start)}"
         )
-    flock = Flock.from_snapshot(start)
+    flock = Flock.from_snapshot(start, noise_seed)
     if flock.parameters.replace(target=parameters.target) != parameters:
         raise ParameterError("start is a snapshot of a flock with other parameters")
     if flock.seed != seed:

@@ -22,7 +22,7 @@ TERMS: dict[str, str] = dict(_core.REWARD_TERMS)
 """Name and meaning of each term of the reward; every term is larger for better."""
 
 #: What ``reset(options=...)`` understands, besides ``reset_mask`` in the vector environment.
-RESET_OPTIONS = ("target", "bw_s", "state", "snapshot")
+RESET_OPTIONS = ("target", "bw_s", "state", "snapshot", "noise_seed")
 
 _FIELDS = tuple(each.name for each in fields(FlockParameters))
 _SETTINGS = tuple(name for name in _core.env_defaults() if name not in ("bw_s", "autoreset_mode"))

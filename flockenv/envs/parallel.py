@@ -95,7 +95,8 @@ class LeadersParallelEnv(
             Fixes the start, the noise and what is drawn for the episode, and those of the episodes
             that follow without a seed. None continues with the next episode.
         options
-            ``target``, ``bw_s``, ``state`` and ``snapshot`` as in `LeadersEnv.reset`.
+            ``target``, ``bw_s``, ``state``, ``snapshot`` and ``noise_seed`` as in
+            `LeadersEnv.reset`.
 
         Returns
         -------

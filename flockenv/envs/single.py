@@ -258,7 +258,7 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
     duration; the first episode's flock is `Flock(parameters, seed)`. `reset(options=...)` can set
     for one episode: `target`, `bw_s`, `state` (a dictionary with pose (n, 3) and optionally
     velocity (n, 3), time_s and allow_overlap as in `Flock.set_state`) or `snapshot` (bytes of
-    `Flock.snapshot`).
+    `Flock.snapshot`), the latter with a `noise_seed` for other noise than the snapshot's.
 
     ## Episode end
     After `episode_s` the episode is truncated; it never terminates. The `"episode_summary"` has the
@@ -346,7 +346,8 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
         options
             For this episode: ``target``, ``bw_s`` in s, and ``state`` or ``snapshot``, as the class
             says of the starting state. A snapshot is of a flock with the same parameters, target
-            and bw_s aside.
+            and bw_s aside; with ``noise_seed`` it continues with other noise, as in
+            `Flock.restore`.
 
         Returns
         -------

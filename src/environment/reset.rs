@@ -14,8 +14,13 @@ pub enum Start {
     Random,
     /// A given state.
     State(State),
-    /// A flock's snapshot, with its backward duration and its noise.
-    Snapshot(Vec<u8>),
+    /// A flock's snapshot, with its backward duration.
+    Snapshot {
+        /// The snapshot.
+        bytes: Vec<u8>,
+        /// Seed of other noise; `None`: the noise of the snapshot.
+        noise_seed: Option<u64>,
+    },
 }
 
 /// Options of a reset.
@@ -53,7 +58,7 @@ impl ResetRequest {
             ..parameters.clone()
         };
         let mut flock = match &self.start {
-            Start::Snapshot(bytes) => Flock::from_snapshot(bytes)?,
+            Start::Snapshot { bytes, noise_seed } => Flock::from_snapshot(bytes, *noise_seed)?,
             Start::Random => Flock::new_while(keep_going, own, flock_seed)?,
             Start::State(state) => Flock::from_state(own, flock_seed, state)?,
         };

@@ -17,7 +17,7 @@ pub enum Change {
 }
 
 impl Flock {
-    /// Changes the flock at this time. New parameters restart the random streams from the flock's seed.
+    /// Changes the flock at this time. New parameters restart the random streams from the flock's seeds.
     ///
     /// # Errors
     /// As for [`Flock::new`] and [`Flock::set_state`]; the flock is unchanged then.
@@ -27,6 +27,7 @@ impl Flock {
             Change::Parameters(parameters) => {
                 let poses = moved(self.poses(), self.parameters().pool, parameters.pool);
                 let mut next = Self::new(FlockParameters::clone(parameters), self.seed())?;
+                next.branch(self.noise_seed());
                 // A smaller pool may let hulls overlap a little; the contact solver parts them.
                 next.set_state(&poses, self.velocities(), self.time_s(), true)?;
                 if !self.parameters().has_same_water(parameters) {

@@ -21,6 +21,8 @@ pub struct Flock {
     pub(crate) parameters: FlockParameters,
     schedule: PhaseSchedule,
     pub(crate) seed: u64,
+    /// That of the noise, if the flock continues a snapshot with other noise than its seed's.
+    noise_seed: Option<u64>,
     pub(crate) time: Ticks,
     pub(crate) integrator: Integrator,
     /// The motion before the last advance, to return to if it fails.
@@ -68,6 +70,7 @@ impl Flock {
             integrator: Integrator::new(&parameters, seed),
             before: Box::default(),
             seed,
+            noise_seed: None,
             time: 0,
             parameters,
         }
@@ -90,6 +93,20 @@ impl Flock {
     /// The seed of all streams.
     pub fn seed(&self) -> u64 {
         self.seed
+    }
+
+    /// The seed of the noise, where it is not that of the flock's own seed: in a branch.
+    pub fn noise_seed(&self) -> Option<u64> {
+        self.noise_seed
+    }
+
+    /// Continues with the noise of a branch: the same for every flock with this noise seed, and never the noise of a
+    /// flock whose seed it is. `None` leaves the noise as it is.
+    pub(super) fn branch(&mut self, noise_seed: Option<u64>) {
+        if let Some(seed) = noise_seed {
+            self.noise_seed = noise_seed;
+            self.integrator.branch_noise(seed);
+        }
     }
 
     /// Time in s.

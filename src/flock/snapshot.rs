@@ -18,6 +18,7 @@ const MAGIC: Magic = *b"flockst1";
 struct Snapshot {
     parameters: FlockParameters,
     seed: u64,
+    noise_seed: Option<u64>,
     time: Ticks,
     motion: Checkpoint,
 }
@@ -72,7 +73,7 @@ impl Serialize for Flock {
 
 impl<'de> Deserialize<'de> for Flock {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        Self::from_snapshot(&Vec::<u8>::deserialize(deserializer)?).map_err(D::Error::custom)
+        Self::from_snapshot(&Vec::<u8>::deserialize(deserializer)?, None).map_err(D::Error::custom)
     }
 }
 
@@ -82,6 +83,7 @@ impl Flock {
         let state = Snapshot {
             parameters: self.parameters.clone(),
             seed: self.seed,
+            noise_seed: self.noise_seed(),
             time: self.time,
             motion: self.integrator.checkpoint(),
         };
@@ -89,12 +91,12 @@ impl Flock {
     }
 
     /// Continues from a snapshot of a flock with the same parameters (the target aside, which the
-    /// snapshot brings along).
+    /// snapshot brings along), with the noise of the snapshot or that of another seed.
     ///
     /// # Errors
     /// [`FlockError::Snapshot`]; the flock is unchanged then.
-    pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
-        let restored = Self::from_snapshot(bytes)?;
+    pub fn restore(&mut self, bytes: &[u8], noise_seed: Option<u64>) -> Result<()> {
+        let restored = Self::from_snapshot(bytes, noise_seed)?;
         let same = FlockParameters {
             target: self.parameters.target.clone(),
             ..restored.parameters.clone()
@@ -105,15 +107,17 @@ impl Flock {
         Ok(())
     }
 
-    /// A flock from a snapshot alone.
+    /// A flock from a snapshot alone, with the noise of the snapshot or that of another seed. The same noise seed
+    /// gives all flocks the same noise.
     ///
     /// # Errors
     /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed snapshot.
-    pub fn from_snapshot(bytes: &[u8]) -> Result<Self> {
+    pub fn from_snapshot(bytes: &[u8], noise_seed: Option<u64>) -> Result<Self> {
         let snapshot = unseal::<Snapshot>(&MAGIC, bytes)?.checked()?;
         let mut flock = Self::unplaced(snapshot.parameters, snapshot.seed);
         flock.time = snapshot.time;
         flock.integrator.return_to(&snapshot.motion);
+        flock.branch(noise_seed.or(snapshot.noise_seed));
         Ok(flock)
     }
 }

@@ -6,7 +6,7 @@ use crate::clock::ticks;
 use crate::contact::{ContactResolver, InverseInertia, Statistics};
 use crate::geometry::{HullPose, Pose, Velocity};
 use crate::parameters::{FlockParameters, Scheme};
-use crate::random::{BrownianPaths, Stream};
+use crate::random::{BrownianPaths, Stream, StreamRng};
 use rand::RngExt;
 
 /// State and working memory of a flock's motion.
@@ -50,7 +50,7 @@ impl Integrator {
             velocities: vec![Velocity::default(); n],
             boats: vec![HullPose::new(&Pose::default()); n],
             contacts: ContactResolver::new(p),
-            noise: (p.c4 > 0.0).then(|| noise_paths(p, seed)),
+            noise: (p.c4 > 0.0).then(|| noise_paths(p, Stream::NOISE.rng(seed))),
             noise_increments: vec![0.0; n],
             drives: Vec::with_capacity(n),
             free: Vec::with_capacity(n),
@@ -70,6 +70,13 @@ impl Integrator {
         self.step_length_s = 0.0;
         self.contacts.forget();
         self.update_boats();
+    }
+
+    /// Continues with the noise of a branch.
+    pub(crate) fn branch_noise(&mut self, noise_seed: u64) {
+        if let Some(noise) = &mut self.noise {
+            *noise = noise_paths(&self.parameters, Stream::BRANCH_NOISE.rng(noise_seed));
+        }
     }
 
     /// Works out the direction vectors of the poses.
@@ -94,14 +101,14 @@ impl Integrator {
 
 /// Brownian paths whose cells are those of full substeps: leapfrog noise_increments reach from the middle of
 /// one substep to the middle of the next.
-fn noise_paths(parameters: &FlockParameters, seed: u64) -> BrownianPaths {
+fn noise_paths(parameters: &FlockParameters, keys: StreamRng) -> BrownianPaths {
     let dt = ticks(parameters.dt_s);
     let shift = if parameters.scheme == Scheme::Leapfrog {
         dt
     } else {
         0
     };
-    BrownianPaths::new(seed, parameters.n_boats, 2 * dt, shift)
+    BrownianPaths::of(keys, parameters.n_boats, 2 * dt, shift)
 }
 
 /// Per-boat factors of the preferred speed; empty where all boats are alike.

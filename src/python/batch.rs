@@ -3,7 +3,7 @@
 use super::arrays::{floats, rows_of};
 use super::exclusive::{Exclusive, interruptible};
 use super::flock::{PyFlock, pose_numbers, state_from, velocity_numbers};
-use super::value::{given, seed_from, set_given, value_from};
+use super::value::{given, noise_seed_from, seed_from, set_given, value_from};
 use crate::analysis::OrderParameters;
 use crate::environment::observation::FlockFeatures;
 use crate::environment::{
@@ -283,6 +283,7 @@ impl PyEnvBatch {
 /// A request of a flock of so many boats.
 fn request_from(options: &Bound<'_, PyDict>, boats: usize) -> PyResult<ResetRequest> {
     let mut request = ResetRequest::default();
+    let (mut snapshot, mut noise_seed) = (None, None);
     for (name, value) in options {
         match text_of("reset option", &value_from(&name))? {
             "seed" if value.is_none() => request.seed = None,
@@ -290,9 +291,10 @@ fn request_from(options: &Bound<'_, PyDict>, boats: usize) -> PyResult<ResetRequ
             "target" => request.target = Some(given(&value, "target")?),
             "bw_s" => request.bw_s = Some(given(&value, "bw_s")?),
             "state" => request.start = Start::State(state_from(&value, boats)?),
-            "snapshot" => request.start = Start::Snapshot(value.extract()?),
+            "snapshot" => snapshot = Some(value.extract()?),
+            "noise_seed" => noise_seed = noise_seed_from(&value)?,
             other => {
-                let accepted = "target, bw_s, state or snapshot";
+                let accepted = "target, bw_s, state, snapshot or noise_seed";
                 let found = format!("{other:?}");
                 return Err(FlockError::parameter("reset option", found, accepted).into());
             }
@@ -303,5 +305,12 @@ fn request_from(options: &Bound<'_, PyDict>, boats: usize) -> PyResult<ResetRequ
     let accepted = "a snapshot alone: it brings its own state and bw_s along";
     let is_alone = !starts_twice && !noise_twice;
     FlockError::unless(is_alone, "reset options", "snapshot and others", accepted)?;
+    if let Some(seed) = noise_seed.filter(|_| snapshot.is_none()) {
+        let accepted = "a noise_seed together with a snapshot, which it continues with other noise";
+        return Err(FlockError::parameter("noise_seed", seed, accepted).into());
+    }
+    if let Some(bytes) = snapshot {
+        request.start = Start::Snapshot { bytes, noise_seed };
+    }
     Ok(request)
 }

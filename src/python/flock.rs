@@ -2,7 +2,7 @@
 
 use super::arrays::{floats, rows_from, rows_of};
 use super::exclusive::{Exclusive, interruptible};
-use super::value::{given, seed_from, value_from, wrong_type};
+use super::value::{given, noise_seed_from, seed_from, value_from, wrong_type};
 use crate::analysis::quantities::Recorded;
 use crate::contact::Partner;
 use crate::draw::FrameRenderer;
@@ -39,8 +39,13 @@ impl PyFlock {
     }
 
     #[classmethod]
-    fn from_snapshot(_class: &Bound<'_, PyType>, snapshot: &[u8]) -> Result<Self> {
-        Flock::from_snapshot(snapshot).map(Self::of)
+    fn from_snapshot(
+        _class: &Bound<'_, PyType>,
+        snapshot: &[u8],
+        noise_seed: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let noise_seed = noise_seed_from(noise_seed)?;
+        Ok(Flock::from_snapshot(snapshot, noise_seed).map(Self::of)?)
     }
 
     #[classmethod]
@@ -71,6 +76,11 @@ impl PyFlock {
     #[getter]
     fn seed(&self) -> Result<u64> {
         Ok(self.0.read()?.seed())
+    }
+
+    #[getter]
+    fn noise_seed(&self) -> Result<Option<u64>> {
+        Ok(self.0.read()?.noise_seed())
     }
 
     #[getter]
@@ -160,8 +170,9 @@ impl PyFlock {
         Ok(PyBytes::new(py, &self.0.read()?.snapshot()))
     }
 
-    fn restore(&self, snapshot: &[u8]) -> Result<()> {
-        self.0.write()?.restore(snapshot)
+    fn restore(&self, snapshot: &[u8], noise_seed: &Bound<'_, PyAny>) -> PyResult<()> {
+        let noise_seed = noise_seed_from(noise_seed)?;
+        Ok(self.0.write()?.restore(snapshot, noise_seed)?)
     }
 
     fn copy(&self) -> Result<Self> {

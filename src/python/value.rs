@@ -86,6 +86,11 @@ pub(super) fn seed_from(object: &Bound<'_, PyAny>) -> PyResult<u64> {
     Ok(given::<usize>(object, "seed")? as u64)
 }
 
+/// A seed of other noise; `None` for None.
+pub(super) fn noise_seed_from(object: &Bound<'_, PyAny>) -> PyResult<Option<u64>> {
+    Ok(given::<Option<usize>>(object, "noise_seed")?.map(|seed| seed as u64))
+}
+
 /// The error of a field's type as one that shows what Python code gave.
 fn refused(error: FlockError, value: &Value, object: &Bound<'_, PyAny>) -> PyErr {
     match error {

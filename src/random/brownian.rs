@@ -5,7 +5,7 @@
 //! generator.
 
 use super::normal::{Ziggurat, scramble};
-use super::streams::Stream;
+use super::streams::{Stream, StreamRng};
 use rand_chacha::rand_core::Rng;
 
 /// Standard normal draws keyed by (boat, cell, node).
@@ -17,8 +17,7 @@ struct KeyedNormals {
 }
 
 impl KeyedNormals {
-    fn new(seed: u64, boats: usize) -> Self {
-        let mut words = Stream::NOISE.rng(seed);
+    fn new(mut words: StreamRng, boats: usize) -> Self {
         Self {
             keys: (0..boats).map(|_| words.next_u64()).collect(),
             ziggurat: Ziggurat::new(),
@@ -75,12 +74,17 @@ struct Reading {
 const HALF_TICK_S: f64 = 0.5e-9;
 
 impl BrownianPaths {
-    /// Paths for `boats` boats; cells of `cell_length` half ticks, the first of them start
+    /// Paths of a seed for `boats` boats; cells of `cell_length` half ticks, the first of them start
     /// `shift` half ticks before time 0.
     pub fn new(seed: u64, boats: usize, cell_length: u64, shift: u64) -> Self {
+        Self::of(Stream::NOISE.rng(seed), boats, cell_length, shift)
+    }
+
+    /// As [`Self::new`], with keys from a stream of one's own.
+    pub(crate) fn of(keys: StreamRng, boats: usize, cell_length: u64, shift: u64) -> Self {
         let zeros = vec![0.0; boats];
         Self {
-            normals: KeyedNormals::new(seed, boats),
+            normals: KeyedNormals::new(keys, boats),
             cell_length,
             shift,
             last: Reading {

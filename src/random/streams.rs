@@ -18,6 +18,8 @@ impl Stream {
     pub(crate) const PLACEMENT: Self = Self("placement");
     /// η of eq. (9).
     pub(crate) const NOISE: Self = Self("noise");
+    /// η of eq. (9) in a branch: never the noise of a flock with that seed.
+    pub(crate) const BRANCH_NOISE: Self = Self("branch-noise");
     /// Tracking drop-outs of the observation.
     pub(crate) const SENSING: Self = Self("sensing");
     /// Per-boat differences of speed.

@@ -105,7 +105,10 @@ fn resets_happen_as_a_whole() {
     let mut batch = batch(settings(30), &[1, 1], 0);
     let before = batch.to_bytes();
     let bad = ResetRequest {
-        start: Start::Snapshot(b"no snapshot".to_vec()),
+        start: Start::Snapshot {
+            bytes: b"no snapshot".to_vec(),
+            noise_seed: None,
+        },
         ..ResetRequest::default()
     };
     assert!(batch.reset(&[seeded(7), Some(bad)]).is_err());

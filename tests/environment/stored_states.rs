@@ -4,7 +4,7 @@ use crate::support::{batch, settings, step};
 use flockenv::Flock;
 use flockenv::environment::{Autoreset, EnvBatch, EnvSettings, RewardWeights, TERMS, TargetChoice};
 use flockenv::parameters::Target::{Clockwise, CounterClockwise};
-use flockenv::parameters::Targets;
+use flockenv::parameters::{FlockParameters, Targets};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -65,6 +65,21 @@ fn stored_batch() -> EnvBatch {
     batch
 }
 
+/// A flock in motion, with everything that it may hold.
+fn stored_flock() -> Flock {
+    let parameters = FlockParameters {
+        n_boats: 12,
+        n_leaders: 2,
+        target: Targets::Each(vec![Clockwise, CounterClockwise]),
+        ..FlockParameters::default()
+    };
+    let mut flock = Flock::new(parameters, 2011).unwrap();
+    flock.advance(1.0, None).unwrap();
+    flock = Flock::from_snapshot(&flock.snapshot(), Some(5)).unwrap();
+    flock.advance(1.23, Some(&[0.5, -0.5])).unwrap();
+    flock
+}
+
 /// Written by version 1 of each format. If a format changes once it is released: raise the version in its magic. Then
 /// write these again: `WRITE_FIXTURES=1 cargo test --test environment`.
 const BATCH: &[u8] = include_bytes!("../fixtures/environment_1.state");
@@ -72,16 +87,21 @@ const FLOCK: &[u8] = include_bytes!("../fixtures/flock_1.snapshot");
 
 #[test]
 fn states_of_this_version_are_read_and_written_as_the_same_bytes() {
-    let now = stored_batch().to_bytes();
+    let [batch, flock] = [stored_batch().to_bytes(), stored_flock().snapshot()];
     if std::env::var_os("WRITE_FIXTURES").is_some() {
-        std::fs::write("tests/fixtures/environment_1.state", &now).unwrap();
+        std::fs::write("tests/fixtures/environment_1.state", &batch).unwrap();
+        std::fs::write("tests/fixtures/flock_1.snapshot", &flock).unwrap();
     }
     assert!(
-        now == BATCH,
+        batch == BATCH,
         "the batch of the fixture's seed has other bytes"
     );
+    assert!(
+        flock == FLOCK,
+        "the flock of the fixture's seed has other bytes"
+    );
     assert_eq!(EnvBatch::from_bytes(BATCH).unwrap().to_bytes(), BATCH);
-    assert_eq!(Flock::from_snapshot(FLOCK).unwrap().snapshot(), FLOCK);
+    assert_eq!(Flock::from_snapshot(FLOCK, None).unwrap().snapshot(), FLOCK);
 }
 
 proptest! {

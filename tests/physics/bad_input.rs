@@ -124,7 +124,7 @@ fn corrupt_and_foreign_snapshots_change_nothing() {
     other.advance(0.3, None).expect("finite motion");
     let before = other.snapshot();
     let mut refuse = |bytes: &[u8]| {
-        let result = other.restore(bytes);
+        let result = other.restore(bytes, None);
         assert!(matches!(result, Err(FlockError::Snapshot(_))), "{result:?}");
         assert!(other.snapshot() == before);
     };
@@ -156,7 +156,7 @@ fn corrupt_and_foreign_snapshots_change_nothing() {
     // Another target is no other scene.
     let mut turned = Flock::new(p, 3).expect("room");
     turned.set_target(Target::CounterClockwise).unwrap();
-    turned.restore(&bytes).expect("the same scene");
+    turned.restore(&bytes, None).expect("the same scene");
     assert_eq!(bits(&turned), bits(&flock));
     assert_eq!(turned.parameters().target, Target::Clockwise.into());
 }

@@ -90,8 +90,10 @@ fn a_snapshot_continues_with_the_same_bits() {
                 let bytes = flock.snapshot();
                 let mut other = Flock::new(p.clone(), 99).expect("room");
                 other.advance(0.5, None).expect("finite motion");
-                other.restore(&bytes).expect("a snapshot of such a flock");
-                let mut third = Flock::from_snapshot(&bytes).expect("a snapshot");
+                other
+                    .restore(&bytes, None)
+                    .expect("a snapshot of such a flock");
+                let mut third = Flock::from_snapshot(&bytes, None).expect("a snapshot");
                 let mut went_on = flock.clone();
                 let expected = advanced(&mut went_on, &[0.41, 0.333_333]);
                 assert_eq!(advanced(&mut other, &[0.41, 0.333_333]), expected);
@@ -108,7 +110,9 @@ fn a_snapshot_restored_is_the_snapshot() {
         let mut flock = Flock::new(p, 2).expect("room");
         flock.advance(1.0, None).expect("finite motion");
         let bytes = flock.snapshot();
-        let again = Flock::from_snapshot(&bytes).expect("a snapshot").snapshot();
+        let again = Flock::from_snapshot(&bytes, None)
+            .expect("a snapshot")
+            .snapshot();
         assert!(again == bytes);
     }
 }

@@ -248,7 +248,7 @@ fn the_same_seed_gives_the_same_bits_at_any_cut_and_through_a_snapshot() {
         assert!(whole.statistics().contacts > 0);
         let mut cut = Flock::new(p, 3).expect("room");
         cut.advance(2.0, None).expect("finite motion");
-        let mut restored = Flock::from_snapshot(&cut.snapshot()).expect("a whole snapshot");
+        let mut restored = Flock::from_snapshot(&cut.snapshot(), None).expect("a whole snapshot");
         assert_eq!(restored.parameters(), cut.parameters());
         restored.advance(4.0, None).expect("finite motion");
         assert_eq!(bits(&whole), bits(&restored), "{scheme:?}");

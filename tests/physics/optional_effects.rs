@@ -93,7 +93,7 @@ fn with_all_effects_on_snapshots_continue_bit_for_bit() {
         let p = all_on(scheme, noise);
         let mut flock = Flock::new(p.clone(), 11).expect("room");
         flock.advance(1.234_567, None).expect("finite motion");
-        let mut copy = Flock::from_snapshot(&flock.snapshot()).expect("a snapshot");
+        let mut copy = Flock::from_snapshot(&flock.snapshot(), None).expect("a snapshot");
         flock.advance(3.0, None).expect("finite motion");
         copy.advance(3.0, None).expect("finite motion");
         assert_eq!(bits(&flock), bits(&copy), "{scheme:?} {noise:?}");

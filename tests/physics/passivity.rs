@@ -167,7 +167,7 @@ fn substeps_cut_for_their_contacts_go_on_from_a_snapshot() {
     };
     let mut flock = Flock::new(p, 3).expect("room");
     for _ in 0..60 {
-        let mut copy = Flock::from_snapshot(&flock.snapshot()).expect("its own snapshot");
+        let mut copy = Flock::from_snapshot(&flock.snapshot(), None).expect("its own snapshot");
         for flock in [&mut flock, &mut copy] {
             flock.advance(0.5, None).expect("finite motion");
         }
