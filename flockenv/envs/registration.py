@@ -1,9 +1,10 @@
 """Environments by id, for ``gymnasium.make`` and ``gymnasium.make_vec``."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import gymnasium
+from gymnasium.envs.registration import EnvSpec
 
 ENV_ID = "flockenv/Leaders-v0"
 
@@ -30,13 +31,22 @@ ENVIRONMENTS: Mapping[str, Mapping[str, Any]] = {
 """Registered ids, and the options in which each differs from the defaults."""
 
 
+ENTRY_POINT = "flockenv.envs.single:LeadersEnv"
+
+
+def registered(is_ours: Callable[[Mapping[str, Any]], bool]) -> EnvSpec | None:
+    """Return the first registered environment of leaders whose options are ours, if any is."""
+    specs = (each for each in gymnasium.registry.values() if each.entry_point == ENTRY_POINT)
+    return next((each for each in specs if is_ours(each.kwargs)), None)
+
+
 def register() -> None:
     """Make the environments known to Gymnasium, once."""
     for env_id, options in ENVIRONMENTS.items():
         if env_id not in gymnasium.registry:
             gymnasium.register(
                 id=env_id,
-                entry_point="flockenv.envs.single:LeadersEnv",
+                entry_point=ENTRY_POINT,
                 vector_entry_point="flockenv.envs.vector:LeadersVectorEnv",
                 kwargs=dict(options),
             )

@@ -1,9 +1,11 @@
 """`LeaderVecEnv`: stable-baselines3's vector interface, one slot per leader."""
 
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
+from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
@@ -12,6 +14,7 @@ from flockenv.envs.base import ManyFlocks
 from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
 from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.options import EnvOptions
+from flockenv.envs.registration import registered
 from flockenv.envs.render_mode import RenderMode
 from flockenv.envs.spaces import leader_action_space
 from flockenv.errors import EpisodeError, ParameterError
@@ -33,7 +36,11 @@ class LeaderSlot:
         self.observation_space = env.observation_space
         self.action_space = env.action_space
         self.render_mode = env.render_mode
-        self.spec = None
+
+    @property
+    def spec(self) -> EnvSpec | None:
+        """The registered environment whose options these are; None for options of one's own."""
+        return self._env.spec
 
     @property
     def parameters(self) -> FlockParameters:
@@ -121,6 +128,7 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
         leaders = [counts[flock % len(counts)] for flock in range(num_flocks)]
         # Flocks start again here, once their rewards are known.
         self._batch = LeaderBatch(parsed, leaders, "disabled")
+        self._own_reward = parsed.own_reward
         settings = self._batch.settings
         self.num_flocks = num_flocks
         self.render_mode = render_mode
@@ -145,6 +153,21 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
         super().__init__(len(self.slots), self.observation_space, self.action_space)
         self.metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": fps}
         self._actions_shape = (self.num_envs, *(self.action_space.shape or ()))
+
+    @cached_property
+    def spec(self) -> EnvSpec | None:
+        """The registered environment whose options these are; None for options of one's own."""
+        made = (self._batch.parameters(0), self._batch.settings, self._own_reward)
+
+        def is_ours(options: Mapping[str, Any]) -> bool:
+            parsed = EnvOptions.parse(options, takes_function=True)
+            n_leaders = parsed.parameters.n_leaders
+            if {*self._batch.leaders} != {n_leaders}:
+                return False
+            batch = LeaderBatch(parsed, [n_leaders], "disabled")
+            return _equal((batch.parameters(0), batch.settings, parsed.own_reward), made)
+
+        return registered(is_ours)
 
     def seed(self, seed: int | None = None) -> Sequence[int | None]:
         """Seed the flocks at the next reset: flock i with ``seed + i``; None draws one."""

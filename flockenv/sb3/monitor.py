@@ -12,7 +12,8 @@ class FlockMonitor(VecEnvWrapper):
     """Write the episodes of a `LeaderVecEnv` to a ``monitor.csv``, a row per flock.
 
     `VecMonitor` would write a row per leader. stable-baselines3's ``results_plotter`` and
-    ``load_results`` read the file.
+    ``load_results`` read the file. Its header names the registered environment that has the same
+    options, or ``None``.
 
     Parameters
     ----------
@@ -34,7 +35,8 @@ class FlockMonitor(VecEnvWrapper):
         super().__init__(venv)
         self._start = time.time()
         self._keywords = summary_keywords
-        header: dict[str, float | str] = {"t_start": self._start, "env_id": "flockenv/Leaders-v0"}
+        spec = venv.get_attr("spec")[0]
+        header: dict[str, float | str] = {"t_start": self._start, "env_id": str(spec and spec.id)}
         self._writer = ResultsWriter(str(filename), header, extra_keys=summary_keywords)
 
     def reset(self) -> Any:

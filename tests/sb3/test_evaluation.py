@@ -1,5 +1,8 @@
 """Law: an episode is a flock's, however many leaders have a slot in it."""
 
+import json
+
+import gymnasium
 import numpy as np
 import pytest
 
@@ -12,6 +15,7 @@ from stable_baselines3.common.vec_env import VecNormalize  # noqa: E402
 
 from flockenv import FlockParameters  # noqa: E402
 from flockenv.comparison import run_episodes  # noqa: E402
+from flockenv.envs.registration import ENTRY_POINT  # noqa: E402
 from flockenv.policies import SteeringLaw  # noqa: E402
 from flockenv.sb3 import (  # noqa: E402
     FlockEvalCallback,
@@ -131,3 +135,21 @@ def test_monitor_file_has_a_row_per_flock(tmp_path):
     assert list(rows["l"]) == [20] * 4
     assert rows["r"].nunique() == 4
     assert {"t", "signed_order", "ordering_time_s"} <= set(rows.columns)
+
+
+def test_a_monitor_file_names_the_environment(tmp_path):
+    easy = gymnasium.spec("flockenv/Order-easy-v0").kwargs
+    made = {
+        "flockenv/Order-easy-v0": LeaderVecEnv(2, **easy),
+        "flockenv/Leaders-v0": PerFlock(LeaderVecEnv(2)),
+        "own-v0": LeaderVecEnv(2, **{**easy, "bw_s": 0.25}),
+        "None": LeaderVecEnv(2, **{**easy, "n_leaders": [1, 4]}),
+    }
+    gymnasium.register("own-v0", ENTRY_POINT, kwargs={**easy, "bw_s": 0.25})
+    try:
+        for place, (env_id, venv) in enumerate(made.items()):
+            FlockMonitor(venv, str(tmp_path / f"{place}")).close()
+            with open(tmp_path / f"{place}.monitor.csv", encoding="utf-8") as file:
+                assert json.loads(file.readline()[1:])["env_id"] == env_id
+    finally:
+        del gymnasium.registry["own-v0"]
