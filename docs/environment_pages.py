@@ -1,9 +1,24 @@
-"""The pages of the environments, written from the docstrings whenever the pages are built."""
+"""The pages of the environments, written whenever the pages are built.
+
+A class's page is its docstring. `tables.md` lists what the core declares: options, terms of the
+reward, entries of the observation and of the global state, features of the flock.
+"""
 
 import inspect
+from collections.abc import Iterable
 from pathlib import Path
 
+from committed_data import markdown
+
 import flockenv
+from flockenv.envs.observation import (
+    BLOCKS,
+    Entry,
+    flock_feature_entries,
+    observation_entries,
+    state_entries,
+)
+from flockenv.envs.options import OPTIONS, TERMS
 from flockenv.sb3 import LeaderVecEnv
 
 FOLDER = Path(__file__).parent / "environments"
@@ -13,14 +28,113 @@ CLASSES = (
     flockenv.LeadersVectorEnv,
     LeaderVecEnv,
 )
+EVERY_BLOCK = {name: type(default)(1) for name, default in BLOCKS.items()}
 
 
 def pages() -> dict[Path, str]:
     """Return the text of every page."""
-    return {
-        FOLDER / f"{each.__name__}.md": f"# {each.__name__}\n\n{inspect.getdoc(each)}\n"
+    texts = {
+        each.__name__: f"# {each.__name__}\n\n{inspect.getdoc(each)}\n".replace(
+            "docs/environments/tables.md", "[Tables](tables.md)"
+        )
         for each in CLASSES
     }
+    return {FOLDER / f"{name}.md": text for name, text in {**texts, "tables": tables()}.items()}
+
+
+def tables() -> str:
+    """Return the page of everything that the core declares of the environments."""
+    options = markdown(
+        ["option", "default", "meaning"],
+        [[f"`{name}`", f"`{each.default!r}`", _plain(each.doc)] for name, each in OPTIONS.items()],
+    )
+    terms = markdown(
+        ["term", "meaning"], [[f"`{name}`", _plain(meaning)] for name, meaning in TERMS.items()]
+    )
+    return f"""# Tables
+
+Every option of the environments, every term of the reward, and every number that a policy can \
+observe. This page is written from what the core declares, so that it lists what the installed \
+version has.
+
+## Options
+
+Any field of [`FlockParameters`](../model.md) is an option too.
+
+{options}
+
+## Reward terms
+
+The option `reward` gives each a weight. `flockenv.envs.options.TERMS` holds this table.
+
+{terms}
+
+## Observation
+
+`observation_entries()` returns the rows of the blocks that are on, in the order of an \
+observation. The entries of `neighbors` and `obstacles` repeat for each boat or obstacle, nearest \
+first. A value is divided by its scale and then clipped at its bounds. *Mirrored* entries change \
+their sign if `mirror_to_target` reflects the view.
+
+{_by_block(observation_entries(EVERY_BLOCK))}
+
+## Global state
+
+`state()` has the entries of `boat` for each boat in order, then those of `clock`.
+
+{_by_block(state_entries(1))}
+
+## Flock features
+
+`flock_features()` has these for the normal boats, then for the leaders, then the rest.
+
+{_features()}
+"""
+
+
+def _by_block(entries: Iterable[Entry]) -> str:
+    blocks: dict[str, list[Entry]] = {}
+    for entry in entries:
+        blocks.setdefault(entry.block, []).append(entry)
+    header = ["entry", "bounds", "scale", "mirrored", "meaning"]
+    return "\n\n".join(
+        f"### `{block}`\n\n"
+        + markdown(
+            header,
+            [
+                [
+                    f"`{each.name}`",
+                    _bounds(each),
+                    _plain(each.scale),
+                    "yes" if each.mirrored else "",
+                    _plain(each.meaning),
+                ]
+                for each in own
+            ],
+        )
+        for block, own in blocks.items()
+    )
+
+
+def _features() -> str:
+    of: dict[str, list[str]] = {}
+    entries = {entry.name: entry for entry in flock_feature_entries()}
+    for entry in flock_feature_entries():
+        of.setdefault(entry.name, []).append(entry.block)
+    body = [
+        [f"`{name}`", ", ".join(of[name]), _bounds(each), _plain(each.meaning)]
+        for name, each in entries.items()
+    ]
+    return markdown(["feature", "of", "bounds", "meaning"], body)
+
+
+def _bounds(entry: Entry) -> str:
+    return f"[{entry.low:g}, {entry.high:g}]"
+
+
+def _plain(text: str) -> str:
+    """Return a text in which no character means something to a table in Markdown."""
+    return text.replace("|", r"\|").replace("*", r"\*")
 
 
 def write() -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +20,42 @@ from flockenv.parameters import FlockParameters
 
 TERMS: dict[str, str] = dict(_core.REWARD_TERMS)
 """Name and meaning of each term of the reward; every term is larger for better."""
+
+
+class Option(NamedTuple):
+    """An option of the environments: its default, and what it means."""
+
+    default: Any
+    doc: str
+
+
+OPTIONS: dict[str, Option] = {
+    "preset": Option("simulation", "named parameters of the flock: `FlockParameters.presets()`"),
+    "params": Option(
+        None, "parameters of the flock, `FlockParameters` or a dictionary, instead of a preset"
+    ),
+    "physics": Option(
+        "default",
+        '"training" steps the flock by dt_s = 0.1 s with one relinearization, coarser and cheaper; '
+        '"default" as the parameters have it',
+    ),
+    **{
+        each["name"]: Option(_core.env_defaults()[each["name"]], each["doc"])
+        for each in _core.OPTIONS
+    },
+    "bw_s": Option(
+        {each.name: each.default for each in fields(FlockParameters)}["bw_s"],
+        "duration of the backward phase in s, the source of disorder; a pair (low, high) draws it "
+        "uniformly for each episode",
+    ),
+    "render_mode": Option(
+        None,
+        'None, "rgb_array" (`render` returns a frame) or, for environments with one flock, "human" '
+        "(a window, extra `render`)",
+    ),
+    "render_size": Option((600, 600), "width and height of a frame in pixels, 64 to 4096"),
+}
+"""The options of the environments by name, besides the fields of `FlockParameters`."""
 
 #: What ``reset(options=...)`` understands, besides ``reset_mask`` in the vector environment.
 RESET_OPTIONS = ("target", "bw_s", "state", "snapshot", "noise_seed")

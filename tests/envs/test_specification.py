@@ -1,27 +1,34 @@
-"""Law: what an environment's docstring says of the task is what the core declares."""
+"""Law: a docstring says what the task is; what the core declares stands in tables made of it."""
 
 import inspect
 import re
+import sys
+from pathlib import Path
 
 import gymnasium
 import pytest
 
 import flockenv
-from flockenv import _core
 from flockenv.envs.observation import (
     BLOCKS,
     flock_feature_entries,
     observation_entries,
     state_entries,
 )
-from flockenv.envs.options import TERMS
+from flockenv.envs.options import OPTIONS, TERMS, EnvOptions
 from flockenv.order import QUANTITIES
 
 pytest.importorskip("stable_baselines3")
 
 from flockenv.sb3 import LeaderVecEnv
 
-EVERY_BLOCK = {block: type(default)(1) for block, default in BLOCKS.items()}
+DOCS = Path(__file__).parents[2] / "docs"
+KINDS = (
+    flockenv.LeadersEnv,
+    flockenv.LeadersParallelEnv,
+    flockenv.LeadersVectorEnv,
+    LeaderVecEnv,
+)
 SECTIONS = (
     "Description",
     "Action space",
@@ -32,67 +39,68 @@ SECTIONS = (
     "Arguments",
     "Version history",
 )
+LONGEST = 150
 
 
-def words(text: str) -> str:
-    return re.sub(r"\s+", " ", text)
+@pytest.fixture(scope="module")
+def tables():
+    """The page of tables: its rows by section."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "path", [str(DOCS), *sys.path])
+        import environment_pages
+
+    sections = re.split(r"^## ", environment_pages.tables(), flags=re.MULTILINE)[1:]
+    return {text.split("\n", 1)[0]: re.findall(r"^\| `(.+?)` ", text, re.M) for text in sections}
 
 
-SPECIFIED = words(inspect.getdoc(flockenv.LeadersEnv))
+def test_the_tables_list_everything_once_and_in_order(tables):
+    every_block = {block: type(default)(1) for block, default in BLOCKS.items()}
+    features = dict.fromkeys(entry.name for entry in flock_feature_entries())
+    assert tables == {
+        "Options": [*OPTIONS],
+        "Reward terms": [*TERMS],
+        "Observation": [entry.name for entry in observation_entries(every_block)],
+        "Global state": [entry.name for entry in state_entries(1)],
+        "Flock features": [*features],
+    }
 
 
-def line(entry) -> str:
-    """How the docstring lists an entry: name, bounds, unit and meaning."""
-    if entry.block == "lean_features":
-        return f"- `{entry.name}`: {entry.meaning}"
-    scale = f", {entry.scale}" if entry.scale.startswith("-1") else f" × {entry.scale}"
-    scale = "" if entry.scale == "1" else scale
-    return f"- `{entry.name}` in [{entry.low:g}, {entry.high:g}]{scale}: {entry.meaning}"
+def test_every_option_is_accepted_with_its_default():
+    drawn = {name: each.default for name, each in OPTIONS.items() if name != "params"}
+    shown = {"render_mode", "render_size", "autoreset_mode"}
+    EnvOptions.parse({name: each for name, each in drawn.items() if name not in shown})
+    taken = inspect.signature(flockenv.LeadersEnv).parameters
+    for name in shown - {"autoreset_mode"}:
+        assert taken[name].default == OPTIONS[name].default
+    assert "autoreset_mode" in inspect.signature(flockenv.LeadersVectorEnv).parameters
 
 
-def test_it_lists_every_entry_of_the_observation_and_the_state_in_order():
-    for entries in (observation_entries(EVERY_BLOCK), state_entries(1)):
-        blocks: dict[str, list] = {}
-        for entry in entries:
-            blocks.setdefault(entry.block, []).append(entry)
-        for block, own in blocks.items():
-            heading = " all in [-20, 20] and standardized as in the pool"
-            heading = f"- {block}{',' + heading if block == 'lean_features' else ''} "
-            assert heading + " ".join(map(line, own)) in SPECIFIED
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_docstring_is_the_task_in_few_lines(kind):
+    text = inspect.getdoc(kind)
+    assert text.count("\n") < LONGEST
+    places = [text.find(f"\n## {section}\n") for section in SECTIONS]
+    assert min(places[0], places[-1]) > 0
+    assert [place for place in places if place > 0] == sorted({*places} - {-1})
+    assert kind is flockenv.LeadersEnv or "`LeadersEnv` specifies the task" in text
 
 
-def test_it_lists_every_feature_of_the_flock():
-    blocks: dict[str, list[str]] = {}
-    for entry in flock_feature_entries():
-        blocks.setdefault(entry.name, []).append(entry.block)
-    for entry in flock_feature_entries():
-        of = ", ".join(blocks[entry.name])
-        bounds = f"[{entry.low:g}, {entry.high:g}]"
-        assert f"- `{entry.name}` in {bounds} of {of}: {entry.meaning}" in SPECIFIED
-
-
-def test_it_lists_every_term_of_the_reward_and_every_option():
-    assert " ".join(f"- `{name}`: {meaning}" for name, meaning in TERMS.items()) in SPECIFIED
-    defaults = {**_core.env_defaults(), "target": "cw"}
-    for option in _core.OPTIONS:
-        name, meaning = option["name"], option["doc"]
-        if name not in ("bw_s", "autoreset_mode"):
-            assert words(f"- `{name}` = `{defaults[name]!r}`: {meaning}") in SPECIFIED
-    means = [each.name for each in QUANTITIES if each.is_averaged and each.kind != "structure"]
-    assert ", ".join(f"`{name}`" for name in means) in SPECIFIED
-
-
-def test_its_sections_stand_in_the_order_of_gymnasiums_pages():
-    for kind in (
-        flockenv.LeadersEnv,
-        flockenv.LeadersParallelEnv,
-        flockenv.LeadersVectorEnv,
-        LeaderVecEnv,
-    ):
-        text = inspect.getdoc(kind)
-        places = [text.find(f"\n## {section}\n") for section in SECTIONS]
-        assert min(places[0], places[-1]) > 0
-        assert [place for place in places if place > 0] == sorted({*places} - {-1})
-        assert kind is flockenv.LeadersEnv or "`LeadersEnv` specifies the task" in text
-    assert 'gymnasium.make("flockenv:flockenv/Order-easy-v0")' in SPECIFIED
+def test_names_of_the_task_are_names_of_the_core():
+    text = inspect.getdoc(flockenv.LeadersEnv)
+    named = {section.split("\n", 1)[0]: section for section in text.split("\n## ")}
+    listed = re.findall(r"^- ((?:`\w+`(?:, | or )?)+)", named["Arguments"], re.M)
+    arguments = {name for each in listed for name in re.findall(r"`(\w+)`", each)}
+    assert len(arguments) > 10
+    assert arguments <= {*OPTIONS}
+    assert re.findall(r"^- `(\w+)`", named["Observation space"], re.M) == [*BLOCKS]
+    assert {*TERMS} <= {*re.findall(r"`(\w+)`", named["Rewards"])}
+    env = flockenv.LeadersEnv(n_boats=4, n_leaders=1, episode_s=60.0)
+    env.reset(seed=0)
+    over = False
+    while not over:
+        _, _, _, over, info = env.step([0.0])
+    summary = re.findall(r"`(\w+)`", named["Episode end"].split("has:")[1])
+    assert {*summary} <= {*info["episode_summary"]}
+    assert {*summary} & {each.name for each in QUANTITIES}
+    assert 'gymnasium.make("flockenv:flockenv/Order-easy-v0")' in text
     assert gymnasium.spec("flockenv/Order-easy-v0").kwargs
