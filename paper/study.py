@@ -1,9 +1,11 @@
 """Studies of the paper: designs as tables of runs, results that resume, pictures, scripts.
 
 A design is a list of rows; a row says all that a run depends on, its seed included. The result of a
-study is ``results/<study>.csv`` with one line per run: the row and what was measured. A run that
-has a line is not made again, so that work resumes where it ended. Every
-claim of the paper that a study judges is a line of ``claims.csv``, with the number of its runs.
+study is ``results/<study>.csv`` with one line per run: the row, what was measured, and the results
+version of the code that made it. A run that has a line is not made again, so that work resumes
+where it ended; a file never holds runs of two versions. `flockenv.runs.RunStore` keeps whole
+recordings, which for these studies would be gigabytes. Every claim of the paper that a study judges
+is a line of ``claims.csv``, with the number of its runs.
 """
 
 import argparse
@@ -31,12 +33,16 @@ from rich.progress import track
 
 import flockenv
 from flockenv.runs.seeds import POLICY_SEEDS
+from flockenv.runs.store import RESULTS_VERSION
 
 HERE = Path(__file__).parent
 FIRST_SEED = POLICY_SEEDS["paper"].first
 """Seeds of these studies are from here on; nothing else uses them."""
 SEEDS = 24
 """Runs at each point of a design, unless it says otherwise."""
+
+VERSION = "results_version"
+"""The last column of every file of results: `RESULTS_VERSION` of the code that made a run."""
 
 Row = dict[str, Any]
 
@@ -98,8 +104,9 @@ class Study:
         Raises
         ------
         StudyError
-            For a file of another design, a run that cannot be made and a file that cannot be
-            written. What was finished before is in the file.
+            For a file of another design or another results version with runs missing, a run that
+            cannot be made and a file that cannot be written. What was finished before is in the
+            file.
         """
         rows = list(self.design())
         if options.trial:
@@ -122,6 +129,7 @@ class _Store:
         self.path, self.columns = path, list(columns)
         self.lines: dict[tuple[str, ...], dict[str, str]] = {}
         self.measured: list[str] = []
+        self.version = str(RESULTS_VERSION)
         if not path.exists():
             return
         try:
@@ -137,7 +145,10 @@ class _Store:
                 f"{', '.join(names[: len(columns)])}, this design's are {', '.join(columns)}; "
                 "move it away to make its runs again"
             )
-        self.measured = names[len(columns) :]
+        if names[-1] != VERSION or len(versions := {line[VERSION] for line in lines}) > 1:
+            raise StudyError(f"{path} does not say which results version made its runs")
+        self.version = versions.pop() if versions else self.version
+        self.measured = names[len(columns) : -1]
         self.lines = {tuple(line[name] for name in self.columns): line for line in lines}
 
     def key(self, row: Row) -> tuple[str, ...]:
@@ -147,6 +158,12 @@ class _Store:
         self, missing: Mapping[tuple[str, ...], Row], measure: Callable[[Row], Row], workers: int
     ) -> None:
         """Make runs, writing the file every half minute and at the end, however it comes."""
+        if missing and self.version != str(RESULTS_VERSION):
+            raise StudyError(
+                f"{self.path} holds runs of results version {self.version}, and {len(missing)} "
+                f"are missing that this code would make as version {RESULTS_VERSION}; --no-runs "
+                "judges those that are there, and without the file all are made again"
+            )
         pool = ThreadPoolExecutor(workers)
         futures = {pool.submit(measure, row): key for key, row in missing.items()}
         written = time.monotonic()
@@ -171,19 +188,20 @@ class _Store:
 
     def _keep(self, key: tuple[str, ...], measured: Row) -> None:
         self.measured = self.measured or list(measured)
-        line = dict(zip(self.columns, key, strict=True))
+        line = dict(zip(self.columns, key, strict=True)) | {VERSION: self.version}
         self.lines[key] = line | {name: _text(value) for name, value in measured.items()}
 
     def _write(self) -> None:
         file = io.StringIO()
-        writer = csv.DictWriter(file, [*self.columns, *self.measured], lineterminator="\n")
+        names = [*self.columns, *self.measured, VERSION]
+        writer = csv.DictWriter(file, names, lineterminator="\n")
         writer.writeheader()
         writer.writerows(self.lines.values())
         write(self.path, file.getvalue().encode())
 
     def table(self, keys: Iterable[tuple[str, ...]]) -> pd.DataFrame:
         found = [self.lines[key] for key in keys if key in self.lines]
-        table = pd.DataFrame(found, columns=[*self.columns, *self.measured], dtype=object)
+        table = pd.DataFrame(found, columns=[*self.columns, *self.measured, VERSION], dtype=object)
         for name in table:
             with suppress(ValueError):
                 table[name] = [float(text) for text in table[name]]

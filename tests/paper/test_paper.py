@@ -64,6 +64,33 @@ def test_a_store_of_another_design(tmp_path: Path) -> None:
     assert store.read_text() == "length,seed,twice\n1,0,0\n"
 
 
+def test_a_store_of_another_version(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    options = study.Options(out=tmp_path)
+    with pytest.raises(KeyboardInterrupt):
+        _counted([]).results(options)
+    store = tmp_path / "results" / "counted.csv"
+    before = store.read_text()
+    monkeypatch.setattr(study, "RESULTS_VERSION", study.RESULTS_VERSION + 1)
+    with pytest.raises(study.StudyError, match=r"holds runs of results version \d+, and \d are"):
+        _counted([]).results(options)
+    assert store.read_text() == before
+    judged = _counted([]).results(study.Options(out=tmp_path, runs=False))
+    assert set(judged["results_version"]) == {study.RESULTS_VERSION - 1}
+
+
+def test_a_store_of_two_versions(tmp_path: Path) -> None:
+    (tmp_path / "results").mkdir()
+    store = tmp_path / "results" / "counted.csv"
+    for text in (
+        "minutes,seed,twice\n1.0,0,0\n",
+        "minutes,seed,twice,results_version\n1.0,0,0,4\n1.0,1,2,5\n",
+    ):
+        store.write_text(text)
+        with pytest.raises(study.StudyError, match="does not say which results version"):
+            _counted([]).results(study.Options(out=tmp_path))
+        assert store.read_text() == text
+
+
 def test_a_full_disk_leaves_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "claims.csv"
     path.write_text("before")
