@@ -14,22 +14,35 @@ from study import Options, write
 
 from flockenv.statistics import CONFIDENCE, bootstrap_interval, mean_interval
 
-Interval = tuple[float, float, float]
-"""A value and the ends of its 95 % interval."""
+
+class Interval(tuple[float, float, float]):
+    """A value and the ends of its 95 % interval, which `runs` independent runs or seeds bear."""
+
+    runs: int
+
+    def __new__(cls, found: Iterable[float], runs: int) -> "Interval":
+        interval = super().__new__(cls, found)
+        interval.runs = runs
+        return interval
+
+
+def unknown(runs: int = 0) -> Interval:
+    """Return an interval of something that was not measured."""
+    return Interval((math.nan, math.nan, math.nan), runs)
 
 
 def mean(values: Iterable[float]) -> Interval:
     """Return the mean of independent runs with its interval; NaN for no runs."""
     found = np.asarray(list(values), float)
-    return mean_interval(found) if len(found) else (math.nan, math.nan, math.nan)
+    return Interval(mean_interval(found), len(found)) if len(found) else unknown()
 
 
 def proportion(count: int, of: int) -> Interval:
     """Return a share of independent runs with the interval of Clopper and Pearson."""
     if of == 0:
-        return math.nan, math.nan, math.nan
+        return unknown()
     ends = stats.binomtest(int(count), int(of)).proportion_ci(CONFIDENCE, method="exact")
-    return count / of, float(ends.low), float(ends.high)
+    return Interval((count / of, float(ends.low), float(ends.high)), int(of))
 
 
 def bca(groups: Sequence[Any], statistic: Callable[..., Any]) -> Interval:
@@ -39,18 +52,22 @@ def bca(groups: Sequence[Any], statistic: Callable[..., Any]) -> Interval:
     (..., runs, columns) and returns one of shape (...).
     """
     arrays = [np.asarray(group, float) for group in groups]
+    runs = sum(map(len, arrays))
     if min(map(len, arrays)) < 3:
-        return math.nan, math.nan, math.nan
+        return unknown(runs)
 
     def of_places(*places: Any, axis: int) -> Any:
         return statistic(*(g[np.asarray(p, int)] for g, p in zip(arrays, places, strict=True)))
 
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")  # Draws without spread.
-        return bootstrap_interval([np.arange(len(g)) for g in arrays], of_places, paired=False)
+        places = [np.arange(len(g)) for g in arrays]
+        return Interval(bootstrap_interval(places, of_places, paired=False), runs)
 
 
-HOLDS, FAILS = "holds", "fails"
+HOLDS, FAILS, OPEN = "holds", "fails", "open"
+OCCURS = 0.05
+"""What happens at all happens in at least one run in twenty, whatever was found."""
 
 
 @dataclass(frozen=True)
@@ -66,9 +83,7 @@ class Claim:
     quantity
         What is measured, with its noise.
     found
-        The value and its interval.
-    runs
-        How many runs it is measured in.
+        The value and its interval, with the number of runs that bear it.
     least, most
         The range that the statement claims.
     """
@@ -78,28 +93,31 @@ class Claim:
     reading: str
     quantity: str
     found: Interval
-    runs: int
     least: float = -math.inf
     most: float = math.inf
 
     @property
     def verdict(self) -> str:
-        """It holds or fails where the whole interval does; otherwise it is open.
-
-        The runs that would decide are estimated from the distance of the value to the nearer bound,
-        since an interval narrows with the root of the number of runs.
-        """
-        value, low, high = self.found
+        """It holds or fails where the whole interval does; otherwise it is open."""
+        _, low, high = self.found
         if low >= self.least and high <= self.most:
             return HOLDS
-        if high < self.least or low > self.most:
-            return FAILS
-        if not all(map(math.isfinite, self.found)):
-            return "open: not measured"
+        return FAILS if high < self.least or low > self.most else OPEN
+
+    @property
+    def would_decide(self) -> str:
+        """About how many runs would decide an open statement.
+
+        Estimated from the distance of the value to the nearer bound, since an interval narrows with
+        the root of the number of runs. Empty for a statement that is decided or not measured.
+        """
+        value, low, high = self.found
+        if self.verdict != OPEN or not all(map(math.isfinite, self.found)):
+            return ""
         away = min(abs(value - bound) for bound in (self.least, self.most))
-        outer = [abs(end - value) for end in (low, high)]
-        needed = math.inf if away == 0 else self.runs * (max(outer) / away) ** 2
-        return "open: more than 10000 runs" if needed > 1e4 else f"open: {math.ceil(needed)} runs"
+        outer = max(abs(end - value) for end in (low, high))
+        needed = math.inf if away == 0 else self.found.runs * (outer / away) ** 2
+        return "more than 10000" if needed > 1e4 else str(math.ceil(needed))
 
     @property
     def claimed(self) -> str:
@@ -123,7 +141,6 @@ class Claims(list[Claim]):
         claim: str,
         quantity: str,
         found: Interval,
-        runs: int,
         *,
         least: float = -math.inf,
         most: float = math.inf,
@@ -131,23 +148,16 @@ class Claims(list[Claim]):
     ) -> None:
         """Add a claim; `n` is added to the reading."""
         reading = f"{self.reading}, n = {n}" if n else self.reading
-        self.append(Claim(claim, self.section, reading, quantity, found, int(runs), least, most))
+        self.append(Claim(claim, self.section, reading, quantity, found, least, most))
 
     def exists(self, claim: str, quantity: str, count: int, runs: int, *, n: str = "") -> None:
-        """Add the claim that something happens, judged by existence, with its rate beside it.
-
-        It fails where its rate is below one run in twenty.
-        """
-        value, low, high = proportion(count, runs)
-        least = 1e-9 if count else 0.05
-        self.add(
-            claim, quantity, (value, max(low, least * bool(count)), high), runs, least=least, n=n
-        )
+        """Add the claim that something happens: in at least one run in twenty (`OCCURS`)."""
+        self.add(claim, quantity, proportion(count, runs), least=OCCURS, n=n)
 
 
 _COLUMNS = (
     *("figure", "claim", "section", "reading", "quantity", "claimed"),
-    *("n_runs", "measured", "low", "high", "verdict"),
+    *("n_runs", "measured", "low", "high", "verdict", "runs_that_would_decide"),
 )
 
 
@@ -164,7 +174,8 @@ def write_claims(options: Options, figure: str, claims: Iterable[Claim]) -> None
                 _COLUMNS,
                 (
                     *(figure, each.claim, each.section, each.reading, each.quantity, each.claimed),
-                    *(each.runs, *(f"{value:.3g}" for value in each.found), each.verdict),
+                    *(each.found.runs, *(f"{value:.3g}" for value in each.found)),
+                    *(each.verdict, each.would_decide),
                 ),
                 strict=True,
             )
@@ -187,7 +198,7 @@ def critical_bw(levels_s: Sequence[float], groups: Sequence[Any]) -> Interval:
     """
     arrays = [np.asarray(group, float) for group in groups]
     if min(map(len, arrays)) < 3 or max(group[:, 1].mean() for group in arrays) < 0.5:
-        return math.nan, math.nan, math.nan
+        return unknown(sum(map(len, arrays)))
     return bca(arrays, lambda *drawn: fall(levels_s, drawn))
 
 

@@ -3,7 +3,21 @@
 import numpy as np
 import pandas as pd
 from claim import Claims, bca, critical_bw, fall, mean, write_claims
-from section4 import CCW, CW, FREE, READING, SETUPS, STUDY, at, judged, over, setup, within
+from section4 import (
+    CCW,
+    CW,
+    FREE,
+    LOW_S,
+    READING,
+    SETUPS,
+    STUDY,
+    at,
+    judged,
+    over,
+    setup,
+    within,
+    words,
+)
 from study import PHI_EDGES, Options, density_map, histograms, main, picture
 
 
@@ -22,7 +36,6 @@ def judge(table: pd.DataFrame) -> Claims:
                 [np.array([histograms(each["phi_histogram"]) for _, each in high.groupby("seed")])],
                 lambda drawn: drawn.mean(-2).max(-1) / drawn.mean(-2).mean(-1),
             ),
-            len(high),
             most=1.5,
         )
         lost = ("1.4 s without", 1.2, 1.6) if name == FREE else ("2.0 s with 3", 1.8, 2.2)
@@ -30,7 +43,6 @@ def judge(table: pd.DataFrame) -> Claims:
             f"Order is lost around bw = {lost[0]} leaders",
             f"critical bw (s), {name}",
             critical_bw(sorted(runs["bw_s"].unique()), at(runs, "psi_o", "abs_m")),
-            len(runs),
             least=lost[1],
             most=lost[2],
         )
@@ -43,15 +55,15 @@ def judge(table: pd.DataFrame) -> Claims:
             "Leaders order the flock in their direction only",
             f"share of frames in rotation that go {way}, all noises, {name}",
             mean(ways[way] / ways.sum(axis=1)),
-            len(by[name]),
             least=0.95,
         )
     middle = within(free, 0.8, 1.4)
+    seeds = {way: (middle[way] > 0.5).groupby(middle["seed"]).any() for way in ("cw", "ccw")}
     claims.exists(
         "Without leaders order comes in both directions",
-        "runs that rotate mostly in the rarer direction, bw 0.8 to 1.4 s",
-        min((middle["cw"] > 0.5).sum(), (middle["ccw"] > 0.5).sum()),
-        len(middle),
+        "seeds with a run that rotates mostly in the rarer direction, bw 0.8 to 1.4 s",
+        min(each.sum() for each in seeds.values()),
+        middle["seed"].nunique(),
     )
     noises = sorted(free["bw_s"].unique())
     claims.add(
@@ -61,22 +73,20 @@ def judge(table: pd.DataFrame) -> Claims:
             [*at(by[CW], "psi_o", "abs_m"), *at(free, "psi_o", "abs_m")],
             lambda *drawn: fall(noises, drawn[: len(noises)]) - fall(noises, drawn[len(noises) :]),
         ),
-        len(by[CW]) + len(free),
         least=0.0,
     )
-    low = within(free, 0.4, 0.8)
+    low = within(free, *LOW_S)
     jammed = (low["jammed"] > 0.05).groupby(low["seed"]).any()
     claims.exists(
         "Jamming is present occasionally at low noise",
-        "seeds with a run jammed in more than 5 % of its frames, bw 0.4 to 0.8 s, no leaders",
+        f"seeds with a run jammed in more than 5 % of its frames, {words(LOW_S)}, no leaders",
         jammed.sum(),
         len(jammed),
     )
     claims.add(
         "Jamming comes mainly without leaders",
-        "share of jammed frames at bw 0.4 to 0.8 s, without leaders minus with 3",
-        mean(over(free, "jammed", 0.4, 0.8) - over(by[CW], "jammed", 0.4, 0.8)),
-        2 * len(low),
+        f"share of jammed frames at {words(LOW_S)}, without leaders minus with 3",
+        mean(over(free, "jammed", *LOW_S) - over(by[CW], "jammed", *LOW_S)),
         least=0.0,
     )
     return claims

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 from claim import Claims, Interval, bca, mean, write_claims
-from section4 import CW, FREE, READING, STUDY, judged, over, setup
+from section4 import CW, FREE, READING, STUDY, VERY_LOW_S, judged, over, setup, words
 from study import COLORS, Options, curve, main, picture
 
 
@@ -23,22 +23,19 @@ def judge(table: pd.DataFrame) -> Claims:
             "C_v is high at medium noise and vanishes at high noise",
             f"mean C_v at bw ≥ 2.4 s over its maximum, {name}; read as at most a tenth",
             share_of_best(runs, 2.4),
-            len(runs),
             most=0.1,
         )
         claims.add(
             "C_v is low again at very low noise",
-            f"mean C_v at bw = 0.4 s over its maximum, {name}; read as at most half",
-            share_of_best(runs, 0.4, 0.4),
-            len(runs),
+            f"mean C_v at {words(VERY_LOW_S)} over its maximum, {name}; read as at most half",
+            share_of_best(runs, *VERY_LOW_S),
             most=0.5,
         )
     free, led = setup(table, FREE), setup(table, CW)
     claims.add(
         "C_v is low at very low noise most so without leaders",
-        "mean C_v at bw = 0.4 s with 3 clockwise leaders minus without (cm²/s²)",
-        mean(over(led, "c_v", 0.4, 0.4) - over(free, "c_v", 0.4, 0.4)),
-        2 * free["seed"].nunique(),
+        f"mean C_v at {words(VERY_LOW_S)} with 3 clockwise leaders minus without (cm²/s²)",
+        mean(over(led, "c_v", *VERY_LOW_S) - over(free, "c_v", *VERY_LOW_S)),
         least=0.0,
     )
     return claims

@@ -38,7 +38,6 @@ def judge(table: pd.DataFrame) -> Claims:
                 groups,
                 lambda *drawn, x=leaders: slope(x, [g[..., 0].mean(-1) for g in drawn]),
             ),
-            len(runs),
             least=0.0,
         )
     return claims

@@ -17,7 +17,6 @@ def judge(e: Evidence) -> Claims:
             f"mean Ψ_o at bw ≤ {LOW_S:g} s minus that at bw ≥ {HIGH_S:g} s, k = 0; "
             "read as at least 0.2",
             mean(low - high),
-            len(free),
             least=0.2,
             n="20",
         )
@@ -28,7 +27,6 @@ def judge(e: Evidence) -> Claims:
                 f"Order is lost at bw of 0.6 to 0.8 s, {'with' if k else 'without'} leaders",
                 f"critical bw (s), k = {k}",
                 e.critical(n, k),
-                len(runs),
                 least=0.6,
                 most=0.8,
                 n=str(n),
@@ -43,7 +41,6 @@ def judge(e: Evidence) -> Claims:
                 e.groups(20, 0, "psi_o"),
                 lambda *drawn: _steepest([group[..., 0].mean(-1) for group in drawn]),
             ),
-            len(free),
             most=0.5,
             n="20",
         )

@@ -19,7 +19,6 @@ def judge(e: Evidence) -> Claims:
             f"mean C_v of 50 boats at bw ≤ {LOW_S:g} s over the highest of 20 boats, k = 0; "
             "read as at most half",
             bca([dense[:, None], *few], lambda low, *sparse: low[..., 0].mean(-1) / _best(sparse)),
-            len(e.of(50, 0, 0.0, LOW_S)),
             most=0.5,
             n="50",
         )
@@ -29,7 +28,6 @@ def judge(e: Evidence) -> Claims:
             "C_v of 50 boats at low noise is lowest without leaders",
             f"mean C_v with 10 leaders minus without, bw ≤ {LOW_S:g} s (cm²/s²)",
             mean(led - dense),
-            len(e.of(50, 10, 0.0, LOW_S)),
             least=0.0,
             n="50",
         )
@@ -44,7 +42,6 @@ def judge(e: Evidence) -> Claims:
                         _best(drawn[: len(many)], c) - _best(drawn[len(many) :], c)
                     ),
                 ),
-                len(e.of(50, 0)) + len(e.of(20, 0)),
                 most=0.0,
                 n="20, 50",
             )

@@ -4,10 +4,7 @@ import numpy as np
 import pandas as pd
 from claim import Claims, bca, mean, write_claims
 from section5 import PRESETS, STUDY, Evidence
-from study import PHI_EDGES, PSI_EDGES, Options, density_map, histograms, main, picture
-
-_STATE = 0.7
-"""Share of a run's frames from which on the run counts as jammed or as rotating."""
+from study import MOSTLY, PHI_EDGES, PSI_EDGES, Options, density_map, histograms, main, picture
 
 
 def densities(e: Evidence) -> pd.DataFrame:
@@ -31,7 +28,6 @@ def judge(e: Evidence) -> Claims:
             [many[["jammed"]], few[["jammed"]]],
             lambda dense, sparse: dense[..., 0].mean(-1) - sparse[..., 0].mean(-1),
         ),
-        len(many) + len(few),
         least=0.3,
         n="20, 50",
     )
@@ -42,15 +38,14 @@ def judge(e: Evidence) -> Claims:
         "The jamming–order transition is sharp",
         "share of frames neither jammed nor rotating, all n, bw = 0; read as at most 0.2",
         mean(between.groupby(runs["seed"]).mean()),
-        len(runs),
         most=0.2,
         n="20 to 50",
     )
-    is_jam = (runs["jammed"] >= _STATE).groupby(runs["n_boats"]).sum()
-    is_rotation = (runs["rotates"] >= _STATE).groupby(runs["n_boats"]).sum()
+    is_jam = (runs["jammed"] >= MOSTLY).groupby(runs["n_boats"]).sum()
+    is_rotation = (runs["rotates"] >= MOSTLY).groupby(runs["n_boats"]).sum()
     rarer = np.minimum(is_jam, is_rotation)
     claims.exists(
-        "The jamming–order transition is bistable",
+        "Jam and rotation both come from random starts at one n",
         "runs in the rarer of jam and rotation (70 % of a run) at the n where most are, bw = 0",
         rarer.max(),
         (runs["n_boats"] == rarer.idxmax()).sum(),

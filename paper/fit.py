@@ -134,7 +134,6 @@ def judge(table: pd.DataFrame, found: int) -> Claims:
         "Constants with the measured current and spread fit better than the preset",
         "misfit of the best candidate minus that of the preset, held-out seeds",
         bca(both, lambda *d: misfit(LEVELS_S, d[:half]) - misfit(LEVELS_S, d[half:])),
-        len(table),
         most=0.0,
     )
     for place, (leaders, lost_s) in enumerate(LOST_S.items()):
@@ -143,7 +142,6 @@ def judge(table: pd.DataFrame, found: int) -> Claims:
             f"Order is lost around bw = {lost_s} s with {leaders} leaders",
             "critical bw (s), best candidate, held-out seeds",
             bca(drawn, lambda *d: fall(LEVELS_S, d)),
-            sum(map(len, drawn)),
             least=lost_s - 0.2,
             most=lost_s + 0.2,
         )

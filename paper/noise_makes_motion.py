@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 from claim import Claims, bca, mean, write_claims
-from section4 import FREE, READING, STUDY, over, setup, within
+from section4 import FREE, READING, STUDY, VERY_LOW_S, over, setup, words
 from study import COLORS, Options, curve, main, picture
 
 
@@ -16,14 +16,12 @@ def judge(table: pd.DataFrame) -> Claims:
         "Some noise is needed for long-term ordered motion",
         "mean |m| at bw = 1.0 s minus that at bw = 0, no leaders; read as at least 0.3",
         mean(some - none),
-        2 * len(none),
         least=0.3,
     )
     claims.add(
         "Jamming dominates at very low noise",
-        "share of jammed frames, bw = 0, no leaders",
-        mean(over(free, "jammed", 0.0, 0.0)),
-        len(none),
+        f"share of jammed frames, {words(VERY_LOW_S)}, no leaders",
+        mean(over(free, "jammed", *VERY_LOW_S)),
         least=0.5,
     )
     claims.add(
@@ -33,7 +31,6 @@ def judge(table: pd.DataFrame) -> Claims:
             [np.stack([over(free, "abs_m", 2.0), some], 1)],
             lambda drawn: drawn[..., 0].mean(-1) / drawn[..., 1].mean(-1),
         ),
-        len(within(free, 2.0)) + len(some),
         most=0.25,
     )
     return claims

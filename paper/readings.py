@@ -28,8 +28,8 @@ def write_table(options: Options, found: dict[str, Claims]) -> None:
     for name, claims in found.items():
         for claim in claims:
             n = claim.reading.partition("n = ")[2]
-            key = f"{claim.claim} (n = {n})" if "bistable" not in claim.claim else claim.claim
-            rows.setdefault(key, {})[name] = claim.verdict.partition(":")[0]
+            key = claim.claim if "at one n" in claim.claim else f"{claim.claim} (n = {n})"
+            rows.setdefault(key, {})[name] = claim.verdict
     file = io.StringIO()
     writer = csv.DictWriter(file, ["statement", *found], restval="", lineterminator="\n")
     writer.writeheader()

@@ -12,6 +12,15 @@ LEVELS_S = tuple(round(0.2 * place, 1) for place in range(15))
 FREE, CCW, CW = "no leaders", "3 leaders, CCW", "3 leaders, CW"
 SETUPS: dict[str, tuple[int, str]] = {FREE: (0, "cw"), CCW: (3, "ccw"), CW: (3, "cw")}
 READING = "experiment (leapfrog, white), narrow, n = 27"
+LOW_S, MEDIUM_S, HIGH_S = (0.0, 0.8), (1.0, 1.6), (1.8, 2.8)
+"""Ranges of noise of every statement that names low, medium or high noise; none is left out."""
+VERY_LOW_S = (0.0, 0.4)
+"""Very low noise; the paper's noises begin at 0.4 s."""
+
+
+def words(ends: tuple[float, float]) -> str:
+    """Return a range of noises in words."""
+    return f"bw {ends[0]:g} to {ends[1]:g} s"
 
 
 def design() -> list[Row]:

@@ -2,9 +2,8 @@
 
 from typing import Any
 
-import numpy as np
 import pandas as pd
-from claim import Interval, critical_bw, mean
+from claim import Interval, critical_bw, mean, unknown
 from study import COLORS, SEEDS, Options, Row, Study, curve, order_row, picture, simulated
 
 LEVELS_S = tuple(round(0.1 * place, 1) for place in range(13))
@@ -117,7 +116,7 @@ class Evidence:
         """Return the bw at which order is lost; NaN where it was not measured up to disorder."""
         noises = sorted(self.of(n, k)["bw_s"].unique())
         if len(noises) < 4 or noises[-1] < HIGH_S:
-            return np.nan, np.nan, np.nan
+            return unknown()
         return critical_bw(noises, self.groups(n, k, "psi_o", "abs_m"))
 
 

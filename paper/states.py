@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pandas as pd
 from claim import Claims, mean, write_claims
-from section4 import READING, over, within
+from section4 import HIGH_S, LOW_S, MEDIUM_S, READING, over, within, words
 from state_series import cycles, onset
 from study import COLORS, SEEDS, Options, Row, Study, curve, main, picture, simulated
 
@@ -63,24 +63,28 @@ def judge(table: pd.DataFrame) -> Claims:
     def share(text: str, states: list[str], ends: tuple[float, float], **claimed: float) -> None:
         runs = within(table, *ends)
         each = runs[states].sum(axis=1).groupby(runs["seed"]).mean()
-        words = " and ".join(f"at {name} {bound:g}" for name, bound in claimed.items())
-        what = f"share of cycles, bw {ends[0]:g} to {ends[1]:g} s; read as {words}"
-        claims.add(text, what, mean(each), len(runs), **claimed)
+        read = " and ".join(f"at {name} {bound:g}" for name, bound in claimed.items())
+        what = f"share of cycles, {words(ends)}; read as {read}"
+        claims.add(text, what, mean(each), **claimed)
 
-    share("Jamming occurs sometimes at low noise", ["jamming"], (0.4, 0.8), least=0.005, most=0.5)
+    share("Jamming occurs sometimes at low noise", ["jamming"], LOW_S, least=0.005, most=0.5)
     share("Clustering is rare", ["clustering"], (0.4, 2.8), most=0.02)
-    share("Ordered motion is regular at low to middle noise", ["ordered"], (0.8, 1.2), least=0.5)
+    share(
+        "Ordered motion is regular at low to middle noise",
+        ["ordered"],
+        (LOW_S[0], MEDIUM_S[1]),
+        least=0.5,
+    )
     share("Disordered motion is regular at high noise", ["disordered"], (2.4, 2.8), least=0.9)
-    low, high = within(table, 0.8, 1.2), within(table, 1.6, 1.9)
+    low, high = within(table, *LOW_S), within(table, *HIGH_S)
     rates = [
         r.groupby("seed")["left"].sum() / (r.groupby("seed")["ordered_min"].sum() + 0.1)
         for r in (low, high)
     ]
     claims.add(
         "Ordered motion is stable at low and unstable at high noise",
-        "changes out of order per min in it, bw 0.8 to 1.2 s minus 1.6 to 1.9 s",
+        f"changes out of order per min in it, {words(LOW_S)} minus {words(HIGH_S)}",
         mean(rates[0] - rates[1]),
-        len(low) + len(high),
         most=0.0,
     )
     at14, at19 = within(table, 1.4, 1.4), within(table, 1.9, 1.9)
@@ -88,14 +92,12 @@ def judge(table: pd.DataFrame) -> Claims:
         "Stable order lasts for long at bw = 1.4 s",
         "longest stretch of order one way in 16 min (min); the paper's lasts at least 5",
         mean(at14["longest_min"]),
-        len(at14),
         least=5.0,
     )
     claims.add(
         "Ordered states exist only for short periods at bw = 1.9 s",
         "longest stretch of order one way in 16 min (min), read as above 0 and at most 5",
         mean(at19["longest_min"]),
-        len(at19),
         least=0.05,
         most=5.0,
     )
@@ -103,7 +105,6 @@ def judge(table: pd.DataFrame) -> Claims:
         "Correlations at bw = 1.9 s are much lower than at 1.4 s",
         "mean Ψ_o at bw = 1.9 s minus that at 1.4 s, same seeds; read as at most -0.2",
         mean(over(table, "psi_o", 1.9, 1.9) - over(table, "psi_o", 1.4, 1.4)),
-        len(at14) + len(at19),
         most=-0.2,
     )
     claims.exists(
@@ -118,14 +119,12 @@ def judge(table: pd.DataFrame) -> Claims:
         "Orientations signal the coming order earlier than velocities",
         "time by which Ψ_o is halfway to order before Ψ_v (s), bw 0.8 to 1.4 s",
         mean(onset["lead_s"]),
-        len(runs),
         least=0.0,
     )
     claims.add(
         "Velocities change more abruptly than orientations",
         "rise of Ψ_v minus that of Ψ_o, from 10 to 90 % (s), bw 0.8 to 1.4 s",
         mean(onset["rise_v_s"] - onset["rise_o_s"]),
-        len(runs),
         most=0.0,
     )
     return claims

@@ -36,6 +36,8 @@ from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.runs.store import RESULTS_VERSION
 
 HERE = Path(__file__).parent
+MOSTLY = 0.7
+"""Share of a run's frames from which on it counts as mostly jammed or mostly rotating."""
 FIRST_SEED = POLICY_SEEDS["paper"].first
 """Seeds of these studies are from here on; nothing else uses them."""
 SEEDS = 24

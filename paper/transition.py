@@ -9,9 +9,20 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from claim import Claims, Interval, bca, mean, proportion, write_claims
+from claim import (
+    FAILS,
+    HOLDS,
+    Claim,
+    Claims,
+    Interval,
+    bca,
+    mean,
+    proportion,
+    unknown,
+    write_claims,
+)
 from study import COLORS, Options, curve, main, picture, write
-from transition_runs import STARTED, STUDY
+from transition_runs import AFTER_MIN, STARTED, STUDY
 
 from flockenv.statistics import kaplan_meier
 
@@ -38,6 +49,19 @@ def cells(table: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(lines)
 
 
+def second(table: pd.DataFrame) -> pd.DataFrame:
+    """Return the runs by the second rule of transition.md: when they leave their state, if ever.
+
+    A run that ends in its own state has not left it, though its jam may have split.
+    """
+    rotates = abs(table["m"]) >= 0.5
+    own = rotates.where(table["start"] == "rotating", ~rotates & (table["in_jams"] >= 0.5))
+    ended = np.minimum(table["stayed_min"] + AFTER_MIN * table["exited"], table["minutes"])
+    return table.assign(
+        exited=(~own).astype(int), stayed_min=table["stayed_min"].where(~own, ended)
+    )
+
+
 def doubling(table: pd.DataFrame, start: str) -> Interval:
     """Return by what the rate of exits is multiplied as the flock doubles, largest over smallest.
 
@@ -47,7 +71,7 @@ def doubling(table: pd.DataFrame, start: str) -> Interval:
     chosen = table[table["start"] == start]
     sizes = sorted(chosen["n_boats"].unique())
     if len(sizes) < 3 or not chosen["exited"].any():
-        return math.nan, math.nan, math.nan
+        return unknown()
     groups = [
         chosen.loc[chosen["n_boats"] == n, ["stayed_min", "exited"]].to_numpy() for n in sizes
     ]
@@ -61,9 +85,20 @@ def doubling(table: pd.DataFrame, start: str) -> Interval:
     return bca(groups, factor)
 
 
-def judge(table: pd.DataFrame) -> Claims:
-    """Judge rules 1 to 3 of transition.md, at each coverage and noise."""
+RULES = {
+    "first": ("stays so for two hours", "runs that stay"),
+    "second": (
+        "ends its run in that state",
+        "runs that end in jams (|m| < 0.5, at least half of the boats in jams) or rotating",
+    ),
+}
+"""What each rule counts, in words."""
+
+
+def judge(table: pd.DataFrame, rule: str) -> Claims:
+    """Judge a rule of transition.md, at each coverage and noise."""
     claims = Claims("5.2, left open", "")
+    lasts, counted = RULES[rule]
     by = ["coverage", "scheme", "c4", "dt_s"]
     for (coverage, scheme, c4, dt_s), group in table.groupby(by, sort=False):
         noise = "per-step" if scheme == "paper" else "white"
@@ -72,32 +107,55 @@ def judge(table: pd.DataFrame) -> Claims:
             chosen = group[group["start"] == start]
             for n, runs in chosen.groupby("n_boats"):
                 claims.add(
-                    f"A flock that starts {words} stays so for two hours",
-                    "share of runs that stay; read as at least half",
+                    f"A flock that starts {words} {lasts}",
+                    f"share of {counted}; read as at least half",
                     proportion((runs["exited"] == 0).sum(), len(runs)),
-                    len(runs),
                     least=0.5,
                     n=f"{n:g}",
                 )
                 stayed = runs.loc[runs["exited"] == 0, "drift_per_h"].dropna()
-                if start == "one-jam" and len(stayed):
+                if rule == "first" and start == "one-jam" and len(stayed):
                     claims.add(
                         "A jam that stays does not shrink",
                         "drift of the largest jam's share of the boats in the runs that stay (1/h)",
                         mean(stayed),
-                        len(stayed),
                         least=-0.05,
                         n=f"{n:g}",
                     )
             claims.add(
-                f"The larger a flock that starts {words}, the longer it stays so",
+                f"The larger a flock that starts {words}, the longer it stays so ({rule} rule)",
                 "factor of exits per hour for each doubling of n",
                 doubling(group, start),
-                len(chosen),
                 most=1.0,
                 n=", ".join(f"{n:g}" for n in sorted(chosen["n_boats"].unique())),
             )
     return claims
+
+
+def answers(found: Mapping[str, Claims]) -> pd.DataFrame:
+    """Return what each rule says of each noise and coverage: for, against or open."""
+    lines: dict[str, dict[str, str]] = {}
+    for rule, claims in found.items():
+        cells: dict[str, list[Claim]] = {}
+        for each in claims:
+            cells.setdefault(each.reading.partition(", n = ")[0], []).append(each)
+        for cell, judged in cells.items():
+            largest = max((_boats(each) for each in judged if _is_share(each)), default=0)
+            asked = [each for each in judged if not _is_share(each) or _boats(each) == largest]
+            refutes = [each for each in asked if not each.quantity.startswith("drift")]
+            answer = "for" if all(each.verdict == HOLDS for each in asked) else "open"
+            line = lines.setdefault(cell, {"cell": cell})
+            against = any(each.verdict == FAILS for each in refutes)
+            line[f"{rule} rule"] = "against" if against else answer
+    return pd.DataFrame(lines.values())
+
+
+def _is_share(claim: Claim) -> bool:
+    return claim.quantity.startswith("share")
+
+
+def _boats(claim: Claim) -> int:
+    return int(claim.reading.rpartition("n = ")[2].rpartition(", ")[2])
 
 
 def draw(options: Options, table: pd.DataFrame) -> None:
@@ -165,12 +223,15 @@ def _label(figure: Any, panels: Any, across: str, up: str) -> None:
 def script(options: Options) -> None:
     """Make the map, judge and draw it."""
     table = STUDY.results(options)
-    write_claims(options, "transition", judge(table))
+    found = {"first": judge(table, "first"), "second": judge(second(table), "second")}
+    write_claims(options, "transition", [claim for each in found.values() for claim in each])
     if len(table):
         draw(options, table)
         draw_map(options, table)
         lines = cells(table).to_csv(index=False, float_format="%.3g")
         write(options.out / "results" / "transition_cells.csv", lines.encode())
+        lines = answers(found).to_csv(index=False)
+        write(options.out / "results" / "transition_answers.csv", lines.encode())
 
 
 if __name__ == "__main__":

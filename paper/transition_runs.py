@@ -22,7 +22,8 @@ _STARTS = {"one-jam": one_jam, "rotating": rotating}
 _EVERY_CYCLES = 5
 _HELD = 3
 """Samples in a row that make an exit: one minute."""
-_AFTER_MIN = 20.0
+AFTER_MIN = 20.0
+"""How long a flock is followed after it has left its start."""
 
 
 def outer_radius_cm(n_boats: int, coverage: float) -> float:
@@ -111,7 +112,7 @@ def measure(row: Row) -> Row:
                 else abs(last[:, 1].mean()) < 0.4
             )
             exit_min = last[0, 0] if left else math.nan
-        if minutes > exit_min + _AFTER_MIN:
+        if minutes > exit_min + AFTER_MIN:
             break
         boats.advance(_EVERY_CYCLES * cycle_s)
     return _summary(np.array(samples), exit_min)
