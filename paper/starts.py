@@ -11,6 +11,9 @@ import numpy as np
 import flockenv
 from flockenv.errors import ParameterError
 
+RADII_CM = {"wide": (180.0, 97.0), "narrow": (90.0, 48.5)}
+"""Outer and inner radius of the named pools."""
+
 _STRETCH = 0.75
 """Largest part of the wall that the boats of one jam cover before they stand in several rows."""
 
@@ -39,7 +42,8 @@ def one_jam(parameters: flockenv.FlockParameters, seed: int) -> flockenv.Flock:
     """
     flock = flockenv.Flock(parameters, seed)
     first = math.atan2(flock.pose[0, 1], flock.pose[0, 0])
-    outer_cm, inner_cm = parameters.pool
+    pool = parameters.pool
+    outer_cm, inner_cm = RADII_CM[pool] if isinstance(pool, str) else pool
     radius_cm = parameters.boat_radius_cm
     core_cm = radius_cm * parameters.boat_shape
     pose = np.empty((0, 3))
