@@ -2,8 +2,9 @@
 
 from statistics import fmean
 
-from committed_data import one, rows
+from committed_data import markdown, one, rows
 
+VERDICTS = ("holds", "fails", "open")
 RESULTS = "../paper/results"
 CLAIMS = "../paper/claims.csv"
 READING = ("dt_s", "scheme", "noise_scheme", "overlap_tolerance_cm")
@@ -92,3 +93,32 @@ def findings() -> str:
         "with ten other constants, among them the current that the paper measured (`narrow`, white "
         "noise, 24 runs at each of 15 noises). The paper has 1.4 s and 2.0 s."
     )
+
+
+FIGURES = {
+    "states": ("4 to 6, Table 2", "table2"),
+    "fig07": ("7", "fig07"),
+    "fig08": ("8", "fig08"),
+    "fig09": ("9", "fig09"),
+    "fig10": ("10", "fig10"),
+    "fig11": ("11", "fig11"),
+    "fig12": ("12", "fig12"),
+    "noise_makes_motion": ("summary", "noise_makes_motion"),
+    "fig14": ("14", "fig14_paper"),
+    "fig15": ("15", "fig15"),
+    "fig16": ("16", "fig16"),
+    "fig17": ("17", "fig17"),
+}
+"""The paper's figures by the name of their claims: number and picture."""
+
+
+def figures() -> str:
+    """Return how many statements of each figure hold, fail and are open, and which fail."""
+    body = []
+    for name, (number, picture) in FIGURES.items():
+        claims = rows(CLAIMS, figure=name)
+        found = [[row for row in claims if row["verdict"] == v] for v in VERDICTS]
+        failed = dict.fromkeys(row["claim"] for row in found[1])
+        cells = [str(len(each)) for each in found]
+        body.append([f"[{number}](pictures/{picture}.png)", *cells, "; ".join(failed)])
+    return markdown(["figure", *VERDICTS, "what fails in a reading"], body)

@@ -20,13 +20,17 @@ from committed_data import (
     order,
     rows,
 )
-from readme_numbers import findings, speed
+from readme_numbers import figures, findings, speed
 from training_tables import TRAINING_TABLES
 
 from flockenv import FlockParameters
 
 DOCS = Path(__file__).parent
-PAGES = (DOCS.parent / "README.md", *sorted(DOCS.glob("*.md")))
+PAGES = (
+    DOCS.parent / "README.md",
+    DOCS.parent / "paper" / "README.md",
+    *sorted(DOCS.glob("*.md")),
+)
 MARKED = re.compile(r"(<!-- table: (\S+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 
 
@@ -148,6 +152,7 @@ def parameters() -> str:
 
 TABLES: dict[str, Callable[[], str]] = {
     "parameters": parameters,
+    "figures": figures,
     "findings": findings,
     "leader-count": leader_count,
     "leaders-wide": lambda: leaders_of("wide-bw-0.31"),

@@ -1,6 +1,6 @@
 """Is the jamming–order transition of first order? Lifetimes of a jam and of a rotating flock.
 
-The rule of the answer stands in transition.md and was committed before the first run.
+The rules of the answer stand in transition_rules.md.
 """
 
 import math
@@ -50,7 +50,7 @@ def cells(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def second(table: pd.DataFrame) -> pd.DataFrame:
-    """Return the runs by the second rule of transition.md: when they leave their state, if ever.
+    """Return the runs by the second rule: when they leave their state, if they do.
 
     A run that ends in its own state has not left it, though its jam may have split.
     """
@@ -96,7 +96,7 @@ RULES = {
 
 
 def judge(table: pd.DataFrame, rule: str) -> Claims:
-    """Judge a rule of transition.md, at each coverage and noise."""
+    """Judge a rule of transition_rules.md, at each coverage and noise."""
     claims = Claims("5.2, left open", "")
     lasts, counted = RULES[rule]
     by = ["coverage", "scheme", "c4", "dt_s"]
