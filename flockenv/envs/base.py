@@ -42,6 +42,13 @@ class ManyFlocks(Resumable):
         """Return all velocities, shape (flocks, n, 3): [cm/s, cm/s, rad/s], leaders first."""
         return self._batch.core.velocities().reshape(self._batch.num_flocks, -1, 3)
 
+    def snapshots(self) -> list[bytes]:
+        """Return each flock's snapshot, as `Flock.snapshot`, for the `snapshot` option of `reset`.
+
+        They hold the flocks, and not where their episodes are.
+        """
+        return [self._batch.flock(flock).snapshot() for flock in range(self._batch.num_flocks)]
+
     def order_parameters(self) -> NDArray[np.float64]:
         """Return order parameters of the normal boats now.
 
