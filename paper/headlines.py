@@ -1,0 +1,296 @@
+"""Do README's headlines hold from other starts, with other leaders, steps and shares of start-up?
+
+Each headline is measured again as README has it and with one thing changed: flocks that start in
+one jam or rotating (against their leaders, if they have any) instead of at random and at rest;
+leaders that do not back up with the others, or do; another step; and the second half of each run
+alone. The ranges below were written before the runs.
+"""
+
+import itertools
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from claim import Claims, Interval, bca, fall, mean, unknown, write_claims
+from density import SETS, order_row
+from starts import one_jam, rotating
+from study import COLORS, SEEDS, Options, Row, Study, curve, flock, main, picture, seed_of
+
+import flockenv
+from flockenv.policies.registry import named_policy
+
+FIRST = 200
+"""Seeds that no other study of this folder has."""
+EPISODES = 96
+VARIANTS = ("as it is", "one jam", "rotating", "leaders reversed", "other step")
+"""What is changed in the runs; "second half" is measured in the runs of the first."""
+STARTS = {"one jam": one_jam, "rotating": rotating}
+LAW, LED = "paper's law", ("learned", "tuned law", "paper's law")
+BW_S = {"wide": 0.31, "narrow": 0.45}
+_SHIFT_S = (0.8, 1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.4, 2.8)
+_LOST_S = {
+    "simulation": (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 1.0),
+    "paper": (0.0, 0.2, 0.4, 0.5, 0.6, 0.7, 0.8, 1.0, 1.2),
+}
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Runs of one set of constants, boats and leaders: noises, policies and seeds."""
+
+    name: str
+    pool: str
+    n_boats: int
+    noises: tuple[float, ...]
+    leaders: tuple[int, ...] = (0,)
+    policies: tuple[str, ...] = (LAW,)
+    seeds: int = SEEDS
+    minutes: float = 8.0
+
+    def rows(self, variant: str) -> list[Row]:
+        """Return the runs of a variant; none where it changes nothing."""
+        given = SETS[self.name][0]
+        known = flock(given).to_dict()
+        per_step = known["scheme"] == "paper"
+        reverse = known["leaders_reverse"] != (variant == "leaders reversed")
+        dt_s = (0.05 if per_step else 0.1) if variant == "other step" else known["dt_s"]
+        return [
+            {"variant": variant, "set": self.name, "pool": self.pool, "n_boats": self.n_boats}
+            | {"n_leaders": k, "policy": policy, "bw_s": bw_s, "dt_s": dt_s}
+            | {"leaders_reverse": reverse, "minutes": self.minutes, "seed": FIRST + seed}
+            for seed, bw_s, k, policy in itertools.product(
+                range(self.seeds), self.noises, self.leaders, self.policies
+            )
+            if variant != "leaders reversed" or max(self.leaders)
+        ]
+
+
+WIDE = Cells("simulation", "wide", 27, (0.31,), (3,), LED, EPISODES)
+NARROW = Cells("simulation", "narrow", 27, (0.45,), (3,), LED, EPISODES)
+NARROW_FLOCK = Cells("experiment", "narrow", 27, (0.0, 1.0))
+DENSE = Cells("paper", "wide", 50, (0.0, 0.5), minutes=16.0)
+SPARSE = Cells("paper", "wide", 20, (0.0, 0.4), minutes=16.0)
+SHIFT = Cells("experiment", "narrow", 27, _SHIFT_S, (0, 3))
+SHIFT_FITTED = Cells("measured current", "narrow", 27, _SHIFT_S, (0, 3))
+LOST = Cells("simulation", "wide", 20, _LOST_S["simulation"], minutes=16.0)
+LOST_PAPER = Cells("paper", "wide", 20, _LOST_S["paper"], minutes=16.0)
+ALL = (WIDE, NARROW_FLOCK, DENSE, SPARSE, SHIFT, SHIFT_FITTED, NARROW, LOST, LOST_PAPER)
+
+
+def design() -> list[Row]:
+    """Return the runs, each headline in all variants before the next."""
+    rows = [row for cells in ALL for variant in VARIANTS for row in cells.rows(variant)]
+    return list({tuple(row.values()): row for row in rows}.values())
+
+
+def measure(row: Row) -> Row:
+    """Return the order after the first tenth of a run, and in its second half."""
+    against = row["variant"] == "rotating" and row["n_leaders"] > 0
+    parameters = flock(SETS[row["set"]][0] | row, target="ccw" if against else "cw")
+    start = STARTS.get(row["variant"])
+    seed = seed_of(row)
+    run = flockenv.simulate(
+        parameters,
+        seed,
+        60.0 * row["minutes"],
+        4.0,
+        dtype=np.float32,
+        policy=_policy(row),
+        start=None if start is None else start(parameters, seed).snapshot(),
+    )
+    found = {}
+    for suffix, after in (("", 0.1), ("_late", 0.5)):
+        measured = order_row(run, after)
+        found |= {name + suffix: measured[name] for name in ("psi_o", "abs_m")}
+        signed = run.analyzed(after).order.series("signed_order", parameters.target)
+        found[f"signed{suffix}"] = signed.mean()
+    return found
+
+
+def _policy(row: Row) -> Any:
+    if row["n_leaders"] == 0 or row["set"] != "simulation":
+        return None
+    return named_policy(row["policy"], row["pool"])()
+
+
+STUDY = Study("headlines", design, measure, lambda row: row["bw_s"] in (0.0, 0.31, 1.0))
+
+
+class Runs:
+    """The runs of a variant: of the second half alone in the variant of that name."""
+
+    def __init__(self, table: pd.DataFrame, variant: str) -> None:
+        self.late = "_late" if variant == "second half" else ""
+        self.table = table[table["variant"] == ("as it is" if self.late else variant)]
+
+    def of(self, cells: Cells, **values: Any) -> pd.DataFrame:
+        """Return the runs of cells."""
+        r = self.table
+        same = (r["set"] == cells.name) & (r["pool"] == cells.pool)
+        found = r[same & (r["n_boats"] == cells.n_boats) & r["bw_s"].isin(cells.noises)]
+        for name, value in values.items():
+            found = found[found[name] == value]
+        return found
+
+    def rise(self, cells: Cells) -> Interval:
+        """Return how much mean |m| rises between two noises."""
+        runs = self.of(cells, n_leaders=0)
+        runs = runs[runs["minutes"] == cells.minutes]
+        m = runs.pivot_table(index="seed", columns="bw_s", values=f"abs_m{self.late}").dropna()
+        if list(m) != list(cells.noises):
+            return unknown()
+        return mean(m[cells.noises[1]] - m[cells.noises[0]])
+
+    def groups(self, cells: Cells, leaders: int) -> list[Any]:
+        """Return Ψ_o and |m| of the runs at each noise."""
+        runs = self.of(cells, n_leaders=leaders)
+        columns = [f"psi_o{self.late}", f"abs_m{self.late}"]
+        found = [each[columns].to_numpy(float) for _, each in runs.groupby("bw_s")]
+        return found if len(found) == len(cells.noises) else [np.empty((0, 2))]
+
+    def shift(self, cells: Cells) -> Interval:
+        """Return how much three leaders move the loss of order (s)."""
+        led, free = self.groups(cells, 3), self.groups(cells, 0)
+        x, half = cells.noises, len(led)
+        return bca([*led, *free], lambda *d: fall(x, d[:half]) - fall(x, d[half:]))
+
+    def later(self) -> Interval:
+        """Return how much later order is lost in the paper's scheme than in `simulation` (s)."""
+        both = [self.groups(cells, 0) for cells in (LOST_PAPER, LOST)]
+        half = len(both[0])
+        return bca(
+            [*both[0], *both[1]],
+            lambda *d: fall(LOST_PAPER.noises, d[:half]) - fall(LOST.noises, d[half:]),
+        )
+
+    def pair(self, cells: Cells, ours: str, theirs: str) -> Interval:
+        """Return the difference of the signed order with two policies, paired by seed."""
+        runs = self.of(cells, n_leaders=3)
+        found = runs.pivot_table(index="seed", columns="policy", values=f"signed{self.late}")
+        if not {ours, theirs} <= set(found):
+            return unknown()
+        return mean((found[ours] - found[theirs]).dropna())
+
+
+@dataclass(frozen=True)
+class Headline:
+    """What README says, how it is measured, and the range that it claims."""
+
+    words: str
+    quantity: str
+    found: Callable[[Runs], Interval]
+    least: float = -np.inf
+    most: float = np.inf
+
+
+HEADLINES: Sequence[Headline] = (
+    Headline(
+        "27 boats in narrow need noise to move",
+        "|m| at 1.0 s minus that at bw = 0, experiment",
+        lambda runs: runs.rise(NARROW_FLOCK),
+        least=0.3,
+    ),
+    Headline(
+        "50 boats in wide need noise to move",
+        "|m| at 0.5 s minus that at bw = 0, paper",
+        lambda runs: runs.rise(DENSE),
+        least=0.3,
+    ),
+    Headline(
+        "20 boats in wide need none",
+        "|m| at 0.4 s minus that at bw = 0, paper",
+        lambda runs: runs.rise(SPARSE),
+        most=0.3,
+    ),
+    Headline(
+        "Order is lost later in the paper's scheme",
+        "critical bw (s), 20 boats in wide, paper minus simulation",
+        lambda runs: runs.later(),
+        least=0.1,
+    ),
+    Headline(
+        "Three leaders hardly move the loss of order",
+        "critical bw with 3 leaders minus without (s), experiment",
+        lambda runs: runs.shift(SHIFT),
+        most=0.1,
+    ),
+    Headline(
+        "They move it with the fitted constants",
+        "critical bw with 3 leaders minus without (s), measured current",
+        lambda runs: runs.shift(SHIFT_FITTED),
+        least=0.1,
+    ),
+    Headline(
+        "Learned leaders beat the tuned law in wide",
+        "signed order, learned minus tuned law, 3 of 27, bw = 0.31 s",
+        lambda runs: runs.pair(WIDE, "learned", "tuned law"),
+        least=0.0,
+    ),
+    Headline(
+        "The tuned law beats the paper's in wide",
+        "signed order, tuned minus paper's law, 3 of 27, bw = 0.31 s",
+        lambda runs: runs.pair(WIDE, "tuned law", LAW),
+        least=0.0,
+    ),
+    Headline(
+        "Learned leaders lead like the tuned law in narrow",
+        "signed order, learned minus tuned law, 3 of 27, bw = 0.45 s",
+        lambda runs: runs.pair(NARROW, "learned", "tuned law"),
+        least=-0.03,
+        most=0.03,
+    ),
+)
+CHANGES = (VARIANTS[0], "second half", *VARIANTS[1:])
+
+
+def judge(table: pd.DataFrame) -> Claims:
+    """Judge each headline in each variant that has been run."""
+    claims = Claims("README", "")
+    for headline in HEADLINES:
+        for variant in CHANGES:
+            found = headline.found(Runs(table, variant))
+            claims.reading = variant
+            if np.isfinite(found[0]):
+                claims.add(
+                    headline.words,
+                    headline.quantity,
+                    found,
+                    least=headline.least,
+                    most=headline.most,
+                )
+    return claims
+
+
+def draw(options: Options, claims: Claims) -> None:
+    """Draw each headline's value in each variant with its interval and the claimed range."""
+    with picture(options, "headlines", height_cm=13.0) as figure:
+        panels = figure.subplots(3, 3)
+        for axes, headline in zip(panels.flat, HEADLINES, strict=True):
+            shown = [each for each in claims if each.claim == headline.words]
+            for claim in shown:
+                place = CHANGES.index(claim.reading)
+                curve(axes, [place], [claim.found], color=COLORS[place], linestyle="")
+            low, high = axes.get_ylim()
+            low, high = min(low, -0.02), max(high, 0.02)
+            least, most = max(headline.least, low), min(headline.most, high)
+            axes.axhspan(least, max(least, most), color="0.93", zorder=0)
+            axes.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
+            axes.set_ylim(low, high)
+            axes.set(xlim=(-0.6, len(CHANGES) - 0.4), xticks=[])
+            axes.set_title(headline.words, fontsize=7)
+        for axes in panels[-1]:
+            axes.set_xticks(range(len(CHANGES)), CHANGES, rotation=40, ha="right")
+
+
+def script(options: Options) -> None:
+    """Make, judge and draw the runs."""
+    table = STUDY.results(options)
+    claims = judge(table)
+    write_claims(options, "headlines", claims)
+    draw(options, claims)
+
+
+if __name__ == "__main__":
+    main(script)
