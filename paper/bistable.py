@@ -7,7 +7,7 @@ start rotating. Written before the runs. Larger flocks are followed in `transiti
 
 import numpy as np
 import pandas as pd
-from claim import Claims, mean, write_claims
+from claim import Claims, judging, mean
 from section5 import PRESETS, READINGS
 from starts import one_jam, rotating
 from study import (
@@ -101,11 +101,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         panels[1].legend()
 
 
-def script(options: Options) -> None:
-    """Make, judge and draw the runs."""
-    table = STUDY.results(options)
-    write_claims(options, "bistable", judge(table))
-    draw(options, table)
+script = judging("bistable", STUDY, judge, draw)
 
 
 if __name__ == "__main__":

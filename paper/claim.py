@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from scipy import stats
-from study import Options, write
+from study import Options, Study, write
 
 from flockenv.statistics import CONFIDENCE, bootstrap_interval, mean_interval
 
@@ -187,6 +188,23 @@ def write_claims(options: Options, figure: str, claims: Iterable[Claim]) -> None
     writer.writeheader()
     writer.writerows(sorted(lines, key=lambda line: line["figure"]))
     write(path, file.getvalue().encode())
+
+
+def judging(
+    figure: str,
+    study: Study,
+    judge: Callable[[pd.DataFrame], Iterable[Claim]],
+    draw: Callable[[Options, pd.DataFrame], None],
+) -> Callable[[Options], None]:
+    """Return the script of a file that makes, judges and draws the runs of a study."""
+
+    def script(options: Options) -> None:
+        table = study.results(options)
+        write_claims(options, figure, judge(table))
+        draw(options, table)
+
+    script.__module__ = judge.__module__
+    return script
 
 
 def critical_bw(levels_s: Sequence[float], groups: Sequence[Any]) -> Interval:

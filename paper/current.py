@@ -7,7 +7,7 @@ strength of the current alone is exchanged between them.
 from typing import Any
 
 import pandas as pd
-from claim import Claims, Interval, bca, fall, mean, write_claims
+from claim import Claims, Interval, bca, fall, judging, mean
 from fit import MEASURED, PRESET, constants, order_row, simulated
 from section4 import LEVELS_S, at
 from study import COLORS, SEEDS, Options, Row, Study, curve, main, picture
@@ -130,11 +130,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         panels[0, 0].legend()
 
 
-def script(options: Options) -> None:
-    """Make, judge and draw the runs."""
-    table = STUDY.results(options)
-    write_claims(options, "current", judge(table))
-    draw(options, table)
+script = judging("current", STUDY, judge, draw)
 
 
 if __name__ == "__main__":

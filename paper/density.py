@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pandas as pd
-from claim import Claims, Interval, bca, write_claims
+from claim import Claims, Interval, bca, judging
 from fit import constants
 from section5 import READINGS
 from starts import RADII_CM
@@ -129,11 +129,7 @@ def _mean(drawn: np.ndarray) -> np.ndarray:
     return np.asarray(drawn[..., 0].mean(-1))
 
 
-def script(options: Options) -> None:
-    """Make, judge and draw the runs."""
-    table = STUDY.results(options)
-    write_claims(options, "density", judge(table))
-    draw(options, table)
+script = judging("density", STUDY, judge, draw)
 
 
 if __name__ == "__main__":

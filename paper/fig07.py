@@ -2,7 +2,7 @@
 
 import numpy as np
 import pandas as pd
-from claim import Claims, mean, write_claims
+from claim import Claims, judging, mean
 from section4 import READING
 from study import COLORS, SEEDS, Options, Row, Study, flock, main, picture, seed_of
 
@@ -91,11 +91,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         axes.legend(loc="upper left")
 
 
-def script(options: Options) -> None:
-    """Make, judge and draw the runs."""
-    table = STUDY.results(options)
-    write_claims(options, "fig07", judge(table))
-    draw(options, table)
+script = judging("fig07", STUDY, judge, draw)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from claim import Claims, Interval, bca, mean, unknown, write_claims
+from claim import Claims, Interval, bca, judging, mean, unknown
 from section4 import CW, FREE, READING, STUDY, at, setup, within
 from study import COLORS, Options, main, picture
 
@@ -112,11 +112,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         panels[1].legend(loc="upper right", ncols=2)
 
 
-def script(options: Options) -> None:
-    """Make, judge and draw the runs."""
-    table = STUDY.results(options)
-    write_claims(options, "fig08", judge(table))
-    draw(options, table)
+script = judging("fig08", STUDY, judge, draw)
 
 
 if __name__ == "__main__":

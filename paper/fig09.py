@@ -2,7 +2,7 @@
 
 import numpy as np
 import pandas as pd
-from claim import Claims, bca, critical_bw, fall, mean, write_claims
+from claim import Claims, bca, critical_bw, fall, judging, mean
 from section4 import (
     CCW,
     CW,
@@ -108,11 +108,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         figure.colorbar(image, ax=list(panels), label="density over uniform", extend="max")
 
 
-def script(options: Options) -> None:
-    """Make, judge and draw the runs."""
-    table = STUDY.results(options)
-    write_claims(options, "fig09", judge(table))
-    draw(options, table)
+script = judging("fig09", STUDY, judge, draw)
 
 
 if __name__ == "__main__":

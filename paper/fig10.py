@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from claim import Claims, bca, fall, mean, write_claims
+from claim import Claims, bca, fall, judging, mean
 from section4 import (
     CW,
     FREE,
@@ -102,11 +102,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         figure.axes[0].set_ylabel("mean Ψ_o")
 
 
-def script(options: Options) -> None:
-    """Make, judge and draw the runs."""
-    table = STUDY.results(options)
-    write_claims(options, "fig10", judge(table))
-    draw(options, table)
+script = judging("fig10", STUDY, judge, draw)
 
 
 if __name__ == "__main__":

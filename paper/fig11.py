@@ -2,7 +2,7 @@
 
 import numpy as np
 import pandas as pd
-from claim import Claims, Interval, bca, mean, write_claims
+from claim import Claims, Interval, bca, judging, mean
 from section4 import CW, FREE, READING, STUDY, VERY_LOW_S, judged, over, setup, words
 from study import COLORS, Options, curve, main, picture
 
@@ -53,11 +53,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         axes.legend(title=f"{table['seed'].nunique()} runs each")
 
 
-def script(options: Options) -> None:
-    """Make, judge and draw the runs."""
-    table = STUDY.results(options)
-    write_claims(options, "fig11", judge(table))
-    draw(options, table)
+script = judging("fig11", STUDY, judge, draw)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pandas as pd
-from claim import Claims, bca, mean, write_claims
+from claim import Claims, bca, judging, mean
 from fig08 import slope
 from section4 import READING
 from study import COLORS, SEEDS, Options, Row, Study, curve, main, order_row, picture, simulated
@@ -58,11 +58,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         figure.axes[0].set_ylabel("mean Ψ_o")
 
 
-def script(options: Options) -> None:
-    """Make, judge and draw the runs."""
-    table = STUDY.results(options)
-    write_claims(options, "fig12", judge(table))
-    draw(options, table)
+script = judging("fig12", STUDY, judge, draw)
 
 
 if __name__ == "__main__":

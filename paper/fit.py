@@ -75,7 +75,7 @@ def runs_of(
         for leaders in LOST_S
         for bw_s in levels_s
     ]
-    return Study("fit", lambda: rows, _measure).results(options)
+    return Study("fit", lambda: rows, _measure, adaptive=True).results(options)
 
 
 def _measure(row: Row) -> Row:

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from claim import Claims, Interval, bca, fall, mean, unknown, write_claims
+from claim import Claims, Interval, bca, fall, judging, mean, unknown
 from density import SETS, order_row
 from starts import one_jam, rotating
 from study import COLORS, SEEDS, Options, Row, Study, curve, flock, main, picture, seed_of
@@ -263,8 +263,9 @@ def judge(table: pd.DataFrame) -> Claims:
     return claims
 
 
-def draw(options: Options, claims: Claims) -> None:
+def draw(options: Options, table: pd.DataFrame) -> None:
     """Draw each headline's value in each variant with its interval and the claimed range."""
+    claims = judge(table)
     with picture(options, "headlines", height_cm=13.0) as figure:
         panels = figure.subplots(3, 3)
         for axes, headline in zip(panels.flat, HEADLINES, strict=True):
@@ -284,12 +285,7 @@ def draw(options: Options, claims: Claims) -> None:
             axes.set_xticks(range(len(CHANGES)), CHANGES, rotation=40, ha="right")
 
 
-def script(options: Options) -> None:
-    """Make, judge and draw the runs."""
-    table = STUDY.results(options)
-    claims = judge(table)
-    write_claims(options, "headlines", claims)
-    draw(options, claims)
+script = judging("headlines", STUDY, judge, draw)
 
 
 if __name__ == "__main__":

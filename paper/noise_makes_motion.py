@@ -2,7 +2,7 @@
 
 import numpy as np
 import pandas as pd
-from claim import Claims, bca, mean, write_claims
+from claim import Claims, bca, judging, mean
 from section4 import FREE, READING, STUDY, VERY_LOW_S, over, setup, words
 from study import COLORS, Options, curve, main, picture
 
@@ -51,11 +51,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         axes.legend()
 
 
-def script(options: Options) -> None:
-    """Make, judge and draw the runs."""
-    table = STUDY.results(options)
-    write_claims(options, "noise_makes_motion", judge(table))
-    draw(options, table)
+script = judging("noise_makes_motion", STUDY, judge, draw)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pandas as pd
-from claim import Claims, mean, write_claims
+from claim import Claims, judging, mean
 from section4 import LOW_S, MEDIUM_S, READING, over, within, words
 from state_series import cycles, onset
 from study import COLORS, SEEDS, Options, Row, Study, curve, main, picture, simulated
@@ -144,11 +144,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         axes.legend(loc="center right")
 
 
-def script(options: Options) -> None:
-    """Make, judge and draw the runs."""
-    table = STUDY.results(options)
-    write_claims(options, "states", judge(table))
-    draw(options, table)
+script = judging("states", STUDY, judge, draw)
 
 
 if __name__ == "__main__":

@@ -93,12 +93,15 @@ class Study:
         What is measured of the run of a row: a function of the row alone.
     in_trial
         Which rows a trial has, of those with two seeds.
+    adaptive
+        Whether rows follow from earlier results, so that the file may hold runs of other rows.
     """
 
     name: str
     design: Callable[[], Sequence[Row]]
     measure: Callable[[Row], Row]
     in_trial: Callable[[Row], bool] = lambda row: True
+    adaptive: bool = False
 
     def results(self, options: Options) -> pd.DataFrame:
         """Return one line per run of the design that has been made, in the design's order.
@@ -106,9 +109,9 @@ class Study:
         Raises
         ------
         StudyError
-            For a file of another design or another results version with runs missing, a run that
-            cannot be made and a file that cannot be written. What was finished before is in the
-            file.
+            For a file of another design, or of another results version with runs missing, for a run
+            that cannot be made and a file that cannot be written. What was finished before is in
+            the file.
         """
         rows = list(self.design())
         if options.trial:
@@ -119,6 +122,11 @@ class Study:
         columns = list(rows[0])
         store = _Store(options.out / "results" / f"{self.name}.csv", columns)
         keys = {store.key(row): row for row in rows}
+        if not self.adaptive and (others := store.lines.keys() - keys.keys()):
+            raise StudyError(
+                f"{store.path} is a store of another design: {len(others)} of its runs are not in "
+                f"this one, such as {', '.join(min(others))}; was it changed after its runs?"
+            )
         if options.runs:
             missing = {key: row for key, row in keys.items() if key not in store.lines}
             store.fill(missing, self.measure, options.workers)

@@ -22,7 +22,7 @@ from claim import (
     write_claims,
 )
 from study import COLORS, Options, curve, main, picture, write
-from transition_runs import AFTER_MIN, STARTED, STUDY
+from transition_runs import AFTER_MIN, LONG, STARTED, STUDY
 
 from flockenv.statistics import kaplan_meier
 
@@ -56,7 +56,8 @@ def second(table: pd.DataFrame) -> pd.DataFrame:
     """
     rotates = abs(table["m"]) >= 0.5
     own = rotates.where(table["start"] == "rotating", ~rotates & (table["in_jams"] >= 0.5))
-    ended = np.minimum(table["stayed_min"] + AFTER_MIN * table["exited"], table["minutes"])
+    after = table["after_min"] if "after_min" in table else AFTER_MIN
+    ended = np.minimum(table["stayed_min"] + after * table["exited"], table["minutes"])
     return table.assign(
         exited=(~own).astype(int), stayed_min=table["stayed_min"].where(~own, ended)
     )
@@ -95,14 +96,16 @@ RULES = {
 """What each rule counts, in words."""
 
 
-def judge(table: pd.DataFrame, rule: str) -> Claims:
+def judge(table: pd.DataFrame, rule: str, suffix: str = "") -> Claims:
     """Judge a rule of transition_rules.md, at each coverage and noise."""
     claims = Claims("5.2, left open", "")
     lasts, counted = RULES[rule]
     by = ["coverage", "scheme", "c4", "dt_s"]
     for (coverage, scheme, c4, dt_s), group in table.groupby(by, sort=False):
         noise = "per-step" if scheme == "paper" else "white"
-        claims.reading = f"{scheme}, {noise} c4 = {c4:g}, dt = {dt_s:g} s, coverage {coverage:g}"
+        claims.reading = (
+            f"{scheme}, {noise} c4 = {c4:g}, dt = {dt_s:g} s, coverage {coverage:g}{suffix}"
+        )
         for start, words in STARTED.items():
             chosen = group[group["start"] == start]
             for n, runs in chosen.groupby("n_boats"):
@@ -224,7 +227,9 @@ def script(options: Options) -> None:
     """Make the map, judge and draw it."""
     table = STUDY.results(options)
     found = {"first": judge(table, "first"), "second": judge(second(table), "second")}
-    write_claims(options, "transition", [claim for each in found.values() for claim in each])
+    followed = judge(second(LONG.results(options)), "second", ", two hours after a split")
+    claims = [*found["first"], *found["second"], *followed]
+    write_claims(options, "transition", claims)
     if len(table):
         draw(options, table)
         draw_map(options, table)

@@ -86,6 +86,8 @@ def design() -> list[Row]:
 def measure(row: Row) -> Row:
     """Follow a flock without backing until 20 min after it has left its start, or to the end.
 
+    A row may say that it is followed for longer than that.
+
     A flock in one jam leaves it when its largest jam has fewer than half of the boats for a minute;
     a rotating one stops when |m|, averaged over a minute, is below 0.4.
     """
@@ -112,7 +114,7 @@ def measure(row: Row) -> Row:
                 else abs(last[:, 1].mean()) < 0.4
             )
             exit_min = last[0, 0] if left else math.nan
-        if minutes > exit_min + AFTER_MIN:
+        if minutes > exit_min + row.get("after_min", AFTER_MIN):
             break
         boats.advance(_EVERY_CYCLES * cycle_s)
     return _summary(np.array(samples), exit_min)
@@ -137,6 +139,20 @@ def _summary(samples: np.ndarray, exit_min: float) -> Row:
     }
 
 
+def long_design() -> list[Row]:
+    """Return runs near the line at the lowest noise, followed for two hours after a split."""
+    return [
+        {"scheme": "leapfrog", "noise_scheme": "white", "dt_s": 0.1, "c4": C4[0], "n_boats": n}
+        | {"coverage": coverage, "start": start, "minutes": 240.0, "after_min": 120.0}
+        | {"seed": MORE_RUNS + seed}
+        for n in (100, 200, 400, 800)
+        for seed in range(RUNS)
+        for coverage in (0.25, 0.3, 0.2)
+        for start in STARTED
+    ]
+
+
+LONG = Study("transition_long", long_design, measure, lambda row: row["n_boats"] == 100)
 STUDY = Study(
     "transition", design, measure, lambda row: row["coverage"] == 0.5 and row["n_boats"] <= 200
 )

@@ -8,7 +8,7 @@ flock; the constant lean explains the learned leaders where it leads within 0.02
 
 import numpy as np
 import pandas as pd
-from claim import Claims, Interval, mean, write_claims
+from claim import Claims, Interval, judging, mean
 from study import COLORS, FIRST_SEED, Options, Row, Study, flock, main, picture
 
 from flockenv.comparison import compare_leaders
@@ -131,11 +131,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         axes.set_title(f"{blocks * FLOCKS} flocks per case, 3 learned leaders of 27, wide, 0.31 s")
 
 
-def script(options: Options) -> None:
-    """Make, judge and draw the runs."""
-    table = STUDY.results(options)
-    write_claims(options, "what_leaders_see", judge(table))
-    draw(options, table)
+script = judging("what_leaders_see", STUDY, judge, draw)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from claim import Claims, Interval, bca, mean, unknown, write_claims
+from claim import Claims, Interval, bca, judging, mean, unknown
 from study import COLORS, Options, curve, main, picture
 from worth_runs import LAW, NOISES_S, POLICIES, STUDY
 
@@ -163,11 +163,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         left.legend()
 
 
-def script(options: Options) -> None:
-    """Make the runs, judge and draw them."""
-    table = STUDY.results(options)
-    write_claims(options, "worth", judge(table))
-    draw(options, table)
+script = judging("worth", STUDY, judge, draw)
 
 
 if __name__ == "__main__":

@@ -65,6 +65,15 @@ def test_a_store_of_another_design(tmp_path: Path) -> None:
     assert store.read_text() == "length,seed,twice\n1,0,0\n"
 
 
+def test_a_design_that_was_changed_after_its_runs(tmp_path: Path) -> None:
+    options = study.Options(out=tmp_path, runs=False)
+    with pytest.raises(KeyboardInterrupt):
+        _counted([]).results(study.Options(out=tmp_path))
+    changed = study.Study("counted", lambda: [{"minutes": 2.0, "seed": 0}], lambda row: {})
+    with pytest.raises(study.StudyError, match="another design: .* was it changed after its runs"):
+        changed.results(options)
+
+
 def test_a_store_of_another_version(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     options = study.Options(out=tmp_path)
     with pytest.raises(KeyboardInterrupt):
