@@ -56,7 +56,7 @@ def second(table: pd.DataFrame) -> pd.DataFrame:
     """
     rotates = abs(table["m"]) >= 0.5
     own = rotates.where(table["start"] == "rotating", ~rotates & (table["in_jams"] >= 0.5))
-    after = table["after_min"] if "after_min" in table else AFTER_MIN
+    after = table.get("after_min", AFTER_MIN)
     ended = np.minimum(table["stayed_min"] + after * table["exited"], table["minutes"])
     return table.assign(
         exited=(~own).astype(int), stayed_min=table["stayed_min"].where(~own, ended)

@@ -70,7 +70,7 @@ def test_a_design_that_was_changed_after_its_runs(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         _counted([]).results(study.Options(out=tmp_path))
     changed = study.Study("counted", lambda: [{"minutes": 2.0, "seed": 0}], lambda row: {})
-    with pytest.raises(study.StudyError, match="another design: .* was it changed after its runs"):
+    with pytest.raises(study.StudyError, match=r"another design: .* was it changed after its runs"):
         changed.results(options)
 
 
