@@ -26,10 +26,8 @@ import numpy as np
 from provenance import provenance_of
 
 import flockenv
-from flockenv._core import LARGEST_LEAN
-from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv.policies import LeaningLaw, NetworkPolicy
-from flockenv.policies.laws import LEAN_FEATURES
+from flockenv.policies.laws import LARGEST_LEAN, LEAN_FEATURES
 from flockenv.runs.seeds import POLICY_SEEDS
 
 SEEDS = POLICY_SEEDS["evolution strategy"]
@@ -144,7 +142,8 @@ def stored_state(path: Path, identity: str) -> dict[str, Any] | None:
     """Return the state of a search that was interrupted, if there is one with these options."""
     if not path.exists():
         return None
-    arrays = read_arrays(path)
+    with np.load(path) as file:
+        arrays = dict(file)
     if str(arrays.pop("identity", "")) != identity:
         sys.exit(f"{path} is of a search with other options: name another folder with --out")
     return arrays
@@ -162,7 +161,10 @@ def search(options: argparse.Namespace, command: str) -> np.ndarray:
     hours = env.num_envs * TASKS[options.task]["episode_s"] / 3600.0
     while int(state["generation"]) * hours < options.flock_hours:
         state = next_generation(state, env, options)
-        write_arrays(path, {**state, "identity": np.array(identity)})
+        # Whole or not at all: an interrupt leaves the generation before.
+        half = path.with_suffix(".half.npz")
+        np.savez(half, **state, identity=identity)
+        half.replace(path)
         reward, order = state["curve"][-1]
         done = int(state["generation"]) * hours
         print(f"{done:.2f} flock-hours: mean reward {reward:.3f}, signed order {order:.3f}")

@@ -25,9 +25,8 @@ import pandas as pd
 from evolution_strategy import lean
 
 import flockenv
-from flockenv._core import LARGEST_LEAN
 from flockenv.policies import LeaningLaw, load
-from flockenv.policies.laws import LEAN_FEATURES
+from flockenv.policies.laws import LARGEST_LEAN, LEAN_FEATURES
 from flockenv.runs.seeds import release_seeds
 
 EPISODE_S, EVERY_S, HELD_S, HORIZON_S, JUDGED_S = 480, 8, 16, 32, 8

@@ -31,7 +31,8 @@ from evolution_strategy import SEEDS, episode
 from provenance import provenance_of
 from train_from_nothing import JUDGES, LEADERS, OFF, flock, judged, write
 
-from flockenv import LeadersVectorEnv, _core
+from flockenv import LeadersVectorEnv
+from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy
 from flockenv.policies.laws import LEAN_FEATURES
 from flockenv.runs.seeds import release_seeds
@@ -42,7 +43,7 @@ GENERATIONS, JUDGED_EVERY = 960, 120
 LENGTH = 20.0
 REWARD = {"contact_push": 1.0, "leader_velocity": 5.0, "contact_alignment": 20.0}
 OBSERVATION = {**OFF, "own": True, "lean_features": True}
-NAMES = [entry["name"] for entry in _core.observation_table(OBSERVATION)]
+NAMES = [entry.name for entry in observation_entries(OBSERVATION)]
 #: A boat backs up where this is negative.
 FORWARD = NAMES.index("forward_velocity")
 OWN = len(NAMES) - len(LEAN_FEATURES)

@@ -30,12 +30,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import tomli_w
+from cmaes import CMA
 from provenance import provenance_of
 from rich.progress import Progress
 
 import flockenv
-from flockenv._io.atomic_write import write_csv, write_text
-from flockenv._io.extras import require
 from flockenv.comparison import run_episodes
 from flockenv.policies import DampedLaw
 from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
@@ -67,7 +66,7 @@ def search(pool: str, leaders: int, seed: int, options: argparse.Namespace) -> p
     """Return every candidate of a search, and its mean at the end as generation -1."""
     middle, widths = np.array(list(RANGES.values())).T
     first = np.zeros(len(RANGES))
-    cma = require("cmaes", "search").CMA(mean=first, sigma=0.5, seed=seed)
+    cma = CMA(mean=first, sigma=0.5, seed=seed)
     parameters, rows = flock_parameters(pool, leaders), []
     for generation in range(options.generations):
         start = generation * options.episodes
@@ -96,7 +95,8 @@ def tuned(pool: str, leaders: int, options: argparse.Namespace) -> dict[str, flo
     seeds = range(options.seed, options.seed + options.searches)
     path = options.out / f"damped-law-{pool}-{leaders}.csv"
     if not path.exists():
-        write_csv(path, pd.concat(search(pool, leaders, each, options) for each in seeds))
+        found = pd.concat(search(pool, leaders, each, options) for each in seeds)
+        path.write_text(found.to_csv(index=False, lineterminator="\n"), encoding="utf-8")
     tables = pd.read_csv(path)
     ends = tables.loc[tables["generation"] == -1, list(RANGES)]
     return law(np.log(ends).mean().to_numpy())
@@ -144,10 +144,10 @@ def main(arguments: list[str] | None = None) -> None:
             gains = tuned(pool, leaders, options)
             scores = judged(pool, leaders, gains, options.flocks)
             rows.append({"pool": pool, "leaders": leaders, **gains, **scores})
-            write_csv(options.out / "gains.csv", pd.DataFrame(rows).round(4))
+            pd.DataFrame(rows).round(4).to_csv(options.out / "gains.csv", index=False)
     wall_s = time.perf_counter() - start
     provenance = provenance_of(command, seed=options.seed, samples=0, wall_s=wall_s)
-    write_text(options.out / "made.toml", tomli_w.dumps(provenance))
+    (options.out / "made.toml").write_text(tomli_w.dumps(provenance), encoding="utf-8")
     print(pd.DataFrame(rows).round(3).to_string(index=False))
     print(f"written to {options.out}")
 

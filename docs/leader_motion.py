@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 import flockenv
-from flockenv import _core
+from flockenv import FlockParameters
 from flockenv.policies.registry import named_policy
 
 FOLDER = DOCS / "leaders"
@@ -58,7 +58,7 @@ def draw() -> None:
     figure = Figure((9.0, 3.4), layout="constrained")
     for axes, policy in zip(figure.subplots(1, 3), POLICIES, strict=True):
         pose = leaders("wide", policy, 7).pose[-round(120 * SAMPLE_HZ) :, :LEADERS]
-        for radius_cm in _core.pool_radii_cm("wide"):
+        for radius_cm in FlockParameters(pool="wide").pool_radii_cm:
             axes.add_patch(Circle((0, 0), radius_cm, fill=False, color="0.6"))
         axes.plot(pose[..., 0], pose[..., 1], lw=1)
         axes.plot(pose[0, :, 0], pose[0, :, 1], "k.")
@@ -71,7 +71,7 @@ def main() -> None:
     """Write the table and draw the tracks."""
     rows = []
     for pool in POOLS:
-        outer_cm = max(_core.pool_radii_cm(pool))
+        outer_cm = FlockParameters(pool=pool).pool_radii_cm[0]
         for policy in POLICIES:
             runs = (leaders(pool, policy, seed) for seed in range(EPISODES))
             means = pd.DataFrame([motion(run, outer_cm) for run in runs]).mean()

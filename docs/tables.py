@@ -20,6 +20,7 @@ from committed_data import (
     order,
     rows,
 )
+from floors import floors
 from readme_numbers import figures, findings, speed
 from training_tables import TRAINING_TABLES
 
@@ -28,6 +29,7 @@ from flockenv import FlockParameters
 DOCS = Path(__file__).parent
 PAGES = (
     DOCS.parent / "README.md",
+    DOCS.parent / "ARCHITECTURE.md",
     DOCS.parent / "paper" / "README.md",
     *sorted(DOCS.glob("*.md")),
 )
@@ -152,6 +154,7 @@ def parameters() -> str:
 
 TABLES: dict[str, Callable[[], str]] = {
     "parameters": parameters,
+    "floors": floors,
     "figures": figures,
     "findings": findings,
     "leader-count": leader_count,

@@ -140,6 +140,11 @@ class FlockParameters:
         return bw_s
 
     @property
+    def pool_radii_cm(self) -> tuple[float, float]:
+        """Radii of the outer and the inner wall; the outer one is infinite in open water."""
+        return _core.pool_radii_cm(self.pool)
+
+    @property
     def common_target(self) -> str | None:
         """The direction that all leaders head for; None without leaders and if it is not one."""
         targets = self.target if isinstance(self.target, tuple) else (self.target,)

@@ -22,6 +22,9 @@ from flockenv.policies.model import ModelPolicy
 LEAN_FEATURES: tuple[str, ...] = tuple(_core.LEAN_FEATURES)
 """The features of a lean, in the order of the observation's block ``lean_features``."""
 
+LARGEST_LEAN: float = _core.LARGEST_LEAN
+"""The angle in rad that an action of 1 stands for with ``action_mode="lean"``."""
+
 
 class LawPolicy(RowPolicy):
     """A law evaluated from observations, with the interface of an SB3 policy.
@@ -238,7 +241,7 @@ class LeaningLaw(LawPolicy):
                     f"in the {len(LEAN_FEATURES)} lean features, mirrored to the target"
                 )
         weights, bias = (
-            _core.LARGEST_LEAN * each.detach().cpu().double().numpy().ravel()
+            LARGEST_LEAN * each.detach().cpu().double().numpy().ravel()
             for each in (policy.action_net.weight, policy.action_net.bias)
         )
         return cls(

@@ -25,22 +25,6 @@ EXECUTED = {
     "docs/other_learners.md": ["python"],
     "docs/tracks.md": ["python", "sh"],
 }
-PAGES = sorted(
-    str(path.relative_to(REPOSITORY))
-    for path in (*REPOSITORY.glob("*.md"), *DOCS.rglob("*.md"))
-    if "_build" not in path.parts
-)
-# Made by readers and commands, ids of environments, and names of BenchMARL's tasks.
-NO_FILES_YET = {
-    "docs/_build/html",
-    "flockenv/Order-easy-v0",
-    "flockenv/Leaders-v0",
-    "flockenv/leaders",
-    "flockenv/lean",
-    "src/environment/observation/blocks/course.rs",
-    "src/integrator/centered.rs",
-    "tests/envs/test_course.py",
-}
 
 
 @pytest.fixture
@@ -96,14 +80,6 @@ def test_blocks_run(page, tmp_path, monkeypatch, run_shell, request):
             continue
         run += 1
     assert run >= 2
-
-
-@pytest.mark.parametrize("page", PAGES)
-def test_files_that_are_named_exist(page):
-    text = (REPOSITORY / page).read_text()
-    folders = "baselines|benches|docs|flockenv|src|tests"
-    named = set(re.findall(rf"`((?:{folders})/[\w./-]+)`", text)) - NO_FILES_YET
-    assert [name for name in sorted(named) if not (REPOSITORY / name).exists()] == []
 
 
 def test_the_home_page_opens_with_a_flock():

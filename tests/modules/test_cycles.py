@@ -35,3 +35,24 @@ def test_circles_are_named(tmp_path, changes, circle):
     done = subprocess.run(run, capture_output=True, text=True, check=False)
     assert done.returncode == len({*circle}) // 2
     assert all(word in done.stderr for word in circle)
+
+
+@pytest.mark.parametrize(
+    ("layers", "words"),
+    [
+        (["pool", "hull"], []),
+        (["hull", "pool"], ["pool", "hull", "below"]),
+        (["pool | hull"], ["pool", "hull", "below"]),
+        (["pool"], ["hull", "no layer"]),
+    ],
+)
+def test_a_module_names_only_what_stands_below_it(tmp_path, layers, words):
+    (tmp_path / "Cargo.toml").write_text(f"[package]\nmetadata.layers = {layers}\n")
+    for name, text in ONE_WAY.items():
+        path = tmp_path / f"src/{name}.rs"
+        path.parent.mkdir(exist_ok=True, parents=True)
+        path.write_text(text)
+    run = [sys.executable, str(SCRIPT), str(tmp_path / "src")]
+    done = subprocess.run(run, capture_output=True, text=True, check=False)
+    assert done.returncode == bool(words)
+    assert all(word in done.stderr for word in words)
