@@ -4,7 +4,7 @@ mod support;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use flockenv::environment::EnvBatch;
+use flockenv::environment::{EnvBatch, EnvSettings};
 use flockenv::parameters::{FlockParameters, Pool};
 use support::{control, environment, training, warm_batch};
 
@@ -13,7 +13,7 @@ fn main() {
 }
 
 fn batch_of_16(parameters: &FlockParameters) -> EnvBatch {
-    warm_batch(parameters, 0..16).expect("the settings are accepted")
+    warm_batch(EnvSettings::default(), parameters, 0..16).expect("the settings are accepted")
 }
 
 fn control_steps(bencher: Bencher, parameters: &FlockParameters) {

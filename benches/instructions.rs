@@ -8,7 +8,7 @@ mod support;
 
 use flockenv::Flock;
 use flockenv::contact::Statistics;
-use flockenv::environment::{EnvBatch, Episode};
+use flockenv::environment::{EnvBatch, EnvSettings, Episode};
 use flockenv::parameters::{Disc, FlockParameters, Pool};
 use std::fmt::Write as _;
 use std::fs;
@@ -16,7 +16,7 @@ use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use support::scene::Scene;
-use support::{control, environment, training, warm_batch};
+use support::{control, environment, leaning, training, warm_batch};
 
 /// Part by which a count may differ from the one that is pinned: compilers, memcpy of other processors.
 const TOLERANCE: f64 = 0.03;
@@ -26,11 +26,16 @@ const HEADER: &str = "scene,instructions per step,per boat and substep,per conta
 
 type Failure = Box<dyn std::error::Error>;
 
-/// What is counted: substeps of a flock, or control steps of an environment.
+/// What is counted: substeps of a flock, or control steps of the flocks of an environment.
 enum Work {
     Flock(FlockParameters),
     Environment(FlockParameters),
+    /// Leaders that lean once a second, in many flocks: what the training of `flockenv train` steps.
+    Leaning(FlockParameters),
 }
+
+/// How many flocks a seed stands for where leaders lean: a training's 128 in all.
+const LEANING_FLOCKS: u64 = 32;
 
 /// What a measured stretch did.
 struct Done {
@@ -59,8 +64,17 @@ fn work(name: &str) -> Option<Work> {
         "control step in narrow" => Work::Environment(environment(Pool::NARROW, 0.4)),
         "training control step in wide" => Work::Environment(training(Pool::WIDE, 0.31)),
         "training control step in narrow" => Work::Environment(training(Pool::NARROW, 0.45)),
+        "training of leans in wide" => Work::Leaning(fewer_leaders(training(Pool::WIDE, 0.31))),
+        "training of leans in narrow" => Work::Leaning(fewer_leaders(training(Pool::NARROW, 0.45))),
         _ => return None,
     })
+}
+
+fn fewer_leaders(parameters: FlockParameters) -> FlockParameters {
+    FlockParameters {
+        n_leaders: 3,
+        ..parameters
+    }
 }
 
 /// Discs of 2 cm along the outer wall, which are 1 cm in the water.
@@ -81,7 +95,7 @@ fn with_posts(parameters: FlockParameters) -> FlockParameters {
     }
 }
 
-const SCENES: [&str; 11] = [
+const SCENES: [&str; 13] = [
     "jam of 27",
     "jam of 27, 1 relinearization",
     "jam of 27, 2 relinearizations",
@@ -93,6 +107,8 @@ const SCENES: [&str; 11] = [
     "control step in narrow",
     "training control step in wide",
     "training control step in narrow",
+    "training of leans in wide",
+    "training of leans in narrow",
 ];
 
 /// Seeds that a count is the mean of.
@@ -108,8 +124,12 @@ impl Work {
                 Ok(flock.snapshot())
             }
             Self::Environment(parameters) => {
-                let batch = warm_batch(parameters, seed..seed + 1)?;
+                let batch = warm_batch(EnvSettings::default(), parameters, seed..seed + 1)?;
                 Ok(batch.to_bytes())
+            }
+            Self::Leaning(parameters) => {
+                let seeds = LEANING_FLOCKS * seed..LEANING_FLOCKS * (seed + 1);
+                Ok(warm_batch(leaning(), parameters, seeds)?.to_bytes())
             }
         }
     }
@@ -130,26 +150,39 @@ impl Work {
                     statistics,
                 })
             }
-            Self::Environment(parameters) => {
+            Self::Environment(parameters) | Self::Leaning(parameters) => {
                 let mut batch = EnvBatch::from_bytes(state)?;
+                let settings = batch.settings();
+                let (hz, period) = (settings.control_hz, settings.period_steps());
                 control(&mut batch, 2)?;
-                let statistics = |batch: &EnvBatch| {
-                    let flock = batch.envs()[0].episode().map(Episode::flock);
-                    flock.map(|flock| *flock.statistics()).unwrap_or_default()
-                };
                 let before = statistics(&batch);
                 let cycle_s =
                     parameters.fw_s + parameters.nop1_s + parameters.bw_s + parameters.nop2_s;
-                let steps = (10.0 * cycle_s).round() as u64;
-                counted(|| control(&mut batch, steps))?;
+                let decisions = (cycle_s * hz / f64::from(period)).round() as u64;
+                counted(|| control(&mut batch, decisions))?;
                 Ok(Done {
-                    steps,
+                    steps: decisions * u64::from(period) * batch.envs().len() as u64,
                     boats: parameters.n_boats as u64,
                     statistics: difference(&statistics(&batch), &before),
                 })
             }
         }
     }
+}
+
+/// What all flocks of a batch did.
+fn statistics(batch: &EnvBatch) -> Statistics {
+    let episodes = batch.envs().iter().filter_map(|env| env.episode());
+    episodes
+        .map(Episode::flock)
+        .fold(Statistics::default(), |sum, flock| {
+            let own = flock.statistics();
+            Statistics {
+                substeps: sum.substeps + own.substeps,
+                contacts: sum.contacts + own.contacts,
+                ..sum
+            }
+        })
 }
 
 fn difference(now: &Statistics, before: &Statistics) -> Statistics {
@@ -183,6 +216,8 @@ fn measure(name: &str) -> Result<String, Failure> {
             .arg(std::env::current_exe()?)
             .args(["--count", name])
             .arg(&state)
+            // Callgrind collects the thread that calls `counted`.
+            .env("RAYON_NUM_THREADS", "1")
             .output()?;
         if !output.status.success() {
             return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());

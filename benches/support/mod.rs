@@ -5,7 +5,11 @@
 pub mod scene;
 
 use flockenv::Result;
-use flockenv::environment::{BatchRows, EnvBatch, EnvSettings, ResetRequest};
+use flockenv::environment::observation::{Block, ObservationLayout};
+use flockenv::environment::{
+    ActionMode, BatchRows, EnvBatch, EnvSettings, ResetRequest, RewardTerm, RewardWeights,
+    TargetChoice,
+};
 use flockenv::parameters::{FlockParameters, Physics, Pool, Preset};
 use std::hint::black_box;
 use std::ops::Range;
@@ -30,8 +34,28 @@ pub fn training(pool: Pool, bw_s: f64) -> FlockParameters {
     parameters
 }
 
+/// The environment of `flockenv train`.
+pub fn leaning() -> EnvSettings {
+    let mut reward = RewardWeights::default();
+    reward.0[RewardTerm::ContactAlignment as usize] = 30.0;
+    EnvSettings {
+        target: TargetChoice::Random,
+        mirror_to_target: true,
+        observation: ObservationLayout::of(&[Block::LeanFeatures]),
+        action_mode: ActionMode::Lean,
+        decision_period_s: Some(1.0),
+        reward,
+        reward_horizon_s: Some(40.0),
+        ..EnvSettings::default()
+    }
+}
+
 /// A batch with an episode per seed, after 20 s, so that the flocks are where they usually are.
-pub fn warm_batch(parameters: &FlockParameters, seeds: Range<u64>) -> Result<EnvBatch> {
+pub fn warm_batch(
+    settings: EnvSettings,
+    parameters: &FlockParameters,
+    seeds: Range<u64>,
+) -> Result<EnvBatch> {
     let requests: Vec<_> = seeds
         .map(|seed| {
             Some(ResetRequest {
@@ -41,19 +65,20 @@ pub fn warm_batch(parameters: &FlockParameters, seeds: Range<u64>) -> Result<Env
         })
         .collect();
     let members = vec![parameters.clone(); requests.len()];
-    let mut batch = EnvBatch::new(EnvSettings::default(), members)?;
+    let decisions = 200 / u64::from(settings.period_steps());
+    let mut batch = EnvBatch::new(settings, members)?;
     batch.reset(&requests)?;
-    control(&mut batch, 200)?;
+    control(&mut batch, decisions)?;
     Ok(batch)
 }
 
-/// Control steps with the rudders held.
-pub fn control(batch: &mut EnvBatch, steps: u64) -> Result<()> {
+/// Decisions with the actions held.
+pub fn control(batch: &mut EnvBatch, decisions: u64) -> Result<()> {
     let actions = vec![0.5; batch.rows()];
     let mut observations = vec![0.0; batch.rows() * batch.observation_size()];
     let mut rewards = vec![0.0; batch.rows()];
     let mut truncated = vec![false; batch.envs().len()];
-    for _ in 0..steps {
+    for _ in 0..decisions {
         let rows = BatchRows {
             observations: &mut observations,
             rewards: &mut rewards,
