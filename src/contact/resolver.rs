@@ -112,6 +112,7 @@ impl ContactResolver {
         dt: f64,
         statistics: &mut Statistics,
     ) -> bool {
+        self.trial.set_old();
         let builds_before = self.detector.neighbors.builds();
         let margin = self
             .detector
@@ -262,6 +263,7 @@ impl ContactResolver {
         inertia: &[InverseInertia],
         statistics: &mut Statistics,
     ) -> bool {
+        self.trial.set_old();
         let Self {
             contacts,
             biases,
@@ -316,6 +318,11 @@ impl ContactResolver {
         }
         self.solver.velocities = velocities;
         deepest
+    }
+
+    /// Moves the boats to the end of a substep that was solved, if a trial has put them there.
+    pub(crate) fn take_end(&mut self, poses: &mut Vec<Pose>, hulls: &mut Vec<HullPose>) -> bool {
+        self.trial.take_end(poses, hulls)
     }
 
     /// Forgets the impulses: nothing touched in this substep, and nothing near carried an impulse.

@@ -8,6 +8,8 @@ use crate::geometry::{Feature, HullPose, Pose, Velocity};
 pub(super) struct Trial {
     poses: Vec<Pose>,
     hulls: Vec<HullPose>,
+    /// Whether boats with the velocities that were solved for last end there.
+    is_end: bool,
 }
 
 impl Trial {
@@ -20,6 +22,21 @@ impl Trial {
         self.poses.clear();
         self.poses.extend(moved);
         HullPose::replace_all(&mut self.hulls, &self.poses);
+        self.is_end = true;
+    }
+
+    /// Takes note that the velocities are others now.
+    pub(super) fn set_old(&mut self) {
+        self.is_end = false;
+    }
+
+    /// Hands out the poses and hulls of the last trial, if boats end there, for those at the substep's start.
+    pub(super) fn take_end(&mut self, poses: &mut Vec<Pose>, hulls: &mut Vec<HullPose>) -> bool {
+        if self.is_end {
+            std::mem::swap(poses, &mut self.poses);
+            std::mem::swap(hulls, &mut self.hulls);
+        }
+        std::mem::take(&mut self.is_end)
     }
 
     /// Whether anything found as a contact overlaps by more than `allowed`.

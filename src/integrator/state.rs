@@ -86,6 +86,9 @@ impl Integrator {
 
     /// Moves every boat with its velocity for a time.
     pub(crate) fn drift(&mut self, dt: f64) {
+        if self.contacts.take_end(&mut self.poses, &mut self.boats) {
+            return;
+        }
         for (pose, velocity) in self.poses.iter_mut().zip(&self.velocities) {
             *pose = pose.moved(velocity, dt);
         }
