@@ -47,6 +47,12 @@ impl Contact {
         (self.boat, self.partner, self.feature)
     }
 
+    /// Whether it is another contact of the same two.
+    #[inline]
+    pub(super) fn is_twin(&self, other: &Self) -> bool {
+        (self.boat, self.partner) == (other.boat, other.partner)
+    }
+
     /// The other boat, if the partner is one.
     #[inline]
     pub fn second(&self) -> Option<usize> {

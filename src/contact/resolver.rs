@@ -44,6 +44,10 @@ pub(crate) struct ContactResolver {
     depenetration: Option<Box<Depenetration>>,
     passivity: Passivity,
     trial: Trial,
+    /// Islands that overlap at the substep's end.
+    overlapping: Vec<u32>,
+    /// Contacts of one island that may close, and their gaps at the substep's end in cm.
+    end_gaps: Vec<(u32, f64)>,
     /// Overlap in cm at a substep's end that relinearization stops at; `None` without it.
     allowed_overlap: Option<f64>,
     boat_radius: f64,
@@ -69,6 +73,8 @@ impl ContactResolver {
             depenetration: None,
             passivity: Passivity::default(),
             trial: Trial::default(),
+            overlapping: Vec::new(),
+            end_gaps: Vec::new(),
             allowed_overlap: [None, Some(1e-6), Some(1e-9)]
                 .get(parameters.relinearizations)
                 .copied()
@@ -207,20 +213,17 @@ impl ContactResolver {
             bias.of_gap(&contact.gap) + bias.of_flank(&contact.gap, spin)
         }));
         self.solver.reset(poses.len(), &self.contacts);
-        let mut solved = self.solve(free, inertia, statistics);
-        if let Some(allowed) = self.allowed_overlap {
-            for _ in 0..MOST_PASSES {
-                if !solved || self.relinearize(poses, dt) <= allowed {
-                    break;
-                }
-                solved = self.solve(free, inertia, statistics);
-            }
+        let solved = self.solve(None, free, inertia, statistics);
+        if let Some(allowed) = self.allowed_overlap
+            && solved
+        {
+            self.relinearize(poses, free, inertia, dt, allowed, statistics);
         }
         if self.stop_driving(free, inertia, bias) {
             if shorter_possible {
                 return ContactOutcome::TooLong;
             }
-            self.solve(free, inertia, statistics);
+            self.solve(None, free, inertia, statistics);
         }
         if self.detector.may_pass_walls(&self.solver.velocities, dt) {
             return ContactOutcome::TooLong;
@@ -257,8 +260,10 @@ impl ContactResolver {
         !driven.is_empty()
     }
 
+    /// Solves some islands again, or all; returns whether that succeeds.
     fn solve(
         &mut self,
+        again: Option<&[u32]>,
         free: &[Velocity],
         inertia: &[InverseInertia],
         statistics: &mut Statistics,
@@ -270,12 +275,16 @@ impl ContactResolver {
             solver,
             ..
         } = self;
-        let report = solver.solve(&ContactProblem {
+        let problem = ContactProblem {
             contacts,
             inertia,
             free,
             biases,
-        });
+        };
+        let report = match again {
+            Some(islands) => solver.solve_again(&problem, islands),
+            None => solver.solve(&problem),
+        };
         statistics.count(&report);
         if report.converged {
             return true;
@@ -297,26 +306,78 @@ impl ContactResolver {
         false
     }
 
-    /// Sets the velocity biases so that the gaps at the substep's end, evaluated where the last solve moves the
-    /// boats, open to zero: the normals stay those of the substep's start, along which forces act,
-    /// and so does the factor. What cannot close at these velocities keeps its bias. Returns the deepest overlap at the substep's end in cm. A shortened
-    /// substep leaves its share of an overlap from before, which does not count.
-    fn relinearize(&mut self, poses: &[Pose], dt: f64) -> f64 {
-        let velocities = std::mem::take(&mut self.solver.velocities);
-        self.trial.place(poses, &velocities, dt);
+    /// Solves islands again until no gap at the substep's end, evaluated where the last solve moves the boats, overlaps
+    /// by more than `allowed`: with biases for which those gaps open to zero. The normals stay those of the substep's
+    /// start, along which forces act, and so does the factor.
+    fn relinearize(
+        &mut self,
+        poses: &[Pose],
+        free: &[Velocity],
+        inertia: &[InverseInertia],
+        dt: f64,
+        allowed: f64,
+        statistics: &mut Statistics,
+    ) {
+        self.trial.place(poses, &self.solver.velocities, dt);
+        let mut left = std::mem::take(&mut self.overlapping);
+        left.clear();
+        left.extend(0..self.solver.islands().count() as u32);
+        let has_islands = self.solver.has_islands();
+        let least = if has_islands {
+            allowed
+        } else {
+            f64::NEG_INFINITY
+        };
+        for _ in 0..MOST_PASSES {
+            let mut deepest = 0.0_f64;
+            left.retain(|&island| {
+                let overlap = self.aim(island, dt, least);
+                deepest = deepest.max(overlap);
+                overlap > least
+            });
+            if deepest <= allowed || !self.solve(Some(&left), free, inertia, statistics) {
+                break;
+            }
+            if has_islands {
+                let (contacts, solver) = (&self.contacts, &self.solver);
+                let islands = left
+                    .iter()
+                    .map(|&island| solver.islands().contacts(island as usize));
+                self.trial
+                    .move_islands(contacts, islands, poses, &solver.velocities, dt);
+            } else {
+                self.trial.place(poses, &self.solver.velocities, dt);
+            }
+        }
+        self.overlapping = left;
+    }
+
+    /// Sets the biases of an island so that its gaps at the substep's end open to zero, if one of them overlaps by more
+    /// than `least`. What cannot close at these velocities keeps its bias. Returns the deepest overlap at the substep's
+    /// end in cm. A shortened substep leaves its share of an overlap from before, which does not count.
+    fn aim(&mut self, island: u32, dt: f64, least: f64) -> f64 {
         let left_over = 1.0 - dt / dt.max(self.whole_substep_s);
+        let velocities = &self.solver.velocities;
         let mut deepest = 0.0_f64;
-        for (k, contact) in self.contacts.iter().enumerate() {
+        self.end_gaps.clear();
+        for &k in self.solver.islands().contacts(island as usize) {
+            let contact = &self.contacts[k as usize];
             let speed = |boat: usize| self.detector.hull().speed(&velocities[boat]);
             let closing = speed(contact.boat as usize) + contact.second().map_or(0.0, speed);
             if contact.gap.gap <= closing * dt && contact.gap.gap >= -self.penetration_slop {
-                let end_gap = self.trial.gap(&self.detector, &self.contacts, k)
+                let end_gap = self.trial.gap(&self.detector, &self.contacts, k as usize)
                     - left_over * contact.gap.gap.min(0.0);
                 deepest = deepest.max(-end_gap);
-                self.biases[k] = end_gap / dt - contact.gap_rate(&velocities);
+                self.end_gaps.push((k, end_gap));
             }
         }
-        self.solver.velocities = velocities;
+        // Elsewhere biases stay those that were solved for: whether contacts drive boats is judged by them.
+        if deepest > least {
+            for &(k, end_gap) in &self.end_gaps {
+                let rate = self.contacts[k as usize].gap_rate(velocities);
+                self.biases[k as usize] = end_gap / dt - rate;
+            }
+        }
         deepest
     }
 

@@ -10,6 +10,9 @@ pub(super) struct Trial {
     hulls: Vec<HullPose>,
     /// Whether boats with the velocities that were solved for last end there.
     is_end: bool,
+    /// Boats that are moved again, and whether each boat is one of them.
+    listed: Vec<u32>,
+    is_listed: Vec<bool>,
 }
 
 impl Trial {
@@ -22,6 +25,35 @@ impl Trial {
         self.poses.clear();
         self.poses.extend(moved);
         HullPose::replace_all(&mut self.hulls, &self.poses);
+        self.is_end = true;
+    }
+
+    /// Moves the boats of some islands, given by their contacts, again. The others stay where they are.
+    pub(super) fn move_islands<'a>(
+        &mut self,
+        contacts: &[Contact],
+        islands: impl Iterator<Item = &'a [u32]>,
+        poses: &[Pose],
+        velocities: &[Velocity],
+        dt: f64,
+    ) {
+        self.is_listed.resize(poses.len(), false);
+        self.listed.clear();
+        for &k in islands.flatten() {
+            let contact = &contacts[k as usize];
+            let sides = [Some(contact.boat as usize), contact.second()];
+            for boat in sides.into_iter().flatten() {
+                if !std::mem::replace(&mut self.is_listed[boat], true) {
+                    self.listed.push(boat as u32);
+                }
+            }
+        }
+        for &boat in &self.listed {
+            let boat = boat as usize;
+            self.is_listed[boat] = false;
+            self.poses[boat] = poses[boat].moved(&velocities[boat], dt);
+        }
+        HullPose::replace_some(&mut self.hulls, &self.poses, &self.listed);
         self.is_end = true;
     }
 
@@ -67,10 +99,7 @@ impl Trial {
             Feature::Bow if contact.has_ends() => 1,
             _ => return own(),
         };
-        let is_twin = |other: Option<&Contact>| {
-            other
-                .is_some_and(|other| (other.boat, other.partner) == (contact.boat, contact.partner))
-        };
+        let is_twin = |other: Option<&Contact>| other.is_some_and(|other| contact.is_twin(other));
         let has_twin = || {
             is_twin(contacts.get(k + 1))
                 || is_twin(k.checked_sub(1).and_then(|before| contacts.get(before)))

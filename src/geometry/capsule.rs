@@ -102,6 +102,22 @@ impl HullPose {
         into.extend(rest.iter().map(Self::new));
     }
 
+    /// Replaces the hulls of some boats by those at their poses, bit for bit those of [`Self::new`].
+    pub(crate) fn replace_some(hulls: &mut [Self], poses: &[Pose], boats: &[u32]) {
+        for four in boats.chunks(4) {
+            let boat = |lane: usize| four[lane.min(four.len() - 1)] as usize;
+            let headings = std::array::from_fn(|lane| poses[boat(lane)].heading);
+            let (sin, cos) = sin_cos(f64x4::new(headings));
+            let (sin, cos) = (sin.to_array(), cos.to_array());
+            for (lane, &boat) in four.iter().enumerate() {
+                hulls[boat as usize] = Self {
+                    center: poses[boat as usize].position,
+                    axis: Vec2::new(cos[lane], sin[lane]),
+                };
+            }
+        }
+    }
+
     /// The end of the core segment at the bow (`side` +1) or stern (−1).
     #[inline]
     pub fn end(&self, side: f64, half_length: f64) -> Vec2 {

@@ -52,29 +52,28 @@ impl BlockPivoting {
         self.places.resize(boats, NONE);
     }
 
-    /// Solves all islands.
+    /// Solves some islands, whose boats have their free velocities.
     pub(super) fn solve(
         &mut self,
         problem: &ContactProblem,
         islands: &Islands,
+        which: &[u32],
         active: &mut [bool],
         impulses: &mut [f64],
-        velocities: &mut Vec<Velocity>,
+        velocities: &mut [Velocity],
     ) -> SolveReport {
-        velocities.clear();
-        velocities.extend_from_slice(problem.free);
-        self.rights.clear();
-        let contacts = problem.contacts.iter().zip(problem.biases);
-        self.rights
-            .extend(contacts.map(|(contact, bias)| contact.gap_rate(problem.free) + bias));
+        self.rights.resize(problem.contacts.len(), 0.0);
         let mut report = SolveReport::default();
         self.left.clear();
-        for number in 0..islands.count() {
-            let contacts = islands.contacts(number);
+        for &number in which {
+            let contacts = islands.contacts(number as usize);
+            for &k in contacts {
+                self.rights[k as usize] = problem.slack(k as usize, problem.free);
+            }
             if self.solve_directly(problem, contacts, active, impulses, velocities, &mut report) {
                 report.iterations += 1;
             } else {
-                self.left.push(number as u32);
+                self.left.push(number);
             }
         }
         self.solve_left(problem, islands, active, impulses, velocities, &mut report);

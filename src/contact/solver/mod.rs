@@ -37,6 +37,8 @@ pub const EXACT: f64 = 1e-10;
 pub struct ContactSolver {
     kind: Solver,
     islands: Islands,
+    /// The numbers of all islands.
+    all: Vec<u32>,
     pivoting: BlockPivoting,
     /// Whether a contact is guessed to carry an impulse; afterwards, whether it does.
     pub active: Vec<bool>,
@@ -52,6 +54,7 @@ impl ContactSolver {
         Self {
             kind,
             islands: Islands::default(),
+            all: Vec::new(),
             pivoting: BlockPivoting::new(1e-13),
             active: Vec::new(),
             impulses: Vec::new(),
@@ -78,6 +81,8 @@ impl ContactSolver {
     pub fn reset(&mut self, boats: usize, contacts: &[Contact]) {
         debug_assert_eq!(self.active.len(), contacts.len());
         self.islands.find(boats, contacts);
+        self.all.clear();
+        self.all.extend(0..self.islands.count() as u32);
         self.pivoting.reset(boats, self.islands.count());
     }
 
@@ -86,27 +91,61 @@ impl ContactSolver {
         &self.islands
     }
 
-    /// Solves for `impulses` and `velocities`. Solving again with other bounds or free velocities
-    /// reuses factors that are kept as far as the active set is the same.
+    /// Solves for `impulses` and `velocities`.
     pub fn solve(&mut self, problem: &ContactProblem) -> SolveReport {
         self.solve_as(self.kind, problem)
     }
 
+    /// Whether islands can be solved without the others.
+    pub(crate) fn has_islands(&self) -> bool {
+        self.kind == Solver::BlockPivoting
+    }
+
+    /// Solves some islands again, with other biases: factors that are kept are used again as far as the active set is
+    /// the same. A solver without islands solves everything.
+    pub(crate) fn solve_again(&mut self, problem: &ContactProblem, which: &[u32]) -> SolveReport {
+        if !self.has_islands() {
+            return self.solve(problem);
+        }
+        for &island in which {
+            for &k in self.islands.contacts(island as usize) {
+                let contact = &problem.contacts[k as usize];
+                let first = contact.boat as usize;
+                self.velocities[first] = problem.free[first];
+                if let Some(second) = contact.second() {
+                    self.velocities[second] = problem.free[second];
+                }
+            }
+        }
+        let report = self.pivoting.solve(
+            problem,
+            &self.islands,
+            which,
+            &mut self.active,
+            &mut self.impulses,
+            &mut self.velocities,
+        );
+        SolveReport {
+            islands: which.len() as u64,
+            ..report
+        }
+    }
+
     /// Solves with a solver of another kind.
     pub(crate) fn solve_as(&mut self, kind: Solver, problem: &ContactProblem) -> SolveReport {
+        let (impulses, velocities) = (&mut self.impulses, &mut self.velocities);
         let mut report = match kind {
-            Solver::BlockPivoting => self.pivoting.solve(
-                problem,
-                &self.islands,
-                &mut self.active,
-                &mut self.impulses,
-                &mut self.velocities,
-            ),
-            Solver::GaussSeidel => {
-                gauss_seidel::solve(problem, &mut self.impulses, &mut self.velocities)
+            Solver::BlockPivoting => {
+                velocities.clear();
+                velocities.extend_from_slice(problem.free);
+                let active = &mut self.active;
+                let (islands, all) = (&self.islands, &self.all);
+                self.pivoting
+                    .solve(problem, islands, all, active, impulses, velocities)
             }
+            Solver::GaussSeidel => gauss_seidel::solve(problem, impulses, velocities),
             #[cfg(feature = "clarabel")]
-            Solver::Clarabel => clarabel::solve(problem, &mut self.impulses, &mut self.velocities),
+            Solver::Clarabel => clarabel::solve(problem, impulses, velocities),
         };
         if kind != Solver::BlockPivoting {
             let carry = self.impulses.iter().map(|&impulse| impulse > 0.0);
