@@ -102,7 +102,7 @@ def judge(table: pd.DataFrame) -> Claims:
 def draw(options: Options, table: pd.DataFrame) -> None:
     """Draw the rise, and |m| without noise, against the share of the water under hulls."""
     with picture(options, "density", height_cm=7.0) as figure:
-        left, right = figure.subplots(1, 2, sharex=True)
+        left, right = figure.subplots(1, 2, sharex=True, sharey=True)
         for color, marker, name in zip(COLORS, "osD^", SETS, strict=False):
             cells = {
                 100 * covered(pool, n): table[

@@ -34,10 +34,7 @@ def judge(table: pd.DataFrame) -> Claims:
         claims.add(
             "Order increases with the number of leaders",
             f"slope of mean Ψ_o against 0 to 4 leaders, bw = {bw_s:g} s",
-            bca(
-                groups,
-                lambda *drawn, x=leaders: slope(x, [g[..., 0].mean(-1) for g in drawn]),
-            ),
+            bca(groups, lambda *drawn, x=leaders: slope(x, [g[..., 0].mean(-1) for g in drawn])),
             least=0.0,
         )
     return claims

@@ -7,7 +7,6 @@ alone. The ranges below were written before the runs.
 """
 
 import itertools
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -28,7 +27,6 @@ VARIANTS = ("as it is", "one jam", "rotating", "leaders reversed", "other step")
 """What is changed in the runs; "second half" is measured in the runs of the first."""
 STARTS = {"one jam": one_jam, "rotating": rotating}
 LAW, LED = "paper's law", ("learned", "tuned law", "paper's law")
-BW_S = {"wide": 0.31, "narrow": 0.45}
 _SHIFT_S = (0.8, 1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.4, 2.8)
 _LOST_S = {
     "simulation": (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 1.0),
@@ -174,92 +172,38 @@ class Runs:
         return mean((found[ours] - found[theirs]).dropna())
 
 
-@dataclass(frozen=True)
-class Headline:
-    """What README says, how it is measured, and the range that it claims."""
+QUANTITIES = {
+    "rise": "mean |m| at the second noise minus that at bw = 0",
+    "shift": "critical bw with 3 leaders minus without (s)",
+    "later": "critical bw (s), 20 boats in wide, paper minus simulation",
+    "pair": "signed order, first policy minus second, 3 leaders of 27",
+}
+"""What the methods of `Runs` measure."""
 
-    words: str
-    quantity: str
-    found: Callable[[Runs], Interval]
-    least: float = -np.inf
-    most: float = np.inf
-
-
-HEADLINES: Sequence[Headline] = (
-    Headline(
-        "27 boats in narrow need noise to move",
-        "|m| at 1.0 s minus that at bw = 0, experiment",
-        lambda runs: runs.rise(NARROW_FLOCK),
-        least=0.3,
-    ),
-    Headline(
-        "50 boats in wide need noise to move",
-        "|m| at 0.5 s minus that at bw = 0, paper",
-        lambda runs: runs.rise(DENSE),
-        least=0.3,
-    ),
-    Headline(
-        "20 boats in wide need none",
-        "|m| at 0.4 s minus that at bw = 0, paper",
-        lambda runs: runs.rise(SPARSE),
-        most=0.3,
-    ),
-    Headline(
-        "Order is lost later in the paper's scheme",
-        "critical bw (s), 20 boats in wide, paper minus simulation",
-        lambda runs: runs.later(),
-        least=0.1,
-    ),
-    Headline(
-        "Three leaders hardly move the loss of order",
-        "critical bw with 3 leaders minus without (s), experiment",
-        lambda runs: runs.shift(SHIFT),
-        most=0.1,
-    ),
-    Headline(
-        "They move it with the fitted constants",
-        "critical bw with 3 leaders minus without (s), measured current",
-        lambda runs: runs.shift(SHIFT_FITTED),
-        least=0.1,
-    ),
-    Headline(
-        "Learned leaders beat the tuned law in wide",
-        "signed order, learned minus tuned law, 3 of 27, bw = 0.31 s",
-        lambda runs: runs.pair(WIDE, "learned", "tuned law"),
-        least=0.0,
-    ),
-    Headline(
-        "The tuned law beats the paper's in wide",
-        "signed order, tuned minus paper's law, 3 of 27, bw = 0.31 s",
-        lambda runs: runs.pair(WIDE, "tuned law", LAW),
-        least=0.0,
-    ),
-    Headline(
-        "Learned leaders lead like the tuned law in narrow",
-        "signed order, learned minus tuned law, 3 of 27, bw = 0.45 s",
-        lambda runs: runs.pair(NARROW, "learned", "tuned law"),
-        least=-0.03,
-        most=0.03,
-    ),
-)
+HEADLINES: dict[str, tuple[str, tuple[Any, ...], float, float]] = {
+    "27 boats in narrow need noise to move": ("rise", (NARROW_FLOCK,), 0.3, np.inf),
+    "50 boats in wide need noise to move": ("rise", (DENSE,), 0.3, np.inf),
+    "20 boats in wide need none": ("rise", (SPARSE,), -np.inf, 0.3),
+    "Order is lost later in the paper's scheme": ("later", (), 0.1, np.inf),
+    "Three leaders hardly move the loss of order": ("shift", (SHIFT,), -np.inf, 0.1),
+    "They move it with the fitted constants": ("shift", (SHIFT_FITTED,), 0.1, np.inf),
+    "Learned leaders beat the tuned law in wide": ("pair", (WIDE, *LED[:2]), 0.0, np.inf),
+    "The tuned law beats the paper's in wide": ("pair", (WIDE, *LED[1:]), 0.0, np.inf),
+    "Learned leaders lead like the tuned law in narrow": ("pair", (NARROW, *LED[:2]), -0.03, 0.03),
+}
+"""What README says: how it is measured and the range that it claims."""
 CHANGES = (VARIANTS[0], "second half", *VARIANTS[1:])
 
 
 def judge(table: pd.DataFrame) -> Claims:
     """Judge each headline in each variant that has been run."""
     claims = Claims("README", "")
-    for headline in HEADLINES:
+    for words, (kind, given, least, most) in HEADLINES.items():
         for variant in CHANGES:
-            found = headline.found(Runs(table, variant))
+            found = getattr(Runs(table, variant), kind)(*given)
             claims.reading = variant
             if np.isfinite(found[0]):
-                claims.add(
-                    headline.words,
-                    headline.quantity,
-                    found,
-                    least=headline.least,
-                    most=headline.most,
-                )
+                claims.add(words, QUANTITIES[kind], found, least=least, most=most)
     return claims
 
 
@@ -268,19 +212,18 @@ def draw(options: Options, table: pd.DataFrame) -> None:
     claims = judge(table)
     with picture(options, "headlines", height_cm=13.0) as figure:
         panels = figure.subplots(3, 3)
-        for axes, headline in zip(panels.flat, HEADLINES, strict=True):
-            shown = [each for each in claims if each.claim == headline.words]
-            for claim in shown:
+        for axes, words in zip(panels.flat, HEADLINES, strict=True):
+            *_, lowest, highest = HEADLINES[words]
+            for claim in (each for each in claims if each.claim == words):
                 place = CHANGES.index(claim.reading)
                 curve(axes, [place], [claim.found], color=COLORS[place], linestyle="")
             low, high = axes.get_ylim()
             low, high = min(low, -0.02), max(high, 0.02)
-            least, most = max(headline.least, low), min(headline.most, high)
-            axes.axhspan(least, max(least, most), color="0.93", zorder=0)
+            axes.axhspan(max(lowest, low), min(highest, high), color="0.93", zorder=0)
             axes.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
             axes.set_ylim(low, high)
             axes.set(xlim=(-0.6, len(CHANGES) - 0.4), xticks=[])
-            axes.set_title(headline.words, fontsize=7)
+            axes.set_title(words, fontsize=7)
         for axes in panels[-1]:
             axes.set_xticks(range(len(CHANGES)), CHANGES, rotation=40, ha="right")
 

@@ -75,14 +75,6 @@ def measure(row: Row) -> Row:
 STUDY = Study("section5", design, measure, lambda row: row["bw_s"] in (0.0, 0.2, 0.6, 1.0, 1.2))
 
 
-def reading_of(table: pd.DataFrame, name: str) -> pd.DataFrame:
-    """Return the runs of a reading."""
-    found = table
-    for column, value in READINGS[name].items():
-        found = found[found[column] == value]
-    return found
-
-
 class Evidence:
     """The runs of a reading, by number of boats and of leaders."""
 

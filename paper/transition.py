@@ -4,7 +4,7 @@ The rules of the answer stand in transition_rules.md.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -25,28 +25,6 @@ from study import COLORS, Options, curve, main, picture, write
 from transition_runs import AFTER_MIN, LONG, STARTED, STUDY
 
 from flockenv.statistics import kaplan_meier
-
-
-def state(row: Mapping[str, Any]) -> str:
-    """Return what a flock does in the last ten minutes of its run."""
-    if abs(row["m"]) >= 0.5:
-        return "rotating"
-    if row["largest"] >= 0.5:
-        return "one jam"
-    return "many jams" if row["in_jams"] >= 0.5 else "neither"
-
-
-def cells(table: pd.DataFrame) -> pd.DataFrame:
-    """Return one line per noise, coverage, size and start: survivors, exits, drift and states."""
-    lines = []
-    by = ["scheme", "c4", "dt_s", "coverage", "n_boats", "start"]
-    for key, runs in table.groupby(by, sort=False):
-        steady = runs.loc[runs["exited"] == 0, "drift_per_h"].dropna()
-        counts = runs.apply(state, axis=1).value_counts().to_dict()
-        line = dict(zip(by, key, strict=True)) | {"runs": len(runs)}
-        line |= {"stay": int((runs["exited"] == 0).sum()), "hours": runs["stayed_min"].sum() / 60}
-        lines.append(line | {"drift_per_h": mean(steady)[0]} | counts)
-    return pd.DataFrame(lines)
 
 
 def second(table: pd.DataFrame) -> pd.DataFrame:
@@ -135,6 +113,34 @@ def judge(table: pd.DataFrame, rule: str, suffix: str = "") -> Claims:
     return claims
 
 
+def bistable(table: pd.DataFrame) -> Claims:
+    """Judge whether both states come from either start, in the cell where the rarest is least rare.
+
+    The states are those of the second rule. Flocks that only stay in the state they start in may be
+    in a transient of each.
+    """
+    claims = Claims("5.2", "")
+    white = table[(table["scheme"] == "leapfrog") & (table["dt_s"] == 0.1)]
+    other = white.assign(other=_turned(white))
+    for n, runs in other.groupby("n_boats"):
+        turned = runs.groupby(["c4", "coverage", "start"])["other"].agg(["sum", "size"])
+        cells = (turned["sum"] / turned["size"]).unstack("start").min(axis=1)
+        c4, coverage = cells.idxmax()
+        start = (turned["sum"] / turned["size"]).loc[c4, coverage].idxmin()
+        count, of = turned.loc[c4, coverage, start]
+        claims.reading = f"leapfrog, white c4 = {c4:g}, dt = 0.1 s, coverage {coverage:g}"
+        quantity = f"runs that end in the other state, {STARTED[start]} at first, the rarer of both"
+        claims.exists("The transition is bistable", quantity, int(count), int(of), n=f"{n:g}")
+    return claims
+
+
+def _turned(table: pd.DataFrame) -> pd.Series:
+    """Return whether runs end in the state that they did not start in."""
+    rotates = abs(table["m"]) >= 0.5
+    jammed = ~rotates & (table["in_jams"] >= 0.5)
+    return rotates.where(table["start"] == "one-jam", jammed).astype(int)
+
+
 def answers(found: Mapping[str, Claims]) -> pd.DataFrame:
     """Return what each rule says of each noise and coverage: for, against or open."""
     lines: dict[str, dict[str, str]] = {}
@@ -163,64 +169,53 @@ def _boats(claim: Claim) -> int:
 
 def draw(options: Options, table: pd.DataFrame) -> None:
     """Draw how many runs are still in the state they started in, by noise and size."""
-    shown = table[
-        (table["coverage"] == 0.5) & ((table["dt_s"] == 0.1) | (table["scheme"] == "paper"))
-    ]
-    noises = list(shown.groupby(["scheme", "c4"]))
-    with picture(options, "transition", height_cm=9.0) as figure:
+
+    def lifetimes(axes: Any, place: int, n: float, runs: pd.DataFrame) -> None:
+        times = runs["stayed_min"].where(runs["exited"] == 1, np.inf)
+        left = kaplan_meier(times, runs["stayed_min"])
+        x = [0.0, *left.time_s, runs["stayed_min"].max()]
+        y = [1.0, *left.share, left.share_at(math.inf)]
+        label = f"n = {n:g} ({len(runs)} runs)"
+        axes.step(x, y, where="post", color=COLORS[place], label=label)
+
+    shown = (table["dt_s"] == 0.1) | (table["scheme"] == "paper")
+    noises = list(table[shown & (table["coverage"] == 0.5)].groupby(["scheme", "c4"]))
+    _panels(options, "transition", noises, lifetimes, "time (min)", "still {}")
+
+
+def draw_map(options: Options, name: str, table: pd.DataFrame) -> None:
+    """Draw the share of flocks that stay in their state against the wall coverage."""
+
+    def shares(axes: Any, place: int, n: float, runs: pd.DataFrame) -> None:
+        kept = [(x, each["exited"] == 0) for x, each in runs.groupby("coverage")]
+        found = [proportion(stays.sum(), len(stays)) for _, stays in kept]
+        x = [coverage + 0.006 * place for coverage, _ in kept]
+        style = {"color": COLORS[place], "marker": "os^D"[place], "label": f"n = {n:g}"}
+        curve(axes, x, found, **style)
+
+    white = table[(table["scheme"] == "leapfrog") & (table["dt_s"] == 0.1)]
+    noises = list(white.groupby(["scheme", "c4"]))
+    _panels(options, name, noises, shares, "wall coverage", "stays {}")
+
+
+def _panels(
+    options: Options, name: str, noises: list[Any], plot: Callable[..., None], across: str, up: str
+) -> None:
+    """Draw sizes apart, a column of panels for each noise; the first noise has all sizes."""
+    with picture(options, name, height_cm=9.0) as figure:
         panels = figure.subplots(2, max(len(noises), 1), sharex=True, sharey=True, squeeze=False)
         for column, ((scheme, c4), group) in zip(panels.T, noises, strict=True):
-            for axes, start in zip(column, STARTED, strict=True):
-                chosen = group[group["start"] == start]
-                for color, (n, runs) in zip(COLORS, chosen.groupby("n_boats"), strict=False):
-                    times = runs["stayed_min"].where(runs["exited"] == 1, np.inf)
-                    left = kaplan_meier(times, runs["stayed_min"])
-                    axes.step(
-                        [0.0, *left.time_s, runs["stayed_min"].max()],
-                        [1.0, *left.share, left.share_at(math.inf)],
-                        where="post",
-                        color=color,
-                        label=f"n = {n:g} ({len(runs)} runs)",
-                    )
-                axes.set_ylim(-0.05, 1.05)
             column[0].set_title("literal" if scheme == "paper" else f"c4 = {c4:g}")
-        _label(figure, panels, "time (min)", "still {}")
-
-
-def draw_map(options: Options, table: pd.DataFrame) -> None:
-    """Draw the share of flocks that stay for two hours against the wall coverage."""
-    white = table[(table["scheme"] == "leapfrog") & (table["dt_s"] == 0.1)]
-    noises = list(white.groupby("c4"))
-    with picture(options, "transition_map", height_cm=9.0) as figure:
-        panels = figure.subplots(2, max(len(noises), 1), sharex=True, sharey=True, squeeze=False)
-        for column, (c4, group) in zip(panels.T, noises, strict=True):
+            column[1].set_xlabel(across)
             for axes, start in zip(column, STARTED, strict=True):
                 sizes = group[group["start"] == start].groupby("n_boats")
                 for place, (n, runs) in enumerate(sizes):
-                    kept = [(x, each["exited"] == 0) for x, each in runs.groupby("coverage")]
-                    shares = [proportion(stays.sum(), len(stays)) for _, stays in kept]
-                    x = [coverage + 0.006 * place for coverage, _ in kept]
-                    curve(
-                        axes,
-                        x,
-                        shares,
-                        color=COLORS[place],
-                        marker="os^D"[place],
-                        label=f"n = {n:g}",
-                    )
+                    plot(axes, place, n, runs)
                 axes.set_ylim(-0.05, 1.05)
-            column[0].set_title(f"c4 = {c4:g}")
-        _label(figure, panels, "wall coverage", "stays {}")
-
-
-def _label(figure: Any, panels: Any, across: str, up: str) -> None:
-    """Name axes and sizes; the first noise has all sizes."""
-    for axes, words in zip(panels[:, 0], STARTED.values(), strict=True):
-        axes.set_ylabel(up.format(words))
-    for axes in panels[1]:
-        axes.set_xlabel(across)
-    handles, labels = panels[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=4)
+        for axes, words in zip(panels[:, 0], STARTED.values(), strict=True):
+            axes.set_ylabel(up.format(words))
+        handles, labels = panels[0, 0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=4)
 
 
 def script(options: Options) -> None:
@@ -228,13 +223,12 @@ def script(options: Options) -> None:
     table = STUDY.results(options)
     found = {"first": judge(table, "first"), "second": judge(second(table), "second")}
     followed = judge(second(LONG.results(options)), "second", ", two hours after a split")
-    claims = [*found["first"], *found["second"], *followed]
+    claims = [*found["first"], *found["second"], *followed, *bistable(table)]
     write_claims(options, "transition", claims)
     if len(table):
         draw(options, table)
-        draw_map(options, table)
-        lines = cells(table).to_csv(index=False, float_format="%.3g")
-        write(options.out / "results" / "transition_cells.csv", lines.encode())
+        draw_map(options, "transition_map", table)
+        draw_map(options, "transition_map_second", second(table))
         lines = answers(found).to_csv(index=False)
         write(options.out / "results" / "transition_answers.csv", lines.encode())
 
