@@ -183,7 +183,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
     _panels(options, "transition", noises, lifetimes, "time (min)", "still {}")
 
 
-def draw_map(options: Options, name: str, table: pd.DataFrame) -> None:
+def draw_map(options: Options, name: str, table: pd.DataFrame, up: str) -> None:
     """Draw the share of flocks that stay in their state against the wall coverage."""
 
     def shares(axes: Any, place: int, n: float, runs: pd.DataFrame) -> None:
@@ -195,7 +195,7 @@ def draw_map(options: Options, name: str, table: pd.DataFrame) -> None:
 
     white = table[(table["scheme"] == "leapfrog") & (table["dt_s"] == 0.1)]
     noises = list(white.groupby(["scheme", "c4"]))
-    _panels(options, name, noises, shares, "wall coverage", "stays {}")
+    _panels(options, name, noises, shares, "wall coverage", up)
 
 
 def _panels(
@@ -222,13 +222,15 @@ def script(options: Options) -> None:
     """Make the map, judge and draw it."""
     table = STUDY.results(options)
     found = {"first": judge(table, "first"), "second": judge(second(table), "second")}
-    followed = judge(second(LONG.results(options)), "second", ", two hours after a split")
+    long = LONG.results(options)
+    words = ", two hours after a split"
+    followed = judge(second(long), "second", words) if len(long) else []
     claims = [*found["first"], *found["second"], *followed, *bistable(table)]
     write_claims(options, "transition", claims)
     if len(table):
         draw(options, table)
-        draw_map(options, "transition_map", table)
-        draw_map(options, "transition_map_second", second(table))
+        draw_map(options, "transition_map", table, "stays {}")
+        draw_map(options, "transition_map_second", second(table), "starts {},\nends so")
         lines = answers(found).to_csv(index=False)
         write(options.out / "results" / "transition_answers.csv", lines.encode())
 
