@@ -86,6 +86,40 @@ class SteeringLaw(LawPolicy):
         super().__init__(_core.Law.named("paper's law"), observation, mirror_to_target)
 
 
+class NamedLaw(LawPolicy):
+    """A law of the core that has no class of its own, by its name.
+
+    Parameters
+    ----------
+    name
+        The name, one of those that `flockenv compare --policy` takes.
+    observation, mirror_to_target
+        Layout of the observations; see `LawPolicy`.
+
+    Raises
+    ------
+    ParameterError
+        For other names, and for laws that are others in each pool.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        observation: Mapping[str, Any] | None = None,
+        mirror_to_target: bool = False,
+    ) -> None:
+        super().__init__(_core.Law.named(name), observation, mirror_to_target)
+        self.name = name
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        layout = {"observation": self.observation, "mirror_to_target": self.mirror_to_target}
+        return partial(type(self), self.name, **layout), ()
+
+    def __repr__(self) -> str:
+        return self.name
+
+
 class DampedLaw(LawPolicy):
     """A law that steers well when backing, too, and counters the turning that makes boats spin.
 

@@ -2,12 +2,14 @@
 
 import os
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
+from flockenv import _core
 from flockenv.errors import ParameterError, nearest
 from flockenv.policies.base import LeaderPolicy
 from flockenv.policies.constant import RandomRudders, StraightAhead
-from flockenv.policies.laws import DampedLaw, LeaningLaw, SteeringLaw
+from flockenv.policies.laws import DampedLaw, LeaningLaw, NamedLaw, SteeringLaw
 from flockenv.policies.model import ModelPolicy, is_model_file, load_model
 from flockenv.policies.network import NetworkPolicy
 
@@ -24,20 +26,26 @@ LEARNED = "learned"
 POOLS = ("wide", "narrow")
 """The pools for which laws were tuned and leaders were trained."""
 
+POOL_POLICIES: Mapping[str, Callable[[Any], LeaderPolicy]] = {
+    "tuned law": lambda pool: DampedLaw.tuned(_named(pool)),
+    LEARNED: lambda pool: LeaningLaw.learned(_named(pool)),
+}
+"""Policies by name, each tuned or trained for a pool."""
+
 POLICIES: Mapping[str, Callable[[], LeaderPolicy | str]] = {
     "paper's law": SteeringLaw,
     "damped law": DampedLaw,
     EVERY_SUBSTEP: lambda: EVERY_SUBSTEP,
     "straight ahead": StraightAhead,
     "random rudders": RandomRudders,
+    # A law of the core without a class has a line there alone.
+    **{
+        name: partial(NamedLaw, name)
+        for name in _core.LAWS
+        if name not in ("paper's law", "damped law", *POOL_POLICIES)
+    },
 }
 """Policies by name that are the same in every pool."""
-
-POOL_POLICIES: Mapping[str, Callable[[Any], LeaderPolicy]] = {
-    "tuned law": lambda pool: DampedLaw.tuned(_named(pool)),
-    LEARNED: lambda pool: LeaningLaw.learned(_named(pool)),
-}
-"""Policies by name, each tuned or trained for a pool."""
 
 _LONGEST_NAME = 200
 

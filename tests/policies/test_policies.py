@@ -10,6 +10,7 @@ import pytest
 import flockenv
 from flockenv.envs.observation import observation_entries, observe
 from flockenv.policies import DampedLaw, SteeringLaw
+from flockenv.policies.laws import NamedLaw
 
 LAWS = (SteeringLaw, DampedLaw)
 
@@ -92,6 +93,20 @@ def test_laws_survive_pickles():
         assert (again.gains, again.observation) == (law.gains, law.observation)
         assert again.mirror_to_target
     assert "damping=2" in repr(law)
+
+
+def test_a_law_of_the_core_needs_no_class():
+    law = NamedLaw("paper's law", observation={"order": False}, mirror_to_target=True)
+    for again in (law, pickle.loads(pickle.dumps(law))):
+        assert (again.observation, again.mirror_to_target) == (law.observation, True)
+        assert repr(again) == "paper's law"
+    observations = random_observations(4).reshape(12, -1)
+    expected, _ = SteeringLaw().predict(observations)
+    assert (NamedLaw("paper's law").predict(observations)[0] == expected).all()
+    with pytest.raises(flockenv.ParameterError, match="one of"):
+        NamedLaw("no law")
+    with pytest.raises(flockenv.ParameterError, match="pool"):
+        NamedLaw("tuned law")
 
 
 def test_rudders_of_a_law_are_no_levels():
