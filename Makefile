@@ -19,6 +19,8 @@ OTHER ?= benchmarl
 BENCH ?= throughput
 # `make instructions INSTRUCTIONS=--strict`: fails where there is no valgrind.
 INSTRUCTIONS ?=
+# The page of docs/extend that `make extend` follows, if not all.
+PAGE ?=
 # Of each kind of hostile input in `make fuzz`.
 FUZZ_EXAMPLES ?= 2000
 # `make speed-vs-error SPEED_ARGS=--trial`: everything, but too short to mean anything, outside docs.
@@ -63,7 +65,7 @@ export CARGO_MAKEFLAGS :=
 endif
 .PHONY: help test-pages test-other bench setup build compare live test lint format test-rust test-python coverage test-js test-browser test-live test-wheel test-oldest \
         test-benchmarl test-rllib test-ray test-slurm validate docs wheel audit licenses tables replay-animation publish-check release-check \
-        instructions throughput env-benchmarl env-rllib soak fuzz speed-vs-error \
+        extend instructions throughput env-benchmarl env-rllib soak fuzz speed-vs-error \
         lint-benches paper clean
 
 help: ## list the commands
@@ -188,7 +190,11 @@ publish-check:
 	  { cargo semver-checks --version || cargo install --locked cargo-semver-checks; } && \
 	  cargo semver-checks --baseline-rev "$$base"; fi
 
-release-check: audit publish-check docs test-oldest test-wheel ## all of a release that can run here, and what is left for the owner
+# The pages of docs/extend as the patches that they are; `make extend PAGE=policy` follows one.
+extend: $(STAMPS)/venv
+	$(BIN)/python docs/extend/follow.py $(PAGE)
+
+release-check: audit publish-check docs test-oldest test-wheel extend ## all of a release that can run here, and what is left for the owner
 	@echo "Left for the owner of the accounts:"
 	@echo "1. Name this repository and publish.yml as trusted publisher, with the environments pypi and crates-io."
 	@echo "2. Turn on the static host for the documentation and the live page."

@@ -28,11 +28,6 @@ CODE = ("*.py", "*.pyi", "*.rs", "*.mjs", "*.js", "*.html", "*.css", "*.toml", "
 #: What readers of a page make themselves, and names in files of other programs.
 OTHERS = {
     "docs/environments/index.md": {"flockenv/leaders", "flockenv/lean"},
-    "docs/extend/observation_and_reward.md": {
-        "src/environment/observation/blocks/course.rs",
-        "tests/envs/test_course.py",
-    },
-    "docs/extend/scheme.md": {"src/integrator/centered.rs"},
     "docs/leaders.md": {"damped-law-POOL.csv", "damped-law-POOL-LEADERS.csv"},
     "docs/other_learners.md": {"timeit"},
     "docs/sweep.md": {"run_sweep(sweep, folder, engine=lambda workers: client.get_executor())"},
@@ -266,7 +261,8 @@ def _foreign(word: str) -> bool:
 def test_names_exist(page):
     prose = FENCE.sub("", PAGES[page])
     shown = " ".join(match[4] for match in FENCE.finditer(PAGES[page]))
-    known = {*OTHERS.get(page, ()), *WORD.findall(shown)}
+    made = re.findall(r"<!-- new file: (\S+) -->", PAGES[page])
+    known = {*made, *OTHERS.get(page, ()), *WORD.findall(shown)}
     wrong = {name: wrong_name(name) for name in sorted({*NAME.findall(prose)} - known)}
     folder = (REPOSITORY / page).parent
     assert {

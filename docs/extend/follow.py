@@ -1,0 +1,111 @@
+"""Follow pages of this folder to the letter: `make extend`, or `make extend PAGE=policy`.
+
+A page is a patch. A block ```` ```diff ```` starts with the file that it changes; what it keeps and
+takes away has to stand in that file once. A block after ``<!-- new file: PATH -->`` is a file. The
+changes are made in a copy of the tree, where the page's blocks for a shell are then run in their
+order. The first command that fails ends the script. The copy stays in target/extend, so that the
+next page compiles its own changes alone.
+"""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+REPOSITORY = Path(__file__).parents[2]
+FOLDER = Path(__file__).parent
+COPY = REPOSITORY / "target" / "extend"
+FENCE = re.compile(
+    r"(?:<!-- new file: (?P<new>\S+) -->\n\n)?^```(?P<language>\w+)\n(?P<text>.*?)^```$",
+    re.MULTILINE | re.DOTALL,
+)
+
+
+class PageError(Exception):
+    """A page that cannot be followed."""
+
+
+def apply(page: str, tree: Path) -> list[str]:
+    """Make a page's changes in a tree; return its commands."""
+    commands = []
+    for block in FENCE.finditer(page):
+        text = block["text"]
+        if block["new"]:
+            path = tree / block["new"]
+            if path.exists():
+                raise PageError(f"{block['new']} is there already")
+            path.write_text(text, encoding="utf-8")
+        elif block["language"] == "diff":
+            first, _, rest = text.partition("\n")
+            name = first.removeprefix("+++ ")
+            content = (tree / name).read_text("utf-8")
+            for hunk in rest.split("@@\n")[1:]:
+                content = changed(content, hunk, name)
+            (tree / name).write_text(content, encoding="utf-8")
+        elif block["language"] == "sh":
+            commands.append(text)
+    return commands
+
+
+def changed(content: str, hunk: str, name: str) -> str:
+    """Return a file's content after one change, whose place it must hold exactly once."""
+    lines = hunk.splitlines(keepends=True)
+    before = "".join(line[1:] or line for line in lines if line[0] in " -\n")
+    after = "".join(line[1:] or line for line in lines if line[0] in " +\n")
+    if content.count(before) != 1:
+        raise PageError(f"{name} has these lines {content.count(before)} times:\n{before}")
+    return content.replace(before, after)
+
+
+def copy_tree() -> None:
+    """Bring the copy to the state of this tree: every file that git knows or would add."""
+
+    def git(*words: str, folder: Path = REPOSITORY) -> str:
+        done = subprocess.run(["git", *words], cwd=folder, check=True, capture_output=True)
+        return done.stdout.decode()
+
+    COPY.mkdir(parents=True, exist_ok=True)
+    names = git("ls-files", "-z", "--cached", "--others", "--exclude-standard").split("\0")
+    wanted = {name for name in names if name and (REPOSITORY / name).is_file()}
+    if (COPY / ".git").exists():
+        there = git("ls-files", "-z", "--cached", "--others", "--exclude-standard", folder=COPY)
+        for name in {*there.split("\0")} - wanted - {""}:
+            (COPY / name).unlink(missing_ok=True)
+    else:
+        git("init", "--quiet", str(COPY))
+    for name in wanted:
+        source, target = REPOSITORY / name, COPY / name
+        # What is the same keeps its time, so that nothing is compiled in vain.
+        if not target.exists() or target.read_bytes() != source.read_bytes():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(source.read_bytes())
+            target.chmod(source.stat().st_mode)
+
+
+def follow(page: Path) -> None:
+    """Apply a page to a copy of the tree, and run its commands there."""
+    print(f"--- {page.stem}", flush=True)
+    copy_tree()
+    apart = {"CARGO_TARGET_DIR": str(COPY / "target")}
+    for commands in apply(page.read_text("utf-8"), COPY):
+        run = ["bash", "-euxc", commands]
+        done = subprocess.run(run, cwd=COPY, env={**os.environ, **apart}, check=False)
+        if done.returncode:
+            raise PageError(f"{page.stem}: a command ended with {done.returncode}")
+
+
+def main() -> None:
+    """Follow the pages that are named, or all that change something."""
+    named = sys.argv[1:] or sorted(
+        path.stem for path in FOLDER.glob("*.md") if "```diff" in path.read_text("utf-8")
+    )
+    try:
+        for name in named:
+            follow(FOLDER / f"{name}.md")
+    except (PageError, OSError) as error:
+        sys.exit(str(error))
+
+
+if __name__ == "__main__":
+    main()
