@@ -113,7 +113,10 @@ class NamedLaw(LawPolicy):
         self.name = name
 
     def __reduce__(self) -> tuple[Any, ...]:
-        layout = {"observation": self.observation, "mirror_to_target": self.mirror_to_target}
+        layout: dict[str, Any] = {
+            "observation": self.observation,
+            "mirror_to_target": self.mirror_to_target,
+        }
         return partial(type(self), self.name, **layout), ()
 
     def __repr__(self) -> str:
