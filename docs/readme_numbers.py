@@ -21,13 +21,16 @@ def speed() -> str:
         float(one("speed_vs_error/slide.csv", **engine)["slide_median_cm"])
         for engine in (OURS, OURS | {"setting": "moreau / block-pivoting / r0"}, RAPIER)
     )
+    schemes = ("leapfrog / r0", "moreau / r0")
+    hit = [one("speed_vs_error/impact.csv", scheme=each)["dt = 0.01 s"] for each in schemes]
     return (
         "A step of 0.01 s (the default is 0.02 s) with 27 boats jammed in `narrow` takes "
         f"{float(step['us_per_step']):.1f} µs on one core; the physics engine rapier takes "
         f"{float(step['faster']):.1f} times as long. A boat that slides along the wall for 2 s is "
         f"{ours:.2g} cm off with the default scheme, which is second order while a contact lasts, "
         f"{first_order:.2g} cm with `moreau`, which is first order, and {theirs:.2g} cm with "
-        "rapier, to which the motors are forces of first order "
+        "rapier, to which the motors are forces of first order. If the boat hits the wall within "
+        f"these 2 s, the time of the impact sets the error: {hit[0]} and {hit[1]} cm "
         "([speed against error](docs/speed_vs_error.md))."
     )
 
