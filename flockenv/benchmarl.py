@@ -1,6 +1,6 @@
 """The tasks of BenchMARL: many flocks behind TorchRL, and the policies that its learners find.
 
-Needs the extra ``benchmarl``: ``pip install flockenv[benchmarl]``. ``python -m flockenv.benchmarl
+Needs the extra ``benchmarl``. ``python -m flockenv.benchmarl
 task=flockenv/lean algorithm=mappo`` is BenchMARL's own command with these tasks.
 """
 

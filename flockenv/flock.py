@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
+from flockenv._io.arguments import once
 from flockenv.order import OrderParameters
 from flockenv.parameters import FlockParameters
 
@@ -307,7 +308,7 @@ class Flock:
         target
             "cw" or "ccw", or a list with one per leader.
         """
-        self.core.set_target(target)
+        self.core.set_target(once(target))
 
     def advance(self, seconds: float, rudder: ArrayLike | None = None) -> None:
         """Advance by a duration. Substeps end on multiples of dt_s, on phase switches, at the end.

@@ -8,8 +8,9 @@ from typing import Any, Self
 import tomli_w
 
 from flockenv import _core
+from flockenv._io.arguments import once
 from flockenv._io.toml import read_toml
-from flockenv.errors import ParameterError, refuse_unknown
+from flockenv.errors import ParameterError, refuse_unknown, shown
 
 _TABLE = {each["name"]: each for each in _core.PARAMETERS}
 _DEFAULTS = _core.changed_fields("simulation", {})
@@ -81,7 +82,7 @@ class FlockParameters:
 
     def __post_init__(self) -> None:
         # No `asdict`: it copies, and a view of one number can claim petabytes.
-        given = {name: getattr(self, name) for name in _NAMES}
+        given = {name: _stored(getattr(self, name)) for name in _NAMES}
         if given["gyration_radius_cm"] is None:
             del given["gyration_radius_cm"]
         for name, value in _core.changed_fields("simulation", given).items():
@@ -132,10 +133,10 @@ class FlockParameters:
         bw_s = _core.critical_bw_s(preset, pool)
         if bw_s is None:
             raise ParameterError(
-                f"pool = {pool!r}: the critical noise of preset {preset!r} has not been measured "
-                "there. Choose another pool, or give a backward duration (bw_s; on the command "
-                "line `--pool narrow` or `--set bw_s=1.0`); baselines/critical_noise.py measures "
-                "it"
+                f"pool = {shown(pool)}: the critical noise of preset {preset!r} has not been "
+                "measured there. Choose another pool, or give a backward duration (bw_s; on the "
+                "command line `--pool narrow` or `--set bw_s=1.0`); baselines/critical_noise.py "
+                "measures it"
             )
         return bw_s
 
@@ -198,7 +199,13 @@ _NAMES = tuple(each.name for each in fields(FlockParameters))
 def _changed(base: FlockParameters | str, changes: Mapping[str, Any]) -> dict[str, Any]:
     """Return all fields of parameters, or of a preset by name, with some of them changed."""
     refuse_unknown(changes, _NAMES, "field of FlockParameters")
-    return _core.changed_fields(base, dict(changes))
+    return _core.changed_fields(base, {name: _stored(each) for name, each in changes.items()})
+
+
+def _stored(value: Any) -> Any:
+    """Return a value that can be gone through once, such as a generator of discs, as a tuple."""
+    held = once(value)
+    return held if held is value else tuple(once(each) for each in held)
 
 
 def _attributes() -> str:

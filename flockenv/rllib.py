@@ -1,6 +1,6 @@
 """RLlib's module of leaders that share one network, for the native vector environment.
 
-Needs the extra ``ray``: ``pip install flockenv[ray] torch``.
+Needs the extra ``ray`` and torch.
 """
 
 from collections.abc import Mapping

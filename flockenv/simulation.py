@@ -1,24 +1,34 @@
 """`simulate`: a seeded run from a random start, recorded."""
 
-from collections.abc import Callable, Mapping, Sequence
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
+from numbers import Real
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from flockenv import _core
+from flockenv._io.arguments import items
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import ContactSeries, Flock
 from flockenv.order import OrderSeries
 from flockenv.parameters import FlockParameters
-from flockenv.policies.base import LeaderPolicy, check_action_mode, control_rate, decision_rate
+from flockenv.policies.base import (
+    LeaderPolicy,
+    check_action_mode,
+    check_pool,
+    control_rate,
+    decision_rate,
+)
 from flockenv.policies.laws import LawPolicy, SteeringLaw
 from flockenv.policies.model import ModelPolicy, as_policy
 from flockenv.policies.registry import named_policy, policy_name
-from flockenv.recording import PHASES, PRECISIONS, Recording
+from flockenv.recording import PHASES, PRECISIONS, Recording, checked_functions
 
-Schedule = Sequence[tuple[float, Mapping[str, Any]]]
+Schedule = Iterable[tuple[float, Mapping[str, Any]]]
 """Times in s from the start of a run, and the fields of the parameters that change then."""
 
 Start = bytes | Mapping[str, Any] | Recording
@@ -26,6 +36,11 @@ Start = bytes | Mapping[str, Any] | Recording
 
 Steering = LeaderPolicy | str | None
 """A policy, its name or its file; None for the paper's law at every substep."""
+
+
+_FASTEST_HZ = 1000
+# Of them depends whether boats fit, which is tried before a run.
+_PLACED = ("pool", "boat_radius_cm", "boat_shape", "discs", "walls")
 
 
 def simulate(
@@ -69,9 +84,9 @@ def simulate(
         trained on. A dictionary has one of these for each of ``"leader_0"`` to
         ``"leader_{k-1}"``; the law then acts at every control step.
     control_hz
-        Control steps per second of a policy; None: as many as a model was trained with, where its
-        observation space says so, and otherwise 10. Needed where the policies of a dictionary
-        decide at different rates.
+        How many times per second policies decide; None: as often as a model was trained with, if
+        its observation space says so, and otherwise 10. Policies of a dictionary may then decide at
+        rates of their own: a slower one's rudder is held meanwhile.
     dtype
         float64, or float32 for half the size, which rounds the stored pose and velocity but not
         the run.
@@ -84,19 +99,20 @@ def simulate(
         bytes of `Flock.snapshot`, of a flock with these parameters (the target aside) and this
         seed: under the law the run continues with the same bits. A dictionary with ``pose`` (n, 3)
         and, if need be, ``velocity`` (n, 3), ``time_s`` and ``allow_overlap``, as in
-        `Flock.set_state`. A recording: its last sample.
+        `Flock.set_state`. A recording: its last sample. Boats may not be further than a hull's
+        width from the water.
     noise_seed
         Of a start from a snapshot: other noise from there on, as `Flock.restore` has it.
     schedule
         What changes on the way: pairs of a time in s from the start of the run and a dictionary of
         the parameters' fields that have other values from then on, after the sample at that time:
-        ``[(60.0, {"bw_s": 0.6}), (120.0, {"bw_s": 0.9})]`` is a ramp. With another pool each boat
-        keeps its angle about the center and its share of the way between the walls. The recording
-        has the parameters of its start.
+        ``[(60.0, {"bw_s": 0.6}), (120.0, {"bw_s": 0.9})]`` is a ramp, all of which comes before the
+        last sample. With another pool each boat keeps its angle about the center and its share of
+        the way between the walls. The recording has the parameters of its start.
     quantities
-        Quantities of your own, by name: functions that take the recording and return an array (t,),
-        a number for each sample. They are kept in its attribute ``quantities``, in its file and in
-        its tables.
+        Quantities of your own, by name: functions that take the recording, whose arrays are
+        read-only then, and return an array (t,), a real number for each sample. They are kept in
+        its attribute ``quantities``, in its file and in its tables.
 
     Returns
     -------
@@ -109,8 +125,9 @@ def simulate(
         For arguments out of range, unknown names of policies and pools that a policy is not made
         for, policies whose actions are no rudders, boats that do not fit the pool, a start that
         this flock cannot have, a noise_seed without a snapshot, a schedule that changes n_boats or
-        n_leaders, quantities of another shape or with the name of one that there is, rudders that
-        are NaN, and a recording of more than 16 GiB; nothing is returned then.
+        n_leaders or that no sample shows, quantities of another shape or with the name of one that
+        there is, rudders that are NaN, and a recording of more than 16 GiB. An error on the way has
+        an attribute ``recording``: the run until then.
     OSError
         If a policy's file cannot be opened.
     TypeError
@@ -121,7 +138,8 @@ def simulate(
     if not isinstance(parameters, FlockParameters):
         raise TypeError(f"parameters must be FlockParameters, not {shown(parameters)}")
     seats = _seats(policy, parameters)
-    changes = _changes(parameters, schedule)
+    changes = _changes(parameters, schedule, seed)
+    functions = checked_functions({} if quantities is None else quantities)
     flock = _started(parameters, seed, start, noise_seed)
     precision = np.dtype(dtype)
     if precision not in PRECISIONS:
@@ -134,17 +152,26 @@ def simulate(
         "control": _control(seats, parameters.n_leaders, control_hz),
         "progress": progress,
     }
-    columns = _core.record(flock.core, duration_s, plan)
-    series = columns.pop("contacts", None)
-    run = Recording(
-        **columns | {"phase": PHASES[columns["phase"]], "order": OrderSeries(**columns["order"])},
-        contacts=None if series is None else ContactSeries.of_columns(series),
-        parameters=parameters,
-        seed=flock.seed,
-        version=_core.__version__,
-        policy="; ".join(seat.title for seat in seats) or policy_name(None),
-    )
-    return run if quantities is None else run.with_quantities(quantities)
+
+    def recording(columns: dict[str, Any]) -> Recording:
+        series = columns.pop("contacts", None)
+        own = {"phase": PHASES[columns["phase"]], "order": OrderSeries(**columns["order"])}
+        return Recording(
+            **columns | own,
+            contacts=None if series is None else ContactSeries.of_columns(series),
+            parameters=parameters,
+            seed=flock.seed,
+            version=_core.__version__,
+            policy="; ".join(seat.title for seat in seats) or policy_name(None),
+        )
+
+    try:
+        run = recording(_core.record(flock.core, duration_s, plan))
+    except BaseException as error:
+        if (columns := vars(error).pop("columns", None)) is not None:
+            vars(error)["recording"] = recording(columns)
+        raise
+    return run.with_quantities(functions) if functions else run
 
 
 @dataclass
@@ -155,6 +182,10 @@ class _Seat:
     leaders: list[int]
     is_alone: bool
     state: Any = None
+    #: Control steps from one decision to the next, and until the next one.
+    period: int = 1
+    wait: int = 0
+    held: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         self.is_mirrored = bool(getattr(self.policy, "mirror_to_target", False))
@@ -169,10 +200,15 @@ class _Seat:
         self, observation: NDArray[np.float32], signs: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Return rudders of its leaders, of what all see and the signs of their targets."""
+        if self.held is not None and self.wait > 0:
+            self.wait -= 1
+            return self.held
+        self.wait = self.period - 1
         actions, self.state = self.policy.predict(observation[self.leaders], self.state)
         rudders = np.clip(np.asarray(actions, np.float64).reshape(-1), -1.0, 1.0)
         # A mirrored policy steers as if every target were clockwise.
-        return signs[self.leaders] * rudders if self.is_mirrored else rudders
+        self.held = signs[self.leaders] * rudders if self.is_mirrored else rudders
+        return self.held
 
 
 def _seats(policy: Steering | Mapping[str, Steering], parameters: FlockParameters) -> list[_Seat]:
@@ -214,6 +250,7 @@ def _resolved(policy: Steering, parameters: FlockParameters) -> LeaderPolicy | N
             f"policy = {shown(policy)} is not accepted: None, a policy's name or file, or an "
             "object with predict"
         )
+    check_pool(policy, parameters.pool)
     return policy
 
 
@@ -229,10 +266,8 @@ def _control(
         return {"steer": first.law, "layouts": [], "control_hz": rate}
     for seat in seats:
         check_action_mode(seat.policy, "rudder", "in a simulation")
-    rates = {decision_rate(seat.policy) for seat in seats}
-    if control_hz is None and len(rates) > 1:
-        given = ", ".join(f"{rate:g}" for rate in sorted(rates))
-        raise ParameterError(f"the policies decide {given} times per second: give control_hz")
+    if control_hz is None:
+        control_hz = _common_rate(seats)
 
     def steer(
         signs: NDArray[np.float64], *observations: NDArray[np.float32]
@@ -245,33 +280,68 @@ def _control(
     return {
         "steer": steer,
         "layouts": [(seat.observation, seat.is_mirrored) for seat in seats],
-        "control_hz": rates.pop() if control_hz is None else control_hz,
+        "control_hz": control_hz,
     }
 
 
+def _common_rate(seats: Sequence[_Seat]) -> float:
+    """Return the lowest rate of which every seat's is a whole part, and set how long each holds."""
+    rates = [decision_rate(seat.policy) for seat in seats]
+    if len(set(rates)) == 1:
+        return rates[0]
+    exact = [Fraction(rate).limit_denominator(1000) for rate in rates]
+    numerators, denominators = zip(*(each.as_integer_ratio() for each in exact), strict=True)
+    common = Fraction(math.lcm(*numerators), math.gcd(*denominators))
+    if common > _FASTEST_HZ:
+        given = ", ".join(f"{rate:g}" for rate in sorted(rates))
+        raise ParameterError(
+            f"the policies decide {given} times per second, which have no common multiple up to "
+            f"{_FASTEST_HZ}: give control_hz"
+        )
+    for seat, rate in zip(seats, exact, strict=True):
+        seat.period = int(common / rate)
+    return float(common)
+
+
 def _changes(
-    parameters: FlockParameters, schedule: Schedule
+    parameters: FlockParameters, schedule: Schedule, seed: int
 ) -> list[tuple[float, str | tuple[str, ...] | FlockParameters]]:
     """Return the changes of a schedule: of the target alone, or of all parameters."""
-    for entry in schedule:
-        match entry:
-            case (int() | float() as time_s, Mapping() as fields) if 0.0 <= time_s <= 1e9:
-                if sized := {"n_boats", "n_leaders"} & fields.keys():
-                    raise ParameterError(
-                        f"schedule = {shown(entry)} is not accepted: {sized.pop()} does not change "
-                        "on the way"
-                    )
-            case _:
-                raise ParameterError(
-                    f"schedule = {shown(entry)} is not accepted: pairs of a time in s, at least 0, "
-                    "and a dictionary of fields"
-                )
+    entries = [(*_change(entry), entry) for entry in items(schedule, "schedule")]
     changes: list[tuple[float, str | tuple[str, ...] | FlockParameters]] = []
-    now = parameters
-    for time_s, fields in sorted(schedule, key=lambda each: each[0]):
-        now = now.replace(**fields)
-        changes.append((float(time_s), now.target if fields.keys() == {"target"} else now))
+    now, times = parameters, dict[float, set[str]]()
+    for time_s, fields, entry in sorted(entries, key=lambda each: each[0]):
+        try:
+            if twice := times.setdefault(time_s, set()) & fields.keys():
+                raise ParameterError(f"{twice.pop()} changes twice at this time")
+            times[time_s] |= fields.keys()
+            before, now = now, now.replace(**fields)
+            if before.pool != now.pool and math.inf in _radii_cm(before) | _radii_cm(now):
+                raise ParameterError("open water and a pool do not change into each other")
+            if any(getattr(before, name) != getattr(now, name) for name in _PLACED):
+                Flock(now, seed)
+        except ParameterError as error:
+            raise ParameterError(f"schedule = {shown(entry)} is not accepted: {error}") from error
+        changes.append((time_s, now.target if fields.keys() == {"target"} else now))
     return changes
+
+
+def _change(entry: Any) -> tuple[float, dict[str, Any]]:
+    """Return the time and the fields of an entry of a schedule."""
+    words = "pairs of a time in s, at least 0, and a dictionary of fields"
+    match entry:
+        case (bool(), _):
+            pass
+        case (Real() as number, Mapping() as fields) if fields and (time_s := float(number)) >= 0.0:
+            sized = {"n_boats", "n_leaders"} & fields.keys()
+            if not sized and time_s <= 1e9:
+                return time_s, {str(name): value for name, value in fields.items()}
+            words = f"{sized.pop()} does not change on the way" if sized else words
+    raise ParameterError(f"schedule = {shown(entry)} is not accepted: {words}")
+
+
+def _radii_cm(parameters: FlockParameters) -> set[float]:
+    return {*_core.pool_radii_cm(parameters.pool)}
 
 
 def _started(

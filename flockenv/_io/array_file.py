@@ -2,7 +2,6 @@
 
 import io
 import os
-import stat
 import zipfile
 from collections.abc import Mapping
 from typing import Any
@@ -11,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv._io.atomic_write import atomic_write
+from flockenv._io.plain_file import open_plain
 from flockenv.errors import ParameterError
 
 MOST_BYTES = 16 << 30
@@ -26,12 +26,6 @@ def write_arrays(
         save(file, allow_pickle=False, **dict(arrays))
 
 
-def is_special(path: str | os.PathLike[str]) -> bool:
-    """Return whether a path that is there is a device, a pipe or a socket, maybe without end."""
-    mode = os.stat(path).st_mode
-    return not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))
-
-
 def read_arrays(
     path: str | os.PathLike[str], most_bytes: int | None = None
 ) -> dict[str, NDArray[Any]]:
@@ -40,10 +34,8 @@ def read_arrays(
     A ParameterError names a file that is no ``.npz`` file of plain numbers and strings, is cut off
     or damaged, or whose arrays hold more than `most_bytes` together.
     """
-    if is_special(path):
-        raise ParameterError(f"{path} is no .npz file but a device, a pipe or a socket")
     most = MOST_BYTES if most_bytes is None else most_bytes
-    with open(path, "rb") as file:
+    with open_plain(path) as file:
         try:
             with zipfile.ZipFile(file) as archive:
                 held = sum(entry.file_size for entry in archive.infolist())

@@ -1,15 +1,27 @@
 """Files that are written whole or not at all."""
 
 import atexit
+import importlib
 import os
+import re
 import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
+from flockenv._io.plain_file import check_writable
+
 if TYPE_CHECKING:
     import pandas as pd
+
+fcntl: Any
+try:
+    fcntl = importlib.import_module("fcntl")
+except ImportError:  # Windows, where a file that is open can be neither renamed nor removed.
+    fcntl = None
+
+_NAME = re.compile(r"\.[0-9a-f]{16}\.tmp")
 
 # A name is here before there is a file of that name, so that no moment is left out.
 _temporary: set[Path] = set()
@@ -20,20 +32,72 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     """Open a file for writing bytes: a temporary one beside it, renamed where all went well.
 
     It is removed on every way out but a kill, at the latest when Python ends. If the file cannot be
-    written, which is an OSError, what was there before is still there.
+    written, which is an OSError, what was there before is still there. A ParameterError refuses to
+    take the place of a device, a pipe or a socket.
     """
     target = Path(path)
-    temporary = target.parent / f".{secrets.token_hex(8)}.tmp"
-    _temporary.add(temporary)
+    check_writable(target)
+    temporary, file = _held_file(target.parent)
     try:
-        with temporary.open("xb") as file:
+        with file:
             yield file
             file.flush()
             os.fsync(file.fileno())
-        temporary.replace(target)
+            if fcntl is not None:
+                temporary.replace(target)
+        if fcntl is None:
+            temporary.replace(target)
     finally:
         temporary.unlink(missing_ok=True)
         _temporary.discard(temporary)
+
+
+def _held_file(folder: Path) -> tuple[Path, IO[bytes]]:
+    """Return a new temporary file that `remove_leftovers` of no process removes."""
+    while True:
+        temporary = folder / f".{secrets.token_hex(8)}.tmp"
+        _temporary.add(temporary)
+        try:
+            file = temporary.open("xb")
+        except BaseException:
+            temporary.unlink(missing_ok=True)
+            _temporary.discard(temporary)
+            raise
+        if _is_locked(file) is not False and os.fstat(file.fileno()).st_nlink > 0:
+            return temporary, file
+        # Another process took it for a leftover, before it was held.
+        file.close()
+        _temporary.discard(temporary)
+
+
+def _is_locked(file: IO[bytes]) -> bool | None:
+    """Lock a file until it is closed; False if another process has it, None without locks."""
+    if fcntl is None:
+        return None
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:
+        return None
+    return True
+
+
+def remove_leftovers(folder: str | os.PathLike[str], *, within: bool = False) -> None:
+    """Remove the temporary files of killed processes from a folder, and from those within it.
+
+    Those that a process still writes to stay.
+    """
+    found = Path(folder).rglob(".*.tmp") if within else Path(folder).glob(".*.tmp")
+    for path in found:
+        if _NAME.fullmatch(path.name) is None:
+            continue
+        try:
+            with path.open("rb") as file:
+                if _is_locked(file):
+                    path.unlink(missing_ok=True)
+        except OSError:
+            continue  # It has just got its own name, or is not ours to remove.
 
 
 @atexit.register

@@ -5,9 +5,20 @@ from typing import Any
 
 from flockenv.errors import FlockError
 
+IS_PUBLISHED = False
+"""Whether ``pip install flockenv`` gets this package: until the first release anybody may have the
+name. The release sets it, and a test then asks every page to say the same."""
+
 
 class MissingExtraError(FlockError, ImportError):
     """An optional package is not installed; the message names the extra that brings it."""
+
+
+def install(extra: str) -> str:
+    """Return how an extra is installed, in words."""
+    if IS_PUBLISHED:
+        return f"pip install 'flockenv[{extra}]'"
+    return f"pip install '.[{extra}]' in a clone of flockenv, 'FILE.whl[{extra}]' with its wheel"
 
 
 def require(module: str, extra: str) -> Any:
@@ -16,6 +27,4 @@ def require(module: str, extra: str) -> Any:
         return importlib.import_module(module)
     except ModuleNotFoundError as error:
         package = module.partition(".")[0]
-        raise MissingExtraError(
-            f"{package} is not installed: pip install 'flockenv[{extra}]'"
-        ) from error
+        raise MissingExtraError(f"{package} is not installed: {install(extra)}") from error

@@ -4,6 +4,7 @@ import os
 import tomllib
 from typing import Any
 
+from flockenv._io.plain_file import open_plain
 from flockenv.errors import ParameterError
 
 _MOST_BYTES = 1 << 20
@@ -11,7 +12,7 @@ _MOST_BYTES = 1 << 20
 
 def read_limited(path: str | os.PathLike[str], otherwise: str) -> bytes:
     """Return the content of a file of at most 1 MiB; errors start with `otherwise`."""
-    with open(path, "rb") as file:
+    with open_plain(path) as file:
         data = file.read(_MOST_BYTES + 1)
     if len(data) > _MOST_BYTES:
         raise ParameterError(f"{otherwise}: it is larger than {_MOST_BYTES} bytes")
@@ -21,7 +22,7 @@ def read_limited(path: str | os.PathLike[str], otherwise: str) -> bytes:
 def read_toml_file(path: str | os.PathLike[str], what: str) -> dict[str, Any]:
     """Return the values in a TOML file of at most 1 MiB, which ParameterErrors call `what`."""
     try:
-        return read_toml(read_limited(path, f"{what} is no TOML").decode(), what)
+        return read_toml(read_limited(path, f"{what} is no TOML").decode("utf-8-sig"), what)
     except OSError as error:
         raise ParameterError(f"{what} cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:

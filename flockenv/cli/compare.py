@@ -18,7 +18,7 @@ from flockenv.comparison.case import Case
 from flockenv.comparison.episodes import steering
 from flockenv.comparison.report import ComparisonReport
 from flockenv.comparison.suite import REFERENCE, scores_table, tasks_named
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, shown
 from flockenv.parameters import FlockParameters
 from flockenv.policies.registry import FILES, named_policy
 
@@ -214,8 +214,8 @@ def _parameters(options: CompareOptions) -> list[FlockParameters]:
         raise ParameterError("--set n_leaders is not accepted: numbers of leaders are --leaders")
     if isinstance(given.get("target"), list):
         raise ParameterError(
-            f"target = {given['target']!r} is not accepted: leaders, of which there are several "
-            "numbers here, have one target: cw or ccw"
+            f"target = {shown(given['target'])} is not accepted: leaders, of which there are "
+            "several numbers here, have one target: cw or ccw"
         )
     base = read_parameters(options.preset, options.params, options.changes)
     base = base.replace(n_boats=given.get("n_boats", _BOATS))

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from flockenv._io.plain_file import check_writable
 from flockenv.cli.console import errors, say
 from flockenv.errors import ParameterError
 from flockenv.order import QUANTITIES
@@ -72,6 +73,7 @@ def prepare(*paths: Path, overwrites: bool = True) -> None:
         try:
             if path.is_dir():
                 raise ParameterError(f"{path} cannot be written: it is a folder")
+            check_writable(path)
             if path.exists() and not overwrites:
                 raise ParameterError(f"{path} is there already: --force overwrites it")
             path.parent.mkdir(parents=True, exist_ok=True)

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from flockenv._io.toml import read_toml, read_toml_file
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, shown
 from flockenv.parameters import FlockParameters
 
 
@@ -31,7 +31,7 @@ def given_fields(
     fields = {} if file is None else read_toml_file(file, f"--params {file}")
     if preset is not None and fields.setdefault("preset", preset) != preset:
         raise ParameterError(
-            f"--preset {preset} contradicts preset = {fields['preset']!r} in {file}"
+            f"--preset {preset} contradicts preset = {shown(fields['preset'])} in {file}"
         )
     return fields | changed_fields(changes or ())
 
@@ -46,7 +46,9 @@ def changed_fields(changes: Sequence[str], option: str = "--set") -> dict[str, A
     for change in changes:
         name, equals, text = (part.strip() for part in change.partition("="))
         if not (name and equals and text):
-            raise ParameterError(f"{option} {change!r} is not accepted: NAME=VALUE, as in bw_s=0.3")
+            raise ParameterError(
+                f"{option} {shown(change)} is not accepted: NAME=VALUE, as in bw_s=0.3"
+            )
         if name in fields:
             raise ParameterError(f"{option} changes {name} twice")
         fields[name] = _value(text)

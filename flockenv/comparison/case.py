@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from flockenv._io.arguments import items
 from flockenv._io.extras import require
 from flockenv.comparison.episodes import Steering, compare_leaders
 from flockenv.parameters import FlockParameters
@@ -31,6 +32,10 @@ class Case:
     #: Dealt out to the seeds in turn, each as in the parameters, whose target they replace. The
     #: signed order counts towards the target of leader 0.
     targets: tuple[Any, ...] = ()
+
+    def __post_init__(self) -> None:
+        for name in ("leaders", "seeds", "targets"):
+            object.__setattr__(self, name, items(getattr(self, name), name))
 
     def flock_hours(self, policies: int) -> float:
         """Return the hours of simulated time that a number of policies takes."""

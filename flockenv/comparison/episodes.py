@@ -10,11 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv import _core
+from flockenv._io.arguments import by_name, items, whole
 from flockenv._io.extras import require
 from flockenv._io.interrupts import end_if_interrupted
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
-from flockenv.policies.base import LeaderPolicy, action_mode, check_action_mode, control_rate
+from flockenv.policies.base import (
+    LeaderPolicy,
+    action_mode,
+    check_action_mode,
+    check_pool,
+    control_rate,
+)
 from flockenv.policies.model import ModelPolicy, as_policy
 from flockenv.policies.registry import EVERY_SUBSTEP, named_policy
 from flockenv.runs.executors import in_order
@@ -93,8 +100,11 @@ def compare_leaders(
         of `environment`.
     """
     pandas = require("pandas", "plot")
+    leaders = [whole(k, "leaders") for k in items(leaders, "leaders")]
+    seeds = items(seeds, "seeds")
     check_evaluation_seeds(seeds)
-    environment = environment or {}
+    policies = by_name(policies, "policies")
+    environment = by_name(environment or {}, "environment")
     most = max(leaders, default=0)
     if most >= parameters.n_boats:
         raise ParameterError(
@@ -148,7 +158,9 @@ def steering(policy: Steering, pool: Any) -> Any:
         policy = policy()
     if isinstance(policy, str) and policy != EVERY_SUBSTEP:
         policy = named_policy(policy, pool)()
-    return as_policy(policy)
+    policy = as_policy(policy)
+    check_pool(policy, pool)
+    return policy
 
 
 def _is_outside(policy: Any) -> bool:

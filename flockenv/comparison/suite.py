@@ -4,12 +4,13 @@ Another task, or another number in one, is another suite. The seeds follow from 
 release, so that a later release scores all entries again, on flocks that none of them has met.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from flockenv._io.arguments import items
 from flockenv._io.extras import require
 from flockenv.comparison.case import Case
 from flockenv.comparison.report import ComparisonReport
@@ -63,12 +64,13 @@ TASKS: tuple[Case, ...] = (
 """The tasks, of which docs/suite.md says what each asks of leaders."""
 
 
-def tasks_named(suite: str, names: Sequence[str] = ()) -> list[Case]:
+def tasks_named(suite: str, names: Iterable[str] = ()) -> list[Case]:
     """Return tasks of a suite, all of them if none is named; unknown names are refused."""
+    chosen = items(names, "names")
     if suite != SUITE:
         raise ParameterError(f"suite = {shown(suite)} is not accepted: there is {SUITE}")
-    refuse_unknown(names, [task.name for task in TASKS], f"task of suite {SUITE}")
-    return [task for task in TASKS if not names or task.name in names]
+    refuse_unknown(chosen, [task.name for task in TASKS], f"task of suite {SUITE}")
+    return [task for task in TASKS if not chosen or task.name in chosen]
 
 
 def aggregate(differences: Sequence[NDArray[np.float64]]) -> dict[str, tuple[float, float, float]]:

@@ -74,6 +74,16 @@ def check_action_mode(policy: Any, mode: str, where: str) -> None:
         )
 
 
+def check_pool(policy: Any, pool: Any) -> None:
+    """Refuse a policy that was made for another pool than that of the flock."""
+    own = getattr(policy, "pool", None)
+    if own is not None and own != pool:
+        raise ParameterError(
+            f"pool = {shown(pool)} is not accepted with {shown(policy)}, which was made for "
+            f"pool = {own!r}"
+        )
+
+
 def observed(observation: ArrayLike) -> NDArray[np.float32]:
     """Return an observation as an array, of which nothing may be masked."""
     if np.ma.is_masked(observation):

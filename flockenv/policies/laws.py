@@ -309,7 +309,7 @@ class LeaningLaw(LawPolicy):
         """
         content = read_limited(path, f"{path} is no policy")
         try:
-            return cls.from_json(content.decode())
+            return cls.from_json(content.decode("utf-8-sig"))
         except ValueError as error:
             raise ParameterError(f"{path} is no whole policy: {error}") from error
 

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
-from flockenv._io.array_file import is_special
 from flockenv._io.extras import require
+from flockenv._io.plain_file import open_plain
 from flockenv.envs.observation import ObservationSpace
 from flockenv.errors import ParameterError
 from flockenv.policies.base import leaders_observed, observed
@@ -190,9 +190,7 @@ def as_policy(policy: Any) -> Any:
 
 def is_model_file(path: str | os.PathLike[str]) -> bool:
     """Return whether stable-baselines3 saved a model to a file, by its entries alone."""
-    if is_special(path):
-        return False
-    with open(path, "rb") as file:
+    with open_plain(path) as file:
         try:
             return _WEIGHTS in zipfile.ZipFile(file).namelist()
         except zipfile.BadZipFile:

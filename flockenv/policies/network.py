@@ -4,7 +4,7 @@ import hashlib
 import json
 import math
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import Any, Self
 
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
+from flockenv._io.arguments import items, real_numbers
 from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv.envs.observation import BLOCKS, OBSERVATION_VERSION, ObservationSpace
 from flockenv.errors import ParameterError, refuse_unknown, shown
@@ -22,6 +23,10 @@ FORMAT = "flockenv policy 1"
 """First entry of every network's file."""
 
 _LARGEST_FILE = 5 << 20
+_HEADER = (
+    *("format", "observation_version", "observation", "mirror_to_target", "action_mode"),
+    *("decision_period_s", "activation", "made"),
+)
 _OPTIONS = ("observation", "mirror_to_target", "action_mode", "decision_period_s")
 
 
@@ -63,8 +68,8 @@ class NetworkPolicy(RowPolicy):
 
     def __init__(
         self,
-        weights: Sequence[ArrayLike],
-        biases: Sequence[ArrayLike],
+        weights: Iterable[ArrayLike],
+        biases: Iterable[ArrayLike],
         activation: str = "tanh",
         *,
         observation: Mapping[str, Any] | None = None,
@@ -78,13 +83,14 @@ class NetworkPolicy(RowPolicy):
         refuse_unknown((activation,), ACTIVATIONS, "activation")
         if decision_period_s is not None and not 0.0 < decision_period_s < math.inf:
             raise ParameterError(
-                f"decision_period_s = {decision_period_s!r} is not accepted: a positive time in s"
+                f"decision_period_s = {shown(decision_period_s)} is not accepted: a time in s"
             )
         self.action_mode = action_mode
         self.decision_period_s = None if decision_period_s is None else float(decision_period_s)
         self.activation = activation
         self.provenance = {str(name): str(text) for name, text in dict(provenance or {}).items()}
-        self._layers = _checked_layers(weights, biases, self._size)
+        matrices, vectors = items(weights, "weights"), items(biases, "biases")
+        self._layers = _checked_layers(matrices, vectors, self._size)
 
     @classmethod
     def from_module(
@@ -200,7 +206,8 @@ class NetworkPolicy(RowPolicy):
         """
         arrays = read_arrays(path, _LARGEST_FILE)
         try:
-            header = json.loads(str(arrays.pop("header")))
+            header = json.loads(str(arrays.pop("header")).removeprefix("\ufeff"))
+            refuse_unknown(header, _HEADER, "entry of a network's header")
             if header["format"] != FORMAT:
                 raise ParameterError(f"format = {shown(header['format'])}, not {FORMAT!r}")
             version = header["observation_version"]
@@ -210,6 +217,8 @@ class NetworkPolicy(RowPolicy):
                     f"{OBSERVATION_VERSION}: train it again"
                 )
             places = range(len(arrays) // 2)
+            layers = [f"{kind}_{place}" for place in places for kind in ("weight", "bias")]
+            refuse_unknown(arrays, layers, "array of a network")
             return cls(
                 [arrays[f"weight_{place}"] for place in places],
                 [arrays[f"bias_{place}"] for place in places],
@@ -237,11 +246,7 @@ def _checked_layers(
         )
     layers, inputs = [], size
     for place, (weight, bias) in enumerate(zip(weights, biases, strict=True)):
-        try:
-            with np.errstate(over="ignore"):
-                matrix, vector = np.array(weight, np.float32), np.array(bias, np.float32)
-        except (TypeError, ValueError, OverflowError) as error:
-            raise ParameterError(f"layer {place} holds other things than numbers") from error
+        matrix, vector = (_singles(each, f"layer {place}") for each in (weight, bias))
         wanted = 1 if place == len(weights) - 1 else vector.size
         if matrix.shape != (inputs, wanted) or vector.shape != (wanted,) or wanted == 0:
             raise ParameterError(
@@ -253,6 +258,15 @@ def _checked_layers(
         layers.append((matrix, vector))
         inputs = wanted
     return layers
+
+
+def _singles(values: ArrayLike, name: str) -> NDArray[np.float32]:
+    """Return real numbers as float32, in which those beyond it are infinite."""
+    found = real_numbers(values, name)
+    if found.dtype.kind == "b" or np.ma.is_masked(found):
+        raise ParameterError(f"{name} is not accepted: real numbers, all of them")
+    with np.errstate(over="ignore"):
+        return np.array(found, np.float32)
 
 
 #: Names of torch's activations, and of layers that leave the mean as it is.

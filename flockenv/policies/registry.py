@@ -6,8 +6,8 @@ from functools import partial
 from typing import Any
 
 from flockenv import _core
-from flockenv.errors import ParameterError, nearest
-from flockenv.policies.base import LeaderPolicy
+from flockenv.errors import ParameterError, nearest, shown
+from flockenv.policies.base import LeaderPolicy, check_pool
 from flockenv.policies.constant import RandomRudders, StraightAhead
 from flockenv.policies.laws import DampedLaw, LeaningLaw, NamedLaw, SteeringLaw
 from flockenv.policies.model import ModelPolicy, is_model_file, load_model
@@ -53,7 +53,8 @@ _LONGEST_NAME = 200
 def _named(pool: Any) -> str:
     if not isinstance(pool, str) or pool not in POOLS:
         raise ParameterError(
-            f"pool = {pool!r} is not accepted: tuned and learned leaders are for {', '.join(POOLS)}"
+            f"pool = {shown(pool)} is not accepted: tuned and learned leaders are for "
+            f"{', '.join(POOLS)}"
         )
     return pool
 
@@ -92,8 +93,8 @@ def load(
         return LeaningLaw.learned(_named(pool))
     if pool is not None:
         raise ParameterError(
-            f"pool = {pool!r} is not accepted with the file {os.fspath(path)!r}: a pool chooses "
-            f"among the policies called {LEARNED!r}"
+            f"pool = {shown(pool)} is not accepted with the file {os.fspath(path)!r}: a pool "
+            f"chooses among the policies called {LEARNED!r}"
         )
     if is_model_file(path):
         if not trust:
@@ -121,6 +122,7 @@ def named_policy(name: str, pool: Any, *, trust: bool = False) -> Callable[[], L
         return lambda: found
     if name.endswith(FILES):
         read = load(name, trust=trust)
+        check_pool(read, pool)
         return lambda: read
     names = [*POLICIES, *POOL_POLICIES]
     parts = [part.strip() for part in name.split(",")]

@@ -1,6 +1,6 @@
 """Runs, sampled at a fixed rate: saved and loaded."""
 
-from flockenv.recording.checks import PHASES, PRECISIONS
+from flockenv.recording.checks import PHASES, PRECISIONS, checked_functions
 from flockenv.recording.recording import DISCARDED_SHARE, Recording
 
-__all__ = ["DISCARDED_SHARE", "PHASES", "PRECISIONS", "Recording"]
+__all__ = ["DISCARDED_SHARE", "PHASES", "PRECISIONS", "Recording", "checked_functions"]

@@ -1,11 +1,13 @@
 """What a recording's arrays must be."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flockenv import _core
+from flockenv._io.arguments import real_numbers
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import ContactSeries
 from flockenv.order import QUANTITIES
@@ -13,6 +15,15 @@ from flockenv.parameters import FlockParameters
 
 PHASES = np.array(_core.PHASES)
 TIMES = ("time_s", "phase", "in_analysis_window")
+MOTION = {
+    "x_cm": "cm",
+    "y_cm": "cm",
+    "heading_rad": "rad",
+    "velocity_x_cm_s": "cm s-1",
+    "velocity_y_cm_s": "cm s-1",
+    "angular_velocity_rad_s": "rad s-1",
+}
+"""The columns of poses and velocities in tables, with their units."""
 PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
 CONTACTS = ("count", "i", "j", "normal", "force", "point_cm", "along_cm")
 """The arrays of a `ContactSeries`, in its order."""
@@ -50,17 +61,51 @@ def check_ids(ids: Any, boats: int) -> None:
         raise ParameterError("ids must differ from each other")
 
 
-def check_quantities(quantities: Any, times: tuple[int, ...]) -> None:
-    """Refuse quantities of a user's own that are no series, or whose names are taken."""
+def check_names(quantities: Any, of: str) -> None:
+    """Refuse quantities of a user's own that are not by name, or whose names are taken."""
     if not isinstance(quantities, Mapping):
-        raise ParameterError(f"quantities = {shown(quantities)} is not accepted: arrays by name")
-    taken = {each.name for each in QUANTITIES} | {*TIMES, "boat", "id", "is_leader"}
-    for name, values in quantities.items():
+        raise ParameterError(f"quantities = {shown(quantities)} is not accepted: {of} by name")
+    taken = {each.name for each in QUANTITIES} | {*TIMES, *MOTION, "boat", "id", "is_leader"}
+    for name in quantities:
         if not isinstance(name, str) or not name.isidentifier() or name in taken:
             raise ParameterError(
                 f"quantity {shown(name)} is not accepted: an identifier that no quantity or column "
                 "of recordings has"
             )
+
+
+def checked_functions(functions: Any) -> dict[str, Callable[[Any], Any]]:
+    """Return functions of a user's own by name, before there is anything for them to look at."""
+    check_names(functions, "functions")
+    for name, function in functions.items():
+        if not callable(function):
+            raise ParameterError(
+                f"quantity {name!r} = {shown(function)} is not accepted: a function of a recording"
+            )
+    return dict(functions)
+
+
+def own_series(name: str, function: Callable[[Any], Any], recording: Any) -> NDArray[np.float64]:
+    """Return what a user's function says of a recording, as a number for each sample."""
+    try:
+        values = function(recording)
+    except Exception as error:  # It is the user's.
+        raise ParameterError(
+            f"quantity {name!r} cannot be had: {type(error).__name__}: {error}"
+        ) from error
+    found = real_numbers(values, f"quantity {name!r}")
+    with np.errstate(over="ignore"):
+        doubles = np.ma.asarray(found.astype(np.float64))
+    if (np.isinf(doubles) & np.isfinite(found)).any():
+        raise ParameterError(f"quantity {name!r} is not accepted: numbers that fit float64")
+    # What is masked is not there.
+    return np.ma.filled(doubles, np.nan).copy()
+
+
+def check_quantities(quantities: Any, times: tuple[int, ...]) -> None:
+    """Refuse quantities of a user's own that are no series, or whose names are taken."""
+    check_names(quantities, "arrays")
+    for name, values in quantities.items():
         if not isinstance(values, np.ndarray) or values.dtype != np.float64:
             raise ParameterError(f"quantity {name!r} must be an array of float64")
         if values.shape != times:

@@ -23,8 +23,10 @@ from flockenv.recording.checks import (
     check_contacts,
     check_ids,
     check_quantities,
+    checked_functions,
+    own_series,
 )
-from flockenv.recording.stored import ARRAYS, arrays_of, fields_from
+from flockenv.recording.stored import ARRAYS, OPTIONAL, arrays_of, fields_from
 from flockenv.recording.tables import dataset_of, table_of
 
 if TYPE_CHECKING:
@@ -194,7 +196,7 @@ class Recording:
         sample = self._sample_at(time_s)
         there = self._there(sample)
         if not there.any():
-            raise ParameterError(f"no boat is there at {time_s!r} s")
+            raise ParameterError(f"no boat is there at {shown(time_s)} s")
         return {
             "pose": self.pose[sample, there].astype(np.float64),
             "velocity": np.nan_to_num(self.velocity[sample, there].astype(np.float64)),
@@ -209,7 +211,7 @@ class Recording:
         start, end = self.time_s[0], self.time_s[-1]
         if not start <= time_s <= end:
             raise ParameterError(
-                f"time_s = {time_s!r} is not accepted: a time from {start} to {end} s"
+                f"time_s = {shown(time_s)} is not accepted: a time from {start} to {end} s"
             )
         return int(np.searchsorted(self.time_s, time_s, side="right")) - 1
 
@@ -290,23 +292,50 @@ class Recording:
         Parameters
         ----------
         functions
-            By name: functions that take the recording and return a number for each sample, shape
-            (t,); NaN where it is undefined.
+            By name: functions that take the recording, whose arrays are read-only then, and return
+            a real number for each sample, shape (t,); NaN where it is undefined.
 
         Raises
         ------
         ParameterError
-            For results of another shape or of no numbers, and names that are no identifiers or that
-            quantities and columns of recordings have.
+            For functions that fail, results of another shape or of other things than real numbers,
+            and names that are no identifiers or that quantities and columns of recordings have. Its
+            attribute ``recording`` is this one.
         """
-        found = {}
-        for name, function in functions.items():
-            try:
-                # What is masked is not there.
-                found[name] = np.ma.array(function(self), np.float64).filled(np.nan).copy()
-            except (TypeError, ValueError) as error:
-                raise ParameterError(f"quantity {name!r} is not accepted: numbers") from error
-        return replace(self, quantities={**self.quantities, **found})
+        seen = self._read_only()
+        try:
+            found = {
+                name: own_series(name, function, seen)
+                for name, function in checked_functions(functions).items()
+            }
+            return replace(self, quantities={**self.quantities, **found})
+        except ParameterError as error:
+            vars(error)["recording"] = self
+            raise
+
+    def _read_only(self) -> Self:
+        """Return the recording with arrays that cannot be written to."""
+
+        def sealed(array: NDArray[Any]) -> NDArray[Any]:
+            view = array.view()
+            view.flags.writeable = False
+            return view
+
+        arrays = {name: getattr(self, name) for name in (*ARRAYS, *OPTIONAL)}
+        contacts = self.contacts
+        if contacts is not None:
+            columns = (sealed(getattr(contacts, each.name)) for each in fields(contacts))
+            contacts = type(contacts)(*columns)
+        seen: dict[str, Any] = {
+            name: sealed(array) for name, array in arrays.items() if array is not None
+        }
+        return replace(
+            self,
+            **seen,
+            order=OrderSeries(*map(sealed, self.order.columns())),
+            contacts=contacts,
+            quantities={name: sealed(values) for name, values in self.quantities.items()},
+        )
 
     def without_poses(self) -> Self:
         """Return the recording without its poses and velocities."""

@@ -7,19 +7,11 @@ from numpy.typing import NDArray
 
 from flockenv._io.extras import require
 from flockenv.order import ORDER, RECORDED
-from flockenv.recording.checks import TIMES
+from flockenv.recording.checks import MOTION, TIMES
 
 if TYPE_CHECKING:
     import pandas
     import xarray
-
-_POSE = {"x_cm": "cm", "y_cm": "cm", "heading_rad": "rad"}
-_VELOCITY = {
-    "velocity_x_cm_s": "cm s-1",
-    "velocity_y_cm_s": "cm s-1",
-    "angular_velocity_rad_s": "rad s-1",
-}
-"""The components of each, with their units."""
 
 
 def table_of(recording: Any, boats: bool) -> "pandas.DataFrame":
@@ -47,7 +39,7 @@ def dataset_of(recording: Any) -> "xarray.Dataset":
     by_time = {name: getattr(recording, name) for name in TIMES[1:]}
     by_time |= {name: getattr(recording.order, name) for name in ORDER}
     by_time |= recording.quantities
-    units = {each.name: each.unit or "1" for each in RECORDED} | _POSE | _VELOCITY
+    units = {each.name: each.unit or "1" for each in RECORDED} | MOTION
     attributes = {name: {"units": units[name]} for name in units}
     variables: dict[str, Any] = {
         name: ("time_s", each, attributes.get(name)) for name, each in by_time.items()
@@ -76,4 +68,4 @@ def dataset_of(recording: Any) -> "xarray.Dataset":
 def _motion(recording: Any) -> dict[str, NDArray[np.floating[Any]]]:
     """Return poses and velocities by component, each (t, n)."""
     columns = (*np.moveaxis(recording.pose, -1, 0), *np.moveaxis(recording.velocity, -1, 0))
-    return dict(zip((*_POSE, *_VELOCITY), columns, strict=True))
+    return dict(zip(MOTION, columns, strict=True))

@@ -1,14 +1,19 @@
 """Finished runs on disk: each a recording under the hash of its spec, so that work resumes."""
 
+import math
 import os
 import warnings
 from collections.abc import Callable, Iterable
 from contextlib import closing
 from pathlib import Path
 
+import numpy as np
+
 from flockenv import _core
+from flockenv._io.atomic_write import remove_leftovers
 from flockenv._io.interrupts import end_if_interrupted
 from flockenv.errors import FlockError, ParameterError
+from flockenv.policies.registry import named_policy, policy_name
 from flockenv.recording import Recording
 from flockenv.runs.executors import Engine, finished, threads
 from flockenv.runs.spec import RunSpec, execute
@@ -83,8 +88,8 @@ class RunStore:
             return None
         try:
             run = Recording.load(path)
-            if (run.parameters, run.seed) != (spec.parameters, spec.seed):
-                raise ParameterError(f"{path} holds another run than its name says")
+            if difference := _difference(run, spec):
+                raise ParameterError(f"{path} holds another run than its name says: {difference}")
         except ParameterError as error:
             aside = path.with_suffix(".damaged")
             path.replace(aside)
@@ -93,6 +98,28 @@ class RunStore:
         except OSError as error:
             raise StorageError(f"{path} cannot be read: {error.strerror or error}") from error
         return run
+
+
+def _difference(run: Recording, spec: RunSpec) -> str | None:
+    """Return in what a recording is not the run of a spec, None if it is that run."""
+    policy = named_policy(spec.policy, spec.parameters.pool)()
+    step_s, kept = 1.0 / spec.sample_hz, spec.keep
+    gap_s = float(np.diff(run.time_s).min()) if len(run) > 1 else step_s
+    # In a shorter window there may be no two samples that follow each other.
+    window_s = math.inf if kept != "window" else 0.5 * (run.parameters.fw_s + run.parameters.nop1_s)
+    is_sampled = np.allclose(run.time_s, step_s * np.round(run.time_s / step_s), rtol=0, atol=1e-8)
+    is_sampled &= abs(gap_s - step_s) < 1e-8 or step_s > 0.5 * window_s
+    is_whole = kept == "window" or len(run) == int(spec.duration_s * spec.sample_hz + 1e-6) + 1
+    differs = {
+        "other parameters": run.parameters != spec.parameters,
+        f"seed {run.seed}, not {spec.seed}": run.seed != spec.seed,
+        f"{run.duration_s:g} s, not {spec.duration_s:g} s": run.duration_s != spec.duration_s,
+        f"a policy {run.policy}, not {spec.policy}": run.policy != policy_name(policy),
+        f"other samples than {spec.sample_hz:g} per second": not is_sampled,
+        f"not what {kept!r} keeps": run.has_poses != (kept == "poses")
+        or not (is_whole and (kept != "window" or run.in_analysis_window.all())),
+    }
+    return next((words for words, does in differs.items() if does), None)
 
 
 def run_missing(
@@ -130,6 +157,7 @@ def run_missing(
         If a finished run cannot be written.
     """
     missing = []
+    remove_leftovers(store.folder, within=True)
     for spec in dict.fromkeys(specs):
         if store.load(spec) is None:
             missing.append(spec)
@@ -153,4 +181,6 @@ def _attempt(spec: RunSpec) -> Recording | FlockError:
     try:
         return execute(spec)
     except FlockError as error:
+        # The run until then would fill the memory of a sweep.
+        vars(error).pop("recording", None)
         return error

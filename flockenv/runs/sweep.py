@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockenv._io.atomic_write import atomic_write, write_csv
+from flockenv._io.atomic_write import atomic_write, remove_leftovers, write_csv
 from flockenv._io.extras import require
 from flockenv._io.toml import read_toml_file
-from flockenv.errors import FlockError, ParameterError, refuse_unknown
+from flockenv.errors import FlockError, ParameterError, refuse_unknown, shown
 from flockenv.order import QUANTITIES
 from flockenv.parameters import FlockParameters
 from flockenv.recording import Recording
@@ -81,7 +81,7 @@ def _parse(values: Mapping[str, Any]) -> SweepSpec:
     refuse_unknown(values, _KEYS, "key of a sweep")
     fixed, grids, seeds = values.get("fixed", {}), _grids(values), _seeds(values.get("seeds"))
     if not isinstance(fixed, dict):
-        raise ParameterError(f"fixed = {fixed!r} is not accepted: a table [fixed]")
+        raise ParameterError(f"fixed = {shown(fixed)} is not accepted: a table [fixed]")
     axes = tuple(grids[0])
     for name in axes:
         if name in fixed:
@@ -114,8 +114,8 @@ def _grids(values: Mapping[str, Any]) -> list[dict[str, list[Any]]]:
         for name, axis in grid.items():
             if not isinstance(axis, list) or not axis:
                 raise ParameterError(
-                    f"{name} = {axis!r} is not accepted in a grid: a list of one or more values "
-                    "(a field that does not vary belongs under [fixed])"
+                    f"{name} = {shown(axis)} is not accepted in a grid: a list of one or more "
+                    "values (a field that does not vary belongs under [fixed])"
                 )
         if grid.keys() != grids[0].keys():
             different = ", ".join(sorted(grid.keys() ^ grids[0].keys()))
@@ -129,14 +129,14 @@ def _seeds(seeds: Any) -> tuple[int, ...]:
     if isinstance(seeds, list) and seeds and len(set(map(repr, seeds))) == len(seeds):
         return tuple(seeds)
     raise ParameterError(
-        f"seeds = {seeds!r} is not accepted: how many (1 to {MOST_RUNS}), or a list of different "
-        "seeds"
+        f"seeds = {shown(seeds)} is not accepted: how many (1 to {MOST_RUNS}), or a list of "
+        "different seeds"
     )
 
 
 def _number(name: str, value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ParameterError(f"{name} = {value!r} is not accepted: a number")
+        raise ParameterError(f"{name} = {shown(value)} is not accepted: a number")
     return float(value)
 
 
@@ -192,6 +192,7 @@ def run_sweep(
     """
     pandas = require("pandas", "plot")
     require("pyarrow", "plot")
+    remove_leftovers(folder)
     folder = Path(folder)
     runs = folder / RUNS_FOLDER
     store = RunStore(runs, notify) if notify else RunStore(runs)

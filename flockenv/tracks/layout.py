@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from flockenv._io.array_file import is_special
 from flockenv._io.atomic_write import write_text
 from flockenv._io.extras import require
+from flockenv._io.plain_file import is_special
 from flockenv._io.toml import read_toml_file
 from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.parameters import FlockParameters

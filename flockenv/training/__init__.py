@@ -1,6 +1,6 @@
 """Training of leaders: PPO of stable-baselines3 with one policy shared by all of them.
 
-Needs the extra ``train``: ``pip install flockenv[train]``.
+Needs the extra ``train``.
 """
 
 from flockenv._io.extras import require

@@ -16,7 +16,7 @@ from stable_baselines3.common.base_class import BaseAlgorithm
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import configure
 
-from flockenv._io.atomic_write import atomic_write, write_text
+from flockenv._io.atomic_write import atomic_write, remove_leftovers, write_text
 from flockenv._io.interrupts import end_if_interrupted
 from flockenv.errors import FlockError, InUseError, ParameterError
 from flockenv.runs.seeds import POLICY_SEEDS
@@ -159,6 +159,7 @@ def _held(folder: Path) -> Iterator[None]:
     except OSError as error:
         raise TrainingError(f"{folder} cannot be held: {error}") from error
     with held:
+        remove_leftovers(folder)
         yield
 
 

@@ -235,11 +235,19 @@ impl<T: Real> Recorder<T> {
     }
 
     /// The same run with changes at times from its start on, after the sample at that time.
-    #[must_use]
-    pub fn with_changes(mut self, mut changes: Vec<(Ticks, Change)>) -> Self {
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for a change that no sample would show.
+    pub fn with_changes(mut self, mut changes: Vec<(Ticks, Change)>) -> Result<Self> {
         changes.sort_by_key(|&(time, _)| time);
+        if let Some(&(last, _)) = changes.last() {
+            let (last_s, end) = (seconds(last), self.sampling.time(self.sampling.count() - 1));
+            let accepted = format!("changes before the last sample, at {} s", seconds(end));
+            let found = format!("a change at {last_s} s");
+            FlockError::unless(last < end, "schedule", found, accepted)?;
+        }
         self.changes = changes.into();
-        self
+        Ok(self)
     }
 
     /// The same run with rudders that are held between control steps, from amidships.

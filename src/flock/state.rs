@@ -43,6 +43,13 @@ impl Flock {
         0.01 * self.parameters.boat_radius_cm
     }
 
+    /// Whether a boat's center is further than a hull's width from the water, as in the state of another pool.
+    fn is_ashore(&self, pose: &Pose) -> bool {
+        let (pool, width) = (self.parameters.pool, 2.0 * self.parameters.boat_radius_cm);
+        let distance = libm::hypot(pose.position.x, pose.position.y);
+        !(pool.inner_radius_cm - width..=pool.outer_radius_cm + width).contains(&distance)
+    }
+
     /// Refuses boats that overlap an obstacle by more than the contacts leave of themselves.
     pub(super) fn refuse_overlapped_obstacles(&self) -> Result<()> {
         let allowed = self.overlap_of_contacts();
@@ -78,6 +85,12 @@ impl Flock {
         if let Some(boat) = poses.iter().position(|pose| !pose.is_in_range()) {
             let Pose { position, heading } = poses[boat];
             let value = format!("[{}, {}, {heading}] of boat {boat}", position.x, position.y);
+            return Err(FlockError::parameter("pose", value, accepted));
+        }
+        if let Some(boat) = poses.iter().position(|pose| self.is_ashore(pose)) {
+            let Pose { position, .. } = poses[boat];
+            let value = format!("[{}, {}] of boat {boat}", position.x, position.y);
+            let accepted = "a center in the water, or within a hull's width of it";
             return Err(FlockError::parameter("pose", value, accepted));
         }
         if let Some(boat) = velocities.iter().position(|v| !v.is_in_range()) {

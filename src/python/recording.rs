@@ -70,11 +70,11 @@ fn recorded<'py, T: Real + Element>(
     sampling: Sampling,
     plan: &Plan<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    const REPORTED_EVERY_S: f64 = 10.0;
     let changes = plan.changes.iter();
     let changes = changes.map(|(time_s, change)| Ok((ticks(*time_s), change_from(change)?)));
     let changes = changes.collect::<PyResult<Vec<_>>>()?;
-    let mut recorder = Recorder::<T>::new(flock.0.read()?.clone(), sampling)?.with_changes(changes);
+    let recorder = Recorder::<T>::new(flock.0.read()?.clone(), sampling)?;
+    let mut recorder = recorder.with_changes(changes)?;
     if plan.contacts {
         recorder = recorder.with_contacts();
     }
@@ -90,15 +90,30 @@ fn recorded<'py, T: Real + Element>(
             pilot = Some(Pilot::new(law, recorder.flock().parameters(), hz)?);
         }
     }
+    let run = run(py, &mut recorder, pilot, &layouts, plan);
+    let columns = columns(py, recorder.into_recording())?;
+    // What was recorded until then goes with the error.
+    run.or_else(|error| error.value(py).setattr("columns", &columns).and(Err(error)))?;
+    Ok(columns)
+}
+
+fn run<T: Real>(
+    py: Python<'_>,
+    recorder: &mut Recorder<T>,
+    mut pilot: Option<Pilot>,
+    layouts: &[ObservationLayout],
+    plan: &Plan<'_>,
+) -> PyResult<()> {
+    const REPORTED_EVERY_S: f64 = 10.0;
     let mut reported_s = 0.0;
     loop {
         let pause = py.detach(|| match &mut pilot {
-            Some(pilot) => pilot.run(&mut recorder, BOAT_SUBSTEPS_A_PIECE),
+            Some(pilot) => pilot.run(recorder, BOAT_SUBSTEPS_A_PIECE),
             None => recorder.run(BOAT_SUBSTEPS_A_PIECE),
         })?;
         match (pause, &plan.control) {
-            (Pause::End, _) => break,
-            (Pause::Control, Some(control)) => steer(py, &mut recorder, &control.steer, &layouts)?,
+            (Pause::End, _) => return Ok(()),
+            (Pause::Control, Some(control)) => steer(py, recorder, &control.steer, layouts)?,
             _ => py.check_signals()?,
         }
         let since_s = recorder.elapsed_s() - reported_s;
@@ -109,7 +124,6 @@ fn recorded<'py, T: Real + Element>(
             reported_s += since_s;
         }
     }
-    columns(py, recorder.into_recording())
 }
 
 fn steer<T: Real>(

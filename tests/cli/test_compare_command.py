@@ -138,7 +138,7 @@ def test_a_pool_that_nothing_was_made_for(cli, tmp_path: Path) -> None:
 
 def test_a_table_in_80_columns(cli, tmp_path: Path) -> None:
     own = tmp_path / "a_policy_with_a_rather_long_name_of_its_own.json"
-    flockenv.policies.load("learned", pool="narrow").save(own)
+    flockenv.policies.load("learned", pool="wide").save(own)
     done = cli("compare", *SHORT, "-q", "--out", tmp_path / "out", "--policy", str(own))
     table, _ = done.stdout.split("Written to")
     assert max(map(len, table.splitlines())) <= 80

@@ -90,7 +90,7 @@ def test_a_missing_extra_is_named_before_any_work(cli, package, tmp_path, monkey
     monkeypatch.setitem(sys.modules, package, None)
     done = cli("compare", "--out", tmp_path / "a")
     assert done.returncode == 2
-    assert f"{package} is not installed: pip install 'flockenv[plot]'" in done.stderr
+    assert f"{package} is not installed: pip install '.[plot]' in a clone" in done.stderr
     assert not (tmp_path / "a").exists()
 
 

@@ -61,7 +61,7 @@ def test_the_missing_extra_is_named(cli, tmp_path: Path) -> None:
     forbid = "import sys; sys.modules.update(torch=None, stable_baselines3=None)"
     done = cli.process("train", "--out", tmp_path, before=forbid)
     assert done.returncode == 2
-    assert "pip install 'flockenv[train]'" in done.stderr
+    assert "pip install '.[train]' in a clone" in done.stderr
 
 
 def test_an_interrupt_leaves_a_checkpoint(

@@ -8,7 +8,8 @@ import pytest
 
 import flockenv
 from flockenv.comparison import NO_LEADERS, Case, compare_leaders
-from flockenv.policies import StraightAhead
+from flockenv.comparison.suite import tasks_named
+from flockenv.policies import load
 from flockenv.policies.registry import POLICIES
 from flockenv.runs.seeds import POLICY_SEEDS
 
@@ -129,13 +130,60 @@ def test_a_policy_for_each_leader(parameters: flockenv.FlockParameters) -> None:
     for wrong, words in (
         ({"leader_1": "damped law"}, "a policy for each of leader_0"),
         ({"leader_0": "damped law"}, "a policy for each of leader_0, leader_1"),
-        ({**both, "leader_1": Half()}, "decide 5, 10 times per second"),
     ):
         with pytest.raises(flockenv.ParameterError, match=words):
             compare_leaders(parameters, [2], {"wrong": wrong}, [1], 5.0)
 
 
-class Half(StraightAhead):
-    """Steers at half the rate of others."""
+def test_what_is_compared_may_be_gone_through_once(parameters: flockenv.FlockParameters) -> None:
+    expected = compare_leaders(parameters, [0, 2], {"law": "paper's law"}, [1, 2], 5.0)
+    for leaders, seeds in (
+        ((k for k in (0, 2)), iter([1, 2])),
+        (dict.fromkeys([0, 2]).keys(), {"a": 1, "b": 2}.values()),
+        (np.array([0, 2]), range(1, 3)),
+        (map(int, "02"), np.array([1, 2], np.uint64)),
+        (range(0, 3, 2), filter(None, (0, 1, 2))),
+    ):
+        runs = compare_leaders(parameters, leaders, {"law": "paper's law"}, seeds, 5.0)
+        pd.testing.assert_frame_equal(runs, expected, check_dtype=False)
+    case = Case(
+        name="one",
+        parameters=parameters,
+        leaders=iter([0, 2]),
+        seeds=iter([1, 2]),
+        episode_s=5.0,
+        targets=(each for each in ["cw"]),
+    )
+    for _ in range(2):
+        assert case.flock_hours(1) == 4 * 5.0 / 3600.0
+        pd.testing.assert_frame_equal(case.run({"law": "paper's law"}).iloc[:, 1:], expected)
+    assert [task.name for task in tasks_named("v2", iter(["camera"]))] == ["camera"]
 
-    control_hz = 5.0
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"leaders": {1, 2}}, "leaders must be a sequence"),
+        ({"leaders": 2}, "leaders must be a sequence"),
+        ({"leaders": "12"}, "leaders must be a sequence"),
+        ({"leaders": [1.5]}, "leaders must be an integer"),
+        ({"leaders": [True]}, "leaders must be an integer"),
+        ({"seeds": 3}, "seeds must be a sequence"),
+        ({"seeds": {1: 2}}, "seeds must be a sequence"),
+        ({"policies": ["paper's law"]}, "policies must be a dictionary"),
+        ({"policies": zip(["a"], ["paper's law"], strict=True)}, "policies must be a dictionary"),
+        ({"environment": ["target"]}, "environment must be a dictionary"),
+    ],
+)
+def test_what_is_no_sequence_is_named(parameters, arguments, words) -> None:
+    given = {"leaders": [1], "policies": {"law": "paper's law"}, "seeds": [1], **arguments}
+    with pytest.raises(TypeError, match=words):
+        compare_leaders(parameters, duration_s=1.0, **given)
+
+
+def test_leaders_of_another_pool_are_refused(parameters, tmp_path) -> None:
+    load("learned", pool="wide").save(tmp_path / "wide.json")
+    for policy in (load("learned", pool="wide"), str(tmp_path / "wide.json")):
+        for given in (policy, {"leader_0": policy}):
+            with pytest.raises(flockenv.ParameterError, match=r"'narrow'.*pool = 'wide'"):
+                compare_leaders(parameters, [1], {"mine": given}, [1], 1.0)

@@ -10,6 +10,7 @@ from sybil.example import Example, NotEvaluated
 from sybil.parsers.myst import CodeBlockParser, PythonCodeBlockParser, SkipParser
 
 import flockenv
+from flockenv._io import extras
 
 REPOSITORY = Path(__file__).parents[2]
 DOCS = REPOSITORY / "docs"
@@ -96,3 +97,21 @@ def test_every_public_name_has_a_reference():
     names = {name.rpartition(".")[2] for name in documented}
     wanted = {*flockenv.__all__, *flockenv.policies.__all__} - {"__version__", "policies"}
     assert sorted(wanted - names) == []
+
+
+def test_nothing_is_installed_by_a_name_that_is_not_ours_yet():
+    """Anybody may take the name on the index until then: a release flips the constant."""
+    name = r"""(?<![\w./-])flockenv(?=[\[\s"'`]|$)"""
+    by_name = re.compile(rf"pip install [^`\n]*?{name}", re.MULTILINE)
+    pages = [REPOSITORY / "README.md", *DOCS.glob("[!_]*/*.md"), *DOCS.glob("*.md")]
+    pages += REPOSITORY.glob("flockenv/**/*.py")
+    named = [page.name for page in pages if by_name.search(page.read_text("utf-8"))]
+    assert by_name.search("pip install 'flockenv[train]'")
+    assert not by_name.search('pip install "flockenv-0.1.0-cp311-abi3-….whl[plot]"')
+    message = extras.install("plot")
+    if extras.IS_PUBLISHED:
+        assert by_name.search(message)
+    else:
+        assert named == ["extras.py"]
+        assert not by_name.search(message)
+        assert ".[plot]" in message

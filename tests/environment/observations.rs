@@ -5,6 +5,7 @@ use flockenv::environment::EnvSettings;
 use flockenv::environment::observation::{Block, ObservationLayout, observe_flock};
 use flockenv::flock::State;
 use flockenv::geometry::{Pose, Velocity};
+use flockenv::parameters::Pool;
 use flockenv::policies::{Law, ObservedLaw};
 use flockenv::{Flock, FlockParameters};
 
@@ -92,6 +93,10 @@ fn grid(boats: usize, leaders: usize) -> Flock {
     };
     let own = FlockParameters {
         n_boats: boats,
+        pool: Pool {
+            outer_radius_cm: 90.0,
+            inner_radius_cm: 0.0,
+        },
         ..parameters(leaders)
     };
     Flock::from_state(own, 0, &state).unwrap()

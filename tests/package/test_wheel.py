@@ -133,7 +133,7 @@ def test_command_line_works(installed, page_runs):
 def test_missing_extra_is_named(installed):
     done = installed.attempt("flockenv", "compare", "--episodes", "2", "--minutes", "0.1")
     assert done.returncode == 2
-    assert "flockenv[plot]" in done.stderr
+    assert "'FILE.whl[plot]' with its wheel" in done.stderr
 
 
 def test_wheel_holds_all_that_it_should():

@@ -161,7 +161,7 @@ def changed(policy, tmp_path, **entries):
         ({"observation_version": str(OBSERVATION_VERSION)}, "version '1' of the observation"),
         ({"format": "something else"}, "format = 'something else'"),
         ({"weight_1": np.zeros((8, 3))}, "layer 1 has weights"),
-        ({"other": np.zeros(3), "another": np.zeros(3)}, "it has no 'weight_3'"),
+        ({"other": np.zeros(3), "another": np.zeros(3)}, "'other' is no array of a network"),
         ({"activation": "exec"}, "tanh, relu"),
         ({"activation": ["tanh"]}, r"\['tanh'\] is no activation"),
         ({"observation": {"neighbor": 3}}, "neighbor"),
@@ -171,7 +171,7 @@ def changed(policy, tmp_path, **entries):
         ({"mirror_to_target": "no"}, "mirror_to_target = 'no' is not accepted: True or False"),
         ({"weight_0": np.full((SIZE, 8), np.nan)}, "not finite"),
         ({"weight_0": np.full((SIZE, 8), 1e300)}, "not finite"),
-        ({"weight_0": np.full((SIZE, 8), "fw")}, "layer 0 holds other things than numbers"),
+        ({"weight_0": np.full((SIZE, 8), "fw")}, "layer 0 is not accepted: real numbers"),
         ({"bias_0": np.zeros(9)}, "layer 0"),
     ],
 )

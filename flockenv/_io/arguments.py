@@ -1,0 +1,74 @@
+"""Arguments that hold several values, also such as can be gone through only once."""
+
+import operator
+from collections.abc import Iterable, Iterator, Mapping, MappingView, Set
+from itertools import islice
+from typing import Any
+
+import numpy as np
+
+from flockenv.errors import ParameterError, shown
+
+_MOST_ITEMS = 1_000_000
+
+
+def items(values: Any, name: str) -> Any:
+    """Return what a sequence holds: a list, an array, a generator, a `zip`, a view of a dictionary.
+
+    A range stays what it is. Texts, dictionaries and sets are a TypeError, and sequences without
+    end a ParameterError.
+    """
+    if isinstance(values, range):
+        return values
+    unordered = isinstance(values, Set) and not isinstance(values, MappingView)
+    if unordered or isinstance(values, str | bytes | Mapping) or not isinstance(values, Iterable):
+        raise TypeError(f"{name} must be a sequence, not {shown(values)}")
+    found = tuple(islice(_each(values, name), _MOST_ITEMS + 1))
+    if len(found) > _MOST_ITEMS:
+        raise ParameterError(f"{name} has more than {_MOST_ITEMS} items, which is not accepted")
+    return found
+
+
+def _each(values: Any, name: str) -> Any:
+    try:
+        return iter(values)
+    except TypeError as error:  # An array of one number.
+        raise TypeError(f"{name} must be a sequence, not {shown(values)}") from error
+
+
+def by_name(values: Any, name: str) -> dict[Any, Any]:
+    """Return a copy of a dictionary; a TypeError refuses what is none."""
+    if not isinstance(values, Mapping):
+        raise TypeError(f"{name} must be a dictionary, not {shown(values)}")
+    return dict(values)
+
+
+def once(values: Any) -> Any:
+    """Return what an iterator or a view of a dictionary holds, and everything else as it is."""
+    return items(values, "the argument") if isinstance(values, Iterator | MappingView) else values
+
+
+def whole(value: Any, name: str) -> int:
+    """Return a whole number as an int; a TypeError refuses what is none, bools among them."""
+    # As the core takes whole numbers: also NumPy's, and arrays of one without a dimension.
+    try:
+        if not isinstance(value, bool | np.bool_):
+            return operator.index(value)
+    except TypeError:
+        pass
+    kind = type(value).__name__
+    raise TypeError(f"{name} must be an integer, not {shown(value)} of type {kind}")
+
+
+def real_numbers(values: Any, name: str) -> Any:
+    """Return an array, perhaps a masked one, of real numbers; a ParameterError names others.
+
+    NumPy itself makes numbers of text and times, and drops imaginary parts.
+    """
+    try:
+        found = np.ma.asarray(values)
+    except Exception as error:  # Arrays of other libraries raise what they like.
+        raise ParameterError(f"{name} is not accepted: real numbers") from error
+    if found.dtype.kind not in "biuf":
+        raise ParameterError(f"{name} is not accepted: real numbers, not {found.dtype}")
+    return found

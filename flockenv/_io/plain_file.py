@@ -1,0 +1,50 @@
+"""Files that have an end: no devices, pipes and sockets, which may be read or written forever."""
+
+import errno
+import os
+import stat
+from pathlib import Path
+from typing import BinaryIO
+
+from flockenv.errors import ParameterError
+
+
+def is_special(path: str | os.PathLike[str]) -> bool:
+    """Return whether a path that is there is a device, a pipe or a socket."""
+    return _is_special(os.stat(path).st_mode)
+
+
+def _is_special(mode: int) -> bool:
+    return not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))
+
+
+def open_plain(path: str | os.PathLike[str]) -> BinaryIO:
+    """Open a file to read its bytes.
+
+    A ParameterError names what is no file but a device, a pipe or a socket; a folder is an OSError,
+    as what is not there.
+    """
+    words = f"{os.fspath(path)} is no file but a device, a pipe or a socket"
+    if is_special(path):
+        raise ParameterError(words)
+    # A pipe that has come in between is not waited for.
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    descriptor = os.open(path, flags)
+    try:
+        mode = os.fstat(descriptor).st_mode
+        if _is_special(mode):
+            raise ParameterError(words)
+        if stat.S_ISDIR(mode):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), os.fspath(path))
+        return os.fdopen(descriptor, "rb")
+    except BaseException:
+        os.close(descriptor)
+        raise
+
+
+def check_writable(path: str | os.PathLike[str]) -> None:
+    """Refuse to put a file in the place of a device, a pipe or a socket."""
+    if Path(path).exists() and is_special(path):
+        raise ParameterError(
+            f"{os.fspath(path)} cannot be written: it is a device, a pipe or a socket"
+        )
