@@ -5,7 +5,7 @@ from importlib.metadata import version
 from typing import Any
 
 from flockenv import policies
-from flockenv.envs.parallel import LeadersParallelEnv, parallel_env
+from flockenv.envs.parallel import LeadersParallelEnv, env, parallel_env
 from flockenv.envs.registration import register
 from flockenv.envs.single import LeadersEnv
 from flockenv.envs.vector import LeadersVectorEnv
@@ -40,6 +40,7 @@ __all__ = [
     "SolverError",
     "Statistics",
     "__version__",
+    "env",
     "order_series",
     "parallel_env",
     "policies",

@@ -1,6 +1,6 @@
 """TorchRL's environment over one batch of flocks, its leaders a group of agents.
 
-Needs the extra ``torchrl``: ``pip install flockenv[torchrl]``.
+Needs the extra ``torchrl``.
 """
 
 from typing import Any
@@ -22,7 +22,7 @@ from flockenv import _core
 from flockenv.envs.batch import LeaderBatch, at_least_one, seeds_from
 from flockenv.envs.observation import ObservationSpace, state_entries
 from flockenv.envs.options import EnvOptions
-from flockenv.errors import refuse_unknown
+from flockenv.errors import UnknownOptionError, refuse_unknown
 
 GROUP = "leaders"
 """Name of the group that all leaders of a flock are in."""
@@ -106,7 +106,7 @@ class LeadersEnv(EnvBase):
         self._batch = LeaderBatch(parsed, [self.num_leaders] * flocks, "disabled")
         settings = self._batch.settings
         self.observation_space = ObservationSpace(settings)
-        self.episode_steps = -(-self._batch.episode_steps // self._batch.period_steps)
+        self.episode_steps = self._batch.decisions
         self.group_map = {GROUP: [f"leader_{leader}" for leader in range(self.num_leaders)]}
         self.rudder_levels: int | None = settings["rudder_levels"]
         self._state = state
@@ -150,8 +150,14 @@ class LeadersEnv(EnvBase):
         tensordict: TensorDictBase | None = None,
         *,
         options: dict[str, Any] | None = None,
-        **_: Any,
+        set_state: bool | None = None,
+        **others: Any,
     ) -> TensorDictBase:
+        for name in others:
+            raise UnknownOptionError(
+                f"reset got an unexpected keyword argument {name!r}: options of a reset are given "
+                f"as options={{...}}, the seed by set_seed"
+            )
         given = None if tensordict is None else tensordict.get("_reset", None)
         mask = None if given is None else given.reshape(self.num_flocks).cpu().numpy()
         self._batch.reset(self._seeds, options, _drawn_seed, mask)

@@ -82,6 +82,19 @@ impl FlockError {
         }
     }
 
+    /// The same error, as that of one flock of a batch in which so many more have failed.
+    #[cold]
+    pub(crate) fn of_flock(self, flock: usize, more: usize) -> Self {
+        let others = match more {
+            0 => String::new(),
+            1 => " and 1 other".to_owned(),
+            more => format!(" and {more} others"),
+        };
+        Self::Solver(format!(
+            "flock {flock}{others}: {self}; the episode is over, the other flocks' go on"
+        ))
+    }
+
     /// Refuses a value as [`Self::parameter`] does, unless it is accepted.
     ///
     /// # Errors

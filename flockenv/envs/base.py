@@ -7,6 +7,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from flockenv._io.arguments import once
 from flockenv.envs.batch import LeaderBatch
 from flockenv.envs.options import EnvOptions
 from flockenv.envs.render_mode import RenderMode
@@ -74,9 +75,13 @@ class SingleEnvironmentBase(Resumable):
         self.metadata = {**self.metadata, "render_fps": fps}
 
     def _reset(self, seed: int | None, options: Any, new_seed: Callable[[], int]) -> None:
-        if isinstance(options, Mapping) and isinstance(options.get("target"), list):
-            # Of several flocks a list has one entry per flock; here it has one per leader.
-            options = {**options, "target": tuple(options["target"])}
+        if isinstance(options, Mapping):
+            # Of several flocks a list has one entry per flock; here it is a value.
+            held = {name: once(value) for name, value in options.items()}
+            options = {
+                name: tuple(value) if isinstance(value, list | np.ndarray) else value
+                for name, value in held.items()
+            }
         self._batch.reset([seed], options, new_seed)
 
     def state(self) -> NDArray[np.float32]:

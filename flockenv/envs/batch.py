@@ -1,15 +1,15 @@
 """What the environment classes share: one batch of flocks in the core, its seeds and its infos."""
 
-import operator
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from flockenv import _core
+from flockenv._io.arguments import once, real_numbers, whole
 from flockenv.envs.observation import flock_feature_space, state_space
-from flockenv.envs.options import TERMS, EnvOptions, known_reset_options
+from flockenv.envs.options import RESET_OPTIONS, TERMS, EnvOptions, known_reset_options
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import Flock
 from flockenv.parameters import FlockParameters
@@ -38,6 +38,8 @@ class LeaderBatch:
         #: Numbers in an observation, control steps in an episode and from one decision to the next.
         self.observation_size, self.episode_steps, self.period_steps = self.core.sizes
         self.decisions_hz: float = self.settings["control_hz"] / self.period_steps
+        #: Of an episode; the last one may be shorter than the others.
+        self.decisions = -(-self.episode_steps // self.period_steps)
 
     def reset(
         self,
@@ -45,9 +47,13 @@ class LeaderBatch:
         options: Mapping[str, Any] | None,
         new_seed: Callable[[], int],
         mask: NDArray[np.bool_] | None = None,
+        takes: tuple[str, ...] = RESET_OPTIONS,
     ) -> None:
-        """Start episodes; `new_seed` gives flocks a seed that have never had one."""
-        per_flock = self._per_flock(known_reset_options(options))
+        """Start episodes; `new_seed` gives flocks a seed that have never had one.
+
+        `takes` names the options that there are.
+        """
+        per_flock = self._per_flock(known_reset_options(options, takes))
         chosen = np.ones(self.num_flocks, np.bool_) if mask is None else mask
         requests: list[dict[str, Any] | None] = [None] * self.num_flocks
         for flock in np.flatnonzero(chosen).tolist():
@@ -59,10 +65,13 @@ class LeaderBatch:
         self._paid[chosen[self._flock_of_row]] = 0.0
 
     def _per_flock(self, options: Mapping[str, Any]) -> list[dict[str, Any]]:
-        """Options for each flock: lists have one entry per flock, anything else holds for all."""
+        """Options for each flock: a list has one entry for each, anything else holds for all."""
         per_flock: list[dict[str, Any]] = [{} for _ in range(self.num_flocks)]
         for name, value in options.items():
-            values = value if isinstance(value, list) else [value] * self.num_flocks
+            is_each = isinstance(value, list) or (isinstance(value, np.ndarray) and value.ndim > 0)
+            values = once(value)
+            if values is value and not is_each:
+                values = [value] * self.num_flocks
             if len(values) != self.num_flocks:
                 raise ParameterError(
                     f"reset option {name!r} lists {len(values)} values, expected {self.num_flocks}"
@@ -72,25 +81,29 @@ class LeaderBatch:
         return per_flock
 
     def step(
-        self, env: Any, actions: NDArray[np.float64]
+        self, env: Any, actions: NDArray[np.float64], precision: DTypeLike = np.float64
     ) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_]]:
         """Take a decision: observations and rewards by row, and by flock whether it ended.
 
         `env` is what a function of a user's own that rewards looks at. If that returns something
-        else than rewards, the flocks have moved already.
+        else than rewards that are finite in this precision, the flocks have moved already.
         """
         if self._own_reward is None:
             return self.core.step(actions)
-        starts = np.array([not self.core.is_running(flock) for flock in range(self.num_flocks)])
+        starts = ~np.array(self.running())
         observations, _, truncated = self.core.step(actions)
         if callable(self._own_reward):
-            rewards = self._rewards(self._own_reward(env))
+            rewards = self._rewards(self._own_reward(env), precision)
         else:
             rewards = self._weighted(self._own_reward, truncated)
         # A step that only starts the next episode is worth nothing.
         rewards[starts[self._flock_of_row]] = self._paid[starts[self._flock_of_row]] = 0.0
         self._paid += rewards
         return observations, rewards, truncated
+
+    def running(self) -> list[bool]:
+        """Return which flocks have an episode under way."""
+        return [self.core.is_running(flock) for flock in range(self.num_flocks)]
 
     def _weighted(
         self, weights: NDArray[np.float64], truncated: NDArray[np.bool_]
@@ -104,24 +117,24 @@ class LeaderBatch:
         sums: NDArray[np.float64] = (self.core.reward_terms() * each).sum(axis=1)
         return share * steps * sums
 
-    def _rewards(self, returned: Any) -> NDArray[np.float64]:
+    def _rewards(self, returned: Any, precision: DTypeLike) -> NDArray[np.float64]:
         rows = len(self._flock_of_row)
         if np.ma.is_masked(returned):
             raise ParameterError(
                 "what reward returned is masked, which is not accepted: numbers alone"
             )
-        try:
-            found = np.array(returned, np.float64)
-        except (TypeError, ValueError) as error:
-            raise ParameterError("the function of reward must return numbers") from error
+        found = real_numbers(returned, "what the function of reward returned").astype(np.float64)
         if found.shape == (self.num_flocks,):
             found = np.repeat(found, self.leaders)
-        if found.size != rows or not np.isfinite(found).all():
+        with np.errstate(over="ignore"):
+            is_finite = np.isfinite(found.astype(precision)).all()
+        if found.size != rows or not is_finite:
             raise ParameterError(
-                f"the function of reward returned shape {found.shape}, expected finite numbers, "
-                f"one for each of {self.num_flocks} flocks or {rows} leaders"
+                f"the function of reward returned shape {found.shape}, expected numbers that are "
+                f"finite in {np.dtype(precision)}, one for each of {self.num_flocks} flocks or "
+                f"{rows} leaders"
             )
-        return found.ravel()
+        return np.asarray(found).ravel()
 
     def to_bytes(self) -> bytes:
         """Return everything that the future depends on: the core's bytes, then what was paid."""
@@ -147,8 +160,7 @@ class LeaderBatch:
     def reset_info(self, flock: int) -> dict[str, Any]:
         """Return the infos of the start of an episode."""
         episode = self.core.episode(flock)
-        seed = np.uint64(episode["flock_seed"])
-        return {"target": episode["target"], "bw_s": episode["bw_s"], "flock_seed": seed}
+        return {name: episode[name] for name in ("target", "bw_s", "flock_seed")}
 
     def end_info(self, flock: int) -> dict[str, Any]:
         """Return the infos of the end of an episode."""
@@ -157,7 +169,7 @@ class LeaderBatch:
             return {}
         if self._own_reward is not None:
             summary["total_reward"] = float(self._paid[self._flock_of_row == flock].mean())
-        return {"episode_summary": {**summary, "flock_seed": np.uint64(summary["flock_seed"])}}
+        return {"episode_summary": summary}
 
     def reward_terms(self) -> dict[str, NDArray[np.float64]]:
         """Return each term of the last step's reward, one number per row."""
@@ -171,7 +183,7 @@ def drawn_seed(random: np.random.Generator) -> int:
 
 def at_least_one(count: Any, name: str) -> int:
     """Return a count of flocks or leaders as an int, or raise the error that names it."""
-    number = _whole(count, name)
+    number = whole(count, name)
     if not 1 <= number <= _MOST:
         raise ParameterError(f"{name} = {shown(number)} is not accepted: 1 to {_MOST}")
     return number
@@ -182,21 +194,10 @@ def seeds_from(first: Any, flocks: int) -> list[int]:
     if isinstance(first, float):
         # As the core says it for a single flock.
         raise ParameterError(f"seed = {first!r} is not accepted: a whole number")
-    number = _whole(first, "seed")
+    number = whole(first, "seed")
     if not 0 <= number <= _SEEDS - flocks:
         raise ParameterError(
             f"seed = {shown(number)} is not accepted: at least 0, and below 2^64 for the last of "
             f"{flocks} flocks"
         )
     return [number + flock for flock in range(flocks)]
-
-
-def _whole(value: Any, name: str) -> int:
-    # As the core takes whole numbers: also NumPy's, and arrays of one without a dimension.
-    try:
-        if not isinstance(value, bool | np.bool_):
-            return operator.index(value)
-    except TypeError:
-        pass
-    kind = type(value).__name__
-    raise TypeError(f"{name} must be an integer, not {shown(value)} of type {kind}")

@@ -1,6 +1,7 @@
 """Options of the environments: one flat set of names, checked once, for all interfaces."""
 
-from collections.abc import Callable, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, NamedTuple, Self
 
@@ -8,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
+from flockenv._io.arguments import once
 from flockenv.errors import (
     ParameterError,
     UnknownOptionError,
@@ -60,6 +62,9 @@ OPTIONS: dict[str, Option] = {
 #: What ``reset(options=...)`` understands, besides ``reset_mask`` in the vector environment.
 RESET_OPTIONS = ("target", "bw_s", "state", "snapshot", "noise_seed")
 
+#: What may hold for all episodes that are to come.
+UPCOMING_OPTIONS = ("bw_s", "target")
+
 _FIELDS = tuple(each.name for each in fields(FlockParameters))
 _SETTINGS = tuple(name for name in _core.env_defaults() if name not in ("bw_s", "autoreset_mode"))
 _NAMES = (
@@ -95,7 +100,7 @@ class EnvOptions:
                     f"got an unexpected keyword argument {name!r}, which is no option of the "
                     f"environment: {hint(name, _NAMES)}"
                 )
-        given, own_reward = dict(options), None
+        given, own_reward = {name: once(value) for name, value in options.items()}, None
         reward = given.get("reward")
         if takes_function and callable(reward):
             own_reward, given["reward"] = reward, {}
@@ -164,17 +169,53 @@ def _parameters(given: dict[str, Any]) -> FlockParameters:
     return params.replace(**given)
 
 
-def known_reset_options(options: Mapping[str, Any] | None) -> dict[str, Any]:
+def known_reset_options(
+    options: Mapping[str, Any] | None, takes: tuple[str, ...] = RESET_OPTIONS
+) -> dict[str, Any]:
     """Return the reset options that are ours.
 
-    Others may be meant for a wrapper and are left alone, unless they look like ours misspelt.
+    Others may be meant for a wrapper and are left alone, unless they are options of the environment
+    itself, or look like one of either.
     """
     if options is None:
         return {}
     if not isinstance(options, Mapping):
         raise TypeError(f"reset options must be a dictionary, not {type(options).__name__}")
     for name in options:
-        near = nearest(name, (*RESET_OPTIONS, "reset_mask"), cutoff=0.7)
-        if near and name != near:
-            raise ParameterError(f"{name!r} is no reset option: did you mean {near!r}?")
+        if name not in takes:
+            _refuse_reset_option(name, takes)
     return {name: options[name] for name in RESET_OPTIONS if name in options}
+
+
+_UNITS = {"s", "sec", "cm", "rad", "hz", "per", "seconds"}
+# Arguments of functions, which some take for options.
+_ARGUMENTS = ("seed", "render_mode", "render_size", "autoreset_mode", "num_envs", "num_flocks")
+
+
+def _bare(name: object) -> str:
+    """Return a name without its unit, in lower case, letters and digits alone."""
+    parts = re.split(r"[^a-z0-9]+", str(name).casefold())
+    return "".join(part for part in parts if part not in _UNITS)
+
+
+def _meant(name: object, known: Iterable[str]) -> str | None:
+    """Return the known name that another one stands for, None where it may be anything else."""
+    by_bare = {_bare(each): each for each in known}
+    near = nearest(_bare(name), by_bare, cutoff=0.8)
+    return by_bare[near] if near else None
+
+
+def _refuse_reset_option(name: object, takes: tuple[str, ...]) -> None:
+    others = [each for each in (*_NAMES, *_ARGUMENTS, "reset_mask") if each not in takes]
+    options = f"{', '.join(takes[:-1])} and {takes[-1]}"
+    if name not in others and (near := _meant(name, takes)):
+        raise ParameterError(f"{name!r} is no reset option: did you mean {near!r}?")
+    if (near := _meant(name, others)) is None:
+        return
+    if near == "seed":
+        words = "the seed is an argument of its own"
+    elif near == "reset_mask":
+        words = "only a vector environment of Gymnasium takes 'reset_mask'"
+    else:
+        words = f"{near!r} is fixed when an environment is made: make another one to change it"
+    raise ParameterError(f"{name!r} is no reset option, which are {options}: {words}")

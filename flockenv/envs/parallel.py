@@ -6,7 +6,8 @@ from typing import Any
 import gymnasium
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from pettingzoo import ParallelEnv
+from pettingzoo import AECEnv, ParallelEnv
+from pettingzoo.utils import OrderEnforcingWrapper, parallel_to_aec
 
 from flockenv import _core
 from flockenv.envs.base import SingleEnvironmentBase
@@ -44,7 +45,7 @@ class LeadersParallelEnv(
     ## Rewards
     Each agent gets the weighted sum of the terms, its own where they are a leader's own or towards
     its own target. Each step's infos have the agent's `"reward_terms"`, the last ones the
-    `"episode_summary"`; those of a reset are empty.
+    `"episode_summary"`.
 
     ## Version history
     - v0: as `LeadersEnv`.
@@ -101,14 +102,14 @@ class LeadersParallelEnv(
         Returns
         -------
         observations, infos : dict
-            By agent; observations have shape (observation size,), float32, infos are empty. What
-            was drawn for the episode is in `episode`.
+            By agent; observations have shape (observation size,), float32. Each info has target,
+            backward duration and seed of the episode.
         """
         self._reset(seed, options, lambda: drawn_seed(self._random))
         self.agents = self.possible_agents[:]
         self._show()
-        # Empty: TorchRL expects every later info to look like those of the reset.
-        return self.observe(), {agent: {} for agent in self.agents}
+        info = self._batch.reset_info(0)
+        return self.observe(), {agent: dict(info) for agent in self.agents}
 
     def step(
         self, actions: Mapping[str, ArrayLike]
@@ -193,3 +194,12 @@ class LeadersParallelEnv(
 def parallel_env(*, render_mode: str | None = None, **options: Any) -> LeadersParallelEnv:
     """Return a `LeadersParallelEnv`; see there."""
     return LeadersParallelEnv(render_mode=render_mode, **options)
+
+
+def env(*, render_mode: str | None = None, **options: Any) -> AECEnv[str, Any, Any]:
+    """Return `parallel_env` behind PettingZoo's other interface, whose agents act in turn.
+
+    The flock moves once all of them have acted.
+    """
+    turns = parallel_to_aec(parallel_env(render_mode=render_mode, **options))
+    return OrderEnforcingWrapper(turns)

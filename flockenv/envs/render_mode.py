@@ -33,7 +33,7 @@ class RenderMode:
     ) -> None:
         if mode is not None and mode not in modes:
             names = ", ".join(repr(name) for name in modes)
-            raise ParameterError(f"render_mode = {mode!r} is not accepted: None, {names}")
+            raise ParameterError(f"render_mode = {shown(mode)} is not accepted: None, {names}")
         if not isinstance(size, tuple | list) or len(size) != 2:
             raise ParameterError(f"render_size = {shown(size)} is not accepted: (width, height)")
         self.mode = mode

@@ -4,6 +4,7 @@ from typing import Any
 
 import gymnasium
 import numpy as np
+from gymnasium.envs.registration import EnvSpec
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
@@ -11,7 +12,7 @@ from flockenv.envs.base import SingleEnvironmentBase
 from flockenv.envs.batch import drawn_seed
 from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.render_mode import RENDER_MODES
-from flockenv.envs.spaces import joint_action_space
+from flockenv.envs.spaces import joint_action_space, spec_of_episodes
 from flockenv.rendering.frames import DEFAULT_SIZE
 
 
@@ -141,10 +142,20 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
         render_size: tuple[int, int] = DEFAULT_SIZE,
         **options: Any,
     ) -> None:
+        self._spec: EnvSpec | None = None
         self._set_up(options, render_mode, render_size)
         settings = self._batch.settings
         self.observation_space = ObservationSpace(settings, self.num_leaders)
         self.action_space = joint_action_space(settings["rudder_levels"], self.num_leaders)
+
+    @property
+    def spec(self) -> EnvSpec | None:
+        """What Gymnasium's registry says of it, and how many steps an episode has."""
+        return self._spec
+
+    @spec.setter
+    def spec(self, spec: EnvSpec | None) -> None:
+        self._spec = spec_of_episodes(spec, self._batch.decisions)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None

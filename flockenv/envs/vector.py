@@ -5,18 +5,20 @@ from typing import Any
 
 import gymnasium
 import numpy as np
+from gymnasium.envs.registration import EnvSpec
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from flockenv import _core
+from flockenv._io.arguments import once
 from flockenv.envs.base import ManyFlocks
 from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
 from flockenv.envs.observation import ObservationSpace
-from flockenv.envs.options import EnvOptions
+from flockenv.envs.options import RESET_OPTIONS, EnvOptions
 from flockenv.envs.render_mode import RenderMode
-from flockenv.envs.spaces import joint_action_space
-from flockenv.errors import EpisodeError, ParameterError
+from flockenv.envs.spaces import joint_action_space, spec_of_episodes
+from flockenv.errors import EpisodeError, ParameterError, shown
 from flockenv.rendering.frames import DEFAULT_SIZE
 
 
@@ -85,6 +87,7 @@ class LeadersVectorEnv(
         render_size: tuple[int, int] = DEFAULT_SIZE,
         **options: Any,
     ) -> None:
+        self._spec: EnvSpec | None = None
         self.autoreset_mode = _autoreset_mode(autoreset_mode)
         num_envs = at_least_one(num_envs, "num_envs")
         parsed = EnvOptions.parse(options, takes_function=True)
@@ -116,6 +119,15 @@ class LeadersVectorEnv(
         self._actions_shape = (num_envs, self.num_leaders)
         self._rewards: NDArray[np.float64] | None = None
 
+    @property
+    def spec(self) -> EnvSpec | None:
+        """What Gymnasium's registry says of it, and how many steps an episode has."""
+        return self._spec
+
+    @spec.setter
+    def spec(self, spec: EnvSpec | None) -> None:
+        self._spec = spec_of_episodes(spec, self._batch.decisions)
+
     def reset(
         self,
         *,
@@ -144,12 +156,13 @@ class LeadersVectorEnv(
         mask = None
         if isinstance(options, Mapping):
             mask = _checked_mask(options.get("reset_mask"), self.num_envs)
-        self._batch.reset(seeds, options, lambda: drawn_seed(self.np_random), mask)
+        takes = (*RESET_OPTIONS, "reset_mask")
+        self._batch.reset(seeds, options, lambda: drawn_seed(self.np_random), mask, takes)
         if isinstance(seed, int | np.integer):
             super().reset(seed=int(seed))
         infos: dict[str, Any] = {}
         for flock in range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist():
-            infos = self._add_info(infos, self._batch.reset_info(flock), flock)
+            infos = self._add_info(infos, _arrayed(self._batch.reset_info(flock)), flock)
         return self._shaped(self._batch.core.observe()), infos
 
     def step(
@@ -184,7 +197,13 @@ class LeadersVectorEnv(
         flat = _core.flat_actions(
             actions, self._actions_shape, self._batch.settings["rudder_levels"]
         )
-        observations, rewards, truncated = self._batch.step(self, flat)
+        try:
+            observations, rewards, truncated = self._batch.step(self, flat)
+        except Exception as error:
+            ended = [flock for flock, runs in enumerate(self._batch.running()) if not runs]
+            if ended and self.autoreset_mode == AutoresetMode.DISABLED:
+                error.add_note(f"the episodes of flocks {ended} are over: reset them with a mask")
+            raise
         self._rewards = rewards.reshape(self._actions_shape)
         infos = self._end_infos(truncated) if truncated.any() else {}
         return (
@@ -201,11 +220,11 @@ class LeadersVectorEnv(
     def _end_infos(self, truncated: NDArray[np.bool_]) -> dict[str, Any]:
         infos: dict[str, Any] = {}
         for flock in np.flatnonzero(truncated).tolist():
-            info = self._batch.end_info(flock)
+            info = _arrayed(self._batch.end_info(flock))
             if self.autoreset_mode == AutoresetMode.SAME_STEP:
                 last = self._batch.core.final_observation(flock).reshape(-1)
                 infos = self._add_info(infos, {"final_obs": last, "final_info": info}, flock)
-                info = self._batch.reset_info(flock)
+                info = _arrayed(self._batch.reset_info(flock))
             infos = self._add_info(infos, info, flock)
         return infos
 
@@ -260,12 +279,22 @@ _CORE_NAMES = {
 }
 
 
+def _arrayed(info: dict[str, Any]) -> dict[str, Any]:
+    """Return infos for Gymnasium's arrays, which hold no seed beyond 2^63 unless it is unsigned."""
+    info = {**info}
+    for name in info.keys() & {"flock_seed"}:
+        info[name] = np.uint64(info[name])
+    for name in info.keys() & {"episode_summary"}:
+        info[name] = _arrayed(info[name])
+    return info
+
+
 def _autoreset_mode(mode: str | AutoresetMode) -> AutoresetMode:
     for known, name in _CORE_NAMES.items():
         if mode in (known, name, known.value):
             return known
     names = ", ".join(repr(name) for name in _CORE_NAMES.values())
-    raise ParameterError(f"autoreset_mode = {mode!r} is not accepted: one of {names}")
+    raise ParameterError(f"autoreset_mode = {shown(mode)} is not accepted: one of {names}")
 
 
 def _checked_mask(mask: Any, num_envs: int) -> NDArray[np.bool_] | None:
@@ -285,7 +314,7 @@ def _checked_mask(mask: Any, num_envs: int) -> NDArray[np.bool_] | None:
 def _seed_each(seed: Any, num_envs: int) -> Sequence[int | None]:
     if seed is None:
         return [None] * num_envs
-    seeds = seed.tolist() if isinstance(seed, np.ndarray) else seed
+    seeds = seed.tolist() if isinstance(seed, np.ndarray) else once(seed)
     if not isinstance(seeds, Sequence) or isinstance(seeds, str | bytes):
         return seeds_from(seeds, num_envs)
     if len(seeds) != num_envs:

@@ -1,6 +1,6 @@
 """Leaders as slots of stable-baselines3's vector interface, and evaluation that counts flocks.
 
-Needs the extra ``train``: ``pip install flockenv[train]``.
+Needs the extra ``train``.
 """
 
 from flockenv._io.extras import require

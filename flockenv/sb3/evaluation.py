@@ -169,6 +169,9 @@ def evaluate_flocks(
 class FlockEvalCallback(EvalCallback):
     """stable-baselines3's `EvalCallback` on a `LeaderVecEnv`, with episodes of flocks.
 
+    It prints what `evaluate_flocks` does, and logs the mean as ``eval/signed_order``. The last
+    evaluation is in `evaluation`.
+
     Parameters
     ----------
     eval_env
@@ -189,6 +192,8 @@ class FlockEvalCallback(EvalCallback):
         counted = any(isinstance(each, PerFlock) for each in _layers(eval_env))
         super().__init__(eval_env if counted else PerFlock(eval_env), **options)
         self.seed = seed
+        self.evaluation: FlockEvaluation | None = None
+        self._ended: list[tuple[float, float, int]] = []
 
     def _init_callback(self) -> None:
         with warnings.catch_warnings():
@@ -202,7 +207,26 @@ class FlockEvalCallback(EvalCallback):
     def _on_step(self) -> bool:
         if self.seed is not None:
             self.eval_env.seed(self.seed)
-        return super()._on_step()
+        self._ended.clear()
+        before, verbose, self.verbose = self.best_mean_reward, self.verbose, 0
+        try:
+            goes_on = super()._on_step()
+        finally:
+            self.verbose = verbose
+        if self._ended:
+            self.evaluation = FlockEvaluation(*map(np.array, zip(*self._ended, strict=True)))
+            if self.verbose >= 1:
+                best = ", the best return so far" if self.best_mean_reward > before else ""
+                print(f"{self.num_timesteps} steps: {self.evaluation}{best}")  # noqa: T201
+        return goes_on
+
+    def _log_success_callback(self, locals_: dict[str, Any], globals_: dict[str, Any]) -> None:
+        super()._log_success_callback(locals_, globals_)
+        if locals_["done"]:
+            info = locals_["info"]
+            order = info["episode_summary"].get("signed_order", np.nan)
+            self._ended.append((order, info["episode"]["r"], info["episode"]["l"]))
+            self.logger.record("eval/signed_order", np.mean([each[0] for each in self._ended]))
 
 
 def _layers(env: VecEnv) -> list[VecEnv]:

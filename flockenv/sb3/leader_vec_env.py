@@ -1,19 +1,27 @@
 """`LeaderVecEnv`: stable-baselines3's vector interface, one slot per leader."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import gymnasium
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
 from flockenv import _core
+from flockenv._io.arguments import once
 from flockenv.envs.base import ManyFlocks
 from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
 from flockenv.envs.observation import ObservationSpace
-from flockenv.envs.options import EnvOptions
+from flockenv.envs.options import (
+    RESET_OPTIONS,
+    UPCOMING_OPTIONS,
+    EnvOptions,
+    known_reset_options,
+)
 from flockenv.envs.registration import registered
 from flockenv.envs.render_mode import RenderMode
 from flockenv.envs.spaces import leader_action_space
@@ -22,20 +30,35 @@ from flockenv.parameters import FlockParameters
 from flockenv.rendering.frames import DEFAULT_SIZE
 
 
+@dataclass(frozen=True, eq=False)
 class LeaderSlot:
     """What stands for one environment in a `LeaderVecEnv`: one leader of one flock.
 
-    ``get_attr``, ``set_attr`` and ``env_method`` of the vector environment reach these objects;
-    attributes that are set on them stay with them.
+    ``get_attr`` and ``env_method`` of the vector environment reach these objects, which do not
+    change. ``set_attr`` takes ``bw_s`` and ``target`` alone, for the episodes that are to come.
     """
 
-    def __init__(self, env: "LeaderVecEnv", flock_index: int, leader_index: int) -> None:
-        self._env = env
-        self.flock_index = flock_index
-        self.leader_index = leader_index
-        self.observation_space = env.observation_space
-        self.action_space = env.action_space
-        self.render_mode = env.render_mode
+    _env: "LeaderVecEnv"
+    flock_index: int
+    leader_index: int
+    observation_space: ObservationSpace
+    action_space: gymnasium.Space[Any]
+    render_mode: str | None
+
+    @property
+    def bw_s(self) -> float | tuple[float, float]:
+        """Backward duration in s of the flock's episodes that are to come, or its range."""
+        upcoming: float | tuple[float, float] = self._upcoming("bw_s")
+        return upcoming
+
+    @property
+    def target(self) -> str | tuple[str, ...]:
+        """Target of the flock's episodes that are to come."""
+        upcoming: str | tuple[str, ...] = self._upcoming("target")
+        return upcoming
+
+    def _upcoming(self, name: str) -> Any:
+        return self._env._batch.core.upcoming(self.flock_index)[name]
 
     @property
     def spec(self) -> EnvSpec | None:
@@ -97,6 +120,8 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
     ## Starting state
     `seed(s)` makes the next reset seed flock i with s + i, and `set_options` sets the options of
     the next reset: a dictionary, or a list of one for each slot, equal for a flock's leaders.
+    Within `learn` nobody calls `reset`: `set_attr("bw_s", 0.6)` and `set_attr("target", "random")`
+    hold for all episodes that start from then on, which makes a curriculum.
 
     ## Episode end
     A flock's slots end together and start the next episode in the same step. Their infos then have
@@ -142,7 +167,7 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
         self.action_mode: str = settings["action_mode"]
         self.decisions_hz = fps
         self.slots = [
-            LeaderSlot(self, flock, leader)
+            LeaderSlot(self, flock, leader, self.observation_space, self.action_space, render_mode)
             for flock, k in enumerate(leaders)
             for leader in range(k)
         ]
@@ -187,27 +212,45 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
         Raises
         ------
         ParameterError
-            For options that differ between the leaders of a flock, or name other things in
-            different flocks.
-        TypeError
-            For options that are no dictionaries.
+            For options whose values are not accepted; they do not stay for the next reset.
         """
-        options = self._options_by_flock()
+        options = self._options_by_flock(self._options)
         first = np.searchsorted(self.flock_of_slot, np.arange(self.num_flocks))
         seeds = [self._seeds[slot] for slot in first.tolist()]
+        # What is refused does not stay for the next reset.
+        self._reset_options()
         self._batch.reset(seeds, options, lambda: drawn_seed(self._random))
         self._reset_seeds()
-        self._reset_options()
         start = [self._batch.reset_info(flock) for flock in range(self.num_flocks)]
         self.reset_infos = [dict(start[flock]) for flock in self.flock_of_slot]
         return self._batch.core.observe()
 
-    def _options_by_flock(self) -> dict[str, list[Any]]:
-        options: list[Any] = self._options
-        if len(options) != self.num_envs or not all(isinstance(each, Mapping) for each in options):
+    def set_options(self, options: Any = None) -> None:
+        """Set the options of the next reset: a dictionary, or one for each slot.
+
+        Raises
+        ------
+        ParameterError
+            For unknown options, and such as differ between the leaders of a flock or name other
+            things in different flocks; those that were set before are dropped then.
+        TypeError
+            For options that are no dictionaries.
+        """
+        self._reset_options()
+        each = once({} if options is None else options)
+        each = [each] * self.num_envs if isinstance(each, Mapping) else each
+        self._options_by_flock(each)
+        super().set_options(list(each))
+
+    def _options_by_flock(self, options: Any) -> dict[str, list[Any]]:
+        is_each = isinstance(options, Sequence) and len(options) == self.num_envs
+        if not is_each or not all(isinstance(each, Mapping) for each in options):
             raise TypeError("set_options: a dictionary, or a list of one for each slot")
         by_flock: dict[int, Mapping[str, Any]] = {}
         for flock, each in zip(self.flock_of_slot.tolist(), options, strict=True):
+            for name in known_reset_options(each).keys() ^ each.keys():
+                taken = ", ".join(RESET_OPTIONS)
+                raise ParameterError(f"set_options: {name!r} is no reset option, which are {taken}")
             if not _equal(by_flock.setdefault(flock, each), each):
                 raise ParameterError(
                     f"set_options: the leaders of flock {flock} have different options"
@@ -243,16 +286,27 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
         if self._actions is None:
             raise EpisodeError("step_wait was called without step_async")
         flat, self._actions = self._actions, None
-        observations, rewards, truncated = self._batch.step(self, flat)
+        try:
+            observations, rewards, truncated = self._batch.step(self, flat, np.float32)
+        except Exception:
+            # Of the motion of a flock or the reward: the flocks whose episode is over start anew.
+            self._start_next(np.array([not running for running in self._batch.running()]))
+            raise
         infos: list[dict[str, Any]] = [{} for _ in self.slots]
         if truncated.any():
             self._report_ends(truncated, observations, infos)
-            unseeded: list[int | None] = [None] * self.num_flocks
-            self._batch.reset(unseeded, None, lambda: drawn_seed(self._random), truncated)
+            self._start_next(truncated)
             observations = self._batch.core.observe()
-        for slot in np.flatnonzero(truncated[self.flock_of_slot]).tolist():
-            self.reset_infos[slot] = self._batch.reset_info(int(self.flock_of_slot[slot]))
         return observations, rewards.astype(np.float32), truncated[self.flock_of_slot], infos
+
+    def _start_next(self, ended: NDArray[np.bool_]) -> None:
+        """Start the next episodes of flocks."""
+        if not ended.any():
+            return
+        unseeded: list[int | None] = [None] * self.num_flocks
+        self._batch.reset(unseeded, None, lambda: drawn_seed(self._random), ended)
+        for slot in np.flatnonzero(ended[self.flock_of_slot]).tolist():
+            self.reset_infos[slot] = self._batch.reset_info(int(self.flock_of_slot[slot]))
 
     def _report_ends(
         self,
@@ -283,9 +337,36 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
         return [getattr(self.slots[slot], attr_name) for slot in self._get_indices(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
-        """Set an attribute of each slot's `LeaderSlot`."""
-        for slot in self._get_indices(indices):
-            setattr(self.slots[slot], attr_name, value)
+        """Set ``bw_s`` or ``target`` of the slots' flocks for the episodes that are to come.
+
+        They hold until they are set again, within `learn` too. Values are those of `reset`: a range
+        (low, high) of bw_s is drawn from, a list of targets has one for each leader.
+
+        Raises
+        ------
+        AttributeError
+            For any other name.
+        ParameterError
+            For a value that is not accepted, and for slots that are a part of a flock's.
+        """
+        if attr_name not in UPCOMING_OPTIONS:
+            names = " and ".join(UPCOMING_OPTIONS)
+            raise AttributeError(
+                f"{attr_name!r} cannot be set: set_attr takes {names}, which hold for the episodes "
+                "that are to come; set_options takes all options of a reset"
+            )
+        chosen = np.zeros(self.num_envs, np.bool_)
+        chosen[list(self._get_indices(indices))] = True
+        flocks = np.unique(self.flock_of_slot[chosen]).tolist()
+        for flock in flocks:
+            if not chosen[self.flock_of_slot == flock].all():
+                raise ParameterError(
+                    f"set_attr: {attr_name} is one for all leaders of flock {flock}, and indices "
+                    "name only some of them"
+                )
+        value = once(value)
+        value = tuple(value) if isinstance(value, list | np.ndarray) else value
+        self._batch.core.set_upcoming(flocks, {attr_name: value})
 
     def env_method(
         self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any
@@ -340,7 +421,7 @@ def _equal(one: Any, other: Any) -> bool:
 
 def _leader_counts(n_leaders: Any) -> list[int]:
     """Leaders of the flocks, to be dealt out in turn."""
-    dealt = n_leaders.tolist() if isinstance(n_leaders, np.ndarray) else n_leaders
+    dealt = n_leaders.tolist() if isinstance(n_leaders, np.ndarray) else once(n_leaders)
     if not isinstance(dealt, Sequence) or isinstance(dealt, str):
         dealt = [dealt]
     if not dealt:

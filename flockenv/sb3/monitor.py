@@ -1,11 +1,14 @@
 """`FlockMonitor`: stable-baselines3's monitor file with a row per episode of a flock."""
 
 import time
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 from stable_baselines3.common.monitor import ResultsWriter
 from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
+
+from flockenv._io.arguments import items
 
 
 class FlockMonitor(VecEnvWrapper):
@@ -31,10 +34,10 @@ class FlockMonitor(VecEnvWrapper):
         If the file cannot be written.
     """
 
-    def __init__(self, venv: VecEnv, filename: str, summary_keywords: tuple[str, ...] = ()) -> None:
+    def __init__(self, venv: VecEnv, filename: str, summary_keywords: Iterable[str] = ()) -> None:
         super().__init__(venv)
         self._start = time.time()
-        self._keywords = summary_keywords
+        self._keywords = summary_keywords = tuple(items(summary_keywords, "summary_keywords"))
         spec = venv.get_attr("spec")[0]
         header: dict[str, float | str] = {"t_start": self._start, "env_id": str(spec and spec.id)}
         self._writer = ResultsWriter(str(filename), header, extra_keys=summary_keywords)

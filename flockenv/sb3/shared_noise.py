@@ -13,7 +13,7 @@ from stable_baselines3.common.preprocessing import get_action_dim
 from stable_baselines3.common.vec_env import VecEnv
 
 from flockenv import _core
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, shown
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
 
 
@@ -181,13 +181,14 @@ class SharedNoisePolicy(ActorCriticPolicy):
         hold_steps: int,
         **options: Any,
     ) -> None:
+        flock_of_slot = list(flock_of_slot)
         if hold_steps < 1 or not flock_of_slot:
             raise ParameterError(
-                f"hold_steps = {hold_steps!r} and {len(flock_of_slot)} slots are not accepted: at "
-                "least 1 each"
+                f"hold_steps = {shown(hold_steps)} and {len(flock_of_slot)} slots are not "
+                "accepted: at least 1 each"
             )
         self._shared: dict[str, Any] = {
-            "flock_of_slot": list(flock_of_slot),
+            "flock_of_slot": flock_of_slot,
             "hold_steps": hold_steps,
         }
         super().__init__(observation_space, action_space, lr_schedule, **options)

@@ -2,7 +2,7 @@
 //! it is in nor on the number of threads.
 
 use super::flock_env::StoredEnv;
-use super::{EnvSettings, FlockEnv, ResetRequest};
+use super::{EnvSettings, FlockEnv, ResetRequest, Upcoming};
 use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
 use crate::parallel;
@@ -104,8 +104,9 @@ impl EnvBatch {
     /// One decision of every flock, held over its control steps, or the start of its next episode where one is due.
     ///
     /// # Errors
-    /// Those of [`Self::check_step`], before anything moves; [`FlockError::Solver`] and
-    /// [`FlockError::Placement`] after the other flocks have moved: their rewards are lost, and all have to be reset.
+    /// Those of [`Self::check_step`], before anything moves; [`FlockError::Solver`] and [`FlockError::Placement`] of a
+    /// flock after the others have moved: its episode has ended, the others' go on, and what they were rewarded with
+    /// in this step is lost.
     ///
     /// # Panics
     /// If the rows have other lengths than the batch.
@@ -120,11 +121,15 @@ impl EnvBatch {
                 .step(settings, actions, observations, share.rewards)?;
             Ok(())
         };
-        let moved: Result<()> = parallel::map(shares, step).into_iter().collect();
-        if moved.is_err() {
-            self.envs.iter_mut().for_each(FlockEnv::abandon);
+        let moved: Vec<Result<()>> = parallel::map(shares, step);
+        let is_alone = moved.len() == 1;
+        let failed = moved.into_iter().enumerate();
+        let mut failed = failed.filter_map(|(flock, outcome)| Some((flock, outcome.err()?)));
+        match (failed.next(), failed.count()) {
+            (None, _) => Ok(()),
+            (Some((_, error)), _) if is_alone => Err(error),
+            (Some((flock, error)), more) => Err(error.of_flock(flock, more)),
         }
-        moved
     }
 
     /// Starts new episodes: one request a flock, `None` leaves it as it is. Either all requests are met
@@ -167,6 +172,28 @@ impl EnvBatch {
                 let mut unread = vec![0.0; size * env.parameters().n_leaders];
                 env.start(next, &mut unread);
             }
+        }
+        Ok(())
+    }
+
+    /// Lets options hold for the episodes of some flocks that are to come; those that are not given stay as they were.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for options that a flock cannot have, or no such flock; nothing has changed then.
+    pub fn set_upcoming(&mut self, flocks: &[usize], options: &Upcoming) -> Result<()> {
+        let merged = |&flock: &usize| {
+            let accepted = format!("below {}", self.envs.len());
+            let none = || FlockError::parameter("flock", flock, accepted);
+            let env = self.envs.get(flock).ok_or_else(none)?;
+            let mut upcoming = env.upcoming().clone();
+            upcoming.target = options.target.clone().or(upcoming.target);
+            upcoming.bw_s = options.bw_s.or(upcoming.bw_s);
+            env.check_upcoming(&self.settings, &upcoming)?;
+            Ok(upcoming)
+        };
+        let checked: Vec<_> = flocks.iter().map(merged).collect::<Result<_>>()?;
+        for (&flock, upcoming) in flocks.iter().zip(checked) {
+            self.envs[flock].set_upcoming(upcoming);
         }
         Ok(())
     }

@@ -2,7 +2,9 @@
 
 use super::episode::EpisodeState;
 use super::observation::{FlockFeatures, StateObserver};
-use super::{Autoreset, EnvSettings, Episode, EpisodeSeeds, EpisodeSummary, ResetRequest, Servo};
+use super::{
+    Autoreset, EnvSettings, Episode, EpisodeSeeds, EpisodeSummary, ResetRequest, Servo, Upcoming,
+};
 use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
 use crate::parameters::FlockParameters;
@@ -11,6 +13,7 @@ use crate::parameters::FlockParameters;
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct StoredEnv<E = EpisodeState> {
     seeds: Option<EpisodeSeeds>,
+    upcoming: Upcoming,
     episode: Option<E>,
     finished: Option<EpisodeSummary>,
     final_observation: Vec<f32>,
@@ -24,6 +27,7 @@ pub struct FlockEnv {
     state_observer: StateObserver,
     features: FlockFeatures,
     seeds: Option<EpisodeSeeds>,
+    upcoming: Upcoming,
     episode: Option<Episode>,
     finished: Option<EpisodeSummary>,
     final_observation: Vec<f32>,
@@ -37,6 +41,7 @@ impl FlockEnv {
             state_observer: StateObserver::new(&parameters, settings.mirror_to_target),
             features: FlockFeatures::new(&parameters),
             seeds: None,
+            upcoming: Upcoming::default(),
             episode: None,
             finished: None,
             final_observation: Vec::new(),
@@ -69,6 +74,32 @@ impl FlockEnv {
         &self.final_observation
     }
 
+    /// What holds for the episodes that are to come.
+    pub fn upcoming(&self) -> &Upcoming {
+        &self.upcoming
+    }
+
+    /// Lets checked options hold for the episodes that are to come.
+    pub(crate) fn set_upcoming(&mut self, upcoming: Upcoming) {
+        self.upcoming = upcoming;
+    }
+
+    /// Whether options can hold for the episodes that are to come.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`].
+    pub(crate) fn check_upcoming(&self, settings: &EnvSettings, upcoming: &Upcoming) -> Result<()> {
+        let bw_s = upcoming
+            .bw_s
+            .map_or(self.parameters.bw_s, |bw_s| bw_s.at(0.0));
+        let own = FlockParameters {
+            bw_s,
+            ..self.parameters.clone()
+        };
+        own.check()?;
+        upcoming.settings(settings).check(&own)
+    }
+
     /// The next episode, not started yet.
     ///
     /// # Errors
@@ -84,6 +115,7 @@ impl FlockEnv {
             return Err(FlockError::Episode(message.to_owned()));
         };
         let flock_seed = seeds.next_seed();
+        let request = request.over(&self.upcoming);
         let (schedule, flock) =
             request.build(settings, &self.parameters, flock_seed, keep_going)?;
         Ok((seeds, Episode::new(settings, schedule, flock)?))
@@ -94,11 +126,6 @@ impl FlockEnv {
         let (seeds, mut episode) = prepared;
         episode.observe_and_count(observations);
         (self.seeds, self.episode) = (Some(seeds), Some(episode));
-    }
-
-    /// Leaves the episode, so that a reset is due.
-    pub(crate) fn abandon(&mut self) {
-        self.episode = None;
     }
 
     /// Whether a step is due, be it one that only starts the next episode.
@@ -203,6 +230,7 @@ impl FlockEnv {
     pub(crate) fn stored(&self) -> StoredEnv<&EpisodeState> {
         StoredEnv {
             seeds: self.seeds,
+            upcoming: self.upcoming.clone(),
             episode: self.episode.as_ref().map(Episode::state),
             finished: self.finished,
             final_observation: self.final_observation.clone(),
@@ -223,7 +251,8 @@ impl FlockEnv {
         let is_own = [0, whole].contains(&found) && (episode.is_none() || stored.seeds.is_some());
         FlockError::unless_fitting(is_own, "the state is of another environment")?;
         let mut restored = Self::new(settings, self.parameters.clone());
-        restored.seeds = stored.seeds;
+        restored.check_upcoming(settings, &stored.upcoming)?;
+        (restored.seeds, restored.upcoming) = (stored.seeds, stored.upcoming);
         restored.episode = episode;
         restored.finished = stored.finished;
         restored.final_observation = stored.final_observation;

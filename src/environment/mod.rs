@@ -17,7 +17,7 @@ pub use batch::{BatchRows, EnvBatch};
 pub use drawn::{Drawn, TargetChoice};
 pub use episode::Episode;
 pub use flock_env::FlockEnv;
-pub use reset::{ResetRequest, Start};
+pub use reset::{ResetRequest, Start, Upcoming};
 pub use reward::{Reward, RewardTerm, RewardTerms, RewardWeights, TERMS};
 pub use rudder::{LARGEST_LEAN, Servo};
 pub use schedule::{EpisodeSchedule, EpisodeSeeds};

@@ -36,7 +36,39 @@ pub struct ResetRequest {
     pub start: Start,
 }
 
+/// What holds for the episodes that are still to come, unless a reset says otherwise.
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct Upcoming {
+    /// Target of these episodes; `None`: as the settings say.
+    pub target: Option<TargetChoice>,
+    /// Length of their backward phase in s; `None`: as the settings say.
+    pub bw_s: Option<Drawn>,
+}
+
+impl Upcoming {
+    /// The settings of these episodes.
+    pub fn settings(&self, settings: &EnvSettings) -> EnvSettings {
+        EnvSettings {
+            target: self.target.as_ref().unwrap_or(&settings.target).clone(),
+            bw_s: self.bw_s.or(settings.bw_s),
+            // Another target would change the length that is not given.
+            episode_s: Some(settings.duration_s()),
+            ..settings.clone()
+        }
+    }
+}
+
 impl ResetRequest {
+    /// The same request, with what holds for all episodes that are to come.
+    #[must_use]
+    pub(super) fn over(&self, upcoming: &Upcoming) -> Self {
+        let mut request = self.clone();
+        request.target = request.target.or_else(|| upcoming.target.clone());
+        // A snapshot brings its own along.
+        request.bw_s = request.bw_s.or(upcoming.bw_s);
+        request
+    }
+
     /// The episode and the flock that the request describes.
     ///
     /// # Errors

@@ -89,6 +89,12 @@ impl EnvSettings {
         let accepted = "at least one control step, at most 1e6 s";
         let is_long_enough = duration <= 1e6 && (0.5..=1e9).contains(&steps);
         FlockError::unless(is_long_enough, "episode_s", duration, accepted)?;
+        let shortest = 1.0 / self.control_hz;
+        let horizon = self.reward_horizon_s.unwrap_or(shortest);
+        let accepted = format!("at least one control step, {shortest} s");
+        // A tenth may be given for ten control steps per second, whatever the rounding.
+        let is_whole = horizon >= (1.0 - 1e-9) * shortest;
+        FlockError::unless(is_whole, "reward_horizon_s", horizon, accepted)?;
         self.bw_s.map_or(Ok(()), |bw_s| bw_s.check("bw_s"))?;
         self.target.check(parameters.n_leaders)?;
         self.observation.check()?;

@@ -7,7 +7,8 @@ use super::value::{given, noise_seed_from, seed_from, set_given, value_from};
 use crate::analysis::OrderParameters;
 use crate::environment::observation::FlockFeatures;
 use crate::environment::{
-    BatchRows, EnvBatch, EnvSettings, Episode, EpisodeSummary, FlockEnv, ResetRequest, Start, TERMS,
+    BatchRows, EnvBatch, EnvSettings, Episode, EpisodeSummary, FlockEnv, ResetRequest, Start,
+    TERMS, Upcoming,
 };
 use crate::error::{FlockError, Result};
 use crate::parameters::{Field, FlockParameters, Setting, Value, named_fields, text_of};
@@ -140,6 +141,25 @@ impl PyEnvBatch {
         });
         let requests: Vec<_> = each.collect::<PyResult<_>>()?;
         interruptible(py, |keep_going| batch.reset_while(keep_going, &requests))
+    }
+
+    /// Lets a target or a bw_s hold for the episodes of flocks that are to come.
+    fn set_upcoming(&self, flocks: Vec<usize>, options: &Bound<'_, PyDict>) -> PyResult<()> {
+        let ResetRequest { target, bw_s, .. } = request_from(options, 0)?;
+        let options = Upcoming { target, bw_s };
+        Ok(self.0.write()?.set_upcoming(&flocks, &options)?)
+    }
+
+    /// The target and the bw_s of a flock's episodes that are to come.
+    fn upcoming(&self, flock: usize) -> Result<Value> {
+        let batch = self.0.read()?;
+        self.env(flock, |env| {
+            let EnvSettings { target, bw_s, .. } = env.upcoming().settings(batch.settings());
+            let bw_s = bw_s.map_or(env.parameters().bw_s.value(), |bw_s| bw_s.value());
+            [("target", target.value()), ("bw_s", bw_s)]
+                .into_iter()
+                .collect()
+        })
     }
 
     fn observe<'py>(&self, py: Python<'py>) -> Rows<'py, f32> {

@@ -3,8 +3,10 @@
 
 use crate::support::{batch, parameters, seeded, settings, step};
 use flockenv::FlockError;
-use flockenv::environment::{Autoreset, EnvBatch, EnvSettings, ResetRequest, Start};
-use flockenv::parameters::{FlockParameters, Scheme};
+use flockenv::environment::{
+    Autoreset, Drawn, EnvBatch, EnvSettings, FlockEnv, ResetRequest, Start, TargetChoice, Upcoming,
+};
+use flockenv::parameters::{FlockParameters, Scheme, Target, Targets};
 use rayon::ThreadPoolBuilder;
 
 fn action(seed: u64, leader: usize, time: u32) -> f64 {
@@ -117,7 +119,7 @@ fn resets_happen_as_a_whole() {
 }
 
 #[test]
-fn an_exploding_flock_ends_the_episodes_of_its_batch() {
+fn a_flock_that_explodes_ends_its_own_episode_alone() {
     // Constants so wild that an explicit step leaves the range of a state.
     let wild = FlockParameters {
         c0: 1e6,
@@ -125,38 +127,108 @@ fn an_exploding_flock_ends_the_episodes_of_its_batch() {
         scheme: Scheme::Moreau,
         ..parameters(1)
     };
-    let members = vec![parameters(1), wild, parameters(1)];
-    let mut batch = EnvBatch::new(settings(30), members).unwrap();
-    batch.reset(&[seeded(1), seeded(2), seeded(3)]).unwrap();
-    (1..=20)
-        .find(|_| matches!(step(&mut batch, &[0.5; 3]), Err(FlockError::Solver(_))))
-        .expect("the wild flock leaves its range");
-    // The rewards of the others are lost, so that no episode continues as if they were known.
-    assert!(batch.envs().iter().all(|env| env.episode().is_none()));
-    assert!(matches!(
-        step(&mut batch, &[0.5; 3]),
-        Err(FlockError::Episode(_))
-    ));
-    batch.reset(&[seeded(1), seeded(2), seeded(3)]).unwrap();
-    step(&mut batch, &[0.5; 3]).unwrap();
+    for mode in [
+        Autoreset::NextStep,
+        Autoreset::SameStep,
+        Autoreset::Disabled,
+    ] {
+        let own = EnvSettings {
+            autoreset_mode: mode,
+            ..settings(30)
+        };
+        let members = vec![parameters(1), wild.clone(), parameters(1)];
+        let mut batch = EnvBatch::new(own.clone(), members).unwrap();
+        batch.reset(&[seeded(1), seeded(2), seeded(3)]).unwrap();
+        let (steps, error) = (1..=20)
+            .find_map(|time| Some((time, step(&mut batch, &[0.5; 3]).err()?)))
+            .expect("the wild flock leaves its range");
+        let words = error.to_string();
+        assert!(matches!(error, FlockError::Solver(_)));
+        assert!(words.starts_with("flock 1: ") && words.ends_with("the other flocks' go on"));
+        let episodes = |batch: &EnvBatch| -> Vec<_> {
+            let episode = |env: &FlockEnv| {
+                let episode = env.episode().unwrap();
+                (episode.schedule().step, episode.has_ended())
+            };
+            batch.envs().iter().map(episode).collect()
+        };
+        assert_eq!(
+            episodes(&batch),
+            [(steps, false), (steps - 1, true), (steps, false)]
+        );
+        if mode == Autoreset::Disabled {
+            assert!(matches!(
+                step(&mut batch, &[0.5; 3]),
+                Err(FlockError::Episode(_))
+            ));
+            batch.reset(&[None, seeded(4), None]).unwrap();
+        } else {
+            step(&mut batch, &[0.5; 3]).unwrap();
+            assert_eq!(
+                episodes(&batch),
+                [(steps + 1, false), (0, false), (steps + 1, false)]
+            );
+        }
+        // What went on is what an undisturbed flock does.
+        let mut alone = EnvBatch::new(own, vec![parameters(1)]).unwrap();
+        alone.reset(&[seeded(3)]).unwrap();
+        for _ in 0..episodes(&batch)[2].0 {
+            step(&mut alone, &[0.5]).unwrap();
+        }
+        let poses = |batch: &EnvBatch, flock: usize| {
+            batch.envs()[flock]
+                .episode()
+                .unwrap()
+                .flock()
+                .poses()
+                .to_vec()
+        };
+        assert_eq!(poses(&batch, 2), poses(&alone, 0));
+    }
 }
 
 #[test]
-fn a_batch_larger_than_memory_is_refused_before_it_is_made() {
-    let members = vec![
-        FlockParameters {
-            n_boats: 100_000,
-            ..parameters(1)
-        };
-        200
-    ];
-    match EnvBatch::new(settings(10), members) {
-        Err(FlockError::Parameter {
-            field, accepted, ..
-        }) => {
-            assert_eq!(field, "num_envs");
-            assert!(accepted.contains("bytes do not fit"), "{accepted}");
-        }
-        other => panic!("{:?}", other.map(|batch| batch.rows())),
+fn what_is_upcoming_holds_from_the_next_episode_on() {
+    let mut batch = batch(settings(3), &[1, 2], 0);
+    let bw_s = |batch: &EnvBatch, flock: usize| {
+        batch.envs()[flock]
+            .episode()
+            .unwrap()
+            .flock()
+            .parameters()
+            .bw_s
+    };
+    let own = bw_s(&batch, 0);
+    let longer = Upcoming {
+        bw_s: Some(Drawn::Fixed(1.25)),
+        target: None,
+    };
+    batch.set_upcoming(&[1], &longer).unwrap();
+    // Bytes carry it along.
+    let mut batch = EnvBatch::from_bytes(&batch.to_bytes()).unwrap();
+    for time in 0..4 {
+        assert_eq!((bw_s(&batch, 0), bw_s(&batch, 1)), (own, own), "{time}");
+        step(&mut batch, &[0.0; 3]).unwrap();
+    }
+    assert_eq!((bw_s(&batch, 0), bw_s(&batch, 1)), (own, 1.25));
+    let once = ResetRequest {
+        bw_s: Some(Drawn::Fixed(0.5)),
+        ..ResetRequest::default()
+    };
+    batch.reset(&[None, Some(once)]).unwrap();
+    assert_eq!(bw_s(&batch, 1), 0.5);
+    batch.reset(&[None, Some(ResetRequest::default())]).unwrap();
+    assert_eq!(bw_s(&batch, 1), 1.25);
+    let before = batch.to_bytes();
+    let each = Targets::Each(vec![Target::Clockwise, Target::CounterClockwise]);
+    for (flocks, bw_s, target) in [
+        (&[0, 1][..], Some(Drawn::Fixed(-1.0)), None),
+        (&[0, 1], Some(Drawn::Uniform(2.0, 1.0)), None),
+        (&[1, 0], None, Some(TargetChoice::Fixed(each.clone()))),
+        (&[1, 2], Some(Drawn::Fixed(1.0)), None),
+    ] {
+        let refused = batch.set_upcoming(flocks, &Upcoming { bw_s, target });
+        assert!(matches!(refused, Err(FlockError::Parameter { .. })));
+        assert_eq!(before, batch.to_bytes());
     }
 }

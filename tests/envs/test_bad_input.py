@@ -1,10 +1,12 @@
 """Law: bad input is a named error, and nothing has moved."""
 
+import gymnasium
 import numpy as np
 import pytest
 
 import flockenv
 from flockenv import EpisodeError, FlockError, ParameterError
+from flockenv.envs.options import _NAMES, RESET_OPTIONS
 
 OPTIONS = {"n_boats": 9, "n_leaders": 2, "episode_s": 1.0}
 NOTHING = dict.fromkeys(["own", "phase", "target", "order", "neighbors"], 0)
@@ -61,6 +63,8 @@ def interface(request):
         ({"decision_period_s": float("nan")}, "whole number of control steps"),
         ({"decision_period_s": -1.0}, "whole number of control steps"),
         ({"reward_horizon_s": 0.0}, "positive number"),
+        ({"reward_horizon_s": 0.099}, "at least one control step, 0.1 s"),
+        ({"reward_horizon_s": 1e-300, "control_hz": 2.5}, "at least one control step, 0.4 s"),
         ({"observation": {"lean_features": True}, "pool": (100.0, 40.0)}, "wide and narrow"),
     ],
 )
@@ -178,6 +182,138 @@ def test_reset_options(interface, options):
         env.reset(seed=1, options=options)
     assert env.get_state() == before
     env.step(zeros(env))
+
+
+ENVIRONMENT = [
+    *(name for name in _NAMES if name not in RESET_OPTIONS),
+    *("seed", "render_mode", "render_size", "autoreset_mode", "num_envs", "num_flocks"),
+]
+
+
+def resets(interface):
+    """Return what gives options to a reset of any interface."""
+    env = interface()
+    if hasattr(env, "set_options"):
+        return lambda options: (env.set_options(options), env.reset())
+    if not hasattr(env, "get_state"):
+        return lambda options: env.reset(options=options)
+
+    def reset(options):
+        before = env.get_state()
+        try:
+            env.reset(options=options)
+        except ParameterError:
+            assert env.get_state() == before
+            raise
+
+    env.reset(seed=0)
+    return reset
+
+
+EVERY = {
+    **INTERFACES,
+    "gymnasium.make": lambda **options: gymnasium.make(
+        "flockenv/Leaders-v0", disable_env_checker=True, **options
+    ),
+    "gymnasium.make_vec": lambda **options: gymnasium.make_vec(
+        "flockenv/Leaders-v0", num_envs=3, **options
+    ),
+    "aec": lambda **options: flockenv.env(**options),
+    "sb3": lambda **options: leader_vec_env(3, **options),
+    "torchrl": lambda **options: torchrl_env(3, **options),
+}
+
+
+def leader_vec_env(*arguments, **options):
+    pytest.importorskip("stable_baselines3")
+    return flockenv.sb3.LeaderVecEnv(*arguments, **options)
+
+
+def torchrl_env(*arguments, **options):
+    pytest.importorskip("torchrl")
+    return flockenv.torchrl.LeadersEnv(*arguments, **options)
+
+
+@pytest.fixture(params=EVERY.values(), ids=EVERY.keys())
+def every(request):
+    return resets(lambda: request.param(**OPTIONS))
+
+
+def test_options_of_the_environment_are_no_options_of_a_reset(every):
+    for name in ENVIRONMENT:
+        for written in (name, name.upper(), name.title(), name.replace("_", "-")):
+            with pytest.raises(ParameterError, match="no reset option") as raised:
+                every({written: 3})
+            words = str(raised.value)
+            assert repr(written) in words
+            assert "target, bw_s, state" in words or "did you mean" in words
+    for name in RESET_OPTIONS:
+        every({} if name in ("state", "snapshot", "noise_seed") else {name: OF_EACH[name]})
+
+
+OF_EACH = {"target": "ccw", "bw_s": 0.5}
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("bw", "BW", "Bw_S", "bws", "bw-s", "bw_sec", "BW_S", "bw_cm", " bw_s"),
+        *("Target", "TARGET", "targets", "targt", "trget", "State", "STATE", "staet", "states"),
+        *("Snapshot", "snapshots", "snap_shot", "SNAPSHOT", "snapsot"),
+        *("nboats", "n_boat", "num_boats", "N_BOATS", "dt", "DT_S", "C4", "speed", "episode"),
+        *("n_leader", "leaders_revers", "obervation", "rewards", "Pool", "reset_masks", "Seed"),
+    ],
+)
+def test_slips_in_the_options_of_a_reset_are_named(every, name):
+    with pytest.raises(ParameterError, match="no reset option"):
+        every({name: 0.5})
+
+
+@pytest.mark.parametrize("options", [{"stage_of": 3}, {"record_video": True}, {"goal": 1, 7: 8}])
+def test_keys_of_wrappers_pass(interface, options):
+    env = interface()
+    env.reset(seed=0, options={**options, "bw_s": 0.5})
+    episodes = env._batch.core.episode
+    assert [episodes(flock)["bw_s"] for flock in range(env._batch.num_flocks)] == [
+        0.5
+    ] * env._batch.num_flocks
+
+
+def test_a_mask_has_its_own_name(every):
+    with pytest.raises(ParameterError, match="no reset option"):
+        every({"RESET_MASK": np.ones(3, bool)})
+
+
+@pytest.mark.parametrize("name", ["single", "parallel", "gymnasium.make", "aec", "sb3", "torchrl"])
+def test_a_mask_is_for_vector_environments(name):
+    with pytest.raises(ParameterError, match="no reset option"):
+        resets(lambda: EVERY[name](**OPTIONS))({"reset_mask": np.ones(3, bool)})
+
+
+@pytest.mark.parametrize("given", [{"bw_s": 0.5}, {"seed": 3}, {"anything": 1}])
+def test_what_torchrl_passes_on_is_taken_or_refused(given):
+    env = torchrl_env(2, **OPTIONS)
+    with pytest.raises(flockenv.errors.UnknownOptionError, match=r"options=.*set_seed"):
+        env.reset(**given)
+    env.reset(options={"bw_s": 0.5})
+
+
+def test_lists_of_one_environment_and_of_many():
+    """Of many a list has an entry for each; of one it is the value: a range, a leader's each."""
+    env = flockenv.LeadersEnv(**OPTIONS)
+    for bw_s in ([0.25, 0.75], (0.25, 0.75), np.array([0.25, 0.75]), iter([0.25, 0.75])):
+        env.reset(seed=0, options={"bw_s": bw_s})
+        assert 0.25 < env.episode()["bw_s"] < 0.75
+    for target in (["cw", "ccw"], np.array(["cw", "ccw"]), (each for each in ("cw", "ccw"))):
+        env.reset(seed=0, options={"target": target})
+        assert env.episode()["target"] == ("cw", "ccw")
+    many = flockenv.LeadersVectorEnv(3, **OPTIONS)
+    numbers = [0.25, 0.5, 0.75]
+    for bw_s in (numbers, np.array(numbers), iter(numbers), dict(enumerate(numbers)).values()):
+        _, infos = many.reset(seed=0, options={"bw_s": bw_s})
+        assert infos["bw_s"].tolist() == numbers
+    _, infos = many.reset(seed=0, options={"target": ("cw", "ccw")})
+    assert [*map(tuple, infos["target"])] == [("cw", "ccw")] * 3
 
 
 @pytest.mark.parametrize("options", [5, "abc", [], [("target", "cw")]])

@@ -68,3 +68,12 @@ def test_means_over_a_window_that_was_not_reached_are_left_out():
     summary = last_info(episode_s=0.5)["episode_summary"]
     assert not WINDOW_MEANS & summary.keys()
     assert {"ordering_time_s", "total_reward", "reward_terms"} <= summary.keys()
+
+
+def test_agents_are_told_of_a_reset_what_one_policy_is():
+    options = {"n_boats": 9, "n_leaders": 2, "target": "random", "bw_s": (0.2, 0.4)}
+    _, info = flockenv.LeadersEnv(**options).reset(seed=4)
+    _, each = flockenv.parallel_env(**options).reset(seed=4)
+    assert info.keys() == {"target", "bw_s", "flock_seed"}
+    assert each == {"leader_0": info, "leader_1": info}
+    assert each["leader_0"] is not each["leader_1"]

@@ -8,7 +8,6 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from pettingzoo.test import api_test, max_cycles_test, parallel_api_test, render_test, seed_test
 from pettingzoo.test.state_test import state_test
-from pettingzoo.utils.conversions import parallel_to_aec
 
 import flockenv
 
@@ -28,7 +27,7 @@ VARIANTS = {
 
 
 def aec_env(**options):
-    return parallel_to_aec(flockenv.parallel_env(**{**SHORT, **options}))
+    return flockenv.env(**{**SHORT, **options})
 
 
 # Ends within every suite, before the analysis window: what the last infos hold is checked too.

@@ -43,3 +43,26 @@ def test_the_easy_environment_tells_good_leaders_from_bad():
     options = ENVIRONMENTS[EASY_ID]
     layout = {name: options[name] for name in ("observation", "mirror_to_target")}
     assert mean_reward(DampedLaw(**layout)) > mean_reward(RandomRudders(**layout)) + 0.1
+
+
+@pytest.mark.parametrize(
+    ("options", "steps"),
+    [
+        ({}, 4800),
+        ({"target": "alternate"}, 9600),
+        ({"episode_s": 10.0, "control_hz": 5.0}, 50),
+        ({"episode_s": 1.0, "decision_period_s": 0.3}, 4),
+    ],
+)
+def test_the_spec_says_how_many_steps_an_episode_has(options, steps):
+    env = gymnasium.make("flockenv/Leaders-v0", **options)
+    many = gymnasium.make_vec("flockenv/Leaders-v0", num_envs=2, **options)
+    for made in (env, env.unwrapped, many):
+        assert made.spec.max_episode_steps == steps
+    assert gymnasium.spec("flockenv/Leaders-v0").max_episode_steps is None
+    assert gymnasium.make("flockenv/Leaders-v0", max_episode_steps=3).spec.max_episode_steps == 3
+    assert flockenv.LeadersEnv(**options).spec is None
+    env.reset(seed=0)
+    if steps < 100:
+        ends = [env.step(env.action_space.sample())[3] for _ in range(steps)]
+        assert ends == [False] * (steps - 1) + [True]

@@ -153,3 +153,37 @@ def test_a_monitor_file_names_the_environment(tmp_path):
                 assert json.loads(file.readline()[1:])["env_id"] == env_id
     finally:
         del gymnasium.registry["own-v0"]
+
+
+def test_the_callback_prints_what_evaluate_flocks_does(capsys):
+    venv = make()
+    callback = FlockEvalCallback(make(), seed=9, n_eval_episodes=6, eval_freq=8, verbose=1)
+    model = ppo(venv).learn(96, callback)
+    found = evaluate_flocks(model, make(), 6, seed=9)
+    printed = capsys.readouterr().out.splitlines()
+    assert len(printed) == 1 + (96 // 12 // 8 - 1)
+    assert printed[0].startswith("96 steps: signed order ")
+    assert printed[-1].removesuffix(", the best return so far").endswith("in 6 episodes")
+    assert callback.verbose == 1
+    # The policy has learned since the evaluation.
+    assert callback.evaluation.signed_order.shape == found.signed_order.shape
+    assert callback.evaluation.lengths.tolist() == [20] * 6
+    logged = model.logger.name_to_value.get("eval/signed_order", callback.evaluation.mean)
+    assert np.isclose(logged, callback.evaluation.mean, equal_nan=True)
+    quiet = FlockEvalCallback(make(), seed=9, n_eval_episodes=6, eval_freq=8, verbose=0)
+    ppo(venv).learn(96, quiet)
+    assert capsys.readouterr().out == ""
+    assert str(quiet.evaluation) in printed[0]
+
+
+def test_the_monitors_keywords_may_be_gone_through_once(tmp_path):
+    venv = FlockMonitor(make(), str(tmp_path / "flocks"), iter(["signed_order", "bw_s"]))
+    venv.reset()
+    for _ in range(20):
+        venv.step(np.zeros((venv.num_envs, 1)))
+    venv.close()
+    rows = load_results(str(tmp_path))
+    assert len(rows) == 4
+    assert rows["bw_s"].notna().all()
+    with pytest.raises(TypeError, match="summary_keywords must be a sequence"):
+        FlockMonitor(make(), str(tmp_path / "other"), "signed_order")
