@@ -9,6 +9,12 @@ use crate::geometry::{
 use crate::parameters::{FlockParameters, Pool};
 use std::ops::RangeInclusive;
 
+/// Part of a radius that the fastest boat moves by in a substep beyond which it pays to look which contacts close.
+const LONG: f64 = 0.1;
+/// Part of the fastest boat's way that contacts mostly add to that of another boat at most. With more room fewer contacts
+/// are left out, with less more have to be taken back.
+const ADDED: f64 = 0.125;
+
 /// Geometry of a flock: hulls, walls, obstacles and the neighbor list.
 #[derive(Debug, Clone)]
 pub struct ContactDetector {
@@ -20,6 +26,8 @@ pub struct ContactDetector {
     skin: f64,
     /// How near something has to be to each boat to count: two boats that are nearer than both together.
     reaches: Vec<f64>,
+    /// How far the fastest boat moves in the substep at hand, in cm.
+    farthest: f64,
 }
 
 impl ContactDetector {
@@ -35,6 +43,7 @@ impl ContactDetector {
             obstacles: NearObstacles::new(Obstacle::all(parameters)),
             skin,
             reaches: Vec::new(),
+            farthest: 0.0,
         }
     }
 
@@ -66,7 +75,8 @@ impl ContactDetector {
         contacts: &mut Vec<Contact>,
     ) -> f64 {
         let fastest = self.fastest(velocities);
-        let room = 0.5 * (fastest * dt + 1e-3 * self.hull.radius);
+        self.farthest = fastest * dt;
+        let room = 0.5 * (self.farthest + 1e-3 * self.hull.radius);
         let hull = self.hull;
         let reaches = velocities.iter().map(|each| hull.speed(each) * dt + room);
         self.reaches.clear();
@@ -74,6 +84,93 @@ impl ContactDetector {
         let margin = 3.0 * fastest * dt + 1e-3 * self.hull.radius;
         self.detect_within_reach(boats, margin, contacts);
         margin
+    }
+
+    /// Whether boats moved so far in the substep of the last detection that it pays to look which contacts may close.
+    pub(super) fn is_far(&self) -> bool {
+        self.farthest > LONG * self.hull.radius
+    }
+
+    /// Moves to `parting` what boats with these velocities do not close within `dt`. The normal of the nearer touch of
+    /// two bodies separates them: along it their cores close no faster than their centers do, and than turning swings
+    /// their ends. Both touches of a pair stay or go, since closing one swings the other.
+    pub(super) fn set_parting_apart(
+        &self,
+        velocities: &[Velocity],
+        dt: f64,
+        contacts: &mut Vec<Contact>,
+        parting: &mut Vec<Contact>,
+    ) {
+        let room = ADDED * (self.farthest + 1e-3 * self.hull.radius);
+        let (mut kept, mut next) = (0, 0);
+        while next < contacts.len() {
+            let touches = &contacts[next..(next + 2).min(contacts.len())];
+            let count = match touches {
+                [first, second] if first.is_twin(second) => 2,
+                _ => 1,
+            };
+            let may_close = match &touches[..count] {
+                // Ends at a wall that curves around them: no normal separates the other one.
+                [a, b] if a.partner == Partner::OuterWall => {
+                    self.may_close(a, velocities, dt, room)
+                        || self.may_close(b, velocities, dt, room)
+                }
+                [a, b] if b.gap.gap < a.gap.gap => self.may_close(b, velocities, dt, room),
+                touches => self.may_close(&touches[0], velocities, dt, room),
+            };
+            if may_close {
+                contacts.copy_within(next..next + count, kept);
+                kept += count;
+            } else {
+                parting.extend_from_slice(&contacts[next..next + count]);
+            }
+            next += count;
+        }
+        contacts.truncate(kept);
+    }
+
+    #[inline]
+    fn may_close(&self, contact: &Contact, velocities: &[Velocity], dt: f64, room: f64) -> bool {
+        let gap = &contact.gap;
+        let first = &velocities[contact.boat as usize];
+        let (linear, spin, room) = match contact.second() {
+            Some(second) => {
+                let second = &velocities[second];
+                let spin = first.angular.abs() + second.angular.abs();
+                (first.linear - second.linear, spin, 2.0 * room)
+            }
+            None => (first.linear, first.angular.abs(), room),
+        };
+        let swing = self.hull.half_length * spin * dt;
+        let curve = if contact.partner == Partner::OuterWall {
+            let way = linear.norm() * dt + swing;
+            0.5 * way * way / (self.pool.outer_radius_cm - self.hull.radius - gap.gap)
+        } else {
+            0.0
+        };
+        gap.gap < 0.0 || gap.gap + gap.normal.dot(&linear) * dt < swing + curve + room
+    }
+
+    /// Whether what was found as a contact overlaps at other poses by more than `allowed`.
+    pub(super) fn overlaps_at(&self, contact: &Contact, boats: &[HullPose], allowed: f64) -> bool {
+        let boat = (&boats[contact.boat as usize], self.hull);
+        let mut overlaps = false;
+        match contact.partner {
+            Partner::Boat(second) => {
+                let second = (&boats[second as usize], self.hull);
+                pair_gaps(boat, second, 0.0, |_, gap| overlaps |= gap.gap < -allowed);
+            }
+            Partner::Obstacle(number) => {
+                let obstacle = &self.obstacles.obstacles[number as usize];
+                obstacle.gaps(boat.0, self.hull, 0.0, &mut |_, gap| {
+                    overlaps |= gap.gap < -allowed;
+                });
+            }
+            Partner::OuterWall | Partner::InnerWall => {
+                overlaps = self.gap_at(contact, boats).gap < -allowed;
+            }
+        }
+        overlaps
     }
 
     /// Fills `contacts` with everything nearer than `margin`, ordered along the pool's polar angle.

@@ -36,6 +36,8 @@ pub(crate) struct ContactResolver {
     pub(crate) solver: ContactSolver,
     /// The contacts found last.
     pub(crate) contacts: Vec<Contact>,
+    /// Those that boats do not close at their free velocities: left out while the solution leaves them apart.
+    parting: Vec<Contact>,
     biases: Vec<f64>,
     /// Whether each contact carried an impulse in the substep before.
     persistent: Vec<bool>,
@@ -67,6 +69,7 @@ impl ContactResolver {
             solver: ContactSolver::new(parameters.solver)
                 .keeping_factors(parameters.relinearizations > 0),
             contacts: Vec::new(),
+            parting: Vec::new(),
             biases: Vec::new(),
             persistent: Vec::new(),
             warm_start_cache: WarmStartCache::default(),
@@ -132,6 +135,11 @@ impl ContactResolver {
         statistics.worst_overlap_cm = statistics.worst_overlap_cm.max(-smallest);
         if smallest < -self.penetration_slop {
             self.depenetrate(poses, boats, velocities, margin, statistics);
+        }
+        self.parting.clear();
+        if self.allowed_overlap.is_some() && self.detector.is_far() {
+            self.detector
+                .set_parting_apart(velocities, dt, &mut self.contacts, &mut self.parting);
         }
         statistics.contacts += self.contacts.len() as u64;
         statistics.neighbor_builds += self.detector.neighbors.builds() - builds_before;
@@ -207,17 +215,21 @@ impl ContactResolver {
             closing_s: dt.max(self.whole_substep_s),
             penetration_slop: self.penetration_slop,
         };
-        self.biases.clear();
-        self.biases.extend(self.contacts.iter().map(|contact| {
-            let spin = free[contact.boat as usize].angular;
-            bias.of_gap(&contact.gap) + bias.of_flank(&contact.gap, spin)
-        }));
-        self.solver.reset(poses.len(), &self.contacts);
-        let solved = self.solve(None, free, inertia, statistics);
-        if let Some(allowed) = self.allowed_overlap
-            && solved
-        {
-            self.relinearize(poses, free, inertia, dt, allowed, statistics);
+        self.solve_and_relinearize(poses, free, inertia, bias, statistics);
+        let is_apart = |allowed| {
+            let Self {
+                trial,
+                detector,
+                parting,
+                ..
+            } = &*self;
+            trial.is_end() && !trial.overlaps(detector, parting, allowed)
+        };
+        if !self.parting.is_empty() && !self.allowed_overlap.is_some_and(is_apart) {
+            statistics.contacts += self.parting.len() as u64;
+            self.contacts.append(&mut self.parting);
+            self.warm_start(poses.len());
+            self.solve_and_relinearize(poses, free, inertia, bias, statistics);
         }
         if self.stop_driving(free, inertia, bias) {
             if shorter_possible {
@@ -232,6 +244,29 @@ impl ContactResolver {
         self.warm_start_cache
             .replace(self.contacts.iter().map(Contact::key).zip(impulses));
         ContactOutcome::Solved
+    }
+
+    /// Solves the contacts at hand, and relinearizes them if that was asked for.
+    fn solve_and_relinearize(
+        &mut self,
+        poses: &[Pose],
+        free: &[Velocity],
+        inertia: &[InverseInertia],
+        bias: VelocityBias,
+        statistics: &mut Statistics,
+    ) {
+        self.biases.clear();
+        self.biases.extend(self.contacts.iter().map(|contact| {
+            let spin = free[contact.boat as usize].angular;
+            bias.of_gap(&contact.gap) + bias.of_flank(&contact.gap, spin)
+        }));
+        self.solver.reset(poses.len(), &self.contacts);
+        let solved = self.solve(None, free, inertia, statistics);
+        if let Some(allowed) = self.allowed_overlap
+            && solved
+        {
+            self.relinearize(poses, free, inertia, bias.dt, allowed, statistics);
+        }
     }
 
     /// Has velocity biases follow from the gaps at hand alone in islands that would be driven or turned back

@@ -78,14 +78,13 @@ impl Trial {
         contacts: &[Contact],
         allowed: f64,
     ) -> bool {
-        contacts.iter().any(|contact| {
-            if contact.has_ends() {
-                let gaps = detector.end_gaps_at(contact, &self.hulls);
-                gaps.into_iter().flatten().any(|gap| gap < -allowed)
-            } else {
-                detector.gap_at(contact, &self.hulls).gap < -allowed
-            }
-        })
+        let mut contacts = contacts.iter();
+        contacts.any(|contact| detector.overlaps_at(contact, &self.hulls, allowed))
+    }
+
+    /// Whether boats with the velocities that were solved for last end at the trial's poses.
+    pub(super) fn is_end(&self) -> bool {
+        self.is_end
     }
 
     /// The gap of contact k. Between two hulls, or a hull and an obstacle, the touch may have passed from

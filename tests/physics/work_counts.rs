@@ -106,6 +106,34 @@ fn boats_that_stay_within_their_skin_share_one_neighbor_list() {
     assert!((9..=11).contains(&builds), "{builds}");
 }
 
+#[test]
+fn contacts_that_part_are_solved_for_only_if_others_close_them() {
+    // Boats in a row, gaps of 0.1 and 0.5 cm. In 0.1 s the third parts from the second by another 0.5 cm. One that
+    // comes at 30 cm/s pushes the second by more than that: on paper 14, 13 and 8 cm/s close both gaps and keep the
+    // momentum. At 10 cm/s the two share their velocities, and leave the third alone.
+    for scheme in [Scheme::Leapfrog, Scheme::Moreau] {
+        for (fast, expected, contacts) in [(30.0, [14.0, 13.0, 8.0], 2), (10.0, [5.5, 4.5, 5.0], 1)]
+        {
+            let p = FlockParameters {
+                dt_s: 0.1,
+                relinearizations: 1,
+                ..inert(scheme)
+            };
+            let states = [
+                ([0.0, 0.0, 0.0], [fast, 0.0, 0.0]),
+                ([15.1, 0.0, 0.0], [0.0; 3]),
+                ([30.6, 0.0, 0.0], [5.0, 0.0, 0.0]),
+            ];
+            let mut flock = flock_of(&p, &states);
+            take_substeps(&mut flock, 1);
+            assert_eq!(flock.statistics().contacts, contacts, "{scheme:?} {fast}");
+            for (velocity, speed) in flock.velocities().iter().zip(expected) {
+                assert!((velocity.linear.x - speed).abs() < 1e-9, "{velocity:?}");
+            }
+        }
+    }
+}
+
 /// Twenty seconds of a scene after ten of warm-up, counted per substep.
 fn counted(n_boats: usize, bw_s: f64) -> (Statistics, f64) {
     let p = FlockParameters {
