@@ -34,8 +34,9 @@ impl ContactDetector {
     /// For checked parameters.
     pub fn new(parameters: &FlockParameters) -> Self {
         let hull = Hull::new(parameters);
-        // Boats drift by about a radius before the list is rebuilt.
-        let skin = 0.8 * hull.radius;
+        // Boats drift by about a radius before the list is rebuilt, and for at least some long substeps.
+        let some_substeps = 6.0 * parameters.speed_cm_s * parameters.dt_s;
+        let skin = some_substeps.clamp(0.8 * hull.radius, 2.0 * hull.radius);
         Self {
             hull,
             pool: parameters.pool,
