@@ -77,7 +77,7 @@ impl FlockError {
     ) -> Self {
         Self::Parameter {
             field,
-            value: value.to_string(),
+            value: readable(&value.to_string()),
             accepted: accepted.into(),
         }
     }
@@ -120,6 +120,27 @@ impl FlockError {
         fits.then_some(())
             .ok_or_else(|| Self::Snapshot(why.to_owned()))
     }
+}
+
+/// A text in which numbers that take more digits than a line of a message has room for have an exponent, such as 1e300.
+fn readable(text: &str) -> String {
+    const MOST_DIGITS: usize = 20;
+    let (mut written, mut rest) = (String::new(), text);
+    while let Some(start) = rest.find(|each: char| each.is_ascii_digit()) {
+        let (before, from) = rest.split_at(start);
+        let is_over = |each: char| !each.is_ascii_digit() && each != '.';
+        let (digits, after) = from.split_at(from.find(is_over).unwrap_or(from.len()));
+        written += before;
+        match digits.parse::<f64>() {
+            // What is cut off is not known here.
+            Ok(number) if digits.len() > MOST_DIGITS && !after.starts_with('…') => {
+                written += &format!("{number:e}")
+            }
+            _ => written += digits,
+        }
+        rest = after;
+    }
+    written + rest
 }
 
 /// Shorthand for results with a [`FlockError`].

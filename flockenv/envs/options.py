@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
+from numbers import Real
 from typing import Any, NamedTuple, Self
 
 import numpy as np
@@ -136,10 +137,9 @@ def _leader_weights(reward: Sequence[Any]) -> tuple[NDArray[np.float64], dict[st
         if not isinstance(each, Mapping):
             raise TypeError(f"reward must hold dictionaries of weights, not {shown(each)}")
         refuse_unknown(each, TERMS, "part of reward")
-    try:
-        weights = np.array([[each.get(term, 0.0) for term in TERMS] for each in reward], float)
-    except (TypeError, ValueError) as error:
-        raise TypeError(f"reward = {shown(reward)} is not accepted: weights are numbers") from error
+        if not all(isinstance(w, Real) and not isinstance(w, bool) for w in each.values()):
+            raise TypeError(f"reward = {shown(reward)} is not accepted: weights are numbers")
+    weights = np.array([[float(each.get(term, 0.0)) for term in TERMS] for each in reward])
     if not (np.abs(weights) <= 1e6).all():
         raise ParameterError(f"reward = {shown(reward)} is not accepted: weights within 1e6")
     return weights, {name: 1.0 for each in reward for name in each}
@@ -192,17 +192,17 @@ _UNITS = {"s", "sec", "cm", "rad", "hz", "per", "seconds"}
 _ARGUMENTS = ("seed", "render_mode", "render_size", "autoreset_mode", "num_envs", "num_flocks")
 
 
-def _bare(name: object) -> str:
-    """Return a name without its unit, in lower case, letters and digits alone."""
+def _bare(name: object) -> tuple[str, str]:
+    """Return a name in lower case, letters and digits alone, without its unit and with it."""
     parts = re.split(r"[^a-z0-9]+", str(name).casefold())
-    return "".join(part for part in parts if part not in _UNITS)
+    return "".join(part for part in parts if part not in _UNITS), "".join(parts)
 
 
 def _meant(name: object, known: Iterable[str]) -> str | None:
     """Return the known name that another one stands for, None where it may be anything else."""
-    by_bare = {_bare(each): each for each in known}
-    near = nearest(_bare(name), by_bare, cutoff=0.8)
-    return by_bare[near] if near else None
+    by_bare = {bare: each for each in known for bare in _bare(each)}
+    near = [nearest(bare, by_bare, cutoff=0.8) for bare in _bare(name)]
+    return next((by_bare[each] for each in near if each), None)
 
 
 def _refuse_reset_option(name: object, takes: tuple[str, ...]) -> None:

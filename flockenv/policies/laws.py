@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping
 from functools import partial
 from hashlib import sha256
+from numbers import Real
 from typing import Any, Self
 
 import numpy as np
@@ -361,6 +362,12 @@ class LeaningLaw(LawPolicy):
 
 def _json(values: dict[str, Any]) -> str:
     try:
-        return json.dumps(values, allow_nan=False, default=float)
+        return json.dumps(values, allow_nan=False, default=_plain)
     except (TypeError, ValueError) as error:
         raise ParameterError(f"a law of {shown(values)} is not accepted: {error}") from error
+
+
+def _plain(value: Any) -> float:
+    if isinstance(value, Real):
+        return float(value)
+    raise TypeError(f"{shown(value)} is no number")

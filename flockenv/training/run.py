@@ -18,7 +18,8 @@ from stable_baselines3.common.logger import configure
 
 from flockenv._io.atomic_write import atomic_write, remove_leftovers, write_text
 from flockenv._io.interrupts import end_if_interrupted
-from flockenv.errors import FlockError, InUseError, ParameterError
+from flockenv._io.plain_file import open_plain
+from flockenv.errors import FlockError, InUseError, ParameterError, shown
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import FlockMonitor, LeaderVecEnv
 from flockenv.training.settings import TrainingSettings
@@ -130,9 +131,14 @@ def resume(
     model = settings.model(venv)
     with _held(folder):
         try:
-            model.set_parameters(str(path), device="cpu")
-            with zipfile.ZipFile(path) as archive:
-                model.num_timesteps = int(json.loads(archive.read("data"))["num_timesteps"])
+            with open_plain(path) as file:
+                model.set_parameters(cast(str, file), device="cpu")
+                file.seek(0)
+                with zipfile.ZipFile(file) as archive:
+                    done = json.loads(archive.read("data"))["num_timesteps"]
+            if type(done) is not int or done < 0 or done % (model.n_steps * venv.num_envs):
+                raise ValueError(f"{shown(done)} samples are no whole number of rollouts")
+            model.num_timesteps = done
         # What a damaged archive makes zipfile, pickle and torch raise is not one kind of error.
         except Exception as error:
             raise ParameterError(

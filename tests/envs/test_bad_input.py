@@ -47,6 +47,9 @@ def interface(request):
         ({"rudder_lag_s": -1.0}, "rudder_lag_s = -1"),
         ({"rudder_rate_per_s": 0.0}, "rudder_rate_per_s = 0"),
         ({"reward": {"signed_order": float("nan")}}, "signed_order: NaN"),
+        ({"reward": {"signed_order": True}}, "reward must be"),
+        ({"reward": {"signed_order": "1.0"}}, "reward must be"),
+        ({"reward": {"signed_order": 1 + 0j}}, "reward must be"),
         ({"observation": {"neighbors": 65}}, "neighbors = 65"),
         ({"observation": NOTHING}, "observation"),
         ({"n_leaders": 9}, "n_boats > n_leaders"),
@@ -72,6 +75,21 @@ def test_options(interface, options, message):
     with pytest.raises((ParameterError, TypeError)) as caught:
         interface(**options)
     assert message in str(caught.value) or not isinstance(caught.value, ParameterError)
+
+
+@pytest.mark.parametrize("weight", [True, "1.0", b"1.0", None, 1 + 0j, np.bool_(True), [1.0]])
+def test_weights_are_numbers(weight):
+    make = flockenv.LeadersVectorEnv
+    for reward in ({"signed_order": weight}, [{"signed_order": 1.0}, {"signed_order": weight}]):
+        with pytest.raises(TypeError, match="reward"):
+            make(1, **OPTIONS, reward=reward)
+    make(1, **OPTIONS, reward=({"jam": each} for each in (np.float32(0.5), 2)))
+    with pytest.raises((TypeError, ParameterError), match=r"accepted|must be"):
+        flockenv.policies.LeaningLaw("wide", 0.0, {"near": weight})
+    size = len(flockenv.envs.observation.observation_entries())
+    if not isinstance(weight, list):
+        with pytest.raises(ParameterError, match="layer 0 is not accepted"):
+            flockenv.policies.NetworkPolicy([[[weight]] * size], [[0.0]])
 
 
 def test_params_and_preset_exclude_each_other():

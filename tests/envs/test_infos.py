@@ -1,5 +1,6 @@
 """Law: infos hold no NaN. What never came is infinite, what has no mean is left out."""
 
+import json
 import math
 
 import numpy as np
@@ -77,3 +78,25 @@ def test_agents_are_told_of_a_reset_what_one_policy_is():
     assert info.keys() == {"target", "bw_s", "flock_seed"}
     assert each == {"leader_0": info, "leader_1": info}
     assert each["leader_0"] is not each["leader_1"]
+
+
+@pytest.mark.parametrize("seed", [0, 2**63, 2**64 - 1])
+def test_infos_are_plain_and_seeds_are_whole(seed):
+    """JSON takes the infos of one flock; the arrays of many hold seeds up to the last one."""
+    options = {"n_boats": 9, "n_leaders": 2, "episode_s": 6.0, "bw_s": (0.2, 0.4)}
+    env, each = flockenv.LeadersEnv(**options), flockenv.parallel_env(**options)
+    for made, still in ((env, np.zeros(2)), (each, {key: [0.0] for key in each.possible_agents})):
+        _, info = made.reset(seed=seed)
+        infos = [info, *(made.step(still)[-1] for _ in range(60))]
+        again = json.loads(json.dumps(infos))
+        assert again == infos
+        first, last = (
+            (again[0], again[-1]) if made is env else (again[0]["leader_0"], again[-1]["leader_1"])
+        )
+        assert first["flock_seed"] == last["episode_summary"]["flock_seed"] == seed
+    many = flockenv.LeadersVectorEnv(1, **options)
+    _, infos = many.reset(seed=seed)
+    assert infos["flock_seed"].tolist() == [seed]
+    for _ in range(60):
+        infos = many.step(np.zeros((1, 2)))[-1]
+    assert infos["episode_summary"]["flock_seed"].tolist() == [seed]

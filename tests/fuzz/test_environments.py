@@ -1,5 +1,7 @@
 """Law: whatever options and actions an environment is given, a named error or finite numbers."""
 
+import importlib.util
+import re
 import struct
 
 import numpy as np
@@ -10,7 +12,7 @@ from hypothesis.extra import numpy as arrays
 
 import flockenv
 from flockenv import FlockError
-from flockenv.envs.options import _NAMES
+from flockenv.envs.options import _NAMES, RESET_OPTIONS
 
 FUZZ = settings.get_profile("fuzz")
 NAMED = (FlockError, ValueError, TypeError)
@@ -116,6 +118,141 @@ def test_resets(env, seed, options):
         return
     assert np.isfinite(observation).all()
     env.set_state(before)
+
+
+def with_a_slip(name, slip, place):
+    """A name in another case, with another separator or with a letter wrong."""
+    slips = {
+        "as it is": name,
+        "upper": name.upper(),
+        "title": name.title(),
+        "dashes": name.replace("_", "-"),
+        "joined": name.replace("_", ""),
+        "without its unit": re.sub(r"(_per)?_(s|cm|hz)$", "", name.replace("_cm_s", "_cm")),
+        "letter twice": name[: place % len(name)]
+        + name[place % len(name)]
+        + name[place % len(name) :],
+    }
+    return slips[slip]
+
+
+OURS = (*RESET_OPTIONS, *_NAMES)
+SLIPS = ["as it is", "upper", "title", "dashes", "joined", "without its unit", "letter twice"]
+
+
+@pytest.fixture(scope="module")
+def interfaces():
+    """Every interface, with what its reset is given options by."""
+    single, parallel = flockenv.LeadersEnv(**SMALL), flockenv.parallel_env(**SMALL)
+    vector = flockenv.LeadersVectorEnv(2, **SMALL)
+    made = {
+        each: lambda options, each=each: each.reset(options=options)
+        for each in (single, parallel, vector)
+    }
+    if importlib.util.find_spec("stable_baselines3"):
+        leaders = flockenv.sb3.LeaderVecEnv(2, **SMALL)
+        made[leaders] = lambda options: (leaders.set_options(options), leaders.reset())
+    for each in made:
+        each.reset()
+    return made
+
+
+@FUZZ
+@given(st.sampled_from(OURS), st.sampled_from(SLIPS), st.integers(0, 30), st.one_of(anything))
+def test_names_of_options_in_a_reset_act_or_are_refused(interfaces, name, slip, place, value):
+    written = with_a_slip(name, slip, place)
+    for env, reset in interfaces.items():
+        before = env.get_state()
+        try:
+            reset({written: value})
+        except NAMED:
+            assert env.get_state() == before
+            continue
+        assert written in RESET_OPTIONS
+        assert env.get_state() != before
+
+
+@FUZZ
+@given(
+    st.one_of(st.sampled_from(["bw_s", "target", "leader_index", *OURS]), st.text(max_size=8)),
+    anything,
+    st.one_of(st.none(), st.integers(-9, 9), st.lists(st.integers(-9, 9), max_size=4)),
+)
+def test_attributes_act_or_are_refused(interfaces, name, value, indices):
+    env = [*interfaces][-1]
+    if not hasattr(env, "set_attr"):
+        pytest.skip("stable-baselines3 is not installed")
+    before = env.get_state()
+    try:
+        env.set_attr(name, value, indices)
+    except (*NAMED, AttributeError, IndexError):
+        assert env.get_state() == before
+        return
+    assert name in ("bw_s", "target")
+    chosen = env._get_indices(indices)
+    for held in env.get_attr(name, chosen):
+        assert np.array_equal(held, value)
+    env.reset()
+    for episode in env.env_method("episode", indices=chosen):
+        if isinstance(value, int | float):
+            assert episode["bw_s"] == value
+        elif isinstance(value, str) and value in ("cw", "ccw"):
+            assert episode["target"] == value
+    env.set_state(before)
+
+
+@FUZZ
+@given(
+    st.one_of(
+        anything,
+        st.lists(
+            st.tuples(
+                st.one_of(anything, st.floats(0, 3)),
+                st.one_of(anything, st.dictionaries(st.sampled_from(_NAMES), anything, max_size=2)),
+            ),
+            max_size=3,
+        ),
+    ),
+    st.booleans(),
+)
+def test_schedules_act_or_are_refused(schedule, is_generator):
+    parameters = flockenv.FlockParameters(n_boats=4, n_leaders=1, pool="narrow")
+    plain = flockenv.simulate(parameters, 1, 1.0, 2.0)
+    given_once = (
+        (each for each in schedule) if is_generator and type(schedule) is list else schedule
+    )
+    try:
+        run = flockenv.simulate(parameters, 1, 1.0, 2.0, schedule=given_once)
+    except NAMED:
+        return
+    assert len(run) == len(plain)
+    assert np.isfinite(run.pose).all()
+    assert run == flockenv.simulate(parameters, 1, 1.0, 2.0, schedule=schedule)
+
+
+@FUZZ
+@given(
+    st.one_of(
+        anything,
+        st.lists(anything, min_size=3, max_size=3),
+        arrays.arrays(
+            st.one_of(
+                arrays.scalar_dtypes(), arrays.byte_string_dtypes(), arrays.datetime64_dtypes()
+            ),
+            st.sampled_from([(3,), (3, 1), (), (4,)]),
+        ),
+    )
+)
+def test_own_quantities_are_real_numbers_or_refused(values):
+    parameters = flockenv.FlockParameters(n_boats=4, n_leaders=1, pool="narrow")
+    try:
+        run = flockenv.simulate(parameters, 1, 1.0, 2.0, quantities={"own": lambda run: values})
+    except NAMED:
+        return
+    own = run.quantities["own"]
+    assert own.dtype == np.float64
+    assert np.array_equal(own, np.asarray(values).astype(np.float64), equal_nan=True)
+    assert np.asarray(values).dtype.kind in "biuf"
 
 
 def sealed(head: bytes, body: bytes) -> bytes:

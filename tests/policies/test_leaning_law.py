@@ -168,7 +168,7 @@ def test_other_content_is_refused_and_nothing_in_it_is_executed(tmp_path, conten
         (("bath", 0.0, {}), {"gains": GAINS}, "pools wide and narrow"),
         (("wide", 0.0, {}), {"gains": {"gain": 1.0}}, "missing field `backward_gain`"),
         (("wide", "many", {}), {}, "invalid type"),
-        (("wide", {1, 2}, {}), {}, "float"),
+        (("wide", {1, 2}, {}), {}, "is no number"),
     ],
 )
 def test_bad_numbers(arguments, options, message):

@@ -145,7 +145,7 @@ def changed(policy, tmp_path, **entries):
     arrays = read_arrays(tmp_path / "policy.npz")
     header = json.loads(str(arrays["header"]))
     for name, value in entries.items():
-        if name in header:
+        if name in header or isinstance(value, str):
             header[name] = value
         else:
             arrays[name] = value
@@ -162,6 +162,7 @@ def changed(policy, tmp_path, **entries):
         ({"format": "something else"}, "format = 'something else'"),
         ({"weight_1": np.zeros((8, 3))}, "layer 1 has weights"),
         ({"other": np.zeros(3), "another": np.zeros(3)}, "'other' is no array of a network"),
+        ({"pools": "wide"}, "'pools' is no entry of a network's header"),
         ({"activation": "exec"}, "tanh, relu"),
         ({"activation": ["tanh"]}, r"\['tanh'\] is no activation"),
         ({"observation": {"neighbor": 3}}, "neighbor"),

@@ -1,5 +1,7 @@
 """A finished run is stored whole and comes back bit for bit; whatever else lies there is named."""
 
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -174,3 +176,68 @@ def test_the_numbers_belong_to_this_results_version() -> None:
         order = flockenv.simulate(parameters.replace(scheme=scheme), seed=5, duration_s=6.0).order
         assert (order.psi_o[-1], order.phi_o[-1]) == pytest.approx(numbers, abs=1e-6)
     assert run_store.RESULTS_VERSION == 5
+
+
+@pytest.mark.parametrize("keep", KEEP)
+@pytest.mark.parametrize(
+    ("other", "words"),
+    [
+        ({"duration_s": 60.0}, "60 s, not 30 s"),
+        ({"duration_s": 15.0}, "15 s, not 30 s"),
+        ({"sample_hz": 5.0}, "other samples than 10 per second"),
+        ({"sample_hz": 20.0}, "other samples than 10 per second"),
+        ({"sample_hz": 7.0}, "other samples than 10 per second"),
+        ({"policy": "straight ahead"}, "a policy StraightAhead"),
+        ({"policy": "paper's law"}, "a policy SteeringLaw"),
+        ({"policy": "learned"}, "a policy LeaningLaw.* sha256:"),
+        ({"seed": 4}, "seed 4, not 3"),
+    ],
+)
+def test_a_run_of_another_spec_is_not_taken(spec, tmp_path, keep, other, words) -> None:
+    spec = replace(spec, keep=keep, parameters=spec.parameters.replace(n_leaders=2))
+    notes: list[str] = []
+    store = RunStore(tmp_path, notes.append)
+    store.save(spec, execute(replace(spec, **other)))
+    assert store.load(spec) is None
+    assert re.search(words, notes[0])
+    assert run_missing([spec], store, workers=1) == {}
+    assert store.load(spec) == execute(spec)
+    assert len(notes) == 1
+
+
+@pytest.mark.parametrize("other", KEEP)
+@pytest.mark.parametrize("keep", KEEP)
+def test_a_run_of_which_other_things_were_kept_is_not_taken(spec, tmp_path, keep, other) -> None:
+    spec, store = replace(spec, keep=keep), RunStore(tmp_path, lambda line: None)
+    store.save(spec, execute(replace(spec, keep=other)))
+    assert (store.load(spec) is not None) == (keep == other)
+
+
+@pytest.mark.parametrize("duration_s", [0.05, 1.0, 7.0, 30.0, 33.333])
+@pytest.mark.parametrize("sample_hz", [0.3, 1.0, 3.0, 10.0, 33.0, 100.0])
+@pytest.mark.parametrize("keep", KEEP)
+def test_every_run_that_was_kept_is_its_own(spec, tmp_path, keep, sample_hz, duration_s) -> None:
+    spec = replace(spec, keep=keep, sample_hz=sample_hz, duration_s=duration_s)
+    store = RunStore(tmp_path)
+    store.save(spec, execute(spec))
+    assert store.load(spec) == execute(spec)
+
+
+def test_resuming_removes_what_killed_processes_left(spec, tmp_path) -> None:
+    store = RunStore(tmp_path)
+    folder = store.path(spec).parent
+    folder.mkdir(parents=True)
+    (folder / ".0123456789abcdef.tmp").write_bytes(b"half a run")
+    run_missing([spec], store, workers=1)
+    assert [path.name for path in folder.iterdir()] == [store.path(spec).name]
+
+
+def test_failures_hold_no_recordings(spec, tmp_path) -> None:
+    """A motion that leaves its range fails on the way, and its run would stay in memory."""
+    wild = spec.parameters.replace(scheme="moreau", dt_s=0.1, c0=1e6, solver="gauss-seidel")
+    spec = replace(spec, parameters=wild)
+    with pytest.raises(flockenv.SolverError) as raised:
+        execute(spec)
+    assert len(raised.value.recording) > 0
+    failures = run_missing([spec], RunStore(tmp_path), workers=1)
+    assert not hasattr(failures[spec], "recording")

@@ -1,5 +1,6 @@
 """Law: a training that was killed resumes from its last checkpoint, to the same samples."""
 
+import json
 import zipfile
 from pathlib import Path
 
@@ -9,6 +10,8 @@ import torch
 from stable_baselines3 import PPO
 
 from flockenv import InUseError, ParameterError, training
+from flockenv.runs.seeds import POLICY_SEEDS
+from flockenv.sb3 import LeaderVecEnv
 from flockenv.training import Progress, TrainingError, TrainingSettings
 
 
@@ -89,6 +92,55 @@ def test_resuming_executes_nothing_in_a_checkpoint(tiny: TrainingSettings, tmp_p
         for name, content in parts.items():
             archive.writestr(name, content)
     assert training.resume(tmp_path).num_timesteps == 192
+
+
+@pytest.mark.parametrize("samples", [-5, -192, 7, 64.0, True, "192", None, [192]])
+def test_a_checkpoint_after_no_whole_rollouts_is_refused(tiny, tmp_path, samples) -> None:
+    training.train(tiny, tmp_path)
+    path = tmp_path / "checkpoint.zip"
+    with zipfile.ZipFile(path) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    parts["data"] = json.dumps({"num_timesteps": samples}).encode()
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, content in parts.items():
+            archive.writestr(name, content)
+    before = sorted(each.name for each in tmp_path.iterdir())
+    with pytest.raises(ParameterError, match="are no whole number of rollouts"):
+        training.resume(tmp_path)
+    assert sorted(each.name for each in tmp_path.iterdir()) == before
+
+
+def noted(method, given):
+    """The same method, which takes note of what it is given."""
+
+    def called(self, seed=None):
+        given.append(seed)
+        return method(self, seed)
+
+    return called
+
+
+def test_a_resumed_training_meets_other_flocks(tiny, tmp_path, monkeypatch) -> None:
+    """And explores otherwise: the seeds of flocks and of PPO go on with the rollouts."""
+    flocks, own = [], []
+    for kind, name, given in ((LeaderVecEnv, "seed", flocks), (PPO, "set_random_seed", own)):
+        monkeypatch.setattr(kind, name, noted(getattr(kind, name), given))
+    training.train(tiny, tmp_path)
+    trained, own[:] = [each for each in flocks if each is not None][-1], own[-1:]
+    flocks.clear()
+    training.resume(tmp_path, flock_hours=2 * tiny.flock_hours)
+    resumed = [each for each in flocks if each is not None][-1]
+    first = POLICY_SEEDS["training"].seeds(1, tiny.seed)[0]
+    # Three rollouts of two flocks each.
+    assert (trained, resumed) == (first, first + 3 * 2)
+    assert own[-1] == own[0] + 3
+
+
+def test_resuming_removes_what_a_killed_training_left(tiny, tmp_path) -> None:
+    training.train(tiny, tmp_path)
+    (tmp_path / ".0123456789abcdef.tmp").write_bytes(b"half a checkpoint")
+    training.resume(tmp_path)
+    assert not [each for each in tmp_path.iterdir() if each.suffix == ".tmp"]
 
 
 def test_a_checkpoint_of_other_settings_is_refused(tiny: TrainingSettings, tmp_path: Path) -> None:
