@@ -1,7 +1,5 @@
 """Intervals over runs, and statements of the paper judged by them: the lines of ``claims.csv``."""
 
-import csv
-import io
 import math
 import warnings
 from collections.abc import Callable, Iterable, Sequence
@@ -165,29 +163,20 @@ _COLUMNS = (
 def write_claims(options: Options, figure: str, claims: Iterable[Claim]) -> None:
     """Replace a figure's lines of ``claims.csv``."""
     path = options.out / "claims.csv"
-    kept = []
-    if path.exists():
-        with path.open(newline="") as file:
-            kept = [line for line in csv.DictReader(file) if line["figure"] != figure]
-    lines = kept + [
-        dict(
-            zip(
-                _COLUMNS,
-                (
-                    *(figure, each.claim, each.section, each.reading, each.quantity, each.claimed),
-                    *(each.found.runs, *(f"{value:.3g}" for value in each.found)),
-                    *(each.verdict, each.would_decide),
-                ),
-                strict=True,
-            )
-        )
+    lines = [
+        [
+            *(figure, each.claim, each.section, each.reading, each.quantity, each.claimed),
+            *(each.found.runs, *(f"{value:.3g}" for value in each.found)),
+            *(each.verdict, each.would_decide),
+        ]
         for each in claims
     ]
-    file = io.StringIO()
-    writer = csv.DictWriter(file, _COLUMNS, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(sorted(lines, key=lambda line: line["figure"]))
-    write(path, file.getvalue().encode())
+    table = pd.DataFrame(lines, columns=_COLUMNS, dtype=str)
+    if path.exists():
+        others = pd.read_csv(path, dtype=str, keep_default_na=False)
+        table = pd.concat([others[others["figure"] != figure], table])
+    text = table.sort_values("figure", kind="stable").to_csv(index=False, lineterminator="\n")
+    write(path, text.encode())
 
 
 def judging(
@@ -199,9 +188,9 @@ def judging(
     """Return the script of a file that makes, judges and draws the runs of a study."""
 
     def script(options: Options) -> None:
-        table = study.results(options)
-        write_claims(options, figure, judge(table))
-        draw(options, table)
+        if len(table := study.results(options)):
+            write_claims(options, figure, judge(table))
+            draw(options, table)
 
     script.__module__ = judge.__module__
     return script

@@ -12,7 +12,6 @@ from section4 import (
     SETUPS,
     STUDY,
     at,
-    judged,
     over,
     setup,
     within,
@@ -26,7 +25,7 @@ def judge(table: pd.DataFrame) -> Claims:
     claims = Claims("4.3", READING)
     by = {name: setup(table, name) for name in SETUPS}
     free = by[FREE]
-    for name in judged(table):
+    for name in SETUPS:
         runs = by[name]
         high = within(runs, 2.1)
         claims.add(
@@ -47,7 +46,7 @@ def judge(table: pd.DataFrame) -> Claims:
             most=lost[2],
         )
     ways_of = {CCW: "ccw", CW: "cw"}
-    for name in judged(table)[1:]:
+    for name in (CCW, CW):
         way = ways_of[name]
         ways = by[name].groupby("seed")[["cw", "ccw"]].sum()
         ways = ways[ways.sum(axis=1) > 0]

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 from claim import Claims, Interval, bca, judging, mean
-from section4 import CW, FREE, READING, STUDY, VERY_LOW_S, judged, over, setup, words
+from section4 import CW, FREE, READING, SETUPS, STUDY, VERY_LOW_S, over, setup, words
 from study import COLORS, Options, curve, main, picture
 
 
@@ -17,7 +17,7 @@ def share_of_best(runs: pd.DataFrame, least: float, most: float = 9.0) -> Interv
 def judge(table: pd.DataFrame) -> Claims:
     """Judge the three states of figure 11."""
     claims = Claims("4.3", READING)
-    for name in judged(table):
+    for name in SETUPS:
         runs = setup(table, name)
         claims.add(
             "C_v is high at medium noise and vanishes at high noise",
@@ -45,7 +45,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
     """Draw means with intervals."""
     with picture(options, "fig11", width_cm=8.5, height_cm=6.0) as figure:
         axes = figure.subplots()
-        for color, marker, name in zip(COLORS, "osD", judged(table), strict=False):
+        for color, marker, name in zip(COLORS, "osD", SETUPS, strict=False):
             groups = setup(table, name).groupby("bw_s")["c_v"]
             found = [mean(each) for _, each in groups]
             curve(axes, groups.groups, found, color=color, marker=marker, label=name)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from claim import Claims, Interval, bca, fall, judging, mean, unknown
-from density import SETS, order_row
+from noise_makes_motion import SETS, order_row
 from starts import one_jam, rotating
 from study import COLORS, SEEDS, Options, Row, Study, curve, flock, main, picture, seed_of
 
@@ -85,8 +85,10 @@ def design() -> list[Row]:
 
 def measure(row: Row) -> Row:
     """Return the order after the first tenth of a run, and in its second half."""
-    against = row["variant"] == "rotating" and row["n_leaders"] > 0
+    led = row["n_leaders"] > 0
+    against = led and row["variant"] == "rotating"
     parameters = flock(SETS[row["set"]][0] | row, target="ccw" if against else "cw")
+    named = led and row["set"] == "simulation"
     start = STARTS.get(row["variant"])
     seed = seed_of(row)
     run = flockenv.simulate(
@@ -95,7 +97,7 @@ def measure(row: Row) -> Row:
         60.0 * row["minutes"],
         4.0,
         dtype=np.float32,
-        policy=_policy(row),
+        policy=named_policy(row["policy"], row["pool"])() if named else None,
         start=None if start is None else start(parameters, seed).snapshot(),
     )
     found = {}
@@ -105,12 +107,6 @@ def measure(row: Row) -> Row:
         signed = run.analyzed(after).order.series("signed_order", parameters.target)
         found[f"signed{suffix}"] = signed.mean()
     return found
-
-
-def _policy(row: Row) -> Any:
-    if row["n_leaders"] == 0 or row["set"] != "simulation":
-        return None
-    return named_policy(row["policy"], row["pool"])()
 
 
 STUDY = Study("headlines", design, measure, lambda row: row["bw_s"] in (0.0, 0.31, 1.0))

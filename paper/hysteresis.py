@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 import pandas as pd
-from claim import Claims, Interval, bca, judging, mean, unknown
+from claim import Claims, bca, judging, mean
 from fig08 import slope
 from starts import rotating
 from study import COLORS, FIRST_SEED, Options, Row, Study, curve, flock, main, picture
@@ -95,21 +95,17 @@ def judge(table: pd.DataFrame) -> Claims:
         )
         quantity = f"area of a loop {SLOW} times as slow over that of the loop"
         claims.add("A slower loop keeps its area", quantity, kept, least=0.5, n=f"{n:g}")
+    groups, x = [each[:, None] for each in loops.values()], [math.log2(n) for n in loops]
+    if len(loops) < 3:
+        return claims
     claims.add(
         "The loop does not shrink with the size",
         "slope of its area against log2 n",
-        _slope(loops),
+        bca(groups, lambda *drawn: slope(x, [each[..., 0].mean(-1) for each in drawn])),
         least=-0.05,
         n=", ".join(f"{n:g}" for n in loops),
     )
     return claims
-
-
-def _slope(loops: dict[int, np.ndarray]) -> Interval:
-    if len(loops) < 3:
-        return unknown()
-    groups, x = [each[:, None] for each in loops.values()], [math.log2(n) for n in loops]
-    return bca(groups, lambda *drawn: slope(x, [each[..., 0].mean(-1) for each in drawn]))
 
 
 def draw(options: Options, table: pd.DataFrame) -> None:

@@ -1,8 +1,5 @@
 """Readings of Section 5 as a family: where each claim holds, over scheme, noise and tolerance."""
 
-import csv
-import io
-
 import fig14
 import fig15
 import fig16
@@ -30,11 +27,9 @@ def write_table(options: Options, found: dict[str, Claims]) -> None:
             n = claim.reading.partition("n = ")[2]
             key = claim.claim if "at one n" in claim.claim else f"{claim.claim} (n = {n})"
             rows.setdefault(key, {})[name] = claim.verdict
-    file = io.StringIO()
-    writer = csv.DictWriter(file, ["statement", *found], restval="", lineterminator="\n")
-    writer.writeheader()
-    writer.writerows({"statement": key} | row for key, row in sorted(rows.items()))
-    write(options.out / "readings.csv", file.getvalue().encode())
+    lines = [{"statement": key} | row for key, row in sorted(rows.items())]
+    text = pd.DataFrame(lines, columns=["statement", *found]).to_csv(index=False)
+    write(options.out / "readings.csv", text.encode())
 
 
 def draw(options: Options, table: pd.DataFrame) -> None:

@@ -26,14 +26,8 @@ def words(ends: tuple[float, float]) -> str:
 def design() -> list[Row]:
     """Return runs of 8 minutes, the length of the paper's, those without leaders first."""
     return [
-        {
-            "preset": "experiment",
-            "n_leaders": leaders,
-            "target": target,
-            "bw_s": bw_s,
-            "minutes": 8.0,
-            "seed": seed,
-        }
+        {"preset": "experiment", "n_leaders": leaders, "target": target, "bw_s": bw_s}
+        | {"minutes": 8.0, "seed": seed}
         for leaders, target in (SETUPS[name] for name in (FREE, CW, CCW))
         for seed in range(SEEDS)
         for bw_s in LEVELS_S
@@ -61,12 +55,6 @@ def setup(table: pd.DataFrame, name: str) -> pd.DataFrame:
     found = table[(table["n_leaders"] == leaders) & (table["target"] == target)]
     noises = found.groupby("seed")["bw_s"].transform("size")
     return found[noises == noises.max()]
-
-
-def judged(table: pd.DataFrame) -> list[str]:
-    """Return the setups that as many seeds have been run of as of the one with the most."""
-    seeds = {name: setup(table, name)["seed"].nunique() for name in SETUPS}
-    return [name for name, count in seeds.items() if count == max(seeds.values())]
 
 
 def within(runs: pd.DataFrame, least: float, most: float = 9.0) -> pd.DataFrame:

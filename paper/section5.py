@@ -35,36 +35,27 @@ READINGS: dict[str, Row] = {
 }
 """Readings by name, the most decisive first. Tolerance counts in the scheme `paper` alone."""
 
+SERIES = [(n, k) for n in (20, 50) for k in (0, n // 5)]
+"""Numbers of boats and of leaders: the four panels of figures 14 to 16."""
 PRESETS = ("simulation", "paper")
 _DENSITIES = (20, 23, 26, 29, 32, 35, 38, 41, 44, 47, 50)
 _FEW_DENSITIES = (20, 30, 40, 50)
 
 
 def design() -> list[Row]:
-    """Return the presets at every noise and density and the other readings at fewer.
-
-    Figures of 20 boats without leaders and jams of 50 come first, of the presets and then of the
-    tolerances: what the paper's headlines hang on.
-    """
-    rows: list[tuple[int, Row]] = []
+    """Return the presets at every noise and density and the other readings at fewer."""
+    rows: list[Row] = []
     for name, reading in READINGS.items():
         dense = name in PRESETS
         noises = LEVELS_S if dense else (0.0, 0.2, *LEVELS_S[4:9], 1.0, 1.2)
-        points = {(20, 0, b): 0 for b in noises} | {(50, 0, 0.0): 0}
-        points |= {(n, 0, 0.0): 3 for n in (_DENSITIES if dense else _FEW_DENSITIES) if n > 20}
-        points |= {(20, 4, b): 2 for b in noises}
-        points |= {(50, k, b): 4 for k in (0, 10) for b in noises if (k, b) != (0, 0.0)}
-        points[50, 0, 0.0] = 0
-        later = 0 if dense else 1 if "cm" in name or name == "paper, white" else 10
+        points = [(n, k, b) for n, k in SERIES for b in noises]
+        points += [(n, 0, 0.0) for n in (_DENSITIES if dense else _FEW_DENSITIES) if 20 < n < 50]
         rows += [
-            (
-                later + tier,
-                {**reading, "n_boats": n, "n_leaders": k, "bw_s": b, "minutes": 30.0, "seed": i},
-            )
-            for (n, k, b), tier in points.items()
-            for i in range(SEEDS)
+            {**reading, "n_boats": n, "n_leaders": k, "bw_s": b, "minutes": 30.0, "seed": seed}
+            for n, k, b in points
+            for seed in range(SEEDS)
         ]
-    return [row for _, row in sorted(rows, key=lambda each: each[0])]
+    return rows
 
 
 def measure(row: Row) -> Row:
@@ -110,10 +101,6 @@ class Evidence:
         if len(noises) < 4 or noises[-1] < HIGH_S:
             return unknown()
         return critical_bw(noises, self.groups(n, k, "psi_o", "abs_m"))
-
-
-SERIES = [(n, k) for n in (20, 50) for k in (0, n // 5)]
-"""Numbers of boats and of leaders: the four panels of figures 14 to 16."""
 
 
 def draw_means(

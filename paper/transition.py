@@ -149,22 +149,16 @@ def answers(found: Mapping[str, Claims]) -> pd.DataFrame:
         for each in claims:
             cells.setdefault(each.reading.partition(", n = ")[0], []).append(each)
         for cell, judged in cells.items():
-            largest = max((_boats(each) for each in judged if _is_share(each)), default=0)
-            asked = [each for each in judged if not _is_share(each) or _boats(each) == largest]
+            shares = [each for each in judged if each.quantity.startswith("share")]
+            boats = [int(each.reading.rpartition("n = ")[2]) for each in shares]
+            small = [each for each, n in zip(shares, boats, strict=True) if n < max(boats)]
+            asked = [each for each in judged if each not in small]
             refutes = [each for each in asked if not each.quantity.startswith("drift")]
             answer = "for" if all(each.verdict == HOLDS for each in asked) else "open"
             line = lines.setdefault(cell, {"cell": cell})
             against = any(each.verdict == FAILS for each in refutes)
             line[f"{rule} rule"] = "against" if against else answer
     return pd.DataFrame(lines.values())
-
-
-def _is_share(claim: Claim) -> bool:
-    return claim.quantity.startswith("share")
-
-
-def _boats(claim: Claim) -> int:
-    return int(claim.reading.rpartition("n = ")[2].rpartition(", ")[2])
 
 
 def draw(options: Options, table: pd.DataFrame) -> None:

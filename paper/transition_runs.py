@@ -35,39 +35,21 @@ def outer_radius_cm(n_boats: int, coverage: float) -> float:
 
 
 def design() -> list[Row]:
-    """Return the map: the literal noise and the extremes of c4 first, small flocks first.
+    """Return the map, small flocks first.
 
-    At a coverage of 0.5 rotation ends within minutes, so that fewer boats at the wall come next.
-    Between 0.3 and 0.5 the state that lasts changes, so that two more coverages come there at the
-    lowest noise, as many runs of them as at 0.3, where most runs of both starts last. Between 0.2
-    and 0.3 neither state is shown to last in 400 boats, so that 0.25 comes with them. Then come the
-    largest flocks at the lowest noise, where both states may last longest, then flocks of 400 where
-    those of 200 leave the answer open, and the rest of the map.
+    Between 0.25 and 0.4 at the lowest noise, and at 0.3 and c4 = 0.03, both states may last in
+    flocks of up to 400: there are more runs. The literal noise and a finer step are run at 0.5.
     """
-    literal = {"scheme": "paper", "noise_scheme": "per-step", "dt_s": 0.02}
+    literal = {"scheme": "paper", "noise_scheme": "per-step", "dt_s": 0.02, "c4": 0.1}
     white = {"scheme": "leapfrog", "noise_scheme": "white", "dt_s": 0.1}
-    first = [(n, 0.5, white | {"c4": c4}) for c4 in C4[:3] for n in (100, 200)]
-    second = [(n, 0.5, literal | {"c4": 0.1}) for n in (100, 200)]
-    less = [
-        (n, share, white | {"c4": c4}) for share in (0.3, 0.2) for c4 in C4[:3] for n in (100, 200)
-    ]
-    both = [(n, 0.3, white | {"c4": c4}) for c4 in (C4[0], C4[2]) for n in (400, 200, 100)]
-    third = [(400, 0.5, white | {"c4": c4}) for c4 in C4[:3]]
-    shares = (0.4, 0.35, 0.25)
-    between = [(n, share, white | {"c4": C4[0]}) for share in shares for n in (100, 200, 400)]
-    largest = [(800, share, white | {"c4": C4[0]}) for share in (0.25, 0.3, 0.35, 0.2, 0.4, 0.5)]
-    left_open = [(400, 0.4, white | {"c4": c4}) for c4 in (0.03, 0.02)]
-    rest = [
+    cells = [
         (n, coverage, white | {"c4": c4})
         for n in (100, 200, 400, 800)
-        for coverage in COVERAGES
-        for c4 in C4
+        for coverage in (*COVERAGES, 0.35, 0.25)
+        for c4 in (C4 if coverage in COVERAGES else C4[:1])
     ]
-    finer = [(n, 0.5, white | {"c4": C4[0], "dt_s": 0.02}) for n in (100, 200)]
-    cells: list[tuple[int, float, Row]] = []
-    for cell in first + second + less + between + both + third + finer + largest + left_open + rest:
-        if cell not in cells:
-            cells.append(cell)
+    finer = white | {"c4": C4[0], "dt_s": 0.02}
+    cells += [(n, 0.5, noise) for noise in (literal, finer) for n in (100, 200)]
     return [
         {
             **noise,
@@ -78,9 +60,14 @@ def design() -> list[Row]:
             "seed": seed,
         }
         for n, coverage, noise in cells
-        for seed in range(MORE_RUNS if (n, coverage, noise) in both + between else RUNS)
+        for seed in range(MORE_RUNS if _both_may_last(n, coverage, noise["c4"]) else RUNS)
         for start in STARTED
     ]
+
+
+def _both_may_last(n_boats: int, coverage: float, c4: float) -> bool:
+    near = 0.25 <= coverage <= 0.4 if c4 == C4[0] else (coverage, c4) == (0.3, 0.03)
+    return near and n_boats <= 400
 
 
 def measure(row: Row) -> Row:

@@ -32,16 +32,8 @@ def design() -> list[Row]:
             cells.append((n_boats, NOISES_S[0], leaders, policy, 0))
         cells.append((n_boats, NOISES_S[0], 0, LAW, 0))
     return [
-        {
-            "n_boats": n_boats,
-            "bw_s": bw_s,
-            "leaders": leaders,
-            "policy": policy,
-            "against": against,
-            "dt_s": 0.05,
-            "minutes": 24.0,
-            "seed": seed,
-        }
+        {"n_boats": n_boats, "bw_s": bw_s, "leaders": leaders, "policy": policy}
+        | {"against": against, "dt_s": 0.05, "minutes": 24.0, "seed": seed}
         for first, last in ((0, RUNS), (RUNS, MORE_RUNS))
         for n_boats, bw_s, leaders, policy, against in cells
         if last == RUNS or n_boats == DENSITY_BOATS
