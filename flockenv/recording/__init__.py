@@ -2,5 +2,14 @@
 
 from flockenv.recording.checks import PHASES, PRECISIONS, checked_functions
 from flockenv.recording.recording import DISCARDED_SHARE, Recording
+from flockenv.recording.stored import LayoutError, RecordingWarning
 
-__all__ = ["DISCARDED_SHARE", "PHASES", "PRECISIONS", "Recording", "checked_functions"]
+__all__ = [
+    "DISCARDED_SHARE",
+    "PHASES",
+    "PRECISIONS",
+    "LayoutError",
+    "Recording",
+    "RecordingWarning",
+    "checked_functions",
+]

@@ -26,7 +26,7 @@ from flockenv.recording.checks import (
     checked_functions,
     own_series,
 )
-from flockenv.recording.stored import ARRAYS, OPTIONAL, arrays_of, fields_from
+from flockenv.recording.stored import ARRAYS, OPTIONAL, LayoutError, arrays_of, fields_from
 from flockenv.recording.tables import dataset_of, table_of
 
 if TYPE_CHECKING:
@@ -131,6 +131,8 @@ class Recording:
         for each in RECORDED:
             values = getattr(self.order, each.name)
             undefined = normal_boats < each.least_boats
+            # A column that is younger than the file of a recording without poses.
+            undefined |= not with_poses and bool(np.isnan(values).all())
             options = {"gaps": True} if tracked else {"all_nan": undefined}
             check_array(f"order.{each.name}", values, times, PRECISIONS[:1], **options)
         object.__setattr__(self, "order", self.order.at(slice(None), self.time_s))
@@ -376,6 +378,10 @@ class Recording:
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """Read a recording; nothing in the file is ever executed.
 
+        A quantity that the file lacks is computed from the poses, and is NaN where none were kept.
+        Arrays and parameters that this flockenv does not know are dropped with a
+        `RecordingWarning`.
+
         Raises
         ------
         OSError
@@ -387,4 +393,5 @@ class Recording:
         try:
             return cls(**fields_from(arrays))
         except (ParameterError, TypeError) as error:
-            raise ParameterError(f"{path} is no recording of flockenv: {error}") from error
+            kind = LayoutError if isinstance(error, LayoutError) else ParameterError
+            raise kind(f"{path} is no recording of flockenv: {error}") from error

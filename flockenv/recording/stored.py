@@ -1,14 +1,20 @@
-"""The file of a recording: its arrays."""
+"""The file of a recording: its arrays, each by its name.
 
-from collections.abc import Mapping
+A quantity that a file lacks is computed from the poses, and what is unknown is dropped with a word:
+files of builds with one quantity, one parameter or one array more or less are read.
+"""
+
+import warnings
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from flockenv._io.toml import read_toml
 from flockenv.errors import ParameterError
 from flockenv.flock import ContactSeries
-from flockenv.order import ORDER, OrderSeries
+from flockenv.order import ORDER, OrderSeries, order_series
 from flockenv.parameters import FlockParameters
 from flockenv.recording.checks import CONTACTS, PRECISIONS, TIMES, check_array
 
@@ -20,6 +26,15 @@ FORMAT = "flockenv recording 1"
 """What the file of a recording says that it is."""
 
 _OWN = "quantity_"
+_TEXTS = ("format", "version", "parameters", "policy")
+
+
+class RecordingWarning(UserWarning):
+    """A file of a recording has more or less than this flockenv knows; it was read all the same."""
+
+
+class LayoutError(ParameterError):
+    """A whole file of a recording lacks what cannot be computed, or has another format."""
 
 
 def arrays_of(fields: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
@@ -44,28 +59,29 @@ def arrays_of(fields: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
 
 def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
     """Return the fields of a recording from all arrays of its file."""
-    texts = ("format", "version", "parameters", "policy")
-    expected = {*ARRAYS, *(f"order_{name}" for name in ORDER), *texts, "seed", "duration_s"}
+    form = arrays.get("format")
+    if form is not None and str(form) != FORMAT:
+        raise LayoutError(f"format = {str(form)!r} is not accepted: {FORMAT!r}")
+    needed = [*ARRAYS, *_TEXTS, "seed", "duration_s"]
+    with_contacts = [f"contacts_{name}" for name in CONTACTS]
+    has_contacts = not arrays.keys().isdisjoint(with_contacts)
+    needed += with_contacts if has_contacts else []
+    if missing := [name for name in needed if name not in arrays]:
+        raise LayoutError(f"these arrays are missing: {', '.join(missing)}")
     own = [name for name in arrays if name.startswith(_OWN)]
-    expected |= ({*OPTIONAL} & arrays.keys()) | {*own}
-    with_contacts = {f"contacts_{name}" for name in CONTACTS}
-    has_contacts = not with_contacts.isdisjoint(arrays)
-    expected |= with_contacts if has_contacts else set()
-    if arrays.keys() != expected:
-        different = ", ".join(sorted(arrays.keys() ^ expected))
-        raise ParameterError(f"these arrays are missing or unknown: {different}")
-    if any(arrays[name].ndim or arrays[name].dtype.kind != "U" for name in texts):
-        raise ParameterError(f"{', '.join(texts)} must each be one string")
+    orders = [f"order_{name}" for name in ORDER]
+    _say_dropped("arrays", arrays.keys() - {*needed, *orders, *OPTIONAL, *own})
+    if any(arrays[name].ndim or arrays[name].dtype.kind != "U" for name in _TEXTS):
+        raise ParameterError(f"{', '.join(_TEXTS)} must each be one string")
     check_array("seed", arrays["seed"], (), (np.dtype(np.uint64),))
     check_array("duration_s", arrays["duration_s"], (), PRECISIONS[:1])
-    form, version, stored, policy = (str(arrays[name]) for name in texts)
-    if form != FORMAT:
-        raise ParameterError(f"format = {form!r} is not accepted: {FORMAT!r}")
-    contacts = (arrays[f"contacts_{name}"] for name in CONTACTS) if has_contacts else None
+    version, stored, policy = (str(arrays[name]) for name in _TEXTS[1:])
+    parameters = _parameters(stored)
+    contacts = (arrays[name] for name in with_contacts) if has_contacts else None
     return {
         **{name: arrays[name] for name in ARRAYS},
-        "order": OrderSeries(*(arrays[f"order_{name}"] for name in ORDER)),
-        "parameters": FlockParameters.from_toml(stored),
+        "order": _order(arrays, parameters),
+        "parameters": parameters,
         "seed": int(arrays["seed"]),
         "version": version,
         "policy": policy or None,
@@ -74,3 +90,35 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
         **{name: arrays.get(name) for name in OPTIONAL},
         "contacts": None if contacts is None else ContactSeries(*contacts),
     }
+
+
+def _say_dropped(kind: str, names: Iterable[str]) -> None:
+    if dropped := ", ".join(sorted(names)):
+        warnings.warn(
+            f"the recording has {kind} that this flockenv does not know, and does not keep: "
+            f"{dropped}",
+            RecordingWarning,
+            stacklevel=5,
+        )
+
+
+def _parameters(toml: str) -> FlockParameters:
+    values = read_toml(toml, "the text of parameters")
+    known = FlockParameters.__dataclass_fields__
+    _say_dropped("parameters", values.keys() - known.keys())
+    return FlockParameters(**{name: value for name, value in values.items() if name in known})
+
+
+def _order(arrays: Mapping[str, NDArray[Any]], parameters: FlockParameters) -> OrderSeries:
+    """Return the quantities, those that are missing computed, or NaN where no poses were kept."""
+    stored = {name: arrays[f"order_{name}"] for name in ORDER if f"order_{name}" in arrays}
+    if missing := [name for name in ORDER if name not in stored]:
+        pose, velocity = arrays["pose"], arrays["velocity"]
+        k, undefined = parameters.n_leaders, np.full(arrays["time_s"].size, np.nan)
+        # Other shapes are refused where the recording is made.
+        if pose.ndim == 3 and pose.shape == velocity.shape and pose.shape[1] > k:
+            computed = order_series(pose[:, k:], velocity[:, k:])
+            stored |= {name: getattr(computed, name) for name in missing}
+        else:
+            stored |= dict.fromkeys(missing, undefined)
+    return OrderSeries(**stored)

@@ -15,6 +15,8 @@ from flockenv.policies.registry import EVERY_SUBSTEP, POLICIES, POOL_POLICIES
 from flockenv.recording import Recording
 from flockenv.simulation import simulate
 
+_DEFAULTS = FlockParameters().to_dict()
+
 KEEP = ("window", "order", "poses")
 """What can be stored of a run: order parameters of the samples in the analysis window after the
 first tenth; of all samples; or these and all poses and velocities."""
@@ -62,9 +64,14 @@ class RunSpec:
             object.__setattr__(self, name, value)
 
     def to_json(self) -> str:
-        """Return the spec as JSON with sorted keys: equal specs, equal text."""
-        plain = {each.name: getattr(self, each.name) for each in fields(self)}
-        text = json.dumps(plain | {"parameters": self.parameters.to_dict()})
+        """Return the spec as JSON: equal specs, equal text.
+
+        What has its default is left out, so that one field more gives no run another text.
+        """
+        given = {each.name: (getattr(self, each.name), each.default) for each in fields(self)}
+        plain = {name: value for name, (value, default) in given.items() if value != default}
+        changed = self.parameters.to_dict().items() - _DEFAULTS.items()
+        text = json.dumps(plain | {"parameters": dict(changed)}, sort_keys=True)
         # -0.0 and 0.0 are equal, and have one text.
         return json.dumps(json.loads(text, parse_float=lambda number: float(number) + 0.0))
 

@@ -14,7 +14,7 @@ from flockenv._io.atomic_write import remove_leftovers
 from flockenv._io.interrupts import end_if_interrupted
 from flockenv.errors import FlockError, ParameterError
 from flockenv.policies.registry import named_policy, policy_name
-from flockenv.recording import Recording
+from flockenv.recording import LayoutError, Recording
 from flockenv.runs.executors import Engine, finished, threads
 from flockenv.runs.spec import RunSpec, execute
 
@@ -81,7 +81,8 @@ class RunStore:
     def load(self, spec: RunSpec) -> Recording | None:
         """Return the stored run of a spec, or None if there is none that can be used.
 
-        A StorageError names a file that is there but can neither be read nor renamed.
+        A StorageError names a file that is there but can neither be read nor renamed, and a
+        ParameterError a whole file that lacks an array or has another format: it stays as it is.
         """
         path = self.path(spec)
         if not path.exists():
@@ -90,6 +91,8 @@ class RunStore:
             run = Recording.load(path)
             if difference := _difference(run, spec):
                 raise ParameterError(f"{path} holds another run than its name says: {difference}")
+        except LayoutError:
+            raise
         except ParameterError as error:
             aside = path.with_suffix(".damaged")
             path.replace(aside)

@@ -106,9 +106,55 @@ def test_a_file_of_this_version_is_read_and_written_as_the_same_arrays(tmp_path)
             np.testing.assert_array_equal(before[name], after[name], strict=True)
 
 
+def test_a_quantity_that_is_missing_is_computed_from_the_poses():
+    for dtype in ("float64", "float32"):
+        run = simulate(PARAMETERS, 3, 2.0, dtype=dtype)
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "run.npz")
+            run.save(path)
+            with np.load(path) as arrays:
+                left = {name: array for name, array in arrays.items() if "nematic" not in name}
+            np.savez(path, **left)
+            read = Recording.load(path)
+        exact = {"float64": 1e-12, "float32": 1e-5}[dtype]
+        assert read.order.nematic == pytest.approx(run.order.nematic, abs=exact)
+        assert np.array_equal(read.order.psi_o, run.order.psi_o)
+
+
+def test_without_poses_a_quantity_that_is_missing_is_undefined():
+    columns = {"order_nematic": None, "pose": RUN.pose[:, :0], "velocity": RUN.velocity[:, :0]}
+    read = load(with_arrays(**columns))
+    assert np.isnan(read.order.nematic).all()
+    assert np.array_equal(read.order.psi_o, RUN.order.psi_o)
+    # What is there may not be undefined.
+    half = np.where(np.arange(11) > 5, np.nan, RUN.order.nematic)
+    with pytest.raises(ParameterError, match=r"order\.nematic must be finite"):
+        load(with_arrays(**{**columns, "order_nematic": half}))
+
+
+def test_what_is_unknown_is_dropped_with_a_word():
+    toml = PARAMETERS.to_toml() + "gravity = 9.81\n"
+    later = with_arrays(order_spin=np.zeros(11), extra=np.zeros(3), parameters=np.array(toml))
+    with pytest.warns(flockenv.recording.RecordingWarning) as words:
+        assert load(later) == RUN
+    assert [str(each.message).rsplit(": ")[1] for each in words] == ["extra, order_spin", "gravity"]
+
+
+def test_a_parameter_that_is_missing_has_its_default():
+    lines = [line for line in PARAMETERS.to_toml().splitlines() if not line.startswith("c4 ")]
+    assert len(lines) == len(PARAMETERS.to_dict()) - 1
+    assert load(with_arrays(parameters=np.array("\n".join(lines)))) == RUN
+
+
+def test_what_cannot_be_computed_is_named_where_it_is_missing():
+    with pytest.raises(flockenv.recording.LayoutError, match="arrays are missing: pose, seed"):
+        load(with_arrays(pose=None, seed=None))
+    with pytest.raises(flockenv.recording.LayoutError, match="format = 'flockenv recording 9'"):
+        load(with_arrays(format=np.array("flockenv recording 9"), pose=None))
+
+
 @pytest.mark.parametrize("change", [
     {"pose": None},
-    {"extra": np.zeros(3)},
     {"seed": np.array(-1)},
     {"seed": np.array([1, 2], np.uint64)},
     {"format": np.array("flockenv recording 4")},
@@ -120,8 +166,12 @@ def test_a_file_of_this_version_is_read_and_written_as_the_same_arrays(tmp_path)
     {"parameters": np.array("n_boat = 5")},
     {"parameters": np.array("{")},
     {"pose": RUN.pose[:, :3]},
+    {"pose": np.zeros(3), "order_nematic": None},
+    {"pose": np.array(["a"]), "order_nematic": None},
+    {"time_s": np.zeros(()), "order_nematic": None},
     {"order_psi_o": np.array(["a"] * 11)},
 ])  # fmt: skip
+@pytest.mark.filterwarnings("ignore::flockenv.recording.RecordingWarning")
 def test_files_of_something_else_are_refused(change):
     with pytest.raises(ParameterError, match=r"run\.npz is no recording of flockenv"):
         load(with_arrays(**change))

@@ -1,17 +1,22 @@
 """A finished run is stored whole and comes back bit for bit; whatever else lies there is named."""
 
+import json
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import flockenv
 from flockenv.order import ORDER
+from flockenv.recording import RecordingWarning
 from flockenv.runs import store as run_store
 from flockenv.runs.spec import KEEP, RunSpec, execute
 from flockenv.runs.store import RunStore, StorageError, StoreWarning, run_missing
+from flockenv.runs.sweep import summary
 
 
 @pytest.fixture
@@ -77,6 +82,51 @@ def test_damage_is_named_and_kept(spec: RunSpec, tmp_path: Path, damage: str) ->
     assert store.path(spec).with_suffix(".damaged").read_bytes() == broken
     assert run_missing([spec], store) == {}
     assert store.path(spec).read_bytes() == whole
+
+
+def changed(path: Path, change: Callable[[dict[str, Any]], Any]) -> bytes:
+    """Change the arrays of a stored run, and return the bytes of the file."""
+    with np.load(path) as arrays:
+        stored = dict(arrays)
+    change(stored)
+    np.savez(path, **stored)
+    return path.read_bytes()
+
+
+@pytest.mark.parametrize("keep", KEEP)
+def test_runs_with_more_or_less_are_read_and_stay(spec: RunSpec, tmp_path: Path, keep: str) -> None:
+    """A build with one quantity more or less resumes from the runs of another."""
+    store, spec = RunStore(tmp_path), replace(spec, keep=keep)
+    store.save(spec, execute(spec))
+    less = changed(store.path(spec), lambda arrays: arrays.pop("order_nematic"))
+    assert run_missing([spec], store) == {}
+    run = store.load(spec)
+    assert run is not None
+    assert np.isnan(run.order.nematic).all() == (keep != "poses")
+    assert np.isnan(summary(run)["nematic_mean"]) == (keep != "poses")
+    assert store.path(spec).read_bytes() == less
+    more = changed(store.path(spec), lambda arrays: arrays.update(order_spin=arrays["time_s"]))
+    with pytest.warns(RecordingWarning, match="order_spin"):
+        assert run_missing([spec], store) == {}
+    assert store.path(spec).read_bytes() == more
+
+
+def test_a_run_that_lacks_what_cannot_be_computed_is_named_and_stays(
+    spec: RunSpec, tmp_path: Path
+) -> None:
+    store = RunStore(tmp_path)
+    store.save(spec, execute(spec))
+    stored = changed(store.path(spec), lambda arrays: arrays.pop("phase"))
+    for attempt in (lambda: store.load(spec), lambda: run_missing([spec], store)):
+        with pytest.raises(flockenv.ParameterError, match=f"{spec.key}.*missing: phase"):
+            attempt()
+    assert store.path(spec).read_bytes() == stored
+
+
+def test_a_key_holds_what_differs_from_the_defaults(spec: RunSpec) -> None:
+    """One parameter more, at its default, gives no stored run another name."""
+    parameters = {"n_boats": 6, "pool": "narrow"}
+    assert json.loads(spec.to_json()) == {"parameters": parameters, "seed": 3, "duration_s": 30.0}
 
 
 @pytest.mark.parametrize("name", ["RESULTS_VERSION", "__version__"])
