@@ -50,6 +50,7 @@
 
 pub mod analysis;
 pub mod boat;
+mod by_name;
 pub mod clock;
 pub mod contact;
 #[cfg(feature = "draw")]

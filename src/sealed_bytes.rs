@@ -1,9 +1,12 @@
 //! States as bytes that show when they are damaged: 8 bytes magic, whose last one is the format's version, 8 bytes
-//! checksum (CRC-32, little-endian), then the state in postcard encoding.
+//! checksum (CRC-32, little-endian), then the state in postcard encoding. What the tables of parameters, options,
+//! reward terms, blocks and quantities declare is stored by name; the rest by its place, so that the version rises with
+//! every change of it.
 
 use crate::error::{FlockError, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use std::cell::Cell;
 
 /// What a stored state of some kind and version starts with.
 pub(crate) type Magic = [u8; 8];
@@ -32,16 +35,37 @@ pub(crate) fn unseal<T: DeserializeOwned>(magic: &Magic, bytes: &[u8]) -> Result
     let Some((found, rest)) = bytes.split_first_chunk::<8>() else {
         return refuse("the bytes are too short to be a snapshot");
     };
-    let why = "the bytes are no flockenv snapshot of this kind and format";
-    FlockError::unless_fitting(found == magic, why)?;
+    let ([kind @ .., format], [own_kind @ .., own_format]) = (found, magic);
+    let why = "the bytes are no flockenv snapshot of this kind";
+    FlockError::unless_fitting(kind == own_kind, why)?;
+    if format != own_format {
+        let [format, own] = [format, own_format].map(|format| char::from(*format).escape_debug());
+        return refuse(&format!(
+            "it has format {format}, and this flockenv reads format {own}"
+        ));
+    }
     let Some((sum, body)) = rest.split_first_chunk::<8>() else {
         return refuse("the snapshot is cut off");
     };
     let why = "the snapshot is damaged or cut off (checksum differs)";
     FlockError::unless_fitting(u64::from_le_bytes(*sum) == crc_32(body), why)?;
+    REASON.take();
     postcard::from_bytes(body).map_err(|error| {
-        FlockError::Snapshot(format!("the snapshot's content is not readable: {error}"))
+        let why = || format!("the snapshot's content is not readable: {error}");
+        FlockError::Snapshot(REASON.take().unwrap_or_else(why))
     })
+}
+
+thread_local! {
+    /// Why content was refused: postcard's errors drop the words that they are made of.
+    static REASON: Cell<Option<String>> = const { Cell::new(None) };
+}
+
+/// The error of content that is readable and refused, whose words [`unseal`] passes on.
+pub(crate) fn refused<E: serde::de::Error>(why: String) -> E {
+    let error = E::custom(&why);
+    REASON.set(Some(why));
+    error
 }
 
 /// Enough to detect damage, no protection against intent.

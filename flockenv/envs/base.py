@@ -21,11 +21,11 @@ class Resumable:
 
     def get_state(self) -> bytes:
         """Return everything that the future depends on, as bytes."""
-        return self._batch.to_bytes()
+        return self._batch.core.to_bytes()
 
     def set_state(self, state: bytes) -> Any:
         """Continue from `get_state` of an environment with the same options, bit for bit."""
-        self._batch.restore(state)
+        self._batch.core.restore(state)
 
     def clone(self) -> Self:
         """Return an independent copy that continues with the same bits."""
@@ -53,7 +53,8 @@ class ManyFlocks(Resumable):
     def order_parameters(self) -> NDArray[np.float64]:
         """Return order parameters of the normal boats now.
 
-        Shape (flocks, 6): the fields of `OrderParameters`, in its order.
+        Shape (flocks, quantities): the fields of `OrderParameters`, in its order; NaN where a flock
+        has no normal boat.
         """
         return self._batch.core.order_parameters()
 

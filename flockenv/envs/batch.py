@@ -31,8 +31,6 @@ class LeaderBatch:
         self.leaders = tuple(leaders)
         self._own_reward = options.own_reward
         self._flock_of_row = np.repeat(np.arange(self.num_flocks), self.leaders)
-        #: To each leader in its episode, where rewards are not the core's.
-        self._paid = np.zeros(len(self._flock_of_row))
         self.state_space = state_space(options.parameters.n_boats)
         self.flock_feature_space = flock_feature_space()
         #: Numbers in an observation, control steps in an episode and from one decision to the next.
@@ -62,7 +60,6 @@ class LeaderBatch:
                 seed = new_seed()
             requests[flock] = {**per_flock[flock], "seed": seed}
         self.core.reset(requests)
-        self._paid[chosen[self._flock_of_row]] = 0.0
 
     def _per_flock(self, options: Mapping[str, Any]) -> list[dict[str, Any]]:
         """Options for each flock: a list has one entry for each, anything else holds for all."""
@@ -92,30 +89,15 @@ class LeaderBatch:
             return self.core.step(actions)
         starts = ~np.array(self.running())
         observations, _, truncated = self.core.step(actions)
-        if callable(self._own_reward):
-            rewards = self._rewards(self._own_reward(env), precision)
-        else:
-            rewards = self._weighted(self._own_reward, truncated)
+        rewards = self._rewards(self._own_reward(env), precision)
         # A step that only starts the next episode is worth nothing.
-        rewards[starts[self._flock_of_row]] = self._paid[starts[self._flock_of_row]] = 0.0
-        self._paid += rewards
+        rewards[starts[self._flock_of_row]] = 0.0
+        self.core.pay(rewards)
         return observations, rewards, truncated
 
     def running(self) -> list[bool]:
         """Return which flocks have an episode under way."""
         return [self.core.is_running(flock) for flock in range(self.num_flocks)]
-
-    def _weighted(
-        self, weights: NDArray[np.float64], truncated: NDArray[np.bool_]
-    ) -> NDArray[np.float64]:
-        """Return the weighted sums of leaders with weights of their own, over the decision."""
-        last = self.episode_steps % self.period_steps or self.period_steps
-        steps = np.where(truncated, last, self.period_steps)[self._flock_of_row]
-        horizon_s = self.settings["reward_horizon_s"]
-        share = 1.0 if horizon_s is None else 1.0 / (horizon_s * self.settings["control_hz"])
-        each = np.concatenate([weights[:leaders] for leaders in self.leaders])
-        sums: NDArray[np.float64] = (self.core.reward_terms() * each).sum(axis=1)
-        return share * steps * sums
 
     def _rewards(self, returned: Any, precision: DTypeLike) -> NDArray[np.float64]:
         rows = len(self._flock_of_row)
@@ -136,19 +118,6 @@ class LeaderBatch:
             )
         return np.asarray(found).ravel()
 
-    def to_bytes(self) -> bytes:
-        """Return everything that the future depends on: the core's bytes, then what was paid."""
-        return self.core.to_bytes() + (b"" if self._own_reward is None else self._paid.tobytes())
-
-    def restore(self, state: bytes) -> None:
-        """Continue from the bytes of a batch with the same options."""
-        if self._own_reward is None or not isinstance(state, bytes):
-            self.core.restore(state)
-            return
-        end = len(state) - self._paid.nbytes
-        self.core.restore(state[: max(0, end)])
-        self._paid = np.frombuffer(state, np.float64, offset=end).copy()
-
     def flock(self, flock: int) -> Flock:
         """Return a copy of a flock in its present state."""
         return Flock.of(self.core.flock(flock))
@@ -167,8 +136,6 @@ class LeaderBatch:
         summary = self.core.finished(flock)
         if summary is None:
             return {}
-        if self._own_reward is not None:
-            summary["total_reward"] = float(self._paid[self._flock_of_row == flock].mean())
         return {"episode_summary": summary}
 
     def reward_terms(self) -> dict[str, NDArray[np.float64]]:

@@ -1,13 +1,11 @@
 """Options of the environments: one flat set of names, checked once, for all interfaces."""
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields
-from numbers import Real
 from typing import Any, NamedTuple, Self
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from flockenv import _core
 from flockenv._io.arguments import once
@@ -16,8 +14,6 @@ from flockenv.errors import (
     UnknownOptionError,
     hint,
     nearest,
-    refuse_unknown,
-    shown,
 )
 from flockenv.parameters import FlockParameters
 
@@ -85,8 +81,8 @@ class EnvOptions:
 
     parameters: FlockParameters
     settings: dict[str, Any]
-    #: A function of the environment, or weights (leaders, terms), instead of the core's rewards.
-    own_reward: Callable[[Any], ArrayLike] | NDArray[np.float64] | None = None
+    #: A function of the environment, instead of the core's rewards.
+    own_reward: Callable[[Any], ArrayLike] | None = None
 
     @classmethod
     def parse(cls, options: Mapping[str, Any], *, takes_function: bool = False) -> Self:
@@ -105,14 +101,12 @@ class EnvOptions:
         reward = given.get("reward")
         if takes_function and callable(reward):
             own_reward, given["reward"] = reward, {}
-        elif isinstance(reward, list | tuple):
-            own_reward, given["reward"] = _leader_weights(reward)
         settings = {name: given.pop(name) for name in _SETTINGS if name in given}
         if isinstance(given.get("bw_s"), tuple | list):
             settings["bw_s"] = tuple(given.pop("bw_s"))
         for name in ("observation", "reward"):
-            if isinstance(settings.get(name), Mapping):
-                settings[name] = dict(settings[name])
+            if name in settings:
+                settings[name] = _plain(settings[name])
         target = settings.get("target")
         if isinstance(target, list | tuple):
             # What is no direction is refused with the settings, where it could be expected.
@@ -123,26 +117,14 @@ class EnvOptions:
         stepping = _physics(given)
         parameters = _parameters({**given, **stepping})
         settings.setdefault("target", parameters.target)
-        if isinstance(own_reward, np.ndarray) and len(own_reward) != parameters.n_leaders:
-            raise ParameterError(
-                f"reward lists {len(own_reward)} weights, which is not accepted: a dictionary, or "
-                f"one for each of {parameters.n_leaders} leaders"
-            )
         return cls(parameters, settings, own_reward)
 
 
-def _leader_weights(reward: Sequence[Any]) -> tuple[NDArray[np.float64], dict[str, float]]:
-    """Return a row of weights for each leader, and the terms that the core has to work out."""
-    for each in reward:
-        if not isinstance(each, Mapping):
-            raise TypeError(f"reward must hold dictionaries of weights, not {shown(each)}")
-        refuse_unknown(each, TERMS, "part of reward")
-        if not all(isinstance(w, Real) and not isinstance(w, bool) for w in each.values()):
-            raise TypeError(f"reward = {shown(reward)} is not accepted: weights are numbers")
-    weights = np.array([[float(each.get(term, 0.0)) for term in TERMS] for each in reward])
-    if not (np.abs(weights) <= 1e6).all():
-        raise ParameterError(f"reward = {shown(reward)} is not accepted: weights within 1e6")
-    return weights, {name: 1.0 for each in reward for name in each}
+def _plain(value: Any) -> Any:
+    """Return a mapping, or each of a list, as the dictionary that the core reads."""
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    return dict(value) if isinstance(value, Mapping) else value
 
 
 def _physics(given: dict[str, Any]) -> dict[str, Any]:

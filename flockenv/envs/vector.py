@@ -93,7 +93,7 @@ class LeadersVectorEnv(
         parsed = EnvOptions.parse(options, takes_function=True)
         if parsed.own_reward is not None and self.autoreset_mode == AutoresetMode.SAME_STEP:
             raise ParameterError(
-                "reward = a function or a list is not accepted with autoreset_mode 'same_step': "
+                "reward = a function is not accepted with autoreset_mode 'same_step': "
                 "'next_step' or 'disabled'"
             )
         self.num_envs = num_envs

@@ -9,7 +9,7 @@ use crate::parallel;
 use crate::parameters::FlockParameters;
 use crate::sealed_bytes::{Magic, seal, unseal};
 
-const MAGIC: Magic = *b"flocken1";
+const MAGIC: Magic = *b"flocken2";
 
 /// Where a step writes: one row per leader, flock after flock, and one flag per flock.
 #[derive(Debug)]
@@ -50,6 +50,8 @@ impl EnvBatch {
             parameters.check()?;
             settings.check(parameters)?;
         }
+        let leaders = members.iter().map(|parameters| parameters.n_leaders);
+        settings.reward.check_leaders(leaders.max().unwrap_or(0))?;
         check_memory(&settings, &members)?;
         Ok(Self {
             rows: members.iter().map(|p| p.n_leaders).sum(),
@@ -129,6 +131,19 @@ impl EnvBatch {
             (None, _) => Ok(()),
             (Some((_, error)), _) if is_alone => Err(error),
             (Some((flock, error)), more) => Err(error.of_flock(flock, more)),
+        }
+    }
+
+    /// Pays the leaders for the step just taken, one number a row, on top of what the settings' weights paid.
+    ///
+    /// # Panics
+    /// If there is another number of rewards than rows.
+    pub fn pay(&mut self, rewards: &[f64]) {
+        assert_eq!(rewards.len(), self.rows, "one reward a leader");
+        let mut rest = rewards;
+        for env in &mut self.envs {
+            let own = rest.split_off(..env.parameters().n_leaders);
+            env.pay(own.unwrap_or_default());
         }
     }
 

@@ -5,6 +5,7 @@ use super::observation::{
     Camera, CourseView, FlockFeatures, FlockView, Lens, Observer, StateObserver,
 };
 use super::reset::check_flock;
+use super::reward::stored_rows;
 use super::statistics::EpisodeStatistics;
 use super::{EnvSettings, EpisodeSchedule, EpisodeSummary, Reward, RewardTerms, Servo, TERMS};
 use crate::analysis::OrderParameters;
@@ -24,6 +25,7 @@ pub(crate) struct EpisodeState {
     /// The leaders' rudders as they stand, positive counter-clockwise.
     rudders: Vec<f64>,
     camera: Option<Camera>,
+    #[serde(with = "stored_rows")]
     terms: Vec<RewardTerms>,
     statistics: EpisodeStatistics,
     ended: bool,
@@ -298,13 +300,21 @@ impl Episode {
                 each.of(leader, &flock.integrator, target, step_s)
             });
             let terms = reward.terms(&view, leader, &credit);
-            let paid = settings.reward_factor() * settings.reward.total(&terms);
-            state.statistics.add_reward(share, &terms, paid);
+            let paid = settings.reward_factor() * settings.reward.total(leader, &terms);
+            state.statistics.add_terms(share, &terms);
+            state.statistics.add_reward(share * paid);
             *sum += paid;
             sums.iter_mut()
                 .zip(terms)
                 .for_each(|(sum, term)| *sum += term);
         }
+    }
+
+    /// Adds rewards that leaders have from elsewhere.
+    pub(crate) fn add_reward(&mut self, rewards: &[f64]) {
+        let sum: f64 = rewards.iter().sum();
+        let statistics = &mut self.state.statistics;
+        statistics.add_reward(sum / rewards.len().max(1) as f64);
     }
 
     /// Takes note of the order, and of everything that is averaged where the step ends in the analysis window, after

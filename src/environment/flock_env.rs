@@ -178,6 +178,17 @@ impl FlockEnv {
         Ok(true)
     }
 
+    /// Pays the leaders for the control steps just taken.
+    pub(crate) fn pay(&mut self, rewards: &[f64]) {
+        let Some(episode) = &mut self.episode else {
+            return;
+        };
+        episode.add_reward(rewards);
+        if episode.has_ended() {
+            self.finished = Some(episode.summary());
+        }
+    }
+
     fn start_next(&mut self, settings: &EnvSettings, observations: &mut [f32]) -> Result<()> {
         let next = self.prepare(settings, &ResetRequest::default(), &|| true)?;
         self.start(next, observations);

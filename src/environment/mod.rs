@@ -18,7 +18,7 @@ pub use drawn::{Drawn, TargetChoice};
 pub use episode::Episode;
 pub use flock_env::FlockEnv;
 pub use reset::{ResetRequest, Start, Upcoming};
-pub use reward::{Reward, RewardTerm, RewardTerms, RewardWeights, TERMS};
+pub use reward::{Reward, RewardTerm, RewardTerms, RewardWeights, TERMS, Weights};
 pub use rudder::{LARGEST_LEAN, Servo};
 pub use schedule::{EpisodeSchedule, EpisodeSeeds};
 pub use settings::{ActionMode, Autoreset, EnvSettings};

@@ -3,6 +3,7 @@
 use super::credit::LeaderCredit;
 use super::observation::{FlockView, speed_scale_cm_s};
 use crate::analysis::OrderParameters;
+use crate::by_name;
 use crate::error::{FlockError, Result};
 use crate::geometry::LapFrame;
 use crate::parameters::{FlockParameters, Kind, Setting, Target, Value, named_choice, wrong_kind};
@@ -42,6 +43,11 @@ pub const TERMS: usize = RewardTerm::ALL.len();
 pub type RewardTerms = [f64; TERMS];
 
 impl RewardTerm {
+    /// Values of the terms by their names.
+    pub(super) fn named(terms: &RewardTerms) -> impl ExactSizeIterator<Item = (&'static str, f64)> {
+        Self::ALL.iter().map(|term| term.name()).zip(*terms)
+    }
+
     /// Whether the term is about the normal boats, so that it needs at least one.
     pub(crate) fn needs_normal_boats(self) -> bool {
         matches!(
@@ -59,9 +65,64 @@ impl RewardTerm {
     }
 }
 
+/// Terms as they are stored: by name, 0 where one is missing.
+pub(super) mod stored_terms {
+    use super::{RewardTerm, RewardTerms, by_name};
+
+    pub(in super::super) fn serialize<S: serde::Serializer>(
+        terms: &RewardTerms,
+        to: S,
+    ) -> Result<S::Ok, S::Error> {
+        by_name::write(RewardTerm::named(terms), to)
+    }
+
+    pub(in super::super) fn deserialize<'de, D: serde::Deserializer<'de>>(
+        from: D,
+    ) -> Result<RewardTerms, D::Error> {
+        let mut terms = RewardTerms::default();
+        by_name::read(from, "the terms of the reward", |name, value| {
+            let term = name.parse::<RewardTerm>();
+            term.map(|term| terms[term as usize] = value).is_ok()
+        })?;
+        Ok(terms)
+    }
+}
+
+/// Rows of terms, one per leader, as they are stored: a column a term, by name.
+pub(super) mod stored_rows {
+    use super::{RewardTerm, RewardTerms, TERMS, by_name};
+
+    pub(in super::super) fn serialize<S: serde::Serializer>(
+        rows: &[RewardTerms],
+        to: S,
+    ) -> Result<S::Ok, S::Error> {
+        let columns = RewardTerm::ALL.iter();
+        let column = |term: RewardTerm| rows.iter().map(move |terms| terms[term as usize]);
+        let columns = columns.map(|&term| (term.name(), column(term).collect::<Vec<_>>()));
+        by_name::write(columns, to)
+    }
+
+    pub(in super::super) fn deserialize<'de, D: serde::Deserializer<'de>>(
+        from: D,
+    ) -> Result<Vec<RewardTerms>, D::Error> {
+        let mut rows: Vec<RewardTerms> = Vec::new();
+        by_name::read(from, "the terms of the reward", |name, column: Vec<f64>| {
+            let Ok(term) = name.parse::<RewardTerm>() else {
+                return false;
+            };
+            rows.resize(rows.len().max(column.len()), [0.0; TERMS]);
+            for (terms, value) in rows.iter_mut().zip(column) {
+                terms[term as usize] = value;
+            }
+            true
+        })?;
+        Ok(rows)
+    }
+}
+
 /// A weight for each term.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct RewardWeights(pub RewardTerms);
+pub struct RewardWeights(#[serde(with = "stored_terms")] pub RewardTerms);
 
 impl Default for RewardWeights {
     /// The signed order alone.
@@ -97,7 +158,7 @@ impl RewardWeights {
     }
 
     /// The weighted sum.
-    pub fn total(&self, terms: &RewardTerms) -> f64 {
+    fn total(&self, terms: &RewardTerms) -> f64 {
         self.0
             .iter()
             .zip(terms)
@@ -110,17 +171,15 @@ impl Setting for RewardWeights {
     const KIND: Kind = Kind::Map(RewardTerm::names);
 
     fn value(&self) -> Value {
-        let weights = RewardTerm::ALL.iter().zip(self.0);
-        let weights = weights.filter(|(_, weight)| *weight != 0.0);
-        weights
-            .map(|(term, weight)| (term.name(), weight))
-            .collect()
+        let weights = RewardTerm::named(&self.0);
+        weights.filter(|(_, weight)| *weight != 0.0).collect()
     }
 
     /// Terms that are not named weigh nothing.
     fn from_value(name: &'static str, value: &Value) -> Result<Self> {
         let Value::Map(weights) = value else {
-            return wrong_kind(name, "a dictionary of weights");
+            let accepted = "a dictionary of weights, or a list with one for each leader";
+            return wrong_kind(name, accepted);
         };
         let mut own = Self([0.0; TERMS]);
         for (term, weight) in weights {
@@ -128,6 +187,90 @@ impl Setting for RewardWeights {
             own.0[term as usize] = f64::from_value(name, weight)?;
         }
         Ok(own)
+    }
+}
+
+/// The weights of a flock's leaders.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub enum Weights {
+    /// The same for all leaders.
+    One(RewardWeights),
+    /// One per leader. Flocks with fewer leaders than others of their batch have the first ones.
+    Each(Vec<RewardWeights>),
+}
+
+impl Weights {
+    fn all(&self) -> &[RewardWeights] {
+        match self {
+            Self::One(weights) => std::slice::from_ref(weights),
+            Self::Each(weights) => weights,
+        }
+    }
+
+    /// The weighted sum of a leader's terms.
+    pub fn total(&self, leader: usize, terms: &RewardTerms) -> f64 {
+        let weights = match self {
+            Self::One(weights) => Some(weights),
+            Self::Each(weights) => weights.get(leader),
+        };
+        weights.map_or(0.0, |weights| weights.total(terms))
+    }
+
+    /// Checks the weights for flocks with these parameters.
+    ///
+    /// # Errors
+    /// As for [`RewardWeights::check`].
+    pub fn check(&self, parameters: &FlockParameters) -> Result<()> {
+        self.all()
+            .iter()
+            .try_for_each(|weights| weights.check(parameters))
+    }
+
+    /// Checks that a list has weights for each of the most leaders that a flock of a batch has.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`].
+    pub(super) fn check_leaders(&self, most: usize) -> Result<()> {
+        match self {
+            Self::Each(weights) if weights.len() != most => {
+                let value = format!("a list of {} weights", weights.len());
+                let accepted = format!("a dictionary, or one for each of {most} leaders");
+                Err(FlockError::parameter("reward", value, accepted))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether a term from the leaders' contacts has a weight.
+    pub(crate) fn need_credit(&self) -> bool {
+        self.all().iter().any(RewardWeights::need_credit)
+    }
+}
+
+impl Default for Weights {
+    fn default() -> Self {
+        Self::One(RewardWeights::default())
+    }
+}
+
+impl Setting for Weights {
+    const KIND: Kind = RewardWeights::KIND;
+
+    fn value(&self) -> Value {
+        match self {
+            Self::One(weights) => weights.value(),
+            Self::Each(weights) => Value::List(weights.iter().map(Setting::value).collect()),
+        }
+    }
+
+    fn from_value(name: &'static str, value: &Value) -> Result<Self> {
+        match value {
+            Value::List(each) => {
+                let weights = each.iter().map(|value| Setting::from_value(name, value));
+                weights.collect::<Result<_>>().map(Self::Each)
+            }
+            _ => RewardWeights::from_value(name, value).map(Self::One),
+        }
     }
 }
 

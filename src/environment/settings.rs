@@ -2,7 +2,7 @@
 //! their defaults and the documentation follow from this table.
 
 use super::observation::{Block, ObservationLayout, Observer};
-use super::{Drawn, RewardWeights, TargetChoice};
+use super::{Drawn, TargetChoice, Weights};
 use crate::clock::{Ticks, ticks, whole_steps};
 use crate::error::{FlockError, Result};
 use crate::parameters::{FlockParameters, Range, declare_fields, named_choice};
@@ -59,8 +59,8 @@ declare_fields! {
     dropout_rate: f64 = 0.0, "", Range::Within(0.0, ALMOST_ONE, "a chance of at least 0, below 1"), "chosen";
     /// frames that the leaders' picture is late, 0 or 1
     delay_frames: usize = 0, "", Range::Within(0.0, 1.0, "0 or 1"), "chosen";
-    /// weights of the reward's terms; terms that are not named weigh nothing
-    reward: RewardWeights = RewardWeights::default(), "", Range::Any, "chosen";
+    /// weights of the reward's terms, or a list of such weights, one per leader; terms that are not named weigh nothing
+    reward: Weights = Weights::default(), "", Range::Any, "chosen";
     /// time T in s: a control step's reward counts for its length over T, so that sums over T are means, of order one; None: each counts in full
     reward_horizon_s: Option<f64> = None, "s", Range::Positive, "chosen";
     /// number of levels of the discrete action, 2 to 1001; None: continuous

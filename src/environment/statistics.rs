@@ -1,10 +1,13 @@
 //! Sums over an episode, and the summary given at its end.
 
+use super::reward::stored_terms;
 use super::{EpisodeSchedule, RewardTerm, RewardTerms};
 use crate::analysis::OrderParameters;
 use crate::analysis::collective_state::OrderingWatch;
 use crate::analysis::quantities::{Boats, SUMMARIZED, summarized, summarized_values};
+use crate::by_name;
 use crate::parameters::{Target, Value, named_fields};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::f64::consts::PI;
 
 /// Signed order above this is motion in the target direction.
@@ -14,7 +17,7 @@ pub const TOWARDS_TARGET: f64 = 0.5;
 pub const ORDERED_WITHIN: [f64; 2] = [PI / 20.0, PI / 4.0];
 
 /// Sums of the summarized quantities, or their means.
-#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Averages([f64; SUMMARIZED]);
 
 impl Averages {
@@ -24,9 +27,28 @@ impl Averages {
     }
 }
 
+impl Serialize for Averages {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        by_name::write(self.named().collect::<Vec<_>>(), to)
+    }
+}
+
+/// A quantity that is missing was not watched: its mean is not known, NaN.
+impl<'de> Deserialize<'de> for Averages {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let mut averages = Self([f64::NAN; SUMMARIZED]);
+        by_name::read(from, "the averages of an episode", |name, value| {
+            let place = summarized().position(|each| each.name == name);
+            place.map(|place| averages.0[place] = value).is_some()
+        })?;
+        Ok(averages)
+    }
+}
+
 /// Sums over the control steps of an episode.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct EpisodeStatistics {
+    #[serde(with = "stored_terms")]
     terms: RewardTerms,
     reward: f64,
     window_steps: u32,
@@ -38,9 +60,13 @@ pub(super) struct EpisodeStatistics {
 }
 
 impl EpisodeStatistics {
-    /// Adds a leader's terms and reward in one step, as its share of the leaders' mean.
-    pub(super) fn add_reward(&mut self, share: f64, terms: &RewardTerms, reward: f64) {
-        self.reward += share * reward;
+    /// Adds a part of the leaders' mean reward.
+    pub(super) fn add_reward(&mut self, reward: f64) {
+        self.reward += reward;
+    }
+
+    /// Adds a leader's terms in one step, as its share of the leaders' mean.
+    pub(super) fn add_terms(&mut self, share: f64, terms: &RewardTerms) {
         for (sum, term) in self.terms.iter_mut().zip(terms) {
             *sum += share * term;
         }
@@ -91,10 +117,7 @@ impl EpisodeSummary {
     /// The summary by name. Means over an analysis window that the episode did not reach are left out, as there is no
     /// NaN.
     pub fn named(&self) -> Value {
-        let terms = RewardTerm::ALL
-            .iter()
-            .map(|term| term.name())
-            .zip(self.terms);
+        let terms = RewardTerm::named(&self.terms);
         let share = ("share_towards_target", self.share_towards_target);
         let means = self.averages.named().chain([share]);
         let means = means.filter(|(_, mean)| !mean.is_nan());
@@ -121,6 +144,7 @@ pub struct EpisodeSummary {
     /// Sum of the rewards, mean over leaders.
     pub total_reward: f64,
     /// Each reward term, mean over steps and leaders; NaN before the first step.
+    #[serde(with = "stored_terms")]
     pub terms: RewardTerms,
     /// Means over the control steps in the analysis window after the first tenth of the episode; NaN
     /// where there is none.

@@ -7,11 +7,10 @@ use crate::error::{FlockError, Result};
 use crate::geometry::{Pose, Velocity};
 use crate::integrator::Checkpoint;
 use crate::parameters::FlockParameters;
-use crate::sealed_bytes::{Magic, seal, unseal};
-use serde::de::Error;
+use crate::sealed_bytes::{Magic, refused, seal, unseal};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-const MAGIC: Magic = *b"flockst1";
+const MAGIC: Magic = *b"flockst2";
 
 /// What a snapshot holds.
 #[derive(Debug, Serialize, Deserialize)]
@@ -64,30 +63,47 @@ impl Snapshot {
     }
 }
 
-/// A flock is stored as its snapshot.
+/// A flock is stored as what its snapshot holds, under the seal of whatever it is a part of.
 impl Serialize for Flock {
-    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        serializer.serialize_bytes(&self.snapshot())
+    fn serialize<S: Serializer>(&self, to: S) -> std::result::Result<S::Ok, S::Error> {
+        self.state().serialize(to)
     }
 }
 
 impl<'de> Deserialize<'de> for Flock {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        Self::from_snapshot(&Vec::<u8>::deserialize(deserializer)?, None).map_err(D::Error::custom)
+    fn deserialize<D: Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
+        let state = Snapshot::deserialize(from)?.checked();
+        let state = state.map_err(|error| match error {
+            FlockError::Snapshot(why) => refused(why),
+            other => refused(other.to_string()),
+        })?;
+        Ok(Self::of_state(state, None))
     }
 }
 
 impl Flock {
     /// The whole state as bytes.
     pub fn snapshot(&self) -> Vec<u8> {
-        let state = Snapshot {
+        seal(&MAGIC, &self.state())
+    }
+
+    fn state(&self) -> Snapshot {
+        Snapshot {
             parameters: self.parameters.clone(),
             seed: self.seed,
             noise_seed: self.noise_seed(),
             time: self.time,
             motion: self.integrator.checkpoint(),
-        };
-        seal(&MAGIC, &state)
+        }
+    }
+
+    /// The flock of a checked state.
+    fn of_state(state: Snapshot, noise_seed: Option<u64>) -> Self {
+        let mut flock = Self::unplaced(state.parameters, state.seed);
+        flock.time = state.time;
+        flock.integrator.return_to(&state.motion);
+        flock.branch(noise_seed.or(state.noise_seed));
+        flock
     }
 
     /// Continues from a snapshot of a flock with the same parameters (the target aside, which the
@@ -113,11 +129,7 @@ impl Flock {
     /// # Errors
     /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed snapshot.
     pub fn from_snapshot(bytes: &[u8], noise_seed: Option<u64>) -> Result<Self> {
-        let snapshot = unseal::<Snapshot>(&MAGIC, bytes)?.checked()?;
-        let mut flock = Self::unplaced(snapshot.parameters, snapshot.seed);
-        flock.time = snapshot.time;
-        flock.integrator.return_to(&snapshot.motion);
-        flock.branch(noise_seed.or(snapshot.noise_seed));
-        Ok(flock)
+        let state = unseal::<Snapshot>(&MAGIC, bytes)?.checked()?;
+        Ok(Self::of_state(state, noise_seed))
     }
 }

@@ -133,9 +133,40 @@ macro_rules! declare_fields {
     ($(#[$meta:meta])* pub struct $struct:ident;
     $($(#[doc = $doc:literal])+ $name:ident: $type:ty = $default:expr, $unit:literal, $range:expr, $source:literal;)+) => {
         $(#[$meta])*
-        #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[derive(Debug, Clone, PartialEq)]
         pub struct $struct {
             $($(#[doc = $doc])+ pub $name: $type,)+
+        }
+
+        impl serde::Serialize for $struct {
+            fn serialize<S: serde::Serializer>(&self, to: S) -> std::result::Result<S::Ok, S::Error> {
+                use serde::ser::SerializeMap;
+                let mut fields = to.serialize_map(Some(Self::FIELDS.len()))?;
+                $(fields.serialize_entry(stringify!($name), &self.$name)?;)+
+                fields.end()
+            }
+        }
+
+        impl<'de> serde::Deserialize<'de> for $struct {
+            fn deserialize<D: serde::Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
+                $crate::by_name::fields(from)
+            }
+        }
+
+        impl $crate::by_name::ByName for $struct {
+            const NAME: &'static str = stringify!($struct);
+
+            fn read<'de, A: serde::de::MapAccess<'de>>(
+                &mut self,
+                name: &str,
+                values: &mut A,
+            ) -> std::result::Result<bool, A::Error> {
+                match name {
+                    $(stringify!($name) => self.$name = values.next_value()?,)+
+                    _ => return Ok(false),
+                }
+                Ok(true)
+            }
         }
 
         impl $struct {

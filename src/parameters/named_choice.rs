@@ -7,7 +7,7 @@ macro_rules! named_choice {
         $($(#[doc = $doc:literal])+ $variant:ident = $name:literal $(if $feature:literal)?,)+
     }) => {
         $(#[$meta])*
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         $visibility enum $type { $($(#[cfg(feature = $feature)])? $(#[doc = $doc])+ $variant,)+ }
 
         impl $type {
@@ -39,6 +39,21 @@ macro_rules! named_choice {
 
             fn from_value(name: &'static str, value: &$crate::parameters::Value) -> $crate::error::Result<Self> {
                 $crate::parameters::text_of(name, value)?.parse()
+            }
+        }
+
+        impl serde::Serialize for $type {
+            fn serialize<S: serde::Serializer>(&self, to: S) -> std::result::Result<S::Ok, S::Error> {
+                to.serialize_str(Self::name(*self))
+            }
+        }
+
+        impl<'de> serde::Deserialize<'de> for $type {
+            fn deserialize<D: serde::Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
+                let name = <String as serde::Deserialize>::deserialize(from)?;
+                name.parse().map_err(|error: $crate::error::FlockError| {
+                    $crate::sealed_bytes::refused(error.to_string())
+                })
             }
         }
 

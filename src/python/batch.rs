@@ -4,7 +4,7 @@ use super::arrays::{floats, rows_of};
 use super::exclusive::{Exclusive, interruptible};
 use super::flock::{PyFlock, pose_numbers, state_from, velocity_numbers};
 use super::value::{given, noise_seed_from, seed_from, set_given, value_from};
-use crate::analysis::OrderParameters;
+use crate::analysis::quantities::RECORDED;
 use crate::environment::observation::FlockFeatures;
 use crate::environment::{
     BatchRows, EnvBatch, EnvSettings, Episode, EpisodeSummary, FlockEnv, ResetRequest, Start,
@@ -129,6 +129,14 @@ impl PyEnvBatch {
         ))
     }
 
+    /// Pays the leaders for the step just taken: one number per row.
+    fn pay(&self, rewards: &Bound<'_, PyAny>) -> PyResult<()> {
+        let mut batch = self.0.write()?;
+        let rewards = floats(rewards, "rewards", &[batch.rows()])?;
+        batch.pay(&rewards);
+        Ok(())
+    }
+
     /// Starts episodes: one request per flock, `None` leaves it as it is.
     fn reset(&self, py: Python<'_>, requests: Vec<Option<Bound<'_, PyDict>>>) -> PyResult<()> {
         let mut batch = self.0.write()?;
@@ -202,12 +210,12 @@ impl PyEnvBatch {
         self.gathered(py, TERMS, |_, episode| episode.terms().concat())
     }
 
-    /// Order parameters of the normal boats: (flocks, 6) [psi_o, phi_o, c_o, psi_v, phi_v, c_v], NaN
-    /// where a flock has none.
+    /// The recorded quantities of the normal boats: a row per flock in the order of the table, NaN where a flock has
+    /// none.
     fn order_parameters<'py>(&self, py: Python<'py>) -> Rows<'py, f64> {
-        self.gathered(py, 6, |_, episode| {
-            let numbers = |o: &OrderParameters| [o.psi_o, o.phi_o, o.c_o, o.psi_v, o.phi_v, o.c_v];
-            episode.order().map_or([f64::NAN; 6], numbers).to_vec()
+        self.gathered(py, RECORDED, |_, episode| {
+            let recorded = episode.flock().recorded(false);
+            recorded.unwrap_or([f64::NAN; RECORDED]).to_vec()
         })
     }
 

@@ -2,9 +2,9 @@
 
 use crate::support::{Written, batch, parameters, seeded, settings, step};
 use flockenv::Flock;
-use flockenv::environment::RewardWeights;
 use flockenv::environment::observation::FlockFeatures;
 use flockenv::environment::{ActionMode, EnvBatch, EnvSettings, ResetRequest, TargetChoice};
+use flockenv::environment::{RewardWeights, Weights};
 use flockenv::parameters::Target::{self, Clockwise, CounterClockwise};
 use flockenv::parameters::{FlockParameters, Targets, Value};
 
@@ -18,7 +18,7 @@ fn each(targets: &[Target]) -> TargetChoice {
 fn towards(steps: u32, target: TargetChoice) -> EnvSettings {
     let mut own = settings(steps);
     own.target = target;
-    own.reward = RewardWeights(std::array::from_fn(|term| 1.0 + term as f64));
+    own.reward = Weights::One(RewardWeights(std::array::from_fn(|term| 1.0 + term as f64)));
     own
 }
 

@@ -129,10 +129,11 @@ def test_weights_of_each_leader_pay_it_as_the_same_weights_of_all(options):
     ("reward", "words"),
     [
         (WEIGHTS[:1], "one for each of 2 leaders"),
-        ([{}, {"signed_ordre": 1.0}], "did you mean 'signed_order'"),
+        ([{}, {"signed_ordre": 1.0}], "signed_ordre.*is not accepted: one of .signed_order"),
         ([{}, {"signed_order": np.nan}], "within 1e6"),
-        ([{}, 1.0], "must hold dictionaries"),
-        ([{}, {"signed_order": "much"}], "weights are numbers"),
+        ([{}, 1.0], "must be a dictionary of weights, or a list with one for each leader"),
+        ([{}, {"signed_order": "much"}], "reward must be a number"),
+        ([{}, {"signed_order": True}], "reward must be a number"),
     ],
 )
 def test_weights_that_are_none_are_refused(reward, words):

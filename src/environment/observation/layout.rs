@@ -14,10 +14,36 @@ pub(crate) const MOST_NEIGHBORS: usize = 64;
 /// Which blocks are on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct ObservationLayout {
+    #[serde(with = "stored_repeats")]
     repeats: [usize; Block::COUNT],
     /// Whether observation and action are reflected where the target is counter-clockwise, so that
     /// both directions are one task, the clockwise one.
     pub is_mirrored: bool,
+}
+
+/// Blocks as they are stored: by name, those that are missing as often as by default.
+mod stored_repeats {
+    use super::Block;
+    use crate::by_name;
+
+    pub(super) fn serialize<S: serde::Serializer>(
+        repeats: &[usize; Block::COUNT],
+        to: S,
+    ) -> Result<S::Ok, S::Error> {
+        let names = Block::ALL.iter().map(|block| block.name());
+        by_name::write(names.zip(*repeats), to)
+    }
+
+    pub(super) fn deserialize<'de, D: serde::Deserializer<'de>>(
+        from: D,
+    ) -> Result<[usize; Block::COUNT], D::Error> {
+        let mut repeats = Block::DEFAULT;
+        by_name::read(from, "the blocks of an observation", |name, count| {
+            let block = name.parse::<Block>();
+            block.map(|block| repeats[block as usize] = count).is_ok()
+        })?;
+        Ok(repeats)
+    }
 }
 
 impl Default for ObservationLayout {

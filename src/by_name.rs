@@ -1,0 +1,90 @@
+//! States by name: a field or number that is missing has its default, and one that is unknown is refused by a sentence
+//! that names it. So a state outlives every parameter, option, reward term, block and quantity that comes later.
+
+use crate::sealed_bytes::refused;
+use serde::de::{DeserializeOwned, Deserializer, MapAccess, Visitor};
+use serde::ser::{Serialize, Serializer};
+use std::fmt;
+use std::marker::PhantomData;
+
+/// A struct that is stored as its fields by name.
+pub(crate) trait ByName: Default {
+    /// What it is called in messages.
+    const NAME: &'static str;
+
+    /// Reads the value of a field; returns whether there is a field of that name.
+    fn read<'de, A: MapAccess<'de>>(
+        &mut self,
+        name: &str,
+        values: &mut A,
+    ) -> Result<bool, A::Error>;
+}
+
+struct Fields<T>(PhantomData<T>);
+
+impl<'de, T: ByName> Visitor<'de> for Fields<T> {
+    type Value = T;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "the fields of {}", T::NAME)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut values: A) -> Result<T, A::Error> {
+        let mut of = T::default();
+        while let Some(name) = values.next_key::<String>()? {
+            if !of.read(&name, &mut values)? {
+                return Err(unknown(&name, T::NAME));
+            }
+        }
+        Ok(of)
+    }
+}
+
+/// A struct from its fields by name.
+pub(crate) fn fields<'de, T: ByName, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
+    from.deserialize_map(Fields(PhantomData))
+}
+
+/// Writes values by name.
+pub(crate) fn write<S: Serializer, T: Serialize>(
+    values: impl IntoIterator<Item = (&'static str, T)>,
+    to: S,
+) -> Result<S::Ok, S::Error> {
+    to.collect_map(values)
+}
+
+/// Reads values that [`write`] wrote; `put` returns whether it has a place for that name.
+pub(crate) fn read<'de, D: Deserializer<'de>, T: DeserializeOwned>(
+    from: D,
+    of: &str,
+    mut put: impl FnMut(&str, T) -> bool,
+) -> Result<(), D::Error> {
+    struct Values<T>(PhantomData<T>);
+    impl<'de, T: DeserializeOwned> Visitor<'de> for Values<T> {
+        type Value = Vec<(String, T)>;
+
+        fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+            formatter.write_str("values by name")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, mut values: A) -> Result<Self::Value, A::Error> {
+            let mut found = Vec::new();
+            while let Some(entry) = values.next_entry()? {
+                found.push(entry);
+            }
+            Ok(found)
+        }
+    }
+    let values: Vec<(String, T)> = from.deserialize_map(Values(PhantomData))?;
+    let mut values = values.into_iter();
+    match values.find_map(|(name, value)| (!put(&name, value)).then_some(name)) {
+        Some(name) => Err(unknown(&name, of)),
+        None => Ok(()),
+    }
+}
+
+fn unknown<E: serde::de::Error>(name: &str, of: &str) -> E {
+    refused(format!(
+        "it has {name:?}, which this flockenv does not know of {of}"
+    ))
+}
