@@ -177,7 +177,7 @@ audit: $(STAMPS)/audit ## licenses, sources and known vulnerabilities of what th
 # Collect the notices of the crates that are compiled in, into LICENSES.
 licenses:
 	cargo about --version || cargo install --locked cargo-about --features cli
-	cargo about generate --locked --all-features about.hbs --output-file LICENSES/crates.txt
+	cargo about generate --locked --all-features --config .cargo/about.toml .cargo/about.hbs --output-file LICENSES/crates.txt
 
 # Nothing is uploaded. Before the first release there is no tag to compare with.
 # The crate as it would be published: its files, built alone; and its API against the last release.
