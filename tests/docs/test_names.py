@@ -82,6 +82,7 @@ def _code() -> str:
     """All code of the repository, this folder of tests aside, which has lists of names."""
     files = [path for each in FOLDERS for kind in CODE for path in _files(each, kind)]
     files += [REPOSITORY / name for name in ("Makefile", "Cargo.toml", "pyproject.toml")]
+    files += (*REPOSITORY.glob("*/*.sh"), *REPOSITORY.glob("benches/Makefile"))
     files += (REPOSITORY / ".github").rglob("*.yml")
     files = [path for path in files if path.parent != Path(__file__).parent]
     return "\n".join(path.read_text("utf-8", errors="ignore") for path in files)
@@ -105,10 +106,12 @@ def _commands() -> dict[str, set[str]]:
 
 @cache
 def _targets() -> tuple[set[str], set[str]]:
-    """The targets and the variables of the Makefile."""
+    """The targets of the Makefile, and the variables that it and its scripts read."""
     text = (REPOSITORY / "Makefile").read_text("utf-8")
     targets = re.findall(r"^([a-z][\w -]*):(?!=)", text, re.MULTILINE)
-    variables = re.findall(r"^(\w+) [?:]?=|\$\((\w+)\)", text, re.MULTILINE)
+    for script in ("benches/Makefile", ".github/release.sh", "tests/other.sh"):
+        text += (REPOSITORY / script).read_text("utf-8")
+    variables = re.findall(r"^(\w+) [?:]?=|\$[({](\w+)", text, re.MULTILINE)
     return {name for each in targets for name in each.split()}, {n for v in variables for n in v}
 
 
