@@ -7,7 +7,7 @@ from committed_data import DOCS, interval, markdown, one, rows
 from flockenv.policies import load
 
 ALGORITHMS = {
-    "train_leaders": "PPO (the forty lines)",
+    "train_leaders": "PPO (the example)",
     "trpo": "TRPO",
     "evolution": "evolution strategy",
 }
@@ -31,7 +31,7 @@ def signals() -> str:
 
 
 def seeds() -> str:
-    """Return what each training by the forty lines reached, and the laws in its flocks."""
+    """Return what each training by the example reached, and the laws in its flocks."""
     body = []
     for row in rows("training/wide/evaluation.csv"):
         gain = interval(row, "gain", "gain_low", "gain_high", "+.3f") if row["gain"] else ""

@@ -1,8 +1,14 @@
-"""Train three leaders with PPO: `python examples/train_leaders.py SEED FLOCK_HOURS TEST_FLOCKS`."""
+"""Train three leaders with PPO: `python examples/train_leaders.py SEED FLOCK_HOURS TEST_FLOCKS`.
+
+`flockenv train` has the same settings, with a progress bar and checkpoints.
+"""
 
 import sys
 import time
+from dataclasses import dataclass
+from pathlib import Path
 
+import matplotlib.pyplot as plt
 import pandas as pd
 from stable_baselines3 import PPO
 from stable_baselines3.common.logger import configure
@@ -13,28 +19,104 @@ from flockenv.policies import LeaningLaw
 from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
 from flockenv.sb3 import LeaderVecEnv, SharedNoisePolicy, shared_noise
 
-seed, hours, tests = map(int, sys.argv[1:] + ["0", "500", "512"][len(sys.argv) - 1 :])
-out, flock = f"results/train_leaders/{seed}", {"pool": "wide", "n_boats": 27, "bw_s": 0.31}
-off = {"own": False, "phase": False, "target": False, "neighbors": 0, "order": False}
-task = {"observation": {**off, "lean_features": True}, "action_mode": "lean", "target": "random"}
-task |= {"mirror_to_target": True, "decision_period_s": 1.0, "reward_horizon_s": 40.0}
-task |= {"reward": {"signed_order": 1.0, "contact_alignment": 30.0}, "episode_s": 480.0}
-env = LeaderVecEnv(128, n_leaders=3, physics="training", **flock, **task)
-policy = {**shared_noise(env, hold_s=240.0), "log_std_init": -2.4, "squash_output": True}
-policy |= {"net_arch": {"pi": [], "vf": [64, 64]}}
-ppo = {"n_steps": 240, "batch_size": 11520, "n_epochs": 4, "gamma": 0.995, "gae_lambda": 0.9875}
-ppo |= {"learning_rate": lambda left: 2e-3 * left, "use_sde": True, "device": "cpu"}
-model = PPO(SharedNoisePolicy, env, policy_kwargs=policy, seed=seed, stats_window_size=384, **ppo)
-model.set_logger(configure(out, ["csv"]))
-env.seed(POLICY_SEEDS["training"].seeds(1, run=seed)[0])
-model.policy.log_std.requires_grad_(False)  # the exploration stays as wide as it starts
-model.learn(3 * 3600 * hours).logger.close()  # three leaders decide every second
-law = LeaningLaw.from_model(model, "wide")  # its copy decides at every control step:
-LeaningLaw("wide", law.bias, law.weights).save(f"{out}/policy.json")
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that a training depends on."""
+
+    seed: int = 0
+    flock_hours: int = 500
+    test_flocks: int = 512
+    num_flocks: int = 128  # stepped together
+    # The flocks: 27 boats at the critical noise of the pool.
+    pool: str = "wide"
+    bw_s: float = 0.31
+    n_boats: int = 27
+    n_leaders: int = 3
+    # The task: a leader decides every second how far it leans outward of the target's tangent.
+    episode_s: float = 480.0
+    decision_period_s: float = 1.0
+    contact_alignment: float = 30.0
+    reward_horizon_s: float = 40.0
+    # PPO. All leaders of a flock explore by the same perturbed weights, which are held for hold_s.
+    n_steps: int = 240
+    batch_size: int = 11_520
+    n_epochs: int = 4
+    learning_rate: float = 2e-3
+    gamma: float = 0.995
+    gae_lambda: float = 0.9875
+    hold_s: float = 240.0
+    log_std: float = -2.4
+
+
+def environment(given: Settings) -> LeaderVecEnv:
+    """Return flocks, each leader a slot. A leader sees the lean features alone."""
+    others = {"own": False, "phase": False, "target": False, "neighbors": 0, "order": False}
+    return LeaderVecEnv(
+        given.num_flocks,
+        pool=given.pool,
+        bw_s=given.bw_s,
+        n_boats=given.n_boats,
+        n_leaders=given.n_leaders,
+        target="random",
+        mirror_to_target=True,
+        observation={**others, "lean_features": True},
+        action_mode="lean",
+        decision_period_s=given.decision_period_s,
+        episode_s=given.episode_s,
+        reward={"signed_order": 1.0, "contact_alignment": given.contact_alignment},
+        reward_horizon_s=given.reward_horizon_s,
+        physics="training",
+    )
+
+
+def untrained(given: Settings, env: LeaderVecEnv) -> PPO:
+    """Return PPO before its first sample: an actor without hidden layers is a law of leans."""
+    model = PPO(
+        SharedNoisePolicy,
+        env,
+        learning_rate=lambda left: given.learning_rate * left,
+        n_steps=given.n_steps,
+        batch_size=given.batch_size,
+        n_epochs=given.n_epochs,
+        gamma=given.gamma,
+        gae_lambda=given.gae_lambda,
+        use_sde=True,
+        policy_kwargs={
+            **shared_noise(env, given.hold_s),
+            "net_arch": {"pi": [], "vf": [64, 64]},
+            "log_std_init": given.log_std,
+            "squash_output": True,
+        },
+        seed=given.seed,
+        stats_window_size=given.num_flocks * given.n_leaders,
+        device="cpu",
+    )
+    model.policy.log_std.requires_grad_(False)  # the exploration stays as wide as it starts
+    return model
+
+
+given = Settings(*map(int, sys.argv[1:]))
+folder = Path("results/train_leaders") / str(given.seed)
+env = environment(given)
+env.seed(POLICY_SEEDS["training"].seeds(1, run=given.seed)[0])
+model = untrained(given, env)
+model.set_logger(configure(str(folder), ["csv"]))
+model.learn(int(3600 * given.flock_hours * env.decisions_hz) * given.n_leaders)
+model.logger.close()
+learned = LeaningLaw.from_model(model, given.pool)  # decides every second, as the model does
+law = LeaningLaw(given.pool, learned.bias, learned.weights)  # decides at every control step
+law.save(folder / "policy.json")
 print(f"{time.process_time() / 60:.1f} minutes of one core")
-ladder = {"paper's law": "paper's law", "tuned law": "tuned law", "mine": f"{out}/policy.json"}
-fresh, flock = release_seeds("train_leaders", tests), FlockParameters(**flock)
-orders = compare_leaders(flock, [3], ladder, fresh, 480.0).groupby("policy")["signed_order"]
-print(orders.agg(["mean", "sem"]).round(4))
-log = pd.read_csv(f"{out}/progress.csv")
-log.plot("time/total_timesteps", "rollout/ep_rew_mean").figure.savefig(f"{out}/curve.png")
+
+flock = FlockParameters(n_boats=given.n_boats, pool=given.pool, bw_s=given.bw_s)
+policies = {"paper's law": "paper's law", "tuned law": "tuned law", "mine": law}
+seeds = release_seeds("train_leaders", given.test_flocks)
+runs = compare_leaders(flock, [given.n_leaders], policies, seeds, given.episode_s)
+print(runs.groupby("policy")["signed_order"].agg(["mean", "sem"]).round(4))
+
+log = pd.read_csv(folder / "progress.csv")
+plt.plot(log["time/total_timesteps"], log["rollout/ep_rew_mean"])
+plt.xlabel("decisions of leaders")
+plt.ylabel("reward of an episode")
+plt.savefig(folder / "curve.png")

@@ -1,4 +1,4 @@
-"""Law: the example trains, saves, compares and draws; a small budget takes seconds."""
+"""Law: the example trains, saves, compares and draws, with the settings of `flockenv train`."""
 
 import runpy
 from pathlib import Path
@@ -11,16 +11,17 @@ from flockenv.policies import LeaningLaw, load
 
 pytest.importorskip("stable_baselines3")
 
+from flockenv.training import TrainingSettings
+
 EXAMPLE = Path(__file__).parents[2] / "examples" / "train_leaders.py"
 
 
 def test_it_trains_compares_and_draws(tmp_path, monkeypatch, capsys):
-    assert len(EXAMPLE.read_text(encoding="utf-8").splitlines()) <= 40
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("sys.argv", [str(EXAMPLE), "3", "17", "2"])
     pyplot.switch_backend("agg")
     try:
-        runpy.run_path(str(EXAMPLE))
+        run = runpy.run_path(str(EXAMPLE))
     finally:
         pyplot.close("all")
     folder = tmp_path / "results" / "train_leaders" / "3"
@@ -31,3 +32,21 @@ def test_it_trains_compares_and_draws(tmp_path, monkeypatch, capsys):
     printed = capsys.readouterr().out
     assert all(name in printed for name in ("paper's law", "tuned law", "mine"))
     assert imread(folder / "curve.png")[..., :3].min() < 0.5
+    _has_the_settings_of_the_command(run)
+
+
+def _has_the_settings_of_the_command(run):
+    own, command = run["Settings"](), TrainingSettings()
+    assert (own.seed, own.flock_hours) == (command.seed, command.flock_hours)
+    envs = run["environment"](own), command.venv()
+    found, expected = ({**each._batch.settings, "flocks": each.num_flocks} for each in envs)
+    assert found == expected
+    assert envs[0].slots[0].parameters == envs[1].slots[0].parameters
+    models = run["untrained"](own, envs[0]), command.model(envs[1])
+    for name in ("n_steps", "batch_size", "n_epochs", "gamma", "gae_lambda", "seed", "use_sde"):
+        assert getattr(models[0], name) == getattr(models[1], name), name
+    assert models[0].policy_kwargs == models[1].policy_kwargs
+    assert not any(each.policy.log_std.requires_grad for each in models)
+    for left in (1.0, 0.5, 0.0):
+        rates = [each.lr_schedule(left) for each in models]
+        assert rates[0] == pytest.approx(rates[1], abs=1e-12)
