@@ -16,6 +16,7 @@ from flockenv.cli.replay import replay
 from flockenv.cli.run import run
 from flockenv.cli.sweep import sweep
 from flockenv.cli.train import train
+from flockenv.cli.unknown import refuse_unknown_options
 from flockenv.errors import FlockError
 
 __all__ = ["app", "main"]
@@ -37,6 +38,7 @@ def main() -> None:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # Not every console has a Ψ.
     try:
+        refuse_unknown_options(getattr(typer.main.get_command(app), "commands", {}), sys.argv[1:])
         app()
     except (FlockError, OSError) as error:
         words = str(error)

@@ -13,7 +13,7 @@ from flockenv._io.extras import require
 from flockenv.cli.console import console, errors, print_json, progress, say
 from flockenv.cli.options import TRUST, Flocks, Printing, option, takes
 from flockenv.cli.output import prepare, printable, read_policy
-from flockenv.cli.parameters import changed_fields, given_fields, read_parameters
+from flockenv.cli.parameters import changed_fields, given_fields, option_of, read_parameters
 from flockenv.comparison.case import Case
 from flockenv.comparison.episodes import steering
 from flockenv.comparison.report import ComparisonReport
@@ -47,7 +47,9 @@ class CompareOptions(Flocks, Printing):
         None, "Which pool, repeatable. [wide, or that of the parameters]"
     )
     bw_s: list[float] | None = option(None, "Noise: backward duration in s, repeatable. [critical]")
-    leaders: str | None = option(None, "As in 0-4 or 1,3. [0-4; 1-4 with --env]", metavar="NUMBERS")
+    n_leaders: str | None = option(
+        None, "As in 0-4 or 1,3. [0-4; 1-4 with --env]", metavar="NUMBERS"
+    )
     env: list[str] | None = option(
         None,
         "Option of the environment, repeatable, as in target=alternate.",
@@ -65,8 +67,8 @@ class CompareOptions(Flocks, Printing):
 
 
 _OF_FLOCKS = (
-    *("preset", "params", "changes", "pool", "bw_s"),
-    *("leaders", "env", "episodes", "minutes", "seed", "only"),
+    *("preset", "params", "n_boats", "changes", "pool", "bw_s"),
+    *("n_leaders", "env", "episodes", "minutes", "seed", "only"),
 )
 
 
@@ -82,7 +84,7 @@ def compare(options: CompareOptions) -> None:
 
     With `--suite v2` policies are scored on frozen tasks: `scores.csv`.
 
-    Example: `flockenv compare --policy mine.npz --name mine --pool narrow --leaders 0-3`
+    Example: `flockenv compare --policy mine.npz --name mine --pool narrow --n-leaders 0-3`
     """
     for package in ("matplotlib", "pandas", "scipy"):  # All of them before hours of runs.
         require(package, "plot")
@@ -161,7 +163,7 @@ def _tasks(options: CompareOptions) -> list[Case]:
     defaults = CompareOptions()
     for name in _OF_FLOCKS:
         if getattr(options, name) != getattr(defaults, name):
-            option = {"changes": "--set"}.get(name, f"--{name.replace('_', '-')}")
+            option = {"changes": "--set"}.get(name, option_of(name))
             raise ParameterError(
                 f"{option} is not accepted with --suite {options.suite}, whose tasks fix it: there "
                 "is no score of an altered task"
@@ -180,7 +182,7 @@ def _flocks(options: CompareOptions) -> list[Case]:
         Case(
             name=f"{_pool_name(parameters.pool)}-bw-{parameters.bw_s!r}",
             parameters=parameters,
-            leaders=_numbers(options.leaders or ("1-4" if environment else "0-4")),
+            leaders=_numbers(options.n_leaders or ("1-4" if environment else "0-4")),
             seeds=range(options.seed, options.seed + options.episodes),
             episode_s=60.0 * minutes,
             environment=environment,
@@ -196,9 +198,9 @@ def _numbers(text: str) -> tuple[int, ...]:
         first, _, last = (each.strip() for each in part.partition("-"))
         ends = (first, last or first)
         if not all(each.isdecimal() for each in ends) or int(ends[0]) > int(ends[1]):
-            raise ParameterError(f"--leaders {text} is not accepted: numbers, as in 0-4 or 1,3")
+            raise ParameterError(f"--n-leaders {text} is not accepted: numbers, as in 0-4 or 1,3")
         if int(ends[1]) > _MOST_LEADERS:
-            raise ParameterError(f"--leaders {text} is not accepted: at most {_MOST_LEADERS}")
+            raise ParameterError(f"--n-leaders {text} is not accepted: at most {_MOST_LEADERS}")
         found.update(range(int(ends[0]), int(ends[1]) + 1))
     return tuple(sorted(found))
 
@@ -209,15 +211,15 @@ def _parameters(options: CompareOptions) -> list[FlockParameters]:
     Fields that neither the file nor a change names are the preset's, except for 27 boats and
     the critical noise of each pool. `--pool` and `--bw-s` count before all of them.
     """
-    given = given_fields(options.preset, options.params, options.changes)
+    given = given_fields(options.preset, options.params, options.changes, options.named)
     if "n_leaders" in changed_fields(options.changes or ()):
-        raise ParameterError("--set n_leaders is not accepted: numbers of leaders are --leaders")
+        raise ParameterError("--set n_leaders is not accepted: numbers of leaders are --n-leaders")
     if isinstance(given.get("target"), list):
         raise ParameterError(
             f"target = {shown(given['target'])} is not accepted: leaders, of which there are "
             "several numbers here, have one target: cw or ccw"
         )
-    base = read_parameters(options.preset, options.params, options.changes)
+    base = read_parameters(options.preset, options.params, options.changes, options.named)
     base = base.replace(n_boats=given.get("n_boats", _BOATS))
     found = []
     own: list[Any] = [base.pool]

@@ -1,39 +1,58 @@
 """The parameters of a command: a preset, a TOML file, single fields."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from flockenv._io.toml import read_toml, read_toml_file
 from flockenv.errors import ParameterError, shown
 from flockenv.parameters import FlockParameters
 
+_NOTHING: Mapping[str, Any] = MappingProxyType({})
+
 
 def read_parameters(
-    preset: str | None = None, file: Path | None = None, changes: Sequence[str] | None = None
+    preset: str | None = None,
+    file: Path | None = None,
+    changes: Sequence[str] | None = None,
+    named: Mapping[str, Any] = _NOTHING,
 ) -> FlockParameters:
     """Return the parameters of a preset, a TOML file and changes of single fields.
 
-    The preset is the file's own, or "simulation", unless it is given. A ParameterError names an
-    unknown preset or field, a value that is not accepted, or a file that cannot be read or is no
-    TOML.
+    The preset is the file's own, or "simulation", unless it is given. Changes are ``FIELD=VALUE``;
+    `named` are fields by options of their own. A ParameterError names an unknown preset or field, a
+    value that is not accepted, or a file that cannot be read or is no TOML.
     """
     try:
-        return FlockParameters.from_dict(given_fields(preset, file, changes))
+        return FlockParameters.from_dict(given_fields(preset, file, changes, named))
     except TypeError as error:
         raise ParameterError(str(error)) from error
 
 
 def given_fields(
-    preset: str | None = None, file: Path | None = None, changes: Sequence[str] | None = None
+    preset: str | None = None,
+    file: Path | None = None,
+    changes: Sequence[str] | None = None,
+    named: Mapping[str, Any] = _NOTHING,
 ) -> dict[str, Any]:
     """Return the fields that a command's options name, and ``preset`` if they name one."""
     fields = {} if file is None else read_toml_file(file, f"--params {file}")
     if preset is not None and fields.setdefault("preset", preset) != preset:
         raise ParameterError(
-            f"--preset {preset} contradicts preset = {shown(fields['preset'])} in {file}"
+            f"--preset {preset} contradicts preset = {fields['preset']!r} in {file}"
         )
-    return fields | changed_fields(changes or ())
+    changed = changed_fields(changes or ())
+    for name, value in named.items():
+        if name in changed:
+            raise ParameterError(f"{option_of(name)} and --set {name} are both given: one of them")
+        changed[name] = _value(value) if isinstance(value, str) else value
+    return fields | changed
+
+
+def option_of(name: str) -> str:
+    """Return how a field is spelled as an option."""
+    return f"--{name.replace('_', '-')}"
 
 
 def changed_fields(changes: Sequence[str], option: str = "--set") -> dict[str, Any]:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from flockenv._io.atomic_write import write_text
 from flockenv.cli.console import print_json, progress, say
-from flockenv.cli.options import TRUST, Flocks, Overwriting, Printing, option, takes
+from flockenv.cli.options import TRUST, OneFlock, Overwriting, Printing, option, takes
 from flockenv.cli.output import in_words, prepare, printable, read_policy, summary_of
 from flockenv.cli.parameters import read_parameters
 from flockenv.errors import ParameterError
@@ -18,7 +18,7 @@ _OUT = Path("results/run.npz")
 
 
 @dataclass(frozen=True, kw_only=True)
-class RunOptions(Flocks, Overwriting, Printing):
+class RunOptions(OneFlock, Overwriting, Printing):
     """Options of `flockenv run`."""
 
     policy: str = option(
@@ -44,9 +44,9 @@ def run(options: RunOptions) -> None:
     Writes the recording, and beside it the exact parameters as TOML, which `--params` reads.
     `flockenv replay` shows it.
 
-    Example: `flockenv run --set n_boats=27 --set n_leaders=3 --set bw_s=0.3 --seed 7`
+    Example: `flockenv run --n-boats 27 --n-leaders 3 --bw-s 0.3 --seed 7`
     """
-    parameters = read_parameters(options.preset, options.params, options.changes)
+    parameters = read_parameters(options.preset, options.params, options.changes, options.named)
     policy = read_policy(options.policy, parameters.pool, options.trust)()
     out = options.out or _free(_OUT)
     if out.suffix != ".npz":

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from flockenv._io.atomic_write import write_csv
 from flockenv.cli.console import errors, print_json, progress, say
 from flockenv.cli.options import Printing, option, takes
-from flockenv.cli.parameters import changed_fields
+from flockenv.cli.parameters import changed_fields, option_of
 from flockenv.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -19,7 +19,9 @@ class TrainOptions(Printing):
     """Options of `flockenv train`."""
 
     pool: str | None = option(None, "wide or narrow. [wide]")
-    leaders: int | None = option(None, "Leaders of each flock. [3]")
+    n_boats: int | None = option(None, "Boats of each flock. [27]")
+    n_leaders: int | None = option(None, "Leaders of each flock. [3]")
+    bw_s: float | None = option(None, "Noise: backward duration in s. [critical]")
     flock_hours: float | None = option(None, "When to stop: hours of all flocks together. [500]")
     seed: int | None = option(None, "Number of the training. [0]")
     change: list[str] | None = option(
@@ -34,12 +36,18 @@ class TrainOptions(Printing):
 
     def settings(self) -> dict[str, Any]:
         """Return the settings of the training that were given."""
+        environment = changed_fields(self.change or [])
+        for name, value in (("n_boats", self.n_boats), ("bw_s", self.bw_s)):
+            if value is not None and environment.setdefault(name, value) is not value:
+                raise ParameterError(
+                    f"{option_of(name)} and --set {name} are both given: one of them"
+                )
         given = {
             "pool": self.pool,
-            "n_leaders": self.leaders,
+            "n_leaders": self.n_leaders,
             "flock_hours": self.flock_hours,
             "seed": self.seed,
-            "environment": changed_fields(self.change or []) or None,
+            "environment": environment or None,
             "ppo": changed_fields(self.ppo or [], "--ppo") or None,
         }
         return {name: value for name, value in given.items() if value is not None}
@@ -55,7 +63,7 @@ def train(options: TrainOptions) -> None:
     paper's law and the tuned law in held-out flocks. With `--resume` an interrupted training goes
     on from the checkpoint.
 
-    Example: `flockenv train --pool wide --leaders 3 --flock-hours 60`
+    Example: `flockenv train --pool wide --n-leaders 3 --flock-hours 60`
     """
     from flockenv import training
 

@@ -109,7 +109,7 @@ def compare_leaders(
     if most >= parameters.n_boats:
         raise ParameterError(
             f"{most} leaders among n_boats = {parameters.n_boats} are not accepted: at least one "
-            "normal boat, as order is theirs (on the command line fewer `--leaders`, or more boats)"
+            "normal boat, as order is theirs (on the command line --n-leaders and --n-boats)"
         )
     if NO_LEADERS in policies:
         raise ParameterError(f"{NO_LEADERS!r} is no name for a policy: flocks without one have it")

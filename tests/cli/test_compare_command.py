@@ -13,7 +13,7 @@ from flockenv.cli.compare import REFERENCES
 from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy
 
-BRIEF = ["--episodes", "3", "--minutes", "0.5", "--leaders", "0-1"]
+BRIEF = ["--episodes", "3", "--minutes", "0.5", "--n-leaders", "0-1"]
 SHORT = [*BRIEF, "--set", "n_boats=8"]
 NARROW = [*SHORT, "--pool", "narrow"]
 
@@ -27,7 +27,7 @@ def learned(folder: Path, name: str = "leaning.npz") -> str:
 
 def test_a_table_of_five_rows_a_pool_and_the_files(cli, tmp_path: Path, colors_in) -> None:
     both = ["--pool", "wide", "--pool", "narrow"]
-    done = cli("compare", *SHORT, *both, "--leaders", "0-4", "--out", str(tmp_path))
+    done = cli("compare", *SHORT, *both, "--n-leaders", "0-4", "--out", str(tmp_path))
     assert done.returncode == 0, done.stderr
     assert "F = " not in done.stdout
     rows = [line.split() for line in done.stdout.splitlines()]
@@ -45,7 +45,7 @@ def test_a_table_of_five_rows_a_pool_and_the_files(cli, tmp_path: Path, colors_i
 
 
 def test_ones_own_policy_comes_first_and_has_a_card(cli, tmp_path: Path) -> None:
-    arguments = ["--leaders", "1,2", "--bw-s", "0.2", "--bw-s", "0.4", "--out", str(tmp_path)]
+    arguments = ["--n-leaders", "1,2", "--bw-s", "0.2", "--bw-s", "0.4", "--out", str(tmp_path)]
     words = ["compare", "--policy", learned(tmp_path), "--name", "mine", *NARROW, *arguments]
     done = cli(*words, "--full")
     assert done.returncode == 0, done.stderr
@@ -81,7 +81,7 @@ def test_alternating_targets_and_drop_outs_in_a_pool_of_ones_own(cli, tmp_path: 
     environment = ["--env", "target=alternate", "--env", "dropout_rate=0.01"]
     pool = ["--set", "pool=[150, 30]", "--set", "bw_s=0.2"]
     two = ["--only", "--policy", "damped law", "--policy", "straight ahead"]
-    out = ["--leaders", "1", "--json", "--out", str(tmp_path)]
+    out = ["--n-leaders", "1", "--json", "--out", str(tmp_path)]
     done = cli("compare", *two, *SHORT, *pool, *environment, *out)
     assert done.returncode == 0, done.stderr
     card = (tmp_path / "card.md").read_text()
@@ -94,12 +94,12 @@ def test_alternating_targets_and_drop_outs_in_a_pool_of_ones_own(cli, tmp_path: 
 def test_names_of_references(cli, tmp_path: Path) -> None:
     """A policy that is one is run once under any name; a file that is called like one is not."""
     file = learned(tmp_path, "learned.npz")
-    two = ["--policy", REFERENCES[2], "--policy", file, "--leaders", "1", "--json"]
+    two = ["--policy", REFERENCES[2], "--policy", file, "--n-leaders", "1", "--json"]
     done = cli("compare", *NARROW, *two, "--out", str(tmp_path))
     assert done.returncode == 0, done.stderr
     policies = [row["policy"] for row in json.loads(done.stdout)["means"]]
     assert policies == [REFERENCES[2], file, *REFERENCES[:2]]
-    alias = ["--policy", REFERENCES[1], "--name", "mine", "--leaders", "1", "--json"]
+    alias = ["--policy", REFERENCES[1], "--name", "mine", "--n-leaders", "1", "--json"]
     done = cli("compare", *NARROW, *alias, "--out", str(tmp_path))
     policies = [row["policy"] for row in json.loads(done.stdout)["means"]]
     assert policies == ["mine", REFERENCES[0], REFERENCES[2]]
@@ -109,7 +109,7 @@ def test_a_policy_for_each_leader(cli, tmp_path: Path) -> None:
     """Leaders of which each has the same policy are leaders with that policy."""
     pair = "leader_0=damped law,leader_1=damped law"
     two = ["--only", "--policy", pair, "--name", "pair", "--policy", "damped law", "--name", "one"]
-    out = ["--leaders", "2", "--json", "--out", str(tmp_path)]
+    out = ["--n-leaders", "2", "--json", "--out", str(tmp_path)]
     done = cli("compare", *two, *NARROW, *out)
     assert done.returncode == 0, done.stderr
     (row,) = json.loads(done.stdout)["differences"]
@@ -149,8 +149,8 @@ def test_a_table_in_80_columns(cli, tmp_path: Path) -> None:
     ("arguments", "words"),
     [
         (["--set", "n_boats=2000"], "do not fit"),
-        (["--set", "n_boats=2"], "fewer `--leaders`"),
-        (["--set", "n_leaders=3"], "numbers of leaders are --leaders"),
+        (["--set", "n_boats=2"], "--n-leaders and --n-boats"),
+        (["--set", "n_leaders=3"], "numbers of leaders are --n-leaders"),
         (["--set", "target=cw,ccw"], "one target"),
         (["--set", "pool=[90, 10]"], "bw_s=1.0`"),
         (["--policy", "damped law", "--policy", "damped law"], "given twice"),
@@ -160,9 +160,9 @@ def test_a_table_in_80_columns(cli, tmp_path: Path) -> None:
         (["--policy", "{}/broken.npz"], "broken.npz"),
         (["--policy", "{}/missing.npz"], "missing.npz"),
         (["--only"], "without --policy"),
-        (["--leaders", "3-1"], "as in 0-4 or 1,3"),
-        (["--leaders", "0-99999999"], "at most 64"),
-        (["--leaders", "0,1", "--env", "dropout_rate=0.1"], "options dropout_rate"),
+        (["--n-leaders", "3-1"], "as in 0-4 or 1,3"),
+        (["--n-leaders", "0-99999999"], "at most 64"),
+        (["--n-leaders", "0,1", "--env", "dropout_rate=0.1"], "options dropout_rate"),
         (["--env", "dropout=0.1"], "did you mean 'dropout_rate'"),
         (["--policy", "leader_0=damped law,leader_2=learned"], "for each of leader_0, leader_1"),
         (["--policy", "leader_0:learned"], "NAME=VALUE"),
@@ -178,7 +178,7 @@ def test_errors_are_one_line_with_exit_code_2(
 ) -> None:
     (tmp_path / "broken.npz").write_bytes(b"PK nothing")
     given = [each.replace("{}", str(tmp_path)) for each in arguments]
-    brief = [] if "--suite" in arguments else ["--minutes", "0.5", "--leaders", "1,2"]
+    brief = [] if "--suite" in arguments else ["--minutes", "0.5", "--n-leaders", "1,2"]
     done = cli("compare", *brief, *given, "--out", str(tmp_path / "out"))
     assert done.returncode == 2, done.stderr
     assert words in done.stderr.replace("\n", " ")

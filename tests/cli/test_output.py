@@ -57,7 +57,7 @@ def test_policies_may_have_any_name(cli):
     names = list(map(written, ["x[/b] $a_{ $.npz", "_under.npz", os.fsdecode(b"\xff.npz")]))
     short = ["-q", "--episodes", "2", "--minutes", "0.1", "--pool", "narrow", "--set", "n_boats=5"]
     wanted = [word for name in names for word in ("--policy", name)]
-    done = cli("compare", *short, "--leaders", "0-1", "--only", *wanted, "--out", "c")
+    done = cli("compare", *short, "--n-leaders", "0-1", "--only", *wanted, "--out", "c")
     assert done.returncode == 0, done.stderr
     assert "a_{" in done.stdout
     assert "\ufffd" in Path("c", "run.toml").read_text("utf-8")

@@ -101,7 +101,7 @@ def test_models_of_stable_baselines3_steer_and_are_compared_with_trust(cli, tmp_
     stable_baselines3.PPO("MlpPolicy", venv, device="cpu", seed=1).save(model)
     steer = ["run", *SMALL, "--seed", "3", "--no-contacts", "--out", out]
     short = ["--pool", "narrow", "--episodes", "2", "--minutes", "0.1", "--set", "n_boats=6"]
-    for words in (steer, ["compare", "--leaders", "1", *short, "--out", tmp_path / "out"]):
+    for words in (steer, ["compare", "--n-leaders", "1", *short, "--out", tmp_path / "out"]):
         refused = cli(*words, "--policy", model)
         assert (refused.returncode, "--trust" in refused.stderr) == (2, True)
         assert not out.exists()

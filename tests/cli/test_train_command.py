@@ -11,7 +11,7 @@ pytest.importorskip("stable_baselines3")
 from flockenv.policies import load
 
 TINY = [
-    *("--leaders", "2", "--set", "n_boats=6", "--set", "episode_s=16.0"),
+    *("--n-leaders", "2", "--set", "n_boats=6", "--set", "episode_s=16.0"),
     *("--set", "decision_period_s=1.0"),
     *("--ppo", "n_steps=16", "--ppo", "batch_size=32"),
     *("--flock-hours", str(128 * 32 / 3600), "--episodes", "2"),

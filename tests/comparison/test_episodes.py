@@ -74,7 +74,7 @@ def test_targets_are_dealt_out_to_the_seeds(parameters: flockenv.FlockParameters
 @pytest.mark.parametrize(
     ("leaders", "name", "environment", "words"),
     [
-        ([1, 9], "straight ahead", {}, "9 leaders among n_boats = 9 .* `--leaders`"),
+        ([1, 9], "straight ahead", {}, "9 leaders among n_boats = 9 .* --n-leaders"),
         ([1], "paper's law at every substep", {"target": "alternate"}, "outside"),
     ],
 )
