@@ -1,10 +1,12 @@
 """`flockenv compare`: policies against each other, in flocks of one's own or on frozen tasks."""
 
 import json
+import math
 import shlex
 import sys
+import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +29,8 @@ REFERENCES = ("learned", "tuned law", "paper's law")
 
 _BOATS = 27
 _MOST_LEADERS = 64
+_TRIAL_FLOCKS = 16
+_TRIAL_S = 60.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,6 +95,10 @@ def compare(options: CompareOptions) -> None:
     cases, own = _tasks(options) if options.suite else _flocks(options), _own_policies(options)
     policies = {case.name: _policies(case.parameters.pool, own, options) for case in cases}
     prepare(options.out / "runs.csv")
+    if options.suite and not options.shows_nothing:
+        hours = sum(case.flock_hours(len(policies[case.name])) for case in cases)
+        minutes = math.ceil(_seconds(cases, policies) / 60)
+        say(f"{len(cases)} tasks, {hours:.0f} flock-hours: about {minutes} min here", errors)
     result = _compared(options, cases, policies)
     if own:
         case, name = cases[0], next(iter(own))
@@ -110,6 +118,19 @@ def compare(options: CompareOptions) -> None:
     if options.full:
         say(result.in_words())
     say(f"Written to {options.out}")
+
+
+def _seconds(cases: list[Case], policies: dict[str, dict[str, Any]]) -> float:
+    """Return what cases take here, extrapolated from a minute of a few flocks for each policy."""
+    total = 0.0
+    for name in dict.fromkeys(name for each in policies.values() for name in each):
+        own = [case for case in cases if name in policies[case.name]]
+        trial = replace(own[0], seeds=own[0].seeds[:_TRIAL_FLOCKS], episode_s=_TRIAL_S)
+        start = time.perf_counter()
+        trial.run({name: policies[trial.name][name]})
+        rate = (time.perf_counter() - start) / trial.flock_hours(1)
+        total += rate * sum(case.flock_hours(1) for case in own)
+    return total
 
 
 def _compared(

@@ -1,8 +1,11 @@
 """`flockenv compare` prints and writes what it measured, and refuses nonsense in words."""
 
 import json
+import re
 import shlex
+import sys
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +13,8 @@ import pytest
 
 import flockenv
 from flockenv.cli.compare import REFERENCES
+from flockenv.comparison.case import Case
+from flockenv.comparison.suite import TASKS
 from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy
 
@@ -184,3 +189,21 @@ def test_errors_are_one_line_with_exit_code_2(
     assert words in done.stderr.replace("\n", " ")
     assert "Traceback" not in done.stderr
     assert not (tmp_path / "out" / "runs.csv").exists()
+
+
+def test_a_suite_says_first_how_long_it_takes(cli, tmp_path, monkeypatch):
+    short = [replace(task, seeds=task.seeds[:2], episode_s=20.0) for task in TASKS[:2]]
+    command = sys.modules["flockenv.cli.compare"]  # The name is the function's, too.
+    monkeypatch.setattr(command, "tasks_named", lambda *_: short)
+    before = []
+    run = Case.run
+    monkeypatch.setattr(
+        Case, "run", lambda case, *rest: before.append(case.episode_s) or run(case, *rest)
+    )
+    words = ["compare", "--suite", "v2", "--policy", "straight ahead", "--out", tmp_path]
+    done = cli(*words)
+    assert done.returncode == 0
+    assert re.search(r"^2 tasks, 0 flock-hours: about \d+ min here$", done.stderr, re.MULTILINE)
+    # A minute of each policy, and then the tasks.
+    assert before == [60.0, 60.0, 20.0, 20.0]
+    assert "min here" not in cli(*words, "--quiet").stderr
