@@ -28,6 +28,7 @@ CODE = ("*.py", "*.pyi", "*.rs", "*.mjs", "*.js", "*.html", "*.css", "*.toml", "
 #: What readers of a page make themselves, and names in files of other programs.
 OTHERS = {
     "docs/environments/index.md": {"flockenv/leaders", "flockenv/lean"},
+    "docs/extend/task.md": {"carousel.monitor.csv"},
     "docs/leaders.md": {"damped-law-POOL.csv", "damped-law-POOL-LEADERS.csv"},
     "docs/other_learners.md": {"timeit"},
     "docs/sweep.md": {"run_sweep(sweep, folder, engine=lambda workers: client.get_executor())"},
