@@ -40,6 +40,7 @@ __all__ = [
     "derived_series",
     "env_defaults",
     "flat_actions",
+    "in_water",
     "jam_sizes",
     "lap_orientation",
     "linear",
@@ -55,6 +56,7 @@ __all__ = [
     "sampled_analysis_window",
     "state_table",
     "structure_series",
+    "track_velocities",
 ]
 
 __version__: str
@@ -101,6 +103,12 @@ def order_columns(pose: _Floats, velocity: _Floats) -> _Columns: ...
 def structure_series(name: str, parameters: _Parameters, pose: _Floats) -> _Floats: ...
 def jam_sizes(parameters: _Parameters, pose: _Floats) -> list[list[int]]: ...
 def lap_orientation(pose: _Floats) -> _Floats: ...
+def track_velocities(
+    time_s: _Floats, pose: _Floats, longest_s: float, fastest_cm_s: float
+) -> tuple[_Floats, int]: ...
+def in_water(
+    pool: str | tuple[float, float], places: _Floats, beyond_cm: float
+) -> NDArray[np.bool_]: ...
 def record(flock: Flock, duration_s: float, plan: dict[str, Any]) -> dict[str, Any]: ...
 def flat_actions(
     actions: ArrayLike, shape: Sequence[int], levels: int | None, name: str = "actions"

@@ -65,4 +65,43 @@ impl Samples {
             })
             .collect()
     }
+
+    /// Velocities of boats whose poses these are, and how many steps were too fast. `times_s` holds the time of each
+    /// row: boats may have clocks of their own.
+    ///
+    /// Where a boat is there before and after, they are differences weighted by the other step, which are exact under
+    /// a constant acceleration; at the ends of a track they are one-sided. No difference is taken across steps of more
+    /// than `longest_s`, and of more than `fastest_cm_s`, which are counted. Rows without any are NaN.
+    pub fn velocities(&self, times_s: &[f64], longest_s: f64, fastest_cm_s: f64) -> (Self, usize) {
+        let (mut broken, rows) = (0, &self.rows);
+        let mut step = |place: usize| {
+            let (before, after) = (place.checked_sub(self.boats)?, place);
+            let time_s = times_s.get(after)? - times_s[before];
+            let (from, to) = (rows[before], rows[after]);
+            let way = (to.position - from.position) * time_s.recip();
+            let slope = Pose::new(way.x, way.y, (to.heading - from.heading) / time_s);
+            if !slope.is_finite() || time_s > longest_s {
+                return None;
+            }
+            let is_fast = way.norm_squared() > fastest_cm_s * fastest_cm_s;
+            broken += usize::from(is_fast);
+            (!is_fast).then_some((slope, time_s))
+        };
+        let steps: Vec<_> = (0..rows.len() + self.boats).map(&mut step).collect();
+        let mean = |place: usize| match (steps[place], steps[place + self.boats]) {
+            (Some((a, short)), Some((b, long))) => {
+                let share = long / (short + long);
+                let mix = |x: f64, y: f64| x * share + y * (1.0 - share);
+                Pose::new(
+                    mix(a.position.x, b.position.x),
+                    mix(a.position.y, b.position.y),
+                    mix(a.heading, b.heading),
+                )
+            }
+            (Some((only, _)), None) | (None, Some((only, _))) => only,
+            (None, None) => Pose::new(f64::NAN, f64::NAN, f64::NAN),
+        };
+        let means = (0..rows.len()).map(mean).collect();
+        (Self::new(means, self.boats), broken)
+    }
 }

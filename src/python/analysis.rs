@@ -9,11 +9,13 @@ use crate::analysis::quantities::{Formula, QUANTITIES, RECORDED, Recorded, quant
 use crate::analysis::samples::Samples;
 use crate::analysis::structure;
 use crate::error::FlockError;
-use crate::geometry::Pose;
 use crate::geometry::lap_frame::orientation;
+use crate::geometry::{Pose, Vec2};
 use crate::integrator::Phase;
-use crate::parameters::{FlockParameters, Targets};
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray3};
+use crate::parameters::{FlockParameters, Pool, Targets};
+use numpy::{
+    PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -177,6 +179,38 @@ pub(super) fn lap_orientation<'py>(
     let samples = samples(&pose, "pose")?;
     let angles = samples.rows().iter().map(orientation);
     rows_of(py, angles.collect(), samples.shape().1)
+}
+
+/// Velocities (t·n, 3) of tracked boats with times of shape (t, n), and how many steps were too fast for one.
+#[pyfunction]
+pub(super) fn track_velocities<'py>(
+    py: Python<'py>,
+    time_s: PyReadonlyArray2<'py, f64>,
+    pose: PyReadonlyArray3<'py, f64>,
+    longest_s: f64,
+    fastest_cm_s: f64,
+) -> PyResult<(Bound<'py, PyArray2<f64>>, usize)> {
+    let (times, samples) = (time_s.as_slice()?, samples(&pose, "pose")?);
+    same_length("time_s", times.len(), samples.rows().len())?;
+    let (found, broken) = samples.velocities(times, longest_s, fastest_cm_s);
+    let rows = found.rows().iter();
+    let numbers = rows.flat_map(|row| [row.position.x, row.position.y, row.heading]);
+    Ok((rows_of(py, numbers.collect(), 3)?, broken))
+}
+
+/// Whether each of some places (m, 2) is in the water of a pool, or at most so far beyond its walls.
+#[pyfunction]
+pub(super) fn in_water<'py>(
+    py: Python<'py>,
+    pool: &Bound<'py, PyAny>,
+    places: PyReadonlyArray2<'py, f64>,
+    beyond_cm: f64,
+) -> PyResult<Bound<'py, PyArray1<bool>>> {
+    let pool: Pool = given(pool, "pool")?;
+    let places = places.as_array();
+    let rows = places.rows().into_iter();
+    let held = rows.map(|row| pool.holds(Vec2::new(row[0], row[1]), beyond_cm));
+    Ok(PyArray1::from_iter(py, held))
 }
 
 /// Poses, or velocities, of an array of shape (t, n, 3).

@@ -44,6 +44,7 @@ mod speed_spread;
 mod steady_turning;
 mod structure;
 mod symmetry;
+mod tracks;
 mod turning_bias;
 mod water_current;
 mod work_counts;
