@@ -40,7 +40,6 @@ __all__ = [
     "derived_series",
     "env_defaults",
     "flat_actions",
-    "in_water",
     "jam_sizes",
     "lap_orientation",
     "linear",
@@ -106,9 +105,6 @@ def lap_orientation(pose: _Floats) -> _Floats: ...
 def track_velocities(
     time_s: _Floats, pose: _Floats, longest_s: float, fastest_cm_s: float
 ) -> tuple[_Floats, int]: ...
-def in_water(
-    pool: str | tuple[float, float], places: _Floats, beyond_cm: float
-) -> NDArray[np.bool_]: ...
 def record(flock: Flock, duration_s: float, plan: dict[str, Any]) -> dict[str, Any]: ...
 def flat_actions(
     actions: ArrayLike, shape: Sequence[int], levels: int | None, name: str = "actions"

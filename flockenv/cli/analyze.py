@@ -2,12 +2,18 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+import numpy as np
+
+from flockenv._core import pool_radii_cm
 from flockenv._io.atomic_write import atomic_write
+from flockenv._io.extras import require
 from flockenv.cli.console import print_json, say
 from flockenv.cli.options import Overwriting, Printing, argument, option, takes
 from flockenv.cli.output import in_words, load_recording, prepare, printable, summary_of
 from flockenv.errors import ParameterError
+from flockenv.recording import Recording
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -16,7 +22,9 @@ class AnalyzeOptions(Overwriting, Printing):
 
     file: Path = argument("Tracks (.csv, .parquet) or a recording (.npz).")
     layout: Path | None = option(None, "Columns and units of tracks: TOML. [beside the file]")
-    plot: Path | None = option(None, "Draw order parameters against time into this picture.")
+    plot: Path | None = option(
+        None, "Draw the first frame, and order parameters against time, into this picture."
+    )
     out: Path | None = option(
         None, "Write it: a recording (.npz), tables (.csv, .parquet) or .gsd."
     )
@@ -29,8 +37,9 @@ def analyze(options: AnalyzeOptions) -> None:
     The means are those that `flockenv run` prints: over the analysis window after the first tenth,
     or over all samples after it where the phases of motors are not known. What of the tracks was
     left out is reported. A table without a description gets a guessed one beside it, and the lines
-    to check are named. `--out` writes the poses for other programs too: tables with their layout
-    beside them, or GSD for OVITO and freud.
+    to check are named. Compare the first frame, which `--plot` draws, with the video: nothing else
+    shows that a whole experiment is mirrored. `--out` writes the poses for other programs too:
+    tables with their layout beside them, or GSD for OVITO and freud.
 
     Example: `flockenv analyze tracks.csv --plot order.png --out run.gsd`
     """
@@ -47,14 +56,12 @@ def analyze(options: AnalyzeOptions) -> None:
     recording = load_recording(options.file, options.layout, quiet=options.quiet)
     prepare(*written, overwrites=options.force)
     if plot is not None:
-        figure = recording.order.plot(target=recording.parameters.target).get_figure(root=True)
-        assert figure is not None
         with atomic_write(plot) as file:
-            figure.savefig(file, format=plot.suffix.removeprefix("."))
+            _drawn(recording).savefig(file, format=plot.suffix.removeprefix("."))
     if out is not None and out.suffix.lower() == ".npz":
         recording.save(out)
     elif out is not None:
-        export(recording, out)
+        export(recording, out, overwrite=options.force)
     if options.as_json:
         files = [printable(path) for path in written]
         print_json({**summary_of(recording), "files": files})
@@ -63,3 +70,35 @@ def analyze(options: AnalyzeOptions) -> None:
     say(f"{boats} boats, {printable(options.file)}: {in_words(recording)}")
     if written:
         say(f"Written to {' and '.join(map(printable, written))}")
+
+
+def _drawn(recording: Recording) -> Any:
+    """Return a figure of the first frame with a boat in it, and of the order against time."""
+    pyplot = require("matplotlib.pyplot", "plot")
+    figure, axes = pyplot.subplots(1, 2, figsize=(13, 6), layout="constrained")
+    recording.order.plot(target=recording.parameters.target, ax=axes[1])
+    if recording.has_poses:
+        _draw_frame(recording, axes[0])
+    return figure
+
+
+def _draw_frame(recording: Recording, axes: Any) -> None:
+    """Draw the boats of the first frame, with their names, to be compared with the video."""
+    parameters, there = recording.parameters, ~np.isnan(recording.pose[..., 0])
+    first = int(there.any(axis=1).argmax())
+    boats = np.flatnonzero(there[first])
+    x, y, heading = recording.pose[first, boats].T
+    length = 2.0 * (1.0 + parameters.boat_shape) * parameters.boat_radius_cm
+    ahead = length * np.cos(heading), length * np.sin(heading)
+    colors = np.where(boats < parameters.n_leaders, "#F0A202", "#0072B2")
+    places = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "pivot": "mid"}
+    axes.quiver(x, y, *ahead, color=colors, width=0.008, **places)
+    names = recording.ids if recording.ids is not None else np.arange(parameters.n_boats)
+    for boat, at in zip(boats, zip(x, y, strict=True), strict=True):
+        axes.annotate(str(names[boat]), at, (5, 5), textcoords="offset points", fontsize=8)
+    angle = np.linspace(0.0, 2.0 * np.pi, 361)
+    for radius in pool_radii_cm(parameters.pool):
+        if 0.0 < radius < np.inf:
+            axes.plot(radius * np.cos(angle), radius * np.sin(angle), color="0.5")
+    axes.set(aspect="equal", xlabel="x [cm]", ylabel="y [cm], up")
+    axes.set_title(f"{recording.time_s[first]:g} s: do boats lie and point as in the video?")

@@ -1,8 +1,11 @@
 """Doors for data: tracks of real flocks in, recordings out to tables and GSD."""
 
 from flockenv.tracks.assemble import recording_of
-from flockenv.tracks.layout import SUFFIXES, TrackLayout, guess_layout, read_layout
-from flockenv.tracks.reader import TrackReport, read_tracks
+from flockenv.tracks.guess import guess_layout
+from flockenv.tracks.layout import TrackLayout, read_layout
+from flockenv.tracks.reader import read_tracks
+from flockenv.tracks.report import TrackReport
+from flockenv.tracks.table import SUFFIXES
 from flockenv.tracks.writer import EXPORTS, export
 
 __all__ = [

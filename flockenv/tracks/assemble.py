@@ -12,11 +12,13 @@ from flockenv.order import order_series
 from flockenv.parameters import FlockParameters
 from flockenv.recording import PHASES, PRECISIONS, Recording
 from flockenv.recording.checks import check_array
+from flockenv.tracks.motion import Motion, in_water, unwrapped
 
 Floats = NDArray[np.float64]
 
 _FASTEST_CM_S = 1000.0
-_MOST_OUTSIDE = 0.1
+_SLOWEST_CM_S = 0.1
+_FAR_CM = 50.0
 
 
 def recording_of(
@@ -51,7 +53,8 @@ def recording_of(
         Radius in cm, and half the length of the straight part in radii; (r, 0) is a disc.
     velocity
         Shape (t, n, 3) in cm/s, cm/s and rad/s. None: differences of the poses, central ones
-        where a boat is there before and after; a boat that is there for one sample has none.
+        where a boat is there before and after, weighted by the steps in time; none across gaps,
+        and none for a boat that is there for one sample.
     phase
         "fw", "nop1", "bw" or "nop2" at each time, shape (t,). None: not known, and all samples
         count as analyzed.
@@ -68,8 +71,8 @@ def recording_of(
     ------
     ParameterError
         For shapes that do not match, rows of which a part is NaN, no pose at all, speeds above
-        10 m/s (in the median of a boat), more than a tenth of the centers outside the pool, and
-        for names that are unknown or there twice.
+        10 m/s (in the median of a boat) or so low that times are in no s, centers in no water (a
+        hull's width beyond a wall), and for names that are unknown or there twice.
     """
     times, poses = _numbers("time_s", time_s), _numbers("pose", pose)
     shape = (times.size, np.atleast_2d(poses).shape[1], 3)
@@ -84,7 +87,8 @@ def recording_of(
         raise ParameterError(f"ids holds {len(names)} names for {shape[1]} boats")
     order = _leaders_first(names, [str(each) for each in leaders])
     poses[..., 2] = unwrapped(poses[..., 2])
-    motion = velocities(times, poses)[0] if velocity is None else _numbers("velocity", velocity)
+    given = None if velocity is None else _numbers("velocity", velocity)
+    motion = Motion.of(times, poses).velocity if given is None else given
     check_array("velocity", motion, shape, PRECISIONS, gaps=True)
     poses, motion = poses[:, order], motion[:, order]
     radius, half_length = hull
@@ -119,36 +123,6 @@ def recording_of(
     )
 
 
-def velocities(time_s: Floats, pose: Floats, fastest_cm_s: float = np.inf) -> tuple[Floats, int]:
-    """Return differences of poses, of shape (t, n, 3), in cm/s, cm/s and rad/s.
-
-    Central ones where a boat is there before and after, one-sided ones at the ends of its tracks,
-    NaN where it is there for one sample only. No difference is taken across steps that are faster
-    than a speed, whose number is returned too.
-    """
-    steps = np.diff(pose, axis=0) / np.diff(time_s)[:, None, None]
-    broken = np.hypot(steps[..., 0], steps[..., 1]) > fastest_cm_s
-    steps[broken] = np.nan
-    none = np.full((1, *pose.shape[1:]), np.nan)
-    before, after = np.concatenate([none, steps]), np.concatenate([steps, none])
-    mean = (before + after) / 2
-    return np.where(np.isnan(mean), np.fmax(before, after), mean), int(broken.sum())
-
-
-def unwrapped(heading: Floats) -> Floats:
-    """Return headings without jumps of full turns, each boat's from sample to sample it is in."""
-    whole = heading.copy()
-    for boat in whole.T:
-        there = ~np.isnan(boat)
-        boat[there] = np.unwrap(boat[there])
-    return whole
-
-
-def direction(x: Floats, y: Floats) -> Floats:
-    """Return the angle of vectors, in radians; NaN for none."""
-    return np.where((x == 0.0) & (y == 0.0), np.nan, np.arctan2(y, x))
-
-
 def _numbers(name: str, values: ArrayLike) -> Floats:
     try:
         # What is masked is not there.
@@ -168,16 +142,26 @@ def _leaders_first(names: list[str], leaders: list[str]) -> list[int]:
 
 def _check_units(pose: Floats, velocity: Floats, parameters: FlockParameters) -> None:
     distance, speed = (np.hypot(each[..., 0], each[..., 1]) for each in (pose, velocity))
-    fastest = np.nanmedian(speed[:, ~np.isnan(speed).all(axis=0)], axis=0).max(initial=0.0)
+    moves = ~np.isnan(speed).all(axis=0)
+    fastest = np.nanmedian(speed[:, moves], axis=0).max(initial=0.0)
     if fastest > _FASTEST_CM_S:
         raise ParameterError(
             f"a boat moves at {fastest / 100:.3g} m/s in the median, above "
             f"{_FASTEST_CM_S / 100:g} m/s: are positions in cm and times in s?"
         )
-    outer_cm, _ = _core.pool_radii_cm(parameters.pool)
-    outside = np.mean(distance[~np.isnan(distance)] > outer_cm)
-    if outside > _MOST_OUTSIDE:
+    there = ~np.isnan(distance)
+    margin = 2 * parameters.boat_radius_cm
+    outside = there & ~in_water(parameters.pool, pose, margin)
+    if outside.any():
         raise ParameterError(
-            f"{outside:.0%} of the centers lie outside the pool of radius {outer_cm:g} cm: are "
-            "positions in cm, from the center of the pool?"
+            f"{outside.sum() / there.sum():.0%} of the centers ({outside.sum()}) lie outside the "
+            "pool, or in the obstacle in its middle: are positions in cm, from the center of the "
+            "pool, and rows of boats that are not there NaN?"
+        )
+    boats = pose[:, moves, :2].swapaxes(0, 1)
+    ways = [np.ptp(boat[~np.isnan(boat[:, 0])], axis=0).max() for boat in boats]
+    quick = np.nanquantile(speed[:, moves], 0.95, axis=0)
+    if len(ways) and max(ways) > _FAR_CM and quick.max() < _SLOWEST_CM_S:
+        raise ParameterError(
+            f"boats go {max(ways):.3g} cm far at {quick.max():.2g} cm/s: are times in s?"
         )

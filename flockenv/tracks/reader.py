@@ -1,52 +1,26 @@
-"""Tracks of tables (CSV, Parquet), cleaned and counted."""
+"""Tracks of tables (CSV, Parquet) as recordings, with a report of what was left out."""
 
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flockenv.errors import ParameterError
 from flockenv.recording import Recording
-from flockenv.tracks.assemble import Floats, direction, recording_of, unwrapped, velocities
-from flockenv.tracks.layout import TrackLayout, read_layout, read_table, rows_of
+from flockenv.tracks.assemble import recording_of
+from flockenv.tracks.clock import check_order, frames_of
+from flockenv.tracks.layout import TrackLayout, read_layout
+from flockenv.tracks.motion import Motion, bows_of, unwrapped
+from flockenv.tracks.report import TrackReport
+from flockenv.tracks.rows import direction, rows_of
+from flockenv.tracks.table import Floats, plain_table, read_table
 
 if TYPE_CHECKING:
     import pandas as pd
 
-
-@dataclass(frozen=True, slots=True)
-class TrackReport:
-    """What of tracks was used, and what was left out.
-
-    Attributes
-    ----------
-    frames, boats, samples : int
-        Different times, different names, and poses that are used.
-    missing : int
-        Rows without a name, a position or a heading, which are left out.
-    broken : int
-        Steps above the greatest speed, such as of wrong detections and of names that were
-        exchanged: both samples are used, and no velocity is taken across.
-    lone : int
-        Samples without a neighbor in time. They have no velocity, and no quantity counts them.
-    """
-
-    frames: int
-    boats: int
-    samples: int
-    missing: int
-    broken: int
-    lone: int
-
-    def __str__(self) -> str:
-        return (
-            f"{self.samples} poses of {self.boats} boats in {self.frames} frames; left out: "
-            f"{self.missing} rows without a name or a pose; steps too fast for a velocity: "
-            f"{self.broken}; samples without a velocity: {self.lone}"
-        )
+_STUCK = 20
 
 
 def read_tracks(
@@ -56,21 +30,24 @@ def read_tracks(
 ) -> Recording:
     """Read tracks as a recording, which is analyzed and replayed like a simulated one.
 
+    Rows that cannot be a boat are left out and counted: without a name, a position or a heading,
+    in no water, with too little confidence, there twice.
+
     Parameters
     ----------
     source
-        A table with one row per frame and boat (extra ``plot``), or the CSV or Parquet file of one,
-        in which nothing is executed.
+        A table with one row per frame and boat, or one per frame (extra ``plot``), or the CSV or
+        Parquet file of one, in which nothing is executed.
     layout
         How tracks lie in it; None for the TOML file beside it: ``a.toml`` for ``a.csv``.
     report
-        Called with what was used and left out, which prints as a line.
+        Called with what was used and left out, which prints as a few lines.
 
     Raises
     ------
     ParameterError
-        If the file cannot be read, a column is missing or holds other things than numbers, a name
-        is there twice in a frame, headings look like degrees where radians are said, everything is
+        If the file cannot be read, a column is missing or holds other things than numbers, a boat
+        is in two places in a frame, times go back, units do not fit what is said, everything is
         missing, the arrays would be too large, there is no layout, and as for `recording_of`.
     MissingExtraError
         Without the extra ``plot``.
@@ -78,9 +55,10 @@ def read_tracks(
     if not isinstance(source, str | os.PathLike):
         if layout is None:
             raise ParameterError("layout is missing: a table has no file beside it")
-        return _recording(source, layout, report)
+        return _recording(plain_table(source), layout, report)
     path = Path(source)
-    layout, table = layout or read_layout(path.with_suffix(".toml")), read_table(path)
+    layout = layout or read_layout(path.with_suffix(".toml"))
+    table = read_table(path, layout)
     try:
         return _recording(table, layout, report)
     except ParameterError as error:
@@ -90,41 +68,86 @@ def read_tracks(
 def _recording(
     table: "pd.DataFrame", layout: TrackLayout, report: Callable[[TrackReport], object]
 ) -> Recording:
-    names, frames, pose = _poses(rows_of(table, layout))
-    missing = len(table) - int(np.isfinite(pose[..., 0]).sum())
-    time_s = (frames - frames[0]) / (layout.fps or 1.0)
+    rows = rows_of(table, layout)
+    named = rows[rows["id"].notna()]
+    twice = (named["why"] == "") & named.duplicated(["id", "time", "x", "y", "heading"])
+    rows.loc[twice[twice].index, "why"] = "that are there twice" if twice.any() else ""
+    rows = rows.assign(time=rows["time"] / (layout.fps or 1.0))
+    check_order(rows[rows["id"].notna() & (rows["why"] != "that are there twice")], layout)
+    rows["frame"] = frames_of(rows)
+    names, time_s, stamps, pose = _poses(rows, layout)
+    motion = Motion.of(stamps, pose, layout.max_speed_cm_s)
     if layout.heading is None:
-        motion, _ = velocities(time_s, pose, layout.max_speed_cm_s)
-        pose[..., 2] = direction(motion[..., 0], motion[..., 1])
+        pose[..., 2] = direction(*np.moveaxis(motion.velocity[..., :2], -1, 0))
         pose[np.isnan(pose[..., 2])] = np.nan
+    elif layout.axis:
+        pose[..., 2] = bows_of(pose[..., 2], motion)
     pose[..., 2] = unwrapped(pose[..., 2])
-    velocity, broken = velocities(time_s, pose, layout.max_speed_cm_s)
+    motion = Motion.of(stamps, pose, layout.max_speed_cm_s)
+    motion.check(pose, layout)
     flock = {name: getattr(layout, name) for name in ("pool", "hull", "leaders", "target")}
+    velocity = motion.velocity
     recording = recording_of(time_s, pose, velocity=velocity, ids=names, **flock)
     there = ~np.isnan(pose[..., 0])
-    samples, lone = int(there.sum()), int((there & np.isnan(velocity[..., 0])).sum())
-    report(TrackReport(len(frames), len(names), samples, missing, broken, lone))
+    empty = motion.empty_frames(time_s)
+    gaps = motion.gaps()
+    counts: Any = rows[rows["why"] != ""].fillna({"id": ""}).groupby(["why", "id"]).size()
+    out = {why: counts[why].to_dict() for why in counts.index.unique(0)}
+    report(
+        TrackReport(
+            frames=len(time_s),
+            boats=len(names),
+            samples=int(there.sum()),
+            missing=len(names) * (len(time_s) + empty) - int(there.sum()),
+            left_out=out,
+            gaps=len(gaps),
+            longest_gap_s=float(gaps.max(initial=0.0)),
+            broken=motion.broken,
+            lone=int((there & np.isnan(velocity[..., 0])).sum()),
+            cosine=motion.cosine(pose),
+            stuck=_stuck(rows),
+        )
+    )
     return recording
 
 
-def _poses(every: "pd.DataFrame") -> tuple[list[str], Floats, Floats]:
-    """Return the names (n,), frames (t,) and poses (t, n, 3) of rows with a name and a pose."""
-    is_placed = np.isfinite(every[["x", "y", "heading"]].to_numpy()).all(axis=1)
-    rows = every[every["id"].notna() & is_placed].astype({"id": str})
+def _poses(every: "pd.DataFrame", layout: TrackLayout) -> tuple[list[str], Floats, Floats, Floats]:
+    """Return the names (n,), times (t,), each boat's own times (t, n), and poses (t, n, 3)."""
+    rows = every[every["why"] == ""]
     if rows.empty:
-        raise ParameterError("no row has a name, a position and a heading")
-    counts = rows.value_counts(["id", "frame"])
-    if counts.iloc[0] > 1:
-        name, frame = counts.index[0]
-        raise ParameterError(f"{name!r} is there {counts.iloc[0]} times in frame {frame:g}")
+        raise ParameterError("no row has a name, a position and a heading in the water")
+    again = rows.duplicated(["id", "frame"], keep="first")
+    if again.any():
+        row = rows[again].iloc[0]
+        if layout.id is None and not layout.is_wide:
+            raise ParameterError("id is missing: several rows have one time, so boats have names")
+        same = rows[(rows["id"] == row["id"]) & (rows["frame"] == row["frame"])]
+        raise ParameterError(
+            f"{row['id']!r} is there {len(same)} times in frame {row['time'] * (layout.fps or 1):g}"
+            f", at other places, the second time in {rows.index.name} {row.name}: if it is no "
+            f"boat's name, say unassigned = [{row['id']!r}]"
+        )
     # By their length, then alphabet, so that 2 comes before 10.
     names = sorted(rows["id"].unique(), key=lambda name: (len(name), name))
-    frames = np.unique(every["frame"])
+    frames = every.groupby("frame")["time"].agg(["min", "max"]).mean(axis=1)
     # Arrays hold a pose for each frame and name: in large ones every sixteenth must be there.
     if len(frames) * len(names) > max(1 << 22, 16 * len(every)):
         raise ParameterError(
             f"{len(names)} names in {len(frames)} frames are too many for {len(every)} rows: join "
             "fragments of tracks, or read a part of the file"
         )
-    wide = rows.pivot(index="frame", columns="id").reindex(frames)
-    return names, frames, np.stack([wide[each][names] for each in ("x", "y", "heading")], axis=-1)
+    wide = rows.pivot(index="frame", columns="id").reindex(frames.index)
+    time_s = frames.to_numpy()
+    stamps = wide["time"][names].to_numpy()
+    stamps = np.where(np.isnan(stamps), time_s[:, None], stamps)
+    pose = np.stack([wide[each][names] for each in ("x", "y", "heading")], axis=-1)
+    return names, time_s - time_s[0], stamps, pose
+
+
+def _stuck(rows: "pd.DataFrame") -> dict[str, tuple[float, float, int]]:
+    """Return boats that are at the very same point in many samples."""
+    used = rows[rows["why"] == ""]
+    counts = used.value_counts(["id", "x", "y"]).reset_index().drop_duplicates("id")
+    share = counts["id"].map(used["id"].value_counts()) / 10
+    counts = counts[(counts["count"] >= _STUCK) & (counts["count"] >= share)]
+    return {str(n): (float(x), float(y), int(c)) for n, x, y, c in counts.itertuples(index=False)}

@@ -19,7 +19,9 @@ EXPORTS = (".csv", ".parquet", ".gsd")
 """Endings of files that `export` writes."""
 
 
-def export(recording: Recording, path: str | os.PathLike[str]) -> list[Path]:
+def export(
+    recording: Recording, path: str | os.PathLike[str], *, overwrite: bool = False
+) -> list[Path]:
     """Write the poses of a recording for other programs, and return the files that were written.
 
     The ending of the path decides. A CSV or Parquet table (extra ``plot``) has one row per sample
@@ -29,10 +31,18 @@ def export(recording: Recording, path: str | os.PathLike[str]) -> list[Path]:
     velocities in cm/s, the types "boat" and "leader" with their hull, and ``time_s`` and the number
     of each boat in the log.
 
+    Parameters
+    ----------
+    recording, path
+        What is written, and where; a table or a GSD file that is there is written over.
+    overwrite
+        Whether a layout beside the table is written over too, though it says something else: it may
+        be written by hand.
+
     Raises
     ------
     ParameterError
-        For another ending, and a recording without poses.
+        For another ending, a recording without poses, and another layout that is there.
     MissingExtraError
         Without the extra.
     OSError
@@ -49,15 +59,19 @@ def export(recording: Recording, path: str | os.PathLike[str]) -> list[Path]:
     if ending == ".gsd":
         _write_gsd(recording, path)
         return [path]
-    table, beside = recording.to_dataframe(boats=True), path.with_suffix(".toml")
+    beside = path.with_suffix(".toml")
+    text = "# Columns and units of the table beside this file, for flockenv.\n"
+    text += tomli_w.dumps(_layout(recording))
+    if not overwrite and beside.exists() and beside.read_bytes() != text.encode():
+        raise ParameterError(f"{beside} is there already, with another layout: overwrite=True")
+    table = recording.to_dataframe(boats=True)
     if ending == ".csv":
         write_csv(path, table)
     else:
         require("pyarrow", "plot")
         with atomic_write(path) as file:
             table.to_parquet(file, index=False)
-    note = "# Columns and units of the table beside this file, for flockenv.\n"
-    write_text(beside, note + tomli_w.dumps(_layout(recording)))
+    write_text(beside, text)
     return [path, beside]
 
 

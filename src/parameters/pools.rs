@@ -2,7 +2,6 @@
 
 use super::value::{Kind, Setting, Value, wrong_kind};
 use crate::error::{FlockError, Result};
-use crate::geometry::Vec2;
 
 /// The water: an annulus, a disc (inner radius 0) or open water (outer radius infinite).
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -27,12 +26,6 @@ impl Pool {
     /// Names of the pools, as users write them.
     pub(crate) const NAMED: [(&'static str, Self); 2] =
         [("wide", Self::WIDE), ("narrow", Self::NARROW)];
-
-    /// Whether a place is in the water, or at most so far beyond a wall.
-    pub fn holds(&self, place: Vec2, beyond_cm: f64) -> bool {
-        let distance = place.norm_squared().sqrt();
-        distance <= self.outer_radius_cm + beyond_cm && distance >= self.inner_radius_cm - beyond_cm
-    }
 
     /// The pool of that name.
     ///

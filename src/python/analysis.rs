@@ -9,10 +9,10 @@ use crate::analysis::quantities::{Formula, QUANTITIES, RECORDED, Recorded, quant
 use crate::analysis::samples::Samples;
 use crate::analysis::structure;
 use crate::error::FlockError;
+use crate::geometry::Pose;
 use crate::geometry::lap_frame::orientation;
-use crate::geometry::{Pose, Vec2};
 use crate::integrator::Phase;
-use crate::parameters::{FlockParameters, Pool, Targets};
+use crate::parameters::{FlockParameters, Targets};
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
 };
@@ -196,21 +196,6 @@ pub(super) fn track_velocities<'py>(
     let rows = found.rows().iter();
     let numbers = rows.flat_map(|row| [row.position.x, row.position.y, row.heading]);
     Ok((rows_of(py, numbers.collect(), 3)?, broken))
-}
-
-/// Whether each of some places (m, 2) is in the water of a pool, or at most so far beyond its walls.
-#[pyfunction]
-pub(super) fn in_water<'py>(
-    py: Python<'py>,
-    pool: &Bound<'py, PyAny>,
-    places: PyReadonlyArray2<'py, f64>,
-    beyond_cm: f64,
-) -> PyResult<Bound<'py, PyArray1<bool>>> {
-    let pool: Pool = given(pool, "pool")?;
-    let places = places.as_array();
-    let rows = places.rows().into_iter();
-    let held = rows.map(|row| pool.holds(Vec2::new(row[0], row[1]), beyond_cm));
-    Ok(PyArray1::from_iter(py, held))
 }
 
 /// Poses, or velocities, of an array of shape (t, n, 3).

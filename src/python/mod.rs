@@ -31,7 +31,7 @@ mod _core {
 
     #[pymodule_export]
     use super::analysis::{
-        collective_states, derived_series, in_water, jam_sizes, lap_orientation, order_columns,
+        collective_states, derived_series, jam_sizes, lap_orientation, order_columns,
         ordering_time_s, sampled_analysis_window, structure_series, track_velocities,
     };
     #[pymodule_export]

@@ -29,8 +29,9 @@ def test_tracks_have_the_numbers_of_the_run_they_are_of(cli, run, tmp_path):
     assert "1206 poses of 6 boats in 201 frames" in analyzed.stderr
     assert "mean Ψ_o 0." in analyzed.stdout
     pixels = imread(tmp_path / "order.png")[..., :3]
-    for color in ("C0", "C1", "C2"):
-        assert (abs(pixels - to_rgb(color)).max(axis=-1) < 0.02).sum() > 200
+    # The lines, and in the first frame the boats and the leader.
+    for color in ("C0", "C1", "C2", "#0072B2", "#F0A202"):
+        assert (abs(pixels - to_rgb(color)).max(axis=-1) < 0.02).sum() > 100
     recording = flockenv.Recording.load(tmp_path / "again.npz")
     assert recording.ids.tolist() == ["0", "1", "2", "3", "4", "5"]
     summaries = [
@@ -47,6 +48,45 @@ def test_tracks_play_beside_the_model(cli, run, tmp_path):
     done = cli("replay", str(tracks), str(run), "--html", str(tmp_path / "both.html"))
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "both.html").exists()
+
+
+def test_the_first_frame_shows_which_way_is_up(cli, tmp_path):
+    """One boat at the top right that heads up: mirrored by y_down, it is drawn at the bottom."""
+    rows = "".join(f"{k},a,60.0,{40 + k}.0,90\n" for k in range(10))
+    (tmp_path / "t.csv").write_text("frame,id,x,y,heading\n" + rows)
+    for down in ("false", "true"):
+        (tmp_path / "t.toml").write_text(
+            f'pool = [90, 0]\nfps = 10\nheading_unit = "deg"\ny_down = {down}\n'
+        )
+        done = cli("analyze", str(tmp_path / "t.csv"), "--plot", str(tmp_path / f"{down}.png"))
+        assert done.returncode == 0, done.stderr
+        assert "mean cosine between heading and motion: 1.00" in done.stderr
+        pixels = imread(tmp_path / f"{down}.png")[..., :3]
+        boat = abs(pixels - to_rgb("#0072B2")).max(axis=-1) < 0.02
+        height, width = boat.shape
+        place = np.argwhere(boat[:, : width // 2]).mean(axis=0) / (height, width // 2)
+        assert (place[0] < 0.5) == (down == "false")
+        assert place[1] > 0.6
+
+
+def test_what_was_left_out_is_said_by_boat(cli, run, tmp_path):
+    tracks = tmp_path / "tracks.csv"
+    cli("analyze", str(run), "--out", str(tracks))
+    lines = tracks.read_text().splitlines()
+    place = [lines[0].split(",").index(name) for name in ("x_cm", "y_cm")]
+    for number in range(300, 330):
+        cells = lines[number].split(",")
+        for each in place:
+            cells[each] = "0.0"
+        lines[number] = ",".join(cells)
+    tracks.write_text("\n".join(lines))
+    done = cli("analyze", str(tracks))
+    assert done.returncode == 0, done.stderr
+    assert "missing: 30 of 1206 boat-frames" in done.stderr
+    assert (
+        "left out: 30 rows (30 in no water: 5 5, 4 5, 3 5, 2 5, 1 5, 1 more boats)" in done.stderr
+    )
+    assert "gaps: 6, the longest 0.6 s" in done.stderr
 
 
 def test_gsd(cli, run, tmp_path):

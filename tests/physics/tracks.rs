@@ -5,7 +5,6 @@
 
 use flockenv::analysis::samples::Samples;
 use flockenv::geometry::{Pose, Vec2};
-use flockenv::parameters::Pool;
 
 /// One boat at x = t², y = −t, turning by 0.5 t² rad.
 fn accelerated(times: &[f64]) -> Samples {
@@ -78,29 +77,4 @@ fn boats_may_have_clocks_of_their_own() {
             .iter()
             .all(|row| (row.position.x - 10.0).abs() < 1e-12)
     );
-}
-
-#[test]
-fn a_pool_holds_what_is_between_its_walls() {
-    let pool = Pool::NARROW;
-    for (distance, beyond, is_in) in [
-        (90.0, 0.0, true),
-        (90.1, 0.0, false),
-        (99.9, 10.0, true),
-        (48.4, 0.0, false),
-        (38.6, 10.0, true),
-        (0.0, 10.0, false),
-        (f64::NAN, 10.0, false),
-    ] {
-        assert_eq!(
-            pool.holds(Vec2::new(0.0, distance), beyond),
-            is_in,
-            "{distance} {beyond}"
-        );
-    }
-    let open = Pool {
-        outer_radius_cm: f64::INFINITY,
-        inner_radius_cm: 0.0,
-    };
-    assert!(open.holds(Vec2::new(1e9, 0.0), 0.0));
 }

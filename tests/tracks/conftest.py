@@ -1,5 +1,6 @@
 """Tracks whose truth is known: a simulated flock, seen by a camera."""
 
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,3 +61,8 @@ def read_and_counted(source, layout=None):
     recording = read_tracks(source, layout, reports.append)
     (report,) = reports
     return recording, report
+
+
+def but(layout, **changes):
+    """Return a layout with other values in some of its fields."""
+    return dataclasses.replace(layout, **changes)

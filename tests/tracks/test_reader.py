@@ -14,7 +14,8 @@ def test_a_camera_gives_back_the_run(seen):
     found, report = read_and_counted(seen.table, LAYOUT)
     assert report.samples == len(seen.table)
     assert report.samples + seen.missing == seen.truth.pose[..., 0].size
-    assert (report.missing, report.broken) == (0, 0)
+    assert (report.missing, report.broken, report.left_out) == (seen.missing, 0, {})
+    assert 0.5 < report.cosine < 0.9
     assert found.ids.tolist() == [f"boat{number + 1}" for number in range(20)]
     assert found.parameters.n_leaders == 2
     assert np.allclose(found.time_s, seen.truth.time_s)
@@ -84,7 +85,7 @@ def line(**columns) -> pd.DataFrame:
     return pd.DataFrame({**table, **columns})
 
 
-OPEN = TrackLayout(pool="wide", fps=10.0)
+OPEN = TrackLayout(pool=(180.0, 0.0), fps=10.0)
 
 
 @pytest.mark.parametrize(("frame", "steps"), [(0, 1), (4, 2), (9, 1)])
@@ -136,13 +137,15 @@ def test_rows_without_a_name_are_left_out_and_counted():
         table = line(id=pd.Series(np.resize(np.array(names, object), 30)).infer_objects())
         recording, report = read_and_counted(table, OPEN)
         assert recording.ids.tolist() == [str(each).removesuffix(".0") for each in names[:2]]
-        assert (report.missing, report.samples) == (10, 20)
+        assert (report.left_out, report.samples) == ({"without a name": {"": 10}}, 20)
 
 
 def test_rows_of_which_all_is_missing_are_counted():
     table = line()
     table.loc[7:9, ["x", "y", "heading"]] = np.nan
-    assert read_and_counted(table, OPEN)[1].missing == 3
+    report = read_and_counted(table, OPEN)[1]
+    assert report.left_out == {"without a position": {"0": 1, "1": 1, "2": 1}}
+    assert report.missing == 3
 
 
 def test_fragments_that_would_fill_the_memory_are_refused():
@@ -162,7 +165,11 @@ def test_names_are_sorted_as_numbers():
 @pytest.mark.parametrize(
     ("table", "changes", "words"),
     [
-        (pd.concat([line(), line().iloc[[7]]]), {}, "'1' is there 2 times in frame 2"),
+        (
+            line(id=np.where(np.arange(30) == 7, 0, np.arange(30) % 3)),
+            {},
+            "'0' is there 2 times in frame 2, at other places, the second time in row 7",
+        ),
         (line(heading=np.linspace(0, 350, 30)), {}, "heading_unit = 'deg'"),
         (line(x=np.nan), {}, "no row has a name, a position and a heading"),
         (line(heading="left"), {}, "'heading' holds other things than numbers"),
@@ -178,7 +185,11 @@ def test_names_are_sorted_as_numbers():
         (line(), {"heading_unit": "grad"}, "'grad' is not accepted: rad or deg"),
         (line(), {"heading": ("x", "y")}, "the tail and x, y of the head"),
         (line(), {"leaders": ("7",)}, "'7' is no leader among the ids"),
-        (line(), {"cm_per_unit": 200.0, "max_speed_cm_s": 1e9}, "20 m/s in the median"),
+        (
+            line(),
+            {"cm_per_unit": 200.0, "max_speed_cm_s": 1e9, "pool": (np.inf, 0.0)},
+            "20 m/s in the median",
+        ),
         (line(), {"center": (-500.0, 0.0)}, "100% of the centers lie outside the pool"),
         (line(), {"pool": "bathtub"}, "bathtub"),
         (line(), {"y_down": "false"}, "y_down = 'false' is not accepted: true or false"),

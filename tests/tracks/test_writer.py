@@ -21,6 +21,21 @@ def test_tables_are_read_back(seen, tmp_path, suffix):
     assert (recording.order.psi_o == seen.truth.order.psi_o).all()
 
 
+def test_a_layout_that_is_there_is_kept(seen, tmp_path):
+    (tmp_path / "run.toml").write_text('pool = "narrow"  # measured on 3 May\n')
+    for ending in (".csv", ".parquet"):
+        with pytest.raises(flockenv.ParameterError, match=r"run\.toml is there already"):
+            export(seen.truth, tmp_path / f"run{ending}")
+    assert [path.name for path in tmp_path.iterdir()] == ["run.toml"]
+    assert "measured on 3 May" in (tmp_path / "run.toml").read_text()
+    export(seen.truth, tmp_path / "run.csv", overwrite=True)
+    # What says the same is no other layout.
+    export(seen.truth, tmp_path / "run.csv")
+    export(seen.truth, tmp_path / "run.parquet")
+    with pytest.raises(flockenv.ParameterError, match="with another layout"):
+        export(flockenv.simulate(PARAMETERS.replace(n_leaders=1), 1, 1.0), tmp_path / "run.csv")
+
+
 def test_tracked_boats_keep_their_names(seen, tmp_path):
     tracked = read_tracks(seen.table, LAYOUT)
     again = read_tracks(export(tracked, tmp_path / "run.csv")[0])

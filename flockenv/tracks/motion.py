@@ -1,0 +1,134 @@
+"""How tracked boats move: velocities, gaps, and whether motion fits the headings."""
+
+from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flockenv import _core
+from flockenv.errors import ParameterError
+from flockenv.tracks.layout import TrackLayout
+
+Floats = NDArray[np.float64]
+
+_AXIS_JUMP = 0.8
+_MOST_BROKEN = 0.5
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Velocities of boats, and what they are differences of.
+
+    Attributes
+    ----------
+    stamps : float64 array, shape (t, n)
+        Times of poses in s.
+    there : bool array, shape (t, n)
+        Whether there is a pose.
+    velocity : float64 array, shape (t, n, 3)
+        [cm/s, cm/s, rad/s], NaN where there is no neighbor in time.
+    broken : int
+        Steps that were too fast.
+    longest_s : float
+        Steps that last longer are gaps.
+    """
+
+    stamps: Floats
+    there: NDArray[np.bool_]
+    velocity: Floats
+    broken: int
+    longest_s: float
+
+    @classmethod
+    def of(cls, time_s: Floats, pose: Floats, fastest_cm_s: float = np.inf) -> Self:
+        """Return the differences of poses (t, n, 3), at times of shape (t,) or (t, n)."""
+        stamps = np.ascontiguousarray(np.broadcast_to(np.atleast_2d(time_s.T).T, pose.shape[:2]))
+        steps = np.diff(stamps, axis=0)
+        # Steps are alike but for gaps: those much longer than nine tenths of them.
+        usual = np.quantile(steps, 0.9, method="lower") if steps.size else np.inf
+        longest_s = 1.5 * float(usual)
+        pose = np.ascontiguousarray(pose)
+        rows, broken = _core.track_velocities(stamps, pose, longest_s, fastest_cm_s)
+        there = ~np.isnan(pose[..., 0])
+        return cls(stamps, there, rows.reshape(pose.shape), broken, longest_s)
+
+    def gaps(self) -> Floats:
+        """Return how long each gap is in s: between two poses of a boat that are no neighbors."""
+        found = [np.zeros(0)]
+        for stamps, there in zip(self.stamps.T, self.there.T, strict=True):
+            frames = np.flatnonzero(there)
+            steps = np.diff(stamps[frames])
+            found.append(steps[(np.diff(frames) > 1) | (steps > self.longest_s)])
+        return np.concatenate(found)
+
+    def empty_frames(self, time_s: Floats) -> int:
+        """Return how many frames nobody is in, of those that a regular clock has."""
+        steps = np.diff(time_s)
+        long = steps[steps > self.longest_s]
+        return int((np.rint(long / np.median(steps)) - 1).sum()) if len(long) else 0
+
+    def cosine(self, pose: Floats) -> float:
+        """Return the mean cosine between heading and motion, weighted by speed; NaN for none."""
+        ahead, speed = self.ahead(pose[..., 2]), np.hypot(*np.moveaxis(self.velocity, -1, 0)[:2])
+        return float(np.nansum(ahead) / np.nansum(speed)) if np.nansum(speed) > 0.0 else np.nan
+
+    def ahead(self, heading: Floats) -> Floats:
+        """Return how fast boats move along their headings."""
+        return self.velocity[..., 0] * np.cos(heading) + self.velocity[..., 1] * np.sin(heading)
+
+    def check(self, pose: Floats, layout: TrackLayout) -> None:
+        """Refuse steps most of which are too fast, and axes that are said to be directions."""
+        steps = self.there[1:] & self.there[:-1] & (np.diff(self.stamps, axis=0) <= self.longest_s)
+        if self.broken > _MOST_BROKEN * steps.sum():
+            raise ParameterError(
+                f"{self.broken} of {steps.sum()} steps are faster than max_speed_cm_s = "
+                f"{layout.max_speed_cm_s:g}: are cm_per_unit, fps and times those of this table, "
+                "and is it of one film?"
+            )
+        jumps = (np.abs(np.diff(pose[..., 2], axis=0)) > _AXIS_JUMP * np.pi) & steps
+        may_be_axes = isinstance(layout.heading, str) and not layout.axis
+        if may_be_axes and jumps.sum() >= 3 and _is_half(pose[..., 2]):
+            raise ParameterError(
+                "headings lie within half a turn and jump from one end of it to the other: if they "
+                "are axes without a bow, such as of ellipses, axis = true"
+            )
+
+
+def _is_half(heading: Floats) -> bool:
+    """Whether headings, up to whole turns, lie within half a turn as axes are given."""
+    wrapped = np.mod(heading[~np.isnan(heading)], np.pi * 2)
+    return any(
+        (np.mod(wrapped - start, 2 * np.pi) <= np.pi + 1e-6).all()
+        for start in np.pi * np.array([0.0, 0.5, 1.0, 1.5])
+    )
+
+
+def bows_of(axis: Floats, motion: Motion) -> Floats:
+    """Return axes as headings: continuous, and on the whole towards where a boat moves."""
+    heading = axis.copy()
+    for boat in range(axis.shape[1]):
+        frames = np.flatnonzero(motion.there[:, boat])
+        steps = np.diff(motion.stamps[frames, boat])
+        cuts = np.flatnonzero((np.diff(frames) > 1) | (steps > motion.longest_s)) + 1
+        for part in np.split(frames, cuts):
+            heading[part, boat] = np.unwrap(axis[part, boat], period=np.pi)
+            if np.nansum(motion.ahead(heading)[part, boat]) < 0.0:
+                heading[part, boat] += np.pi
+    return heading
+
+
+def unwrapped(heading: Floats) -> Floats:
+    """Return headings without jumps of full turns, each boat's from sample to sample it is in."""
+    whole = heading.copy()
+    for boat in whole.T:
+        there = ~np.isnan(boat)
+        boat[there] = np.unwrap(boat[there])
+    return whole
+
+
+def in_water(pool: Any, places: Floats, margin_cm: float) -> NDArray[np.bool_]:
+    """Return whether places are in the water of a pool, or at most so far beyond its walls."""
+    outer_cm, inner_cm = _core.pool_radii_cm(pool)
+    distance = np.hypot(places[..., 0], places[..., 1])
+    return np.asarray((distance <= outer_cm + margin_cm) & (distance >= inner_cm - margin_cm))

@@ -1,0 +1,87 @@
+"""What of tracks was used, and what was left out."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+_WEAK = 0.3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrackReport:
+    """What of tracks was used, and what was left out.
+
+    Attributes
+    ----------
+    frames, boats, samples : int
+        Different times, different names, and poses that are used.
+    missing : int
+        Boat-frames without a pose: times at which a boat is not there, summed over boats; frames
+        that nobody is in count too.
+    left_out : dict of dict of int
+        Rows that are left out, by reason and boat; "" for no boat.
+    gaps : int, and longest_gap_s : float
+        How often a boat is away between two of its poses, and the longest of these times.
+    broken : int
+        Steps above the greatest speed, such as of wrong detections and of names that were
+        exchanged: both samples are used, and no velocity is taken across.
+    lone : int
+        Samples without a neighbor in time. They have no velocity, and no quantity counts them.
+    cosine : float
+        Mean cosine between heading and motion, weighted by the way. It is near 1 for what moves
+        ahead, and small or negative if axes, units or directions are wrong; NaN if nothing moves.
+    stuck : dict of (float, float, int)
+        Boats that are at one point in at least 20 samples and a tenth of them: x and y in cm, and
+        in how many.
+    """
+
+    frames: int
+    boats: int
+    samples: int
+    missing: int
+    left_out: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
+    gaps: int = 0
+    longest_gap_s: float = 0.0
+    broken: int = 0
+    lone: int = 0
+    cosine: float = float("nan")
+    stuck: Mapping[str, tuple[float, float, int]] = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        all_of = self.samples + self.missing
+        rows = sum(sum(boats.values()) for boats in self.left_out.values())
+        reasons = (
+            f"{sum(boats.values())} {reason}{_by_boat(boats)}"
+            for reason, boats in self.left_out.items()
+        )
+        gaps = f"{self.gaps}" + (f", the longest {self.longest_gap_s:.4g} s" if self.gaps else "")
+        lines = [
+            f"{self.samples} poses of {self.boats} boats in {self.frames} frames; "
+            f"missing: {self.missing} of {all_of} boat-frames",
+            f"left out: {rows} rows" + (f" ({', '.join(reasons)})" if rows else ""),
+            f"gaps: {gaps}; steps too fast for a velocity: {self.broken}; "
+            f"samples without a velocity: {self.lone}",
+            f"mean cosine between heading and motion: {self.cosine:.2f}",
+        ]
+        if self.cosine < _WEAK:
+            lines[-1] += (
+                ", far from 1: are y_down, heading_unit, heading_turns, heading_zero and the order "
+                "of x and y right, and are headings no axes?"
+            )
+        if self.stuck:
+            points = (
+                f"{name} at ({x:.4g}, {y:.4g}) cm in {count} frames"
+                for name, (x, y, count) in list(self.stuck.items())[:5]
+            )
+            more = f", and {len(self.stuck) - 5} more boats" if len(self.stuck) > 5 else ""
+            lines.append(
+                f"the same point in many frames: {', '.join(points)}{more}; "
+                "if it stands for a lost boat, name it in `lost`, in units of the file"
+            )
+        return "\n  ".join(lines)
+
+
+def _by_boat(boats: Mapping[str, int]) -> str:
+    named = sorted(((count, name) for name, count in boats.items() if name), reverse=True)
+    words = [f"{name} {count}" for count, name in named[:5]]
+    more = [f"{len(named) - 5} more boats"] if len(named) > 5 else []
+    return f": {', '.join(words + more)}" if named else ""

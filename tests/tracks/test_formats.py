@@ -1,0 +1,391 @@
+"""Tables are read as trackers, spreadsheets and pandas leave them; what cannot be read is named."""
+
+import io
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import flockenv
+from flockenv.tracks import TrackLayout, guess_layout, read_layout, read_tracks
+
+from .conftest import CENTER, LAYOUT, PIXEL_CM, but, read_and_counted
+
+FIELDS = {"pool": "narrow", "leaders": ("boat1", "boat2"), "cm_per_unit": PIXEL_CM}
+FIELDS |= {"center": CENTER, "y_down": True, "heading_unit": "deg"}
+
+
+def key_points(seen):
+    """Nose and tail of each boat, 20 pixels ahead and behind."""
+    angle = np.radians(seen.table["angle"])
+    ahead = 20 * np.cos(angle), 20 * np.sin(angle)
+    return seen.table.assign(
+        nose_x=seen.table["x_px"] + ahead[0],
+        nose_y=seen.table["y_px"] + ahead[1],
+        tail_x=seen.table["x_px"] - ahead[0],
+        tail_y=seen.table["y_px"] - ahead[1],
+    )
+
+
+def deeplabcut(seen):
+    """The columns of a project with several animals, and the numbers of frames as index."""
+    table = key_points(seen)
+    columns = {}
+    for name, rows in table.set_index("frame").groupby("track"):
+        for part, stem in (("nose", "nose_"), ("tail", "tail_"), ("center", "")):
+            for coord in "xy":
+                column = rows[f"{stem}{coord}" if stem else f"{coord}_px"]
+                columns["DLC_resnet50", name, part, coord] = column
+            columns["DLC_resnet50", name, part, "likelihood"] = 0.99 + 0 * column
+    wide = pd.DataFrame(columns).reindex(range(601))
+    wide.columns.names = ["scorer", "individuals", "bodyparts", "coords"]
+    return wide
+
+
+def check(seen, found, report, tolerance=1e-6):
+    expected = read_tracks(seen.table, LAYOUT)
+    order = [expected.ids.tolist().index(name) for name in found.ids]
+    there = ~np.isnan(found.pose[..., 0])
+    assert (report.samples, report.missing) == (len(seen.table), seen.missing)
+    assert np.abs((found.pose - expected.pose[:, order])[there][:, :2]).max() < tolerance
+    assert np.allclose(found.order.psi_o, expected.order.psi_o, atol=1e-5, equal_nan=True)
+
+
+def test_deeplabcut(seen, tmp_path):
+    wide = deeplabcut(seen)
+    wide.loc[300, (slice(None), "boat7", slice(None), "likelihood")] = 0.1
+    layout = TrackLayout(
+        **FIELDS,
+        fps=10.0,
+        x="{id}.center_x",
+        y="{id}.center_y",
+        heading=("{id}.tail_x", "{id}.tail_y", "{id}.nose_x", "{id}.nose_y"),
+        confidence=("{id}.nose_likelihood", "{id}.tail_likelihood"),
+        least_confidence=0.6,
+    )
+    wide.to_csv(tmp_path / "dlc.csv")
+    assert (tmp_path / "dlc.csv").read_text().startswith("scorer,DLC_resnet50,")
+    for source in (wide, tmp_path / "dlc.csv"):
+        _, report = read_and_counted(source, layout)
+        assert report.left_out["with too little confidence"] == {"boat7": 1}
+        assert report.left_out["without a position"]["boat7"] > 0
+        assert report.missing == seen.missing + 1
+    guess_layout(tmp_path / "dlc.csv")
+    guessed = read_layout(tmp_path / "dlc.toml")
+    assert (guessed.x, guessed.y, guessed.heading) == (layout.x, layout.y, layout.heading)
+    assert (guessed.id, guessed.frame, guessed.least_confidence) == (None, "frame", 0.6)
+
+
+def test_deeplabcut_of_one_animal(seen, tmp_path):
+    wide = deeplabcut(seen).xs("boat7", axis=1, level="individuals")
+    wide.to_csv(tmp_path / "dlc.csv")
+    guess_layout(tmp_path / "dlc.csv")
+    layout = read_layout(tmp_path / "dlc.toml")
+    assert (layout.id, layout.x, layout.heading[2]) == (None, "center_x", "nose_x")
+    found, _ = read_and_counted(tmp_path / "dlc.csv", but(layout, fps=10.0))
+    assert (found.ids.tolist(), len(found)) == (["0"], 601)
+
+
+def test_sleap(seen, tmp_path):
+    points = key_points(seen)
+    table = pd.DataFrame({"track": points["track"], "frame_idx": points["frame"]})
+    table["instance.score"] = 0.9
+    for part in ("nose", "tail"):
+        table[f"{part}.x"], table[f"{part}.y"] = points[f"{part}_x"], points[f"{part}_y"]
+        table[f"{part}.score"] = 0.8
+    # What is assigned to no track has no name.
+    table = pd.concat([table, table[::50].assign(track="")]).sort_values("frame_idx", kind="stable")
+    table.to_csv(tmp_path / "sleap.csv", index=False)
+    guess_layout(tmp_path / "sleap.csv")
+    guessed = read_layout(tmp_path / "sleap.toml")
+    # Without a part in the middle, the center is between the two ends.
+    assert (guessed.x, guessed.y) == (("tail.x", "nose.x"), ("tail.y", "nose.y"))
+    assert (guessed.id, guessed.frame) == ("track", "frame_idx")
+    found, report = read_and_counted(
+        tmp_path / "sleap.csv", but(guessed, **but_units(), fps=10.0, leaders=FIELDS["leaders"])
+    )
+    assert report.left_out == {"without a name": {"": len(seen.table[::50])}}
+    check(seen, found, report)
+
+
+def but_units():
+    names = ("pool", "cm_per_unit", "center", "y_down")
+    return {name: FIELDS[name] for name in names}
+
+
+@pytest.mark.parametrize("columns", ["x{}", "X_{}", "x{} [px]"])
+def test_wide_tables_of_idtracker(seen, tmp_path, columns):
+    wide = seen.table.assign(n=seen.table["track"].str.removeprefix("boat"))
+    wide = wide.pivot(index="frame", columns="n")
+    table = pd.DataFrame({"seconds": wide.index / 10.0})
+    for name in wide["x_px"]:
+        table[columns.format(name)] = wide["x_px"][name].to_numpy()
+        table[columns.format(name).replace("x", "y").replace("X", "Y")] = wide["y_px"][
+            name
+        ].to_numpy()
+        table[f"angle{name}"] = wide["angle"][name].to_numpy()
+    table.to_csv(tmp_path / "trajectories.csv", index=False)
+    guess_layout(tmp_path / "trajectories.csv")
+    guessed = read_layout(tmp_path / "trajectories.toml")
+    assert guessed.x == columns.format("{id}")
+    assert (guessed.id, guessed.frame, guessed.fps, guessed.heading) == (
+        None, "seconds", None, "angle{id}",
+    )  # fmt: skip
+    layout = but(guessed, **but_units(), leaders=("1", "2"), heading_unit="deg")
+    found, report = read_and_counted(tmp_path / "trajectories.csv", layout)
+    found_ids = [f"boat{each}" for each in found.ids]
+    assert (report.samples, report.missing) == (len(seen.table), seen.missing)
+    expected = read_tracks(seen.table, LAYOUT)
+    assert found_ids == expected.ids.tolist()
+    assert np.allclose(found.order.psi_o, expected.order.psi_o, equal_nan=True)
+
+
+def test_trex(seen, tmp_path):
+    """One file per individual, with infinities where it is lost, joined as docs/tracks.md says."""
+    names = []
+    for name, rows in seen.table.groupby("track"):
+        whole = rows.set_index("frame").reindex(range(601))
+        table = pd.DataFrame({"frame": whole.index, "missing": whole["x_px"].isna() * 1})
+        table["time"] = table["frame"] / 10.0
+        for column, values in (("X (cm)", "x_px"), ("Y (cm)", "y_px")):
+            table[column.replace(" ", "#wcentroid ")] = whole[values].fillna(np.inf).to_numpy()
+        table["ANGLE"] = np.radians(whole["angle"]).fillna(np.inf).to_numpy()
+        table.to_csv(tmp_path / f"film_{name}.csv", index=False)
+        names.append(name)
+    paths = sorted(tmp_path.glob("film_*.csv"))
+    joined = pd.concat([pd.read_csv(p).assign(id=p.stem.rpartition("_")[2]) for p in paths])
+    joined.to_csv(tmp_path / "all.csv", index=False)
+    guess_layout(tmp_path / "all.csv")
+    guessed = read_layout(tmp_path / "all.toml")
+    assert (guessed.x, guessed.y, guessed.heading, guessed.id) == (
+        "X#wcentroid (cm)", "Y#wcentroid (cm)", "ANGLE", "id",
+    )  # fmt: skip
+    assert guessed.cm_per_unit == 1.0
+    layout = but(guessed, **but_units(), fps=10.0, frame="frame", leaders=FIELDS["leaders"])
+    found, report = read_and_counted(tmp_path / "all.csv", layout)
+    check(seen, found, report)
+    assert sum(report.left_out["without a position"].values()) == seen.missing
+
+
+def test_trackmate(seen, tmp_path):
+    """Spots with three more lines of header; ID is the spot's, TRACK_ID the boat's."""
+    table = seen.table.assign(LABEL="ID1", ID=np.arange(len(seen.table)) + 7)
+    table = table.rename(
+        columns={"track": "TRACK_ID", "x_px": "POSITION_X", "y_px": "POSITION_Y", "frame": "FRAME"}
+    )
+    lines = table.to_csv(index=False).splitlines()
+    more = [
+        "Frame,Track ID,X,Y,Angle,Label,Spot ID",
+        "Frame,Track ID,X,Y,A,Label,Spot ID",
+        ",,(pixel),(pixel),(deg),,",
+    ]
+    (tmp_path / "spots.csv").write_text("\n".join([lines[0], *more, *lines[1:]]))
+    guess_layout(tmp_path / "spots.csv")
+    guessed = read_layout(tmp_path / "spots.toml")
+    assert (guessed.id, guessed.x, guessed.frame) == ("TRACK_ID", "POSITION_X", "FRAME")
+    layout = but(guessed, **FIELDS, fps=10.0)
+    check(seen, *read_and_counted(tmp_path / "spots.csv", layout))
+
+
+LAB = ("Frame", "RobotID", "X [px]", "Y [px]", "Theta [deg]")
+
+
+@pytest.mark.parametrize(
+    ("separator", "decimal", "encoding", "before"),
+    [
+        (",", ".", "utf-8", ""),
+        (",", ".", "utf-8-sig", ""),
+        (";", ",", "utf-8", ""),
+        (";", ",", "cp1252", ""),
+        (";", ".", "utf-16", "Experiment: 7\n\n"),
+        ("\t", ",", "utf-8", "Kamera: oben links\nMaßstab: 2,5 mm\n"),
+        ("|", ".", "utf-8", ""),
+    ],
+)
+def test_a_table_of_a_lab_is_guessed(seen, tmp_path, separator, decimal, encoding, before):
+    table = seen.table.set_axis(LAB, axis=1).astype({"X [px]": float, "Y [px]": float})
+    if encoding == "cp1252":
+        table = table.rename(columns={"Theta [deg]": "Theta [°]"})
+    text = before + table.to_csv(index=False, sep=separator, decimal=decimal)
+    (tmp_path / "lab.csv").write_bytes(text.encode(encoding))
+    checks = guess_layout(tmp_path / "lab.csv")
+    assert any("cm_per_unit = 1.0  # fill in" in line for line in checks)
+    guessed = read_layout(tmp_path / "lab.toml")
+    assert (guessed.frame, guessed.id, guessed.x, guessed.y) == LAB[:4]
+    assert (guessed.separator, guessed.decimal, guessed.heading_unit) == (separator, decimal, "deg")
+    assert guessed.center == pytest.approx(CENTER, abs=40)
+    layout = but(guessed, **FIELDS, fps=10.0)
+    check(seen, *read_and_counted(tmp_path / "lab.csv", layout))
+
+
+@pytest.mark.parametrize(
+    ("names", "expected"),
+    [
+        ("time [ms];Robot;x (mm);y (mm);yaw [rad]", {"fps": 1000.0, "cm_per_unit": 0.1}),
+        ("time_s;robot_no;x_m;y_m;heading_deg", {"cm_per_unit": 100.0, "heading_unit": "deg"}),
+        ("Timestamp;Tag ID;X;Y;Orientation", {"id": "Tag ID", "heading": "Orientation"}),
+        ("step;fish;pos_x;pos_y;theta", {"frame": "step", "id": "fish", "x": "pos_x"}),
+    ],
+)
+def test_units_in_a_header_are_taken(tmp_path, names, expected):
+    rows = [f"{40 * k};{k % 2};{k % 7 + 0.5};{k % 5 + 1.5};0.1" for k in range(40)]
+    (tmp_path / "lab.csv").write_text("\n".join([names, *rows]))
+    guess_layout(tmp_path / "lab.csv")
+    found = read_layout(tmp_path / "lab.toml")
+    assert {name: getattr(found, name) for name in expected} == expected
+
+
+def test_what_is_not_found_is_to_be_filled_in(tmp_path):
+    (tmp_path / "odd.csv").write_text("frame,who,east,north\n0,a,1,2\n0,b,3,4\n")
+    checks = guess_layout(tmp_path / "odd.csv")
+    assert [line.split()[0] for line in checks if "fill in" in line] == ["x", "y", "id", "pool"]
+    with pytest.raises(flockenv.ParameterError, match="x = '' is not accepted"):
+        read_tracks(tmp_path / "odd.csv")
+    with pytest.raises(flockenv.ParameterError, match="there already"):
+        guess_layout(tmp_path / "odd.csv")
+
+
+def test_lost_points_are_no_part_of_a_guessed_pool(seen, tmp_path):
+    table = seen.table.set_axis(LAB, axis=1)
+    table.loc[::9, ["X [px]", "Y [px]"]] = -1
+    table.to_csv(tmp_path / "lab.csv", index=False)
+    guess_layout(tmp_path / "lab.csv")
+    guessed = read_layout(tmp_path / "lab.toml")
+    assert guessed.center == pytest.approx(CENTER, abs=40)
+    assert guessed.lost == ((-1.0, -1.0),)
+
+
+def written(seen, tmp_path, change):
+    text = change(seen.table.to_csv(index=False))
+    (tmp_path / "tracks.csv").write_text(text)
+    return tmp_path / "tracks.csv"
+
+
+def cells(change):
+    """What changes a CSV text line by line, all but its header."""
+
+    def changed(text):
+        header, *lines = text.splitlines()
+        return "\n".join([header, *map(change, lines)]) + "\n"
+
+    return changed
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda text: text.replace("frame,track", " Frame , Track").replace("x_px", "X_PX"),
+        lambda text: text.replace(",", ", "),
+        lambda text: text.replace("\n", "\r\n"),
+        lambda text: text.replace("\n", "\n\n") + "\n\n,,,,\n",
+        lambda text: "# " + text,
+        cells(lambda line: line + ","),
+        lambda text: text.replace("\n", ",\n"),
+        lambda text: text.replace("angle\n", "angle\nno,,px,px,deg\n", 1),
+        cells(lambda line: '"' + line.replace(",", '","') + '"'),
+        cells(lambda line: line.replace(",", ".0,", 1)),
+    ],
+)
+def test_spellings_of_a_table(seen, tmp_path, change):
+    found, report = read_and_counted(written(seen, tmp_path, change), LAYOUT)
+    assert found == read_tracks(seen.table, LAYOUT)
+    assert report.left_out == {}
+
+
+@pytest.mark.parametrize(
+    "mark", ["-", "--", "N/A", "NULL", "None", "nan", "inf", "-Inf", "lost", "-99"]
+)
+def test_what_stands_for_no_number(seen, tmp_path, mark):
+    table = seen.table.astype(object)
+    table.loc[::40, ["x_px", "y_px", "angle"]] = mark
+    table.to_csv(tmp_path / "tracks.csv", index=False)
+    layout = but(LAYOUT, missing=("lost", "-99"))
+    _, report = read_and_counted(tmp_path / "tracks.csv", layout)
+    assert sum(report.left_out["without a position"].values()) == len(table[::40])
+    if mark == "lost":
+        with pytest.raises(flockenv.ParameterError, match="things than numbers: 'lost' in line 2"):
+            read_tracks(tmp_path / "tracks.csv", LAYOUT)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (cells(lambda line: line + ",0.93"), "names 5 columns, and line 2 holds 6 values"),
+        (cells(lambda line: "1," + line), "names 5 columns, and line 2 holds 6 values"),
+        (lambda text: text.replace("\n7,", "\n7,8,", 1), "Expected 5 fields in line"),
+        (lambda text: text.replace(",", ";"), "separator = ';'"),
+        (lambda text: text.replace(",", "\t"), r"separator = '\t'"),
+        (lambda text: text.replace("angle", "x_px"), "several columns 'x_px'"),
+        (lambda text: text.replace("angle", "X_PX "), "'angle' is missing"),
+        (lambda text: text + text, "other things than numbers: 'x_px' in line 11984"),
+        (lambda _: "", "there is no header"),
+        (lambda text: "\n" + text, "there is no header"),
+        (lambda text: text.split("\n", 1)[1], "column 'x_px' is missing; there are 0, boat1"),
+        (
+            lambda text: text.replace(",", ";").replace("\n", ",5\n").replace("le,5", "le", 1),
+            "separator = ';'",
+        ),
+    ],
+)
+def test_tables_that_cannot_be_read_are_named(seen, tmp_path, change, words):
+    with pytest.raises(flockenv.ParameterError) as raised:
+        read_tracks(written(seen, tmp_path, change), LAYOUT)
+    assert words in str(raised.value)
+
+
+def test_decimal_commas_are_named(seen, tmp_path):
+    table = seen.table.assign(x_px=seen.table["x_px"] + 0.5)
+    table.to_csv(tmp_path / "tracks.csv", index=False, sep=";", decimal=",")
+    with pytest.raises(flockenv.ParameterError, match=r"'1015,5' in line 2; is decimal = ','\?"):
+        read_tracks(tmp_path / "tracks.csv", but(LAYOUT, separator=";"))
+    with pytest.raises(flockenv.ParameterError, match="same character"):
+        but(LAYOUT, decimal=",")
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        lambda table: table.set_index("frame"),
+        lambda table: table.set_index(["frame", "track"]),
+        lambda table: table.set_index("frame", drop=False),
+        lambda table: table.rename_axis(index="track_no"),
+        lambda table: table.set_index(np.zeros(len(table))),
+        lambda table: table.astype({"track": "category"}),
+        lambda table: table.astype({"x_px": "Float32", "frame": "Int64"}),
+        lambda table: table.convert_dtypes(dtype_backend="pyarrow"),
+        lambda table: table.astype(str),
+        lambda table: table.astype(object),
+    ],
+)
+def test_shapes_that_pandas_leaves(seen, shape):
+    assert read_tracks(shape(seen.table), LAYOUT) == read_tracks(seen.table, LAYOUT)
+
+
+@pytest.mark.parametrize(
+    ("shape", "words"),
+    [
+        (lambda table: table[::-1].rename_axis(index="frame"), "both called 'frame', and differ"),
+        (lambda table: table.pivot(index="frame", columns="track"), "columns have 2 levels"),
+        (lambda table: pd.concat([table, table[["x_px"]]], axis=1), "several columns 'x_px'"),
+        (lambda table: table.assign(x_px=1j * table["x_px"]), "'x_px' holds other things"),
+        (lambda table: table.assign(angle=pd.Timestamp(0)), "'angle' holds other things"),
+        (lambda table: table.assign(y_px=table["y_px"] > 3), "'y_px' holds other things"),
+    ],
+)
+def test_shapes_that_are_no_table_of_tracks(seen, shape, words):
+    with pytest.raises(flockenv.ParameterError, match=words):
+        read_tracks(shape(seen.table), LAYOUT)
+
+
+def test_a_table_of_one_boat_needs_no_names(seen):
+    table = seen.table[seen.table["track"] == "boat3"].drop(columns="track")
+    layout = but(LAYOUT, id=None, leaders=())
+    assert read_tracks(table, layout).ids.tolist() == ["0"]
+    with pytest.raises(flockenv.ParameterError, match="id is missing"):
+        read_tracks(seen.table.drop(columns="track"), layout)
+
+
+def test_text_is_not_executed():
+    table = pd.read_csv(io.StringIO("frame,id,x,y,heading\n0,=1+1,1,1,0\n1,=1+1,2,1,0\n"))
+    found = read_tracks(table, TrackLayout(pool=(90.0, 0.0), fps=1.0))
+    assert found.ids.tolist() == ["=1+1"]

@@ -1,0 +1,153 @@
+"""What trackers write for a boat they lost is no boat: it is left out, and counted by boat."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import flockenv
+from flockenv.tracks import TrackLayout, read_tracks, recording_of
+
+from .conftest import LAYOUT, PIXEL_CM, but, read_and_counted
+
+LOST = {"boat4": (200, 420), "boat9": (100, 350)}
+"""The frames in which two of the boats are lost."""
+
+
+def lost_rows(table):
+    frame = table["frame"]
+    return sum(
+        (table["track"] == name) & frame.between(*frames) for name, frames in LOST.items()
+    ).astype(bool)
+
+
+@pytest.mark.parametrize(
+    ("values", "reason"),
+    [
+        ({"x_px": 0.0, "y_px": 0.0}, "in no water"),
+        ({"x_px": -1.0, "y_px": -1.0}, "in no water"),
+        ({"x_px": -1.0, "y_px": -1.0, "angle": -1.0}, "in no water"),
+        ({"x_px": 812.0, "y_px": 604.5}, "in no water"),
+        ({"x_px": np.inf, "y_px": np.inf}, "without a position"),
+        ({"x_px": np.inf, "y_px": np.inf, "angle": np.inf}, "without a position"),
+        ({"x_px": np.nan}, "without a position"),
+        ({"angle": np.inf}, "without a heading"),
+        ({"angle": -np.inf}, "without a heading"),
+        ({"angle": 9999.0}, "with a heading beyond a full turn"),
+        ({"x_px": 1e300}, "in no water"),
+    ],
+)
+def test_a_lost_boat_is_none(seen, values, reason):
+    lost = lost_rows(seen.table)
+    expected = read_tracks(seen.table[~lost], LAYOUT)
+    table = seen.table.astype({"x_px": float, "y_px": float, "angle": float})
+    table.loc[lost, list(values)] = list(values.values())
+    found, report = read_and_counted(table, LAYOUT)
+    counts = seen.table[lost].groupby("track").size().to_dict()
+    assert report.left_out == {reason: counts}
+    assert f"{lost.sum()} rows ({lost.sum()} {reason}: boat9 " in str(report)
+    assert (found.order.psi_o == expected.order.psi_o).all()
+    assert np.array_equal(found.order.psi_v, expected.order.psi_v, equal_nan=True)
+
+
+def test_a_point_in_the_water_is_said_and_can_be_left_out(seen):
+    lost = lost_rows(seen.table)
+    table = seen.table.copy()
+    table.loc[lost, ["x_px", "y_px"]] = 512.0, 604.0
+    _, report = read_and_counted(table, LAYOUT)
+    assert report.left_out == {}
+    assert set(report.stuck) >= set(LOST)
+    x, y, count = report.stuck["boat4"]
+    assert (x, y, count) == (-300 * PIXEL_CM, 0.5 * PIXEL_CM, lost[table["track"] == "boat4"].sum())
+    assert "the same point in many frames: " in str(report)
+    found, report = read_and_counted(table, but(LAYOUT, lost=((512.0, 604.0),)))
+    assert set(report.left_out) == {"at a point that stands for a lost boat"}
+    assert (found.order.psi_o == read_tracks(seen.table[~lost], LAYOUT).order.psi_o).all()
+
+
+@pytest.mark.parametrize("name", ["", "-1", "unassigned", "Unassigned", "None", "nan", "null", -1])
+def test_what_is_assigned_to_nobody_is_no_boat(seen, name, tmp_path):
+    extra = seen.table.iloc[::7].assign(
+        track=name, x_px=600.0 + np.arange(len(seen.table[::7])) % 9
+    )
+    table = pd.concat([seen.table, extra]).sort_values("frame", kind="stable")
+    table.to_csv(tmp_path / "tracks.csv", index=False)
+    for source in (table, tmp_path / "tracks.csv"):
+        found, report = read_and_counted(source, LAYOUT)
+        assert report.left_out == {"without a name": {"": len(extra)}}
+        assert found == read_tracks(seen.table, LAYOUT)
+
+
+@pytest.mark.parametrize("name", ["NA", "N/A", "n/a", "#N/A", "NULL2", "1e5", "0x1", "True"])
+def test_boats_whose_names_look_like_something_else_are_boats(seen, name, tmp_path):
+    seen.table.replace({"track": {"boat7": name}}).to_csv(tmp_path / "tracks.csv", index=False)
+    found, report = read_and_counted(tmp_path / "tracks.csv", LAYOUT)
+    assert name in found.ids
+    assert (len(found.ids), report.left_out) == (20, {})
+
+
+def test_rows_that_are_there_twice_are_dropped_and_counted(seen):
+    table = pd.concat([seen.table, seen.table.iloc[100:140]]).sort_values("frame", kind="stable")
+    found, report = read_and_counted(table, LAYOUT)
+    assert sum(report.left_out["that are there twice"].values()) == 40
+    assert found == read_tracks(seen.table, LAYOUT)
+
+
+def test_another_row_of_a_boat_in_a_frame_is_named_with_its_line(seen, tmp_path):
+    other = seen.table.iloc[[100]].assign(x_px=700)
+    table = pd.concat([seen.table[:101], other, seen.table[101:]])
+    table.to_csv(tmp_path / "tracks.csv", index=False)
+    with pytest.raises(flockenv.ParameterError, match=r"is there 2 times .* in line 103"):
+        read_tracks(tmp_path / "tracks.csv", LAYOUT)
+
+
+def test_boats_with_too_little_confidence_are_left_out(seen):
+    lost = lost_rows(seen.table)
+    table = seen.table.assign(score=np.where(lost, 0.2, 0.99))
+    layout = but(LAYOUT, confidence="score", least_confidence=0.6)
+    found, report = read_and_counted(table, layout)
+    assert sum(report.left_out["with too little confidence"].values()) == lost.sum()
+    assert found == read_tracks(seen.table[~lost], LAYOUT)
+    with pytest.raises(flockenv.ParameterError, match="need each other"):
+        but(LAYOUT, confidence="score")
+
+
+def test_boat_frames_without_a_pose_are_counted(seen):
+    lost = lost_rows(seen.table)
+    _, report = read_and_counted(seen.table[~lost], LAYOUT)
+    assert report.missing == seen.missing + lost.sum()
+    assert f"missing: {report.missing} of 12020 boat-frames" in str(report)
+    # Both are away in one stretch, and others for a frame here and there.
+    assert report.longest_gap_s == pytest.approx(25.2, abs=0.3)
+    assert report.gaps >= 3
+
+
+def test_frames_that_nobody_is_in_count_for_every_boat(seen):
+    table = seen.table[~seen.table["frame"].between(100, 399)]
+    _, report = read_and_counted(table, LAYOUT)
+    assert (report.frames, report.boats) == (301, 20)
+    assert report.missing == 12020 - len(table)
+    assert report.longest_gap_s == pytest.approx(30.1, abs=0.2)
+
+
+def test_a_pool_that_is_elsewhere_is_refused(seen):
+    for changes in ({"center": (0.0, 0.0)}, {"cm_per_unit": 1.0}, {"pool": "wide"}):
+        with pytest.raises(flockenv.ParameterError, match="of the centers lie outside the pool"):
+            read_tracks(seen.table, but(LAYOUT, **changes))
+
+
+def test_arrays_with_a_boat_in_no_water_are_refused():
+    pose = np.full((30, 2, 3), 80.0) * [1, 0, 0]
+    for place in ((0.0, 0.0), (-1.0, -1.0), (101.0, 0.0)):
+        pose[20:, 1, :2] = place
+        with pytest.raises(flockenv.ParameterError, match=r"17% of the centers \(10\) lie outside"):
+            recording_of(np.arange(30.0), pose, pool="narrow")
+    pose[20:, 1] = np.nan
+    assert recording_of(np.arange(30.0), pose, pool="narrow").ids.tolist() == ["0", "1"]
+
+
+def test_everything_in_no_water_is_named():
+    table = pd.DataFrame({"frame": [0, 1, 2], "id": "a", "x": 0.0, "y": 0.0, "heading": 0.0})
+    with pytest.raises(
+        flockenv.ParameterError, match="no row has a name, a position and a heading"
+    ):
+        read_tracks(table, TrackLayout(pool="narrow", fps=10.0))
