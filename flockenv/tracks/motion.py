@@ -12,6 +12,9 @@ from flockenv.tracks.layout import TrackLayout
 
 Floats = NDArray[np.float64]
 
+HEADING_ZERO = {"right": 0.0, "up": np.pi / 2, "left": np.pi, "down": -np.pi / 2}
+"""Where headings count from, in rad counter-clockwise from x."""
+
 _AXIS_JUMP = 0.8
 _MOST_BROKEN = 0.5
 
@@ -86,6 +89,17 @@ class Motion:
                 f"{layout.max_speed_cm_s:g}: are cm_per_unit, fps and times those of this table, "
                 "and is it of one film?"
             )
+        turned = pose[..., 2] - HEADING_ZERO[layout.heading_zero]
+        said_deg = isinstance(layout.heading, str) and layout.heading_unit == "deg"
+        if said_deg and np.nanmax(np.abs(turned)) < 0.11 and np.ptp(turned[self.there]) > 0.054:
+            # All within 2π, though in degrees, and over more than π: the motion tells which it is.
+            other = pose.copy()
+            other[..., 2] += np.degrees(turned) - turned
+            if self.cosine(other) > self.cosine(pose):
+                raise ParameterError(
+                    "headings never exceed a full turn in rad, and fit the motion better in rad "
+                    "than in degrees: is heading_unit = 'rad'?"
+                )
         jumps = (np.abs(np.diff(pose[..., 2], axis=0)) > _AXIS_JUMP * np.pi) & steps
         may_be_axes = isinstance(layout.heading, str) and not layout.axis
         if may_be_axes and jumps.sum() >= 3 and _is_half(pose[..., 2]):

@@ -9,7 +9,7 @@ from flockenv._io.extras import require
 from flockenv.errors import ParameterError
 from flockenv.tracks.clock import times_of
 from flockenv.tracks.layout import TrackLayout, columns_of
-from flockenv.tracks.motion import in_water
+from flockenv.tracks.motion import HEADING_ZERO, in_water
 from flockenv.tracks.table import Floats, column, numbers
 
 if TYPE_CHECKING:
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 FULL_TURN = {"rad": 2 * np.pi + 1e-6, "deg": 360.0 + 1e-4}
 """The greatest heading within a full turn, rounded up."""
 
-_ZERO = {"right": 0.0, "up": np.pi / 2, "left": np.pi, "down": -np.pi / 2}
 _MOST_STRANGE = 0.01
 _MOST_OUTSIDE = 0.1
 
@@ -131,7 +130,7 @@ def _headings(table: "pd.DataFrame", layout: TrackLayout) -> tuple[Floats, Any]:
         heading[strange] = np.nan
     sign = 1.0 if turns == "ccw" else -1.0
     heading = np.radians(heading) if layout.heading_unit == "deg" else heading
-    return _ZERO[layout.heading_zero] + sign * heading, strange
+    return HEADING_ZERO[layout.heading_zero] + sign * heading, strange
 
 
 def direction(x: Floats, y: Floats) -> Floats:

@@ -55,7 +55,7 @@ def text_of(path: Path) -> str:
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:
-        return data.decode("cp1252")
+        return data.decode("cp1252", "replace")
 
 
 def cells_of(text: str, layout: TrackLayout, count: int) -> list[list[str]]:

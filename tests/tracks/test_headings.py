@@ -1,10 +1,11 @@
 """Headings of any convention are directions in the pool, and axes are none."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import flockenv
-from flockenv.tracks import read_tracks
+from flockenv.tracks import TrackLayout, read_tracks
 
 from .conftest import LAYOUT, but, read_and_counted
 
@@ -54,7 +55,6 @@ def test_a_compass_in_a_picture_points_up(seen, down):
     ("change", "fields"),
     [
         (lambda t: t.assign(angle=-t["angle"] % 360), {}),
-        (lambda t: t.assign(angle=np.radians(t["angle"])), {}),
         (lambda t: t.assign(angle=(t["angle"] + 180) % 360), {}),
         (lambda t: t.rename(columns={"x_px": "y_px", "y_px": "x_px"}), {"center": (604.5, 812.0)}),
         (lambda t: t, {"heading_turns": "ccw"}),
@@ -88,6 +88,7 @@ def test_axes_are_no_directions(seen, axis):
 @pytest.mark.parametrize(
     ("change", "fields", "words"),
     [
+        (np.radians, {}, "fit the motion better in rad than in degrees"),
         (lambda a: a, {"heading_unit": "rad"}, "heading_unit = 'deg' if they are in degrees"),
         (lambda a: a * 10, {}, "wrapped = false if they count whole turns"),
         (lambda a: a * 10, {"heading_unit": "rad"}, "exceed a full turn in radians: wrapped"),
@@ -99,6 +100,13 @@ def test_headings_of_another_unit_are_refused(seen, change, fields, words):
         read_tracks(table, but(LAYOUT, **fields))
     assert words in str(raised.value)
     assert ("'deg'" in str(raised.value)) == ("'deg'" in words)
+
+
+def test_boats_that_head_one_way_in_degrees_are_read():
+    k = np.arange(60)
+    table = pd.DataFrame({"frame": k, "id": "a", "x": k - 30.0, "y": 0.0, "heading": k % 6 - 2.5})
+    layout = TrackLayout(pool=(90.0, 0.0), fps=10.0, heading_unit="deg")
+    assert read_and_counted(table, layout)[1].cosine > 0.99
 
 
 @pytest.mark.parametrize("value", [np.inf, 999.0, -1e10])
